@@ -90,7 +90,7 @@ int dispatch(int argc, char** argv, const WorldRanks& ranks, const Communicator&
 int end(const WorldRanks& ranks, int status, const std::string& message) {
   if (Processes::all_arrive(patience)) {
     if (ranks.is_first()) std::fputs(fmt::format("ricochet-mpi: {}\n", message).c_str(), stderr);
-    program::stop_silently();  // mpirun stops those that end a little later
+    program::say_signals_as(nullptr);  // mpirun stops those that end a little later
     return status;
   }
   std::fputs(fmt::format("ricochet-mpi: process {} of {}: {}\n", ranks.rank(), ranks.size(), message).c_str(), stderr);
@@ -105,11 +105,12 @@ int main(int argc, char** argv) {
   program::keep_memory();
   program::open_closed_streams();
   prepare_blas();  // before there are threads
-  program::wait_for_stop_signals("ricochet-mpi");
+  program::wait_for_stop_signals(nullptr);
   const Processes processes(argc, argv);
   const Communicator world = Communicator::world();
   const WorldRanks ranks(world);
-  if (!ranks.is_first()) program::stop_silently();
+  if (ranks.is_first()) program::say_signals_as("ricochet-mpi");
+  if (ranks.are_several()) program::let_steps_end();
   try {
     return dispatch(argc, argv, ranks, world);
   } catch (const Error& problem) {

@@ -243,6 +243,8 @@ void print_facings(const Case& input, const Model& model) {
 
 void print_advice(const Case& input, const Model& model) {
   const ConnectedBodies connected = find_connected_bodies(model.space);
+  fmt::print("  {}, {}, {}, {}\n", counted(model.sizes.nodes, "node"), counted(model.sizes.cells, "cell"),
+             counted(model.sizes.dofs, "dof"), counted(model.sizes.contact_points, "contact point"));
   print_place(input, model);
   print_materials(model.body);
   print_bodies(model, connected);

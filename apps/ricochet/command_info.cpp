@@ -183,7 +183,7 @@ void describe_result(const std::string& directory) {
   print_peak_stress(s);
   fmt::print("{}\n", deformation_text(s));
   print_probes(s);
-  print_processes(s);
+  print_solver(s);
   fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,
              s.timings.empty() ? "" : duration_text(s.timings.back().second));
   print_expectations(s.expectations);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "commands.hpp"
@@ -40,7 +41,7 @@ void print_summary(const RunSummary& s, const std::string& directory) {
   print_impacts(s, most_impacts_shown);
   print_peak_stress(s);
   fmt::print("{}\n", deformation_text(s));
-  print_processes(s);
+  print_solver(s);
   fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,
              s.timings.empty() ? "" : duration_text(s.timings.back().second));
   print_expectations(s.expectations);
@@ -107,7 +108,24 @@ void require_same_case_file(const Ranks& ranks, const std::string& path) {
 
 }  // namespace
 
+namespace {
+
+/// Each of them would run the whole case.
+void warn_of_launcher(const Ranks& ranks) {
+  const char* const size = std::getenv("OMPI_COMM_WORLD_SIZE");
+  const char* const rank = std::getenv("OMPI_COMM_WORLD_RANK");
+  if (ranks.are_several() || size == nullptr || rank == nullptr) return;
+  if (number_in(size).value_or(1.0) <= 1.0 || number_in(rank).value_or(1.0) != 0.0) return;
+  log::warning(
+      fmt::format("mpirun has begun {0} processes, each of which runs the whole case: what divides a body among "
+                  "them is mpirun -n {0} ricochet-mpi run (docs/distributed.md)",
+                  size));
+}
+
+}  // namespace
+
 int run(const RunArguments& given) {
+  warn_of_launcher(*given.ranks);
   RunArguments arguments;
   given.ranks->together([&] { arguments = with_origin(given); });
   if (given.ranks->are_several()) require_same_case_file(*given.ranks, arguments.case_file);

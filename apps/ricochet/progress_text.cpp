@@ -9,6 +9,7 @@
 #include "ricochet/io/failure_bundle.hpp"
 #include "ricochet/io/history_file.hpp"
 #include "ricochet/io/progress.hpp"
+#include "ricochet/io/rank_checkpoints.hpp"
 #include "ricochet/io/run_directory.hpp"
 
 namespace ricochet::program {
@@ -48,14 +49,17 @@ namespace {
 
 void print_checkpoints(const std::string& directory, const RunSummary& summary) {
   const std::vector<CheckpointFile> checkpoints = checkpoint_files(directory);
-  if (checkpoints.empty()) {
-    fmt::print("  no checkpoint yet\n");
+  const std::optional<CheckpointFile> last = checkpoints.empty() ? newest_manifest(directory) : checkpoints.back();
+  if (last) {
+    fmt::print("  checkpoint of step {}: {}\n", last->step, last->path);
   } else {
-    fmt::print("  checkpoint of step {}: {}\n", checkpoints.back().step, checkpoints.back().path);
+    fmt::print("  no checkpoint yet\n");
   }
   if (!is_running(directory, summary)) {
-    fmt::print("  {} {}\n", summary.steered ? "the program that steers it" : "`ricochet run` with --resume",
-               checkpoints.empty() ? "starts it anew" : "goes on with it");
+    const std::string program =
+        summary.processes ? fmt::format("`mpirun -n {} ricochet-mpi run`", summary.processes->count) : "`ricochet run`";
+    fmt::print("  {} {}\n", summary.steered ? "the program that steers it" : program + " with --resume",
+               last ? "goes on with it" : "starts it anew");
   }
   for (const std::string& file : failure_files(directory)) fmt::print("  of the step that failed: {}\n", file);
 }
@@ -108,11 +112,17 @@ void describe_checkpoint(const std::string& path) {
   }
 }
 
-void print_processes(const RunSummary& s) {
+void print_solver(const RunSummary& s) {
+  if (s.iterations) {
+    fmt::print("  solved by iterations: {:.3g} rounds of contact and {:.3g} conjugate gradients in a step\n",
+               s.iterations->rounds_per_step, s.iterations->gradients_per_step);
+  }
   if (!s.processes) return;
   const ProcessReport& p = *s.processes;
-  fmt::print("  {} processes of {} to {} dofs; each sends at most {:.3g} messages and {:.3g} MB in a step\n", p.count,
-             p.least_dofs, p.most_dofs, p.messages_per_step, 1e-6 * p.bytes_per_step);
+  fmt::print(
+      "  {} processes of {} to {} dofs; each has at most {:.3g} GB, and sends at most {:.3g} messages and "
+      "{:.3g} MB in a step\n",
+      p.count, p.least_dofs, p.most_dofs, 1e-9 * s.peak_memory, p.messages_per_step, 1e-6 * p.bytes_per_step);
 }
 
 }  // namespace ricochet::program

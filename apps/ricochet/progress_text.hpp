@@ -19,7 +19,7 @@ void print_progress(const std::string& directory, const RunSummary& summary);
 /// A checkpoint, or the state that a failed step has left.
 void describe_checkpoint(const std::string& path);
 
-/// Of several: how they divide the body, and what they send.
-void print_processes(const RunSummary& s);
+/// Iterations of a step, and of several processes how they divide the body and what they send.
+void print_solver(const RunSummary& s);
 
 }  // namespace ricochet::program

@@ -26,6 +26,7 @@ constexpr std::chrono::milliseconds same_request{250};
 
 std::atomic<int> received = 0;
 std::atomic<const char*> speaker = nullptr;  ///< null: says nothing
+std::atomic<bool> steps_end = false;
 
 void say(const std::string& what) {
   if (const char* name = speaker) interruption::say(fmt::format("\n{}: {}\n", name, what).c_str());
@@ -87,7 +88,8 @@ void wait(const sigset_t& awaited) {
   received = first;
   if (interruption::has_stopping_points()) {
     say("stopping at the end of this step; once more stops at once");
-    if (const int second = next_request(awaited, first, instant, patience); second != 0) _exit(128 + second);
+    if (const int second = next_request(awaited, first, instant, steps_end ? -1 : patience); second != 0)
+      _exit(128 + second);
   } else {
     say(fmt::format("stopped by SIG{}", sigabbrev_np(first)));
   }
@@ -116,8 +118,12 @@ void wait_for_stop_signals(const char* program_name) {
   }
 }
 
-void stop_silently() {
-  speaker = nullptr;
+void say_signals_as(const char* program_name) {
+  speaker = program_name;
+}
+
+void let_steps_end() {
+  steps_end = true;
 }
 
 int stop_signal() {

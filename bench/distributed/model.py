@@ -9,6 +9,9 @@ OFF_MACHINE = 0.25      # of what lies on a part's boundary
 LINK = 0.2e9            # bytes/s per core between machines
 CORES_PER_MACHINE, MACHINE_MEMORY = 64, 200e9  # bytes/s, which its cores share
 SUM = (5e-6, 2.5e-6)    # s of a sum over all: first, and for each doubling
+GATHER = 16.0 / 1e9     # s more of a sum for each process: all have the numbers of all
+EXCHANGES = 12          # of a round of contact, each with a barrier at its end
+HOMES = 16              # processes at most that solve zones
 PRESSED = 0.03          # of one face
 
 
@@ -31,17 +34,22 @@ class Step:
         work = own * m["bytes"] / rate
         bytes_of_boundary = shared_nodes(own) * 12.0
         exchange = NEIGHBOURS * LATENCY + OFF_MACHINE * bytes_of_boundary / LINK
-        sums = 2.0 * (SUM[0] + SUM[1] * math.log2(max(cores, 2)))
+        sums = 2.0 * self.sum_over_all(cores)
         return work + (exchange + sums if cores > 1 else 0.0)
 
-    def zones(self, dofs):
-        """One process solves them all, one after another."""
+    @staticmethod
+    def sum_over_all(cores):
+        return SUM[0] + SUM[1] * math.log2(max(cores, 2)) + GATHER * cores
+
+    def zones(self, dofs, cores):
+        """Each home solves its share one after another."""
         nodes_of_face = (dofs / 3.0) ** (2.0 / 3.0)
-        return max(1.0, PRESSED * nodes_of_face / 256.0) * self.measured["zone"]
+        zones = max(1, math.ceil(PRESSED * nodes_of_face / 256.0))
+        return math.ceil(zones / min(HOMES, cores, zones)) * self.measured["zone"] + EXCHANGES * self.sum_over_all(cores)
 
     def seconds(self, dofs, cores):
         m = self.measured
-        return m["iterations"] * self.iteration(dofs, cores), m["rounds"] * self.zones(dofs)
+        return m["iterations"] * self.iteration(dofs, cores), m["rounds"] * self.zones(dofs, cores)
 
 
 def table(steps, memory_per_dof):

@@ -281,10 +281,21 @@ class Ends(Distributed):
         process = self.start(2, "stopped", self.LONG | {"output.checkpoint_every": 1000000})
         history = self.folder / "stopped" / "history.csv"
         wait_for(lambda: (history.exists() and history.stat().st_size > 20000) or process.poll() is not None)
-        os.kill(processes_of(process)[1], signal.SIGTERM)
+        # The step that it comes in is a long one.
+        one, other = processes_of(process)
+        os.kill(one, signal.SIGSTOP)
+        os.kill(other, signal.SIGTERM)
+        time.sleep(2.5)
+        self.assertIsNone(process.poll())
+        os.kill(one, signal.SIGCONT)
         process.communicate(timeout=30)
         self.assertEqual(process.returncode, 128 + signal.SIGTERM)
         self.assertEqual(self.summary("stopped")["status"], "interrupted")
+        self.assertIn("mpirun -n 2 ricochet-mpi run --resume", self.summary("stopped")["message"])
+        described = run("info", self.folder / "stopped").stdout
+        self.assertIn(f"checkpoint of step {self.summary('stopped')['checkpoint_step']}: ", described)
+        self.assertIn("`mpirun -n 2 ricochet-mpi run` with --resume goes on with it", described)
+        (self.folder / "stopped" / "summary.json").unlink()  # checkpoints know the case, too
         finished = several(2, "run", "--resume", self.folder / "stopped", "--quiet")
         self.assertEqual(finished.returncode, 0, finished.stderr)
         self.assertEqual((self.folder / "whole" / "history.csv").read_bytes(), history.read_bytes())

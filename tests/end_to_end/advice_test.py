@@ -46,7 +46,7 @@ class Advice(TestCase):
         self.assertIn("to 0.5\n", text)
         self.assertIn('group "body": 96 cells', text)
         self.assertIn("--set changes a case file", self.expect_status(1, run("info", MESHES, "--set", "a=1")).stderr)
-        self.assertIn("refined 16 times it would have", self.expect_status(2, run("info", case, "--set", "mesh.refine=16")).stderr)
+        self.assertIn("at most 8", self.expect_status(2, run("info", case, "--set", "mesh.refine=16")).stderr)
 
     def test_where_the_mesh_came_to_lie(self):
         placement = "turn = { angle = 30.0, about = [0.1, 0.2] }\nmove = [2.0, 0.5]\n[[material]]"

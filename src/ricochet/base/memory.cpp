@@ -1,5 +1,6 @@
 #include "ricochet/base/memory.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +21,12 @@ double physical_memory() {
     if (file >> limit && limit > 0.0) bytes = std::min(bytes, limit);
   }
   return bytes;
+}
+
+double peak_memory() {
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
 void release_freed_memory() {

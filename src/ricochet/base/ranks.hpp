@@ -26,7 +26,14 @@ enum class Reduction : char {
 /// What a rank has sent to others so far.
 struct Traffic {
   std::int64_t messages = 0, bytes = 0;
-  std::int64_t reductions = 0;  ///< that it took part in
+  std::int64_t reductions = 0;  ///< that it took part in: all wait for all, as at the end of an exchange
+
+  Traffic& operator+=(const Traffic& other) {
+    messages += other.messages;
+    bytes += other.bytes;
+    reductions += other.reductions;
+    return *this;
+  }
 };
 
 /// Motions (displacements, velocities, …) are consistent: all ranks that share a node have the same values there.

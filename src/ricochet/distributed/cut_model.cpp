@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 #include "ricochet/base/memory.hpp"
 #include "ricochet/base/selection.hpp"
 #include "ricochet/base/text.hpp"
@@ -141,6 +142,16 @@ void find_equilibrium(const Case& input, Model& whole) {
   release_freed_memory();
 }
 
+void tell_of_small_parts(const Model& whole, int processes) {
+  constexpr Index few = 5000;  // dofs of a part
+  const Index each = whole.space.dof_count() / processes;
+  if (each >= few) return;
+  log::info(
+      fmt::format("each process has some {} dofs: with fewer than 50,000 they gain little, and with so few one "
+                  "process is mostly faster",
+                  each));
+}
+
 /// The first rank has the whole, and gives each its part.
 ModelPart hand_out(const Case& input, std::unique_ptr<Model> whole, std::optional<Division> division,
                    const Communicator& ranks) {
@@ -173,6 +184,7 @@ std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator
     if (ranks.rank() > 0) return;
     whole = build_model_without_forces(input, times);
     refuse_undividable_model(input, *whole, ranks.size());
+    tell_of_small_parts(*whole, ranks.size());
     if (whole->initial.static_equilibrium) find_equilibrium(input, *whole);
     division.emplace(whole->space, whole->problem,
                      partition_cells(whole->mesh, ranks.size(), options.method, options.seed));

@@ -28,6 +28,7 @@ class WorldRanks : public Ranks {
  private:
   template <class Number>
   void count(const ForEach<Number>& to_each) const {
+    ++traffic_.reductions;
     for (std::size_t rank = 0; rank < to_each.size(); ++rank) {
       if (to_each[rank].empty() || static_cast<int>(rank) == ranks_.rank()) continue;
       ++traffic_.messages;
@@ -46,12 +47,7 @@ class MpiRanks final : public WorldRanks {
 
   void accumulate(Vector& force) const override { nodes_.accumulate(force); }
   void accumulate(Eigen::VectorXf& force) const override { nodes_.accumulate(force); }
-  [[nodiscard]] Traffic traffic() const override {
-    Traffic sum = WorldRanks::traffic();
-    sum.messages += nodes_.traffic().messages;
-    sum.bytes += nodes_.traffic().bytes;
-    return sum;
-  }
+  [[nodiscard]] Traffic traffic() const override { return WorldRanks::traffic() += nodes_.traffic(); }
   [[nodiscard]] bool is_owned(Index node) const override { return nodes_.is_owned(node); }
   [[nodiscard]] std::span<const Index> not_owned() const override { return nodes_.not_owned(); }
   [[nodiscard]] std::int64_t number_of(Index node) const override {

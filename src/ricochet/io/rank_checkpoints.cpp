@@ -132,7 +132,9 @@ std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::st
     if (manifest.checksums.size() == static_cast<std::size_t>(ranks.size())) {
       const std::string path = checkpoint_path(directory, ranks.rank(), manifest.step);
       try {
-        if (checksum_of(path) != manifest.checksums[static_cast<std::size_t>(ranks.rank())])
+        const std::string checksum = checksum_of(path);
+        if (checksum.empty()) throw Error(ErrorKind::file_access, fmt::format("{}: it cannot be read", path));
+        if (checksum != manifest.checksums[static_cast<std::size_t>(ranks.rank())])
           throw Error(ErrorKind::invalid_input, fmt::format("{}: it is not the file of the manifest", path));
         snapshot = read_checkpoint(path);
       } catch (const Error& problem) {
@@ -147,6 +149,17 @@ std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::st
     }
   }
   return std::nullopt;
+}
+
+std::string checkpoint_folder_of_first_rank(const std::string& directory) {
+  return folder_of_rank(directory, 0);
+}
+
+std::optional<CheckpointFile> newest_manifest(const std::string& directory) {
+  for (const Manifest& manifest : manifests(directory)) {
+    if (!manifest.checksums.empty()) return CheckpointFile{manifest.path, manifest.step};
+  }
+  return {};
 }
 
 int ranks_of_checkpoints(const std::string& directory) {

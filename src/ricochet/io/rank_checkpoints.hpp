@@ -33,6 +33,12 @@ void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, lon
 /// Throws Error(invalid_input) where that is another number than this: only as many put the parts together.
 void require_ranks_of_checkpoints(const std::string& directory, int ranks);
 
+/// Where the first rank has its checkpoints, which know the case and its settings.
+[[nodiscard]] std::string checkpoint_folder_of_first_rank(const std::string& directory);
+
+/// The newest step of which all ranks have a checkpoint, and its manifest. None: there is none.
+[[nodiscard]] std::optional<CheckpointFile> newest_manifest(const std::string& directory);
+
 /// Manifests and checkpoints of steps after this one; of step −1 all, and the folders.
 [[nodiscard]] std::vector<std::string> rank_checkpoint_files(const std::string& directory, long after_step);
 

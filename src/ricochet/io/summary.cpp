@@ -38,25 +38,6 @@ Json extrema_to_json(const RunSummary& summary) {
   return result;
 }
 
-/// null where there is one.
-Json processes_to_json(const RunSummary& summary) {
-  if (!summary.processes) return {};
-  const ProcessReport& p = *summary.processes;
-  return {{"count", p.count},
-          {"least_dofs", p.least_dofs},
-          {"most_dofs", p.most_dofs},
-          {"messages_per_step", p.messages_per_step},
-          {"bytes_per_step", p.bytes_per_step},
-          {"reductions_per_step", p.reductions_per_step}};
-}
-
-/// null where steps are solved directly.
-Json iterations_to_json(const RunSummary& summary) {
-  if (!summary.iterations) return {};
-  return {{"rounds_per_step", summary.iterations->rounds_per_step},
-          {"gradients_per_step", summary.iterations->gradients_per_step}};
-}
-
 Json probes_to_json(const RunSummary& summary) {
   Json result = Json::array();
   for (std::size_t i = 0; i < summary.probes.size(); ++i) {
@@ -246,6 +227,7 @@ std::string to_json(const RunSummary& s) {
                {"timings_seconds", timings},
                {"seconds_per_step", s.time_per_step},
                {"processor_seconds", s.processor_seconds},
+               {"peak_memory_bytes", s.peak_memory},
                {"energy_scale", Json::number(s.energy_scale())},
                {"energy_budget", energy_budget_to_json(s)},
                {"reactions", reactions_to_json(s)},
@@ -318,13 +300,6 @@ RunSummary summary_from_json(const std::string& text, const std::string& path) {
     s.history_every = json.value("history_every", 1L);
     s.solver = json.value("solver", "");
     s.solver_reason = json.value("solver_reason", "");
-    if (const Json processes = json.value("processes", Json()); processes.is_object()) {
-      s.processes = ProcessReport{processes.at("count"),          processes.at("least_dofs"),
-                                  processes.at("most_dofs"),      processes.at("messages_per_step"),
-                                  processes.at("bytes_per_step"), processes.at("reductions_per_step")};
-    }
-    if (const Json iterations = json.value("iterations", Json()); iterations.is_object())
-      s.iterations = IterationReport{iterations.at("rounds_per_step"), iterations.at("gradients_per_step")};
     s.step = json.at("time_step");
     s.end_time = json.at("end_time");
     const Json& critical = json.at("critical_time_step");
@@ -341,6 +316,7 @@ RunSummary summary_from_json(const std::string& text, const std::string& path) {
     s.force_instant = instant_from(json.at("instants").at("force"), path);
     s.time_per_step = json.at("seconds_per_step");
     s.processor_seconds = json.value("processor_seconds", 0.0);
+    s.peak_memory = json.value("peak_memory_bytes", 0.0);
     s.warnings = json.at("warnings").get<std::vector<std::string>>();
     for (const auto& [phase, seconds] : json.at("timings_seconds").items()) s.timings.emplace_back(phase, seconds);
     const Json checks = json.value("checks", Json::object());

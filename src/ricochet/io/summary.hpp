@@ -163,6 +163,7 @@ struct RunSummary {
   std::vector<std::pair<std::string, double>> timings;  ///< seconds by phase
   double time_per_step = 0.0;                           ///< seconds
   double processor_seconds = 0.0;                       ///< of all threads; 0: results of a version that did not tell
+  double peak_memory = 0.0;                             ///< in bytes, of the process that had most; 0: likewise
   std::vector<std::string> columns;
   std::vector<ColumnDigest> digests;  ///< per column, over the rows written
   std::vector<CheckResult> checks = {};

@@ -74,7 +74,31 @@ void read_adaptive_steps(const Json& json, RunSummary& summary) {
 
 }  // namespace
 
+Json processes_to_json(const RunSummary& summary) {
+  if (!summary.processes) return {};
+  const ProcessReport& p = *summary.processes;
+  return {{"count", p.count},
+          {"least_dofs", p.least_dofs},
+          {"most_dofs", p.most_dofs},
+          {"messages_per_step", p.messages_per_step},
+          {"bytes_per_step", p.bytes_per_step},
+          {"reductions_per_step", p.reductions_per_step}};
+}
+
+Json iterations_to_json(const RunSummary& summary) {
+  if (!summary.iterations) return {};
+  return {{"rounds_per_step", summary.iterations->rounds_per_step},
+          {"gradients_per_step", summary.iterations->gradients_per_step}};
+}
+
 void read_method(const Json& json, RunSummary& summary) {
+  if (const Json processes = json.value("processes", Json()); processes.is_object()) {
+    summary.processes = ProcessReport{processes.at("count"),          processes.at("least_dofs"),
+                                      processes.at("most_dofs"),      processes.at("messages_per_step"),
+                                      processes.at("bytes_per_step"), processes.at("reductions_per_step")};
+  }
+  if (const Json iterations = json.value("iterations", Json()); iterations.is_object())
+    summary.iterations = IterationReport{iterations.at("rounds_per_step"), iterations.at("gradients_per_step")};
   read_adaptive_steps(json, summary);
   if (json.contains("energy_budget") && json.at("energy_budget").is_object()) {
     const Json& budget = json.at("energy_budget");

@@ -3,8 +3,8 @@
 #include "ricochet/base/json.hpp"
 #include "ricochet/io/summary.hpp"
 
-/// @file What the method did, as entries of summary.json: the budget of energy, and the reactions that acted. Not part
-/// of the public interface.
+/// @file What the method did, as entries of summary.json: the budget of energy, the reactions that acted, and what
+/// steps took. Not part of the public interface.
 namespace ricochet {
 
 /// What there was, what the method has lost and created, and what each has come to at the end; null in results of a
@@ -14,6 +14,10 @@ namespace ricochet {
 [[nodiscard]] Json reactions_to_json(const RunSummary& summary);
 /// Null where all steps are of one length.
 [[nodiscard]] Json adaptive_steps_to_json(const RunSummary& summary);
+/// Null where there is one.
+[[nodiscard]] Json processes_to_json(const RunSummary& summary);
+/// Null where steps are solved directly.
+[[nodiscard]] Json iterations_to_json(const RunSummary& summary);
 /// Reads those that the summary has. Throws Json::Exception.
 void read_method(const Json& json, RunSummary& summary);
 

@@ -1,22 +1,33 @@
 #include "ricochet/problem/points_inside.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace ricochet {
 
 namespace {
 
-/// What a rank tells the others: how many there are, then depth, pair and place of the deepest.
+/// In the whole body, of the first node of a point: of points that are as deep the one with the lowest number is named,
+/// whatever rank has it.
+double number_of(const SemidiscreteProblem& problem, Index point) {
+  Index lowest = std::numeric_limits<Index>::max();
+  problem.contact.visit_own_nodes(point, [&](Index node, double) {
+    lowest = std::min(lowest, static_cast<Index>(problem.ranks->number_of(node)));
+  });
+  return static_cast<double>(lowest);
+}
+
+/// What a rank tells the others: how many there are, then depth, number, pair and place of the deepest.
 std::vector<double> told_of(const SemidiscreteProblem& problem, const Vector& gap, const std::vector<Index>& points) {
-  std::vector<double> told{static_cast<double>(points.size())};
-  if (points.empty()) return told;
-  const Index deepest =
-      *std::min_element(points.begin(), points.end(), [&](Index a, Index b) { return gap[a] < gap[b]; });
+  if (points.empty()) return {0.0};
+  const Index deepest = *std::min_element(points.begin(), points.end(), [&](Index a, Index b) {
+    return gap[a] != gap[b] ? gap[a] < gap[b] : number_of(problem, a) < number_of(problem, b);
+  });
   Vector place = Vector::Zero(problem.dimension);
   problem.contact.visit_own_nodes(deepest,
                                   [&](Index node, double weight) { place += weight * problem.nodes.col(node); });
-  told.push_back(-gap[deepest]);
-  told.push_back(problem.contact.pair[static_cast<std::size_t>(deepest)]);
+  std::vector<double> told{static_cast<double>(points.size()), -gap[deepest], number_of(problem, deepest),
+                           static_cast<double>(problem.contact.pair[static_cast<std::size_t>(deepest)])};
   told.insert(told.end(), place.begin(), place.end());
   return told;
 }
@@ -31,12 +42,15 @@ PointsInside points_inside(const SemidiscreteProblem& problem, const Vector& gap
     if (pair && contact.pair[static_cast<std::size_t>(i)] != *pair) continue;
     if (gap[i] < -std::max(depth, contact.rows->gap_rounding[i])) inside.points.push_back(i);
   }
+  double number = 0.0;
   for (const std::vector<double>& told : problem.ranks->of_all(told_of(problem, gap, inside.points))) {
     inside.count += static_cast<Index>(told[0]);
-    if (told.size() == 1 || told[1] <= inside.deepest) continue;
+    if (told.size() == 1 || told[1] < inside.deepest) continue;
+    if (told[1] == inside.deepest && told[2] > number) continue;
     inside.deepest = told[1];
-    inside.pair = static_cast<int>(told[2]);
-    inside.place = Eigen::Map<const Vector>(told.data() + 3, problem.dimension);
+    number = told[2];
+    inside.pair = static_cast<int>(told[3]);
+    inside.place = Eigen::Map<const Vector>(told.data() + 4, problem.dimension);
   }
   return inside;
 }

@@ -8,6 +8,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/durable_file.hpp"
+#include "ricochet/io/rank_checkpoints.hpp"
 
 namespace ricochet {
 
@@ -43,7 +44,8 @@ RunOrigin remembered_origin(const std::string& directory) {
     if (!summary.case_path.empty()) return {summary.case_path, summary.settings};
   } catch (const Error&) {  // it is not waited for until it is on the disk: checkpoints are
   }
-  const std::optional<Snapshot> snapshot = newest_checkpoint(directory);
+  std::optional<Snapshot> snapshot = newest_checkpoint(directory);
+  if (!snapshot) snapshot = newest_checkpoint(checkpoint_folder_of_first_rank(directory));
   if (!snapshot) return {};
   return {snapshot->text("run.case_path"), snapshot->texts("run.settings")};
 }

@@ -264,7 +264,7 @@ void Run::start_recording() {
   });
   snapshot_.reset();
   contact_before_ = session_.simulation().contact_seconds();
-  traffic_before_ = session_.model().problem.ranks->traffic();
+  traffic_before_ = traffic();
   first_step_ = session_.simulation().state().step;
   report_progress();
 }

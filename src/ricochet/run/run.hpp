@@ -68,6 +68,7 @@ class Run {
   [[nodiscard]] std::string summary_path() const { return directory_.file("summary.json"); }
 
   void gather_from_ranks(RunSummary& summary);
+  [[nodiscard]] Traffic traffic() const;
   void describe_processes(RunSummary& summary) const;
   void add_work_of_ranks(RunSummary& summary) const;
   void write_own_summary(const RunSummary& summary) const;

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/memory.hpp"
 #include "ricochet/base/run_name.hpp"
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/rank_checkpoints.hpp"
@@ -57,8 +58,11 @@ void Run::interrupt(const std::string& how) {
   // Behind what the checkpoint knows: a run that goes on takes it back.
   recording_->record_end(session_.state(), session_.simulation().account());
   summary_.status = "interrupted";
-  summary_.message = fmt::format("{} after {}; {} goes on from there", how, step_in_words(),
-                                 session_.is_steered() ? "the program that steers it" : "run --resume");
+  summary_.message =
+      fmt::format("{} after {}; {} goes on from there", how, step_in_words(),
+                  session_.is_steered()   ? "the program that steers it"
+                  : !ranks_.are_several() ? "run --resume"
+                                          : fmt::format("mpirun -n {} ricochet-mpi run --resume", ranks_.size()));
 }
 
 /// On another thread, while this run is in the middle of something that takes too long. What is on the disk is good
@@ -147,13 +151,18 @@ void Run::describe_progress(RunSummary& summary) {
   const RunTimes times = times_until_now();
   summary.timings = times.phases();
   summary.processor_seconds = times.processor();
+  summary.peak_memory = peak_memory();
   summary.time_per_step = summary.steps > 0 ? times.steps / static_cast<double>(summary.steps) : 0.0;
   gather_from_ranks(summary);
   summary.warnings = session_.warnings();
 }
 
+Traffic Run::traffic() const {
+  return session_.model().problem.ranks->traffic() += ranks_.traffic();
+}
+
 void Run::describe_processes(RunSummary& summary) const {
-  const Traffic now = session_.model().problem.ranks->traffic();
+  const Traffic now = traffic();
   const auto steps = static_cast<double>(std::max(1L, session_.simulation().state().step - first_step_));
   const auto most_per_step = [&](std::int64_t after, std::int64_t before) {
     return ranks_.maximum(static_cast<double>(after - before)) / steps;
@@ -173,6 +182,7 @@ void Run::add_work_of_ranks(RunSummary& summary) const {
   ranks_.sum(sums);
   summary.factor_entries = static_cast<std::size_t>(sums[0]);
   summary.processor_seconds = sums[1];
+  summary.peak_memory = ranks_.maximum(summary.peak_memory);
   for (auto& [phase, seconds] : summary.timings) {
     if (phase == "contact_solver") seconds = ranks_.maximum(seconds);
   }

@@ -83,8 +83,10 @@ RunState read_run_state(const std::string& directory) {
   if (!std::filesystem::exists(outcome_path(directory), ignored)) return state;
   try {
     const Json json = Json::parse(read_file(outcome_path(directory)));
-    // Somebody has gone on with the run by hand, to its end: how an earlier process ended no longer matters.
-    if (is_done(state) && json.value("summary", "") != summary_checksum(directory)) return state;
+    // Somebody has gone on with the run by hand: how an earlier process ended no longer matters. (Not every version
+    // told of which summary it was.)
+    const std::string of_summary = json.value("summary", "");
+    if (of_summary.empty() ? is_done(state) : of_summary != summary_checksum(directory)) return state;
     state.exit_status = json.at("exit_status").get<int>();
     state.message = json.at("message").get<std::string>();
   } catch (const Json::Exception&) {  // then it is not known, and the run is tried again

@@ -28,11 +28,13 @@ TEST_F(SummaryTest, ReadsHowStepsWereSolvedAndWritten) {
   RunSummary summary;
   summary.history_every = 7;
   summary.processor_seconds = 1.5;
+  summary.peak_memory = 2.0e9;
   summary.solver = "iterative";
   summary.solver_reason = "the case asks for it";
   const RunSummary back = read_back(summary);
   EXPECT_EQ(back.history_every, summary.history_every);
   EXPECT_EQ(back.processor_seconds, summary.processor_seconds);
+  EXPECT_EQ(back.peak_memory, summary.peak_memory);
   EXPECT_EQ(back.solver, summary.solver);
   EXPECT_EQ(back.solver_reason, summary.solver_reason);
 }

@@ -71,6 +71,10 @@ TEST(RunState, IsReadFromItsDirectory) {
   summary.steps = 1;
   write_summary(folder.file("summary.json"), summary);
   EXPECT_EQ(read_run_state(directory).final_status(), 5) << "it was run again by hand";
+  record_outcome(directory, 2, "case.toml:3:1: no");
+  summary.status = "interrupted";
+  write_summary(folder.file("summary.json"), summary);
+  EXPECT_EQ(next_action(read_run_state(directory)), NextAction::resume) << "it was run again by hand, and stopped";
   std::ofstream(folder.file("summary.json")) << "{";
   EXPECT_FALSE(read_run_state(directory).summary.has_value());
 }
