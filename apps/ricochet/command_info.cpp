@@ -21,6 +21,7 @@
 #include "ricochet/hdf5/hdf5_file.hpp"
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/progress.hpp"
+#include "ricochet/io/rank_checkpoints.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/model/model.hpp"
 #include "ricochet/run/run_case.hpp"
@@ -140,12 +141,18 @@ std::string indented(std::string text) {
   return text;
 }
 
+/// Of several processes those of the first.
+std::vector<CheckpointFile> checkpoints_of(const std::string& directory) {
+  std::vector<CheckpointFile> files = checkpoint_files(directory);
+  return files.empty() ? checkpoint_files(checkpoint_folder_of_first_rank(directory)) : files;
+}
+
 /// None: the directory has checkpoints, but no summary that can be read.
 std::optional<RunSummary> summary_of(const std::string& directory) {
   try {
     return read_summary_of_run(directory);
   } catch (const Error&) {
-    if (checkpoint_files(directory).empty()) throw;
+    if (checkpoints_of(directory).empty()) throw;
     return {};
   }
 }
@@ -157,7 +164,7 @@ void describe_result(const std::string& directory) {
         "{}: an interrupted run whose summary.json is missing or damaged; `ricochet run` with --resume goes on "
         "where its other files are whole\n",
         directory);
-    return describe_checkpoint(checkpoint_files(directory).back().path);
+    return describe_checkpoint(checkpoints_of(directory).back().path);
   }
   const RunSummary& s = *found;
   const ColumnDigest energy = s.digest("total_energy");

@@ -106,10 +106,6 @@ void require_same_case_file(const Ranks& ranks, const std::string& path) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// Each of them would run the whole case.
 void warn_of_launcher(const Ranks& ranks) {
   const char* const size = std::getenv("OMPI_COMM_WORLD_SIZE");

@@ -65,7 +65,9 @@ class Bench:
         """The summary of a run, with the peak memory of a process."""
         out = self.directory / name
         command = [sys.executable, "-c", PEAK, str(BUILD / "ricochet-mpi"), "run", str(case), "-o", str(out), "--force", "--quiet", *more]
-        done = subprocess.run(["mpirun", "-n", str(processes), *command], capture_output=True, text=True, env=ENVIRONMENT)
+        # Two runs of one process each would be bound to the same core.
+        binding = ["--bind-to", "none"] if processes == 1 else []
+        done = subprocess.run(["mpirun", *binding, "-n", str(processes), *command], capture_output=True, text=True, env=ENVIRONMENT)
         if done.returncode != 0:
             sys.exit(done.stderr)
         summary = json.loads((out / "summary.json").read_text())
@@ -174,20 +176,23 @@ def main():
     parser.add_argument("--repeat", type=int, default=3, help="runs of each kind that is timed (default: 3)")
     parser.add_argument("--directory", type=pathlib.Path, default=BUILD / "bench-distributed", help="of meshes and runs")
     parser.add_argument("--quick", action="store_true", help="small bodies, and no table is written")
+    parser.add_argument("--check", action="store_true", help="only look whether these arguments are right")
     arguments = parser.parse_args()
+    if arguments.check:
+        return
     bench = Bench(arguments.directory, arguments.repeat)
     large, small = (0.0325, 0.041) if not arguments.quick else (0.09, 0.11)
-    parts = {}
-    parts["scaling"], measured = scaling(bench, large, small)
-    print(parts["scaling"], flush=True)
-    parts["traffic"] = traffic(bench, small)
-    print(parts["traffic"], flush=True)
-    parts["peers"] = peers(bench, small)
-    print(parts["peers"], flush=True)
-    parts["beyond"] = beyond(measured)
-    print(parts["beyond"], flush=True)
-    if not arguments.quick:
-        page.write_parts(ROOT / "docs" / "distributed.md", parts)
+
+    def show(part, text):
+        print(text, flush=True)
+        if not arguments.quick:
+            page.write_parts(ROOT / "docs" / "distributed.md", {part: text})
+
+    text, measured = scaling(bench, large, small)
+    show("scaling", text)
+    show("beyond", beyond(measured))
+    show("traffic", traffic(bench, small))
+    show("peers", peers(bench, small))
 
 
 main()

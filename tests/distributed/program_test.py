@@ -296,6 +296,7 @@ class Ends(Distributed):
         self.assertIn(f"checkpoint of step {self.summary('stopped')['checkpoint_step']}: ", described)
         self.assertIn("`mpirun -n 2 ricochet-mpi run` with --resume goes on with it", described)
         (self.folder / "stopped" / "summary.json").unlink()  # checkpoints know the case, too
+        self.assertIn("summary.json is missing", run("info", self.folder / "stopped").stdout)
         finished = several(2, "run", "--resume", self.folder / "stopped", "--quiet")
         self.assertEqual(finished.returncode, 0, finished.stderr)
         self.assertEqual((self.folder / "whole" / "history.csv").read_bytes(), history.read_bytes())
