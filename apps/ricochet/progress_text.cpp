@@ -56,9 +56,8 @@ void print_checkpoints(const std::string& directory, const RunSummary& summary) 
     fmt::print("  no checkpoint yet\n");
   }
   if (!is_running(directory, summary)) {
-    const std::string program =
-        summary.processes ? fmt::format("`mpirun -n {} ricochet-mpi run`", summary.processes->count) : "`ricochet run`";
-    fmt::print("  {} {}\n", summary.steered ? "the program that steers it" : program + " with --resume",
+    const std::string command = run_command(summary.processes ? summary.processes->count : 1);
+    fmt::print("  {} {}\n", summary.steered ? "the program that steers it" : fmt::format("`{}` with --resume", command),
                last ? "goes on with it" : "starts it anew");
   }
   for (const std::string& file : failure_files(directory)) fmt::print("  of the step that failed: {}\n", file);

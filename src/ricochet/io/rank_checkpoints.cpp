@@ -173,17 +173,20 @@ bool has_rank_checkpoints(const std::string& directory) {
   return !manifests(directory).empty();
 }
 
+std::string run_command(int processes) {
+  return processes == 1 ? "ricochet run" : fmt::format("mpirun -n {} ricochet-mpi run", processes);
+}
+
 void require_ranks_of_checkpoints(const std::string& directory, int ranks) {
   const int own = ranks_of_checkpoints(directory);
   if (own == 0 && ranks > 1 && !checkpoint_files(directory).empty())
-    throw Error(
-        ErrorKind::invalid_input,
-        fmt::format("{0}: this run is one of one process, and goes on as one: ricochet run --resume {0}", directory));
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{0}: this run is one of one process, and goes on as one: {1} --resume {0}", directory,
+                            run_command(1)));
   if (own == 0 || own == ranks) return;
   throw Error(ErrorKind::invalid_input,
-              fmt::format("{0}: this run is one of {1} processes, and goes on with as many: mpirun -n {1} ricochet-mpi "
-                          "run --resume {0}",
-                          directory, own));
+              fmt::format("{0}: this run is one of {1} processes, and goes on with as many: {2} --resume {0}",
+                          directory, own, run_command(own)));
 }
 
 std::vector<std::string> rank_checkpoint_files(const std::string& directory, long after_step) {

@@ -30,6 +30,9 @@ void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, lon
 /// Whether some were written, that can be read or not.
 [[nodiscard]] bool has_rank_checkpoints(const std::string& directory);
 
+/// What runs a case by so many: "ricochet run", "mpirun -n 4 ricochet-mpi run".
+[[nodiscard]] std::string run_command(int processes);
+
 /// Throws Error(invalid_input) where that is another number than this: only as many put the parts together.
 void require_ranks_of_checkpoints(const std::string& directory, int ranks);
 

@@ -58,11 +58,10 @@ void Run::interrupt(const std::string& how) {
   // Behind what the checkpoint knows: a run that goes on takes it back.
   recording_->record_end(session_.state(), session_.simulation().account());
   summary_.status = "interrupted";
-  summary_.message =
-      fmt::format("{} after {}; {} goes on from there", how, step_in_words(),
-                  session_.is_steered()   ? "the program that steers it"
-                  : !ranks_.are_several() ? "run --resume"
-                                          : fmt::format("mpirun -n {} ricochet-mpi run --resume", ranks_.size()));
+  summary_.message = fmt::format("{} after {}; {} goes on from there", how, step_in_words(),
+                                 session_.is_steered()   ? "the program that steers it"
+                                 : !ranks_.are_several() ? "run --resume"
+                                                         : run_command(ranks_.size()) + " --resume");
 }
 
 /// On another thread, while this run is in the middle of something that takes too long. What is on the disk is good
