@@ -1,16 +1,25 @@
 #include "ricochet/base/memory.hpp"
 
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
+#include <new>
 
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
 namespace ricochet {
+
+namespace {
+
+constexpr std::size_t huge_page = std::size_t{2} << 20;
+
+}  // namespace
 
 double physical_memory() {
   double bytes = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
@@ -33,6 +42,23 @@ void release_freed_memory() {
 #ifdef __GLIBC__
   malloc_trim(0);
 #endif
+}
+
+void* allocate_large(std::size_t bytes) {
+  const bool is_large = bytes >= 2 * huge_page;
+  // Whole pages: what is left of the last one is nobody else's.
+  const std::size_t size = is_large ? (bytes + huge_page - 1) / huge_page * huge_page : bytes;
+  void* const memory = is_large ? std::aligned_alloc(huge_page, size) : std::malloc(std::max<std::size_t>(size, 1));
+  if (memory == nullptr) throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+  // A wish: without such pages all is the same but for the time.
+  if (is_large) madvise(memory, size, MADV_HUGEPAGE);
+#endif
+  return memory;
+}
+
+void free_large(void* memory) {
+  std::free(memory);
 }
 
 }  // namespace ricochet

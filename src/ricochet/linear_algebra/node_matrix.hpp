@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "ricochet/base/large_vector.hpp"
 #include "ricochet/base/types.hpp"
 #include "ricochet/linear_algebra/node_pattern.hpp"
 
@@ -39,7 +40,7 @@ class NodeMatrix {
   [[nodiscard]] bool is_scalar() const { return stride_ == 1; }
   /// What is stored: the blocks, column by column, in the order of the pattern, and one number more.
   [[nodiscard]] const NodePattern& pattern() const { return pattern_; }
-  [[nodiscard]] const std::vector<double>& values() const { return values_; }
+  [[nodiscard]] const LargeVector<double>& values() const { return values_; }
   [[nodiscard]] std::size_t bytes() const;
 
   /// y = A x. `y` is another vector; it is made of the right size.
@@ -68,7 +69,7 @@ class NodeMatrix {
   int dimension_ = 2;
   Index stride_ = 1;  ///< numbers per block: d², or 1
   NodePattern pattern_;
-  std::vector<double> values_;  ///< per block: column by column
+  LargeVector<double> values_;  ///< per block: column by column
 };
 
 }  // namespace ricochet

@@ -75,7 +75,7 @@ class RowOfPatterns {
   [[nodiscard]] const std::vector<int>& one_sided() const { return one_sided_; }
 
  private:
-  using Iterator = std::vector<int>::const_iterator;
+  using Iterator = LargeVector<int>::const_iterator;
   void join(Iterator begin, Iterator end, std::vector<int>& columns) {
     joined_.clear();
     std::set_union(columns.begin(), columns.end(), begin, end, std::back_inserter(joined_));

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "ricochet/base/large_vector.hpp"
 #include "ricochet/base/types.hpp"
 
 /// @file Which blocks of a symmetric matrix a NodeMatrix stores, and in what order. Not part of the public interface.
@@ -30,7 +31,7 @@ using PatternRows = std::vector<PatternRow>;  ///< per node
 struct NodePattern {
   std::vector<Index> part_begins{0};  ///< node_parts
   std::vector<int> node;              ///< of each row, part after part
-  std::vector<int> column;            ///< per block: node of the column
+  LargeVector<int> column;            ///< per block: node of the column
   std::vector<RowGroup> groups;       ///< part after part
   std::vector<Index> part_groups{0};  ///< first group of each part, and after them the number of groups
 

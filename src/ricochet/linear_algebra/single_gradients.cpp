@@ -49,7 +49,7 @@ void invert_factors(const Vector& blocks, const std::vector<char>& solved, std::
 
 template <int d>
 void scale_blocks(const NodeMatrix& matrix, const std::vector<char>& solved, const std::vector<float>& inverse_factor,
-                  std::vector<float>& result) {
+                  LargeVector<float>& result) {
   const NodePattern& pattern = matrix.pattern();
   result.assign(matrix.values().size(), 0.0F);
   const auto factor_of = [&](Index node) -> Square<d> {

@@ -33,7 +33,7 @@ class SingleGradients {
 
   const NodeMatrix& matrix_;
   const Ranks& ranks_;
-  std::vector<float> values_;          ///< Â, in the pattern of the matrix
+  LargeVector<float> values_;          ///< Â, in the pattern of the matrix
   std::vector<float> inverse_factor_;  ///< L⁻¹ per node, column by column
   Numbers x_, residual_, direction_, image_;
 };
