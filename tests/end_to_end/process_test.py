@@ -210,7 +210,7 @@ class Signals(TestCase):
 
     def test_while_a_step_takes_long(self):
         """One that comes to no end for long: contact and conjugate gradients disagree, as the step is far too large."""
-        self.write("box.msh", box(8))
+        self.write("box.msh", box(14))
         case = self.write("box.toml", box_case())
         output = self.folder / "out"
         process = start("run", case, "-o", output, *settings(

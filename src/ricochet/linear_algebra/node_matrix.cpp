@@ -211,59 +211,83 @@ SparseMatrix NodeMatrix::whole() const {
   return principal(all);
 }
 
+namespace {
+
+/// The place of each node among those that are taken; −1: it is not.
+std::vector<int> places_of(const std::vector<Index>& taken, std::size_t nodes) {
+  std::vector<int> place(nodes, -1);
+  for (std::size_t i = 0; i < taken.size(); ++i) place[static_cast<std::size_t>(taken[i])] = static_cast<int>(i);
+  return place;
+}
+
+}  // namespace
+
 SparseMatrix NodeMatrix::principal(const std::vector<Index>& taken) const {
+  const std::vector<int> place = places_of(taken, pattern_.node.size());
+  const auto count = static_cast<Index>(taken.size());
+  return extract(place, count, place, count);
+}
+
+SparseMatrix NodeMatrix::columns(const std::vector<Index>& taken) const {
+  std::vector<int> all(pattern_.node.size());
+  std::iota(all.begin(), all.end(), 0);
+  return extract(all, static_cast<Index>(all.size()), places_of(taken, all.size()), static_cast<Index>(taken.size()));
+}
+
+/// Block rows and columns, numbered by `row_of` and `column_of` per node; −1: it is not taken.
+SparseMatrix NodeMatrix::extract(const std::vector<int>& row_of, Index rows, const std::vector<int>& column_of,
+                                 Index columns) const {
   const int d = dimension_;
-  std::vector<int> number(pattern_.node.size(), -1);
-  for (std::size_t i = 0; i < taken.size(); ++i) number[static_cast<std::size_t>(taken[i])] = static_cast<int>(i);
-  const auto nodes = static_cast<Index>(taken.size());
   struct Place {
-    int node;
+    int row;
     Index block;
     bool transposed;
   };
-  // Blocks per row, both sides of the diagonal.
-  std::vector<Index> begins(taken.size() + 1, 0);
   const auto each_block = [&](const auto& enter) {
+    const auto enter_taken = [&](int row, int column, Index block, bool transposed) {
+      if (row_of[static_cast<std::size_t>(row)] >= 0 && column_of[static_cast<std::size_t>(column)] >= 0)
+        enter(column_of[static_cast<std::size_t>(column)],
+              Place{row_of[static_cast<std::size_t>(row)], block, transposed});
+    };
+    // What is stored of a row is, transposed, of its column; a two-sided block is of another column, too.
     pattern_.visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
-      const int row = number[static_cast<std::size_t>(node)];
-      if (row < 0) return;
+      if (row_of[static_cast<std::size_t>(node)] < 0 && column_of[static_cast<std::size_t>(node)] < 0) return;
       for (Index k = 0; k < group.blocks_per_row(); ++k) {
-        const Index block = first_block + k;
-        const int other = number[static_cast<std::size_t>(pattern_.column[static_cast<std::size_t>(block)])];
-        if (other < 0) continue;
-        enter(row, Place{other, block, false});
-        if (k < group.two_sided) enter(other, Place{row, block, true});
+        const int other = pattern_.column[static_cast<std::size_t>(first_block + k)];
+        enter_taken(other, node, first_block + k, true);
+        if (k < group.two_sided) enter_taken(node, other, first_block + k, false);
       }
     });
   };
-  each_block([&](int node, const Place&) { ++begins[static_cast<std::size_t>(node) + 1]; });
+  std::vector<Index> begins(static_cast<std::size_t>(columns) + 1, 0);  // of the blocks of each column
+  each_block([&](int column, const Place&) { ++begins[static_cast<std::size_t>(column) + 1]; });
   for (std::size_t i = 1; i < begins.size(); ++i) begins[i] += begins[i - 1];
   std::vector<Place> places(static_cast<std::size_t>(begins.back()));
   {
     std::vector<Index> next(begins.begin(), begins.end() - 1);
-    each_block([&](int node, const Place& place) {
-      places[static_cast<std::size_t>(next[static_cast<std::size_t>(node)]++)] = place;
+    each_block([&](int column, const Place& place) {
+      places[static_cast<std::size_t>(next[static_cast<std::size_t>(column)]++)] = place;
     });
   }
   const Index per_block = is_scalar() ? 1 : d;  // entries of a block in one column of the matrix
-  SparseMatrix result(nodes * d, nodes * d);
+  SparseMatrix result(rows * d, columns * d);
   const Index entries = begins.back() * d * per_block;
   result.resizeNonZeros(entries);
   int* outer = result.outerIndexPtr();
-  outer[nodes * d] = static_cast<int>(entries);
-  parallel_ranges(nodes, [&](Index first, Index last) {
-    for (Index node = first; node < last; ++node) {
-      const auto begin = places.begin() + begins[static_cast<std::size_t>(node)];
-      const auto end = places.begin() + begins[static_cast<std::size_t>(node) + 1];
-      std::sort(begin, end, [](const Place& a, const Place& b) { return a.node < b.node; });
+  outer[columns * d] = static_cast<int>(entries);
+  parallel_ranges(columns, [&](Index first, Index last) {
+    for (Index column = first; column < last; ++column) {
+      const auto begin = places.begin() + begins[static_cast<std::size_t>(column)];
+      const auto end = places.begin() + begins[static_cast<std::size_t>(column) + 1];
+      std::sort(begin, end, [](const Place& a, const Place& b) { return a.row < b.row; });
       for (int a = 0; a < d; ++a) {
-        Index at = (begins[static_cast<std::size_t>(node)] * d + a * (end - begin)) * per_block;
-        outer[node * d + a] = static_cast<int>(at);
+        Index at = (begins[static_cast<std::size_t>(column)] * d + a * (end - begin)) * per_block;
+        outer[column * d + a] = static_cast<int>(at);
         for (auto place = begin; place != end; ++place) {
           const double* block = values_.data() + place->block * stride_;
           for (Index c = 0; c < per_block; ++c, ++at) {
-            result.innerIndexPtr()[at] = static_cast<int>(place->node * d + (is_scalar() ? a : c));
-            result.valuePtr()[at] = block[is_scalar() ? 0 : place->transposed ? a * d + c : c * d + a];
+            result.innerIndexPtr()[at] = static_cast<int>(place->row * d + (is_scalar() ? a : c));
+            result.valuePtr()[at] = block[is_scalar() ? 0 : place->transposed ? c * d + a : a * d + c];
           }
         }
       }

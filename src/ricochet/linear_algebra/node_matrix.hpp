@@ -59,10 +59,14 @@ class NodeMatrix {
   [[nodiscard]] SparseMatrix whole() const;
   /// Its rows and columns of these nodes, ascending, in compressed columns.
   [[nodiscard]] SparseMatrix principal(const std::vector<Index>& nodes) const;
+  /// Its columns of these nodes, with all rows, in compressed columns.
+  [[nodiscard]] SparseMatrix columns(const std::vector<Index>& nodes) const;
 
  private:
   template <class Enter>
   void visit_blocks(const Enter& enter) const;
+  [[nodiscard]] SparseMatrix extract(const std::vector<int>& row_of, Index rows, const std::vector<int>& column_of,
+                                     Index columns) const;
   void read_values(const SparseMatrix& matrix);
   void add_block(Index block, double factor, Index stride, double* sum) const;
 

@@ -81,6 +81,7 @@ std::vector<ContactZone::Extent> ContactZones::zones_of(const std::vector<Index>
 std::size_t ContactZones::divide(const std::vector<Index>& points) {
   clear();
   if (layers_ == 0) layers_ = nearby_.layers_to_solve(points, coefficients_, product_);
+  nodes_ = nearby_.nodes_around(points, layers_);
   // A layer of the stage makes the motion of a contact node depend on all reactions near it.
   extents_ = zones_of(points, points.size());
   if (layer_ == nullptr) {

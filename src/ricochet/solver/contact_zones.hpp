@@ -33,6 +33,7 @@ class ContactZones final : public NearContact {
   void make_share(std::size_t number, std::size_t count);
   void clear() override;
   [[nodiscard]] bool are_made() const override { return !zones_.empty(); }
+  [[nodiscard]] const std::vector<Index>& nodes() const override { return nodes_; }
   void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
   void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
                    Vector& motion) override {
@@ -65,6 +66,7 @@ class ContactZones final : public NearContact {
   FactoredStage* layer_;
   std::unique_ptr<ContactLayer> motion_layer_;  ///< null: the stage has none
   int layers_ = 0;                              ///< 0: not known yet
+  std::vector<Index> nodes_;                    ///< of all zones
   std::vector<ContactZone::Extent> extents_;    ///< of all zones, until they are made
   bool is_one_ = false;                         ///< there is no other zone, here or elsewhere
   std::vector<std::unique_ptr<ContactZone>> zones_;

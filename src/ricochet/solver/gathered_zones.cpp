@@ -24,6 +24,7 @@ class GatheredZones final : public NearContact {
     active_ = 0;
   }
   [[nodiscard]] bool are_made() const override { return active_ > 0; }
+  [[nodiscard]] const std::vector<Index>& nodes() const override { return nodes_; }
   void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
   void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
                    Vector& motion) override;
@@ -73,6 +74,7 @@ class GatheredZones final : public NearContact {
   std::vector<Home> homes_;
   std::size_t active_ = 0;     ///< homes that have zones
   std::vector<Index> points_;  ///< of this rank
+  std::vector<Index> nodes_;   ///< of this rank, near the points of all
   ContactObserver observer_;
 };
 
@@ -106,6 +108,7 @@ void GatheredZones::make(const std::vector<Index>& points) {
       homes_[i].zones->make_here(i, active_);
     }
   });
+  nodes_ = std::move(near.nodes);
   observe(observer_);
 }
 

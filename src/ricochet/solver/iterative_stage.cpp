@@ -10,6 +10,7 @@
 #include "ricochet/linear_algebra/single_gradients.hpp"
 #include "ricochet/solver/contact_zones.hpp"
 #include "ricochet/solver/gathered_zones.hpp"
+#include "ricochet/solver/moved_product.hpp"
 #include "ricochet/solver/stage_operator.hpp"
 #include "ricochet/solver/stage_product.hpp"
 #include "ricochet/solver/stage_solver.hpp"
@@ -58,7 +59,9 @@ class IterativeStage final : public StageSolver {
   void begin(const Stage& stage, StageSolution& solution);
   [[nodiscard]] bool are_outside(const std::vector<Index>& points) const;
   void make_zones(const Stage& stage, const std::vector<Index>& points);
+  void keep_columns() { moved_.make(product_, zones_->nodes(), problem_.nodes.cols(), problem_.dimension); }
   void find_residual();
+  void solve_zones(const Stage& stage, StageSolution& solution);
   void find_reactions(const Stage& stage, const StageSolution& solution);
   void mask(Vector& values) const;
   void put_together(Vector& force) const;
@@ -84,6 +87,7 @@ class IterativeStage final : public StageSolver {
   ContactCandidates near_;                   ///< the points that the zones are made for
   PointsNearby nearby_;
   std::unique_ptr<NearContact> zones_;
+  MovedProduct moved_;             ///< by the zones
   bool may_touch_ = false;         ///< some point may, in this stage
   bool presses_at_start_ = false;  ///< points whose reactions at the start of the step are part of a mean
   bool touches_ = false;           ///< the last stage had a contact problem
@@ -131,6 +135,7 @@ void IterativeStage::refactorize(const Vector& displacement) {
   product_ = StageProduct(problem_, coefficients_, displacement);
   make_preconditioner();
   zones_->clear();
+  moved_.clear();
   near_.clear();
 }
 
@@ -187,6 +192,7 @@ void IterativeStage::make_zones(const Stage& stage, const std::vector<Index>& wa
   near_.take_up(points);
   try {
     zones_->make(points);
+    keep_columns();
   } catch (const Error& problem) {
     // The tangent of a place that an iteration leads to is no fault of the case.
     if (problem.kind() != ErrorKind::invalid_input || displacement_.size() == 0) throw;
@@ -216,6 +222,7 @@ void IterativeStage::load(const Snapshot& snapshot, const std::string& name) {
     near_.clear();
     near_.take_up(points);
     zones_->load(snapshot, name + ".zones", points);
+    keep_columns();
   }
   near_.load_history(snapshot, name + ".near");
 }
@@ -257,6 +264,15 @@ void IterativeStage::find_residual() {
   product_.multiply(guess_, residual_);
   put_together(residual_);
   residual_ = right_hand_side_ - residual_;
+}
+
+/// They move few nodes, whose columns of A tell what is left of the residual.
+void IterativeStage::solve_zones(const Stage& stage, StageSolution& solution) {
+  moved_.begin(guess_);
+  zones_->solve(stage, residual_, guess_, solution);
+  moved_.multiply(guess_, work_);
+  put_together(work_);
+  residual_ -= work_;
 }
 
 void IterativeStage::find_reactions(const Stage& stage, const StageSolution& solution) {
@@ -324,8 +340,7 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
     watch_single_precision();
     const bool touches = zones_->are_made() && (must_touch || presses_at_start_ || may_touch_);
     if (touches) {
-      zones_->solve(stage, residual_, guess_, solution);
-      find_residual();
+      solve_zones(stage, solution);
       find_reactions(stage, solution);
       residual_ += reactions_;
     }

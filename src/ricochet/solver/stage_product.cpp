@@ -47,12 +47,19 @@ void StageProduct::multiply(const Vector& x, Vector& y) const {
   y += mass_factor_ * inertia_;
 }
 
-SparseMatrix StageProduct::principal(const std::vector<Index>& nodes) const {
-  SparseMatrix result = matrix_.principal(nodes);
-  if (mass_ == nullptr) return result;
-  SparseMatrix inertia = mass_->principal(nodes);
+SparseMatrix StageProduct::with_mass(SparseMatrix stiffness, SparseMatrix inertia) const {
   inertia *= mass_factor_;
-  return add_sparse(result, inertia);
+  return add_sparse(stiffness, inertia);
+}
+
+SparseMatrix StageProduct::principal(const std::vector<Index>& nodes) const {
+  if (mass_ == nullptr) return matrix_.principal(nodes);
+  return with_mass(matrix_.principal(nodes), mass_->principal(nodes));
+}
+
+SparseMatrix StageProduct::columns(const std::vector<Index>& nodes) const {
+  if (mass_ == nullptr) return matrix_.columns(nodes);
+  return with_mass(matrix_.columns(nodes), mass_->columns(nodes));
 }
 
 Vector StageProduct::diagonal_blocks() const {

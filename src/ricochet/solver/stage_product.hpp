@@ -30,6 +30,8 @@ class StageProduct {
   void multiply(const Vector& x, Vector& y) const;
   /// The rows and columns of these nodes, ascending, of A.
   [[nodiscard]] SparseMatrix principal(const std::vector<Index>& nodes) const;
+  /// The columns of these nodes, with all rows, of A.
+  [[nodiscard]] SparseMatrix columns(const std::vector<Index>& nodes) const;
   [[nodiscard]] Vector diagonal() const;
   /// Of A, d² numbers per node. Ranks have a part each.
   [[nodiscard]] Vector diagonal_blocks() const;
@@ -37,6 +39,8 @@ class StageProduct {
   [[nodiscard]] const NodeMatrix* matrix() const { return mass_ == nullptr ? &matrix_ : nullptr; }
 
  private:
+  [[nodiscard]] SparseMatrix with_mass(SparseMatrix stiffness, SparseMatrix inertia) const;
+
   NodeMatrix matrix_;                 ///< A, or κK
   const NodeMatrix* mass_ = nullptr;  ///< where M is apart
   double mass_factor_ = 0.0;          ///< α

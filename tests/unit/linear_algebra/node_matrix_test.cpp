@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "ricochet/base/node_order.hpp"
 #include "ricochet/base/parallel.hpp"
@@ -125,6 +126,13 @@ TEST(NodeMatrix, GivesTheRowsAndColumnsOfNodes) {
       ASSERT_GT(expected.nonZeros(), size);
       EXPECT_EQ(found.nonZeros(), expected.nonZeros());
       EXPECT_EQ(SparseMatrix(found - expected).norm(), 0.0);
+      std::vector<int> all(number.size());
+      std::iota(all.begin(), all.end(), 0);
+      const SparseMatrix columns = extract(whole, all, whole.rows(), number, size);
+      const SparseMatrix found_columns = NodeMatrix(whole, d).columns(nodes);
+      ASSERT_GT(columns.nonZeros(), expected.nonZeros());
+      EXPECT_EQ(found_columns.nonZeros(), columns.nonZeros());
+      EXPECT_EQ(SparseMatrix(found_columns - columns).norm(), 0.0);
     }
   }
 }
