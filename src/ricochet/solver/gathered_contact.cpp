@@ -218,6 +218,13 @@ std::shared_ptr<ContactRows> GatheredContact::read_rows() const {
   return rows;
 }
 
+std::shared_ptr<const ContactRows> GatheredContact::rows_on(const ContactRows& rows, Index dofs) {
+  auto result = std::make_shared<ContactRows>(rows);
+  result->gap_operator = with_columns(std::move(result->gap_operator), dofs);
+  result->tangential_trace = with_columns(std::move(result->tangential_trace), dofs);
+  return result;
+}
+
 std::unique_ptr<SemidiscreteProblem> GatheredContact::make_problem(const GatheredNodes& nodes) const {
   const Vector places = nodes.gather(problem_.nodes.reshaped(), d_);
   const Vector of_contact = nodes_.gather(problem_.nodes.reshaped(), d_);
@@ -231,7 +238,7 @@ std::unique_ptr<SemidiscreteProblem> GatheredContact::make_problem(const Gathere
   result->contact = boundary_;
   result->contact.trace = with_columns(boundary_.trace, nodes.count());
   result->contact.own_trace = with_columns(boundary_.own_trace, nodes.count());
-  result->contact.rows = rows_;
+  result->contact.rows = rows_on(*rows_, result->dof_count());
   result->contact_dofs = contact_dofs_;
   result->obstacles = problem_.obstacles;
   result->is_massless.assign(static_cast<std::size_t>(result->dof_count()), 0);

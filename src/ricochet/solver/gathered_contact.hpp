@@ -25,6 +25,8 @@ class GatheredContact {
   /// At home: a problem of nodes that are gathered there (contact nodes come first), with all contact points and no
   /// forces. Supported dofs are not among its contact dofs. Its rows are those of the last stage that was gathered.
   [[nodiscard]] std::unique_ptr<SemidiscreteProblem> make_problem(const GatheredNodes& nodes) const;
+  /// Rows of a stage at home, on so many dofs of such a problem in place of those of the contact nodes.
+  [[nodiscard]] static std::shared_ptr<const ContactRows> rows_on(const ContactRows& rows, Index dofs);
 
   /// A stage at home, of these points of this rank (others are not eligible there), with the gaps and slips that it has
   /// at a motion x: the stage on a correction of x. `points` is the same as that of spread().

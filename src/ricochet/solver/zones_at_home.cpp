@@ -50,6 +50,7 @@ MatrixGraph ZonesAtHome::gather_graph(const std::vector<Index>& nodes) {
 
 void ZonesAtHome::gather_body(const std::vector<Index>& points, const NearNodes& near) {
   clear();
+  rows_.reset();
   const Ranks& ranks = *body_.problem.ranks;
   const int d = body_.problem.dimension;
   nodes_ = GatheredNodes(ranks, contact_.nodes().home(), near.nodes, &contact_.nodes());
@@ -80,9 +81,19 @@ void ZonesAtHome::make_here(std::size_t number, std::size_t count) {
   if (zones_) zones_->make_share(number, count);
 }
 
+/// The rows of the stage come on the contact nodes; once for many stages where the obstacle is flat.
+void ZonesAtHome::widen_rows() {
+  if (rows_ != stage_.rows) {
+    rows_ = stage_.rows;
+    near_rows_ = GatheredContact::rows_on(*rows_, near_->dof_count());
+  }
+  stage_.rows = near_rows_;
+}
+
 void ZonesAtHome::gather(const Stage& stage, const Vector& x, const std::vector<Index>& points,
                          const Vector& residual) {
   contact_.gather(stage, x, points, stage_);
+  if (contact_.is_home()) widen_rows();
   near_residual_ = nodes_.gather(residual, body_.problem.dimension);
 }
 

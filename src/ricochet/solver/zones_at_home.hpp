@@ -61,6 +61,7 @@ class ZonesAtHome {
  private:
   [[nodiscard]] MatrixGraph gather_graph(const std::vector<Index>& nodes);
   [[nodiscard]] std::vector<Index> gather_points(const std::vector<Index>& points) const;
+  void widen_rows();
 
   NearBody body_;
   bool all_points_;
@@ -77,6 +78,7 @@ class ZonesAtHome {
   std::unique_ptr<PointsNearby> near_nearby_;
   std::unique_ptr<ContactZones> zones_;
   Stage stage_;
+  std::shared_ptr<const ContactRows> rows_, near_rows_;  ///< as they came, and on all nodes that are near
   StageSolution solution_;
   Vector near_residual_, near_x_, near_motion_;
 };
