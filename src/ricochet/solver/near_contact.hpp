@@ -17,7 +17,7 @@ class NearContact {
   virtual void make(const std::vector<Index>& points) = 0;
   virtual void clear() = 0;
   [[nodiscard]] virtual bool are_made() const = 0;
-  /// Those of this rank that solve() may move, ascending.
+  /// Nodes of this rank that solve() may move, ascending.
   [[nodiscard]] virtual const std::vector<Index>& nodes() const = 0;
 
   /// With the residual b − A x of the whole body, reactions left out: x near the contact, and the reactions.

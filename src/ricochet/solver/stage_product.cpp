@@ -47,7 +47,7 @@ void StageProduct::multiply(const Vector& x, Vector& y) const {
   y += mass_factor_ * inertia_;
 }
 
-SparseMatrix StageProduct::with_mass(SparseMatrix stiffness, SparseMatrix inertia) const {
+SparseMatrix StageProduct::with_mass(const SparseMatrix& stiffness, SparseMatrix inertia) const {
   inertia *= mass_factor_;
   return add_sparse(stiffness, inertia);
 }

@@ -39,7 +39,7 @@ class StageProduct {
   [[nodiscard]] const NodeMatrix* matrix() const { return mass_ == nullptr ? &matrix_ : nullptr; }
 
  private:
-  [[nodiscard]] SparseMatrix with_mass(SparseMatrix stiffness, SparseMatrix inertia) const;
+  [[nodiscard]] SparseMatrix with_mass(const SparseMatrix& stiffness, SparseMatrix inertia) const;
 
   NodeMatrix matrix_;                 ///< A, or κK
   const NodeMatrix* mass_ = nullptr;  ///< where M is apart
