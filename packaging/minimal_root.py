@@ -12,6 +12,11 @@ import time
 CHANGING = ("proc/", "dev/", "tmp/", "run/", "packages/", "context/", "root/", "var/log/", "var/cache/", "var/lib/apt/",
             "var/lib/dpkg/")
 
+# Processes and mounts of their own, which end with the first of them.
+ALONE = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-euc"]
+# As a place where something is mounted the folder can be entered from within again, by who makes another root there.
+ENTER = 'mount --rbind "$0" "$0"; mount -t proc proc "$0/proc"; exec chroot "$0" "$@"'
+
 
 def fail(text):
     print(f"{pathlib.Path(sys.argv[0]).name}: {text}", file=sys.stderr)
@@ -20,7 +25,7 @@ def fail(text):
 
 def require_root():
     if os.geteuid() != 0:
-        fail("a root of its own is entered by chroot, which only root may do: run this as root (sudo ./dev package --try)")
+        fail("a root of its own is entered by chroot, which only root may do: run this as root (sudo)")
 
 
 def codename():
@@ -63,7 +68,8 @@ class Steps:
 
 
 class MinimalRoot:
-    """`with MinimalRoot() as root: root.run("ls /")`. The folder is removed at the end."""
+    """`with MinimalRoot() as root: root.run("ls /")`. Commands see processes and mounts of their own, which end with them;
+    the folder is removed at the end."""
 
     def __enter__(self):
         require_root()
@@ -71,7 +77,6 @@ class MinimalRoot:
             fail("packages are made for Debian 12, and this is another system")
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="ricochet-root-"))
         self.path = self.folder / "root"
-        self.mounted = False
         try:
             options = self.folder / "apt.conf"
             options.write_text(apt_options(), encoding="utf-8")
@@ -79,9 +84,6 @@ class MinimalRoot:
                                    str(self.path), *map(str, apt_sources())], text=True, capture_output=True)
             if made.returncode != 0:
                 fail(f"mmdebstrap failed:\n{made.stderr}")
-            # /proc: the program looks up there where it is.
-            subprocess.run(["mount", "-t", "proc", "proc", self.path / "proc"], check=True)
-            self.mounted = True
             shutil.copy("/etc/resolv.conf", self.path / "etc" / "resolv.conf")
             self.run("apt-get update -qq")
         except BaseException:
@@ -90,16 +92,19 @@ class MinimalRoot:
         return self
 
     def __exit__(self, *_):
-        if self.mounted:
-            subprocess.run(["umount", self.path / "proc"], check=True)
         shutil.rmtree(self.folder)
+
+    def attempt(self, command, directory="/", environment=None, shell=("sh", "-euc")):
+        """Runs a command of the shell; the finished process, whose `stdout` has all that was said. Whatever it has started
+        or mounted ends with it, or with this program. /proc is there: programs look up where they are."""
+        variables = {"PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "LC_ALL": "C.UTF-8",
+                     "DEBIAN_FRONTEND": "noninteractive", "TERM": "dumb", **(environment or {})}
+        return subprocess.run([*ALONE, ENTER, self.path, *shell, f"cd {directory}\n{command}"], env=variables, text=True,
+                              errors="replace", stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
     def run(self, command, directory="/", environment=None, shell=("sh", "-euc")):
         """Runs a command of the shell; what it said. Ends the program with all that was said where it fails."""
-        variables = {"PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "LC_ALL": "C.UTF-8",
-                     "DEBIAN_FRONTEND": "noninteractive", "TERM": "dumb", **(environment or {})}
-        process = subprocess.run(["chroot", self.path, *shell, f"cd {directory}\n{command}"], env=variables, text=True,
-                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        process = self.attempt(command, directory, environment, shell)
         if process.returncode != 0:
             raise SystemExit(f"{command}\nended with status {process.returncode}:\n{process.stdout}")
         return process.stdout

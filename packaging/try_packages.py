@@ -78,7 +78,7 @@ def library(root):
     folder.mkdir()
     (folder / "CMakeLists.txt").write_text(configuration, encoding="utf-8")
     (folder / "main.cpp").write_text(program, encoding="utf-8")
-    return root.run("cmake -S . -B build -DCMAKE_BUILD_TYPE=Release >/dev/null && cmake --build build >/dev/null && "
+    return root.run("cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release >/dev/null && cmake --build build >/dev/null && "
                     f"build/consumer {CASE}", directory="/tmp/consumer").splitlines()[-1]
 
 
@@ -115,7 +115,7 @@ def python_module(root):
 # The package, what its check is called, the check, and what the check needs. A package that was not made is not tried.
 CHECKS = [("ricochet", "ricochet --version", version, []), ("ricochet", "a shipped case", shipped_case, []),
           ("ricochet", "man ricochet", manual_page, ["man-db"]), ("ricochet", "completion", completion, ["bash-completion"]),
-          ("libricochet-dev", "a program of docs/library.md", library, ["g++", "make", "cmake"]),
+          ("libricochet-dev", "a program of docs/library.md", library, ["g++", "ninja-build", "cmake"]),
           ("ricochet-doc", "the documentation", documentation, []),
           ("python3-ricochet", "import ricochet", python_module, [])]
 

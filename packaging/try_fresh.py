@@ -1,0 +1,80 @@
+"""Does what a newcomer does: clones HEAD into a minimal Debian 12 of its own, and runs the commands of `./dev` there.
+
+One line for each part, with its time and what came of it. A part that fails does not stop the others; the status is then 1.
+What each part said goes into FOLDER; without --logs the end of it is shown where the part fails. Nothing else is left.
+"""
+
+import argparse
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+
+from minimal_root import MinimalRoot, Steps, fail, require_root
+
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
+# The README's two commands first, as it has them.
+PARTS = {"demo": "./dev demo", "test": "./dev test", "mpi": "./dev test --mpi", "package": "./dev package --try"}
+CLONE = "/root/ricochet"
+LINES_SHOWN = 60
+GIGABYTES = 10
+
+
+def git(*arguments):
+    return subprocess.run(["git", "-C", SOURCE, *arguments], text=True, capture_output=True, check=True).stdout.strip()
+
+
+def clone(root):
+    """Of what is committed, as a newcomer has it; what is not is told."""
+    target = root.path / CLONE.lstrip("/")
+    subprocess.run(["git", "clone", "--quiet", "--depth", "1", f"file://{git('rev-parse', '--show-toplevel')}", target], check=True)
+    changed = git("status", "--porcelain").splitlines()
+    note = f"; {len(changed)} files here have changes that are not committed, and are not tried" if changed else ""
+    return git("log", "-1", "--format=%h %s") + note
+
+
+def attempt(root, name, logs):
+    """The status of a part."""
+    before = time.monotonic()
+    process = root.attempt(PARTS[name], directory=CLONE, shell=("bash", "-c"))
+    outcome = "done" if process.returncode == 0 else f"FAILED with status {process.returncode}"
+    if logs:
+        log = logs / f"{name}.log"
+        log.write_text(process.stdout, encoding="utf-8")
+        outcome += f", see {log}"
+    print(f"{time.monotonic() - before:7.1f} s  {PARTS[name]}: {outcome}", flush=True)
+    if process.returncode != 0 and not logs:
+        print("\n".join(process.stdout.splitlines()[-LINES_SHOWN:]), file=sys.stderr, flush=True)
+    return process.returncode
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./dev fresh", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("parts", nargs="*", metavar="PART", help="demo, test, mpi or package (default: all)")
+    parser.add_argument("--logs", type=pathlib.Path, metavar="FOLDER", help="where to put what each part said")
+    parser.add_argument("--check", action="store_true", help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    if unknown := [part for part in arguments.parts if part not in PARTS]:
+        parser.error(f"there is no part {unknown[0]}; there are {', '.join(PARTS)}")
+    if arguments.check:
+        return 0
+    require_root()
+    if arguments.logs:
+        arguments.logs.mkdir(parents=True, exist_ok=True)
+    steps = Steps()
+    root = MinimalRoot()
+    steps("a minimal Debian 12", lambda: root.__enter__() and None)
+    try:
+        if shutil.disk_usage(root.path).free < GIGABYTES * 1e9:
+            fail(f"{root.path} needs {GIGABYTES} GB of free disk: set TMPDIR to a folder with more room")
+        steps("a clean clone", lambda: clone(root))
+        chosen = [part for part in PARTS if part in arguments.parts] or list(PARTS)
+        failed = [name for name in chosen if attempt(root, name, arguments.logs) != 0]
+    finally:
+        root.__exit__()
+    steps.end()
+    return 1 if failed else 0
+
+
+sys.exit(main())
