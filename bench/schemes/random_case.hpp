@@ -35,8 +35,9 @@ struct RandomCase {
 
 std::string vector_text(int d, const std::array<double, 3>& of);
 
-/// A box against a plane or a sphere.
-RandomCase make_obstacle_case(unsigned seed, bool sphere, const std::filesystem::path& folder);
+enum class ObstacleKind { plane, sphere, turning };
+/// A box against a plane or a sphere, or against one of them that turns.
+RandomCase make_obstacle_case(unsigned seed, ObstacleKind kind, const std::filesystem::path& folder);
 /// A box against another one: meshes, sizes, stiffnesses and places that do not match. `sliding`: the upper one slides
 /// along the lower one and over its ends, at small or at finite strain, and pairs follow.
 RandomCase make_pair_case(unsigned seed, bool sliding, const std::filesystem::path& folder);

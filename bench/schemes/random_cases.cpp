@@ -1,6 +1,6 @@
 // Random cases of every kind under every scheme, and what became of their energy: a line of CSV per case and method.
 //
-//   ricochet_random_cases plane|sphere|pair|slide FIRST COUNT [METHOD [FOLDER]]
+//   ricochet_random_cases plane|sphere|turn|pair|slide FIRST COUNT [METHOD [FOLDER]]
 //
 // runs the cases of these numbers on one kind of obstacle, or of pairs of bodies; METHOD: only methods whose name
 // contains it; FOLDER receives the cases' files.
@@ -67,6 +67,13 @@ struct Outcome {
   double created = 0.0, lost = 0.0, penetration = 0.0, variation = 0.0, largest = 0.0;
 };
 
+RandomCase make_case(const std::string& kind, unsigned number, const std::filesystem::path& folder) {
+  if (kind == "pair" || kind == "slide") return make_pair_case(number, kind == "slide", folder);
+  return make_obstacle_case(
+      number, kind == "plane" ? ObstacleKind::plane : (kind == "sphere" ? ObstacleKind::sphere : ObstacleKind::turning),
+      folder);
+}
+
 /// Energy less what loads, supports and obstacles have put in: it must not grow. All relative to the largest energy.
 Outcome run_case_with(const RandomCase& random_case, const Method& method) {
   Outcome result;
@@ -113,8 +120,9 @@ Outcome run_case_with(const RandomCase& random_case, const Method& method) {
 
 int main(int argc, char** argv) {
   const std::string kind = argc > 1 ? argv[1] : "";
-  if (argc < 4 || (kind != "plane" && kind != "sphere" && kind != "pair" && kind != "slide")) {
-    std::cerr << "usage: ricochet_random_cases plane|sphere|pair|slide FIRST COUNT [METHOD [FOLDER]]\n";
+  const std::array<std::string, 5> kinds{"plane", "sphere", "turn", "pair", "slide"};
+  if (argc < 4 || std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
+    std::cerr << "usage: ricochet_random_cases plane|sphere|turn|pair|slide FIRST COUNT [METHOD [FOLDER]]\n";
     return 1;
   }
   log::set_level(log::Level::off);
@@ -128,9 +136,7 @@ int main(int argc, char** argv) {
   std::filesystem::create_directories(folder);
   std::cout << "case,description,friction,crossings,method,created,lost,penetration,variation,largest,failure\n";
   for (unsigned number = first; number < first + count; ++number) {
-    const RandomCase random_case = kind == "pair" || kind == "slide"
-                                       ? make_pair_case(number, kind == "slide", folder)
-                                       : make_obstacle_case(number, kind == "sphere", folder);
+    const RandomCase random_case = make_case(kind, number, folder);
     if (keeps) std::ofstream(folder / fmt::format("case_{}.toml", number)) << random_case.text;
     for (const Method& method : methods) {
       if (!method.takes_friction && random_case.friction > 0.0) continue;

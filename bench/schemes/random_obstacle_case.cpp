@@ -26,10 +26,26 @@ std::string sphere_text(Random& random, int d, double size, double gap) {
                      hollow ? "inside" : "outside");
 }
 
+/// By half a radian at most over the run, about a point within the size of the body, or in itself: a circle or, in
+/// space, a plane.
+std::string rotation_text(Random& random, int d, bool sphere, double size, double rate) {
+  rate *= random.between(-1.0, 1.0);
+  if (random.chance(0.4) && sphere == (d == 2)) return fmt::format("rotation_rate = {:.9g}\n", rate);
+  std::array<double, 3> about{};
+  for (double& coordinate : about) coordinate = size * random.between(-0.5, 1.5);
+  const std::string at = fmt::format("about = {}\n", vector_text(d, about));
+  if (d == 2) return fmt::format("rotation = \"{:.9g}*t\"\n", rate) + at;
+  return fmt::format("rotation = [\"{:.9g}*t\", \"{:.9g}*t\", \"{:.9g}*t\"]\n", 0.3 * rate * random.between(-1.0, 1.0),
+                     0.3 * rate * random.between(-1.0, 1.0), rate) +
+         at;
+}
+
 }  // namespace
 
-RandomCase make_obstacle_case(unsigned seed, bool sphere, const std::filesystem::path& folder) {
+RandomCase make_obstacle_case(unsigned seed, ObstacleKind kind, const std::filesystem::path& folder) {
   Random random(seed);
+  const bool turning = kind == ObstacleKind::turning;
+  const bool sphere = turning ? random.chance(0.5) : kind == ObstacleKind::sphere;
   RandomCase result;
   const int d = random.chance(0.65) ? 2 : 3;
   const bool simplices = random.chance(0.5);
@@ -85,8 +101,16 @@ RandomCase make_obstacle_case(unsigned seed, bool sphere, const std::filesystem:
     std::array<double, 3> drift{0.0, 0.0, 0.0};
     for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
       drift[k] = speed * random.between(-1.0, 1.0) * (k == up ? 0.2 : 1.0);
-    text += "velocity = " + vector_text(d, drift) + "\n";
+    if (turning) {
+      text += "motion = [";
+      for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
+        text += fmt::format("{}\"{:.9g}*t\"", k == 0 ? "" : ", ", drift[k]);
+      text += "]\n";
+    } else {
+      text += "velocity = " + vector_text(d, drift) + "\n";
+    }
   }
+  if (turning) text += rotation_text(random, d, sphere, size, std::min(speed / size, 0.5 / time));
   constexpr std::array<const char*, 4> spaces{"p0", "p1", "dual", "nodal"};
   const std::string law = fmt::format("friction = {:.9g}\nmultipliers = \"{}\"\nunstable_multipliers = \"allow\"\n",
                                       result.friction, spaces[static_cast<std::size_t>(random.integer(0, 3))]);
@@ -106,9 +130,10 @@ RandomCase make_obstacle_case(unsigned seed, bool sphere, const std::filesystem:
   }
   text += "[load]\ngravity = " + vector_text(d, pull) + "\n[initial]\n";
   text += "velocity = " + (resting ? vector_text(d, {0.0, 0.0, 0.0}) : vector_text(d, velocity)) + "\n";
-  result.description = fmt::format("{}D degree {} {} F {:.2f} nu {:.2f} crossings {:.3g}{}{}{}{}", d, degree,
-                                   simplices ? "simplices" : "boxes", result.friction, poisson, result.crossings,
-                                   supported ? " supported" : "", moving ? " moving" : "", two ? " two-planes" : "",
-                                   damped ? " damped" : "");
+  result.description =
+      fmt::format("{}D degree {} {} F {:.2f} nu {:.2f} crossings {:.3g}{}{}{}{}{}", d, degree,
+                  simplices ? "simplices" : "boxes", result.friction, poisson, result.crossings,
+                  supported ? " supported" : "", moving ? " moving" : "", two ? " two-planes" : "",
+                  damped ? " damped" : "", turning ? (sphere ? " turning sphere" : " turning plane") : "");
   return result;
 }

@@ -3,8 +3,8 @@
 
     ./dev bench schemes [--cases 2400] [--first 1]
 
-Runs ricochet_random_cases on all processors, on planes and, a quarter as many, on spheres, and writes the tables of
-docs/energy.md. The cases are those of their numbers, on every machine.
+Runs ricochet_random_cases on all processors, on planes and, a quarter as many each, on spheres and on obstacles that
+turn, and writes the tables of docs/energy.md. The cases are those of their numbers, on every machine.
 """
 
 import argparse
@@ -97,8 +97,10 @@ def main():
     program = str(arguments.build / "ricochet_random_cases")
     planes, by_step = summary(measure(program, "plane", arguments.first, arguments.cases))
     spheres, _ = summary(measure(program, "sphere", arguments.first, max(1, arguments.cases // 4)))
-    print("\n\n".join((planes, by_step, spheres)))
-    write_parts(ROOT / "docs" / "energy.md", {"random-cases": planes, "random-cases-by-step": by_step, "random-cases-on-spheres": spheres})
+    turning, _ = summary(measure(program, "turn", arguments.first, max(1, arguments.cases // 4)))
+    print("\n\n".join((planes, by_step, spheres, turning)))
+    write_parts(ROOT / "docs" / "energy.md", {"random-cases": planes, "random-cases-by-step": by_step,
+                                              "random-cases-on-spheres": spheres, "random-cases-on-turning-obstacles": turning})
     return 0
 
 

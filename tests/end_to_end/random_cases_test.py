@@ -11,7 +11,7 @@ import unittest
 from harness import TestCase
 
 PROGRAM = pathlib.Path(os.environ["RICOCHET_BUILD_DIR"]) / "ricochet_random_cases"
-CASES = {"plane": 40, "sphere": 16, "pair": 40}
+CASES = {"plane": 40, "sphere": 16, "turn": 24, "pair": 40}
 DEFAULT = ("reduced-kane end, equivalent", "reduced-kane adaptive, equivalent", "reduced-kane, equivalent",
            "reduced-kane, equivalent-cellwise")
 
@@ -48,6 +48,12 @@ class RandomCases(TestCase):
 
     def test_nor_does_it_on_balls_and_in_hollows(self):
         self.check_energy(self.run_cases("sphere", "reduced-kane"), "reduced-kane")
+
+    def test_nor_on_obstacles_that_turn(self):
+        rows = self.run_cases("turn", "reduced-kane")
+        self.check_energy(rows, "reduced-kane")
+        touched = [float(row["largest"]) > 0.0 for row in rows["reduced-kane, equivalent"]]
+        self.assertGreater(sum(touched), CASES["turn"] // 2)
 
     def test_nor_between_bodies_whose_meshes_do_not_match(self):
         rows = self.run_cases("pair", "reduced-kane")

@@ -55,7 +55,7 @@ Stage pressed_stage(const SemidiscreteProblem& problem) {
   stage.prescribed.setZero(problem.supports.size());
   const Vector base = Vector::Zero(problem.dof_count());
   require_no_penetration(problem, base, 0.0, stage);
-  require_friction(problem, base, {}, 1.0, stage);
+  require_friction(problem, base, 1.0, stage);
   return stage;
 }
 

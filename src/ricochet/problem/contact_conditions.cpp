@@ -48,14 +48,6 @@ void take_gaps(const SemidiscreteProblem& problem, const Vector& displacement, d
   if (of_step && problem.contact.follows_motion()) problem.contact.geometry->allow_overlap(gap);
 }
 
-/// The obstacles' velocities along the rows of the stage.
-const ObstacleMotion& along_rows(const ObstacleMotion& velocity, Stage& stage) {
-  if (velocity.in_space.size() == 0) return velocity;
-  stage.obstacle = velocity;
-  project_motion(*stage.rows, stage.obstacle);
-  return stage.obstacle;
-}
-
 /// The slip rate at δ = 0, and its rounding.
 void take_slip(const SemidiscreteProblem& problem, const Vector& velocity, const Vector& obstacle, Stage& stage) {
   stage.rows->tangential_motion(velocity, stage.slip_offset);
@@ -69,7 +61,43 @@ void take_slip(const SemidiscreteProblem& problem, const Vector& velocity, const
   }
 }
 
+/// Velocities of obstacles that differ by less, relative to themselves, are the same: what is left of the iterations
+/// that find the position would be rounding where a stage is solved exactly, and is not where it is solved by
+/// iterations.
+constexpr double same_velocity = 1e-10;
+
+/// The largest difference, as a motion over the step, between the velocities of obstacles at the solution and those
+/// that its conditions were relative to, at points that carry a force. Negative if they are the same.
+double obstacle_error(const SemidiscreteProblem& problem, const StageSolution& solution, const Vector& increment,
+                      const Stage& stage, ContactMotion& motion) {
+  motion.solution = motion.observed + motion.instant.factor * increment;
+  problem.obstacle_velocity(motion.solution, motion.instant.time, motion.instant.span, motion.obstacle);
+  project_motion(*stage.rows, motion.obstacle);
+  const bool has_friction = stage.slip_offset.size() > 0;
+  const double duration = has_friction ? stage.gap_factor / stage.slip_factor : motion.instant.span;
+  const Index tangents = problem.dimension - 1;
+  double error = -std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < problem.contact.size(); ++i) {
+    if (!(solution.normal_reaction[i] > 0.0)) continue;
+    const auto along = motion.obstacle.tangential.segment(i * tangents, tangents);
+    const double speed = std::hypot(motion.obstacle.normal[i], along.norm());
+    const double wrong = std::hypot(motion.obstacle.normal[i] - stage.obstacle.normal[i],
+                                    (along - stage.obstacle.tangential.segment(i * tangents, tangents)).norm());
+    const double rounding = has_friction ? stage.slip_offset_rounding[i] : 0.0;
+    error = std::max(error, duration * (wrong - same_velocity * speed - rounding));
+  }
+  return error;
+}
+
 }  // namespace
+
+void observe_obstacles(const SemidiscreteProblem& problem, const Vector& displacement, const ObstacleInstant& instant,
+                       Stage& stage) {
+  problem.obstacle_velocity(displacement, instant.time, instant.span, stage.obstacle);
+  if (!stage.motion || !problem.has_turning_obstacles()) return;
+  stage.motion->observed = displacement;
+  stage.motion->instant = instant;
+}
 
 void require_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage,
                             const StepStart* start) {
@@ -78,11 +106,12 @@ void require_no_penetration(const SemidiscreteProblem& problem, const Vector& ba
   stage.gap_offset_rounding = stage.rows->gap_rounding;
   stage.gap_factor = 1.0;
   take_eligible(problem, stage);
-  if (!problem.contact.follows_motion()) return;
+  if (!problem.contact.follows_motion() && !problem.has_turning_obstacles()) return;
   if (!stage.motion) stage.motion.emplace();
   ContactMotion& motion = *stage.motion;
   motion.displacement = base;
   motion.time = time;
+  motion.observed.resize(0);
   motion.start.resize(0);
   if (start == nullptr) return;
   motion.start = start->displacement;
@@ -90,7 +119,7 @@ void require_no_penetration(const SemidiscreteProblem& problem, const Vector& ba
 }
 
 void require_no_approach(const SemidiscreteProblem& problem, const Vector& displacement, double time,
-                         const Vector& velocity, const ObstacleMotion& obstacle, double step, Stage& stage) {
+                         const Vector& velocity, ObstacleMotion& obstacle, double step, Stage& stage) {
   take_rows(problem, displacement, time, nullptr, stage);
   stage.motion.reset();
   problem.gaps(displacement, time, stage.gap_offset);
@@ -105,14 +134,16 @@ void require_no_approach(const SemidiscreteProblem& problem, const Vector& displ
   problem.trace_rounding(velocity, stage.gap_offset);
   stage.gap_offset_rounding = stage.gap_offset_rounding / step + stage.gap_offset;
   stage.rows->normal_motion(velocity, stage.gap_offset);
-  if (obstacle.normal.size() > 0) stage.gap_offset -= along_rows(obstacle, stage).normal;
+  if (obstacle.normal.size() == 0) return;
+  project_motion(*stage.rows, obstacle);
+  stage.gap_offset -= obstacle.normal;
 }
 
-void require_friction(const SemidiscreteProblem& problem, const Vector& velocity, const ObstacleMotion& obstacle,
-                      double slip_factor, Stage& stage) {
+void require_friction(const SemidiscreteProblem& problem, const Vector& velocity, double slip_factor, Stage& stage) {
   if (!problem.contact.has_friction()) return;
   stage.slip_factor = slip_factor;
-  take_slip(problem, velocity, along_rows(obstacle, stage).tangential, stage);
+  project_motion(*stage.rows, stage.obstacle);
+  take_slip(problem, velocity, stage.obstacle.tangential, stage);
   if (stage.motion) stage.motion->velocity = velocity;
 }
 
@@ -125,8 +156,12 @@ void linearize_contact(const SemidiscreteProblem& problem, const Vector& increme
   take_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, stage.gap_offset);
   stage.rows->normal_motion(increment, motion.gap_change);
   stage.gap_offset -= stage.gap_factor * motion.gap_change;
-  if (stage.slip_offset.size() == 0) return;
+  if (motion.observed.size() > 0) {
+    motion.solution = motion.observed + motion.instant.factor * increment;
+    problem.obstacle_velocity(motion.solution, motion.instant.time, motion.instant.span, stage.obstacle);
+  }
   project_motion(*stage.rows, stage.obstacle);
+  if (stage.slip_offset.size() == 0) return;
   take_slip(problem, motion.velocity, stage.obstacle.tangential, stage);
 }
 
@@ -150,6 +185,11 @@ LinearizationError linearization_error(const SemidiscreteProblem& problem, const
     // Both gaps are rounded, and the increment's part is taken off and added again.
     error.beyond_all_rounding = std::max(error.beyond_all_rounding,
                                          wrong - 2.0 * (rounding + stage.gap_factor * motion.gap_change_rounding[i]));
+  }
+  if (motion.observed.size() > 0) {
+    const double obstacle = obstacle_error(problem, solution, increment, stage, motion);
+    error.beyond_rounding = std::max(error.beyond_rounding, obstacle);
+    error.beyond_all_rounding = std::max(error.beyond_all_rounding, obstacle);
   }
   error.beyond_rounding = problem.ranks->maximum(error.beyond_rounding);
   error.beyond_all_rounding = problem.ranks->maximum(error.beyond_all_rounding);

@@ -23,8 +23,9 @@ void subtract_translation(const std::vector<const Obstacle*>& obstacles, const s
 }  // namespace
 
 bool SemidiscreteProblem::has_turning_obstacles() const {
-  return std::any_of(obstacles.begin(), obstacles.end(),
-                     [](const Obstacle* obstacle) { return obstacle != nullptr && obstacle->turns(); });
+  return std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle* obstacle) {
+    return obstacle != nullptr && (obstacle->turns() || obstacle->spins());
+  });
 }
 
 bool SemidiscreteProblem::has_moving_obstacles() const {

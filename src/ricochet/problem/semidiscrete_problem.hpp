@@ -84,7 +84,7 @@ struct SemidiscreteProblem {
   void node_gaps(const Vector& displacement, double time, Vector& gap) const;
   /// The normal at a node of the contact boundary.
   [[nodiscard]] SpaceVector node_normal(Index entry, const Vector& displacement, double time) const;
-  /// Some of them turn: their mean velocity of a step depends on where contact points are in its middle.
+  /// Returns whether some of them turn or spin: their velocity depends on the position of the contact points.
   [[nodiscard]] bool has_turning_obstacles() const;
   /// Velocities of the obstacles where the contact points are at this displacement and time, along the directions of
   /// the rows at the start: their means over a span of time with this one in its middle, or for 0 at the time.

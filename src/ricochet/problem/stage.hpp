@@ -54,6 +54,13 @@ struct OperatorCoefficients {
   double relaxation_step = 0.0;
 };
 
+/// When and where the velocities of the obstacles are taken that the conditions of a stage are relative to.
+struct ObstacleInstant {
+  double time = 0.0;
+  double span = 0.0;    ///< They are means over [time − span/2, time + span/2]; 0: those at the time.
+  double factor = 0.0;  ///< Contact points move by factor · δ from the displacement at which they are observed.
+};
+
 /// What the contact conditions of a stage are taken from, so that they can be taken again where rows follow the motion:
 /// the gap at displacement + s δ at `time`, and the slip rate B_T (velocity + σ δ) less the obstacles'.
 struct ContactMotion {
@@ -61,17 +68,23 @@ struct ContactMotion {
   double time = 0.0;
   Vector start;  ///< displacement at the start of the step, if rows are those of the step; else empty
   double start_time = 0.0;
+  /// Displacement and instant at which the velocities of the obstacles are taken, see observe_obstacles(): at
+  /// observed + observed.factor δ. Empty if they do not depend on it.
+  Vector observed;
+  ObstacleInstant instant;
   Vector solution, gap_change, gap_change_rounding;  ///< work space: displacement + s δ, G δ
+  ObstacleMotion obstacle;                           ///< work space
 };
 
 struct Stage {
   std::shared_ptr<const ContactRows> rows;  ///< G and B_T
-  /// Set where the gaps of this stage are no linear functions of δ: the solver takes rows and offsets anew until they
-  /// hold at the solution.
+  /// Set where the gaps of this stage, or the velocities of its obstacles, are not linear functions of δ: the solver
+  /// takes rows and offsets anew until they hold at the solution.
   std::optional<ContactMotion> motion;
   std::vector<std::shared_ptr<ContactRows>> rows_in_store;  ///< memory for rows that follow the motion
-  ObstacleMotion obstacle;                                  ///< where rows follow the motion: velocities along them
-  Vector right_hand_side;                                   ///< b, per dof
+  /// Velocities of the obstacles, which the conditions are relative to and on which the reactions work.
+  ObstacleMotion obstacle;
+  Vector right_hand_side;  ///< b, per dof
   /// Where the internal force f is no linear function of the displacement: a place p with −f(p) in b, and A δ
   /// stands for αM δ + ηC δ + f(p + κδ) − f(p). Empty: A δ is what it is.
   Vector force_place;

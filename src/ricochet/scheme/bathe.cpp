@@ -42,8 +42,8 @@ class Bathe final : public Scheme {
     equations_.balance(problem, state.time + h, base_, rate_, stage);
     equations_.prescribe_from(problem, state.time + h, base_, stage);
     require_no_penetration(problem, base_, state.time + h, stage);
-    if (problem.has_moving_obstacles()) equations_.observe_obstacles(problem, state.time + h, base_);
-    equations_.require_friction(problem, rate_, 3.0 / h, stage);
+    if (problem.has_moving_obstacles()) observe_obstacles(problem, base_, {state.time + h, 0.0, 1.0}, stage);
+    require_friction(problem, rate_, 3.0 / h, stage);
     const StageSolution& solution = stages.solve(1);
     second_ += solution.increment;            // U₁ − U_½
     rate_ += (3.0 / h) * solution.increment;  // V₁

@@ -37,9 +37,8 @@ class LaursenChawla final : public Scheme {
     equations_.balance(problem, middle, base_, state.velocity, stage);
     const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - base_[dof]; };
     equations_.prescribe(problem, state.time + h, half_way, stage);
-    equations_.observe_obstacles(problem, middle, base_, h);
-    require_no_approach(problem, state.displacement, state.time, state.velocity, equations_.obstacle_velocity(), h,
-                        stage);
+    observe_obstacles(problem, base_, {middle, h}, stage);
+    require_no_approach(problem, state.displacement, state.time, state.velocity, stage.obstacle, h, stage);
     stage.gap_factor = 2.0 / h;
     equations_.require_friction_beside_rates(problem, state.velocity, 2.0 / h, stage);
 

@@ -41,8 +41,8 @@ class Midpoint final : public Scheme {
     const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - base_[dof]; };
     equations_.prescribe(problem, state.time + h, half_way, stage);
     require_no_penetration(problem, base_, middle, stage);
-    equations_.observe_obstacles(problem, middle, base_, h);
-    equations_.require_friction(problem, state.velocity, 2.0 / h, stage);
+    observe_obstacles(problem, base_, {middle, h, 1.0}, stage);
+    require_friction(problem, state.velocity, 2.0 / h, stage);
 
     const StageSolution& solution = stages.solve(0);
     increment = h * state.velocity + 2.0 * solution.increment;  // 2 (x − U₀)

@@ -48,7 +48,7 @@ class MoreauJean final : public Scheme {
     const auto to_end = [&](Index dof, double end) { return end - state.displacement[dof] - h * state.velocity[dof]; };
     equations_.prescribe(problem, state.time + h, to_end, stage);
     place_ = state.displacement + (0.5 * h) * state.velocity;
-    equations_.observe_obstacles(problem, state.time + 0.5 * h, place_, h);
+    observe_obstacles(problem, place_, {state.time + 0.5 * h, h}, stage);
     equations_.require_impact_law(problem, place_, state.time + 0.5 * h, state.velocity, state.velocity, restitution_,
                                   h, stage);
     stage.gap_factor = 1.0 / (theta_ * h);

@@ -34,35 +34,25 @@ void StepEquations::resist(const SemidiscreteProblem& problem, const Vector& vel
   stage.right_hand_side -= damping_force_;
 }
 
-void StepEquations::observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement,
-                                      double span) {
-  problem.obstacle_velocity(displacement, time, span, obstacle_velocity_);
-}
-
 void StepEquations::observe_step(const SemidiscreteProblem& problem, const Vector& start, double start_time,
-                                 const Vector& end, double step) {
+                                 const Vector& end, double step, Stage& stage) {
   if (!problem.has_moving_obstacles()) return;
   middle_ = 0.5 * (start + end);
-  observe_obstacles(problem, start_time + 0.5 * step, middle_, step);
+  observe_obstacles(problem, middle_, {start_time + 0.5 * step, step, 0.5 * stage.gap_factor}, stage);
 }
 
 void StepEquations::require_impact_law(const SemidiscreteProblem& problem, const Vector& place, double time,
                                        const Vector& after, const Vector& before, double restitution, double step,
                                        Stage& stage) {
-  impact_ = obstacle_velocity_;
+  impact_ = stage.obstacle;
   impact_.normal *= 1.0 + restitution;
   impact_.in_space *= 1.0 + restitution;
   rate_ = after + restitution * before;
   require_no_approach(problem, place, time, rate_, impact_, step, stage);
 }
 
-void StepEquations::require_friction(const SemidiscreteProblem& problem, const Vector& velocity, double slip_factor,
-                                     Stage& stage) const {
-  ricochet::require_friction(problem, velocity, obstacle_velocity_, slip_factor, stage);
-}
-
 void StepEquations::require_friction_beside_rates(const SemidiscreteProblem& problem, const Vector& velocity,
-                                                  double slip_factor, Stage& stage) const {
+                                                  double slip_factor, Stage& stage) {
   require_friction(problem, velocity, slip_factor, stage);
   if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
 }
@@ -71,7 +61,7 @@ void StepEquations::require_friction_over_step(const SemidiscreteProblem& proble
                                                const Vector& predicted, double step, Stage& stage) {
   if (problem.has_moving_obstacles()) {
     middle_ = state.displacement + 0.5 * predicted;
-    observe_obstacles(problem, state.time + 0.5 * step, middle_, step);
+    observe_obstacles(problem, middle_, {state.time + 0.5 * step, step, 0.5 * stage.gap_factor}, stage);
   }
   if (!problem.contact.has_friction()) return;
   rate_ = predicted / step;
@@ -84,7 +74,7 @@ void StepEquations::take_forces(const SemidiscreteProblem& problem, const Stage&
   take_loads(problem, solution, motion, rate, state.forces);
 }
 
-void StepEquations::take_contact(const Stage& stage, const StageSolution& solution, double step, State& state) const {
+void StepEquations::take_contact(const Stage& stage, const StageSolution& solution, double step, State& state) {
   take_reactions(stage, solution, step, state.forces, state.obstacle_increment);
   state.contact_status = solution.contact_status;
 }
@@ -105,7 +95,7 @@ void StepEquations::take_loads(const SemidiscreteProblem& problem, const StageSo
 }
 
 void StepEquations::take_reactions(const Stage& stage, const StageSolution& solution, double step, StepForces& forces,
-                                   ObstacleMotion& travel) const {
+                                   ObstacleMotion& travel) {
   if (forces.rows != stage.rows) forces.rows = stage.rows;
   forces.normal_reaction = solution.normal_reaction;
   forces.tangential_reaction = solution.tangential_reaction;
@@ -113,11 +103,11 @@ void StepEquations::take_reactions(const Stage& stage, const StageSolution& solu
   forces.mean_tangential_reaction = solution.mean_tangential_reaction;
   forces.end_weight = solution.end_weight;
   forces.support_reaction = solution.support_reaction;
-  if (obstacle_velocity_.normal.size() == 0) return;
-  travel.normal = step * obstacle_velocity_.normal;
-  travel.tangential = step * obstacle_velocity_.tangential;
-  if (obstacle_velocity_.in_space.size() == 0) return;
-  travel.in_space = step * obstacle_velocity_.in_space;
+  if (stage.obstacle.normal.size() == 0) return;
+  travel.normal = step * stage.obstacle.normal;
+  travel.tangential = step * stage.obstacle.tangential;
+  if (stage.obstacle.in_space.size() == 0) return;
+  travel.in_space = step * stage.obstacle.in_space;
   project_motion(*stage.rows, travel);
 }
 

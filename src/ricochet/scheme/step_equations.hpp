@@ -44,25 +44,19 @@ class StepEquations {
         problem, time, [&](Index dof, double place) { return place - base[dof]; }, stage);
   }
 
-  /// The obstacles' velocities where the contact points are at a displacement and a time, or their means over a span
-  /// with that time in its middle. They, and friction, act on the motion of the whole step.
-  void observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement,
-                         double span = 0.0);
-  /// The same of a step from one displacement to another.
+  /// The obstacles' mean velocities over a step from one displacement to another, where the points are in its middle. A
+  /// stage whose gaps are those of the end follows the points there. Beside it, see observe_obstacles().
   void observe_step(const SemidiscreteProblem& problem, const Vector& start, double start_time, const Vector& end,
-                    double step);
-  [[nodiscard]] const ObstacleMotion& obstacle_velocity() const { return obstacle_velocity_; }
+                    double step, Stage& stage);
   /// Newton's impact law at the points that touch at `place` and `time`, with the obstacles observed and one
   /// coefficient of restitution e: y = G (after + s δ) + e G before, of velocities relative to the obstacles.
   /// Velocities are differences of displacements over `step`. The caller sets s.
   void require_impact_law(const SemidiscreteProblem& problem, const Vector& place, double time, const Vector& after,
                           const Vector& before, double restitution, double step, Stage& stage);
-  /// Coulomb's law on the slip rate B_T (velocity + slip_factor δ) relative to the obstacles observed.
-  void require_friction(const SemidiscreteProblem& problem, const Vector& velocity, double slip_factor,
-                        Stage& stage) const;
-  /// The same where y is a velocity, too: both round as displacements over a step do.
-  void require_friction_beside_rates(const SemidiscreteProblem& problem, const Vector& velocity, double slip_factor,
-                                     Stage& stage) const;
+  /// Coulomb's law on the slip rate B_T (velocity + slip_factor δ) relative to the obstacles observed, where y is a
+  /// velocity, too: both round as displacements over a step do.
+  static void require_friction_beside_rates(const SemidiscreteProblem& problem, const Vector& velocity,
+                                            double slip_factor, Stage& stage);
   /// The same on the mean slip rate B_T ΔU/h of the step, ΔU = predicted + δ; the obstacles' at its middle.
   void require_friction_over_step(const SemidiscreteProblem& problem, const State& state, const Vector& predicted,
                                   double step, Stage& stage);
@@ -72,7 +66,7 @@ class StepEquations {
   void take_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, double step,
                    const Vector& motion, double rate, State& state) const;
   /// The reactions alone.
-  void take_contact(const Stage& stage, const StageSolution& solution, double step, State& state) const;
+  static void take_contact(const Stage& stage, const StageSolution& solution, double step, State& state);
   /// The same as take_forces of a stage whose forces are not those of the state.
   void take_part(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, double step,
                  const Vector& motion, double rate, StepPart& part) const;
@@ -82,12 +76,12 @@ class StepEquations {
   void resist(const SemidiscreteProblem& problem, const Vector& velocity, Stage& stage);
   void take_loads(const SemidiscreteProblem& problem, const StageSolution& solution, const Vector& motion, double rate,
                   StepForces& forces) const;
-  void take_reactions(const Stage& stage, const StageSolution& solution, double step, StepForces& forces,
-                      ObstacleMotion& travel) const;
+  static void take_reactions(const Stage& stage, const StageSolution& solution, double step, StepForces& forces,
+                             ObstacleMotion& travel);
 
   double time_ = 0.0;
   Vector force_, damping_force_, middle_, rate_;
-  ObstacleMotion obstacle_velocity_, impact_;
+  ObstacleMotion impact_;
 };
 
 /// A stage on which nothing acts: b = 0, δ = 0 on supported dofs. Its rows and contact conditions are as they were.

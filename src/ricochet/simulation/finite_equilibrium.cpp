@@ -124,7 +124,7 @@ class LoadPath {
     stage.force_place.resize(0);  // one linear stage
     for (Index i = 0; i < problem_.supports.size(); ++i)
       stage.prescribed[i] = part * supported_[i] - displacement[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
-    require_friction(problem_, displacement - origin_, {}, 1.0, stage);
+    require_friction(problem_, displacement - origin_, 1.0, stage);
     return stage;
   }
 

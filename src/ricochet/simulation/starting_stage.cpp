@@ -30,10 +30,4 @@ Stage contact_stage(const SemidiscreteProblem& problem, const Vector& displaceme
   return stage;
 }
 
-ObstacleMotion obstacle_at_start(const SemidiscreteProblem& problem, const Vector& displacement) {
-  ObstacleMotion velocity;
-  problem.obstacle_velocity(displacement, 0.0, 0.0, velocity);
-  return velocity;
-}
-
 }  // namespace ricochet

@@ -15,9 +15,6 @@ namespace ricochet {
 [[nodiscard]] Stage contact_stage(const SemidiscreteProblem& problem, const Vector& displacement,
                                   Vector right_hand_side);
 
-/// Velocities of the obstacles at t = 0.
-[[nodiscard]] ObstacleMotion obstacle_at_start(const SemidiscreteProblem& problem, const Vector& displacement);
-
 /// The largest absolute value; 0 without entries.
 [[nodiscard]] double largest(const SemidiscreteProblem& problem, const Vector& values);
 

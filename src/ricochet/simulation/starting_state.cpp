@@ -63,7 +63,8 @@ void relax_contact_nodes(const SemidiscreteProblem& problem, double step, const 
                          State& state) {
   const auto solver = make_step_solver(problem, {{0.0, 1.0, 0.0, StageDofs::contact}}, options);
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
-  require_friction(problem, state.velocity, obstacle_at_start(problem, state.displacement), 1.0 / step, stage);
+  observe_obstacles(problem, state.displacement, {.factor = 1.0}, stage);
+  require_friction(problem, state.velocity, 1.0 / step, stage);
   StageSolution solution;
   try {
     solver->solve(0, stage, solution);
@@ -92,15 +93,15 @@ std::vector<char> resting_points(const SemidiscreteProblem& problem, const State
   if (problem.has_singular_mass()) return resting;
   Vector gap, rate_rounding;
   problem.gaps(state.displacement, 0.0, gap);
-  const Stage here = contact_stage(problem, state.displacement, {});
+  Stage here = contact_stage(problem, state.displacement, {});
   Vector rate;
   here.rows->normal_motion(state.velocity, rate);
-  ObstacleMotion obstacle = obstacle_at_start(problem, state.displacement);
-  project_motion(*here.rows, obstacle);
+  observe_obstacles(problem, state.displacement, {}, here);
+  project_motion(*here.rows, here.obstacle);
   problem.trace_rounding(state.velocity, rate_rounding);
-  if (obstacle.normal.size() > 0) {
-    rate -= obstacle.normal;
-    rate_rounding += 8.0 * std::numeric_limits<double>::epsilon() * obstacle.normal.cwiseAbs();
+  if (here.obstacle.normal.size() > 0) {
+    rate -= here.obstacle.normal;
+    rate_rounding += 8.0 * std::numeric_limits<double>::epsilon() * here.obstacle.normal.cwiseAbs();
   }
   for (Index i = 0; i < problem.contact.size(); ++i) {
     const bool closed = gap[i] <= problem.contact.rows->gap_rounding[i] || (pressed.size() > 0 && pressed[i] > 0.0);
@@ -164,7 +165,8 @@ void find_acceleration(const SemidiscreteProblem& problem, const Vector& support
   stage.motion.reset();
   find_curvature_term(problem, state, step, stage.gap_offset);  // the condition is on G a and this
   stage.gap_offset_rounding.setZero();
-  require_friction(problem, state.velocity, obstacle_at_start(problem, state.displacement), step, stage);
+  observe_obstacles(problem, state.displacement, {}, stage);
+  require_friction(problem, state.velocity, step, stage);
   StageSolution solution;
   solver->solve(0, stage, solution);
   state.acceleration = solution.increment;

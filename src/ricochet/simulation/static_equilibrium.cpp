@@ -70,7 +70,8 @@ class StaticFriction {
   StaticFriction(const SemidiscreteProblem& problem, const Vector& velocity) : problem_(problem) {
     if (!problem.contact.has_friction()) return;
     Stage stage = contact_stage(problem, Vector::Zero(problem.dof_count()), {});
-    require_friction(problem, velocity, obstacle_at_start(problem, Vector::Zero(problem.dof_count())), 1.0, stage);
+    observe_obstacles(problem, Vector::Zero(problem.dof_count()), {}, stage);
+    require_friction(problem, velocity, 1.0, stage);
     slide_.setZero(stage.slip_offset.size());
     sliding_.assign(static_cast<std::size_t>(problem.contact.size()), 0);
     const double size = extent(problem.nodes);
@@ -95,7 +96,7 @@ class StaticFriction {
 
   void require(const Vector& displacement, Stage& stage) const {
     if (!problem_.contact.has_friction()) return;
-    require_friction(problem_, displacement, {}, 1.0, stage);
+    require_friction(problem_, displacement, 1.0, stage);
     if (left_out_) stage.frictionless = sliding_;
     // Increments vanish at the equilibrium, and beside them only the slide is left: its direction is that of friction.
     for (std::size_t i = 0; i < sliding_.size(); ++i) {

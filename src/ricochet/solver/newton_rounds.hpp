@@ -38,7 +38,8 @@ class NewtonRounds {
   Vector total_, before_, displacement_, force_, product_, follower_load_;
   // Of the stage at δ = 0:
   double pressure_time_ = 0.0, pressure_part_ = 1.0;
-  Vector place_, force_at_place_, right_hand_side_, prescribed_, gap_offset_, slip_offset_, motion_, velocity_;
+  Vector place_, force_at_place_, right_hand_side_, prescribed_, gap_offset_, slip_offset_, motion_, velocity_,
+      observed_;
 };
 
 }  // namespace ricochet

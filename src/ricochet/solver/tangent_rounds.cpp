@@ -62,7 +62,7 @@ void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSoluti
     if (round >= last_rounds && of_rounding <= most_rounding_left) break;
     // What faces what changes from round to round: it is held, and the next round solves what is then linear.
     const bool is_stuck = round - last_progress > patience_of_pairs || !std::isfinite(error) || round == most_rounds;
-    if (is_stuck && problem_.contact.geometry->hold()) {
+    if (is_stuck && problem_.contact.follows_motion() && problem_.contact.geometry->hold()) {
       least = std::numeric_limits<double>::infinity();
       last_progress = last_start = round;
       acceleration_.restart();

@@ -61,8 +61,8 @@ const StageSolution& NonsmoothStages::impulses(const SemidiscreteProblem& proble
   mean = (1.0 - weights.gamma) * algorithmic + weights.gamma * after;
   velocity = state.velocity + step * mean;
   base_ = state.displacement + motion;
-  equations_.observe_obstacles(problem, end, base_);
   Stage& stage = unloaded_stage(problem, velocity_stage, stages);
+  observe_obstacles(problem, base_, {end}, stage);
   equations_.require_impact_law(problem, base_, end, velocity, state.velocity, restitution_, step, stage);
   stage.gap_factor = 1.0;
   for (Index i = 0; i < normal_.size(); ++i) {

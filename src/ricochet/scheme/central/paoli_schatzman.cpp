@@ -36,7 +36,7 @@ class PaoliSchatzman final : public CentralScheme {
       stage.gap_offset += restitution_ * gap_before_;
       stage.gap_offset_rounding *= 1.0 + restitution_;
     }
-    equations().require_friction(problem, instant.velocity, 0.5 / step(), stage);
+    require_friction(problem, instant.velocity, 0.5 / step(), stage);
   }
 
   double restitution_;

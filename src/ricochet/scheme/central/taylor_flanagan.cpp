@@ -21,7 +21,7 @@ class TaylorFlanagan final : public CentralScheme {
   void require_contact(const SemidiscreteProblem& problem, const Instant& instant, Stage& stage) override {
     next_ = instant.now + instant.ahead;
     require_no_penetration(problem, next_, instant.time + step(), stage);
-    equations().require_friction(problem, instant.velocity, 1.0 / step(), stage);
+    require_friction(problem, instant.velocity, 1.0 / step(), stage);
   }
 
   Vector next_;

@@ -9,9 +9,9 @@ void EndContact::require(const SemidiscreteProblem& problem, ReactionMean mean, 
   const StepStart start{state.displacement, state.time};
   require_no_penetration(problem, place, state.time + step, stage, &start);
   stage.gap_factor = 2.0;
-  equations.observe_step(problem, state.displacement, state.time, place, step);
+  equations.observe_step(problem, state.displacement, state.time, place, step, stage);
   rate_ = (place - state.displacement) / step;
-  equations.require_friction(problem, rate_, 2.0 / step, stage);
+  require_friction(problem, rate_, 2.0 / step, stage);
   stick_.require(problem, state, step, stage);
   if (mean == ReactionMean::end) return;
   problem.gaps(state.displacement, state.time, stage.start_gap);

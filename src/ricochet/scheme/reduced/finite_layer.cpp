@@ -214,7 +214,7 @@ void FiniteLayer::accelerate(const SemidiscreteProblem& problem, const State& st
 
 /// Hᵀρ, Hᵀρ̄, and where some of it is that of the end one round for u₀ + J.
 void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages,
-                               const Stage& stage, const StageSolution& solution) {
+                               Stage& stage, const StageSolution& solution) {
   nodal_.setZero();
   stage.rows->add_force(solution.normal_reaction, solution.tangential_reaction, nodal_);
   mean_nodal_.setZero();
@@ -223,8 +223,9 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
     problem.contact.geometry->add_couples(middle_, *stage.rows, solution.acting_normal(), solution.acting_tangential(),
                                           mean_nodal_);
   }
-  if (problem.has_turning_obstacles()) equations_.observe_step(problem, state.displacement, state.time, end_, step);
-  obstacle_work_ = obstacle_work(*stage.rows, solution.acting_normal(), solution.acting_tangential(), step) -
+  if (problem.has_turning_obstacles())
+    equations_.observe_step(problem, state.displacement, state.time, end_, step, stage);
+  obstacle_work_ = obstacle_work(stage, solution.acting_normal(), solution.acting_tangential(), step) -
                    on_free_bodies(problem, mean_nodal_, end_, state.displacement);
   end_weight_ = solution.end_weight;
   dissipation_ = work_at_end_ = 0.0;
@@ -254,24 +255,23 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
     dissipation_ -= viscous->start_energy(branches, relaxed_) - viscous->start_energy(branches, state.displacement);
   product_ = end_ - state.displacement;
   work_at_end_ = on_contact(problem, nodal_, product_) -
-                 obstacle_work(*stage.rows, solution.normal_reaction, solution.tangential_reaction, step) +
+                 obstacle_work(stage, solution.normal_reaction, solution.tangential_reaction, step) +
                  on_free_bodies(problem, nodal_, end_, state.displacement);
 }
 
 /// Of reactions on the motion of the obstacles over the step.
-double FiniteLayer::obstacle_work(const ContactRows& rows, const Vector& normal, const Vector& tangential,
-                                  double step) {
-  if (equations_.obstacle_velocity().normal.size() == 0) return 0.0;
-  obstacle_ = equations_.obstacle_velocity();
-  project_motion(rows, obstacle_);
-  return step * (normal.dot(obstacle_.normal) - (tangential.size() > 0 ? tangential.dot(obstacle_.tangential) : 0.0));
+double FiniteLayer::obstacle_work(Stage& stage, const Vector& normal, const Vector& tangential, double step) {
+  if (stage.obstacle.normal.size() == 0) return 0.0;
+  project_motion(*stage.rows, stage.obstacle);
+  return step * (normal.dot(stage.obstacle.normal) -
+                 (tangential.size() > 0 ? tangential.dot(stage.obstacle.tangential) : 0.0));
 }
 
-void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State& state, const Stage& stage,
+void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State& state, Stage& stage,
                          const StageSolution& solution, Vector& increment) {
   increment = end_ - state.displacement;
   before_ = state.displacement;
-  if (problem.has_turning_obstacles()) equations_.observe_step(problem, before_, state.time, end_, step);
+  if (problem.has_turning_obstacles()) equations_.observe_step(problem, before_, state.time, end_, step, stage);
   product_ = middle_ - base_;
   state.displacement = end_;
   state.internal_strain = internal_;
@@ -327,7 +327,7 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
   evaluate(problem, step, state, false);
   progress_.start(8.0 * std::numeric_limits<double>::epsilon() *
                   (problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>()));
-  const Stage& stage = stages.stage(MasslessLayer::midpoint_stage(problem));
+  Stage& stage = stages.stage(MasslessLayer::midpoint_stage(problem));
   while (true) {
     const StageSolution& solution = solve_round(problem, mean, step, state, stages);
     const Round round = correct(problem, state, solution);

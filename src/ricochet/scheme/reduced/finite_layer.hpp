@@ -99,11 +99,10 @@ class FiniteLayer {
                        StageSolve& stages, Stage& stage);
   Round correct(const SemidiscreteProblem& problem, const State& state, const StageSolution& solution);
   void accelerate(const SemidiscreteProblem& problem, const State& state);
-  [[nodiscard]] double obstacle_work(const ContactRows& rows, const Vector& normal, const Vector& tangential,
-                                     double step);
+  [[nodiscard]] static double obstacle_work(Stage& stage, const Vector& normal, const Vector& tangential, double step);
   void follow_start(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages,
-                    const Stage& stage, const StageSolution& solution);
-  void finish(const SemidiscreteProblem& problem, double step, State& state, const Stage& stage,
+                    Stage& stage, const StageSolution& solution);
+  void finish(const SemidiscreteProblem& problem, double step, State& state, Stage& stage,
               const StageSolution& solution, Vector& increment);
   void halve_where_inverted(const SemidiscreteProblem& problem, double step, const State& state, bool near);
 
@@ -134,7 +133,6 @@ class FiniteLayer {
   int vain_ = 0;                                    ///< rounds in a row that did not halve it
   double work_at_end_ = 0.0, obstacle_work_ = 0.0;  ///< ρ·HΔ_c less the obstacles' motion; ρ̄ on that
   double load_work_ = 0.0;                          ///< of loads that change, beside their mean on the increment
-  ObstacleMotion obstacle_;
   Vector base_, middle_, end_, increment_, force_, strain_force_, end_force_, nodal_, mean_nodal_;
   Vector at_start_;  ///< L₀ + P₀ + Hᵀρ
   Vector internal_;  ///< A₁

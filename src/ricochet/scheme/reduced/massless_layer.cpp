@@ -161,7 +161,6 @@ void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mea
     increment[dof] = contact_base_[dof] - state.displacement[dof] + 2.0 * solution.contact_increment[dof];
   before_ = state.displacement;
   move(problem, solution.increment, increment, state);
-  if (problem.has_turning_obstacles()) equations_.observe_step(problem, before_, state.time, state.displacement, h);
   take_forces(problem, stage, solution, increment, state);
   contact_.learn(problem, before_, state);
   if (has_layer) correct(problem, mean, stage, solution, increment, state, stages);

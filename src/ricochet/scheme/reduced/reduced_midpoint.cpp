@@ -47,7 +47,7 @@ class ReducedMidpoint final : public Scheme {
     Stage& stage = stages.stage(number);
     layer_.balance(problem, state, stage);
     require_no_penetration(problem, layer_.base(), middle, stage);
-    if (problem.has_moving_obstacles()) layer_.equations().observe_obstacles(problem, middle, layer_.base(), h);
+    if (problem.has_moving_obstacles()) observe_obstacles(problem, layer_.base(), {middle, h, 1.0}, stage);
     if (has_layer) layer_.find_residual(problem, state);
     const StageSolution& solution = stages.solve(number);
     increment = h * state.velocity + 2.0 * solution.increment;

@@ -47,7 +47,7 @@ class LaursenLove final : public Kane {
     if (!acts_) return;
     velocity_ = state.velocity + (2.0 / h) * solution.increment;  // V₁*
     impulse_.forces.rows = stage.rows;
-    impulse_.obstacle_increment = equations().obstacle_velocity();
+    impulse_.obstacle_increment = stage.obstacle;
     project_motion(*stage.rows, impulse_.obstacle_increment);
     const ObstacleMotion& obstacle = impulse_.obstacle_increment;
     motion_from_obstacles(*stage.rows, velocity_, obstacle, approach_);

@@ -38,8 +38,7 @@ void ContactEquilibrium::predict(const SemidiscreteProblem& problem, const State
 }
 
 void ContactEquilibrium::require(const SemidiscreteProblem& problem, const State& state, const Vector& force,
-                                 const Vector& load, const Vector& supported_next, double step,
-                                 StepEquations& equations, Stage& stage) {
+                                 const Vector& load, const Vector& supported_next, double step, Stage& stage) {
   predict(problem, state, supported_next, step);
   stiffness_.multiply(predicted_, row_force_);
   if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
@@ -49,8 +48,8 @@ void ContactEquilibrium::require(const SemidiscreteProblem& problem, const State
   }
   stage.prescribed.setZero(problem.supports.size());  // what supports prescribe is in the base
   require_no_penetration(problem, base_, state.time + step, stage);
-  if (problem.has_moving_obstacles()) equations.observe_obstacles(problem, state.time + 0.5 * step, middle_, step);
-  equations.require_friction(problem, rate_, 1.0 / step, stage);
+  if (problem.has_moving_obstacles()) observe_obstacles(problem, middle_, {state.time + 0.5 * step, step, 0.5}, stage);
+  require_friction(problem, rate_, 1.0 / step, stage);
 }
 
 }  // namespace ricochet

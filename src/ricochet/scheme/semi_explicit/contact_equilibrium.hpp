@@ -4,7 +4,7 @@
 
 #include "ricochet/problem/stage.hpp"
 #include "ricochet/scheme/contact_stiffness.hpp"
-#include "ricochet/scheme/step_equations.hpp"
+#include "ricochet/scheme/state.hpp"
 
 /// @file Contact nodes without inertia in an explicit step: their equilibrium at the end of it,
 ///   K_cc u_c + K_ci u_i = L_c + Gᵀ r_N − B_Tᵀ r_T,
@@ -22,7 +22,7 @@ class ContactEquilibrium {
   /// Fills the stage for the end of the step. `force` is K U at its start, `load` the load at its end, `supported_next`
   /// what supports prescribe there.
   void require(const SemidiscreteProblem& problem, const State& state, const Vector& force, const Vector& load,
-               const Vector& supported_next, double step, StepEquations& equations, Stage& stage);
+               const Vector& supported_next, double step, Stage& stage);
 
  private:
   void predict(const SemidiscreteProblem& problem, const State& state, const Vector& supported_next, double step);

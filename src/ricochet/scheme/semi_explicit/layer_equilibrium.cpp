@@ -76,24 +76,22 @@ void LayerEquilibrium::evaluate(const SemidiscreteProblem& problem, const State&
 }
 
 void LayerEquilibrium::require(const SemidiscreteProblem& problem, const State& state, const Vector& load, double step,
-                               const StepEquations& equations, const Vector& increment, const Vector& end,
-                               Stage& stage) {
+                               const Vector& increment, const Vector& end, Stage& stage) {
   for (const Index dof : problem.contact_dofs) stage.right_hand_side[dof] = load[dof] - force_[dof];
   require_no_penetration(problem, end, state.time + step, stage);
+  if (problem.has_moving_obstacles()) {
+    middle_ = state.displacement + 0.5 * increment;
+    observe_obstacles(problem, middle_, {state.time + 0.5 * step, step, 0.5}, stage);
+  }
   if (!problem.contact.has_friction()) return;
   rate_ = increment / step;
-  equations.require_friction(problem, rate_, 1.0 / step, stage);
+  require_friction(problem, rate_, 1.0 / step, stage);
 }
 
 const StageSolution* LayerEquilibrium::solve(const SemidiscreteProblem& problem, const State& state, const Vector& load,
-                                             double step, StageSolve& stages, StepEquations& equations,
-                                             Vector& increment, Vector& end) {
+                                             double step, StageSolve& stages, Vector& increment, Vector& end) {
   if (!problem.has_contact_dofs()) return nullptr;
   stages.follow(end);
-  if (problem.has_moving_obstacles()) {
-    middle_ = state.displacement + 0.5 * increment;
-    equations.observe_obstacles(problem, state.time + 0.5 * step, middle_, step);
-  }
   Stage& stage = stages.stage(0);
   if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
   stage.prescribed.setZero(problem.supports.size());  // supported nodes are where they are prescribed
@@ -106,7 +104,7 @@ const StageSolution* LayerEquilibrium::solve(const SemidiscreteProblem& problem,
   acceleration_.restart();
   double last = std::numeric_limits<double>::infinity();
   while (true) {
-    require(problem, state, load, step, equations, increment, end, stage);
+    require(problem, state, load, step, increment, end, stage);
     const StageSolution& solution = stages.solve(0);
     const double correction = largest_on_contact(problem, solution.increment);
     image_.setZero();

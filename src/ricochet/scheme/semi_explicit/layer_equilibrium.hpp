@@ -5,7 +5,6 @@
 #include "ricochet/linear_algebra/anderson_acceleration.hpp"
 #include "ricochet/problem/newton_progress.hpp"
 #include "ricochet/scheme/stage_solve.hpp"
-#include "ricochet/scheme/step_equations.hpp"
 
 /// @file Contact nodes without inertia in an explicit step where the internal force f = ∂W/∂u is no linear function of
 /// the displacement: with c the contact nodes and all others where the step has taken them,
@@ -23,7 +22,7 @@ class LayerEquilibrium {
   /// Moves contact nodes: `end` is the displacement at the end of the step and `increment` that of the step, of all
   /// dofs. Returns null where there is no contact dof. Throws Error(not_converged).
   const StageSolution* solve(const SemidiscreteProblem& problem, const State& state, const Vector& load, double step,
-                             StageSolve& stages, StepEquations& equations, Vector& increment, Vector& end);
+                             StageSolve& stages, Vector& increment, Vector& end);
 
   /// After a step: makes the factor anew where that one took many iterations and the factor was not made a short time
   /// ago, so that the next steps take fewer. That takes the tangent of the whole body.
@@ -31,7 +30,7 @@ class LayerEquilibrium {
 
  private:
   void require(const SemidiscreteProblem& problem, const State& state, const Vector& load, double step,
-               const StepEquations& equations, const Vector& increment, const Vector& end, Stage& stage);
+               const Vector& increment, const Vector& end, Stage& stage);
   void evaluate(const SemidiscreteProblem& problem, const State& state, Vector& increment, Vector& end);
   void move_to(const SemidiscreteProblem& problem, const State& state, const Vector& place, Vector& increment,
                Vector& end);

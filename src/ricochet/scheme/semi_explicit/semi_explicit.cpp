@@ -94,7 +94,7 @@ class SemiExplicit final : public Scheme {
       motion_.move(problem, solution != nullptr ? solution->increment : no_correction_, h, state, increment);
       problem.internal_force->evaluate(state.displacement, state.memory.at(force_memory));
       motion_.accelerate(state.memory.at(force_memory), load(problem), h, state);
-      if (solution != nullptr) equations_.take_contact(stages.stage(0), *solution, h, state);
+      if (solution != nullptr) StepEquations::take_contact(stages.stage(0), *solution, h, state);
     }
     supports_.advance(problem, motion_.mass(), motion_.damping(), state.memory.at(force_memory), load(problem),
                       increment, h, state);
@@ -123,7 +123,7 @@ class SemiExplicit final : public Scheme {
   const StageSolution* solve_contact(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {
     if (!problem.has_contact_dofs()) return nullptr;
     contact_.require(problem, state, state.memory.at(force_memory), load(problem), state.memory.at(supported_next),
-                     step(), equations_, stages.stage(0));
+                     step(), stages.stage(0));
     return &stages.solve(0);
   }
 
@@ -139,7 +139,7 @@ class SemiExplicit final : public Scheme {
     try {
       motion_.predict(problem, h, state, increment);
       end_ = state.displacement + increment;
-      solution = layer_.solve(problem, state, load(problem), h, stages, equations_, increment, end_);
+      solution = layer_.solve(problem, state, load(problem), h, stages, increment, end_);
       problem.internal_force->evaluate(end_, force_);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::not_converged) throw;
@@ -153,7 +153,7 @@ class SemiExplicit final : public Scheme {
     state.displacement = end_;
     force = force_;
     motion_.accelerate(force, load(problem), h, state);
-    if (solution != nullptr) equations_.take_contact(stages.stage(0), *solution, h, state);
+    if (solution != nullptr) StepEquations::take_contact(stages.stage(0), *solution, h, state);
   }
 
   void evaluate_loads(const SemidiscreteProblem& problem, double time) {
@@ -178,7 +178,6 @@ class SemiExplicit final : public Scheme {
   long energy_step_ = -1;  ///< that energy_ is of
   double energy_ = 0.0, integration_error_ = 0.0;
   SupportedMotion supports_{contact_.contact_node_dofs()};
-  StepEquations equations_;
 };
 
 }  // namespace
