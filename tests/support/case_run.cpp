@@ -9,19 +9,23 @@
 #include <stdexcept>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/temporary_folder.hpp"
 #include "support/paths.hpp"
 
 namespace ricochet::test_support {
 
 std::string write_temporary(const std::string& name, const std::string& text) {
-  // One directory per test: tests run at the same time.
+  // Of this process alone: not only other tests run at the same time, but also the same one, of another build or under
+  // another name of CTest.
+  static const TemporaryFolder own(::testing::TempDir(), "ricochet-test");
   const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-  std::string folder = "ricochet";
-  if (test != nullptr) folder += std::string("_") + test->test_suite_name() + "_" + test->name();
+  std::string folder = "outside_of_tests";
+  if (test != nullptr) folder = std::string(test->test_suite_name()) + "_" + test->name();
   for (char& c : folder) c = c == '/' ? '_' : c;
-  const std::filesystem::path directory = std::filesystem::path(::testing::TempDir()) / folder;
+  const std::filesystem::path directory = own.path() / folder;
   std::filesystem::create_directories(directory);
-  std::ofstream(directory / name) << text;
+  std::ofstream file(directory / name, std::ios::binary);
+  if (!(file << text).flush()) throw std::runtime_error("cannot write " + (directory / name).string());
   return (directory / name).string();
 }
 

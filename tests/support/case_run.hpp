@@ -10,7 +10,7 @@
 /// @file Running cases inside a test.
 namespace ricochet::test_support {
 
-/// Writes text to a file of this name in the tests' temporary directory and returns its path.
+/// Writes text to a file of this name in a temporary directory of this test and this process, and returns its path.
 std::string write_temporary(const std::string& name, const std::string& text);
 
 /// Meshes a Gmsh geometry (OpenCASCADE kernel) and returns the path of the .msh.

@@ -182,7 +182,8 @@ TEST(Invariance, MetreKilogramAgainstMillimetreTonne) {
 /// A copy of an ASCII .msh 2.2 file with moved nodes, numbered in reverse when asked.
 std::string transformed_mesh(const std::string& path, const std::string& name, const Eigen::Matrix3d& map,
                              bool renumber, bool flip) {
-  const std::string plain = path + ".msh22.msh";
+  // Beside the mesh it would be written by one test and read by another: meshes are shared.
+  const std::string plain = test_support::write_temporary("plain.msh", "");
   if (std::system(("gmsh '" + path + "' -v 1 -save -format msh22 -o '" + plain + "'").c_str()) != 0)
     throw std::runtime_error("gmsh failed");
   std::ifstream in(plain);
