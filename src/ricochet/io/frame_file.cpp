@@ -72,6 +72,7 @@ FrameFile::FrameFile(std::string path, const std::vector<FixedDataset>& fixed, s
     : FrameFile(std::move(path), std::move(frame), options) {
   arrangement_ = make_frame_arrangement(fixed, layout_, options_);
   create(path_, fixed);
+  sole_.emplace(path_);
 }
 
 FrameFile::FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
@@ -80,6 +81,7 @@ FrameFile::FrameFile(std::string path, const std::vector<FixedDataset>& fixed, s
   arrangement_ = make_frame_arrangement(fixed, layout_, options_);
   load(snapshot, name);
   repair(fixed, Repair::write);
+  sole_.emplace(path_);
 }
 
 void FrameFile::check(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
@@ -143,8 +145,10 @@ std::int64_t FrameFile::frame_bytes() const {
 }
 
 void FrameFile::append(const std::vector<const void*>& values, double time) {
+  sole_->require_untouched();
   reserve_space(path_, frame_bytes());
   const std::vector<FrameExtent> extents = write_frame(path_, {frames_, time, &values, nullptr});
+  sole_->expect_present_size();
   if (options_.compression > 0) {
     for (const FrameExtent& extent : extents) stored_sizes_.push_back(extent.size);
   }

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/io/frame_arrangement.hpp"
+#include "ricochet/io/sole_writer.hpp"
 
 /// @file An HDF5 file of frames that survives interruptions: fixed data sets, then a frame again and again.
 ///
@@ -32,9 +34,11 @@ class FrameFile {
                     const FrameFileOptions& options, const Snapshot& snapshot, const std::string& name);
 
   /// One frame: the values of its data sets, in the order of the layout (const double*, const int*), and its time (only
-  /// VTKHDF keeps it). On a full disk throws Error(file_access) before the file is touched.
+  /// VTKHDF keeps it). On a full disk, and where another program has changed the file, throws Error(file_access) before
+  /// the file is touched.
   void append(const std::vector<const void*>& values, double time);
   [[nodiscard]] long frames() const { return frames_; }
+  void require_untouched() const { sole_->require_untouched(); }
 
  private:
   FrameFile(std::string path, std::vector<DatasetLayout> frame, const FrameFileOptions& options)
@@ -53,6 +57,7 @@ class FrameFile {
   std::vector<DatasetLayout> layout_;
   FrameFileOptions options_;
   std::unique_ptr<const FrameArrangement> arrangement_;
+  std::optional<SoleWriter> sole_;
   long frames_ = 0;
   std::vector<double> times_;               ///< of the frames, where the arrangement keeps them
   std::vector<std::int64_t> checksums_;     ///< of the numbers of every frame as they are in the file

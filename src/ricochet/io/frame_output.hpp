@@ -29,6 +29,8 @@ class FrameOutput {
   virtual void write(const State& state) = 0;
   [[nodiscard]] virtual long frames() const = 0;
   virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
+  /// Throws Error(file_access) where another program has changed a file since it was written.
+  virtual void require_untouched() const = 0;
   /// Of all files.
   [[nodiscard]] virtual std::vector<std::string> paths() const = 0;
 };

@@ -13,9 +13,16 @@
 
 namespace ricochet {
 
-HistoryWriter::HistoryWriter(const std::string& path, const std::vector<std::string>& columns)
-    : path_(path), file_(path, std::ios::binary | std::ios::trunc) {
-  if (!file_) throw_file_error(path_, "write", errno);
+namespace {
+
+/// Bytes that are handed over at once.
+constexpr std::size_t piece = 8192;
+
+}  // namespace
+
+HistoryWriter::HistoryWriter(const std::string& path, const std::vector<std::string>& columns) : path_(path) {
+  std::ofstream(path_, std::ios::binary | std::ios::trunc).close();
+  open();
   for (std::size_t i = 0; i < columns.size(); ++i) line_ += (i == 0 ? "" : ",") + columns[i];
   put_line();
 }
@@ -23,8 +30,23 @@ HistoryWriter::HistoryWriter(const std::string& path, const std::vector<std::str
 HistoryWriter::HistoryWriter(const std::string& path, const Snapshot& snapshot, const std::string& name)
     : path_(path), checksums_(snapshot, name) {
   cut_back(path_, checksums_.length());
-  file_.open(path, std::ios::binary | std::ios::app);
+  open();
+}
+
+HistoryWriter::~HistoryWriter() {
+  try {
+    flush();
+  } catch (const Error&) {  // a run that has ended has told it
+  }
+}
+
+/// Always behind what is there: a file that is cut between a look and a write gets no hole.
+void HistoryWriter::open() {
+  errno = 0;
+  file_.open(path_, std::ios::binary | std::ios::app);
   if (!file_) throw_file_error(path_, "write", errno);
+  sole_.emplace(path_);
+  waiting_.reserve(2 * piece);
 }
 
 void HistoryWriter::save(Snapshot& snapshot, const std::string& name) const {
@@ -33,9 +55,9 @@ void HistoryWriter::save(Snapshot& snapshot, const std::string& name) const {
 
 void HistoryWriter::put_line() {
   line_ += '\n';
-  errno = 0;
-  if (!file_.write(line_.data(), static_cast<std::streamsize>(line_.size()))) throw_file_error(path_, "write", errno);
+  waiting_ += line_;
   checksums_.add(line_);
+  if (waiting_.size() >= piece) flush();
 }
 
 void HistoryWriter::write(const std::vector<double>& row) {
@@ -48,8 +70,13 @@ void HistoryWriter::write(const std::vector<double>& row) {
 }
 
 void HistoryWriter::flush() {
+  sole_->require_untouched();
+  if (waiting_.empty()) return;
   errno = 0;
+  file_.write(waiting_.data(), static_cast<std::streamsize>(waiting_.size()));
   if (!file_.flush()) throw_file_error(path_, "write", errno);
+  waiting_.clear();
+  sole_->expect_size(checksums_.length());
 }
 
 void HistoryWriter::sync() {

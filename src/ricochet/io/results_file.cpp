@@ -115,6 +115,10 @@ void ResultsWriter::save(Snapshot& snapshot, const std::string& name) const {
   if (implementation_->output) implementation_->output->save(snapshot, name);
 }
 
+void ResultsWriter::require_untouched() const {
+  if (implementation_->output) implementation_->output->require_untouched();
+}
+
 void ResultsWriter::sync() const {
   if (!implementation_->output) return;
   for (const std::string& path : implementation_->output->paths()) sync_to_disk(path);

@@ -50,6 +50,8 @@ class ResultsWriter {
   void write(const State& state);
   [[nodiscard]] long frames() const;
   void save(Snapshot& snapshot, const std::string& name) const;
+  /// Throws Error(file_access) where another program has changed a file since it was written; so does write().
+  void require_untouched() const;
   /// Waits until all files are on the disk.
   void sync() const;
 

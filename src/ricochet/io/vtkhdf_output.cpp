@@ -80,6 +80,10 @@ class VtkHdfOutput : public FrameOutput {
     file_->save(snapshot, name + ".frames");
     if (obstacle_file_) obstacle_file_->save(snapshot, name + ".obstacles");
   }
+  void require_untouched() const override {
+    file_->require_untouched();
+    if (obstacle_file_) obstacle_file_->require_untouched();
+  }
   [[nodiscard]] std::vector<std::string> paths() const override {
     std::vector<std::string> result{directory_ + "/results.vtkhdf"};
     if (obstacle_file_) result.push_back(directory_ + "/obstacles.vtkhdf");

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/io/line_checksums.hpp"
+#include "ricochet/io/sole_writer.hpp"
 
 /// @file The XDMF 3.0 side-file: a temporal collection of grids, a complete document after every one of them.
 namespace ricochet {
@@ -19,12 +21,14 @@ class XdmfFile {
   XdmfFile(std::string path, const Snapshot& snapshot, const std::string& name);
   void save(Snapshot& snapshot, const std::string& name) const;
 
-  /// Appends a <Grid> element.
+  /// Appends a <Grid> element. Throws Error(file_access), also where another program has changed the file.
   void append(const std::string& grid);
+  void require_untouched() const { sole_->require_untouched(); }
 
  private:
   std::string path_;
   std::fstream file_;
+  std::optional<SoleWriter> sole_;
   LineChecksums checksums_;  ///< without the closing tags
 };
 

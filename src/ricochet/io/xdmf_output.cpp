@@ -82,6 +82,11 @@ class XdmfOutput : public FrameOutput {
     side_->save(snapshot, name + ".side");
     if (obstacle_side_) obstacle_side_->save(snapshot, name + ".obstacles");
   }
+  void require_untouched() const override {
+    file_->require_untouched();
+    side_->require_untouched();
+    if (obstacle_side_) obstacle_side_->require_untouched();
+  }
   [[nodiscard]] std::vector<std::string> paths() const override {
     std::vector<std::string> result{path("results.h5"), path("results.xdmf")};
     if (obstacle_side_) result.push_back(path("obstacles.xdmf"));

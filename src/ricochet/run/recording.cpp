@@ -233,6 +233,7 @@ void Recording::flush() {
   for (Sampled& sampled : sampled_) {
     if (sampled.file) sampled.file->flush();
   }
+  if (results_) results_->require_untouched();
 }
 
 void Recording::save(Snapshot& snapshot) {

@@ -63,6 +63,7 @@ class Recording {
   void record_end(const State& state, EnergyAccount& account);
   /// What is needed to go on; the files are on the disk then.
   void save(Snapshot& snapshot);
+  /// Hands over what has been recorded. Throws Error(file_access) where another program has changed a file of the run.
   void flush();
   /// What there is so far.
   void describe(RunSummary& summary) const;
