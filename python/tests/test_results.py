@@ -203,3 +203,31 @@ def test_a_frame_is_found_by_a_time(run):
 def test_errors_can_be_pickled():
     problem = pickle.loads(pickle.dumps(rc.InputError("a.toml:3:4: wrong")))
     assert problem.places == [rc.Place("a.toml", 3, 4)] and str(problem) == "a.toml:3:4: wrong"
+
+
+@pytest.mark.parametrize("file_format", ["xdmf", "vtkhdf"])
+def test_damaged_fields_are_errors(tmp_path, file_format):
+    """And no end of this process, which HDF5 itself would make of some."""
+    made = run_puck(tmp_path, file_format)
+    path = tmp_path / file_format / ("results.h5" if file_format == "xdmf" else "results.vtkhdf")
+    whole, field = path.read_bytes(), made.frame(number=0)["von_mises"]
+    at = whole.find(b"FHDB")
+    if at >= 0:
+        path.write_bytes(whole[:at + 64] + b"\xff" * 64 + whole[at + 128:])
+        with pytest.raises(rc.InputError, match="damaged"):
+            rc.open(made.directory)
+        with pytest.raises(rc.InputError, match="damaged"):
+            made.frame(number=0)["von_mises"]
+    chance = numpy.random.default_rng(1)
+    for _ in range(40):
+        content = numpy.frombuffer(whole, dtype=numpy.uint8).copy()
+        begin = int(chance.integers(len(content)))
+        content[begin:begin + 256] ^= chance.integers(256, size=len(content[begin:begin + 256]), dtype=numpy.uint8)
+        path.write_bytes(content.tobytes())
+        try:
+            for frame in rc.open(made.directory).frames:
+                dict(frame)
+        except rc.InputError as problem:
+            assert "damaged" in str(problem) or "where" in str(problem)
+    path.write_bytes(whole)
+    assert (rc.open(made.directory).frame(number=0)["von_mises"] == field).all()

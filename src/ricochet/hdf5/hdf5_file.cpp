@@ -17,6 +17,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/hdf5/hdf5_handle.hpp"
+#include "ricochet/hdf5/hdf5_trial.hpp"
 
 namespace ricochet {
 
@@ -101,6 +102,7 @@ Hdf5Reader::Hdf5Reader(std::string path) : path_(std::move(path)) {
     throw Error(ErrorKind::file_access, fmt::format("{}: cannot be read: {}", path_, std::strerror(errno)));
   if (H5Fis_hdf5(path_.c_str()) <= 0)
     throw Error(ErrorKind::invalid_input, fmt::format("{}: is not an HDF5 file", path_));
+  try_hdf5_file(path_);
   file_ = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file_ < 0) {
     throw Error(ErrorKind::invalid_input,

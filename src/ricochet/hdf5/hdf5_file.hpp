@@ -24,7 +24,7 @@ struct Hdf5Member {
 class Hdf5Reader {
  public:
   /// Throws Error(file_access) where there is no such file or it cannot be opened, Error(invalid_input) where it is not
-  /// HDF5 or is cut off.
+  /// HDF5, is cut off, or is damaged so that the library crashes: a child tries it first (hdf5_trial.hpp).
   explicit Hdf5Reader(std::string path);
   ~Hdf5Reader();
   Hdf5Reader(const Hdf5Reader&) = delete;

@@ -1,0 +1,55 @@
+#include "ricochet/base/trial.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cstdlib>
+#include <stdexcept>
+
+namespace ricochet {
+namespace {
+
+TEST(Trial, TellsWhatCameOfTheWork) {
+  EXPECT_TRUE(try_in_child([] { return true; }, 10.0).succeeded);
+  const TrialOutcome failed = try_in_child([] { return false; }, 10.0);
+  EXPECT_FALSE(failed.succeeded);
+  EXPECT_EQ(failed.signal, 0);
+  EXPECT_FALSE(try_in_child([]() -> bool { throw std::runtime_error("no"); }, 10.0).succeeded);
+  const TrialOutcome crashed = try_in_child([] { return raise(SIGSEGV) == 0; }, 10.0);
+  EXPECT_FALSE(crashed.succeeded);
+  EXPECT_EQ(crashed.signal, SIGSEGV);
+  EXPECT_EQ(crashed.description(), "ended a process with signal 11");
+}
+
+TEST(Trial, EndsWhatHasNoEnd) {
+  volatile bool goes_on = true;
+  const TrialOutcome endless = try_in_child(
+      [&] {
+        while (goes_on) {
+        }
+        return true;
+      },
+      0.5);
+  EXPECT_TRUE(endless.endless);
+  EXPECT_EQ(endless.description(), "does not come to an end");
+}
+
+/// What the child does is its own: neither memory nor handlers of this process are touched.
+TEST(Trial, LeavesThisProcessAlone) {
+  static volatile sig_atomic_t handled = 0;
+  const auto before = signal(SIGABRT, [](int) { handled = 1; });
+  int value = 1;
+  const TrialOutcome outcome = try_in_child(
+      [&value]() -> bool {
+        value = 2;
+        std::abort();
+      },
+      10.0);
+  signal(SIGABRT, before);
+  EXPECT_EQ(outcome.signal, SIGABRT);
+  EXPECT_EQ(value, 1);
+  EXPECT_EQ(handled, 0);
+}
+
+}  // namespace
+}  // namespace ricochet
