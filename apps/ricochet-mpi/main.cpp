@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "../ricochet/commands.hpp"
+#include "../ricochet/empty_values.hpp"
 #include "../ricochet/process_memory.hpp"
 #include "../ricochet/standard_streams.hpp"
 #include "../ricochet/stop_signal.hpp"
@@ -61,6 +62,7 @@ int dispatch(int argc, char** argv, const WorldRanks& ranks, const Communicator&
                 "go on with the run that is in the output directory, by as many processes as it has")
       ->excludes("--force");
   run->add_option("--log-level", arguments.log_level, "trace, debug, info, warning, error or off")->type_name("LEVEL");
+  program::refuse_empty_values(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

@@ -69,7 +69,11 @@ RunArguments with_origin(RunArguments arguments) {
     throw Error(ErrorKind::usage, "run: a case file is required (or --resume and the directory of a run)");
   }
   std::error_code ignored;
-  if (!arguments.case_file.empty() && !std::filesystem::is_directory(arguments.case_file, ignored)) return arguments;
+  if (!arguments.case_file.empty() && !std::filesystem::is_directory(arguments.case_file, ignored)) {
+    if (std::filesystem::exists(arguments.case_file, ignored)) return arguments;
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: cannot be resumed: no such file or directory", arguments.case_file));
+  }
   if (arguments.case_file.empty() == arguments.output_directory.empty())
     throw Error(ErrorKind::usage, "run --resume: either a case file or the directory of one run is required");
   if (arguments.output_directory.empty()) arguments.output_directory = arguments.case_file;
@@ -138,7 +142,8 @@ int run(const RunArguments& given) {
     options.output_directory =
         (std::filesystem::path("out") / std::filesystem::path(arguments.case_file).stem()).string();
   }
-  if (options.quiet) log::set_run_name(options.output_directory);
+  // Until the run has its directory, which need not be there: whatever is said is about the case.
+  if (options.quiet) log::set_run_name(arguments.case_file);
   options.ranks = arguments.ranks;
   Session session(arguments.case_file, arguments.overrides);
   session.set_model_builder(arguments.builder);

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/input_file.hpp"
 #include "ricochet/case/keys.hpp"
 
 namespace ricochet::program {
@@ -14,6 +15,7 @@ namespace {
 /// is not parsed: only headings are looked for.
 std::vector<std::string> entries_of(const Section& section, const std::string& case_file) {
   std::vector<std::string> result;
+  if (!why_no_input(case_file).empty()) return result;
   std::ifstream file(case_file);
   for (std::string line; std::getline(file, line);) {
     line.erase(std::remove_if(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\t'; }), line.end());

@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "completion.hpp"
 #include "described_command.hpp"
+#include "empty_values.hpp"
 #include "manual_page.hpp"
 #include "process_memory.hpp"
 #include "ricochet/base/blas.hpp"
@@ -301,6 +302,7 @@ int dispatch(int argc, char** argv) {
   completion->add_option("shell", arguments.shell, "bash, zsh or fish")->required()->type_name("SHELL");
 
   if (answers_about(app, argc, argv)) return 0;
+  program::refuse_empty_values(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

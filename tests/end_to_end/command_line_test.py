@@ -119,6 +119,50 @@ class CommandLine(TestCase):
                          "nothing of the old run stays, and nothing else goes")
         self.assertEqual(History(output / "history.csv")["step"], list(range(11)))
 
+    def test_an_empty_value_is_not_the_default(self):
+        """As of a variable of the shell that is not set."""
+        for arguments in (("run", self.case, "-o", ""), ("run", self.case, "-o", "", "--force"), ("run", ""),
+                          ("run", self.case, "--export-contact", "1", "--export-contact-to", ""), ("study", self.case, "-o", ""),
+                          ("benchmark", "-o", ""), ("report", "out", "-o", ""), ("report", ""), ("info", ""), ("contact", "")):
+            process = self.expect_status(1, run(*arguments, directory=self.folder))
+            self.assertIn("the value is empty", process.stderr, arguments)
+        self.assertEqual(list(self.folder.glob("out*")), [])
+
+    def test_a_run_does_not_write_over_what_it_is_read_from(self):
+        """Also with --force, and also through another name."""
+        folder = self.folder / "own"
+        folder.mkdir()
+        mesh = folder / "probes-7.csv"
+        mesh.write_bytes((MESHES / "quadrilateral_o1_msh41_ascii.msh").read_bytes())
+        table = folder / "history.csv"
+        table.write_text("0 0 0\n1 0 0\n", encoding="ascii")
+        (self.folder / "link").symlink_to(folder)
+        text = block_case()
+        of_mesh = self.write("mesh.toml", re.sub(r'file = ".*"', f'file = "{mesh}"', text))
+        of_table = self.write("table.toml", text.replace('type = "plane"\n', f'type = "plane"\ntable = "{table}"\n'))
+        case = folder / "summary.json"
+        case.write_text(text, encoding="utf-8")
+        for path, input_file in ((of_mesh, mesh), (of_table, table), (case, case)):
+            before = {each.name: each.read_bytes() for each in folder.iterdir()}
+            for output in (folder, self.folder / "link"):
+                process = self.expect_status(4, run("run", path, "-o", output, "--force", "--quiet"))
+                self.assertIn(f"{input_file}: the case is read from this file", process.stderr)
+            self.assertEqual({each.name: each.read_bytes() for each in folder.iterdir()}, before)
+
+    def test_a_list_without_quotes(self):
+        for value, what in (("[bottom,body]", "list"), ("[bottom]", "list")):
+            process = self.expect_status(2, run("validate", self.case, "--set", f"contact.0.group={value}"))
+            self.assertIn(f"{value} is no {what}: texts within it need double quotes", process.stderr)
+            self.assertIn("""--set 'contact.0.group=["a", "b"]'""", process.stderr)
+        self.expect_status(0, run("validate", self.case, "--set", 'contact.0.group=["bottom"]'))
+        self.expect_status(0, run("validate", self.case, "--set", "title=[draft] a block"))
+
+    def test_messages_of_quiet_runs_name_what_is_there(self):
+        for arguments in (("--resume", "nothing"), ("nothing.toml",), ("block.toml", "--set", "time.step=-1")):
+            process = run("run", "--quiet", *arguments, directory=self.folder)
+            self.assertNotEqual(process.returncode, 0)
+            self.assertNotIn("out/", process.stderr)
+
     def test_a_directory_of_results_is_no_case(self):
         output = self.folder / "out"
         self.expect_status(0, run("run", self.case, "-o", output, "--quiet"))

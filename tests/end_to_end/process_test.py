@@ -5,6 +5,7 @@ import itertools
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import time
@@ -121,6 +122,26 @@ class Files(TestCase):
         summary.write_text(summary.read_text().replace('"status": "done"', '"status": "running"'))
         answer = self.expect_status(0, run("run", case, "-o", output, "--resume", "--set", "output.checkpoint_every=10"))
         self.assertIn("it is no regular file", answer.stderr)
+
+    def test_pipes(self):
+        """Nobody may ever write into them: they are refused, and not waited for."""
+        obstacle = '[obstacle.floor]\ntype = "plane"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n'
+        for suffix in (".toml", ".msh", ".geo", ".vtk", ".stl", ".csv"):
+            os.mkfifo(self.folder / f"pipe{suffix}")
+        text = block_case()
+        commands = [("run", "pipe.toml"), ("validate", "pipe.toml"), ("info", "pipe.toml"), ("info", "pipe.msh"), ("run", "--resume", "pipe.toml")]
+        for name, changed in (("mesh", re.sub(r'file = ".*"', 'file = "pipe.msh"', text)), ("geometry", re.sub(r'file = ".*"', 'file = "pipe.geo"', text)),
+                              ("foreign", re.sub(r'file = ".*"', 'file = "pipe.vtk"', text)),
+                              ("surface", text.replace(obstacle, '[obstacle.floor]\ntype = "surface"\nfile = "pipe.csv"\n')),
+                              ("motion", text.replace(obstacle, obstacle + 'table = "pipe.csv"\n'))):
+            self.assertNotEqual(changed, text, name)
+            self.write(f"{name}.toml", changed)
+            commands.append(("validate", f"{name}.toml"))
+        for command in commands:
+            answer = subprocess.run([str(PROGRAM), *command], cwd=self.folder, capture_output=True, text=True, timeout=30,
+                                    stdin=subprocess.DEVNULL)
+            self.assertEqual(answer.returncode, 4, f"{command}: {answer.stderr}")
+            self.assertIn("it is a pipe, not a file", answer.stderr, command)
 
     def test_files_without_end(self):
         hole = self.folder / "hole"

@@ -13,7 +13,8 @@ std::string why_no_input(const std::string& path, int header) {
   if (stat(path.c_str(), &about) != 0) return "";
   if (S_ISDIR(about.st_mode)) return "it is a directory";
   if (S_ISCHR(about.st_mode) || S_ISBLK(about.st_mode)) return "it is a device, not a file";
-  if (!S_ISREG(about.st_mode)) return "";  // of a pipe nothing can be seen without taking it
+  if (S_ISFIFO(about.st_mode)) return "it is a pipe, not a file";
+  if (!S_ISREG(about.st_mode)) return "it is a socket, not a file";
   std::array<char, 64> head{};
   std::ifstream file(path, std::ios::binary);
   file.ignore(header);

@@ -16,6 +16,15 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
+/// Of a list or a table that is none to TOML: as one word it would be a name that nothing has.
+void refuse_unquoted(const std::string& text) {
+  if (text.empty() || (text.front() != '[' && text.front() != '{') || parse_toml_value(text, {})) return;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{} is no {}: texts within it need double quotes, and the whole single ones, as in --set "
+                          "'contact.0.group=[\"a\", \"b\"]'",
+                          text, text.front() == '[' ? "list" : "table"));
+}
+
 TomlNode parse_value(const std::string& text, const SourceLocation& location) {
   if (std::optional<TomlNode> value = parse_toml_value(text, location)) return *value;
   TomlNode word;  // so that --set time.scheme=midpoint needs no quotes
@@ -56,6 +65,7 @@ void apply(TomlNode& root, const std::string& path_text, const std::string& valu
   const KeyPath path = parse_key_path(path_text);
   TomlNode* table = enter_section(root, path, location);
   if (table == nullptr) return;
+  if (path.key->type != KeyType::text) refuse_unquoted(value_text);
   TomlNode value = parse_value(value_text, location);
   value.key = path.member.empty() ? path.key->name : path.member;
   if (TomlNode* present = table->find(value.key)) {

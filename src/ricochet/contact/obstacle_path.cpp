@@ -114,8 +114,9 @@ std::unique_ptr<ObstaclePath> make_path(std::vector<Expression> displacement, st
 
 std::unique_ptr<ObstaclePath> read_path(const std::string& file, Index dimension) {
   const std::string why_not = why_no_input(file);
-  std::ifstream stream(file);
-  if (!why_not.empty() || !stream)
+  std::ifstream stream;
+  if (why_not.empty()) stream.open(file);
+  if (!why_not.empty() || !stream.is_open())
     throw Error(ErrorKind::file_access,
                 fmt::format("cannot read the motion \"{}\": {}", file, why_not.empty() ? "no such file" : why_not));
   const std::size_t still = static_cast<std::size_t>(dimension) + 1, turning = dimension == 2 ? 4 : 7;

@@ -31,7 +31,7 @@ std::string read_whole_file(const std::filesystem::path& path) {
   std::string content;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error) content.resize(size);
-  // The size may be unknown (a pipe) or change: what counts is what is read until the end.
+  // The size may change: what counts is what is read until the end.
   std::size_t done = 0;
   for (;;) {
     if (done == content.size()) content.resize(content.size() + (1u << 16));

@@ -17,6 +17,38 @@ std::string export_directory(const RunOptions& options) {
   return elsewhere ? options.export_contact_to : (std::filesystem::path(options.output_directory) / "contact").string();
 }
 
+namespace {
+
+/// All files that a case is read from.
+std::vector<std::string> input_files(const Case& input) {
+  std::vector<std::string> files{input.path, input.mesh.file};
+  for (const PartSection& part : input.parts) files.push_back(part.file);
+  for (const ObstacleSection& obstacle : input.obstacles) {
+    files.push_back(obstacle.table);
+    if (obstacle.parameters.has("file")) files.push_back(obstacle.parameters.text("file"));
+  }
+  std::erase(files, "");
+  return files;
+}
+
+}  // namespace
+
+void refuse_inputs_in_the_way(const RunDirectory& directory, const RunOptions& options, const Case& input) {
+  std::vector<std::string> taken = directory.results();
+  for (const std::string& file : directory.left_behind(-1)) taken.push_back(file);
+  for (const std::string& file : exported_contact_problems(export_directory(options))) taken.push_back(file);
+  for (const std::string& file : input_files(input)) {
+    for (const std::string& other : taken) {
+      std::error_code ignored;
+      if (!std::filesystem::equivalent(file, other, ignored)) continue;
+      throw Error(ErrorKind::file_access,
+                  fmt::format("{}: the case is read from this file, and a run into {} would write over it; choose "
+                              "another directory with -o, or rename the file",
+                              file, options.output_directory));
+    }
+  }
+}
+
 void refuse_old_run(const RunDirectory& directory, const RunOptions& options) {
   std::vector<std::string> results = directory.results();
   if (results.empty()) results = directory.left_behind(-1);

@@ -12,6 +12,10 @@ namespace ricochet {
 /// Where contact problems go that are asked for.
 [[nodiscard]] std::string export_directory(const RunOptions& options);
 
+/// Throws Error(file_access) where a file that the case is read from, itself or its meshes and tables, has the name of
+/// one that a run would write or remove there.
+void refuse_inputs_in_the_way(const RunDirectory& directory, const RunOptions& options, const Case& input);
+
 /// Throws Error(file_access) where there are results of another run.
 void refuse_old_run(const RunDirectory& directory, const RunOptions& options);
 

@@ -64,6 +64,9 @@ void Run::begin() {
   // Of runs that are silent but for their warnings there may be many at once.
   log::set_run_name(options_.quiet ? options_.output_directory : "");
   check_export(input_, options_, steps_);
+  ranks_.together([&] {
+    if (ranks_.is_first()) refuse_inputs_in_the_way(directory_, options_, input_);
+  });
   if (options_.resume) {
     ranks_.together([&] { has_nothing_to_do_ = is_complete(); });
     if (has_nothing_to_do_) return;

@@ -21,8 +21,9 @@ constexpr int header_of_stl = 80;  ///< bytes of the binary format that mean not
 
 std::string contents(const std::string& file, int header = 0) {
   const std::string why_not = why_no_input(file, header);
-  std::ifstream stream(file, std::ios::binary);
-  if (!why_not.empty() || !stream)
+  std::ifstream stream;
+  if (why_not.empty()) stream.open(file, std::ios::binary);
+  if (!why_not.empty() || !stream.is_open())
     throw Error(ErrorKind::file_access,
                 fmt::format("cannot read the surface \"{}\": {}", file, why_not.empty() ? "no such file" : why_not));
   std::ostringstream text;
