@@ -30,6 +30,14 @@ void FailureBundle::take_problem(const ContactProblem& problem, const ContactSol
   }
 }
 
+void FailureBundle::forget_problem() {
+  problem_trouble_.clear();
+  if (problem_file_.empty()) return;
+  std::error_code ignored;  // left_behind finds it
+  fs::remove(problem_file_, ignored);
+  problem_file_.clear();
+}
+
 std::string FailureBundle::write(long step, Snapshot& snapshot, const std::string& message) const {
   snapshot.save("failure.message", message);
   snapshot.save("failure.step", std::int64_t{step});

@@ -285,6 +285,13 @@ void Run::enter_impulse(const Vector& impulse) {
   recording_->enter_impulse(session_.state(), impulse);
 }
 
+void Run::keep() {
+  if (has_nothing_to_do_ || has_ended_) return;
+  const std::lock_guard files(files_);
+  write_checkpoint();
+  report_progress();
+}
+
 bool Run::take_step() {
   if (has_nothing_to_do_ || has_ended_) return false;
   try {
@@ -310,6 +317,7 @@ bool Run::advance() {
     return false;
   }
   Simulation& simulation = session_.simulation();
+  if (is_near_end()) write_end_checkpoint();
   keep_state_before_step();
   const Timer timer;
   step_ = simulation.state().step + 1;
@@ -319,13 +327,14 @@ bool Run::advance() {
   simulation.advance([&](const State& state) { recording_->enter_part(state, simulation.account()); });
   step_seconds_ = timer.seconds();
   times_.steps += step_seconds_;
+  failure_bundle_->forget_problem();
   const std::lock_guard files(files_);
   recording_->record(simulation.state(), simulation.account());
   progress_->update(simulation.state().step, simulation.state().time);
   const OutputSection& output = input_.output;
   const bool checkpoint_is_due =
-      (output.checkpoint_every > 0 && simulation.state().step % output.checkpoint_every == 0) ||
-      (output.checkpoint_seconds > 0.0 && since_checkpoint_.seconds() >= output.checkpoint_seconds);
+      !is_near_end() && ((output.checkpoint_every > 0 && simulation.state().step % output.checkpoint_every == 0) ||
+                         (output.checkpoint_seconds > 0.0 && since_checkpoint_.seconds() >= output.checkpoint_seconds));
   // By the first one's clock.
   std::array<double, 2> due{ranks_.is_first() && checkpoint_is_due ? 1.0 : 0.0,
                             ranks_.is_first() && since_report_.seconds() >= report_interval ? 1.0 : 0.0};
@@ -335,14 +344,27 @@ bool Run::advance() {
   return true;
 }
 
+/// The end has shortened the next of the adaptive steps.
+bool Run::is_near_end() {
+  const StepControl* const control = session_.simulation().control();
+  return control != nullptr && control->is_shortened_by_end();
+}
+
+/// From here the run can go on to a later end: nothing that was done before knows of this one.
+void Run::write_end_checkpoint() {
+  const bool wanted = input_.output.checkpoint_every > 0 || input_.output.checkpoint_seconds > 0.0;
+  if (!wanted || has_end_checkpoint_) return;
+  const std::lock_guard files(files_);
+  if (summary_.checkpoint_step != session_.state().step) write_checkpoint();
+  has_end_checkpoint_ = true;
+}
+
 /// What the last state leaves, where all steps were taken.
 void Run::end_steps() {
   if (!session_.at_end()) return;
+  write_end_checkpoint();  // before what is written at the end only
   const std::lock_guard files(files_);
   before_step_.reset();
-  // Before what is written at the end only: from here the run can go on to a later end.
-  const bool checkpoints = input_.output.checkpoint_every > 0 || input_.output.checkpoint_seconds > 0.0;
-  if (checkpoints && summary_.checkpoint_step != session_.state().step) write_checkpoint();
   recording_->record_end(session_.state(), session_.simulation().account());
 }
 

@@ -35,6 +35,8 @@ class Run {
   [[nodiscard]] bool is_complete_already() const { return has_nothing_to_do_; }
   /// A program has changed the velocity, by an impulse per dof.
   void enter_impulse(const Vector& impulse);
+  /// A checkpoint of the present state, unless the run has ended.
+  void keep();
   /// One step, recorded. False: the end, a failure, or a signal.
   bool take_step();
   /// The summary; throws the error that ended the steps.
@@ -51,6 +53,8 @@ class Run {
   [[nodiscard]] std::size_t entries_of_whole_body() const;
   void start_recording();
   bool advance();
+  [[nodiscard]] bool is_near_end();
+  void write_end_checkpoint();
   void end_steps();
   /// "step 12 of 100", or of adaptive steps "step 12 (t = 0.5 of 2)".
   [[nodiscard]] std::string step_in_words();
@@ -82,7 +86,7 @@ class Run {
   std::ptrdiff_t of_reading_;  ///< warnings that there were before
   RunTimes times_;
   bool has_nothing_to_do_ = false;  ///< to be resumed: the run is complete
-  bool has_ended_ = false;
+  bool has_ended_ = false, has_end_checkpoint_ = false;
   bool knows_what_ran_ = false;       ///< to be resumed: there is a summary, and it is that of this case
   bool was_complete_ = false;         ///< to be resumed: to a later end
   std::optional<Snapshot> snapshot_;  ///< that the run goes on from

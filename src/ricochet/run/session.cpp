@@ -208,6 +208,14 @@ bool Session::at_end() {
 
 bool Session::step() {
   const log::CollectWarnings collect(warnings_);
+  if (take_step()) return true;
+  // The first call at the end is how a loop comes to know of it.
+  if (++calls_at_end_ == 2)
+    log::warning("session: the run has ended: this call of step(), and every further one, does nothing");
+  return false;
+}
+
+bool Session::take_step() {
   if (has_finished_) refuse_use("it has finished, and nothing would be written any more");
   if (run_ != nullptr) return run_->take_step();
   if (at_end()) return false;
@@ -230,6 +238,12 @@ void Session::write_to(RunOptions options) {
   auto run = std::make_unique<Run>(*this, options_);
   run->begin();
   run_ = std::move(run);
+}
+
+void Session::keep() {
+  if (run_ == nullptr) refuse_use("it writes nothing: there is nothing that a checkpoint could go on with");
+  const log::CollectWarnings collect(warnings_);
+  run_->keep();
 }
 
 RunSummary Session::finish() {

@@ -147,5 +147,20 @@ TEST(FailureBundle, HoldsTheStateAndTheProblem) {
   EXPECT_NE(other.write(8, snapshot, "").find("the contact problem could not be written"), std::string::npos);
 }
 
+/// A step may be solved at a second attempt: nothing of the first is left, and a later failure does not name it.
+TEST(FailureBundle, ForgetsTheProblemOfAStepThatWasSolved) {
+  const TemporaryDirectory directory;
+  fs::create_directories(directory.path);
+  FailureBundle bundle(directory.path, {"Title", "origin", 2, 0.5});
+  ContactSolution unsolved = solution();
+  unsolved.outcome = ContactOutcome::not_converged;
+  bundle.take_problem(problem(), unsolved, 7);
+  EXPECT_EQ(failure_files(directory.path).size(), 1u);
+  bundle.forget_problem();
+  EXPECT_TRUE(failure_files(directory.path).empty());
+  Snapshot snapshot;
+  EXPECT_EQ(bundle.write(9, snapshot, "").find("contact problem"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace ricochet::test
