@@ -66,6 +66,26 @@ class TwoBodies(TestCase):
         self.write("block.msh", strip(8, 4, 0.5))
         return self.write("blocks.toml", BLOCKS)
 
+    def test_a_probe_in_a_place_of_two_nodes_is_at_the_one_with_multipliers(self):
+        """That of the finer side, whichever body comes first: the force there is the pressure over its own part of the height."""
+        height, rows = 0.1, {"one": 2, "two": 4}
+        for name, own in rows.items():
+            self.write(f"{name}.msh", strip(10, own, height))
+        for first, second in (("one", "two"), ("two", "one")):
+            for group, against in (("one.right", "two.left"), ("two.left", "one.right")):
+                placed = {"one": "velocity = [0.1, 0.0]\n", "two": "move = [1.0, 0.0]\n"}
+                case = self.write("touching.toml", "".join(f'[part.{part}]\nfile = "{part}.msh"\n{placed[part]}' for part in (first, second))
+                                  + material("one", 3.0) + material("two", 1.0)
+                                  + f'[[contact]]\ngroup = "{group}"\nagainst = "{against}"\n[time]\nstep = 0.05\nend = 0.3\n'
+                                  '[[probe]]\nname = "between"\nat = [1.0, 0.05]\n')
+                process = self.expect_status(0, run("run", case, "-o", self.folder / "touching", "--force"))
+                if first == "one":  # else its node is the first of the two anyway
+                    self.assertIn('it is at that of body "two", which carries the multipliers', process.stderr)
+                history = History(self.folder / "touching" / "history.csv")
+                pressure, reaction = history["between.pressure"][-1], history["between.reaction_normal"][-1]
+                self.assertGreater(pressure, 0.0)
+                self.assertAlmostEqual(reaction, pressure * height / rows["two"], delta=1e-12 * pressure)
+
     def test_an_impact_names_both_bodies(self):
         out = self.simulate(self.bars(EXPECT))
         found = summary(out)

@@ -31,7 +31,8 @@ Section probe_section() {
            .type = KeyType::vector,
            .unit = "length",
            .doc = "A point: the nearest node is taken, and its distance reported. Columns NAME.displacement_x …, "
-                  "velocity_x …, and on a contact boundary gap, pressure, reaction_normal, reaction_tangential_x …"},
+                  "velocity_x …, and on a contact boundary gap, pressure, reaction_normal, reaction_tangential_x …. "
+                  "Where nodes of two bodies in contact are there, that of the side with the multipliers is taken."},
           {.name = "from",
            .type = KeyType::vector,
            .unit = "length",

@@ -15,8 +15,8 @@ namespace ricochet {
 
 namespace {
 
-/// Part of the body's size up to which a node lies on a segment.
-constexpr double on_segment = 1e-6;
+/// Part of the body's size up to which a node lies on a segment, and up to which two nodes lie in one place.
+constexpr double on_segment = 1e-6, in_one_place = 1e-9;
 /// Of more bodies than these momenta have no columns: rows would be about nothing else.
 constexpr int most_bodies = 20;
 
@@ -56,9 +56,34 @@ class ProbeFinder {
     places_.positions.emplace_back(model_.space.nodes.col(node));
   }
 
+  /// Where nodes of two bodies in contact lie in one place: one of the side that carries the multipliers, which has a
+  /// gap, a pressure and a reaction.
+  [[nodiscard]] Index with_multipliers(Index nearest) const {
+    const ContactBoundary& contact = model_.problem.contact;
+    const Points& positions = model_.space.nodes;
+    const double limit = in_one_place * extent(positions);
+    bool is_watched = false;
+    Index best = -1;
+    for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
+      const Index node = contact.nodes[i];
+      if (contact.is_opposite[i] != 0 || !((positions.col(node) - positions.col(nearest)).norm() <= limit)) continue;
+      is_watched = is_watched || node == nearest;
+      if (best < 0 || number_of(node) < number_of(best)) best = node;
+    }
+    return is_watched || best < 0 ? nearest : best;
+  }
+  [[nodiscard]] Index number_of(Index node) const { return model_.space.number[static_cast<std::size_t>(node)]; }
+
   void add_point(const ProbeSection& section) {
     const NearestNode nearest = nearest_node(model_.space, vector_of(section.at));
-    add_node(section.name, nearest.node, nearest.distance);
+    const Index node = with_multipliers(nearest.node);
+    if (node != nearest.node) {
+      log::info(
+          fmt::format("probe \"{}\": nodes of two bodies are there; it is at that of {}, which carries the "
+                      "multipliers of their contact",
+                      section.name, body_of(node)));
+    }
+    add_node(section.name, node, nearest.distance);
     const double body_size = extent(model_.space.nodes);
     const std::string message =
         fmt::format("probe \"{}\": the nearest node is {:.3g} away", section.name, nearest.distance);
@@ -67,6 +92,12 @@ class ProbeFinder {
     } else {
       log::info(message);
     }
+  }
+
+  /// As messages call it.
+  [[nodiscard]] std::string body_of(Index node) const {
+    const auto body = static_cast<std::size_t>(model_.bodies.connected.of_node[static_cast<std::size_t>(node)]);
+    return model_.bodies.names[body];
   }
 
   /// Nodes from one end to the other.
