@@ -53,6 +53,7 @@ class SignalCheck {
 
  private:
   double last_asked_ = 0.0;
+  int signal_ = 0;  ///< that has raised it
   std::optional<py::error_already_set> raised_;
 };
 

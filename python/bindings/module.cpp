@@ -12,6 +12,15 @@ namespace {
 /// Seconds between looks at Python's signals.
 constexpr double signal_interval = 0.05;
 
+/// ricochet/stopping.py ends Python with the status 128 + N; all else is as Ctrl-C.
+int number_of(const py::error_already_set& raised) {
+  constexpr int first_status = 128;
+  if (!raised.matches(PyExc_SystemExit)) return SIGINT;
+  const py::object code = py::getattr(raised.value(), "code", py::none());
+  const int status = py::isinstance<py::int_>(code) ? code.cast<int>() : 0;
+  return status == first_status + SIGTERM || status == first_status + SIGHUP ? status - first_status : SIGINT;
+}
+
 }  // namespace
 
 std::recursive_mutex& LibraryLock::mutex() {
@@ -25,9 +34,12 @@ int SignalCheck::operator()() {
   if (!raised_ && now - last_asked_ > signal_interval) {
     last_asked_ = now;
     const py::gil_scoped_acquire lock;
-    if (PyErr_CheckSignals() != 0) raised_.emplace();
+    if (PyErr_CheckSignals() != 0) {
+      raised_.emplace();
+      signal_ = number_of(*raised_);
+    }
   }
-  return raised_ ? SIGINT : 0;
+  return raised_ ? signal_ : 0;
 }
 
 void SignalCheck::raise() {

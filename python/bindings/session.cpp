@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <utility>
 
 #include "bindings.hpp"
 #include "ricochet/base/error.hpp"
@@ -51,9 +52,9 @@ class OpenSession {
 
   /// Throws where a step was not taken although the run has not come to its end: a loop until the end must not go on.
   void explain_end() {
+    if (!writes || session.is_complete_already() || session.at_end()) return signals.raise();
+    finished = finish();  // throws what has ended the steps; a signal has not
     signals.raise();
-    if (!writes || session.is_complete_already() || session.at_end()) return;
-    (void)finish();
     throw Error(ErrorKind::not_converged, "session: the run has ended");
   }
 
@@ -89,12 +90,14 @@ class OpenSession {
   }
 
   std::string finish() {
+    if (!finished.empty()) return std::exchange(finished, {});  // a signal has ended it already
     writes = false;
     return alone([this] { return to_json(session.finish()); });
   }
 
   Session session;
   SignalCheck signals;
+  std::string finished;  ///< the summary of a run that a signal has ended
   bool writes = false;
   bool has_problem = false, has_state = false;
 
@@ -291,14 +294,18 @@ void bind_problem(Class& session) {
 void bind_session(py::module_& module) {
   py::class_<OpenSession> session(module, "Session");
   session.def(py::init<Case, std::vector<std::string>>(), py::arg("case"), py::arg("remarks"))
-      .def(
-          "step", &OpenSession::step,
-          "One step. False, and nothing done: the run is at its end. Raises NotConvergedError; the state is then that\n"
-          "before the step.")
+      .def("step", &OpenSession::step,
+           "One step. False, and nothing done: the run is at its end; further calls are warned of. Raises "
+           "NotConvergedError; the state is then that\n"
+           "before the step.")
       .def("_run", &OpenSession::run, py::arg("each"), py::arg("progress"))
       .def("_run_steps", &OpenSession::take_steps)
       .def("_write_to", &write_to)
       .def("_finish", &OpenSession::finish)
+      .def("_keep",
+           [](OpenSession& open) {
+             if (open.writes) open.alone([&] { open.session.keep(); });
+           })
       .def("_save", &save)
       .def("_resume", &resume)
       .def_property_readonly("writes", [](const OpenSession& open) { return open.writes; })

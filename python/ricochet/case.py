@@ -1,5 +1,7 @@
 """Cases: from a file, or made in Python from dictionaries, with the same checks and messages."""
 
+import contextlib
+import json
 import math
 import os
 from collections.abc import Mapping
@@ -7,9 +9,11 @@ from collections.abc import Mapping
 import numpy
 
 from . import _core, places
-from .errors import InputError, UsageError
+from .errors import FileAccessError, InputError, UsageError
 from .files import file_access, library_path, path_of, write_whole
 from .mesh import Mesh
+
+FIRST_LINE = "# A case of a program in Python."
 
 # Keys that name files. In a dictionary they are relative to the folder in which Python works.
 FILE_KEYS = ("file", "table")
@@ -145,7 +149,7 @@ class Case:
         self.dictionary = source
         self._table = table
         writer = Writer()
-        writer.line("# A case of a program in Python.", ())  # what is said of the whole case stands here
+        writer.line(FIRST_LINE, ())  # what is said of the whole case stands here
         writer.table((), table, ())
         self._lines = places.Lines(writer.entries)
         self.text = "\n".join(writer.lines) + "\n"
@@ -179,6 +183,24 @@ class Case:
             text = text.replace(f"file = {toml_text(self.mesh.path)}", f"file = {toml_text(own)}", 1)
         write_whole(path, text.encode())
         return path
+
+    def refuse_to_replace(self, folder):
+        """Raises FileAccessError where a file of somebody else has the name of one that write() would write."""
+        own = os.path.join(folder, "case.toml")
+        with file_access():
+            if os.path.isfile(own):
+                with open(own, encoding="utf-8", errors="replace") as file:
+                    if file.readline().rstrip() == FIRST_LINE:
+                        return
+        # A program may have been ended before it had written its case.
+        with contextlib.suppress(OSError, ValueError, AttributeError):
+            with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
+                if json.load(file).get("case_path") == os.path.abspath(own):
+                    return
+        for name in ("case.toml",) if self.mesh is None else ("case.toml", "case.msh"):
+            if os.path.isfile(os.path.join(folder, name)):
+                raise FileAccessError(f"{os.path.join(folder, name)}: no program has written this file, and the case of this run "
+                                      "would replace it; choose another directory, or rename the file")
 
     def check(self):
         """Reads the mesh and builds the problem, as a run would. Returns the warnings."""

@@ -4,7 +4,8 @@ import os
 
 import numpy
 
-from . import _core
+from . import _core, stopping
+from .arrays import numbers
 from .case import Case
 from .errors import Error, UsageError
 from .files import file_access, library_path, path_of, write_whole
@@ -49,7 +50,8 @@ class Session(_core.Session):
     Errors: InputError for arrays that do not fit and names that the case does not have, UsageError for what comes too late or
     while another thread uses the session, NotConvergedError for a step without a solution; the state is then that before it.
 
-    A session that writes (write_to) is closed with finish(), or as a context::
+    A session that writes (write_to) leaves a checkpoint, which `resume` goes on from, where Ctrl-C, SIGTERM, SIGHUP or an
+    exception in the `each` of run() ends it. It is closed with finish(), or as a context::
 
         with ricochet.Session("case.toml") as session:
             session.write_to("out/a")
@@ -64,12 +66,39 @@ class Session(_core.Session):
 
     def run(self, each=None, *, progress=None):
         """Takes all steps that are left. `each` is called with this session after every one, and ends them where it returns
-        False; what it raises ends them, too. `progress`: None: where somebody looks; True, False."""
+        False; what it raises ends them, too, with a checkpoint where the session writes. `progress`: None: where somebody looks; True, False."""
         # What comparisons of numpy's numbers give is False, too.
         call = None if each is None else lambda: not is_false(each(self))
-        with progress_of(progress, self) as show:
-            self._run(call, show)
+        try:
+            with progress_of(progress, self) as show:
+                self._run(call, show)
+        except BaseException:
+            self._keep_if_idle()
+            raise
         return self
+
+    def _keep_if_idle(self):
+        """A checkpoint, unless the run has ended or is in the middle of a step. What cannot be written is not told: something
+        else has gone wrong first."""
+        try:
+            self._keep()
+        except Error:
+            pass
+
+    def set_load(self, force):
+        """A force that acts from now on besides the loads of the case, until it is set again: nodes x dimension, or one vector
+        for all nodes. It enters the energy account as load_work."""
+        super().set_load(numbers(force, "set_load"))
+
+    def set_velocity(self, velocity):
+        """Another velocity from now on, nodes x dimension, or one vector for all nodes, as an impulse at once would give."""
+        super().set_velocity(numbers(velocity, "set_velocity"))
+
+    def set_obstacle_velocity(self, obstacle, velocity, rotation_rate=None):
+        """From now on this obstacle moves with a constant velocity, and a constant rate of its rotation vector where the case
+        gives it a rotation, from where it is. The first call comes before the session starts."""
+        rate = None if rotation_rate is None else numbers(rotation_rate, "set_obstacle_velocity: rotation_rate")
+        super().set_obstacle_velocity(obstacle, numbers(velocity, "set_obstacle_velocity"), rate)
 
     def write_to(self, directory, *, force=False, resume=False, export_contact=""):
         """From here on the session writes what a run writes (history, fields, checkpoints, summary) into a directory.
@@ -78,8 +107,11 @@ class Session(_core.Session):
         directory = library_path(directory, "write_to")
         kept = self.case.text is not None
         case_path = os.path.join(directory, "case.toml") if kept else ""
+        if kept:
+            self.case.refuse_to_replace(directory)
         self._write_to(directory, force, resume, True, export_contact, case_path, self.case.changes)
         self.directory = directory  # from here on it is to be finished
+        stopping.attend(self)
         if kept and not self.is_complete_already:
             self.case.write(directory)
 
@@ -87,6 +119,7 @@ class Session(_core.Session):
         """Ends what write_to has begun, and returns the Run. Before the last step the run is an interrupted one, with a
         checkpoint to go on from."""
         if self._summary is None:
+            stopping.forget(self)
             self._summary = self._finish()
         return Run(self.directory)
 
@@ -138,7 +171,7 @@ def run(source, directory, changes=None, *, mesh=None, each=None, force=False, r
     """Runs a case into a directory, as `ricochet run` does, and returns the Run.
 
     `source`, `changes`, `mesh`: see Case. `each`, `progress`: see Session.run. `force`, `resume`, `export_contact`: see
-    Session.write_to. Ctrl-C, and an exception in `each`, leave an interrupted run with a checkpoint, which `resume` goes on
+    Session.write_to. Ctrl-C, SIGTERM, SIGHUP and an exception in `each` leave an interrupted run with a checkpoint, which `resume` goes on
     from. Expectations of the case that do not hold are warnings; Run.check() raises them.
     """
     if directory is None:

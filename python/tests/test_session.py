@@ -12,6 +12,7 @@ import numpy
 import pytest
 
 import ricochet as rc
+from ricochet import stopping
 
 from conftest import ROOT
 
@@ -146,6 +147,112 @@ def test_ctrl_c_leaves_a_run_to_go_on_with(puck, tmp_path):
     run = rc.open(tmp_path / "out")
     assert run.status == "interrupted" and run.summary["steps"] > 0
     assert run.summary["checkpoint_step"] == run.summary["steps"]
+
+
+def interrupted_by(number, script, output):
+    """What a script leaves that a signal ends while its run goes on: the status of the process, and the run."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    child = subprocess.Popen([sys.executable, "-c", script], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert child.stdout.readline() == "going\n", child.stderr.read()
+    time.sleep(0.3)
+    child.send_signal(number)
+    child.communicate(timeout=60)
+    return child.returncode, rc.open(output)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("loop", ["session.run()", "while session.step(): pass", "session.step(); time.sleep(60)",
+                                  "session.run(lambda s: time.sleep(1))"])
+def test_what_ends_the_program_with_a_checkpoint_does_so_here(puck, tmp_path, number, loop):
+    script = f"""
+import time, ricochet as rc
+session = rc.Session({puck!r}, {{"time.end": 10.0}})
+session.write_to({str(tmp_path / 'out')!r})
+print("going", flush=True)
+{loop}
+"""
+    status, run = interrupted_by(number, script, tmp_path / "out")
+    assert status == 128 + number
+    assert run.status == "interrupted" and run.summary["checkpoint_step"] > 0
+    assert run.summary["checkpoint_step"] == run.summary["steps"]
+    if loop == "session.run()":  # else it may come between two steps
+        assert f"stopped by {signal.Signals(number).name}" in run.summary["message"]
+    assert rc.Session(puck, {"time.end": 10.0}).write_to(tmp_path / "out", resume=True) is None
+
+
+def test_a_handler_of_the_program_stays(puck, tmp_path):
+    heard = []
+    stopping._writing.clear()  # sessions of other tests
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    before = signal.signal(signal.SIGTERM, lambda *_: heard.append(True))
+    try:
+        session = rc.Session(puck, SHORT)
+        session.write_to(tmp_path / "out")
+        os.kill(os.getpid(), signal.SIGTERM)
+        session.run()
+        assert session.finish().status == "done" and heard == [True]
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    with rc.Session(puck, SHORT) as session:
+        session.write_to(tmp_path / "other")
+        assert signal.getsignal(signal.SIGTERM) is not before
+        session.run()
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_an_exception_leaves_a_checkpoint_also_of_a_session_without_a_context(puck, tmp_path):
+    def each(s):
+        if s.step_number == 7:
+            raise ValueError("seven")
+
+    session = rc.Session(puck, SHORT)
+    session.write_to(tmp_path / "out")
+    with pytest.raises(ValueError, match="seven"):
+        session.run(each)
+    assert [path.name for path in (tmp_path / "out").glob("*.ckpt")] == ["checkpoint-000000007.ckpt"]
+    session.run()  # and the session can go on
+    session.finish()
+    whole = rc.run(puck, tmp_path / "whole", SHORT)
+    assert (tmp_path / "out/history.csv").read_bytes() == (tmp_path / "whole/history.csv").read_bytes() and whole.status == "done"
+
+
+def test_numbers_that_are_not_real_are_refused(puck):
+    session = rc.Session(puck, SHORT)
+    session.set_obstacle_velocity("wall", [0.0, 0.0])
+    session.start()
+    load = numpy.zeros_like(session.displacement)
+    for wrong in (load + 1j, numpy.ma.masked_array(load, mask=numpy.ones_like(load)), [None, 1.0], "12", [1.0, 2.0j]):
+        for use in (session.set_load, session.set_velocity, lambda v: session.set_obstacle_velocity("wall", v)):
+            with pytest.raises(rc.InputError, match="real numbers|masked"):
+                use(wrong)
+    session.set_load(load.astype(numpy.float32))
+    session.set_load([1, 2])
+
+
+def test_steps_after_the_end_are_warned_of(puck):
+    session = rc.Session(puck, SHORT)
+    while session.step():
+        pass
+    assert session.warnings == []
+    assert not session.step() and not session.step()
+    assert len(session.warnings) == 1 and "the run has ended: this call of step()" in session.warnings[0]
+
+
+def test_a_case_of_somebody_else_is_not_replaced(tmp_path):
+    from test_mesh import CASE, square
+
+    points, quads = square()
+    mesh = rc.Mesh(points, {"quad": quads}, {"bottom": numpy.flatnonzero(points[:, 1] < 0.01)})
+    for name in ("case.toml", "case.msh"):
+        folder = tmp_path / name.replace(".", "-")
+        folder.mkdir()
+        (folder / name).write_text("mine\n")
+        for force in (False, True):
+            with pytest.raises(rc.FileAccessError, match=f"{name}: no program has written this file"):
+                rc.run(CASE, folder, mesh=mesh, force=force)
+        assert [path.name for path in folder.iterdir()] == [name] and (folder / name).read_text() == "mine\n"
+    assert rc.run(CASE, tmp_path / "out", mesh=mesh).status == "done"
+    assert rc.run(CASE, tmp_path / "out", mesh=mesh, force=True).status == "done"
 
 
 def test_other_threads_work_meanwhile_and_may_not_look(cases):
