@@ -16,7 +16,7 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// Of a list or a table that is none to TOML: as one word it would be a name that nothing has.
+/// Refuses a list or a table that is none to TOML: as one word it would be a name that nothing has.
 void refuse_unquoted(const std::string& text) {
   if (text.empty() || (text.front() != '[' && text.front() != '{') || parse_toml_value(text, {})) return;
   throw Error(ErrorKind::invalid_input,

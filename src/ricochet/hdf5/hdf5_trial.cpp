@@ -19,12 +19,12 @@ namespace ricochet {
 
 namespace {
 
-/// Of the numbers in a file so many bytes are read: readers compare sizes before they read the others.
+/// Bytes of numbers that are read: of the others readers compare sizes first.
 constexpr std::int64_t most_bytes = 16 << 20;
 /// Opening a data set takes some 20 µs: these are several times what a file of the smallest ones needs.
 constexpr double least_seconds = 10.0, seconds_per_byte = 2e-7;
 
-/// What reading has in hand.
+/// State of a visit of all objects.
 struct Visit {
   std::int64_t bytes_left = most_bytes;
 };
@@ -78,7 +78,7 @@ bool open_all(const std::string& path) {
   return file >= 0 && H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, open_object, &visit, H5O_INFO_BASIC) >= 0;
 }
 
-/// What tells whether a file has changed.
+/// Identity of a file and the time of its last change.
 struct Stamp {
   dev_t device = 0;
   ino_t number = 0;

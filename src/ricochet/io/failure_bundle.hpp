@@ -18,7 +18,7 @@ class FailureBundle {
   /// Writes the contact problem of a step that was not solved, with the best that was found. FCLib's format may not be
   /// able to state it, and the disk may be full: that is told by write().
   void take_problem(const ContactProblem& problem, const ContactSolution& solution, long step);
-  /// After a step that was solved in the end, in another way or with another length: removes what take_problem wrote.
+  /// Removes what take_problem wrote, after a step that was solved in the end, in another way or with another length.
   void forget_problem();
   /// Adds the message to the snapshot and writes it. Returns where everything is, in a sentence. Throws
   /// Error(file_access).

@@ -40,7 +40,7 @@ HistoryWriter::~HistoryWriter() {
   }
 }
 
-/// Always behind what is there: a file that is cut between a look and a write gets no hole.
+/// Opens the file to append: where it is cut between a look and a write it gets no hole.
 void HistoryWriter::open() {
   errno = 0;
   file_.open(path_, std::ios::binary | std::ios::app);

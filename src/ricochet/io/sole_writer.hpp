@@ -9,15 +9,15 @@ namespace ricochet {
 
 class SoleWriter {
  public:
-  /// A file that is open for writing, as it is now. Throws Error(file_access).
+  /// Takes a file that is open for writing as it is now. Throws Error(file_access).
   explicit SoleWriter(std::string path);
-  /// The size that the file has from now on, by what has been written.
+  /// Sets the size that the file has from now on, by what has been written.
   void expect_size(std::int64_t size) { size_ = size; }
-  /// The same after another library has written, which keeps positions of its own: where the file was cut meanwhile, it
-  /// has filled with zeros what was there. Throws Error(file_access) where that can be seen.
+  /// Takes the present size, after another library has written, which keeps positions of its own: where the file was
+  /// cut meanwhile, it has filled with zeros what was there. Throws Error(file_access) where that can be seen.
   void expect_present_size();
-  /// Before each piece, and at the end. Throws Error(file_access) where the file is not there, is another one, or has
-  /// another size.
+  /// Compares, before each piece and at the end. Throws Error(file_access) where the file is not there, is another one,
+  /// or has another size.
   void require_untouched() const;
 
  private:

@@ -56,8 +56,8 @@ class ProbeFinder {
     places_.positions.emplace_back(model_.space.nodes.col(node));
   }
 
-  /// Where nodes of two bodies in contact lie in one place: one of the side that carries the multipliers, which has a
-  /// gap, a pressure and a reaction.
+  /// Returns, of nodes of two bodies in contact that lie in one place, one of the side that carries the multipliers,
+  /// which has a gap, a pressure and a reaction.
   [[nodiscard]] Index with_multipliers(Index nearest) const {
     const ContactBoundary& contact = model_.problem.contact;
     const Points& positions = model_.space.nodes;
@@ -94,7 +94,7 @@ class ProbeFinder {
     }
   }
 
-  /// As messages call it.
+  /// Name of the node's body in messages.
   [[nodiscard]] std::string body_of(Index node) const {
     const auto body = static_cast<std::size_t>(model_.bodies.connected.of_node[static_cast<std::size_t>(node)]);
     return model_.bodies.names[body];

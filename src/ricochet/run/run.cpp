@@ -344,13 +344,13 @@ bool Run::advance() {
   return true;
 }
 
-/// The end has shortened the next of the adaptive steps.
+/// Tells whether the end has shortened the next of the adaptive steps.
 bool Run::is_near_end() {
   const StepControl* const control = session_.simulation().control();
   return control != nullptr && control->is_shortened_by_end();
 }
 
-/// From here the run can go on to a later end: nothing that was done before knows of this one.
+/// Writes the checkpoint from which the run can go on to a later end: nothing that was done before knows of this one.
 void Run::write_end_checkpoint() {
   const bool wanted = input_.output.checkpoint_every > 0 || input_.output.checkpoint_seconds > 0.0;
   if (!wanted || has_end_checkpoint_) return;

@@ -35,7 +35,7 @@ class Run {
   [[nodiscard]] bool is_complete_already() const { return has_nothing_to_do_; }
   /// A program has changed the velocity, by an impulse per dof.
   void enter_impulse(const Vector& impulse);
-  /// A checkpoint of the present state, unless the run has ended.
+  /// Writes a checkpoint of the present state, unless the run has ended.
   void keep();
   /// One step, recorded. False: the end, a failure, or a signal.
   bool take_step();

@@ -85,8 +85,9 @@ class Session {
   /// and Error(invalid_input) where there is no such obstacle, it moves by the forces on it, or the numbers do not fit.
   void set_obstacle_velocity(const std::string& obstacle, const Vector& velocity, const Vector& rotation_rate = {});
 
-  /// One step. False, and nothing done: the run is at its end; further calls are warned of. Throws Error(not_converged); the state is then that
-  /// before the step. A session that writes says false there, and where a signal stopped it; finish() then says why.
+  /// One step. False, and nothing done: the run is at its end; further calls are warned of. Throws
+  /// Error(not_converged); the state is then that before the step. A session that writes says false there, and where a
+  /// signal stopped it; finish() then says why.
   bool step();
   /// All steps that are left, calling `each` (if there is one) after every one.
   void run(const std::function<void()>& each = {});
@@ -95,8 +96,8 @@ class Session {
   /// With `resume` among the options it goes on with the run that is there; where that is complete, only finish() has
   /// something to say. Throws Error as run_case does.
   void write_to(RunOptions options);
-  /// Of a session that writes: a checkpoint of the present state, which --resume goes on from whatever becomes of this
-  /// process. Nothing happens where the run has ended.
+  /// Writes a checkpoint of the present state of a session that writes: --resume goes on from it whatever becomes of
+  /// this process. Nothing happens where the run has ended.
   void keep();
   /// The run that write_to was to go on with had come to its end before: there is no state to look at.
   [[nodiscard]] bool is_complete_already() const;

@@ -42,7 +42,7 @@ class StepControl {
   void start(const State& state);
 
   [[nodiscard]] bool at_end() const { return ticks_ >= end_ticks_; }
-  /// The next step is shorter than it would be without this end.
+  /// Tells whether the next step is shorter than it would be without this end.
   [[nodiscard]] bool is_shortened_by_end() const { return !at_end() && level_ > wanted_; }
   [[nodiscard]] double time() const { return static_cast<double>(ticks_) * step_of(deepest_); }
   /// Number k of the length of the next step, and the length itself.

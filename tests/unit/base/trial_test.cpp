@@ -34,7 +34,7 @@ TEST(Trial, EndsWhatHasNoEnd) {
   EXPECT_EQ(endless.description(), "does not come to an end");
 }
 
-/// What the child does is its own: neither memory nor handlers of this process are touched.
+/// Keeps what the child does to the child: neither memory nor handlers of this process are touched.
 TEST(Trial, LeavesThisProcessAlone) {
   static volatile sig_atomic_t handled = 0;
   const auto before = signal(SIGABRT, [](int) { handled = 1; });
