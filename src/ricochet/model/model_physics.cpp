@@ -8,6 +8,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/rounded.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/cell_masses.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
@@ -42,7 +43,7 @@ void warn_of_long_steps(const Case& input, const Scheme& scheme, const Model& mo
       "than {:g} such times {}; take a step of at most {:.2g}, or scheme \"reduced-kane\" with mass \"equivalent\", "
       "which takes any step",
       input.where("time.step").text(), input.time.step, crossings, scheme_text(input.time), limit.crossings,
-      limit.trouble, limit.crossings * median));
+      limit.trouble, rounded_down(limit.crossings * median, 2)));
 }
 
 /// With degree 1 a body whose skin is nearly all of its nodes has little left to carry the inertia of the skin: the

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/rounded.hpp"
 #include "ricochet/model/model_parts.hpp"
 
 namespace ricochet {
@@ -60,7 +61,7 @@ void warn_of_long_step(const Case& input, const ContactPair& pair, const Model& 
   log::warning(fmt::format(
       "contact of group \"{}\": at the start the body moves by {:.3g} in a step relative to obstacle \"{}\", whose "
       "radius of curvature is {:.3g}: it can be past it without having touched; take time.step = {:.1g} or less",
-      pair.group, longest, pair.obstacle_name, radius, 0.1 * radius / longest * input.time.step));
+      pair.group, longest, pair.obstacle_name, radius, rounded_down(0.1 * radius / longest * input.time.step, 1)));
 }
 
 /// Distances to what is far away, or has a centre far away, are differences of large numbers.

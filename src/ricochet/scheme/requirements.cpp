@@ -4,6 +4,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/rounded.hpp"
 
 namespace ricochet {
 
@@ -54,13 +55,13 @@ void check_critical_step(const std::string& scheme, double step, double critical
                 fmt::format("scheme \"{}\": time.step = {:.6g} is {:.3g} times the critical step, {:.6g}: the motion "
                             "would grow without bound; set time.step = {:.3g} or less, or use scheme "
                             "\"reduced-kane\", which is stable for any step",
-                            scheme, step, fraction, critical_step, safe_fraction * critical_step));
+                            scheme, step, fraction, critical_step, rounded_down(safe_fraction * critical_step, 3)));
   }
   if (fraction <= safe_fraction) return;
   log::warning(
       fmt::format("scheme \"{}\": time.step = {:.6g} is {:.3g} of the critical step, {:.6g}; near to it changes of "
                   "contact leave high frequencies of large amplitude, take {:.3g} or less",
-                  scheme, step, fraction, critical_step, safe_fraction * critical_step));
+                  scheme, step, fraction, critical_step, rounded_down(safe_fraction * critical_step, 3)));
 }
 
 }  // namespace ricochet

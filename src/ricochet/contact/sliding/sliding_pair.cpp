@@ -7,6 +7,7 @@
 #include <map>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/rounded.hpp"
 #include "ricochet/contact/pair_integration.hpp"
 #include "ricochet/contact/sliding/moving_surfaces.hpp"
 
@@ -315,7 +316,7 @@ bool warn_of_blind_step(const SlidingPair& pair, const Vector& step) {
       "a surface that may touch itself moves in a step by up to {:.3g} to either side of its mean motion, and "
       "sees no more than {:.3g} deep into itself: its parts may pass through each other unseen; take a "
       "time.step that is {:.2g} times smaller",
-      longest, pair.sight(), 2.0 * longest / pair.sight()));
+      longest, pair.sight(), rounded_up(2.0 * longest / pair.sight(), 2)));
   return true;
 }
 

@@ -10,6 +10,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/parallel.hpp"
+#include "ricochet/base/rounded.hpp"
 #include "ricochet/linear_algebra/largest_eigenvalue.hpp"
 #include "ricochet/scheme/critical_step.hpp"
 #include "ricochet/scheme/requirements.hpp"
@@ -113,13 +114,13 @@ void FollowedCriticalStep::require_stable(const SemidiscreteProblem& problem, do
   smallest_ = numbers[smallest_found];
   const double critical = numbers[last_found];
   if (step < critical) return;
-  throw Error(
-      ErrorKind::not_converged,
-      fmt::format("the bodies are deformed so far that the critical step of \"{}\" is {:.6g} (made{}): "
-                  "time.step = {:.6g} is {:.3g} times that, and the motion would grow without bound; set "
-                  "time.step = {:.3g} or less, as it may fall further, or use scheme \"reduced-kane\", which "
-                  "is stable for any step",
-                  scheme_, critical, place(problem, state), step, step / critical, careful_fraction * critical));
+  throw Error(ErrorKind::not_converged,
+              fmt::format("the bodies are deformed so far that the critical step of \"{}\" is {:.6g} (made{}): "
+                          "time.step = {:.6g} is {:.3g} times that, and the motion would grow without bound; set "
+                          "time.step = {:.3g} or less, as it may fall further, or use scheme \"reduced-kane\", which "
+                          "is stable for any step",
+                          scheme_, critical, place(problem, state), step, step / critical,
+                          rounded_down(careful_fraction * critical, 3)));
 }
 
 /// The largest relative change of a distance of neighbours since the last check, by its weight.
@@ -205,11 +206,12 @@ void FollowedCriticalStep::follow(const SemidiscreteProblem& problem, double ste
   }
   if (step < near_fraction * critical || step >= critical || numbers[told_near] != 0.0) return;
   numbers[told_near] = 1.0;
-  log::warning(fmt::format(
-      "scheme \"{}\": at t = {:.6g} the bodies are deformed so far that the critical step is {:.6g} "
-      "(made{}); time.step = {:.6g} is {:.3g} of it, and the run ends where it is more than all; take "
-      "{:.3g} or less",
-      scheme_, state.time + step, critical, place(problem, state), step, step / critical, careful_fraction * critical));
+  log::warning(
+      fmt::format("scheme \"{}\": at t = {:.6g} the bodies are deformed so far that the critical step is {:.6g} "
+                  "(made{}); time.step = {:.6g} is {:.3g} of it, and the run ends where it is more than all; take "
+                  "{:.3g} or less",
+                  scheme_, state.time + step, critical, place(problem, state), step, step / critical,
+                  rounded_down(careful_fraction * critical, 3)));
 }
 
 std::string FollowedCriticalStep::explain(const SemidiscreteProblem& problem, double step, const State& state) const {
