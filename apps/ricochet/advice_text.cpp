@@ -6,10 +6,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "contact_text.hpp"
 #include "number_text.hpp"
 #include "place_text.hpp"
+#include "ricochet/base/rounded.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/fem/mesh_measures.hpp"
@@ -38,12 +40,6 @@ std::string normal_text(const MeshMeasure& measure, int dimension) {
 /// The largest coordinate: places are rounded to a part of it.
 double reach(const Mesh& mesh) {
   return mesh.nodes.cwiseAbs().maxCoeff();
-}
-
-/// Rounded down to two digits.
-double two_digits(double value) {
-  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-  return std::floor(value / unit * (1.0 + 1e-9)) * unit;
 }
 
 void print_materials(const Body& body) {
@@ -89,12 +85,12 @@ void print_steps(const Case& input, const Model& model, const ConnectedBodies& c
     fmt::print("  critical step {:.6g}; the step is {:.3g} of it\n", *critical, step / *critical);
     if (model.problem.internal_force->is_linear()) {
       fmt::print("  suggested step {:.2g}: nine tenths of the critical one, above which {} is unstable\n",
-                 two_digits(0.9 * *critical), input.time.scheme);
+                 rounded_down(0.9 * *critical, 2), input.time.scheme);
     } else {
       fmt::print(
           "  suggested step {:.2g}: seven tenths of the critical one of the undeformed mesh, above which {} is "
           "unstable; it falls where cells are squeezed, and the run follows it\n",
-          two_digits(0.7 * *critical), input.time.scheme);
+          rounded_down(0.7 * *critical, 2), input.time.scheme);
     }
     return;
   }
@@ -102,7 +98,7 @@ void print_steps(const Case& input, const Model& model, const ConnectedBodies& c
   fmt::print(
       "  suggested step {:.2g}: a compression wave crosses a median cell in it, so the mesh resolves the waves of an "
       "impact; the case's step {:g} is {:.3g} of that\n",
-      two_digits(median), step, step / median);
+      rounded_down(median, 2), step, step / median);
 }
 
 /// When a node at this gap meets the obstacle; infinite if it does not.
@@ -145,58 +141,117 @@ bool is_free_along_normals(const Case& input, const Model& model, int pair) {
   return true;
 }
 
-/// How two bodies face each other and, where they fly freely, when they would meet: gravity moves both alike.
-void print_bodies_contact(const Case& input, const Model& model, std::size_t pair) {
+/// When the points of a pair that face the other side would meet it in free flight: gravity moves both bodies alike.
+/// None where no point faces anything, and where a surface faces itself: that takes a deformation.
+std::optional<double> time_of_meeting(const Model& model, std::size_t pair) {
+  if (model.contact_pairs[pair].is_self()) return {};
   const ContactBoundary& contact = model.problem.contact;
+  std::optional<double> meets;
+  for (Index point = 0; point < contact.size(); ++point) {
+    if (contact.pair[static_cast<std::size_t>(point)] != static_cast<int>(pair)) continue;
+    const double gap = contact.initial_gap[point];
+    if (contact.slides(point) && gap >= contact.out_of_sight) continue;
+    SpaceVector velocity = SpaceVector::Zero(contact.dimension);
+    contact.visit_nodes(point, [&](Index node, double weight) {
+      velocity += weight * model.initial.velocity.segment(node * contact.dimension, contact.dimension);
+    });
+    const double time = time_of_contact(gap, contact.rows->normal(point).dot(velocity), 0.0);
+    meets = std::min(meets.value_or(time), time);
+  }
+  return meets;
+}
+
+/// How two bodies face each other and, where they fly freely, when they would meet.
+void print_bodies_contact(const Case& input, const Model& model, std::size_t pair) {
   const FacingDescription facing = *describe_facing(model, pair);
   std::string text = facing_text(facing);
-  const auto number = static_cast<int>(pair);
   if (facing.points > 0 && facing.smallest_gap > 0.0 && flies_freely(input) &&
-      is_free_along_normals(input, model, number)) {
-    double meets = std::numeric_limits<double>::infinity();
-    for (Index point = 0; point < contact.size(); ++point) {
-      if (contact.pair[static_cast<std::size_t>(point)] != number) continue;
-      SpaceVector velocity = SpaceVector::Zero(contact.dimension);
-      contact.visit_nodes(point, [&](Index node, double weight) {
-        velocity += weight * model.initial.velocity.segment(node * contact.dimension, contact.dimension);
-      });
-      meets =
-          std::min(meets, time_of_contact(contact.initial_gap[point], contact.rows->normal(point).dot(velocity), 0.0));
-    }
-    text += "; the bodies" + meeting_text(meets, input, "would meet", "do not come nearer");
+      is_free_along_normals(input, model, static_cast<int>(pair))) {
+    if (const std::optional<double> meets = time_of_meeting(model, pair))
+      text += "; the bodies" + meeting_text(*meets, input, "would meet", "do not come nearer in free flight");
   }
   const ContactSection& section = input.contacts[pair];
   fmt::print("  \"{}\" against \"{}\": {}\n", section.group, section.against, text);
+}
+
+/// A node in free flight.
+struct Flight {
+  SpaceVector position, velocity, acceleration;
+  [[nodiscard]] SpaceVector at(double time) const {
+    return position + time * velocity + (0.5 * time * time) * acceleration;
+  }
+};
+
+/// When the first of some nodes meets an obstacle, which may move and turn as it likes: gaps at instants of the run, as
+/// many as cost little, and halvings in between. Infinite where none does.
+double time_of_contact(const std::vector<Flight>& flights, const Obstacle& obstacle, double end) {
+  constexpr double evaluations = 1e6;
+  constexpr int least_instants = 100, most_instants = 10000, halvings = 50;
+  const int instants =
+      std::clamp(static_cast<int>(evaluations / static_cast<double>(flights.size())), least_instants, most_instants);
+  const auto touches = [&](double time) {
+    const PlacedObstacle placed = obstacle.at(time);
+    return std::any_of(flights.begin(), flights.end(),
+                       [&](const Flight& flight) { return placed.gap(flight.at(time)) <= 0.0; });
+  };
+  for (int k = 1; k <= instants; ++k) {
+    double before = end * (k - 1) / instants, after = end * k / instants;
+    if (!touches(after)) continue;
+    for (int halving = 0; halving < halvings; ++halving) {
+      const double middle = 0.5 * (before + after);
+      (touches(middle) ? after : before) = middle;
+    }
+    return after;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+/// The same at an obstacle that stands still, whose gap changes along its normal as the node moves.
+double time_of_contact(const Flight& flight, double gap, const SpaceVector& normal) {
+  return time_of_contact(gap, normal.dot(flight.velocity), normal.dot(flight.acceleration));
+}
+
+/// The words of print_contact on a pair's nodes that fly towards an obstacle.
+std::string obstacle_meeting_text(const Case& input, const Model& model, std::size_t pair) {
+  const ContactBoundary& contact = model.problem.contact;
+  const int d = model.mesh.dimension;
+  const Obstacle& obstacle = *model.contact_pairs[pair].obstacle;
+  if (obstacle.free_motion() != nullptr || obstacle.steered_path() != nullptr) return "";
+  SpaceVector gravity = SpaceVector::Zero(d);
+  for (std::size_t k = 0; k < input.load.gravity.size(); ++k) gravity[static_cast<Index>(k)] = input.load.gravity[k];
+  std::vector<Flight> flights;
+  double meets = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
+    if (contact.node_pair[i] != static_cast<int>(pair)) continue;
+    const auto row = static_cast<Index>(i);
+    flights.push_back(
+        {model.space.nodes.col(contact.nodes[i]), model.initial.velocity.segment(contact.nodes[i] * d, d), gravity});
+    meets =
+        std::min(meets, time_of_contact(flights.back(), contact.node_initial_gap[row], contact.node_normals.col(row)));
+  }
+  if (!obstacle.moves())
+    return meeting_text(meets, input, "and would reach it", "and does not come nearer in free flight");
+  meets = time_of_contact(flights, obstacle, input.time.end);
+  return meeting_text(meets, input, "and would reach it", "and does not reach it by the end of the run");
 }
 
 void print_contact(const Case& input, const Model& model, std::size_t pair) {
   if (model.contact_pairs[pair].has_two_sides()) return print_bodies_contact(input, model, pair);
   if (model.contact_pairs[pair].tied) return;
   const ContactBoundary& contact = model.problem.contact;
-  const int d = model.mesh.dimension;
   const ContactSection& section = input.contacts[pair];
   const Obstacle& obstacle = *model.contact_pairs[pair].obstacle;
-  double nearest = std::numeric_limits<double>::infinity(), meets = nearest, rounding = 0.0;
+  double nearest = std::numeric_limits<double>::infinity(), rounding = 0.0;
   for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
     if (contact.node_pair[i] != static_cast<int>(pair)) continue;
-    const auto row = static_cast<Index>(i);
-    const Vector normal = contact.node_normals.col(row);
-    const double gap = contact.node_initial_gap[row];
+    const double gap = contact.node_initial_gap[static_cast<Index>(i)];
     if (gap < nearest) rounding = obstacle.gap_rounding(model.space.nodes.col(contact.nodes[i]));
     nearest = std::min(nearest, gap);
-    const SpaceVector position = model.space.nodes.col(contact.nodes[i]);
-    const double velocity = normal.dot(model.initial.velocity.segment(contact.nodes[i] * d, d)) -
-                            normal.dot(obstacle.surface_velocity(position, 0.0));
-    double acceleration = 0.0;
-    for (int k = 0; k < d; ++k) {
-      if (!input.load.gravity.empty()) acceleration += normal[k] * input.load.gravity[static_cast<std::size_t>(k)];
-    }
-    meets = std::min(meets, time_of_contact(gap, velocity, acceleration));
   }
   if (!std::isfinite(nearest)) return;
   fmt::print("  \"{}\" {} \"{}\" at its nearest node", section.group, gap_text(nearest, rounding), section.obstacle);
   if (input.supports.empty() && flies_freely(input) && nearest > rounding)
-    fmt::print("{}", meeting_text(meets, input, "and would reach it", "and does not come nearer"));
+    fmt::print("{}", obstacle_meeting_text(input, model, pair));
   fmt::print("\n");
 }
 

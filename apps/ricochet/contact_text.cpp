@@ -31,7 +31,9 @@ std::string motion_text(const ContactDescription& c) {
 
 std::string facing_text(const FacingDescription& facing) {
   std::string gaps = "the gaps are closed";
-  if (facing.smallest_gap != 0.0 || facing.largest_gap != 0.0)
+  if (facing.smallest_gap > facing.largest_gap) {
+    gaps = "none of which faces the other side at the start";
+  } else if (facing.smallest_gap != 0.0 || facing.largest_gap != 0.0)
     gaps = fmt::format("gaps from {:.4g} to {:.4g}", facing.smallest_gap, facing.largest_gap);
   return fmt::format("\"{}\" carries the multipliers{}; {} on {} of its area, {}", facing.multipliers_on,
                      facing.reason.empty() ? ", as the case says" : ": " + facing.reason,

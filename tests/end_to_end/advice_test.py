@@ -125,6 +125,26 @@ class Advice(TestCase):
         text = self.said(self.write("case.toml", block_case().replace("gravity = [0.0, -10.0]", "gravity = [0.0, 10.0]")))
         self.assertIn("and does not come nearer", text)
 
+    def test_an_obstacle_that_comes(self):
+        """The body rests, 0.1 above a plane that rises by 0.4 t², and so meets it at t = 0.5; one that sinks it never meets."""
+        rests = block_case().replace("gravity = [0.0, -10.0]", "gravity = [0.0, 0.0]").replace("end = 0.3", "end = 1.0")
+        for motion, said in (("0.4*t^2", "and would reach it at t = 0.5 (the run ends at 1)"),
+                             ("-0.4*t^2", "and does not reach it by the end of the run"),
+                             # Away first: its velocity at the start tells nothing.
+                             ("0.4*(2*t)^2-0.3*sin(pi*t)^2*(t<0.25)", "and would reach it at t = 0.25 (the run ends at 1)")):
+            moving = rests.replace("normal = [0.0, 1.0]", f'normal = [0.0, 1.0]\nmotion = ["0", "{motion}"]')
+            self.assertIn(said, self.said(self.write("moving.toml", moving)))
+        for angle in (0.5, -0.5):
+            # About a point far to the left the surface under the block rises at the rate of that distance.
+            turning = rests.replace("normal = [0.0, 1.0]", f'normal = [0.0, 1.0]\nrotation = "{angle}*t"\nabout = [-2.0, 0.0]')
+            said = self.said(self.write("turning.toml", turning))
+            if angle < 0:
+                self.assertIn("and does not reach it by the end of the run", said)
+                continue
+            found = float(re.search(r"would reach it at t = (\S+) ", said)[1])
+            meets = min(math.atan2(y, x + 2.0) / angle for x, y in ((0.1, 0.2), (1.3, 0.1)))
+            self.assertAlmostEqual(found, meets, delta=1e-3 * meets)
+
 
 if __name__ == "__main__":
     unittest.main()

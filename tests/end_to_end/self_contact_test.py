@@ -121,6 +121,16 @@ class SelfContact(TestCase):
         self.assertGreater(max(before), 0, "it is resumed after the first contact")
         self.assertEqual((whole / "history.csv").read_text(), (folder / "history.csv").read_text())
 
+    def test_no_flight_closes_it(self):
+        """What a surface has in front of it is itself: no velocity of the whole body brings it nearer."""
+        (self.folder / "ring.geo").write_text(RING_GEO)
+        case = self.write("ring.toml", '[mesh]\nfile = "ring.geo"\n[[material]]\ngroup = "body"\ndensity = 1.0\nyoung = 300.0\n'
+                          'poisson = 0.3\n[[contact]]\ngroup = "inside"\nagainst = "inside"\nsliding = "large"\n'
+                          "[initial]\nvelocity = [0.0, -20.0]\n[time]\nstep = 1e-3\nend = 10.0\n")
+        said = self.expect_status(0, run("validate", case, "--mesh")).stdout
+        line = next(line for line in said.splitlines() if line.startswith('  "inside" against "inside"'))
+        self.assertNotRegex(line, r"\binf\b|meet|nearer")
+
     def test_it_needs_sliding_without_limit(self):
         text = self.clamp()
         result = self.expect_status(2, run("validate", self.write("small.toml", text.replace('sliding = "large"\n', ""))))

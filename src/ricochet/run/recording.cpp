@@ -307,8 +307,7 @@ void Recording::check_finite(const std::vector<double>& row) const {
     if (std::isfinite(row[i])) continue;
     throw Error(ErrorKind::not_converged,
                 fmt::format("step {:.0f} (t = {:.9g}): {} is no longer finite, so the motion has grown beyond all "
-                            "bounds; use a stable scheme (reduced-kane with mass \"equivalent\"), or a smaller "
-                            "time.step",
+                            "bounds; use a stable scheme (reduced-kane with mass \"equivalent\")",
                             row[0], row[1], recorder_.columns()[i]));
   }
 }

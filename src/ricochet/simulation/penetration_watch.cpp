@@ -156,31 +156,43 @@ void PenetrationWatch::tell_bodies() {
 
 void PenetrationWatch::tell_of(const BodyPair& pair) const {
   const UnwatchedPenetration p = of_pair(pair);
-  const std::vector<std::string> contacts = contacts_between(pair.first, pair.second);
-  const std::string why =
-      contacts.empty()
-          ? "no [[contact]] keeps these bodies apart, they go through each other"
-          : fmt::format(
-                "the contact of {} does not reach so far, or its groups did not face each other there; extend "
-                "the groups, or pair them with pair_at where they meet",
-                fmt::join(contacts, ", "));
+  const std::vector<const ContactPair*> contacts = contacts_between(pair.first, pair.second);
+  std::string why = "no [[contact]] keeps these bodies apart, they go through each other";
+  if (!contacts.empty()) {
+    std::vector<std::string> names;
+    for (const ContactPair* contact : contacts)
+      names.push_back(fmt::format("\"{}\" and \"{}\"", contact->first_group(), contact->second_group()));
+    const bool follows = std::all_of(contacts.begin(), contacts.end(), [](const auto* c) { return c->slides_far; });
+    why = fmt::format("the contact of {} does not reach so far{}", fmt::join(names, ", "),
+                      follows ? "; extend the groups"
+                              : ", or its groups did not face each other there; extend the groups, or pair them with "
+                                "pair_at where they meet");
+  }
   log::warning(fmt::format("{} {} and {} overlap by {} at {}: {}; {}", when(p.time), p.bodies[0], p.bodies[1],
                            depth_text(p), coordinates(p.place), why, see_summary));
 }
 
+/// With sliding = "large" pairs follow the motion, and what helps where small sliding ends is no help.
 void PenetrationWatch::tell_at_contact(const BodyPair& pair) const {
   const UnwatchedPenetration p = at_contact(pair);
+  const ContactPair& contact = pairs_[static_cast<std::size_t>(pair.contact)];
+  const std::string why =
+      contact.slides_far
+          ? fmt::format(
+                "gaps are means over facets of \"{}\", which carries the multipliers, and this place does not "
+                "show in them: the force of this contact is not to be trusted from here on",
+                contact.group)
+          : "the facets that faced each other at the start no longer do, as the bodies have slid along or past each "
+            "other; set sliding = \"large\", pair them with pair_at where they meet, or let them move less";
   log::warning(
       fmt::format("{} {} and {} overlap by {} at {}, more than half a facet, though the contact of \"{}\" and \"{}\" "
-                  "keeps that node out: the facets that faced each other at the start no longer do, as the bodies have "
-                  "slid along or past each other; set sliding = \"large\", pair them with pair_at where they meet, or "
-                  "let them move less; {}",
+                  "keeps that node out: {}; {}",
                   when(p.time), p.bodies[0], p.bodies[1], depth_text(p), coordinates(p.place), p.contact[0],
-                  p.contact[1], see_summary));
+                  p.contact[1], why, see_summary));
 }
 
-std::vector<std::string> PenetrationWatch::contacts_between(int first, int second) const {
-  std::vector<std::string> result;
+std::vector<const ContactPair*> PenetrationWatch::contacts_between(int first, int second) const {
+  std::vector<const ContactPair*> result;
   const auto holds = [&](const std::vector<Index>& facets, int body) {
     const std::vector<Index> nodes = facet_nodes(*body_.space, facets);
     return std::any_of(nodes.begin(), nodes.end(),
@@ -190,7 +202,7 @@ std::vector<std::string> PenetrationWatch::contacts_between(int first, int secon
     if (!pair.has_two_sides()) continue;
     if ((holds(pair.facets, first) && holds(pair.opposite_facets, second)) ||
         (holds(pair.facets, second) && holds(pair.opposite_facets, first)))
-      result.push_back(fmt::format("\"{}\" and \"{}\"", pair.first_group(), pair.second_group()));
+      result.push_back(&pair);
   }
   return result;
 }

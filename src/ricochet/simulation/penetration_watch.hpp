@@ -54,8 +54,7 @@ class PenetrationWatch {
   [[nodiscard]] UnwatchedPenetration through_obstacle(std::size_t obstacle) const;
   [[nodiscard]] UnwatchedPenetration of_pair(const BodyPair& pair) const;
   [[nodiscard]] UnwatchedPenetration at_contact(const BodyPair& pair) const;
-  /// Of the contacts between two bodies, for messages.
-  [[nodiscard]] std::vector<std::string> contacts_between(int first, int second) const;
+  [[nodiscard]] std::vector<const ContactPair*> contacts_between(int first, int second) const;
   void tell_of(const BodyPair& pair) const;
   void tell_at_contact(const BodyPair& pair) const;
   [[nodiscard]] ContactBeyondRim beyond(const RimContact& rim) const;

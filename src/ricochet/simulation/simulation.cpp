@@ -206,11 +206,9 @@ void Simulation::take_step(bool is_shortest) {
   if (!is_guarded || !problem_.ranks->any(std::any_of(guards_.begin(), guards_.end(), passes))) return;
   state_ = unguarded_;
   goes_through_ = true;
-  throw Error(
-      ErrorKind::not_converged,
-      fmt::format("step {} (t = {:.9g}, step size {:.3g}): a node goes through an obstacle within the step; try "
-                  "a smaller time.step",
-                  state_.step + 1, end, scheme_.step()));
+  throw Error(ErrorKind::not_converged,
+              fmt::format("step {} (t = {:.9g}, step size {:.3g}): a node goes through an obstacle within the step",
+                          state_.step + 1, end, scheme_.step()));
 }
 
 /// Leaves step and time as they were. Where no solution was found the fault may be that of operators that are of
@@ -239,14 +237,9 @@ void Simulation::attempt_step() {
   try {
     scheme_.advance(problem_, state_, *this, increment_);
   } catch (const Error& problem) {
-    const ErrorKind kind = problem.kind();
-    const bool has_critical_step = std::isfinite(scheme_.critical_step());  // which a finer mesh makes shorter
-    const std::string advice = kind != ErrorKind::not_converged ? ""
-                               : has_critical_step              ? "; try a smaller time.step"
-                                                   : "; try a smaller time.step, or a finer mesh where contact begins";
-    throw Error(kind,
-                fmt::format("step {} (t = {:.9g}, step size {:.3g}, {} contact points): {}{}", state_.step + 1,
-                            state_.time + scheme_.step(), scheme_.step(), contact_points_, problem.what(), advice));
+    throw Error(problem.kind(),
+                fmt::format("step {} (t = {:.9g}, step size {:.3g}, {} contact points): {}", state_.step + 1,
+                            state_.time + scheme_.step(), scheme_.step(), contact_points_, problem.what()));
   }
   if (problem_.contact.follows_motion()) problem_.contact.geometry->end_step();
   state_.iterations = iterations_;
@@ -333,7 +326,9 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
       for (std::size_t k = 0; k < bodies.size(); ++k) *problem_.free_bodies[k] = bodies[k];
       use_level(0);  // enters a change of the step, of which the account of the start knows nothing
       account_ = std::make_unique<EnergyAccount>(account);
-      throw;
+      if (problem.kind() != ErrorKind::not_converged) throw;
+      throw Error(problem.kind(),
+                  fmt::format("{}; parts of the step as short as 1/{} of it were tried", problem.what(), whole));
     }
     done += whole >> level;
     state_.time = start.time + whole_step_ * static_cast<double>(done) / static_cast<double>(whole);

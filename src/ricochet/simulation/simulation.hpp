@@ -29,7 +29,7 @@ class Simulation : private StageSolve {
              const StepSolverOptions& options = {}, const std::optional<StepControlOptions>& control = {});
   void save(Snapshot& snapshot) const;
 
-  /// One step. Throws Error(not_converged) with the step, its time and what to try; the state is then that before the
+  /// One step. Throws Error(not_converged) with the step and its time; the state is then that before the
   /// step, but where steps are adaptive and the scheme has created most of the energy. At finite strain a step of fixed
   /// length for which Newton's method finds nothing is taken in parts, by halves, where the scheme changes its step.
   /// `each_part` is called after the step, and after each of its parts.

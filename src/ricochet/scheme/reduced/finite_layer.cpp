@@ -315,9 +315,15 @@ const StageSolution& FiniteLayer::solve_round(const SemidiscreteProblem& problem
   } else {
     require_contact(problem, mean, step, state, stages, stage);
   }
-  const StageSolution& solution = stages.solve(number);
+  const StageSolution* solution = nullptr;
+  try {
+    solution = &stages.solve(number);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::not_converged) name_inverted_cell(problem);
+    throw;
+  }
   if (lagged_.exact() != nullptr) stage.rows = lagged_.exact();
-  return solution;
+  return *solution;
 }
 
 void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean, double step, State& state,

@@ -104,6 +104,7 @@ class FiniteLayer {
                     Stage& stage, const StageSolution& solution);
   void finish(const SemidiscreteProblem& problem, double step, State& state, Stage& stage,
               const StageSolution& solution, Vector& increment);
+  void name_inverted_cell(const SemidiscreteProblem& problem);
   void halve_where_inverted(const SemidiscreteProblem& problem, double step, const State& state, bool near);
 
   std::unique_ptr<FlightPrediction> flight_;

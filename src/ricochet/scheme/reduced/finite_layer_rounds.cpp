@@ -33,6 +33,13 @@ void FiniteLayer::heed(const SemidiscreteProblem& problem, NewtonProgress::Advic
   acceleration_.restart();
 }
 
+/// Throws Error(not_converged) that names a cell which the places of this round turn inside out: operators there mean
+/// nothing, and what a stage says of them does not tell why.
+void FiniteLayer::name_inverted_cell(const SemidiscreteProblem& problem) {
+  problem.internal_force->evaluate(end_, product_);
+  problem.internal_force->evaluate(middle_, product_);
+}
+
 void FiniteLayer::halve_where_inverted(const SemidiscreteProblem& problem, double step, const State& state, bool near) {
   constexpr int most_halvings = 5;
   for (int halving = 0;; ++halving) {

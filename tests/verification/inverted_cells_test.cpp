@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/scheme/stage_solve.hpp"
+#include "support/case_run.hpp"
+
+/// @file What a step that fails says where an iteration has turned a cell inside out.
+namespace ricochet {
+namespace inverted_cells_test {
+
+using test_support::CaseRun;
+using test_support::mesh_geometry;
+
+/// Contact nodes go so far into the body that cells there are inverted; then a stage of the whole body cannot be solved
+/// and says what it sees of that.
+class LostStages final : public StageSolve {
+ public:
+  LostStages(const SemidiscreteProblem& problem, double shift) : stages_(2), solution_(2) {
+    for (Stage& stage : stages_) stage.rows = problem.contact.rows;
+    solution_[0].increment.setZero(problem.dof_count());
+    for (const Index dof : problem.contact_dofs) {
+      if (dof % problem.dimension == 1) solution_[0].increment[dof] = shift;
+    }
+  }
+  Stage& stage(std::size_t number) override { return stages_.at(number); }
+  const StageSolution& solve(std::size_t number) override {
+    if (number == 1) throw Error(ErrorKind::not_converged, "W has an entry that is no finite number");
+    return solution_[0];
+  }
+  void follow(const Vector&) override {}
+  void renew(const Vector&, const Vector&) override {}
+
+ private:
+  std::vector<Stage> stages_;
+  std::vector<StageSolution> solution_;
+};
+
+std::string message_of_step(CaseRun& run, double shift) {
+  LostStages stages(run.problem(), shift);
+  State state = run.state();
+  Vector increment;
+  try {
+    run.scheme().advance(run.problem(), state, stages, increment);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::not_converged);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(InvertedCells, AreNamedWhereTheContactProblemFailsForThem) {
+  const std::string mesh = mesh_geometry("inverted-cells",
+                                         "Rectangle(1) = {0, 0, 0, 1, 0.5};\nPhysical Surface(\"body\") = {1};\n"
+                                         "Physical Curve(\"bottom\") = {1};\n",
+                                         0.125, 1);
+  CaseRun run(
+      "[mesh]\nfile = \"" + mesh +
+      "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 100.0\npoisson = 0.3\nlaw = \"neo-hookean\"\n"
+      "[obstacle.floor]\ntype = \"plane\"\npoint = [0, -0.01]\nnormal = [0, 1]\n[[contact]]\ngroup = \"bottom\"\n"
+      "obstacle = \"floor\"\n[initial]\nvelocity = [0, -1]\n[time]\nstep = 1e-3\nend = 0.01\n");
+  // Cells at the bottom are about 0.11 high.
+  const std::string inverted = message_of_step(run, 0.2);
+  EXPECT_NE(inverted.find("cell "), std::string::npos) << inverted;
+  EXPECT_NE(inverted.find("is turned inside out"), std::string::npos) << inverted;
+  EXPECT_EQ(message_of_step(run, 0.01), "W has an entry that is no finite number");
+}
+
+}  // namespace inverted_cells_test
+}  // namespace ricochet
