@@ -37,6 +37,16 @@ std::string sliding_text(const PairSliding& pair, const RunSummary& s) {
   return text;
 }
 
+std::string unsettled_text(const UnsettledContact& unsettled, const RunSummary& s) {
+  if (unsettled.contact < 0 || unsettled.contact >= static_cast<int>(s.contacts.size())) return "";
+  const ContactDescription& contact = s.contacts[static_cast<std::size_t>(unsettled.contact)];
+  return fmt::format(
+      "\n  {}: up to {:.3g} % of the force of \"{}\" and \"{}\" at stake, at points that held steps have "
+      "left at a gap (up to {:.3g}, from t = {:.6g} on)",
+      unsettled.share > UnsettledContact::doubtful ? "FORCE IN DOUBT" : "held steps", 100.0 * unsettled.share,
+      contact.group, contact.opponent, unsettled.gap, unsettled.first_time);
+}
+
 /// Since when cells have turned too far. What comes after the last impact does not change what it came to.
 std::string beyond_text(const RunSummary& s) {
   if (!s.rotation) return " (BEYOND SMALL STRAIN)";
@@ -61,6 +71,7 @@ std::string deformation_text(const RunSummary& s) {
   for (const ContactBeyondRim& rim : s.penetration.rims)
     text += fmt::format("\n  the contact of \"{}\" with \"{}\" goes on beyond its group", rim.group, rim.obstacle);
   for (const PairSliding& pair : s.sliding) text += sliding_text(pair, s);
+  for (const UnsettledContact& contact : s.unsettled) text += unsettled_text(contact, s);
   return text;
 }
 

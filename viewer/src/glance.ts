@@ -72,13 +72,27 @@ export function energyFinding(j: Judgement, summary: Summary): Finding {
   return finding(loss < 0.01 ? "good" : "fair", loss < 0.01 ? `kept, but for ${percent(loss)}` : `the method lost ${percent(loss)}`, `−${percent(loss)}`);
 }
 
-export function forceFinding(j: Judgement): Finding {
+/** Above this share of its force on points that held steps have left at a gap a contact is not to be trusted. */
+const doubtful = 0.01;
+
+/** The contact whose force is most in doubt, of those that slide far. */
+function doubtfulContact({ unsettled_contacts: contacts }: Summary) {
+  const [worst] = [...(contacts ?? [])].sort((a, b) => toNumber(b.share_of_force) - toNumber(a.share_of_force));
+  return worst && toNumber(worst.share_of_force) > doubtful ? worst : null;
+}
+
+export function forceFinding(j: Judgement, summary: Summary): Finding {
   const what = "Contact force";
   if (j.force_broken_at !== null) return broken(what, j.force_broken_at);
   if (!finite(j.force_largest, j.force_variation, j.trend_variation, j.node_roughness)) return unbounded(what);
   if (!(j.force_largest > 0)) return { what, grade: "none", words: "none", short: "none", detail: "nothing touched" };
   const most = `up to ${number(j.force_largest, 3)}`;
   const detail = `all contacts together; largest at t = ${number(j.force_largest_at)}. ${columnName(j.force)}: its total variation is ${number(j.force_variation, 3)}, that of its mean over a hundredth of the run (11 rows at least) ${number(j.trend_variation, 3)}`;
+  const doubt = doubtfulContact(summary);
+  if (doubt) {
+    const share = percent(toNumber(doubt.share_of_force));
+    return { what, grade: "poor", words: `${most}, in doubt: up to ${share} of that of contact ${doubt.contact} is at stake where held steps have left gaps`, short: `in doubt, ${share}`, detail: `gap ${number(toNumber(doubt.gap), 3)}, in ${doubt.steps} steps from t = ${number(toNumber(doubt.first_time))} on, where what faces what did not settle; ${detail}` };
+  }
   if (!(j.roughness > 0)) return { what, grade: "none", words: `${most}; too few rows to tell whether it is smooth`, short: "too few rows", detail };
   const ofNode = j.node_roughness >= 2 && j.node_roughness > 2 * j.roughness;
   const roughness = ofNode ? j.node_roughness : j.roughness;
@@ -135,7 +149,7 @@ export function rotationFinding(j: Judgement): Finding {
 
 export const findings = (run: Run): Finding[] => [
   energyFinding(run.data.judgement, run.summary),
-  forceFinding(run.data.judgement),
+  forceFinding(run.data.judgement, run.summary),
   penetrationFinding(run.data.judgement),
   rotationFinding(run.data.judgement),
 ];

@@ -208,6 +208,24 @@ test("what is infinite is said to be, and is never none", async () => {
   await view.close();
 });
 
+test("a force on points that held steps have left at a gap is in doubt", async () => {
+  for (const [share, grade] of [[0.43, "poor"], [0.005, ""]]) {
+    const run = shortDisc(`doubt${share}`);
+    const file = join(run, "summary.json");
+    const summary = JSON.parse(readFileSync(file, "utf8"));
+    summary.unsettled_contacts = [0.001, share].map((part, contact) => (
+      { contact, share_of_force: part, steps: 7, first_time: 0.002, time: 0.003, gap: -0.0001, place: [0, 0] }));
+    writeFileSync(file, JSON.stringify(summary));
+    const view = await open(report(`doubt${share}`, run));
+    const force = await view.page.$$eval(".findings dt", (all) => all.filter((dt) => dt.textContent === "Contact force")
+      .map((dt) => `${dt.nextElementSibling.className}: ${dt.nextElementSibling.textContent}`)[0]);
+    if (grade) assert.match(force, /^poor: .*in doubt: up to 43 % of that of contact 1 is at stake where held steps have left gaps/);
+    else assert.doesNotMatch(force, /in doubt/);
+    assert.deepEqual(view.complaints, []);
+    await view.close();
+  }
+});
+
 test("a file that was cut off says so", async () => {
   const whole = readFileSync(report("whole", simulate("cases/disc/disc.toml", "plain2", { "time.end": 0.01 })), "utf8");
   const file = join(folder, "cut.html");

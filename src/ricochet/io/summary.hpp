@@ -175,6 +175,7 @@ struct RunSummary {
   std::optional<ActingReactions> reactions = {};   ///< none: the scheme has no choice, or likewise
   std::optional<RotationReport> rotation = {};     ///< none: results of a version that did not tell
   std::vector<PairSliding> sliding = {};           ///< of each contact between bodies
+  std::vector<UnsettledContact> unsettled = {};    ///< contacts that slide far, where held steps have left gaps
   PenetrationReport penetration = {};  ///< where no contact is; what the contact points do is a column of the history
   std::vector<std::string> warnings;
   std::vector<ExpectationResult> expectations;

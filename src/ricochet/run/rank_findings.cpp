@@ -19,6 +19,17 @@ void merge(const UnwatchedPenetration& other, std::vector<UnwatchedPenetration>&
   same->first_time = first_time;
 }
 
+/// Shares are of the force that a process has.
+void merge(const UnsettledContact& other, std::vector<UnsettledContact>& contacts) {
+  const auto same = std::find_if(contacts.begin(), contacts.end(),
+                                 [&](const UnsettledContact& own) { return own.contact == other.contact; });
+  if (same == contacts.end()) {
+    contacts.push_back(other);
+  } else if (other.share > same->share) {
+    *same = other;
+  }
+}
+
 void merge(const ContactBeyondRim& other, std::vector<ContactBeyondRim>& rims) {
   const auto same = std::find_if(rims.begin(), rims.end(), [&](const ContactBeyondRim& own) {
     return own.group == other.group && own.obstacle == other.obstacle;
@@ -35,6 +46,7 @@ void merge(const ContactBeyondRim& other, std::vector<ContactBeyondRim>& rims) {
 void merge_findings(const RunSummary& other, RunSummary& summary) {
   for (const UnwatchedPenetration& each : other.penetration.found) merge(each, summary.penetration.found);
   for (const ContactBeyondRim& each : other.penetration.rims) merge(each, summary.penetration.rims);
+  for (const UnsettledContact& each : other.unsettled) merge(each, summary.unsettled);
   if (!other.peak_stress) return;
   if (!summary.peak_stress || other.peak_stress->peak.von_mises > summary.peak_stress->peak.von_mises)
     summary.peak_stress = other.peak_stress;

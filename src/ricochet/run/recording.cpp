@@ -274,6 +274,7 @@ void Recording::describe(RunSummary& summary) const {
   summary.impacts_left_out = impacts_.left_out();
   summary.penetration = penetration_.report();
   summary.sliding = sliding_.report();
+  summary.unsettled = sliding_.unsettled();
   summary.rotation = RotationReport{rotation_.limit(), rotation_.time_beyond_limit(), {}};
   for (const Impact& impact : summary.impacts)
     summary.rotation->until_impact_end.push_back(rotation_.largest_until(impact.end));

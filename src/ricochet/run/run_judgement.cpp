@@ -109,6 +109,18 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
   }
 }
 
+void judge_unsettled(const RunSummary& summary) {
+  for (const UnsettledContact& contact : summary.unsettled) {
+    if (contact.share <= UnsettledContact::doubtful) continue;
+    const ContactDescription& pair = summary.contacts[static_cast<std::size_t>(contact.contact)];
+    log::warning(fmt::format(
+        "the force of the contact of \"{}\" and \"{}\" is in doubt: up to {:.3g} % of it were at stake at points that "
+        "steps which were held have left at gaps of up to {:.3g}, in {} from t = {:.6g} on",
+        pair.group, pair.opponent, 100.0 * contact.share, contact.gap, counted(contact.steps, "step"),
+        contact.first_time));
+  }
+}
+
 void judge_sliding(const RunSummary& summary, const SemidiscreteProblem& problem, const Body& body) {
   constexpr long many = 30;
   const long impacts = static_cast<long>(summary.impacts.size()) + summary.impacts_left_out;

@@ -12,6 +12,9 @@ namespace ricochet {
 void judge_energy(const RunSummary& summary, const Scheme& scheme, const SemidiscreteProblem& problem,
                   const State& state);
 
+/// Warns of contacts between bodies part of whose force is on points that held steps have left at a gap.
+void judge_unsettled(const RunSummary& summary);
+
 /// Warns of a body with friction and without damping that loses contact again and again.
 void judge_sliding(const RunSummary& summary, const SemidiscreteProblem& problem, const Body& body);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ricochet/base/error.hpp"
@@ -15,11 +16,12 @@ SlidingWatch::SlidingWatch(const Body& body, const SemidiscreteProblem& problem,
     : problem_(problem), pairs_(pairs), limit_(slip_limits(body, problem.contact, pairs)) {
   const ContactBoundary& contact = problem.contact;
   size_ = extent(problem.nodes);
-  for (Index point = 0; point < contact.size(); ++point) {
-    if (contact.slides(point)) far_points_.push_back(point);
-  }
   for (std::size_t number = 0; number < pairs.size(); ++number) {
-    if (!pairs[number].has_two_sides() || pairs[number].slides_far) continue;
+    if (!pairs[number].has_two_sides()) continue;
+    if (pairs[number].slides_far) {
+      add_far_contact(static_cast<int>(number));
+      continue;
+    }
     Largest largest;
     largest.contact = static_cast<int>(number);
     for (Index point = 0; point < contact.size(); ++point) {
@@ -28,6 +30,26 @@ SlidingWatch::SlidingWatch(const Body& body, const SemidiscreteProblem& problem,
       at_.push_back(largest_.size());
     }
     largest_.push_back(largest);
+  }
+}
+
+void SlidingWatch::add_far_contact(int number) {
+  const ContactBoundary& contact = problem_.contact;
+  const Index d = problem_.dimension;
+  const Vector stiffness = problem_.internal_force->stiffness_diagonal();
+  FarContact& far = far_.emplace_back();
+  far.contact = number;
+  far.is_self = pairs_[static_cast<std::size_t>(number)].is_self();
+  for (Index point = 0; point < contact.size(); ++point) {
+    if (!contact.slides(point) || contact.pair[static_cast<std::size_t>(point)] != number) continue;
+    // The nodes of the point along its row, as the row moves them, and all others at rest: of the other side, too.
+    double sum = 0.0, squares = 0.0;
+    contact.visit_own_nodes(point, [&](Index node, double weight) {
+      sum += weight * weight * stiffness.segment(node * d, d).maxCoeff();
+      squares += weight * weight;
+    });
+    far.points.push_back(point);
+    far.stiffness.push_back(squares > 0.0 ? sum / (squares * squares) : 0.0);
   }
 }
 
@@ -42,27 +64,58 @@ double SlidingWatch::slip_of(Index point, const State& state) const {
   return (apart - apart.dot(normal) * normal).norm();
 }
 
-/// A held step leaves a gap, or an overlap, at a point that carries a force.
-void SlidingWatch::look_at_sliding_pairs(const State& state) {
-  constexpr double settled = 1e-9;
+/// A held step leaves a gap, or an overlap, at points that carry a force.
+void SlidingWatch::look_at_far_contacts(const State& state) {
   tell_of_held(state);
-  if (has_told_ || state.step == 0 || !problem_.contact.geometry->has_held()) return;
-  problem_.gaps(state.displacement, state.time, gap_);
-  for (const Index point : far_points_) {
-    if (!(state.forces.normal_reaction[point] > 0.0) || std::abs(gap_[point]) <= settled * size_ ||
-        gap_[point] >= problem_.contact.out_of_sight)
-      continue;
-    const ContactPair& pair = pairs_[static_cast<std::size_t>(problem_.contact.pair[static_cast<std::size_t>(point)])];
-    log::warning(fmt::format(
-        "at t = {:.6g} what faces what of \"{}\" and \"{}\" changed from one round of the step to the next, and was "
-        "held: "
-        "the point at ({:.4g}) (reference position) carries a force at a gap of {:.3g}. No energy is made of that; "
-        "smaller facets at edges and corners, all of the surface in the groups, and a smaller time.step avoid it. The "
-        "column unsettled_gap has it for every step",
-        state.time, pair.first_group(), pair.second_group(), fmt::join(place_of(point), ", "), gap_[point]));
-    has_told_ = true;
-    return;
+  if (state.step == 0) return;
+  const bool has_held = problem_.contact.geometry->has_held();
+  if (has_held) problem_.gaps(state.displacement, state.time, gap_);
+  for (FarContact& contact : far_) {
+    double force = 0.0;
+    for (const Index point : contact.points) force += std::max(0.0, state.forces.normal_reaction[point]);
+    contact.largest_force = std::max(contact.largest_force, force);
+    if (!has_held) continue;
+    enter(contact, state);
+    if (contact.is_told || contact.share() <= UnsettledContact::doubtful) continue;
+    contact.is_told = true;
+    tell(contact);
   }
+}
+
+/// With the gaps at the end of a step. (Of a surface that touches itself others stand for points without a force.)
+void SlidingWatch::enter(FarContact& contact, const State& state) const {
+  constexpr double settled = 1e-9;
+  double force = 0.0, missing = 0.0;
+  Index widest = -1;
+  for (std::size_t i = 0; i < contact.points.size(); ++i) {
+    const Index point = contact.points[i];
+    const double reaction = state.forces.normal_reaction[point], gap = gap_[point];
+    if (std::abs(gap) <= settled * size_ || gap >= problem_.contact.out_of_sight) continue;
+    if (!(reaction > 0.0) && (gap > 0.0 || contact.is_self)) continue;
+    if (gap > 0.0) force += reaction;
+    if (gap < 0.0) missing -= gap * contact.stiffness[i];
+    if (widest < 0 || std::abs(gap) > std::abs(gap_[widest])) widest = point;
+  }
+  if (widest < 0) return;
+  if (contact.steps++ == 0) contact.first_time = state.time;
+  if (!(force + missing > contact.force)) return;
+  contact.force = force + missing;
+  contact.missing = missing;
+  contact.time = state.time;
+  contact.gap = gap_[widest];
+  contact.point = widest;
+}
+
+void SlidingWatch::tell(const FarContact& contact) const {
+  const ContactPair& pair = pairs_[static_cast<std::size_t>(contact.contact)];
+  log::warning(fmt::format(
+      "at t = {:.6g} what faces what of \"{}\" and \"{}\" changed from one iteration of the step to the next, and was "
+      "held: points are left at gaps of up to {:.3g}, as at ({:.4g}) (reference position), which nothing closes while "
+      "they "
+      "are pressed, and up to {:.3g} % of the force of this contact is at stake. No energy is made of that. The column "
+      "unsettled_gap has the gap for every step, \"unsettled_contacts\" in summary.json the largest share of the force",
+      contact.time, pair.first_group(), pair.second_group(), contact.gap, fmt::join(place_of(contact.point), ", "),
+      100.0 * contact.share()));
 }
 
 /// Of the first one, whatever it leaves.
@@ -70,16 +123,14 @@ void SlidingWatch::tell_of_held(const State& state) {
   if (has_told_held_ || !problem_.contact.geometry->has_held()) return;
   has_told_held_ = true;
   log::warning(
-      fmt::format("at t = {:.6g} what faces what of bodies that slide far changed from one round of a step to the "
-                  "next, and was held: "
-                  "forces of such steps give no energy, but have a moment, which the angular momentum of free bodies "
-                  "shows; smaller "
-                  "facets at edges and corners, and a smaller time.step, avoid it",
+      fmt::format("at t = {:.6g} what faces what of bodies that slide far changed from one iteration of a step to the "
+                  "next, and was held: forces of such steps give no energy, but have a moment, which the angular "
+                  "momentum of free bodies shows",
                   state.time));
 }
 
 void SlidingWatch::look(const State& state) {
-  if (!far_points_.empty()) look_at_sliding_pairs(state);
+  if (!far_.empty()) look_at_far_contacts(state);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Index point = points_[i];
     if (!(state.forces.normal_reaction[point] > 0.0)) continue;
@@ -135,6 +186,15 @@ std::vector<PairSliding> SlidingWatch::report() const {
   return result;
 }
 
+std::vector<UnsettledContact> SlidingWatch::unsettled() const {
+  std::vector<UnsettledContact> result;
+  for (const FarContact& far : far_) {
+    if (far.steps == 0) continue;
+    result.push_back({far.contact, far.share(), far.steps, far.first_time, far.time, far.gap, place_of(far.point)});
+  }
+  return result;
+}
+
 void SlidingWatch::save(Snapshot& snapshot, const std::string& name) const {
   Vector numbers(7 * static_cast<Index>(largest_.size()));
   for (std::size_t i = 0; i < largest_.size(); ++i) {
@@ -143,14 +203,43 @@ void SlidingWatch::save(Snapshot& snapshot, const std::string& name) const {
         largest.time_beyond, static_cast<double>(largest.point), largest.is_beyond ? 1.0 : 0.0;
   }
   snapshot.save(name, numbers);
-  snapshot.save(name + ".has_told", std::int64_t{has_told_ ? 1 : 0} + std::int64_t{has_told_held_ ? 2 : 0});
+  snapshot.save(name + ".has_told", std::int64_t{has_told_held_ ? 2 : 0});
+  Vector far(9 * static_cast<Index>(far_.size()));
+  for (std::size_t i = 0; i < far_.size(); ++i) {
+    const FarContact& each = far_[i];
+    far.segment<9>(9 * static_cast<Index>(i)) << each.largest_force, each.force, static_cast<double>(each.steps),
+        each.first_time, each.time, each.gap, static_cast<double>(each.point), each.is_told ? 1.0 : 0.0, each.missing;
+  }
+  snapshot.save(name + ".far", far);
+}
+
+/// Checkpoints of earlier versions have nothing of contacts that slide far.
+void SlidingWatch::load_far(const Snapshot& snapshot, const std::string& name) {
+  if (!snapshot.has(name)) return;
+  const Vector& numbers = snapshot.reals(name, 9 * static_cast<Index>(far_.size()));
+  for (std::size_t i = 0; i < far_.size(); ++i) {
+    const auto of = numbers.segment<9>(9 * static_cast<Index>(i));
+    const bool fits = of.allFinite() && of[2] >= 0.0 && of[2] < 1e15 && of[6] >= -1.0 &&
+                      of[6] < static_cast<double>(problem_.contact.size()) && of[6] == std::floor(of[6]) &&
+                      (of[7] == 0.0 || of[7] == 1.0);
+    if (!fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of sliding is damaged");
+    FarContact& far = far_[i];
+    far.largest_force = of[0];
+    far.force = of[1];
+    far.steps = static_cast<long>(of[2]);
+    far.first_time = of[3];
+    far.time = of[4];
+    far.gap = of[5];
+    far.point = static_cast<Index>(of[6]);
+    far.is_told = of[7] != 0.0;
+    far.missing = of[8];
+  }
 }
 
 void SlidingWatch::load(const Snapshot& snapshot, const std::string& name) {
   const Vector& numbers = snapshot.reals(name, 7 * static_cast<Index>(largest_.size()));
-  const std::int64_t told = snapshot.integer(name + ".has_told");
-  has_told_ = (told & 1) != 0;
-  has_told_held_ = (told & 2) != 0;
+  has_told_held_ = (snapshot.integer(name + ".has_told") & 2) != 0;
+  load_far(snapshot, name + ".far");
   for (std::size_t i = 0; i < largest_.size(); ++i) {
     const auto of = numbers.segment<7>(7 * static_cast<Index>(i));
     const bool fits = of.allFinite() && of[5] >= -1.0 && of[5] < static_cast<double>(problem_.contact.size()) &&

@@ -10,7 +10,7 @@
 #include "ricochet/simulation/sliding_report.hpp"
 
 /// @file Slip between bodies beyond what their pairing allows: facets that faced each other at the start are taken to
-/// face each other for the whole run. Of pairs that slide far, steps in which what faces what did not settle.
+/// face each other for the whole run. Of pairs that slide far, the force that held steps put at stake.
 namespace ricochet {
 
 class SlidingWatch {
@@ -25,8 +25,25 @@ class SlidingWatch {
   void look(const State& state);
   /// Of each contact between bodies.
   [[nodiscard]] std::vector<PairSliding> report() const;
+  /// Of each contact that slides far and had such points.
+  [[nodiscard]] std::vector<UnsettledContact> unsettled() const;
 
  private:
+  /// Of a contact that slides far.
+  struct FarContact {
+    int contact = 0;
+    bool is_self = false;
+    std::vector<Index> points;
+    std::vector<double> stiffness;  ///< of each: no less than the force that moves it along a normal by one
+    double largest_force = 0.0;     ///< normal, of all points
+    double force = 0.0;             ///< the largest at stake
+    double missing = 0.0;           ///< part of it that should be there besides
+    long steps = 0;
+    double first_time = 0.0, time = 0.0, gap = 0.0;
+    Index point = -1;
+    bool is_told = false;
+    [[nodiscard]] double share() const { return force > 0.0 ? force / (largest_force + missing) : 0.0; }
+  };
   /// Of a contact between bodies.
   struct Largest {
     int contact = 0;
@@ -34,11 +51,15 @@ class SlidingWatch {
     Index point = -1;
     bool is_beyond = false;
   };
+  void add_far_contact(int contact);
   [[nodiscard]] double slip_of(Index point, const State& state) const;
   [[nodiscard]] std::vector<double> place_of(Index point) const;
   void tell(const Largest& largest) const;
-  void look_at_sliding_pairs(const State& state);
+  void look_at_far_contacts(const State& state);
+  void enter(FarContact& contact, const State& state) const;
+  void tell(const FarContact& contact) const;
   void tell_of_held(const State& state);
+  void load_far(const Snapshot& snapshot, const std::string& name);
 
   const SemidiscreteProblem& problem_;
   const std::vector<ContactPair>& pairs_;
@@ -46,9 +67,9 @@ class SlidingWatch {
   std::vector<Index> points_;    ///< between bodies
   std::vector<std::size_t> at_;  ///< of these: in largest_
   std::vector<Largest> largest_;
-  std::vector<Index> far_points_;  ///< of pairs that slide far
-  double size_ = 0.0;              ///< of the model
-  bool has_told_ = false, has_told_held_ = false;
+  std::vector<FarContact> far_;
+  double size_ = 0.0;  ///< of the model
+  bool has_told_held_ = false;
   Vector gap_;
 };
 

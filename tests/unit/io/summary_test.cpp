@@ -154,7 +154,16 @@ TEST_F(SummaryTest, KeepsHowBodiesFaceAndSlide) {
   summary.contacts.push_back({"d", "e", "p1", 0.0, 0.0, {}, 0.0, true, true});
   summary.sliding.push_back({0, 0.25, 0.125, 1.5, {2.0, 3.0}, 0.75});
   summary.sliding.push_back({1, 0.0625, 0.125, 1.5, {2.0, 3.0}});
+  summary.unsettled.push_back({2, 0.5, 7, 0.25, 0.75, -0.125, {4.0, 5.0}});
   const RunSummary back = read_back(summary);
+  ASSERT_EQ(back.unsettled.size(), 1U);
+  EXPECT_EQ(back.unsettled[0].contact, 2);
+  EXPECT_EQ(back.unsettled[0].share, 0.5);
+  EXPECT_EQ(back.unsettled[0].steps, 7);
+  EXPECT_EQ(back.unsettled[0].first_time, 0.25);
+  EXPECT_EQ(back.unsettled[0].time, 0.75);
+  EXPECT_EQ(back.unsettled[0].gap, -0.125);
+  EXPECT_EQ(back.unsettled[0].place, (std::vector<double>{4.0, 5.0}));
   ASSERT_TRUE(back.contacts.at(0).facing.has_value());
   EXPECT_FALSE(back.contacts[0].tied);
   EXPECT_TRUE(back.contacts.at(2).tied);

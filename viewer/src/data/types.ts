@@ -234,6 +234,8 @@ export interface Summary {
   bodies: { mass: Value; name?: string; held?: boolean }[];
   impacts: Impact[];
   impacts_left_out: number;
+  /** Contacts between bodies that slide far, where held steps have left points at a gap; not in results of older versions. */
+  unsettled_contacts?: { contact: number; share_of_force: Value; steps: number; first_time: Value; time: Value; gap: Value }[];
   peak_stress: PeakStress | null;
   expectations: Expectation[];
   parameters: Record<string, string>;
