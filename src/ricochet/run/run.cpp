@@ -211,6 +211,7 @@ void Run::begin_session() {
     summary_.resumed_at.push_back(session_.simulation().state().step);
     summary_.checkpoint_step = session_.simulation().state().step;
     times_.load(*snapshot_, "run.times");
+    newton_.load(*snapshot_, "run.newton");
     log::info("resumed after " + step_in_words());
   } else {
     const std::lock_guard files(files_);
@@ -328,6 +329,7 @@ bool Run::advance() {
   step_seconds_ = timer.seconds();
   times_.steps += step_seconds_;
   failure_bundle_->forget_problem();
+  if (newton_.enter_step(simulation.state().newton_rounds, step_seconds_)) tell_of_many_iterations();
   const std::lock_guard files(files_);
   recording_->record(simulation.state(), simulation.account());
   progress_->update(simulation.state().step, simulation.state().time);
@@ -357,6 +359,14 @@ void Run::write_end_checkpoint() {
   const std::lock_guard files(files_);
   if (summary_.checkpoint_step != session_.state().step) write_checkpoint();
   has_end_checkpoint_ = true;
+}
+
+/// Once in a run. Of a divided body the first process would have to build the whole anew.
+void Run::tell_of_many_iterations() {
+  if (ranks_.are_several()) return;
+  const double now = session_.simulation().state().time;
+  log::warning(many_iterations_text(newton_, try_explicit(input_), now, std::max(0.0, input_.time.end - now),
+                                    session_.scheme().step()));
 }
 
 /// What the last state leaves, where all steps were taken.

@@ -13,6 +13,7 @@
 #include "ricochet/io/progress.hpp"
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/model/model.hpp"
+#include "ricochet/run/newton_watch.hpp"
 #include "ricochet/run/recording.hpp"
 #include "ricochet/run/run_case.hpp"
 #include "ricochet/run/run_times.hpp"
@@ -55,6 +56,7 @@ class Run {
   bool advance();
   [[nodiscard]] bool is_near_end();
   void write_end_checkpoint();
+  void tell_of_many_iterations();
   void end_steps();
   /// "step 12 of 100", or of adaptive steps "step 12 (t = 0.5 of 2)".
   [[nodiscard]] std::string step_in_words();
@@ -94,6 +96,7 @@ class Run {
   std::optional<FailureBundle> failure_bundle_;
   std::optional<Recording> recording_;
   std::optional<Progress> progress_;
+  NewtonWatch newton_;
   double contact_before_ = 0.0;
   Traffic traffic_before_;  ///< of what came before the steps
   long first_step_ = 0;     ///< of this process, or the one that the run goes on from

@@ -110,6 +110,7 @@ Snapshot Run::take_snapshot() {
   session_.save(snapshot);
   recording_->save(snapshot);
   times_until_now().save(snapshot, "run.times");
+  newton_.save(snapshot, "run.newton");
   snapshot.save("run.warnings", session_.warnings());
   snapshot.save("run.case_path", summary_.case_path);
   snapshot.save("run.settings", Snapshot::Texts(summary_.settings));

@@ -1,0 +1,110 @@
+#include "ricochet/run/newton_watch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/rounded.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/base/timer.hpp"
+#include "ricochet/io/progress.hpp"
+#include "ricochet/simulation/simulation.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr const char *scheme = "semi-explicit", *mass = "equivalent-lumped";
+/// Of the critical step of the undeformed body.
+constexpr double safe_part = 0.7;
+
+double first_steps(const Case& input, const Model& model) {
+  constexpr int steps = 20;
+  const std::unique_ptr<Scheme> stepper = make_scheme(input.time);
+  Simulation simulation(model.problem, *stepper, model.initial, step_solver_options(input));
+  const Timer timer;
+  for (int k = 0; k < steps; ++k) simulation.advance();
+  return timer.seconds() / steps;
+}
+
+}  // namespace
+
+bool NewtonWatch::enter_step(int iterations, double seconds) {
+  constexpr double several = 3.0, forgotten = 0.1;
+  if (iterations <= many) {
+    weight_ = std::max(0.0, weight_ - forgotten);
+    return false;
+  }
+  weight_ += 1.0;
+  ++steps_;
+  seconds_ += seconds;
+  if (is_told_ || weight_ < several) return false;
+  is_told_ = true;
+  return true;
+}
+
+void NewtonWatch::save(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name, Vector(Eigen::Vector4d(weight_, static_cast<double>(steps_), seconds_, is_told_ ? 1.0 : 0.0)));
+}
+
+void NewtonWatch::load(const Snapshot& snapshot, const std::string& name) {
+  if (!snapshot.has(name)) return;
+  const Vector& numbers = snapshot.reals(name, 4);
+  weight_ = numbers[0];
+  steps_ = static_cast<long>(numbers[1]);
+  seconds_ = numbers[2];
+  is_told_ = numbers[3] != 0.0;
+}
+
+ExplicitRun try_explicit(const Case& input) {
+  const log::Silence silence;
+  std::vector<std::string> unsaid;
+  const log::CollectWarnings collect(unsaid);
+  ExplicitRun result;
+  Case other = input;
+  other.time.scheme = scheme;
+  other.time.parameters = {};
+  other.time.adaptive = false;
+  other.mass.type = mass;
+  other.mass.parameters = {};
+  try {
+    const std::unique_ptr<Model> model = build_model(other);
+    const std::optional<double> limit = make_scheme(other.time)->stability_limit(model->problem);
+    if (!limit || !std::isfinite(*limit)) {
+      result.refusal = "its critical step is not known";
+      return result;
+    }
+    result.critical_step = *limit;
+    other.time.step = result.step = rounded_down(safe_part * *limit, 2);
+    result.seconds_per_step = first_steps(other, *model);
+  } catch (const Error& problem) {
+    result.refusal = problem.what();
+  }
+  return result;
+}
+
+std::string many_iterations_text(const NewtonWatch& watch, const ExplicitRun& other, double now, double left,
+                                 double step) {
+  const std::string what =
+      fmt::format("at t = {:.6g} Newton's method has taken more than {} iterations in {} steps, {:.2g} s each", now,
+                  NewtonWatch::many, watch.steps(), watch.seconds_per_step());
+  if (!other.refusal.empty()) {
+    return fmt::format(
+        "{}; scheme \"{}\" with mass.type = \"{}\", which solves no system of the whole body, does not "
+        "take this case: {}",
+        what, scheme, mass, other.refusal);
+  }
+  const double own = left / step * watch.seconds_per_step(), steps = std::ceil((now + left) / other.step);
+  return fmt::format(
+      "{}, which is {} for the rest of the run. Scheme \"{}\" with mass.type = \"{}\" solves no system of the whole "
+      "body "
+      "and takes this case with time.step = {:.2g}, seven tenths of its critical step at rest: {:.2g} steps from the "
+      "start, {} at the pace of the first ones. A slow load may act faster there, as long as the kinetic energy stays "
+      "small beside the elastic one",
+      what, duration_text(own), scheme, mass, other.step, steps, duration_text(steps * other.seconds_per_step));
+}
+
+}  // namespace ricochet

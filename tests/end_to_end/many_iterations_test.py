@@ -1,0 +1,83 @@
+"""Where Newton's method takes hundreds of iterations in a step the run says what takes fewer, and that does."""
+
+import re
+import unittest
+
+from harness import History, TestCase, run, settings
+
+RING_GEO = """SetFactory("OpenCASCADE");
+Disk(1) = {0, 2.5, 0, 2.5, 2.5};
+Mesh.MeshSizeMax = 0.8;
+Mesh.MeshSizeMin = 0.8;
+Physical Surface("ring") = {1};
+Physical Curve("skin") = {1};
+"""
+# Rubber that is squeezed between two plates, by two thousandths of its height in a step.
+RING = """[mesh]
+file = "ring.geo"
+degree = 2
+[[material]]
+group = "ring"
+density = 1.1e-9
+law = "mooney-rivlin"
+c10 = 0.4
+c01 = 0.1
+bulk_modulus = 100.0
+[obstacle.bottom]
+type = "plane"
+point = [0, 0]
+normal = [0, 1]
+[obstacle.top]
+type = "plane"
+point = [0, 5.0]
+normal = [0, -1]
+motion = ["0", "-20*t"]
+[[contact]]
+group = "skin"
+obstacle = "bottom"
+friction = 0.3
+[[contact]]
+group = "skin"
+obstacle = "top"
+friction = 0.3
+[time]
+step = 4e-3
+end = 0.024
+[output]
+fields_every = 0
+"""
+TOLD = r"Newton's method has taken more than 200 iterations in 3 steps"
+EXPLICIT = {"time.scheme": "semi-explicit", "mass.type": "equivalent-lumped"}
+
+
+class ManyIterations(TestCase):
+    def squeeze(self, text=RING, **values):
+        (self.folder / "ring.geo").write_text(RING_GEO)
+        out = self.folder / "out"
+        process = run("run", self.write("ring.toml", text), "-o", out, "--force", "--quiet", *settings(values))
+        return self.expect_status(0, process).stderr, History(out / "history.csv")
+
+    def test_the_scheme_without_systems_is_named_once_and_takes_the_case(self):
+        said, history = self.squeeze()
+        self.assertGreater(sorted(history["newton_rounds"])[-3], 200, "this case takes many iterations no more: take another one")
+        self.assertEqual(len(re.findall(TOLD, said)), 1, said)
+        found = re.search(r'Scheme "semi-explicit" with mass.type = "equivalent-lumped" .* with time.step = (\S+), ', said)
+        self.assertIsNotNone(found, said)
+        step = float(found[1])
+        after, history = self.squeeze(**EXPLICIT, **{"time.step": step, "time.end": 200 * step})
+        self.assertNotRegex(after, "Newton's method has taken")
+        self.assertLess(max(history["newton_rounds"]), 100)
+
+    def test_a_case_that_it_does_not_take(self):
+        relaxing = RING.replace("bulk_modulus = 100.0", "bulk_modulus = 100.0\nrelaxation = { modulus = [0.2], time = [1.0] }")
+        said, _ = self.squeeze(relaxing)
+        self.assertRegex(said, TOLD + r".* does not take this case: .*relax")
+
+    def test_few_iterations_are_no_matter(self):
+        said, history = self.squeeze(**{"time.step": 5e-4, "time.end": 3e-3})
+        self.assertLess(max(history["newton_rounds"]), 200)
+        self.assertNotRegex(said, "Newton's method has taken")
+
+
+if __name__ == "__main__":
+    unittest.main()
