@@ -24,6 +24,7 @@
 #include "ricochet/io/rank_checkpoints.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/model/model.hpp"
+#include "ricochet/run/field_schedule.hpp"
 #include "ricochet/run/run_case.hpp"
 #include "ricochet/run/run_description.hpp"
 #include "ricochet/study/benchmark/benchmark_files.hpp"
@@ -131,7 +132,9 @@ void describe_case(const std::string& path, const std::vector<std::string>& over
         unmeshed, path);
     return;
   }
-  print_advice(input, *build_model(input));
+  const std::unique_ptr<Model> model = build_model(input);
+  print_advice(input, *model);
+  fmt::print("  a run writes {}\n", output_text(estimate_output(input, *model)));
 }
 
 /// The lines of a message after its first one further in.
@@ -191,8 +194,7 @@ void describe_result(const std::string& directory) {
   fmt::print("{}\n", deformation_text(s));
   print_probes(s);
   print_solver(s);
-  fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,
-             s.timings.empty() ? "" : duration_text(s.timings.back().second));
+  print_cost(s);
   print_expectations(s.expectations);
   for (const std::string& warning : s.warnings) fmt::print("  warning: {}\n", warning);
 }

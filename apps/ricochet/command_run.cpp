@@ -42,8 +42,7 @@ void print_summary(const RunSummary& s, const std::string& directory) {
   print_peak_stress(s);
   fmt::print("{}\n", deformation_text(s));
   print_solver(s);
-  fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,
-             s.timings.empty() ? "" : duration_text(s.timings.back().second));
+  print_cost(s);
   print_expectations(s.expectations);
   for (const std::string& warning : s.warnings) fmt::print("  warning: {}\n", warning);
   if (!s.message.empty()) fmt::print("  {}\n", s.message);

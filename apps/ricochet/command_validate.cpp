@@ -12,9 +12,10 @@
 #include "ricochet/io/progress.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/model/model.hpp"
+#include "ricochet/run/cost_estimate.hpp"
+#include "ricochet/run/field_schedule.hpp"
 #include "ricochet/run/session.hpp"
 #include "ricochet/simulation/simulation.hpp"
-#include "ricochet/solver/step_estimate.hpp"
 
 namespace ricochet::program {
 
@@ -28,61 +29,69 @@ std::string short_duration_text(double seconds) {
   return seconds < 1.0 ? fmt::format("{:.2g} s", seconds) : duration_text(seconds);
 }
 
-/// "0.2 s for 100 steps"; of adaptive steps the number is not known before the run.
-std::string steps_estimate(const TimeSection& time, double step_seconds) {
-  const long steps = step_count(time);
-  return fmt::format("{}{} for {}{}", time.adaptive ? "at least " : "",
-                     short_duration_text(static_cast<double>(steps) * step_seconds), counted(steps, "step"),
-                     time.adaptive ? " of the longest" : "");
-}
-
-void print_estimate(const StageEstimate& stage, std::size_t number, const TimeSection& time) {
+void print_estimate(const StageEstimate& stage, std::size_t number) {
   const std::string of =
       fmt::format("estimate, stage {} of a step, {}", number + 1, counted(stage.unknowns, "unknown"));
   if (stage.chosen.method == SolverMethod::iterative) {
-    fmt::print(
-        "{}: method iterative, some {:.0f} iterations; {} per step, {}; its memory is a few times that of the "
-        "matrices; chosen as {}{}\n",
-        of, stage.iterations, short_duration_text(stage.step_seconds), steps_estimate(time, stage.step_seconds),
-        stage.chosen.reason,
-        stage.chosen.predicted_entries > 0.0
-            ? fmt::format(" (a factor would have {:.3g} entries and take {:.2g} operations)",
-                          stage.chosen.predicted_entries, stage.chosen.predicted_operations)
-            : "");
+    fmt::print("{}: method iterative, some {:.0f} iterations, {}; chosen as {}{}\n", of, stage.iterations,
+               short_duration_text(stage.step_seconds), stage.chosen.reason,
+               stage.chosen.predicted_entries > 0.0
+                   ? fmt::format(" (a factor would have {:.3g} entries and take {:.2g} operations)",
+                                 stage.chosen.predicted_entries, stage.chosen.predicted_operations)
+                   : "");
     return;
   }
   fmt::print(
-      "{}: method direct; a factor of {:.3g} entries, {:.2g} GB, {:.2g} GB while it is made, in {}; {} per step, "
-      "{}; {:.2g} GB for every 100 contact points that may touch at a time; chosen as {}\n",
+      "{}: method direct; a factor of {:.3g} entries, {:.2g} GB, {:.2g} GB while it is made, in {}; {} for a solve; "
+      "{:.2g} GB for every 100 contact points that may touch at a time; chosen as {}\n",
       of, stage.chosen.predicted_entries, 1e-9 * stage.factor_bytes, 1e-9 * stage.peak_bytes,
       short_duration_text(stage.factorization_seconds), short_duration_text(stage.step_seconds),
-      steps_estimate(time, stage.step_seconds), 100e-9 * stage.bytes_per_point, stage.chosen.reason);
+      100e-9 * stage.bytes_per_point, stage.chosen.reason);
+}
+
+/// "0.2 s while nothing touches, 12 s while a quarter of the 40 contact points press, 2 min 30 s while all do".
+template <class Text>
+std::string range_text(const CostRange& range, Index points, const Text& text) {
+  if (points == 0) return text(range.most);
+  return fmt::format("{} while nothing touches, {} while a quarter of the {} press, {} while all do", text(range.least),
+                     text(range.some), counted(points, "contact point"), text(range.most));
+}
+
+std::string iterations_note(const CostEstimate& cost) {
+  if (cost.force_seconds > 0.0)
+    return fmt::format(" ({} to {} iterations of Newton's method; hundreds where rubber is pressed hard)",
+                       cost.least_iterations, cost.most_iterations);
+  if (cost.most_iterations > 1)
+    return fmt::format(" ({} to {} iterations, as normals turn)", cost.least_iterations, cost.most_iterations);
+  return "";
 }
 
 /// What a run will take, and seconds until its first step.
-double estimate(const Case& input, const SemidiscreteProblem& problem, const Scheme& scheme) {
-  const std::vector<StageEstimate> stages =
-      estimate_step_solver(problem, scheme.operators(problem), step_solver_options(input));
-  const double products = estimate_products(problem);
-  double seconds = 0.0, per_step = products;
-  for (std::size_t k = 0; k < stages.size(); ++k) {
-    print_estimate(stages[k], k, input.time);
-    seconds += stages[k].factorization_seconds;
-    per_step += stages[k].step_seconds;
-  }
-  const double steps = static_cast<double>(step_count(input.time));
-  fmt::print("estimate, all: {} for factorizations{}, {} per step with {} for the products with the matrices, {}{}\n",
-             short_duration_text(seconds), input.time.adaptive ? " for each length of a step" : "",
-             short_duration_text(per_step), short_duration_text(products), input.time.adaptive ? "at least " : "",
-             short_duration_text(seconds + steps * per_step));
+double print_estimates(const Case& input, const Model& model, const Scheme& scheme) {
+  const CostEstimate cost = estimate_cost(input, model, scheme);
+  for (std::size_t k = 0; k < cost.stages.size(); ++k) print_estimate(cost.stages[k], k);
+  const auto steps = static_cast<double>(step_count(input.time));
+  const Index points = model.problem.contact.size();
+  const auto of_run = [&](double step) { return cost.factorization_seconds + steps * step; };
+  fmt::print("estimate, a step{}: {}\n", iterations_note(cost),
+             range_text(cost.step_seconds, points, short_duration_text));
+  fmt::print("estimate, all: {} for factorizations{}; the run {}{}{}\n",
+             short_duration_text(cost.factorization_seconds), input.time.adaptive ? " for each length of a step" : "",
+             input.time.adaptive ? "at least " : "", short_duration_text(of_run(cost.step_seconds.least)),
+             points == 0 ? ""
+                         : fmt::format(" to {}, with no more than a quarter of the contact points pressed at a time",
+                                       short_duration_text(of_run(cost.step_seconds.some))));
+  fmt::print("estimate, memory: {}\n", range_text(cost.memory, points, size_text));
+  fmt::print("estimate, files: {}\n", output_text(estimate_output(input, model)));
   fmt::print(
       "(estimates: entries and operations from the symbolic analysis of the operators; times at {:.2g} operations "
-      "and {:.2g} bytes per second of one core, without assembly, ordering, output and the contact problems{})\n",
+      "and {:.2g} bytes per second of one core{}, without assembly, ordering and output; `run` says after some "
+      "seconds of steps what is left at their pace)\n",
       estimated_operations_per_second, estimated_bytes_per_second,
-      problem.internal_force->is_linear()
-          ? ""
-          : "; of one iteration of Newton's method a step: 5 to 30 are usual, hundreds where rubber is pressed hard");
-  return seconds;
+      cost.force_seconds > 0.0 ? fmt::format(", with {} for an evaluation of the internal force as measured here",
+                                             short_duration_text(cost.force_seconds))
+                               : "");
+  return cost.factorization_seconds;
 }
 
 /// Whether there is a mesh of it to be checked, or one may be made: gmsh may run shell commands of the file, and
@@ -136,7 +145,7 @@ int validate(const ValidateArguments& arguments) {
   check_expected_quantities(input, model);
   refuse_bodies_inside_obstacles(input, model);
   session.scheme().analyse(model.problem);
-  const double start_seconds = estimate(input, model.problem, session.scheme());
+  const double start_seconds = print_estimates(input, model, session.scheme());
   // The start of a run, thrown away: some things do not go together, and some operators cannot be factorized.
   const bool starts = start_seconds <= longest_start;
   if (starts) session.start();

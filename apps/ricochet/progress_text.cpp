@@ -111,6 +111,17 @@ void describe_checkpoint(const std::string& path) {
   }
 }
 
+void print_cost(const RunSummary& s) {
+  const std::string all = s.timings.empty() ? "" : fmt::format(", {} in all", duration_text(s.timings.back().second));
+  // Of several processes print_solver says it.
+  const std::string memory =
+      s.peak_memory > 0.0 && !s.processes
+          ? fmt::format(", {:.3g} {} of memory at most", (s.peak_memory < 1e9 ? 1e-6 : 1e-9) * s.peak_memory,
+                        s.peak_memory < 1e9 ? "MB" : "GB")
+          : "";
+  fmt::print("  {:.3g} ms per step{}{}\n", 1e3 * s.time_per_step, all, memory);
+}
+
 void print_solver(const RunSummary& s) {
   if (s.iterations) {
     fmt::print("  solved by iterations: {:.3g} rounds of contact and {:.3g} conjugate gradients in a step\n",

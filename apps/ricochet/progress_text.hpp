@@ -19,6 +19,9 @@ void print_progress(const std::string& directory, const RunSummary& summary);
 /// A checkpoint, or the state that a failed step has left.
 void describe_checkpoint(const std::string& path);
 
+/// Time of a step and of the run, and its memory.
+void print_cost(const RunSummary& s);
+
 /// Iterations of a step, and of several processes how they divide the body and what they send.
 void print_solver(const RunSummary& s);
 

@@ -85,7 +85,7 @@ Section output_section() {
            .unit = "steps",
            .range = nonnegative,
            .doc = "Steps between field frames; 0 disables them. Default: 10 + steps * dofs / 80000 frames in the run, "
-                  "at most 100."},
+                  "at most 100, and of large bodies no more than stay below 200 MB (two at least)."},
           {.name = "fields_interval",
            .type = KeyType::number,
            .unit = "time",

@@ -10,8 +10,9 @@ namespace ricochet {
 
 namespace {
 
-/// Seconds between lines of a run that is not watched at a terminal; it says something at each tenth anyway.
-constexpr double longest_silence = 60.0;
+/// Seconds between lines of a run that is not watched at a terminal; it says something at each tenth anyway. The first
+/// line tells what the first steps make of the estimate before the run.
+constexpr double longest_silence = 60.0, first_silence = 5.0;
 
 /// Nobody's run should end because what is merely shown cannot be written.
 void show(const std::string& text) {
@@ -51,7 +52,8 @@ void Progress::update(long step, double time) {
   if (terminal_) {
     if (part < 1.0 && now - last_drawn_ < 0.1) return;
   } else {
-    if (part * 10.0 < next_tenth_ && now - last_drawn_ < longest_silence) return;
+    if (part * 10.0 < next_tenth_ && now - last_drawn_ < (has_drawn_ ? longest_silence : first_silence)) return;
+    has_drawn_ = true;
     next_tenth_ = static_cast<int>(part * 10.0) + 1;
   }
   last_drawn_ = now;

@@ -29,7 +29,7 @@ class Progress {
   double first_done_;
   bool quiet_;
   bool terminal_;
-  bool open_ = false;
+  bool open_ = false, has_drawn_ = false;
   int next_tenth_ = 1;
   double last_drawn_ = 0.0;
   Timer timer_;

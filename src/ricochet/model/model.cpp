@@ -16,6 +16,7 @@
 #include "ricochet/fem/exterior_facets.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 #include "ricochet/model/model_parts.hpp"
+#include "ricochet/solver/memory_estimate.hpp"
 
 namespace ricochet {
 
@@ -280,10 +281,8 @@ std::string scheme_text(const TimeSection& time) {
 
 namespace {
 
-/// Iterations take so many bytes per dof at the peak, and factors more.
 void warn_of_memory(const Model& model) {
-  constexpr double least_per_dof = 2400.0;
-  const double needed = least_per_dof * static_cast<double>(model.space.dof_count()), there = physical_memory();
+  const double needed = memory_of_iterations(model.space.dof_count()), there = physical_memory();
   if (needed <= there) return;
   log::warning(fmt::format(
       "{} need some {:.3g} GB, and this machine has {:.3g} GB for them: `ricochet-mpi` divides a body among "

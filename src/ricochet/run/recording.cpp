@@ -17,13 +17,6 @@ namespace {
 /// History is handed over to readers this often, in seconds.
 constexpr double flush_interval = 1.0;
 
-/// A hundred; fewer in runs of small bodies that take less than a second, where writing that many would take as long as
-/// the steps.
-long default_frames(long steps, Index dofs) {
-  constexpr double least = 10.0, most = 100.0, work_per_frame = 8e4;
-  return std::lround(std::min(most, least + static_cast<double>(steps) * static_cast<double>(dofs) / work_per_frame));
-}
-
 /// On the first rank.
 std::unique_ptr<HistoryWriter> open_history(const Ranks& ranks, const std::string& path,
                                             const std::vector<std::string>& columns, const Snapshot* snapshot,
@@ -56,9 +49,7 @@ ImpactRecorder make_impact_recorder(const Model& model, const Scheme& scheme, co
 
 std::unique_ptr<ResultsWriter> open_results(const OutputSection& output, const Model& model,
                                             const std::string& directory, const Snapshot* snapshot) {
-  const ResultsOptions options{output.fields,
-                               {output.single_precision, output.compression},
-                               output.vtkhdf ? ResultsFormat::vtkhdf : ResultsFormat::xdmf};
+  const ResultsOptions options = results_options(output);
   WholeBody whole;
   if (model.written)
     whole = {&model.written->body,     &model.written->problem, model.written->node_rows,
@@ -81,50 +72,9 @@ std::string sampled_name(long every) {
 
 }  // namespace
 
-FieldSchedule::FieldSchedule(const Case& input, long steps, Index dofs, const Snapshot* snapshot) {
-  if (snapshot != nullptr) {
-    every_ = snapshot->integer("fields.every");
-    const Vector& times = snapshot->reals("fields.interval", 2);
-    interval_ = times[0];
-    intervals_before_ = times[1];
-  }
-  if (input.output.fields_interval) {
-    interval_ = *input.output.fields_interval;
-  } else if (snapshot == nullptr) {
-    const long frames = default_frames(steps, dofs);
-    if (input.time.adaptive && !input.output.fields_every) {
-      interval_ = input.time.end / static_cast<double>(frames);
-    } else {
-      every_ = input.output.fields_every.value_or((steps + frames - 1) / frames);
-    }
-  }
-}
-
-void FieldSchedule::save(Snapshot& snapshot) const {
-  snapshot.save("fields.every", std::int64_t{every_});
-  snapshot.save("fields.interval", Vector(Eigen::Vector2d(interval_, intervals_before_)));
-}
-
-/// Multiples of the interval up to this time; one that a step meets to rounding counts.
-double FieldSchedule::intervals(double time) const {
-  return std::floor(time / interval_ * (1.0 + 1e-12));
-}
-
-bool FieldSchedule::includes(const State& state) {
-  bool result = every_ > 0 && state.step % every_ == 0;
-  if (interval_ > 0.0) {
-    const double now = intervals(state.time);
-    result = now > intervals_before_;
-    intervals_before_ = now;
-  }
-  if (state.step == 0) result = any();
-  if (result) last_ = state.step;
-  return result;
-}
-
 Recording::Recording(const Case& input, const Model& model, const Scheme& scheme, const State& state,
                      const std::string& directory, long steps, std::size_t factor_entries, const Snapshot* snapshot)
-    : fields_(input, steps, model.sizes.dofs, snapshot),
+    : fields_(input, model, steps, snapshot),
       results_(fields_.any() ? open_results(input.output, model, directory, snapshot) : nullptr),
       recorder_(model.problem, *model.rotation, model.sensors, model.history_bodies),
       history_(

@@ -7,6 +7,7 @@
 #include "ricochet/io/results_file.hpp"
 #include "ricochet/io/summary.hpp"
 #include "ricochet/model/model.hpp"
+#include "ricochet/run/field_schedule.hpp"
 #include "ricochet/run/method_watch.hpp"
 #include "ricochet/run/rotation_watch.hpp"
 #include "ricochet/run/run_checks.hpp"
@@ -18,28 +19,6 @@
 
 /// @file Everything that is written while a run goes on: history and fields.
 namespace ricochet {
-
-/// The steps after which fields are written.
-class FieldSchedule {
- public:
-  /// Where the case does not say how often, that depends on the number of steps. A run that goes on keeps what it began
-  /// with, as its end may have been moved.
-  FieldSchedule(const Case& input, long steps, Index dofs, const Snapshot* snapshot);
-  void save(Snapshot& snapshot) const;
-  [[nodiscard]] bool any() const { return every_ > 0 || interval_ > 0.0; }
-  /// Asked of every step, in order.
-  [[nodiscard]] bool includes(const State& state);
-  /// The last that was included.
-  [[nodiscard]] bool is_last(const State& state) const { return last_ == state.step; }
-
- private:
-  [[nodiscard]] double intervals(double time) const;
-
-  long every_ = 0;
-  double interval_ = 0.0;  ///< time, instead
-  double intervals_before_ = 0.0;
-  long last_ = -1;  ///< step that was included
-};
 
 class Recording {
  public:

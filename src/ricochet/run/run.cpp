@@ -16,6 +16,7 @@
 #include "ricochet/run/old_run.hpp"
 #include "ricochet/run/run_description.hpp"
 #include "ricochet/run/run_identity.hpp"
+#include "ricochet/solver/memory_estimate.hpp"
 
 namespace ricochet {
 
@@ -183,10 +184,7 @@ void Run::begin_session() {
   session_.build(&build);
   times_.add_build(build);
   check_expected_quantities(input_, session_.model());
-  if (session_.model().sizes.dofs >= large_body) {
-    log::info(fmt::format("{}, {}; preparing the steps", counted(session_.model().sizes.dofs, "dof"),
-                          counted(session_.model().sizes.contact_points, "contact point")));
-  }
+  tell_of_size();
   const auto built = static_cast<std::ptrdiff_t>(session_.warnings().size());
   Timer timer;
   begin_simulation();
@@ -367,6 +365,25 @@ void Run::tell_of_many_iterations() {
   const double now = session_.simulation().state().time;
   log::warning(many_iterations_text(newton_, try_explicit(input_), now, std::max(0.0, input_.time.end - now),
                                     session_.scheme().step()));
+}
+
+/// Before what takes long, and before the disk is full.
+void Run::tell_of_size() const {
+  constexpr double large_files = 100e6;
+  const Model& model = session_.model();
+  const bool is_large = model.sizes.dofs >= large_body;
+  if (is_large) {
+    const double rows = (model.problem.contact.has_friction() ? model.mesh.dimension : 1) *
+                        static_cast<double>(model.sizes.contact_points);
+    log::info(
+        fmt::format("{}, {}; preparing the steps, which take some {} of memory by iterations and more with a "
+                    "factor, and {} where all contact points press",
+                    counted(model.sizes.dofs, "dof"), counted(model.sizes.contact_points, "contact point"),
+                    size_text(memory_of_iterations(model.sizes.dofs)), size_text(memory_of_contact(rows))));
+  }
+  if (snapshot_) return;  // a run that goes on writes as it began
+  const OutputEstimate files = estimate_output(input_, model);
+  if (is_large || files.results_bytes + files.history_bytes >= large_files) log::info(output_text(files));
 }
 
 /// What the last state leaves, where all steps were taken.

@@ -57,6 +57,7 @@ class Run {
   [[nodiscard]] bool is_near_end();
   void write_end_checkpoint();
   void tell_of_many_iterations();
+  void tell_of_size() const;
   void end_steps();
   /// "step 12 of 100", or of adaptive steps "step 12 (t = 0.5 of 2)".
   [[nodiscard]] std::string step_in_words();

@@ -1,0 +1,133 @@
+#include "ricochet/run/field_schedule.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/text.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// A file of fields that nobody asked for is no larger, but for a mesh of which two frames are.
+constexpr double most_bytes = 200e6;
+
+/// A hundred; fewer in runs of small bodies that take less than a second, where writing that many would take as long as
+/// the steps.
+long usual_frames(long steps, Index dofs) {
+  constexpr double least = 10.0, most = 100.0, work_per_frame = 8e4;
+  return std::lround(std::min(most, least + static_cast<double>(steps) * static_cast<double>(dofs) / work_per_frame));
+}
+
+/// Between those of the start and of the end.
+long affordable_frames(const ResultsSize& size) {
+  return std::max(1L, static_cast<long>((most_bytes - size.mesh) / size.frame) - 2);
+}
+
+ResultsSize size_of_results(const Case& input, const Model& model) {
+  return results_size(model.body, model.problem, results_options(input.output), model.sizes.nodes, model.sizes.cells);
+}
+
+}  // namespace
+
+std::string size_text(double bytes) {
+  return bytes < 1e9 ? fmt::format("{:.2g} MB", 1e-6 * bytes) : fmt::format("{:.2g} GB", 1e-9 * bytes);
+}
+
+ResultsOptions results_options(const OutputSection& output) {
+  return {output.fields,
+          {output.single_precision, output.compression},
+          output.vtkhdf ? ResultsFormat::vtkhdf : ResultsFormat::xdmf};
+}
+
+FieldSchedule::FieldSchedule(const Case& input, const Model& model, long steps, const Snapshot* snapshot) {
+  if (snapshot != nullptr) {
+    every_ = snapshot->integer("fields.every");
+    const Vector& times = snapshot->reals("fields.interval", 2);
+    interval_ = times[0];
+    intervals_before_ = times[1];
+  }
+  if (input.output.fields_interval) {
+    interval_ = *input.output.fields_interval;
+  } else if (input.output.fields_every && snapshot == nullptr) {
+    every_ = *input.output.fields_every;
+  } else if (snapshot == nullptr) {
+    const long usual = usual_frames(steps, model.sizes.dofs);
+    // All ranks write together.
+    const auto affordable = static_cast<double>(affordable_frames(size_of_results(input, model)));
+    const long frames = std::min(usual, std::lround(-model.problem.ranks->maximum(-affordable)));
+    is_limited_ = frames < usual;
+    if (input.time.adaptive) {
+      interval_ = input.time.end / static_cast<double>(frames);
+    } else {
+      every_ = (steps + frames - 1) / frames;
+    }
+  }
+}
+
+void FieldSchedule::save(Snapshot& snapshot) const {
+  snapshot.save("fields.every", std::int64_t{every_});
+  snapshot.save("fields.interval", Vector(Eigen::Vector2d(interval_, intervals_before_)));
+}
+
+/// Multiples of the interval up to this time; one that a step meets to rounding counts.
+double FieldSchedule::intervals(double time) const {
+  return std::floor(time / interval_ * (1.0 + 1e-12));
+}
+
+bool FieldSchedule::includes(const State& state) {
+  bool result = every_ > 0 && state.step % every_ == 0;
+  if (interval_ > 0.0) {
+    const double now = intervals(state.time);
+    result = now > intervals_before_;
+    intervals_before_ = now;
+  }
+  if (state.step == 0) result = any();
+  if (result) last_ = state.step;
+  return result;
+}
+
+long FieldSchedule::frames(long steps, double end) const {
+  if (interval_ > 0.0) {
+    const double all = intervals(end), rest = end - all * interval_;
+    return 1 + static_cast<long>(all) + (rest > 1e-9 * end ? 1 : 0);
+  }
+  if (every_ == 0) return 0;
+  return 1 + steps / every_ + (steps % every_ != 0 ? 1 : 0);
+}
+
+OutputEstimate estimate_output(const Case& input, const Model& model) {
+  constexpr double bytes_of_number = 18.0;  // of the shortest text that gives it back, with its comma
+  const long steps = step_count(input.time);
+  OutputEstimate result;
+  const FieldSchedule schedule(input, model, steps);
+  if (schedule.any()) {
+    const ResultsSize size = size_of_results(input, model);
+    result.frames = schedule.frames(steps, input.time.end);
+    result.frame_bytes = size.frame;
+    result.results_bytes = size.of(result.frames);
+  }
+  result.rows = 1 + steps / input.output.history_every.value_or(make_scheme(input.time)->history_every());
+  result.history_bytes =
+      bytes_of_number * static_cast<double>(history_columns(model).size()) * static_cast<double>(result.rows);
+  result.is_limited = schedule.is_limited();
+  result.is_adaptive = input.time.adaptive;
+  result.is_compressed = input.output.compression > 0;
+  return result;
+}
+
+std::string output_text(const OutputEstimate& estimate) {
+  std::string text;
+  if (estimate.frames > 0) {
+    text += fmt::format(
+        "{} of fields of {}, {} in all{}{}; ", counted(estimate.frames, "frame"), size_text(estimate.frame_bytes),
+        size_text(estimate.results_bytes), estimate.is_compressed ? " before compression" : "",
+        estimate.is_limited ? " (as many as stay below 200 MB, as the case does not say how many)" : "");
+  }
+  return text + fmt::format("history.csv of {}{}", estimate.is_adaptive ? "at least " : "some ",
+                            size_text(estimate.history_bytes));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "ricochet/base/types.hpp"
+
+/// @file Memory of a run before anything is assembled, in bytes, as measured: docs/performance.md.
+namespace ricochet {
+
+/// At the peak of a run that is solved by iterations; a factor takes more.
+[[nodiscard]] inline double memory_of_iterations(Index dofs) {
+  constexpr double per_dof = 2400.0;
+  return per_dof * static_cast<double>(dofs);
+}
+
+/// Dense contact problem of so many rows, with its factor and copies.
+[[nodiscard]] inline double memory_of_contact(double rows) {
+  constexpr double copies = 12.0;
+  return copies * sizeof(double) * rows * rows;
+}
+
+}  // namespace ricochet
