@@ -185,6 +185,9 @@ class TwoBodies(TestCase):
         self.assertIsNone(summary(short)["sliding"][0]["time_beyond"])
         self.assertEqual([text for text in summary(short)["warnings"] if "slid" in text or "overlap" in text], [])
         self.assertEqual(summary(short)["unwatched_penetration"]["found"], [])
+        # What the message advises.
+        large = self.simulate(self.blocks(), name="large", values={"contact.0.sliding": "large"})
+        self.assertEqual([text for text in summary(large)["warnings"] if "slid" in text or "overlap" in text], [])
 
     def test_one_body_has_no_columns_of_bodies(self):
         self.write("one.msh", strip(CELLS, 2, 0.05))
