@@ -141,8 +141,8 @@ bool is_free_along_normals(const Case& input, const Model& model, int pair) {
   return true;
 }
 
-/// When the points of a pair that face the other side would meet it in free flight: gravity moves both bodies alike.
-/// None where no point faces anything, and where a surface faces itself: that takes a deformation.
+/// Time at which points of a pair that face the other side would meet it in free flight: gravity moves both bodies
+/// alike. None if no point faces anything, or if a surface faces itself, which takes a deformation.
 std::optional<double> time_of_meeting(const Model& model, std::size_t pair) {
   if (model.contact_pairs[pair].is_self()) return {};
   const ContactBoundary& contact = model.problem.contact;
@@ -161,7 +161,7 @@ std::optional<double> time_of_meeting(const Model& model, std::size_t pair) {
   return meets;
 }
 
-/// How two bodies face each other and, where they fly freely, when they would meet.
+/// Prints how two bodies face each other and, where they fly freely, when they would meet.
 void print_bodies_contact(const Case& input, const Model& model, std::size_t pair) {
   const FacingDescription facing = *describe_facing(model, pair);
   std::string text = facing_text(facing);
@@ -182,8 +182,8 @@ struct Flight {
   }
 };
 
-/// When the first of some nodes meets an obstacle, which may move and turn as it likes: gaps at instants of the run, as
-/// many as cost little, and halvings in between. Infinite where none does.
+/// Time at which the first of some nodes meets an obstacle, which may move and turn as it likes: gaps at instants of
+/// the run, as many as cost little, and halvings in between. Infinite if none does.
 double time_of_contact(const std::vector<Flight>& flights, const Obstacle& obstacle, double end) {
   constexpr double evaluations = 1e6;
   constexpr int least_instants = 100, most_instants = 10000, halvings = 50;
@@ -206,12 +206,12 @@ double time_of_contact(const std::vector<Flight>& flights, const Obstacle& obsta
   return std::numeric_limits<double>::infinity();
 }
 
-/// The same at an obstacle that stands still, whose gap changes along its normal as the node moves.
+/// Time of contact with an obstacle at rest, whose gap changes along its normal as the node moves.
 double time_of_contact(const Flight& flight, double gap, const SpaceVector& normal) {
   return time_of_contact(gap, normal.dot(flight.velocity), normal.dot(flight.acceleration));
 }
 
-/// The words of print_contact on a pair's nodes that fly towards an obstacle.
+/// Words of print_contact on a pair's nodes that fly towards an obstacle.
 std::string obstacle_meeting_text(const Case& input, const Model& model, std::size_t pair) {
   const ContactBoundary& contact = model.problem.contact;
   const int d = model.mesh.dimension;

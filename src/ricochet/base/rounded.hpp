@@ -11,7 +11,7 @@ namespace ricochet {
   return std::floor(value / unit * (1.0 + 1e-9)) * unit;
 }
 
-/// The smallest that is no smaller.
+/// The smallest number of so many significant digits that is no smaller, likewise.
 [[nodiscard]] inline double rounded_up(double value, int digits) {
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - digits + 1);
   return std::ceil(value / unit * (1.0 - 1e-9)) * unit;

@@ -5,13 +5,13 @@
 /// @file Size of the file of fields, before there is one.
 namespace ricochet {
 
-/// In bytes, without compression.
+/// Bytes of a file of fields without compression.
 struct ResultsSize {
   double mesh = 0.0, frame = 0.0;
   [[nodiscard]] double of(long frames) const { return mesh + static_cast<double>(frames) * frame; }
 };
 
-/// `nodes`, `cells`: of the whole body, of which a rank has a part.
+/// Size for a body of which a rank has a part, with so many nodes and cells in all.
 [[nodiscard]] ResultsSize results_size(const Body& body, const SemidiscreteProblem& problem,
                                        const ResultsOptions& options, Index nodes, Index cells);
 

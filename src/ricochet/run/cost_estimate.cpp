@@ -10,7 +10,7 @@ namespace ricochet {
 
 namespace {
 
-/// The second call: the first one allocates.
+/// Time of a second call, as the first one allocates.
 template <class Call>
 double seconds_of(const Call& call) {
   call();
@@ -23,7 +23,7 @@ double rows_of_contact(const SemidiscreteProblem& problem, double points) {
   return (problem.contact.has_friction() ? static_cast<double>(problem.dimension) : 1.0) * points;
 }
 
-/// A dense contact problem: iterations read its matrix, and some factorize it.
+/// Time of a dense contact problem: iterations read its matrix, and some factorize it.
 double dense_seconds(double rows) {
   constexpr double iterations = 100.0, factorizations = 3.0;
   return iterations * sizeof(double) * rows * rows / estimated_bytes_per_second +
@@ -64,8 +64,8 @@ void estimate_step(const SemidiscreteProblem& problem, const Scheme& scheme, Cos
   cost.step_seconds = {cost.least_iterations * (own + solves), seconds(CostRange::part * points), seconds(points)};
 }
 
-/// Beside the program: matrices, their copies while they are put together, vectors; and the dense contact problem with
-/// its factor and copies.
+/// Sums the program, matrices with the copies made while they are put together, vectors, and the dense contact problem
+/// with its factor and copies.
 void estimate_memory(const SemidiscreteProblem& problem, CostEstimate& cost) {
   constexpr double program = 35e6, bytes_per_entry = 45.0;
   const double entries = static_cast<double>(problem.internal_force->tangent().nonZeros());

@@ -11,7 +11,7 @@
 /// what has no operator. What contact adds depends on how much touches at a time, which only the run tells.
 namespace ricochet {
 
-/// Without contact and with few iterations; with many of them, a part of the contact points pressed, and with all.
+/// Cost without contact and with few iterations; with many of them, a part of the contact points pressed, and with all.
 struct CostRange {
   static constexpr double part = 0.25;
   double least = 0.0, some = 0.0, most = 0.0;

@@ -11,7 +11,7 @@ namespace ricochet {
 
 namespace {
 
-/// A file of fields that nobody asked for is no larger, but for a mesh of which two frames are.
+/// Largest file of fields that nobody asked for, but for a mesh of which two frames are larger.
 constexpr double most_bytes = 200e6;
 
 /// A hundred; fewer in runs of small bodies that take less than a second, where writing that many would take as long as
@@ -21,7 +21,7 @@ long usual_frames(long steps, Index dofs) {
   return std::lround(std::min(most, least + static_cast<double>(steps) * static_cast<double>(dofs) / work_per_frame));
 }
 
-/// Between those of the start and of the end.
+/// Number of frames between those of the start and of the end.
 long affordable_frames(const ResultsSize& size) {
   return std::max(1L, static_cast<long>((most_bytes - size.mesh) / size.frame) - 2);
 }

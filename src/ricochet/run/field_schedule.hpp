@@ -9,7 +9,7 @@
 /// @file Steps after which fields are written, and how much a run writes.
 namespace ricochet {
 
-/// "12 MB", "1.2 GB".
+/// Text like "12 MB", "1.2 GB".
 [[nodiscard]] std::string size_text(double bytes);
 [[nodiscard]] ResultsOptions results_options(const OutputSection& output);
 
@@ -20,9 +20,9 @@ class FieldSchedule {
   FieldSchedule(const Case& input, const Model& model, long steps, const Snapshot* snapshot = nullptr);
   void save(Snapshot& snapshot) const;
   [[nodiscard]] bool any() const { return every_ > 0 || interval_ > 0.0; }
-  /// Asked of every step, in order.
+  /// Asks whether a frame follows a step; asked of every step, in order.
   [[nodiscard]] bool includes(const State& state);
-  /// The last that was included.
+  /// Whether this step was the last that was included.
   [[nodiscard]] bool is_last(const State& state) const { return last_ == state.step; }
   /// Number of frames of a run of so many steps up to a time, those of its start and its end included.
   [[nodiscard]] long frames(long steps, double end) const;
@@ -48,7 +48,7 @@ struct OutputEstimate {
   bool is_compressed = false;  ///< what is written is less
 };
 [[nodiscard]] OutputEstimate estimate_output(const Case& input, const Model& model);
-/// "results.h5: 101 frames of 1.9 MB, 190 MB in all; history.csv: 4.2 MB".
+/// Text like "101 frames of fields of 1.9 MB, 190 MB in all; history.csv of some 4.2 MB".
 [[nodiscard]] std::string output_text(const OutputEstimate& estimate);
 
 }  // namespace ricochet

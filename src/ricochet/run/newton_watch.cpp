@@ -18,7 +18,7 @@ namespace ricochet {
 namespace {
 
 constexpr const char *scheme = "semi-explicit", *mass = "equivalent-lumped";
-/// Of the critical step of the undeformed body.
+/// Part of the critical step of the undeformed body.
 constexpr double safe_part = 0.7;
 
 double first_steps(const Case& input, const Model& model) {

@@ -10,14 +10,15 @@ namespace ricochet {
 
 class NewtonWatch {
  public:
-  /// Above so many iterations a step takes very many.
+  /// Number of iterations above which a step takes very many.
   static constexpr int many = 200;
 
   void save(Snapshot& snapshot, const std::string& name) const;
-  /// Checkpoints of earlier versions have nothing of it.
+  /// Loads nothing from checkpoints of earlier versions, which have nothing of it.
   void load(const Snapshot& snapshot, const std::string& name);
 
-  /// After every step, with the seconds that it took. True once in a run: such steps have become usual.
+  /// Enters a step with the seconds that it took. True once in a run, when steps of very many iterations have become
+  /// usual.
   [[nodiscard]] bool enter_step(int iterations, double seconds);
   /// Mean over those that took very many iterations.
   [[nodiscard]] double seconds_per_step() const { return seconds_ / static_cast<double>(steps_); }
@@ -40,7 +41,7 @@ struct ExplicitRun {
 /// Builds the case anew with "semi-explicit" and "equivalent-lumped", and takes its first steps; says nothing.
 [[nodiscard]] ExplicitRun try_explicit(const Case& input);
 
-/// What to do about steps of very many iterations: `left` is the time from now to the end of the run.
+/// Message about steps of very many iterations; `left` is the time from now to the end of the run.
 [[nodiscard]] std::string many_iterations_text(const NewtonWatch& watch, const ExplicitRun& other, double now,
                                                double left, double step);
 

@@ -359,7 +359,7 @@ void Run::write_end_checkpoint() {
   has_end_checkpoint_ = true;
 }
 
-/// Once in a run. Of a divided body the first process would have to build the whole anew.
+/// Warns once in a run. (Of a divided body the first process would have to build the whole anew.)
 void Run::tell_of_many_iterations() {
   if (ranks_.are_several()) return;
   const double now = session_.simulation().state().time;
@@ -367,7 +367,7 @@ void Run::tell_of_many_iterations() {
                                     session_.scheme().step()));
 }
 
-/// Before what takes long, and before the disk is full.
+/// Tells before what takes long, and before the disk is full.
 void Run::tell_of_size() const {
   constexpr double large_files = 100e6;
   const Model& model = session_.model();

@@ -12,7 +12,7 @@ namespace ricochet {
 void judge_energy(const RunSummary& summary, const Scheme& scheme, const SemidiscreteProblem& problem,
                   const State& state);
 
-/// Warns of contacts between bodies part of whose force is on points that held steps have left at a gap.
+/// Warns of contacts between bodies whose force held steps have put in doubt.
 void judge_unsettled(const RunSummary& summary);
 
 /// Warns of a body with friction and without damping that loses contact again and again.

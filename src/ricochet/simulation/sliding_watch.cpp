@@ -82,7 +82,8 @@ void SlidingWatch::look_at_far_contacts(const State& state) {
   }
 }
 
-/// With the gaps at the end of a step. (Of a surface that touches itself others stand for points without a force.)
+/// Enters a contact with the gaps at the end of a step. (Of a surface that touches itself others stand for points
+/// without a force.)
 void SlidingWatch::enter(FarContact& contact, const State& state) const {
   constexpr double settled = 1e-9;
   double force = 0.0, missing = 0.0;
@@ -118,7 +119,7 @@ void SlidingWatch::tell(const FarContact& contact) const {
       100.0 * contact.share()));
 }
 
-/// Of the first one, whatever it leaves.
+/// Warns of the first held step, whatever it leaves.
 void SlidingWatch::tell_of_held(const State& state) {
   if (has_told_held_ || !problem_.contact.geometry->has_held()) return;
   has_told_held_ = true;
@@ -213,7 +214,7 @@ void SlidingWatch::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".far", far);
 }
 
-/// Checkpoints of earlier versions have nothing of contacts that slide far.
+/// Loads nothing from checkpoints of earlier versions, which have nothing of contacts that slide far.
 void SlidingWatch::load_far(const Snapshot& snapshot, const std::string& name) {
   if (!snapshot.has(name)) return;
   const Vector& numbers = snapshot.reals(name, 9 * static_cast<Index>(far_.size()));

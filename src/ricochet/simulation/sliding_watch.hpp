@@ -25,11 +25,11 @@ class SlidingWatch {
   void look(const State& state);
   /// Of each contact between bodies.
   [[nodiscard]] std::vector<PairSliding> report() const;
-  /// Of each contact that slides far and had such points.
+  /// Report on each contact that slides far and had such points.
   [[nodiscard]] std::vector<UnsettledContact> unsettled() const;
 
  private:
-  /// Of a contact that slides far.
+  /// Record of a contact that slides far.
   struct FarContact {
     int contact = 0;
     bool is_self = false;

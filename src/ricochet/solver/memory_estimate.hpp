@@ -5,7 +5,7 @@
 /// @file Memory of a run before anything is assembled, in bytes, as measured: docs/performance.md.
 namespace ricochet {
 
-/// At the peak of a run that is solved by iterations; a factor takes more.
+/// Peak of a run that is solved by iterations; a factor takes more.
 [[nodiscard]] inline double memory_of_iterations(Index dofs) {
   constexpr double per_dof = 2400.0;
   return per_dof * static_cast<double>(dofs);
