@@ -170,7 +170,7 @@ void print_bodies_contact(const Case& input, const Model& model, std::size_t pai
     if (const std::optional<double> meets = time_of_meeting(model, pair))
       text += "; the bodies" + meeting_text(*meets, input, "would meet", "do not come nearer in free flight");
   }
-  const ContactSection& section = input.contacts[pair];
+  const ContactSection& section = model.contacts[pair];
   fmt::print("  \"{}\" against \"{}\": {}\n", section.group, section.against, text);
 }
 
@@ -235,11 +235,35 @@ std::string obstacle_meeting_text(const Case& input, const Model& model, std::si
   return meeting_text(meets, input, "and would reach it", "and does not reach it by the end of the run");
 }
 
+/// Of every body against every other, the two that are nearest.
+void print_pairs(const Model& model, std::size_t entry) {
+  const std::string* all = nullptr;
+  std::size_t count = 0, nearest = 0;
+  double gap = std::numeric_limits<double>::infinity();
+  for (std::size_t pair = 0; pair < model.contacts.size(); ++pair) {
+    if (model.contacts[pair].entry != entry || model.contacts[pair].pair_of.empty()) continue;
+    all = &model.contacts[pair].pair_of;
+    ++count;
+    const double least = model.pair_facings[pair].smallest_gap;
+    if (!(least < gap)) continue;
+    gap = least;
+    nearest = pair;
+  }
+  if (all == nullptr) return;
+  fmt::print("  every body of \"{}\" against every other: {}", *all, counted(count, "pair"));
+  if (std::isfinite(gap)) {
+    fmt::print("; the nearest are \"{}\" and \"{}\", {:.4g} apart where they face each other",
+               model.contacts[nearest].group, model.contacts[nearest].against, gap);
+  }
+  fmt::print("\n");
+}
+
 void print_contact(const Case& input, const Model& model, std::size_t pair) {
+  if (model.contact_pairs[pair].is_one_of_many) return;
   if (model.contact_pairs[pair].has_two_sides()) return print_bodies_contact(input, model, pair);
   if (model.contact_pairs[pair].tied) return;
   const ContactBoundary& contact = model.problem.contact;
-  const ContactSection& section = input.contacts[pair];
+  const ContactSection& section = model.contacts[pair];
   const Obstacle& obstacle = *model.contact_pairs[pair].obstacle;
   double nearest = std::numeric_limits<double>::infinity(), rounding = 0.0;
   for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
@@ -291,8 +315,9 @@ void print_cell_sizes(const Mesh& mesh) {
 }
 
 void print_facings(const Case& input, const Model& model) {
-  for (std::size_t pair = 0; pair < input.contacts.size(); ++pair) {
-    if (model.contact_pairs[pair].has_two_sides()) print_bodies_contact(input, model, pair);
+  for (std::size_t pair = 0; pair < model.contacts.size(); ++pair) {
+    if (model.contact_pairs[pair].has_two_sides() && !model.contact_pairs[pair].is_one_of_many)
+      print_bodies_contact(input, model, pair);
   }
 }
 
@@ -305,7 +330,8 @@ void print_advice(const Case& input, const Model& model) {
   print_bodies(model, connected);
   print_groups(model.mesh, is_axisymmetric(model.body));
   print_cell_sizes(model.mesh);
-  for (std::size_t pair = 0; pair < input.contacts.size(); ++pair) print_contact(input, model, pair);
+  for (std::size_t pair = 0; pair < model.contacts.size(); ++pair) print_contact(input, model, pair);
+  for (std::size_t entry = 0; entry < input.contacts.size(); ++entry) print_pairs(model, entry);
   print_steps(input, model, connected);
 }
 

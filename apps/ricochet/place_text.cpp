@@ -24,8 +24,15 @@ Points starting_positions(const Model& model) {
 std::string placement_text(const BodyFile& mesh) {
   std::string text;
   if (mesh.scale != 1.0) text += fmt::format(", scaled by {:g}", mesh.scale);
-  if (mesh.placement.angle != 0.0) text += fmt::format(", turned by {:g}°", mesh.placement.angle);
+  for (const Turn& turn : mesh.placement.turns) {
+    if (turn.angle != 0.0) text += fmt::format(", turned by {:g}°", turn.angle);
+  }
   if (!mesh.placement.move.empty()) text += fmt::format(", moved");
+  if (!mesh.rest_on.empty()) {
+    text += mesh.rest_gap > 0.0 ? fmt::format(", {:g} above \"{}\"", mesh.rest_gap, mesh.rest_on)
+                                : fmt::format(", resting on \"{}\"", mesh.rest_on);
+  }
+  if (mesh.drop_height > 0.0) text += fmt::format(", dropped from a height of {:g}", mesh.drop_height);
   return text;
 }
 

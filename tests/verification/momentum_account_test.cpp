@@ -127,7 +127,7 @@ TEST(MomentumAccount, BalancesUnderTrescasLaw) {
       EXPECT_LT(found.momentum, 1e-13) << scheme << ' ' << body.name;
       EXPECT_LT(found.angular, 1e-13) << scheme << ' ' << body.name;
       CaseRun run(text);
-      const std::unique_ptr<Sensor> contact = make_contact_sensor("contact", run.problem(), 0);
+      const std::unique_ptr<Sensor> contact = make_contact_sensor("contact", run.problem(), {SensedPair{0}});
       run.run([&] {
         const StepForces& forces = run.state().forces;
         SpaceVector sum = SpaceVector::Zero(body.dimension);

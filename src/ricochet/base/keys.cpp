@@ -63,6 +63,8 @@ std::string wanted(const Key& key) {
       return "a table of key paths and their values";
     case KeyType::table:
       return fmt::format("a table with {}", join_names(names_of(key.keys)));
+    case KeyType::tables:
+      return fmt::format("a table with {}, or a list of them", join_names(names_of(key.keys)));
   }
   return "";
 }

@@ -27,6 +27,7 @@ enum class KeyType {
   parameters,      ///< a table of numbers, for the expressions beside it
   conditions,      ///< a table of key paths and the values they must have
   table,           ///< a sub-table with `keys`
+  tables,          ///< a sub-table with `keys`, or a list of them
 };
 
 /// Bounds of a number.

@@ -29,7 +29,10 @@ struct BodyFile {
   std::optional<double> size;
   double scale = 1.0;
   int refinements = 0;
-  Placement placement;  ///< turn and move
+  Placement placement;       ///< turns and move
+  std::string rest_on;       ///< an obstacle; empty: none
+  double rest_gap = 0.0;     ///< of the lowest node above it
+  double drop_height = 0.0;  ///< that it has fallen through at the start; its motion has the velocity
 };
 
 /// Its file is empty where there are parts.
@@ -86,10 +89,10 @@ struct ObstacleSection {
 };
 
 struct ContactSection {
-  std::string group;
-  std::string obstacle;         ///< empty: between bodies
-  std::string against;          ///< the other group; empty: an obstacle
-  double friction = 0.0;        ///< F of Coulomb's law
+  std::string group;      ///< without obstacle and against the surfaces of bodies, each of which may touch every other
+  std::string obstacle;   ///< empty: between bodies
+  std::string against;    ///< the other group; empty: an obstacle
+  double friction = 0.0;  ///< F of Coulomb's law
   double friction_bound = 0.0;  ///< largest friction traction, a stress; 0: no bound
   std::string multipliers = "nodal";
   std::string multipliers_on = "automatic";  ///< between bodies: "automatic", "group" or "against"
@@ -98,6 +101,10 @@ struct ContactSection {
   bool tied = false;
   std::vector<double> pair_at;  ///< empty: where bodies start
   bool allow_unstable_multipliers = false;
+
+  /// Stands for the contacts of every body with every other (ModelContact).
+  [[nodiscard]] bool is_of_all_pairs() const { return obstacle.empty() && against.empty(); }
+  [[nodiscard]] bool between_bodies() const { return obstacle.empty(); }
 };
 
 struct SupportSection {
@@ -127,11 +134,11 @@ struct InitialSection {
   std::vector<Expression> velocity;      ///< of x, y, z; empty: zero
 };
 
-/// Cells that move like a rigid body at t = 0: a [[motion]], or `velocity` and `spin` of a part.
+/// Cells that move like a rigid body at t = 0: a [[motion]], `velocity` and `spin` of a part, or what was dropped.
 struct MotionSection {
-  std::string section;           ///< where it stands: "motion.0", "part.ball"
-  std::string group;             ///< of cells; empty for those of a part
-  std::string part;              ///< its name; empty for those of a group
+  std::string section;           ///< where it stands: "motion.0", "part.ball", "mesh"
+  std::string group;             ///< of cells; empty for those of a part, or of all of the mesh
+  std::string part;              ///< its name; empty for those of a group, or of all of the mesh
   std::vector<double> velocity;  ///< empty: zero
   std::vector<double> spin;      ///< rad per time; one number in two dimensions, three in three; empty: zero
   std::vector<double> about;     ///< empty: the centre of mass of the cells

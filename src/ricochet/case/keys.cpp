@@ -61,8 +61,10 @@ std::string entry_of(const Section& section, const std::vector<std::string>& par
 void enter_key(const std::vector<std::string>& parts, std::size_t at, KeyPath& path) {
   const Key& key = *path.key;
   if (at + 1 == parts.size()) return;
-  if (key.type == KeyType::table) {
+  if (key.type == KeyType::table || key.type == KeyType::tables) {
     path.sub_table = key.name;
+    if (key.type == KeyType::tables && is_digits(parts[at + 1], 1, 9) && at + 2 < parts.size())
+      path.sub_entry = std::to_string(std::stol(parts[++at]));
     path.key = find_key(key.keys, parts[at + 1]);
     if (path.key == nullptr) {
       refuse(unknown_key_message(parts[at + 1], fmt::format("{}.{}", path.section->name, key.name), key.keys));

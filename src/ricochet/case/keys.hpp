@@ -12,6 +12,8 @@
 /// is one entry in keys_table*.cpp and one line in read_sections.cpp that puts it into the Case.
 namespace ricochet {
 
+struct TomlNode;
+
 enum class SectionKind {
   top,    ///< keys before the first section
   table,  ///< [name]
@@ -33,6 +35,9 @@ struct Section {
   bool required = false;
   std::string gives_way_to = {};  ///< the section with whose entries this one is not required
   KeySets alternatives = {};
+  /// Entries that need none of the alternatives, and what they are, for messages; null: there are none.
+  bool (*stands_alone)(const TomlNode& entry) = nullptr;
+  std::string alone = {};
   std::string doc;
   std::vector<Key> keys;  ///< with those of all types
   /// The key that names a registered type, and the types with the keys that are theirs; empty where there are none.
@@ -70,6 +75,7 @@ struct KeyPath {
   std::string entry;         ///< number in a list, name of a named section; else empty
   const Key* key = nullptr;  ///< the sub-table's key for a path into a sub-table
   std::string sub_table;     ///< name of the sub-table, parameters or conditions it goes into; else empty
+  std::string sub_entry;     ///< number of the sub-table in a list of them; else empty
   std::string member;        ///< name of the parameter or condition; else empty
 };
 

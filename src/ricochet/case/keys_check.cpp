@@ -86,7 +86,7 @@ class TreeChecker {
   [[nodiscard]] bool has_entries(const std::string& section) const;
   [[nodiscard]] bool gives_way(const std::string& section) const;
   void check_alternatives(const KeySets& alternatives, const std::vector<Key>& keys, const std::string& title,
-                          const TomlNode& table);
+                          const TomlNode& table, const Section* section = nullptr);
   void report_missing_section(const Section& section);
 
   TomlNode& root_;
@@ -216,7 +216,7 @@ void TreeChecker::check_entry(const Section& section, const std::string& title, 
   if (section.type_key.empty()) {
     check_known(section.keys, title, table);
     check_keys(section.keys, title, table);
-    return check_alternatives(section.alternatives, section.keys, title, table);
+    return check_alternatives(section.alternatives, section.keys, title, table, &section);
   }
   const TypeKeys* const type = find_type_of(section, table);
   const TomlNode* const named = table.find(section.type_key);
@@ -326,16 +326,21 @@ void TreeChecker::check_keys(const std::vector<Key>& keys, const std::string& ti
 void TreeChecker::check_key(const Key& key, const std::string& title, TomlNode& value) {
   check_value(key, value, problems_);
   if (value.is_refused) return;
-  if (key.type == KeyType::table) {
+  if (key.type == KeyType::table || key.type == KeyType::tables) {
     const std::string of_table = fmt::format("\"{}\" of {}", key.name, title);
-    check_known(key.keys, of_table, value);
-    check_keys(key.keys, of_table, value);
+    const auto check_table = [&](TomlNode& table) {
+      check_known(key.keys, of_table, table);
+      check_keys(key.keys, of_table, table);
+    };
+    if (value.is_table()) return check_table(value);
+    for (TomlNode& table : value.children) check_table(table);
+    return;
   }
   dimension_.note(key, title, value);
 }
 
 void TreeChecker::check_alternatives(const KeySets& alternatives, const std::vector<Key>& keys,
-                                     const std::string& title, const TomlNode& table) {
+                                     const std::string& title, const TomlNode& table, const Section* section) {
   if (alternatives.empty()) return;
   std::vector<std::string> given, texts;
   std::size_t touched = 0, complete = 0;
@@ -351,8 +356,11 @@ void TreeChecker::check_alternatives(const KeySets& alternatives, const std::vec
     if (present == names.size()) ++complete;
   }
   if (touched == 1 && complete == 1) return;
-  problems_.add(table.location, fmt::format("{} needs either {}; found {}", title, join_names(texts, " or ", false),
-                                            given.empty() ? "none of them" : join_names(given)));
+  const bool may_lack = section != nullptr && section->stands_alone != nullptr;
+  if (touched == 0 && may_lack && section->stands_alone(table)) return;
+  problems_.add(table.location, fmt::format("{} needs either {}; found {}{}", title, join_names(texts, " or ", false),
+                                            given.empty() ? "none of them" : join_names(given),
+                                            touched == 0 && may_lack ? "; without them " + section->alone : ""));
 }
 
 void TreeChecker::report_missing_section(const Section& section) {

@@ -25,7 +25,8 @@ void check_condition(const TomlNode& root, TomlNode& condition, Problems& proble
   try {
     const KeyPath path = parse_key_path(condition.key);
     std::string missing;
-    if (path.key->type == KeyType::conditions || (path.key->type == KeyType::table && path.member.empty())) {
+    if (path.key->type == KeyType::conditions ||
+        ((path.key->type == KeyType::table || path.key->type == KeyType::tables) && path.member.empty())) {
       missing = "it holds several values: say which";
     } else {
       static_cast<void>(find_entry(root, path, missing));

@@ -202,6 +202,9 @@ void check_value(const Key& key, TomlNode& value, Problems& problems) {
     case KeyType::table:  // what they hold is checked by check_tree, which knows the whole document
       if (!value.is_table()) refuse_type(key, value, problems);
       return;
+    case KeyType::tables:
+      if (!value.is_table() && !value.is_list_of_tables()) refuse_type(key, value, problems);
+      return;
   }
 }
 

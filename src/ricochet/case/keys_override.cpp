@@ -43,6 +43,18 @@ TomlNode& enter_table(TomlNode& parent, const std::string& name, const SourceLoc
   return made;
 }
 
+// A sub-table, or that of a list of them which the path names.
+TomlNode* enter_sub_table(TomlNode& node, const KeyPath& path) {
+  if (path.sub_entry.empty() && !node.is_list_of_tables()) return &node;
+  const std::size_t count = node.is_list_of_tables() ? node.children.size() : 0;
+  const auto number = path.sub_entry.empty() ? count : static_cast<std::size_t>(std::stol(path.sub_entry));
+  if (number < count) return &node.children[number];
+  throw Error(ErrorKind::invalid_input,
+              count == 0 ? fmt::format("\"{0}\" is no list of tables: write {0}.{1}", path.sub_table, path.key->name)
+                         : fmt::format("\"{0}\" is a list: say which entry, from {0}.0.{1} to {0}.{2}.{1}",
+                                       path.sub_table, path.key->name, count - 1));
+}
+
 // The table that holds the key, or nullptr when the document has something else in its place, which check_tree reports.
 TomlNode* enter_section(TomlNode& root, const KeyPath& path, const SourceLocation& location) {
   TomlNode* table = &root;
@@ -56,7 +68,8 @@ TomlNode* enter_section(TomlNode& root, const KeyPath& path, const SourceLocatio
     if (path.section->kind == SectionKind::named && table->is_table())
       table = &enter_table(*table, path.entry, location);
   }
-  if (table->is_table() && !path.sub_table.empty()) table = &enter_table(*table, path.sub_table, location);
+  if (table->is_table() && !path.sub_table.empty())
+    table = enter_sub_table(enter_table(*table, path.sub_table, location), path);
   return table->is_table() ? table : nullptr;
 }
 

@@ -25,6 +25,8 @@ template <class Type>
 [[nodiscard]] Section mesh_section();
 [[nodiscard]] Section part_section();
 [[nodiscard]] Section motion_section();
+/// Whether the `group` of a [[contact]] stands for bodies: "all", or a pattern, perhaps among others.
+[[nodiscard]] bool names_bodies(const TomlNode& contact);
 // keys_table_model.cpp: what else is simulated.
 [[nodiscard]] Section material_section();
 [[nodiscard]] Section obstacle_section();

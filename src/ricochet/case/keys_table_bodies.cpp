@@ -1,5 +1,10 @@
 #include "ricochet/case/keys_table.hpp"
 
+#include <algorithm>
+
+#include "ricochet/case/toml_tree.hpp"
+#include "ricochet/mesh/derived_groups.hpp"
+
 // The part of the table that is about bodies: their files and places, and how they move at the start.
 namespace ricochet {
 
@@ -8,7 +13,7 @@ namespace {
 Key turn_key() {
   return {
       .name = "turn",
-      .type = KeyType::table,
+      .type = KeyType::tables,
       .keys = {{.name = "angle",
                 .type = KeyType::number,
                 .unit = "degrees",
@@ -21,10 +26,11 @@ Key turn_key() {
                {.name = "about",
                 .type = KeyType::vector,
                 .unit = "length",
-                .doc = "A point of the axis, in the coordinates after `scale`; absent: the origin."}},
+                .doc = "A point of the axis, in the coordinates after `scale` and the turns before; absent: the "
+                       "origin."}},
       .doc =
-          "Turns the mesh, after `scale` and before `move`. Obstacles, probes and expressions see where it is "
-          "then."};
+          "Turns the mesh, after `scale` and before `move`; those of a list one after the other. Obstacles, probes and "
+          "expressions see where it is then."};
 }
 
 /// Which file, and where its mesh is put: of [mesh], and of every part.
@@ -60,6 +66,22 @@ std::vector<Key> file_keys() {
        .type = KeyType::vector,
        .unit = "length",
        .doc = "Added to all coordinates, after `scale` and `turn`."},
+      {.name = "rest_on",
+       .doc =
+           "Name of an obstacle, a section [obstacle.NAME]: after `move` the mesh is brought to where its lowest node "
+           "is at `rest_gap` above it at t = 0, along the normal of a plane; to others along gravity, or without "
+           "gravity along the obstacle's normal at the nearest node."},
+      {.name = "rest_gap",
+       .type = KeyType::number,
+       .unit = "length",
+       .range = nonnegative,
+       .doc = "Distance of the lowest node from the obstacle of `rest_on`. Absent: they touch."},
+      {.name = "drop_height",
+       .type = KeyType::number,
+       .unit = "length",
+       .range = positive,
+       .doc = "Height through which the body has fallen from rest when the run starts: adds the velocity √(2gH) along "
+              "`load.gravity`, which must be given."},
   };
 }
 
@@ -79,6 +101,14 @@ Key spin_key(const char* about) {
 }
 
 }  // namespace
+
+bool names_bodies(const TomlNode& contact) {
+  const TomlNode* const group = contact.find("group");
+  const auto is_name = [](const TomlNode& name) {
+    return name.text == all_cells_name || name.text.find('*') != std::string::npos;
+  };
+  return group != nullptr && (is_name(*group) || std::any_of(group->children.begin(), group->children.end(), is_name));
+}
 
 Section mesh_section() {
   Section section{.name = "mesh",

@@ -233,6 +233,8 @@ Section contact_section() {
       .name = "contact",
       .kind = SectionKind::list,
       .alternatives = {{"obstacle"}, {"against"}},
+      .stands_alone = names_bodies,
+      .alone = "`group` is \"all\", or a pattern such as \"disc-*\": every body may touch every other",
       .doc = "A part of the boundary that may touch an obstacle, or the boundary of another body.",
       .keys = {
           group_key("boundary facets", "boundary"),
@@ -281,10 +283,10 @@ Section contact_section() {
                   "Friction and multipliers have no part in it."},
           {.name = "sliding",
            .type = KeyType::choice,
-           .standard = "small",
            .choices = {"small", "large"},
            .doc = "Between bodies: small sliding keeps the pairs of facets that were found at the start; with large "
-                  "sliding they follow the motion. See docs/sliding.md."},
+                  "sliding they follow the motion. See docs/sliding.md. Absent: small, of every body against every "
+                  "other large."},
           {.name = "unstable_multipliers",
            .type = KeyType::choice,
            .standard = "refuse",

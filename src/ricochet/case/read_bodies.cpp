@@ -3,24 +3,34 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace ricochet {
 
 namespace {
 
-/// Turn and move.
+Turn read_turn(const SectionReader& reader) {
+  const Turn turn{reader.number("angle"), reader.vector("axis"), reader.vector("about")};
+  if (reader.is_usable("axis") && std::all_of(turn.axis.begin(), turn.axis.end(), [](double a) { return a == 0.0; }))
+    reader.add_problem("axis", "\"axis\" must not be zero: it is the direction that the mesh turns about");
+  return turn;
+}
+
+/// Turns and move.
 Placement read_placement(const SectionReader& reader) {
   Placement placement;
-  if (reader.is_usable("turn")) {
-    const SectionReader turn = reader.table("turn");
-    placement = {turn.number("angle"), turn.vector("axis"), turn.vector("about"), {}};
-    const std::vector<double>& axis = placement.axis;
-    if (turn.is_usable("axis") && std::all_of(axis.begin(), axis.end(), [](double a) { return a == 0.0; }))
-      turn.add_problem("axis", "\"axis\" must not be zero: it is the direction that the mesh turns about");
-  }
+  for (const SectionReader& turn : reader.tables("turn")) placement.turns.push_back(read_turn(turn));
   placement.move = reader.vector("move");
   return placement;
+}
+
+void read_rest(const SectionReader& reader, BodyFile& body) {
+  body.rest_on = reader.text("rest_on");
+  body.rest_gap = reader.number("rest_gap");
+  body.drop_height = reader.number("drop_height");
+  if (reader.is_given("rest_gap") && !reader.is_given("rest_on"))
+    reader.add_problem("rest_gap", "\"rest_gap\" is the distance from the obstacle of \"rest_on\": give that, too");
 }
 
 void read_file(const SectionReader& reader, const std::string& case_path, BodyFile& body) {
@@ -31,6 +41,7 @@ void read_file(const SectionReader& reader, const std::string& case_path, BodyFi
   body.scale = reader.optional_number("scale").value_or(1.0);
   body.refinements = static_cast<int>(reader.optional_integer("refine").value_or(0));
   body.placement = read_placement(reader);
+  read_rest(reader, body);
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
@@ -43,6 +54,25 @@ void read_file(const SectionReader& reader, const std::string& case_path, BodyFi
 
 bool moves(const SectionReader& reader) {
   return reader.is_given("velocity") || reader.is_given("spin");
+}
+
+/// The velocity with what a body has gained that fell from rest through its drop_height.
+std::vector<double> with_drop(std::vector<double> velocity, const SectionReader& reader, double height,
+                              const std::vector<double>& gravity) {
+  if (!reader.is_given("drop_height") || !reader.is_usable("drop_height")) return velocity;
+  double size = 0.0;
+  for (const double component : gravity) size = std::hypot(size, component);
+  if (size == 0.0) {
+    reader.add_problem("drop_height",
+                       "\"drop_height\" is fallen through under gravity, and the case has none: give [load] gravity, "
+                       "or the \"velocity\" in place of the height");
+    return velocity;
+  }
+  velocity.resize(gravity.size(), 0.0);
+  // v = √(2gH) in units whose squares may be out of range.
+  const double speed = std::sqrt(2.0 * size) * std::sqrt(height);
+  for (std::size_t k = 0; k < gravity.size(); ++k) velocity[k] += speed * (gravity[k] / size);
+  return velocity;
 }
 
 }  // namespace
@@ -62,11 +92,20 @@ PartSection read_part(const SectionReader& reader, const std::string& case_path)
   return part;
 }
 
-void read_motions(const std::vector<SectionReader>& parts, const std::vector<SectionReader>& motions, Case& result) {
-  for (const SectionReader& reader : parts) {
-    if (!moves(reader)) continue;
-    result.motions.push_back(
-        {"part." + reader.name(), "", reader.name(), reader.vector("velocity"), reader.axial("spin"), {}});
+void read_motions(const SectionReader& mesh, const std::vector<SectionReader>& parts,
+                  const std::vector<SectionReader>& motions, Case& result) {
+  const std::vector<double>& gravity = result.load.gravity;
+  if (mesh.is_given("drop_height"))
+    result.motions.push_back({"mesh", "", "", with_drop({}, mesh, result.mesh.drop_height, gravity), {}, {}});
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const SectionReader& reader = parts[i];
+    if (!moves(reader) && !reader.is_given("drop_height")) continue;
+    result.motions.push_back({"part." + reader.name(),
+                              "",
+                              reader.name(),
+                              with_drop(reader.vector("velocity"), reader, result.parts[i].drop_height, gravity),
+                              reader.axial("spin"),
+                              {}});
   }
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const SectionReader& reader = motions[i];

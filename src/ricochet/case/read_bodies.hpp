@@ -12,7 +12,9 @@ namespace ricochet {
 [[nodiscard]] MeshSection read_mesh(const SectionReader& reader, const std::string& case_path);
 [[nodiscard]] PartSection read_part(const SectionReader& reader, const std::string& case_path);
 
-/// Adds those of the parts that have a velocity or a spin, then those of [[motion]].
-void read_motions(const std::vector<SectionReader>& parts, const std::vector<SectionReader>& motions, Case& result);
+/// Adds those of the mesh or the parts that are dropped, or have a velocity or a spin, then those of [[motion]].
+/// Gravity, meshes and parts are read.
+void read_motions(const SectionReader& mesh, const std::vector<SectionReader>& parts,
+                  const std::vector<SectionReader>& motions, Case& result);
 
 }  // namespace ricochet

@@ -16,6 +16,8 @@
 
 namespace ricochet {
 
+using namespace std::string_view_literals;
+
 namespace {
 
 // Readers of all entries of a list of sections; one reader for a plain section; none for what was refused.
@@ -74,10 +76,10 @@ ContactSection read_contact(const SectionReader& reader, Case& result) {
   contact.friction = reader.number("friction");
   contact.friction_bound = reader.number("friction_bound");
   contact.multipliers = reader.text("multipliers");
-  if (contact.multipliers.empty()) contact.multipliers = contact.against.empty() ? "nodal" : "p1";
+  if (contact.multipliers.empty()) contact.multipliers = contact.between_bodies() ? "p1" : "nodal";
   contact.multipliers_on = reader.text("multipliers_on");
   contact.closed_gaps = reader.text("initial_gap") == "closed";
-  contact.slides_far = reader.text("sliding") == "large";
+  contact.slides_far = reader.text("sliding") == "large" || (contact.is_of_all_pairs() && !reader.is_given("sliding"));
   contact.pair_at = reader.vector("pair_at");
   contact.tied = reader.flag("tied");
   for (const char* const key : {"friction", "friction_bound", "multipliers", "initial_gap", "pair_at", "sliding"}) {
@@ -86,8 +88,10 @@ ContactSection read_contact(const SectionReader& reader, Case& result) {
                        fmt::format("\"{}\" is of surfaces that may part or slide; these are tied: leave it out", key));
   }
   for (const char* const key : {"multipliers_on", "initial_gap", "pair_at", "sliding", "tied"}) {
-    if (!reader.is_given(key) || reader.is_given("against")) continue;
-    reader.add_problem(key, fmt::format("\"{}\" is of contact between bodies; give \"against\", or leave it out", key));
+    const bool is_of_two = key == "multipliers_on"sv || key == "pair_at"sv || key == "tied"sv;
+    if (!reader.is_given(key) || reader.is_given("against") || (contact.is_of_all_pairs() && !is_of_two)) continue;
+    reader.add_problem(key, fmt::format("\"{}\" is of contact between {}; give \"against\", or leave it out", key,
+                                        contact.is_of_all_pairs() ? "two groups" : "bodies"));
   }
   if (contact.slides_far && reader.is_given("pair_at"))
     reader.add_problem("pair_at",
@@ -113,11 +117,11 @@ ContactSection read_contact(const SectionReader& reader, Case& result) {
   return contact;
 }
 
-void check_obstacle_name(const SectionReader& reader, const std::vector<std::string>& obstacles) {
-  const std::string name = reader.text("obstacle");
-  if (!reader.is_usable("obstacle") || std::find(obstacles.begin(), obstacles.end(), name) != obstacles.end()) return;
+void check_obstacle_name(const SectionReader& reader, const char* key, const std::vector<std::string>& obstacles) {
+  const std::string name = reader.text(key);
+  if (!reader.is_usable(key) || std::find(obstacles.begin(), obstacles.end(), name) != obstacles.end()) return;
   const std::string near = nearest_name(name, obstacles);
-  reader.add_problem("obstacle",
+  reader.add_problem(key,
                      fmt::format("there is no [obstacle.{}]; {}", name,
                                  !near.empty()       ? fmt::format("did you mean \"{}\"?", near)
                                  : obstacles.empty() ? "the case has no obstacles"
@@ -320,15 +324,19 @@ void read_obstacles_and_contacts(const TomlNode& root, const Sections& sections,
   const std::vector<SectionReader> contacts = sections.all("contact");
   for (const SectionReader& reader : contacts) {
     result.contacts.push_back(read_contact(reader, result));
-    if (obstacles == nullptr || !obstacles->is_refused) check_obstacle_name(reader, names);
+    if (obstacles == nullptr || !obstacles->is_refused) check_obstacle_name(reader, "obstacle", names);
   }
-  for (const char* const opponent : {"obstacle", "against"}) {
-    std::vector<SectionReader> of_kind;
-    for (const SectionReader& reader : contacts) {
-      if (reader.is_usable(opponent)) of_kind.push_back(reader);
-    }
-    check_distinct(of_kind, "contact", "group", opponent);
+  std::vector<SectionReader> bodies = sections.all("part");
+  bodies.push_back(sections.one("mesh"));
+  for (const SectionReader& reader : bodies) {
+    if (obstacles == nullptr || !obstacles->is_refused) check_obstacle_name(reader, "rest_on", names);
   }
+  std::vector<SectionReader> of_kind[3];
+  for (const SectionReader& reader : contacts)
+    of_kind[reader.is_given("obstacle") ? 0 : reader.is_given("against") ? 1 : 2].push_back(reader);
+  check_distinct(of_kind[0], "contact", "group", "obstacle");
+  check_distinct(of_kind[1], "contact", "group", "against");
+  check_distinct(of_kind[2], "contact", "group");
 }
 
 }  // namespace
@@ -351,7 +359,7 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems) {
   const SectionReader load = sections.one("load");
   result.load = {load.vector("gravity"), load.formulas("body_force")};
   result.initial = read_initial(sections.one("initial"));
-  read_motions(sections.all("part"), sections.all("motion"), result);
+  read_motions(sections.one("mesh"), sections.all("part"), sections.all("motion"), result);
   const SectionReader mass = sections.one("mass");
   result.mass = {mass.text("type"), mass.type_parameters(*find_section("mass"))};
   result.time = read_time(sections.one("time"));

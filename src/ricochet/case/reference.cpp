@@ -159,7 +159,7 @@ std::string rows(const std::vector<Key>& keys, const std::string& prefix) {
   for (const Key& key : keys) {
     text += fmt::format("| `{}{}` | {} | {} | {} | {} |\n", prefix, key.name, cell(wanted(key)), cell(key.unit),
                         default_text(key), cell(key.doc));
-    if (key.type == KeyType::table) text += rows(key.keys, prefix + key.name + ".");
+    if (key.type == KeyType::table || key.type == KeyType::tables) text += rows(key.keys, prefix + key.name + ".");
   }
   return text;
 }
@@ -192,7 +192,8 @@ std::string alternatives_text(const KeySets& alternatives, const std::string& wh
 }
 
 std::string alternatives_text(const Section& section) {
-  std::string text = alternatives_text(section.alternatives, "");
+  std::string text =
+      alternatives_text(section.alternatives, section.stands_alone != nullptr ? "; without them " + section.alone : "");
   for (const TypeKeys& type : section.types) {
     const bool only_one = section.types.size() == 1;
     text += alternatives_text(type.alternatives,

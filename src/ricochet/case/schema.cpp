@@ -91,6 +91,11 @@ Json type_schema(const Key& key) {
       return {{"type", "object"}};
     case KeyType::table:
       return keys_schema(key.keys);
+    case KeyType::tables: {
+      const Json table = keys_schema(key.keys);
+      const Json list{{"type", "array"}, {"items", table}, {"minItems", 1}};
+      return {{"anyOf", Json::array({table, list})}};
+    }
   }
   return {};
 }
@@ -123,7 +128,7 @@ Json keys_schema(const std::vector<Key>& keys) {
 }
 
 // Exactly one set of keys, whole: each set comes with the refusal of every key of the others.
-void add_alternatives(const KeySets& alternatives, Json& schema) {
+void add_alternatives(const KeySets& alternatives, Json& schema, bool may_lack = false) {
   if (alternatives.empty()) return;
   Json options = Json::array();
   for (const auto& chosen : alternatives) {
@@ -133,6 +138,11 @@ void add_alternatives(const KeySets& alternatives, Json& schema) {
       for (const std::string& name : other) refused.push_back({{"required", Json::array({name})}});
     }
     options.push_back({{"required", chosen}, {"not", {{"anyOf", refused}}}});
+  }
+  if (may_lack) {
+    Json refused = Json::array();
+    for (const auto& set : alternatives) refused.push_back({{"required", set}});
+    options.push_back({{"not", {{"anyOf", refused}}}});
   }
   schema["oneOf"] = options;
 }
@@ -167,7 +177,7 @@ void add_types(const Section& section, Json& schema) {
 
 Json section_schema(const Section& section) {
   Json entry = keys_schema(section.keys);
-  add_alternatives(section.alternatives, entry);
+  add_alternatives(section.alternatives, entry, section.stands_alone != nullptr);
   if (!section.types.empty()) add_types(section, entry);
   Json schema = entry;
   if (section.kind == SectionKind::list) schema = {{"type", "array"}, {"items", entry}};

@@ -170,6 +170,15 @@ SectionReader SectionReader::table(const std::string& name) const {
   return {find_key(keys_, name)->keys, node != nullptr ? *node : absent, problems_};
 }
 
+std::vector<SectionReader> SectionReader::tables(const std::string& name) const {
+  const TomlNode* const node = usable(name);
+  if (node == nullptr) return {};
+  if (node->is_table()) return {table(name)};
+  std::vector<SectionReader> result;
+  for (const TomlNode& entry : node->children) result.emplace_back(find_key(keys_, name)->keys, entry, problems_);
+  return result;
+}
+
 SourceLocation SectionReader::where(const std::string& name) const {
   const TomlNode* node = table_.find(name);
   return node != nullptr ? node->location : table_.location;

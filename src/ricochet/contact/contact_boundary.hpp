@@ -48,6 +48,7 @@ struct ContactPair {
   bool slides_far = false;       ///< facets are paired anew as the bodies move (sliding/sliding_pair.hpp)
   bool tied = false;             ///< glued (tied_surfaces.hpp): there are no contact points
   bool exchanged = false;        ///< the case names `opposite_group` first: reports give forces on its body
+  bool is_one_of_many = false;   ///< of every body against every other: what is far apart is not looked at
   std::string side_reason = {};  ///< why `group` carries the multipliers; empty: the case says which one does
 
   [[nodiscard]] bool between_bodies() const { return obstacle == nullptr; }

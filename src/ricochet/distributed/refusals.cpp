@@ -23,7 +23,9 @@ void refuse_undividable_case(const Case& input) {
   }
   for (std::size_t i = 0; i < input.contacts.size(); ++i) {
     const ContactSection& contact = input.contacts[i];
-    if (!contact.against.empty()) refuse_several(input, fmt::format("contact.{}.against", i), "contact between bodies");
+    if (contact.between_bodies())
+      refuse_several(input, fmt::format("contact.{}.{}", i, contact.is_of_all_pairs() ? "group" : "against"),
+                     "contact between bodies");
   }
   for (const ObstacleSection& obstacle : input.obstacles) {
     if (obstacle.is_free())

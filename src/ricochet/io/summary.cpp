@@ -62,6 +62,7 @@ Json contacts_to_json(const RunSummary& summary) {
                   {"obstacle_velocity", c.obstacle_velocity},
                   {"obstacle_rotation_rate", c.obstacle_rotation_rate}};
     if (c.between_bodies) entry["tied"] = c.tied;
+    if (!c.pair_of.empty()) entry["pair_of"] = c.pair_of;
     if (c.facing) {
       entry["facing"] = {{"multipliers_on", c.facing->multipliers_on},
                          {"reason", c.facing->reason},
@@ -330,7 +331,8 @@ RunSummary summary_from_json(const std::string& text, const std::string& path) {
       s.contacts.push_back({contact.at("group"), contact.at(between_bodies ? "against" : "obstacle"),
                             contact.at("multipliers"), contact.at("friction"), contact.at("friction_bound"),
                             contact.at("obstacle_velocity"), contact.at("obstacle_rotation_rate"), between_bodies,
-                            contact.value("tied", Json(false)).get<bool>(), facing_from(contact)});
+                            contact.value("tied", Json(false)).get<bool>(), facing_from(contact),
+                            contact.value("pair_of", std::string())});
     }
     for (const auto& probe : json.at("probes")) {
       s.probes.push_back({probe.at("name"), probe.at("node"), probe.at("distance"),

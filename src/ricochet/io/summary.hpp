@@ -53,7 +53,7 @@ struct FacingDescription {
   double smallest_gap = 0.0, largest_gap = 0.0;
 };
 
-/// A [[contact]] entry as it ran.
+/// A [[contact]] entry as it ran, or one of the pairs of bodies that it stands for.
 struct ContactDescription {
   std::string group, opponent, multipliers;  ///< the opponent: an obstacle, or a group of another body
   double friction = 0.0, friction_bound = 0.0;
@@ -62,6 +62,7 @@ struct ContactDescription {
   bool between_bodies = false;
   bool tied = false;                             ///< glued: no multipliers, no friction
   std::optional<FacingDescription> facing = {};  ///< none: an obstacle, or it is not known
+  std::string pair_of = {};  ///< the group of an entry that stands for every body against every other; else empty
 };
 
 /// A body of the mesh, and how long its contact must be lost for an impact to have ended.

@@ -77,13 +77,12 @@ void renumber(const std::vector<Index>& before, const std::vector<Index>& after,
   }
 }
 
-/// Of a part, or of the whole mesh where there is none.
-void add_boundary(Mesh& mesh, const std::string& name, const MeshPart* part) {
+/// The facets of the boundary that `takes(facet)` lets through.
+template <class Takes>
+void add_boundary(Mesh& mesh, const std::string& name, const Takes& takes) {
   std::map<CellShape, std::vector<CellFacet>> by_shape;
   for (const CellFacet& facet : boundary_facets(mesh.cells)) {
-    const CellBlock& block = mesh.cells[facet.block];
-    if (part == nullptr || part->has_node(block.cell(facet.cell)[0]))
-      by_shape[facet_shape(block.shape)].push_back(facet);
+    if (takes(facet)) by_shape[facet_shape(mesh.cells[facet.block].shape)].push_back(facet);
   }
   Group boundary{name, free_tag(mesh, mesh.dimension - 1), mesh.dimension - 1, {}};
   for (const auto& [shape, facets] : by_shape) (void)block_of(mesh, shape);
@@ -124,9 +123,20 @@ void add_built_in_group(Mesh& mesh, const std::string& name, int dimension) {
   if (mesh.find_group(name, dimension) != nullptr) return;
   const auto [exists, part] = find_built_in(mesh, name, dimension);
   if (!exists) return;
-  if (dimension == mesh.dimension - 1) return add_boundary(mesh, name, part);
+  if (dimension == mesh.dimension - 1) {
+    return add_boundary(mesh, name, [&mesh, part = part](const CellFacet& facet) {
+      return part == nullptr || part->has_node(mesh.cells[facet.block].cell(facet.cell)[0]);
+    });
+  }
   mesh.groups.push_back(
       {name, free_tag(mesh, dimension), dimension, part != nullptr ? part->cells : numbers_up_to(mesh.cell_count())});
+}
+
+void add_boundary_of_cells(Mesh& mesh, const std::string& name, const std::vector<char>& cells) {
+  const std::vector<Index> first = first_numbers(mesh.cells);
+  add_boundary(mesh, name, [&](const CellFacet& facet) {
+    return cells[static_cast<std::size_t>(first[facet.block] + facet.cell)] != 0;
+  });
 }
 
 void add_union_of_groups(Mesh& mesh, const std::string& name, const std::vector<std::string>& parts, int dimension) {

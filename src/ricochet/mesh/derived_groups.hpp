@@ -21,6 +21,10 @@ inline constexpr const char* whole_boundary_name = "boundary";
 /// join the mesh's facets, with the tag 0.
 void add_built_in_group(Mesh& mesh, const std::string& name, int dimension);
 
+/// Adds the facets of the mesh's boundary that belong to some cells (`cells`: 1 for each of these) under a name that no
+/// group of facets has.
+void add_boundary_of_cells(Mesh& mesh, const std::string& name, const std::vector<char>& cells);
+
 /// Adds the union of groups, all of that dimension and there, under a name of its own, if it is not there yet.
 void add_union_of_groups(Mesh& mesh, const std::string& name, const std::vector<std::string>& parts, int dimension);
 

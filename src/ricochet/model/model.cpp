@@ -298,7 +298,8 @@ std::unique_ptr<Model> build(const Case& input, bool with_forces, BuildTimes* ti
   const double read_seconds = timer.restart();
   check_dimensions(input, files.front().mesh.dimension);
   check_axisymmetry(input, files.front().mesh.dimension);
-  model->mesh = put_together(input, std::move(files));
+  make_obstacles(input, *model, files.front().mesh.dimension);
+  model->mesh = put_together(input, *model, std::move(files));
   place_on_axis(input, model->mesh);
   complete_groups(input, model->mesh);
   model->space = make_displacement_space(model->mesh, input.mesh.degree);

@@ -25,6 +25,13 @@ struct WatchedPlaces {
   std::vector<Index> nodes;       ///< of a boundary
 };
 
+/// A contact of two surfaces: a [[contact]] of the case, or one of the pairs of bodies that such an entry stands for.
+struct ModelContact : ContactSection {
+  std::size_t entry = 0;  ///< number of the [[contact]]
+  std::vector<Index> facets, opposite_facets;
+  std::string pair_of = {};  ///< the entry's `group`, where it stands for every body against every other; else empty
+};
+
 /// Of the whole body, whatever part of it is here.
 struct ModelSizes {
   Index nodes = 0, cells = 0, dofs = 0, contact_points = 0, supported_dofs = 0;
@@ -37,9 +44,10 @@ struct Model {
   Body body;
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<ContactScale> contact_scales;  ///< of each obstacle, what it is fitted to
-  std::vector<ContactPair> contact_pairs;
-  TiedNodes tied;                        ///< nodes of surfaces that are glued to others
-  std::vector<PairFacing> pair_facings;  ///< of each; nothing of those with obstacles
+  std::vector<ModelContact> contacts;        ///< in the order of the case
+  std::vector<ContactPair> contact_pairs;    ///< of each contact
+  TiedNodes tied;                            ///< nodes of surfaces that are glued to others
+  std::vector<PairFacing> pair_facings;      ///< of each; nothing of those with obstacles
   SemidiscreteProblem problem;
   ModelSizes sizes;
   std::string mass_built;  ///< the name of the construction; for "equivalent" the one that it chose
@@ -91,6 +99,8 @@ struct CaseMeshFile {
   MeshFile file;
   int refinements = 0;  ///< once it is read (refine_mesh.hpp)
   Placement placement;
+  std::string rest_on;  ///< an obstacle; empty: none
+  double rest_gap = 0.0;
 };
 
 /// The columns of the histories of its runs.

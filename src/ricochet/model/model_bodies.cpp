@@ -45,7 +45,7 @@ void warn_of_overlap_where_paired(const Case& input, std::size_t number, const M
       "{}: {} overlap where pair_at puts them: {} inside of the other body, the deepest by {:.3g} at {} of the mesh, "
       "so that facets are paired past where they will meet; give the displacement at which the bodies begin to touch, "
       "or set initial_gap = \"closed\" where surfaces that touch overlap since their facets are flat",
-      input.where(fmt::format("contact.{}.pair_at", number)).text(), names_of_pair(pair),
+      input.where(fmt::format("contact.{}.pair_at", model.contacts[number].entry)).text(), names_of_pair(pair),
       counted(overlap.count, "contact point is", "contact points are"), overlap.deepest, place_text(overlap.place)));
 }
 
@@ -69,14 +69,14 @@ void check_sliding_bodies(const Case& input, const std::string& key, const Model
 
 }  // namespace
 
-ContactPair body_pair(const Case& input, std::size_t number, const Model& model) {
-  const ContactSection& section = input.contacts[number];
-  const std::string key = fmt::format("contact.{}.", number);
+ContactPair body_pair(const Case& input, const ModelContact& section, const Model& model) {
+  const std::string key = fmt::format("contact.{}.", section.entry);
   ContactPair pair;
   pair.group = section.group;
-  pair.facets = boundary_at(input, key + "group", model.mesh, section.group);
+  pair.facets = section.facets;
   pair.opposite_group = section.against;
-  pair.opposite_facets = boundary_at(input, key + "against", model.mesh, section.against);
+  pair.opposite_facets = section.opposite_facets;
+  pair.is_one_of_many = !section.pair_of.empty();
   pair.friction = {section.friction, section.friction_bound};
   pair.multipliers = section.multipliers;
   pair.closed_gaps = section.closed_gaps;
@@ -93,7 +93,7 @@ ContactPair body_pair(const Case& input, std::size_t number, const Model& model)
                        "facets of one body in each",
                        section.group, section.against, counted(common.size(), "facet")));
   }
-  if (pair.slides_far) check_sliding_bodies(input, key, model, pair);
+  if (pair.slides_far && !pair.is_one_of_many) check_sliding_bodies(input, key, model, pair);
   if (pair.is_self()) return pair;
   const bool is_chosen = section.multipliers_on == "automatic";
   const SideChoice choice =
@@ -105,7 +105,7 @@ ContactPair body_pair(const Case& input, std::size_t number, const Model& model)
     pair.exchanged = true;
   }
   pair.side_reason = choice.reason;
-  if (is_chosen) {
+  if (is_chosen && !pair.is_one_of_many) {
     log::info(fmt::format("contact of \"{}\" against \"{}\": {}: {}", section.group, section.against,
                           pair.tied ? "nodes of \"" + pair.group + "\" follow the other surface"
                                     : "group \"" + pair.group + "\" carries the multipliers",
@@ -117,17 +117,18 @@ ContactPair body_pair(const Case& input, std::size_t number, const Model& model)
 void check_facing(const Case& input, std::size_t number, const Model& model) {
   const ContactPair& pair = model.contact_pairs[number];
   const PairFacing& facing = model.pair_facings[number];
-  if (pair.slides_far && facing.points + facing.held > 0 && facing.uncovered == facing.points) {
+  if (pair.slides_far && !pair.is_one_of_many && facing.points + facing.held > 0 && facing.uncovered == facing.points) {
     log::info(fmt::format("{} do not face each other at the start: contact begins where they do", names_of_pair(pair)));
   }
   if (facing.points == 0 && facing.held == 0) {
-    refuse(input, fmt::format("contact.{}.against", number),
+    if (pair.is_one_of_many) return;  // others do
+    refuse(input, fmt::format("contact.{}.against", model.contacts[number].entry),
            fmt::format("{} do not face each other: seen along the normals of \"{}\" there is no facet of \"{}\"; check "
                        "which groups they are and where the bodies lie, {} by how much the body of "
                        "\"{}\" moves until they meet{}",
                        names_of_pair(pair), pair.group, pair.opposite_group,
                        pair.pair_at.size() > 0 ? "and that pair_at says" : "or say with pair_at",
-                       input.contacts[number].group,
+                       model.contacts[number].group,
                        pair.pair_at.size() > 0 ? " (surfaces that it puts deeper than half a cell into each other are "
                                                  "past each other)"
                                                : ""));
@@ -162,6 +163,7 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
   }
   const bool has_edge = facing.agreement < sharp_edge && anchor_of(pair.multipliers) == MultiplierAnchor::node;
   if (has_edge && pair.slides_far) {
+    if (pair.is_one_of_many) return;
     log::info(
         fmt::format("{}: facets of \"{}\" meet at edges, the sharpest at {}, where a contact point is the mean of both "
                     "sides: where an edge itself presses, the mesh there should be fine",
@@ -191,7 +193,7 @@ void check_body_overlaps(const Case& input, const Model& model) {
     const PointsInside overlap = points_inside(model.problem, gap, static_cast<int>(number));
     if (overlap.count == 0) continue;
     refuse(
-        input, fmt::format("contact.{}.group", number),
+        input, fmt::format("contact.{}.group", model.contacts[number].entry),
         fmt::format("{} overlap at the start: {} inside of the other body, the deepest by {:.3g} at {}, and would be "
                     "pushed out at once, which creates energy; move the bodies apart, set initial_gap = \"closed\" "
                     "where surfaces that touch overlap since their facets are flat, or set initial.displacement = "
@@ -208,7 +210,7 @@ void refuse_overlap_with_obstacle(const Case& input, const Model& model, std::si
   const PointsInside overlap =
       points_inside(model.problem, gap, static_cast<int>(number), off_by_facets * model.sizes.extent);
   if (overlap.count == 0) return;
-  refuse(input, fmt::format("contact.{}.group", number),
+  refuse(input, fmt::format("contact.{}.group", model.contacts[number].entry),
          fmt::format("at the start {} of group \"{}\" {} inside of obstacle \"{}\", the deepest by {:.3g} at {}, and "
                      "would be pushed out at once, which creates energy; move one of them away, look on which side of "
                      "the obstacle the body lies (a plane's normal points out of it, other shapes have a \"side\"), or "

@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <map>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
@@ -18,15 +17,17 @@ namespace {
 
 std::vector<Index> common_facets(const std::vector<Index>& one, const std::vector<Index>& other) {
   std::vector<Index> common;
+  if (one.empty() || other.empty() || one.back() < other.front() || other.back() < one.front()) return common;
   std::set_intersection(one.begin(), one.end(), other.begin(), other.end(), std::back_inserter(common));
   return common;
 }
 
 /// Facets may belong to one contact only: to be pressed by the same obstacle twice has no meaning, and two conditions
 /// between the same surfaces depend on each other.
-void check_overlap(const Case& input, const std::vector<ContactPair>& pairs) {
+void check_overlap(const Case& input, const Model& model) {
+  const std::vector<ContactPair>& pairs = model.contact_pairs;
   const auto refuse_pair = [&](std::size_t i, std::size_t k, std::size_t facets, const std::string& against) {
-    refuse(input, fmt::format("contact.{}.group", i),
+    refuse(input, fmt::format("contact.{}.group", model.contacts[i].entry),
            fmt::format("contact groups \"{}\" and \"{}\" overlap: they share {} against {}", pairs[k].group,
                        pairs[i].group, counted(facets, "facet"), against));
   };
@@ -50,9 +51,10 @@ void check_overlap(const Case& input, const std::vector<ContactPair>& pairs) {
 }
 
 /// Nodal forces have no share of the area at the vertices of flat six-node triangles, and so no friction under a bound.
-void warn_of_bounds_without_area(const Case& input, const ContactBoundary& contact) {
-  for (std::size_t k = 0; k < input.contacts.size(); ++k) {
-    const ContactSection& section = input.contacts[k];
+void warn_of_bounds_without_area(const Model& model) {
+  const ContactBoundary& contact = model.problem.contact;
+  for (std::size_t k = 0; k < model.contacts.size(); ++k) {
+    const ContactSection& section = model.contacts[k];
     if (section.friction_bound == 0.0) continue;
     double largest = 0.0;
     const auto of_pair = [&](Index point) {
@@ -72,14 +74,13 @@ void warn_of_bounds_without_area(const Case& input, const ContactBoundary& conta
 
 /// Multipliers that do not go together with the displacement's degree on the facets of a group are refused, or warned
 /// of.
-void check_stability(const Case& input, std::size_t number, const Model& model) {
-  const ContactSection& section = input.contacts[number];
+void check_stability(const Case& input, const ModelContact& section, const Model& model) {
   for (const Index facet : model.contact_pairs.back().facets) {
     const CellShape shape = model.space.facets[locate_facet(model.space, facet).block].shape;
     const std::string reason = instability(section.multipliers, shape, model.space.degree);
     if (reason.empty()) continue;
     if (!section.allow_unstable_multipliers) {
-      refuse(input, fmt::format("contact.{}.multipliers", number),
+      refuse(input, fmt::format("contact.{}.multipliers", section.entry),
              fmt::format("{} (unstable_multipliers = \"allow\" runs it all the same)", reason));
     }
     log::warning(
@@ -88,14 +89,14 @@ void check_stability(const Case& input, std::size_t number, const Model& model) 
   }
 }
 
-ContactPair obstacle_pair(const Case& input, std::size_t number, const Model& model,
-                          const std::map<std::string, const Obstacle*>& obstacles) {
-  const ContactSection& section = input.contacts[number];
+ContactPair obstacle_pair(const Case& input, const ModelContact& section, const Model& model) {
   ContactPair pair;
   pair.group = section.group;
-  pair.facets = boundary_at(input, fmt::format("contact.{}.group", number), model.mesh, section.group);
+  pair.facets = section.facets;
   pair.obstacle_name = section.obstacle;
-  pair.obstacle = obstacles.at(section.obstacle);
+  for (std::size_t k = 0; k < input.obstacles.size(); ++k) {
+    if (input.obstacles[k].name == section.obstacle) pair.obstacle = model.obstacles[k].get();
+  }
   pair.friction = {section.friction, section.friction_bound};
   pair.multipliers = section.multipliers;
   return pair;
@@ -103,21 +104,22 @@ ContactPair obstacle_pair(const Case& input, std::size_t number, const Model& mo
 
 }  // namespace
 
-void collect_contacts(const Case& input, Model& model) {
-  std::map<std::string, const Obstacle*> by_name;
+void make_obstacles(const Case& input, Model& model, int dimension) {
   for (const ObstacleSection& section : input.obstacles) {
-    model.obstacles.push_back(make_obstacle(input, section, model.mesh.dimension));
+    model.obstacles.push_back(make_obstacle(input, section, dimension));
     check_axisymmetric_obstacle(input, section, *model.obstacles.back());
-    by_name[section.name] = model.obstacles.back().get();
   }
-  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
-    const bool between_bodies = !input.contacts[i].against.empty();
-    model.contact_pairs.push_back(between_bodies ? body_pair(input, i, model)
-                                                 : obstacle_pair(input, i, model, by_name));
+}
+
+void collect_contacts(const Case& input, Model& model) {
+  model.contacts = find_contacts(input, model);
+  for (const ModelContact& contact : model.contacts) {
+    model.contact_pairs.push_back(contact.between_bodies() ? body_pair(input, contact, model)
+                                                           : obstacle_pair(input, contact, model));
     model.problem.obstacles.push_back(model.contact_pairs.back().obstacle);
-    if (!model.contact_pairs.back().tied) check_stability(input, i, model);
+    if (!model.contact_pairs.back().tied) check_stability(input, contact, model);
   }
-  check_overlap(input, model.contact_pairs);
+  check_overlap(input, model);
   fit_obstacles(input, model);
 }
 
@@ -132,11 +134,11 @@ void add_contacts(const Case& input, Model& model) {
   } catch (const Error& problem) {
     refuse(input, "contact", problem.what());
   }
-  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
+  for (std::size_t i = 0; i < model.contacts.size(); ++i) {
     if (model.contact_pairs[i].between_bodies() && !model.contact_pairs[i].tied) check_facing(input, i, model);
   }
   model.problem.contact_stress = [&model] { return make_contact_stress(model.body, model.problem.contact); };
-  warn_of_bounds_without_area(input, model.problem.contact);
+  warn_of_bounds_without_area(model);
   if (held > 0) {
     log::warning(fmt::format("{} held by supports in the direction of the obstacle's normal: no contact {} there",
                              counted(held, "node of contact boundaries is", "nodes of contact boundaries are"),

@@ -12,6 +12,28 @@ namespace ricochet {
 
 namespace {
 
+/// Whether a name is what a pattern says, in which each * stands for any characters.
+bool fits_pattern(std::string_view name, std::string_view pattern) {
+  if (pattern.find('*') == std::string_view::npos) return name == pattern;
+  std::size_t at = 0, in = 0, star = std::string_view::npos, resume = 0;
+  while (at < name.size()) {
+    if (in < pattern.size() && pattern[in] == '*') {
+      star = in++;
+      resume = at;
+    } else if (in < pattern.size() && pattern[in] == name[at]) {
+      ++in;
+      ++at;
+    } else if (star != std::string_view::npos) {
+      in = star + 1;
+      at = ++resume;
+    } else {
+      return false;
+    }
+  }
+  while (in < pattern.size() && pattern[in] == '*') ++in;
+  return in == pattern.size();
+}
+
 class GroupCompleter {
  public:
   GroupCompleter(const Case& input, Mesh& mesh) : input_(input), mesh_(mesh) {}
@@ -43,12 +65,43 @@ class GroupCompleter {
     require(key_path, group, of_facets ? mesh_.dimension - 1 : mesh_.dimension);
   }
 
+  /// Surfaces of bodies: groups of facets; or what "all" and patterns stand for, under that name.
+  void require_surfaces(const std::string& key_path, const std::string& group) {
+    for (const std::string& name : names_in(group)) add_surfaces(name);
+    require(key_path, group, mesh_.dimension - 1);
+  }
+
   void raise() { problems_.raise(); }
 
  private:
   [[nodiscard]] std::vector<std::string> names_in(const std::string& group) const {
     const auto list = input_.group_lists.find(group);
     return list != input_.group_lists.end() ? list->second : std::vector<std::string>{group};
+  }
+
+  /// The boundary of all cells or, of a pattern, the groups of facets that it fits, else the boundaries of the parts
+  /// and groups of cells that it fits. Nothing where there is none, or a group of facets of that name.
+  void add_surfaces(const std::string& name) {
+    const int facets = mesh_.dimension - 1;
+    if (mesh_.find_group(name, facets) != nullptr || is_built_in_group(mesh_, name, facets)) return;
+    std::vector<char> cells(static_cast<std::size_t>(mesh_.cell_count()), name == all_cells_name ? 1 : 0);
+    std::vector<std::string> fitting;
+    const auto take = [&](const std::vector<Index>& members) {
+      for (const Index cell : members) cells[static_cast<std::size_t>(cell)] = 1;
+    };
+    for (const Group& group : mesh_.groups) {
+      if (!fits_pattern(group.name, name)) continue;
+      if (group.dimension == facets) fitting.push_back(group.name);
+      if (group.dimension == mesh_.dimension) take(group.members);
+    }
+    for (const MeshPart& part : mesh_.parts) {
+      if (fits_pattern(part.name, name)) take(part.cells);
+    }
+    if (!fitting.empty()) {
+      add_union_of_groups(mesh_, name, fitting, facets);
+    } else if (std::find(cells.begin(), cells.end(), 1) != cells.end()) {
+      add_boundary_of_cells(mesh_, name, cells);
+    }
   }
 
   void add_union(const std::string& key_path, const std::string& group, const std::vector<std::string>& names,
@@ -81,16 +134,21 @@ void complete_groups(const Case& input, Mesh& mesh) {
   };
   for (std::size_t i = 0; i < input.materials.size(); ++i)
     groups.require(fmt::format("material.{}.group", i), input.materials[i].group, mesh.dimension);
-  require_boundaries("contact", input.contacts);
   for (std::size_t i = 0; i < input.contacts.size(); ++i) {
-    if (!input.contacts[i].against.empty())
-      groups.require(fmt::format("contact.{}.against", i), input.contacts[i].against, mesh.dimension - 1);
+    const ContactSection& contact = input.contacts[i];
+    const std::string key = fmt::format("contact.{}.", i);
+    if (contact.is_of_all_pairs()) {
+      groups.require_surfaces(key + "group", contact.group);
+    } else {
+      groups.require(key + "group", contact.group, mesh.dimension - 1);
+    }
+    if (!contact.against.empty()) groups.require(key + "against", contact.against, mesh.dimension - 1);
   }
   require_boundaries("support", input.supports);
   require_boundaries("traction", input.tractions);
   require_boundaries("pressure", input.pressures);
   for (const MotionSection& motion : input.motions) {
-    if (motion.part.empty()) groups.require(motion.section + ".group", motion.group, mesh.dimension);
+    if (!motion.group.empty()) groups.require(motion.section + ".group", motion.group, mesh.dimension);
   }
   for (std::size_t i = 0; i < input.probes.size(); ++i) {
     const ProbeSection& probe = input.probes[i];

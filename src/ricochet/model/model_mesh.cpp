@@ -12,8 +12,9 @@ namespace ricochet {
 
 std::vector<CaseMeshFile> mesh_files(const Case& input) {
   const auto made = [&](const std::string& section, const std::string& part, const BodyFile& body) {
-    return CaseMeshFile{
-        section, part, {body.file, body.size, body.scale, input.mesh.degree}, body.refinements, body.placement};
+    return CaseMeshFile{section,          part,           {body.file, body.size, body.scale, input.mesh.degree},
+                        body.refinements, body.placement, body.rest_on,
+                        body.rest_gap};
   };
   if (input.parts.empty()) return {made("mesh", "", input.mesh)};
   std::vector<CaseMeshFile> files;
@@ -35,7 +36,7 @@ namespace {
 
 Mesh read_part(const Case& input, const CaseMeshFile& file) {
   const bool bodies_touch = std::any_of(input.contacts.begin(), input.contacts.end(),
-                                        [](const ContactSection& contact) { return !contact.against.empty(); });
+                                        [](const ContactSection& contact) { return contact.between_bodies(); });
   MeshFile wanted = file.file;
   wanted.bodies_may_touch = bodies_touch;
   const auto read = [&] {
@@ -66,19 +67,26 @@ std::vector<NamedMesh> read_mesh_files(const Case& input) {
 
 void check_placement(const Case& input, const CaseMeshFile& file, int dimension) {
   const Placement& placement = file.placement;
-  const std::string move = file.section + ".move", turn = file.section + ".turn";
-  check_length(input, move, placement.move.size(), dimension);
-  check_length(input, turn + ".about", placement.about.size(), dimension);
-  if (dimension == 2 && !placement.axis.empty())
-    refuse(input, turn + ".axis", "the mesh has dimension 2, where it turns about a point: leave out the axis");
-  check_length(input, turn + ".axis", placement.axis.size(), dimension);
-  if (dimension == 3 && placement.axis.empty() && placement.angle != 0.0)
-    refuse(input, turn, "the mesh has dimension 3: give \"turn\" an axis, as in axis = [0, 0, 1]");
+  check_length(input, file.section + ".move", placement.move.size(), dimension);
+  for (std::size_t i = 0; i < placement.turns.size(); ++i) {
+    const Turn& turn = placement.turns[i];
+    std::string key = file.section + ".turn";
+    if (input.locations.contains(fmt::format("{}.{}", key, i))) key += fmt::format(".{}", i);
+    check_length(input, key + ".about", turn.about.size(), dimension);
+    if (dimension == 2 && !turn.axis.empty())
+      refuse(input, key + ".axis", "the mesh has dimension 2, where it turns about a point: leave out the axis");
+    check_length(input, key + ".axis", turn.axis.size(), dimension);
+    if (dimension == 3 && turn.axis.empty() && turn.angle != 0.0)
+      refuse(input, key, "the mesh has dimension 3: give \"turn\" an axis, as in axis = [0, 0, 1]");
+  }
 }
 
-Mesh put_together(const Case& input, std::vector<NamedMesh> files) {
+Mesh put_together(const Case& input, const Model& model, std::vector<NamedMesh> files) {
   const std::vector<CaseMeshFile> places = mesh_files(input);
-  for (std::size_t i = 0; i < files.size(); ++i) place_mesh(files[i].mesh, places[i].placement);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    place_mesh(files[i].mesh, places[i].placement);
+    if (!places[i].rest_on.empty()) rest_on_obstacle(input, places[i], model, files[i].mesh);
+  }
   return input.parts.empty() ? std::move(files.front().mesh) : merge_parts(files);
 }
 

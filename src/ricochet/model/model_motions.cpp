@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numeric>
 
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/cell_masses.hpp"
@@ -12,18 +13,24 @@ namespace ricochet {
 
 namespace {
 
-/// "part "ball"" or "group "left"".
+/// "part "ball"", "group "left"" or "the mesh".
 std::string text_of(const MotionSection& motion) {
+  if (motion.part.empty() && motion.group.empty()) return "the mesh";
   return motion.part.empty() ? fmt::format("group \"{}\"", motion.group) : fmt::format("part \"{}\"", motion.part);
 }
 
 std::string key_of_cells(const MotionSection& motion) {
-  return motion.part.empty() ? motion.section + ".group" : motion.section;
+  return motion.group.empty() ? motion.section : motion.section + ".group";
 }
 
-const std::vector<Index>& cells_of(const Case& input, const MotionSection& motion, const Mesh& mesh) {
+std::vector<Index> cells_of(const Case& input, const MotionSection& motion, const Mesh& mesh) {
   for (const MeshPart& part : mesh.parts) {
     if (part.name == motion.part) return part.cells;
+  }
+  if (motion.group.empty()) {
+    std::vector<Index> all(static_cast<std::size_t>(mesh.cell_count()));
+    std::iota(all.begin(), all.end(), Index{0});
+    return all;
   }
   return group_at(input, key_of_cells(motion), mesh, motion.group, mesh.dimension).members;
 }

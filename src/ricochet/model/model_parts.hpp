@@ -24,8 +24,10 @@ void check_dimensions(const Case& input, int dimension);
 [[nodiscard]] std::vector<NamedMesh> read_mesh_files(const Case& input);
 /// Checks `turn` and `move` of a file.
 void check_placement(const Case& input, const CaseMeshFile& file, int dimension);
-/// One mesh of them, each where the case has it.
-[[nodiscard]] Mesh put_together(const Case& input, std::vector<NamedMesh> files);
+/// One mesh of them, each where the case has it. The obstacles are made.
+[[nodiscard]] Mesh put_together(const Case& input, const Model& model, std::vector<NamedMesh> files);
+/// Brings the mesh of a file, which is turned and moved, to where it rests on its obstacle.
+void rest_on_obstacle(const Case& input, const CaseMeshFile& file, const Model& model, Mesh& mesh);
 
 /// Adds to the mesh what the case's groups need: "all", "boundary", and the unions of lists under their text. Throws
 /// Error(invalid_input) with all names at once that are no groups.
@@ -56,7 +58,10 @@ void add_axis_supports(const Case& input, Model& model);
 
 void assign_materials(const Case& input, Model& model);
 void add_supports(const Case& input, Model& model);
-/// Obstacles, and the groups of each contact.
+void make_obstacles(const Case& input, Model& model, int dimension);
+/// The contacts of the case, with those of pairs of bodies in the place of entries that stand for them.
+[[nodiscard]] std::vector<ModelContact> find_contacts(const Case& input, const Model& model);
+/// The groups of each contact.
 void collect_contacts(const Case& input, Model& model);
 /// Nodes that are tied; moves them onto the surface that they follow.
 void add_ties(const Case& input, Model& model);
@@ -64,7 +69,7 @@ void add_ties(const Case& input, Model& model);
 void warn_of_torn_ties(const Model& model);
 void add_contacts(const Case& input, Model& model);
 /// The groups of a contact between bodies; that which carries the multipliers is the pair's first.
-[[nodiscard]] ContactPair body_pair(const Case& input, std::size_t number, const Model& model);
+[[nodiscard]] ContactPair body_pair(const Case& input, const ModelContact& contact, const Model& model);
 /// Refuses groups that do not face each other, and warns of what their contact cannot do well.
 void check_facing(const Case& input, std::size_t number, const Model& model);
 /// Refuses bodies that overlap where the run starts.

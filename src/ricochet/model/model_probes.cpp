@@ -19,6 +19,8 @@ namespace {
 constexpr double on_segment = 1e-6, in_one_place = 1e-9;
 /// Of more bodies than these momenta have no columns: rows would be about nothing else.
 constexpr int most_bodies = 20;
+/// Nor have the forces of the pairs of one [[contact]] if there are more.
+constexpr std::size_t most_pairs = 20;
 
 /// Places of the mesh that probes are about.
 class ProbeFinder {
@@ -154,8 +156,7 @@ class ProbeFinder {
       refuse(input_, key + ".contact",
              fmt::format("there is no contact {}: the case has {} of them, numbered from 0", *section.contact, count));
     }
-    const ContactPair& pair = model_.contact_pairs[static_cast<std::size_t>(*section.contact)];
-    if (pair.tied) {
+    if (input_.contacts[static_cast<std::size_t>(*section.contact)].tied) {
       refuse(input_, key + ".contact",
              fmt::format("contact {} is tied: it has no contact points whose forces could be watched; use a probe with "
                          "\"group\" for stresses near the surface",
@@ -185,17 +186,23 @@ class SensorMaker {
       add(section, make_boundary_sensor(section.name, model_.problem, places.nodes, about));
     }
     if (!section.group.empty()) add_group(section, fmt::format("probe.{}", number));
-    if (section.contact) {
-      const ContactPair& pair = model_.contact_pairs[static_cast<std::size_t>(*section.contact)];
-      add(section,
-          make_contact_sensor(section.name, model_.problem, static_cast<int>(*section.contact), pair.exchanged));
-    }
+    if (section.contact) add(section, make_contact_sensor(section.name, model_.problem, pairs_of(*section.contact)));
   }
 
  private:
   void add(const ProbeSection& section, std::shared_ptr<Sensor> sensor) {
     auto& sensors = section.every > 0 ? model_.sampled_sensors[section.every] : model_.sensors;
     sensors.push_back(std::move(sensor));
+  }
+
+  /// Those of a [[contact]].
+  [[nodiscard]] std::vector<SensedPair> pairs_of(long entry) const {
+    std::vector<SensedPair> result;
+    for (std::size_t i = 0; i < model_.contacts.size(); ++i) {
+      if (static_cast<long>(model_.contacts[i].entry) == entry)
+        result.push_back({static_cast<int>(i), model_.contact_pairs[i].exchanged});
+    }
+    return result;
   }
 
   void add_group(const ProbeSection& section, const std::string& key) {
@@ -239,6 +246,13 @@ HistoryBodies bodies_of_history(const Model& model) {
   return result;
 }
 
+/// Pairs of the same [[contact]].
+std::size_t count_of_entry(const Model& model, std::size_t number) {
+  return static_cast<std::size_t>(
+      std::count_if(model.contacts.begin(), model.contacts.end(),
+                    [&](const ModelContact& contact) { return contact.entry == model.contacts[number].entry; }));
+}
+
 }  // namespace
 
 void add_standing_columns(const Case& input, Model& model) {
@@ -249,7 +263,7 @@ void add_standing_columns(const Case& input, Model& model) {
   }
   for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
     const ContactPair& pair = model.contact_pairs[number];
-    if (!pair.has_two_sides()) continue;
+    if (!pair.has_two_sides() || count_of_entry(model, number) > most_pairs) continue;
     model.sensors.push_back(make_pair_force_sensor(model.problem, static_cast<int>(number), pair.exchanged));
   }
 }

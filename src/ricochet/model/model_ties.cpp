@@ -79,7 +79,7 @@ class TieCollection {
                             counted(taken.size(), "node is at the end of", "nodes are at the end of"),
                             taken.size() == 1 ? "follows" : "follow"));
     }
-    check_tie(input_, contact, pair, surface);
+    check_tie(input_, model_.contacts[contact].entry, pair, surface);
     for (TiedNodes::Tie& tie : surface.ties) {
       tied_by_[static_cast<std::size_t>(tie.node)] = static_cast<int>(contact);
       place_[tie.node] = ties_.size();
@@ -102,13 +102,13 @@ class TieCollection {
       return tie_surfaces(model_.body, model_.contact_pairs[contact],
                           [&taken](Index node) { return taken.contains(node); });
     } catch (const Error& problem) {
-      refuse(input_, fmt::format("contact.{}.group", contact), problem.what());
+      refuse(input_, fmt::format("contact.{}.group", model_.contacts[contact].entry), problem.what());
     }
   }
   [[noreturn]] void refuse_second_tie(std::size_t contact, Index node) const {
     const Vector at = model_.space.nodes.col(node);
     const int by = tied_by_[static_cast<std::size_t>(node)];
-    refuse(input_, fmt::format("contact.{}.group", contact),
+    refuse(input_, fmt::format("contact.{}.group", model_.contacts[contact].entry),
            fmt::format("the node at ({:.6g}) of group \"{}\", and others, {}: they cannot follow two surfaces; let the "
                        "other group follow (multipliers_on), leave the facets around them out of one of the groups, or "
                        "give one contact a list of groups",

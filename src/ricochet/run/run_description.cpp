@@ -12,26 +12,29 @@
 
 namespace ricochet {
 
+namespace {
+
+ContactDescription describe_contact(const Case& input, const ContactSection& contact, const std::string& pair_of) {
+  ContactDescription result{contact.group, contact.against, contact.multipliers, contact.friction,
+                            contact.friction_bound};
+  result.between_bodies = contact.between_bodies();
+  result.tied = contact.tied;
+  result.pair_of = pair_of;
+  if (result.between_bodies) return result;
+  const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),
+                                     [&](const ObstacleSection& o) { return o.name == contact.obstacle; });
+  result.opponent = contact.obstacle;
+  result.obstacle_velocity = obstacle->velocity;
+  result.obstacle_rotation_rate = obstacle->rotation_rate;
+  return result;
+}
+
+}  // namespace
+
 std::vector<ContactDescription> describe_contacts(const Case& input) {
   std::vector<ContactDescription> result;
-  for (const ContactSection& contact : input.contacts) {
-    if (!contact.against.empty()) {
-      result.push_back({contact.group,
-                        contact.against,
-                        contact.multipliers,
-                        contact.friction,
-                        contact.friction_bound,
-                        {},
-                        0.0,
-                        true,
-                        contact.tied});
-      continue;
-    }
-    const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),
-                                       [&](const ObstacleSection& o) { return o.name == contact.obstacle; });
-    result.push_back({contact.group, contact.obstacle, contact.multipliers, contact.friction, contact.friction_bound,
-                      obstacle->velocity, obstacle->rotation_rate, false});
-  }
+  for (const ContactSection& contact : input.contacts)
+    result.push_back(describe_contact(input, contact, contact.is_of_all_pairs() ? contact.group : ""));
   return result;
 }
 
@@ -80,7 +83,8 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   summary.critical_step = scheme.critical_step();
   summary.energy_instant = scheme.energy_instant();
   summary.force_instant = scheme.force_instant();
-  summary.contacts = describe_contacts(input);
+  for (const ModelContact& contact : model.contacts)
+    summary.contacts.push_back(describe_contact(input, contact, contact.pair_of));
   for (std::size_t i = 0; i < summary.contacts.size(); ++i) summary.contacts[i].facing = describe_facing(model, i);
   for (const WatchedPlaces& places : model.watched) {
     for (std::size_t i = 0; i < places.probes.size(); ++i) {

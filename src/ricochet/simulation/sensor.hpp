@@ -51,13 +51,18 @@ class Sensor {
                                                               const std::vector<Index>& facets,
                                                               const Ranks& ranks = one_rank());
 
-/// Resultant of a contact (an index of [[contact]]): force on the body, which between bodies is that of the contact's
+/// A contact pair, by its number; `exchanged`: ContactPair::exchanged.
+struct SensedPair {
+  int number = 0;
+  bool exchanged = false;
+};
+
+/// Resultant of a [[contact]], the sum over its pairs: force on the body, which between bodies is that of the pair's
 /// first group in the case; centre of pressure Σ r_N X / Σ r_N with the
 /// reference positions X (0 where open), as the moments of boundaries take them, and area of the points that are
 /// pressed (in 2D a length).
-/// `exchanged`: ContactPair::exchanged.
 [[nodiscard]] std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem,
-                                                          int contact, bool exchanged = false);
+                                                          const std::vector<SensedPair>& pairs);
 
 /// The force of a contact between bodies alone, in the columns pair_force.N_x … of contact N.
 [[nodiscard]] std::unique_ptr<Sensor> make_pair_force_sensor(const SemidiscreteProblem& problem, int contact,

@@ -37,9 +37,10 @@ TEST(ReadParts, EveryKeyInTheOrderOfTheFile) {
   EXPECT_EQ(ball.size, 0.5);
   EXPECT_EQ(ball.scale, 2.0);
   EXPECT_EQ(ball.placement.move, (std::vector<double>{0.0, 0.0, 12.0}));
-  EXPECT_EQ(ball.placement.axis, (std::vector<double>{0.0, 0.0, 1.0}));
-  EXPECT_EQ(ball.placement.about, (std::vector<double>{1.0, 2.0, 3.0}));
-  EXPECT_EQ(ball.placement.angle, 30.0);
+  ASSERT_EQ(ball.placement.turns.size(), 1U);
+  EXPECT_EQ(ball.placement.turns[0].axis, (std::vector<double>{0.0, 0.0, 1.0}));
+  EXPECT_EQ(ball.placement.turns[0].about, (std::vector<double>{1.0, 2.0, 3.0}));
+  EXPECT_EQ(ball.placement.turns[0].angle, 30.0);
   ASSERT_EQ(read.motions.size(), 1U);  // the wall has none
   EXPECT_EQ(read.motions[0].section, "part.ball");
   EXPECT_EQ(read.motions[0].part, "ball");
@@ -49,6 +50,61 @@ TEST(ReadParts, EveryKeyInTheOrderOfTheFile) {
   EXPECT_EQ(read.values.at("part.wall.scale"), "1");
   EXPECT_FALSE(read.values.contains("mesh.scale"));
   EXPECT_EQ(read.where("part.ball.size").line, 7);
+}
+
+TEST(ReadParts, SeveralTurns) {
+  const std::string text =
+      "[part.ball]\nfile = \"b.msh\"\nturn = [{ angle = 30, axis = [0, 0, 1] }, { angle = 40, axis = "
+      "[1, 0, 0] }]\n" +
+      rest_of_case;
+  const Case read = read_text(text, {"part.ball.turn.1.angle=50"});
+  const std::vector<Turn>& turns = read.parts.at(0).placement.turns;
+  ASSERT_EQ(turns.size(), 2U);
+  EXPECT_EQ(turns[0].angle, 30.0);
+  EXPECT_EQ(turns[1].angle, 50.0);
+  EXPECT_EQ(turns[1].axis, (std::vector<double>{1.0, 0.0, 0.0}));
+  EXPECT_EQ(read.values.at("part.ball.turn.1.angle"), "50");
+  const auto problem = [&](const std::string& override) { return problems_of(text, {override}); };
+  EXPECT_NE(
+      problem("part.ball.turn.angle=3").find("\"turn\" is a list: say which entry, from turn.0.angle to turn.1.angle"),
+      std::string::npos);
+  EXPECT_NE(problem("part.ball.turn.2.angle=3").find("from turn.0.angle to turn.1.angle"), std::string::npos);
+  EXPECT_NE(problem("part.ball.turn=[]").find("\"turn\" must be a table with"), std::string::npos);
+  EXPECT_NE(problem("part.ball.turn=[{ axis = [1, 0, 0] }]").find("\"turn\" of [part.ball] has no \"angle\""),
+            std::string::npos);
+}
+
+/// v = sqrt(2 g H) along gravity, on top of the velocity: 5 m/s from 1.25 m under 10 m/s².
+TEST(ReadParts, DroppedFromAHeight) {
+  const std::string text =
+      "[part.ball]\nfile = \"b.msh\"\ndrop_height = 1.25\nvelocity = [2, 0]\n[load]\ngravity = [0, -10]\n" +
+      rest_of_case;
+  const Case read = read_text(text);
+  ASSERT_EQ(read.motions.size(), 1U);
+  ASSERT_EQ(read.motions[0].velocity.size(), 2U);
+  EXPECT_EQ(read.motions[0].velocity[0], 2.0);
+  EXPECT_DOUBLE_EQ(read.motions[0].velocity[1], -5.0);
+  EXPECT_NE(problems_of(text, {"load.gravity=[0, 0]"}).find("the case has none: give [load] gravity"),
+            std::string::npos);
+  const Case whole =
+      read_text("[mesh]\nfile = \"b.msh\"\ndrop_height = 5\n[load]\ngravity = [0, 0, -10]\n" + rest_of_case);
+  ASSERT_EQ(whole.motions.size(), 1U);
+  EXPECT_EQ(whole.motions[0].section, "mesh");
+  ASSERT_EQ(whole.motions[0].velocity.size(), 3U);
+  EXPECT_DOUBLE_EQ(whole.motions[0].velocity[2], -10.0);
+}
+
+TEST(ReadParts, RestOnAnObstacleThatIsThere) {
+  const std::string floor = "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n";
+  const std::string text =
+      "[part.ball]\nfile = \"b.msh\"\nrest_on = \"floor\"\nrest_gap = 0.5\n" + floor + rest_of_case;
+  const Case read = read_text(text);
+  EXPECT_EQ(read.parts.at(0).rest_on, "floor");
+  EXPECT_EQ(read.parts.at(0).rest_gap, 0.5);
+  EXPECT_NE(problems_of(text, {"part.ball.rest_on=flor"}).find("there is no [obstacle.flor]; did you mean \"floor\"?"),
+            std::string::npos);
+  EXPECT_NE(problems_of("[part.ball]\nfile = \"b.msh\"\nrest_gap = 0.5\n" + rest_of_case).find("give that, too"),
+            std::string::npos);
 }
 
 TEST(ReadParts, MeshMayBeLeftOut) {

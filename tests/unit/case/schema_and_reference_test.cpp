@@ -80,7 +80,7 @@ TEST(CaseSchema, AsksForAMeshOrForParts) {
   EXPECT_EQ(alone.at("properties").at("part").at("maxProperties"), 0);
   const Json& parts = schema.at("oneOf").at(1);
   EXPECT_EQ(parts.at("required"), Json{"part"});
-  EXPECT_EQ(parts.at("properties").at("mesh").at("not").at("anyOf").size(), 6U);
+  EXPECT_EQ(parts.at("properties").at("mesh").at("not").at("anyOf").size(), 9U);
   const Json& part = schema.at("properties").at("part").at("additionalProperties");
   EXPECT_EQ(part.at("required"), Json{"file"});
   const Json& spin = part.at("properties").at("spin").at("anyOf");

@@ -51,7 +51,7 @@ TEST(Ranks, EveryColumnOfTheHistorySaysHowItIsReduced) {
       *std::find_if(groups.begin(), groups.end(), [](const Group& group) { return group.dimension == 2; });
   const auto sensors = [&](const SemidiscreteProblem& problem) {
     std::vector<std::shared_ptr<Sensor>> made;
-    made.push_back(make_contact_sensor("c", problem, 0));
+    made.push_back(make_contact_sensor("c", problem, {SensedPair{0}}));
     made.push_back(make_cell_group_sensor("g", run.model().body, body.members, *problem.ranks));
     made.push_back(make_point_sensor(problem, {"p", 0, 0.0, -1}));
     return made;

@@ -99,7 +99,7 @@ SlidingPair::Point sliding_point(const BoundaryPatch& patch, std::size_t kept, i
 
 SlidingPair::Data data_of(const Body& body, const ContactPair& pair, const BoundaryPatch& patch,
                           const FreeComponent& is_free) {
-  SlidingPair::Data data{body, pair.multipliers, pair.facets, pair.opposite_facets, {}};
+  SlidingPair::Data data{body, pair.multipliers, pair.facets, pair.opposite_facets, {}, pair.is_one_of_many};
   for (std::size_t i = 0; i < patch.kept.size(); ++i)
     data.points.push_back(sliding_point(patch, i, body.space->dimension, is_free));
   return data;

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
-#include "ricochet/contact/sliding/chosen_points.hpp"
+#include "ricochet/contact/sliding/apart_pairs.hpp"
+#include "ricochet/contact/sliding/row_places.hpp"
+#include "ricochet/contact/sliding/seen_points.hpp"
 #include "ricochet/contact/sliding/sliding_couples.hpp"
 #include "ricochet/contact/sliding/sliding_rows.hpp"
 #include "ricochet/fem/displacement_space.hpp"
@@ -14,12 +15,10 @@ namespace ricochet {
 
 namespace {
 
-using Views = std::vector<SlidingView>;
+using Seen = SeenPoints;
 using SlidingNode = SlidingContactData::Node;
 using Choice = ChosenPoints::Choice;
 
-/// Points up to so many times the motion of a step ahead, and up to this part of a cell, have rows.
-constexpr double ahead_of_sliding = 4.0, always_near = 0.1;
 /// Of the model: overlaps that are no rounding.
 constexpr double least_overlap = 1e-12;
 
@@ -28,24 +27,31 @@ class SlidingContact final : public ContactGeometry {
   explicit SlidingContact(SlidingContactData data)
       : data_(std::move(data)),
         extent_(extent(data_.node_positions)),
+        at_rest_(Vector::Zero(data_.node_positions.size())),
         seen_(data_.pairs.size()),
+        apart_(data_.pairs, data_.node_positions),
+        places_(data_.pairs, data_.node_positions.rows()),
         writer_(data_.node_positions),
         couples_(data_.node_positions) {
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
       const SlidingPair& pair = *data_.pairs[k];
-      surface_nodes_.insert(surface_nodes_.end(), pair.nodes().begin(), pair.nodes().end());
       if (pair.is_self()) seen_[k].chosen.emplace(pair, data_.node_positions.cols(), pair.degree());
     }
-    std::sort(surface_nodes_.begin(), surface_nodes_.end());
-    surface_nodes_.erase(std::unique(surface_nodes_.begin(), surface_nodes_.end()), surface_nodes_.end());
   }
 
   void gaps(const Vector& displacement, double, Vector& gap) const override {
+    const Vector* const start = is_step_ ? &start_at_update_ : nullptr;
+    apart_.move(displacement, start);
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
+      if (seen_[k].is_apart && (is_held_ || apart_.are_apart(k))) {
+        for (const SlidingPair::Point& point : data_.pairs[k]->points()) gap[point.number] = data_.out_of_sight;
+        continue;
+      }
       if (is_held_) {
         take_held_gaps(k, displacement, gap);
         continue;
       }
+      if (seen_[k].is_apart && start != nullptr) look_at_start(k, *start);
       // Forces may move points farther in the step than was known when the rows were made.
       if (is_step_ && seen_[k].has_start) find_far(k, longest_way(*data_.pairs[k], displacement, seen_[k].start_at));
       look_at_gaps(k, displacement);
@@ -54,8 +60,12 @@ class SlidingContact final : public ContactGeometry {
   }
 
   void node_gaps(const Vector& displacement, double, Vector& gap) const override {
-    for (const SlidingNode& node : data_.nodes)
-      gap[node.entry] = data_.pairs[node.pair]->node_gap(node.node, normal_at(node, displacement), displacement);
+    apart_.move(displacement, nullptr);
+    for (const SlidingNode& node : data_.nodes) {
+      gap[node.entry] = apart_.are_apart(node.pair)
+                            ? std::numeric_limits<double>::quiet_NaN()
+                            : data_.pairs[node.pair]->node_gap(node.node, normal_at(node, displacement), displacement);
+    }
   }
 
   [[nodiscard]] SpaceVector node_normal(Index entry, const Vector& displacement, double) const override {
@@ -71,8 +81,14 @@ class SlidingContact final : public ContactGeometry {
     take_choices(rows.places);
     at_update_ = displacement;
     is_step_ = start != nullptr;
-    writer_.begin(displacement, start != nullptr ? &start->displacement : nullptr);
-    for (std::size_t k = 0; k < data_.pairs.size(); ++k) update_pair(k, displacement, start, rows);
+    if (is_step_) start_at_update_ = start->displacement;
+    writer_.begin(displacement, is_step_ ? &start_at_update_ : nullptr);
+    apart_.move(displacement, is_step_ ? &start_at_update_ : nullptr);
+    Index flag = rows.places.size() - apart_.count();
+    for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
+      const bool was_apart = apart_.may_be_apart(k) && flag >= 0 && rows.places[flag++] != 0.0;
+      apart_.are_apart(k) ? set_apart(k, was_apart, rows) : update_pair(k, displacement, start, rows);
+    }
     writer_.finish(rows);
     remember(displacement, start, rows);
     gap_at_update_ = rows.gap;
@@ -96,11 +112,12 @@ class SlidingContact final : public ContactGeometry {
   void allow_overlap(Vector& gap) const override {
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
       const Seen& seen = seen_[k];
+      if (seen.is_apart) continue;
       for (std::size_t i = 0; i < seen.at_start.size(); ++i) {
         const double before = seen.at_start[i].faces ? seen.at_start[i].gap : 0.0;
         // Held gaps of those that enter have it in them.
-        const bool has_it = is_held_ && enters(seen, i);
-        if (before < -least_overlap * extent_ && !is_far(seen, i) && !has_it) gap[number(k, i)] -= before;
+        const bool has_it = is_held_ && seen.enters(i);
+        if (before < -least_overlap * extent_ && !seen.is_far(i) && !has_it) gap[number(k, i)] -= before;
       }
     }
   }
@@ -125,46 +142,28 @@ class SlidingContact final : public ContactGeometry {
   [[nodiscard]] Index row_value_count() const override {
     Index points = 0;
     for (const Seen& seen : seen_) points += seen.chosen ? static_cast<Index>(seen.chosen->choices().size()) : 0;
-    return 1 + 2 * dimension() * static_cast<Index>(surface_nodes_.size()) + points;
+    return places_.count() + points + apart_.count();
   }
   [[nodiscard]] Vector row_values(const ContactRows& rows) const override {
     return rows.places.size() > 0 ? rows.places : Vector(Vector::Zero(row_value_count()));
   }
   void restore(const Points&, const Vector&, const Vector& row_values, ContactRows& rows) const override {
     Vector end = Vector::Zero(data_.node_positions.size()), before = end;
-    const Index d = dimension(), count = d * static_cast<Index>(surface_nodes_.size());
-    for (std::size_t i = 0; i < surface_nodes_.size(); ++i) {
-      const Index at = 1 + static_cast<Index>(i) * d;
-      end.segment(surface_nodes_[i] * d, d) = row_values.segment(at, d);
-      before.segment(surface_nodes_[i] * d, d) = row_values.segment(at + count, d);
-    }
+    const bool is_step = places_.read(row_values, end, before);
     rows.places = row_values;
+    rows.places.tail(apart_.count()).setZero();  // they have to be written
     const StepStart start{before, 0.0};
-    update(end, 0.0, row_values[0] != 0.0 ? &start : nullptr, rows);
+    update(end, 0.0, is_step ? &start : nullptr, rows);
   }
 
  private:
-  /// What the points of a pair have been found to see lately.
-  struct Seen {
-    Vector start_at, gaps_at;
-    Views at_start, gaps, middle, entering, other;
-    std::vector<char> any_depth;  ///< points that face something where the step begins
-    std::vector<char> far;        ///< points that do not move so far in the step: their gaps are those of its start
-    std::vector<char> left_out;   ///< of a look at rows
-    std::optional<ChosenPoints> chosen;  ///< where the pair touches itself
-    bool has_start = false, has_gaps = false;
-  };
-
   [[nodiscard]] Index dimension() const { return data_.node_positions.rows(); }
   [[nodiscard]] Index number(std::size_t pair, std::size_t point) const {
     return data_.pairs[pair]->points()[point].number;
   }
   [[nodiscard]] double gap_of(const Seen& seen, std::size_t point) const {
-    const SlidingView& view = is_far(seen, point) ? seen.at_start[point] : seen.gaps[point];
+    const SlidingView& view = seen.is_far(point) ? seen.at_start[point] : seen.gaps[point];
     return view.faces ? view.gap : data_.out_of_sight;
-  }
-  [[nodiscard]] static bool is_far(const Seen& seen, std::size_t point) {
-    return !seen.far.empty() && seen.far[point] != 0;
   }
   [[nodiscard]] const SlidingNode* find_node(Index entry) const {
     const auto found = std::lower_bound(data_.nodes.begin(), data_.nodes.end(), entry,
@@ -177,7 +176,7 @@ class SlidingContact final : public ContactGeometry {
 
   /// The choice goes on from that of the rows, whoever has asked for others in between.
   void take_choices(const Vector& places) const {
-    Index at = 1 + 2 * dimension() * static_cast<Index>(surface_nodes_.size());
+    Index at = places_.count();
     for (Seen& seen : seen_) {
       if (!seen.chosen || places.size() == 0) continue;
       std::vector<Choice> choices(seen.chosen->choices().size());
@@ -187,18 +186,15 @@ class SlidingContact final : public ContactGeometry {
   }
 
   void remember(const Vector& displacement, const StepStart* start, ContactRows& rows) const {
-    const Index d = dimension(), count = d * static_cast<Index>(surface_nodes_.size());
     rows.places.setZero(row_value_count());
-    rows.places[0] = start != nullptr ? 1.0 : 0.0;
-    for (std::size_t i = 0; i < surface_nodes_.size(); ++i) {
-      const Index at = 1 + static_cast<Index>(i) * d;
-      rows.places.segment(at, d) = displacement.segment(surface_nodes_[i] * d, d);
-      if (start != nullptr) rows.places.segment(at + count, d) = start->displacement.segment(surface_nodes_[i] * d, d);
-    }
-    Index at = 1 + 2 * count;
+    places_.write(displacement, start != nullptr ? &start->displacement : nullptr, rows.places);
+    Index at = places_.count();
     for (const Seen& seen : seen_) {
       if (!seen.chosen) continue;
       for (const Choice choice : seen.chosen->choices()) rows.places[at++] = static_cast<double>(choice);
+    }
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      if (apart_.may_be_apart(k)) rows.places[at++] = seen_[k].is_apart ? 1.0 : 0.0;
     }
   }
 
@@ -211,12 +207,12 @@ class SlidingContact final : public ContactGeometry {
       gap[point] = gap_at_update_[point];
       if (seen.left_out[i] != 0) continue;
       double along_step = 0.0;
-      for (const auto& [node, value] : (enters(seen, i) ? seen.entering[i] : seen.middle[i]).row) {
+      for (const auto& [node, value] : (seen.enters(i) ? seen.entering[i] : seen.middle[i]).row) {
         gap[point] += value.head(d).dot(displacement.segment(node * d, d) - at_update_.segment(node * d, d));
         along_step += value.head(d).dot(writer_.step().segment(node * d, d));
       }
       // Seen from the step's end such a point begins inside: to push it out would give energy.
-      if (enters(seen, i)) gap[point] -= std::min(gap_at_update_[point] - along_step, 0.0);
+      if (seen.enters(i)) gap[point] -= std::min(gap_at_update_[point] - along_step, 0.0);
     }
   }
 
@@ -247,7 +243,7 @@ class SlidingContact final : public ContactGeometry {
     std::vector<char>& far = left_out_;
     far.assign(pair.points().size(), 0);
     if (std::isfinite(way)) {
-      const double reach = ahead_of_sliding * way + always_near * pair.height();
+      const double reach = reach_of_sliding(way, pair.height());
       for (std::size_t i = 0; i < far.size(); ++i)
         far[i] = seen.at_start[i].faces && seen.at_start[i].gap > reach ? 1 : 0;
     }
@@ -269,9 +265,23 @@ class SlidingContact final : public ContactGeometry {
     return longest;
   }
 
+  /// Rows of surfaces that are far apart are those of planes across the normals of the start, wherever they are.
+  void set_apart(std::size_t k, bool was_apart, ContactRows& rows) const {
+    seen_[k].is_apart = true;
+    seen_[k].has_start = seen_[k].has_gaps = false;
+    if (was_apart) return;
+    const SlidingPair& pair = *data_.pairs[k];
+    for (std::size_t i = 0; i < pair.points().size(); ++i) {
+      rows.gap[number(k, i)] = data_.out_of_sight;
+      rows.gap_rounding[number(k, i)] = rounding(pair.points()[i], at_rest_);
+      writer_.write_plane(pair.points()[i], pair.normal(i, at_rest_), rows);
+    }
+  }
+
   void update_pair(std::size_t k, const Vector& displacement, const StepStart* start, ContactRows& rows) const {
     const SlidingPair& pair = *data_.pairs[k];
     Seen& seen = seen_[k];
+    seen.is_apart = false;
     if (start != nullptr) {
       look_at_start(k, start->displacement);
       find_far(k, longest_way(pair, displacement, start->displacement));
@@ -287,7 +297,7 @@ class SlidingContact final : public ContactGeometry {
       const Index point = number(k, i);
       rows.gap[point] = gap_of(seen, i);
       rows.gap_rounding[point] = rounding(pair.points()[i], displacement);
-      seen.left_out[i] = is_far(seen, i) || !seen.gaps[i].faces ? 1 : 0;
+      seen.left_out[i] = seen.is_far(i) || !seen.gaps[i].faces ? 1 : 0;
       any_near = any_near || seen.left_out[i] == 0;
     }
     if (any_near) pair.look(writer_.middle(), SlidingPair::Wanted::row, seen.left_out, seen.any_depth, seen.middle);
@@ -299,7 +309,7 @@ class SlidingContact final : public ContactGeometry {
         writer_.write_plane(pair.points()[i], pair.normal(i, writer_.middle()), rows);
       } else if (start == nullptr) {
         writer_.write(pair.points()[i], seen.middle[i], rows);
-      } else if (enters(seen, i)) {
+      } else if (seen.enters(i)) {
         SlidingView& view = seen.entering[i];
         writer_.correct(view, {}, gap_rounding);
         writer_.write(pair.points()[i], view, rows);
@@ -315,22 +325,18 @@ class SlidingContact final : public ContactGeometry {
   void choose(bool is_step, Seen& seen) const {
     views_.assign(seen.gaps.size(), nullptr);
     for (std::size_t i = 0; i < views_.size(); ++i) {
-      if (seen.left_out[i] == 0) views_[i] = is_step && enters(seen, i) ? &seen.entering[i] : &seen.middle[i];
+      if (seen.left_out[i] == 0) views_[i] = is_step && seen.enters(i) ? &seen.entering[i] : &seen.middle[i];
     }
     seen.chosen->choose(views_);
   }
 
-  /// Points that face nothing where the step begins, or in its middle, but where it ends.
-  [[nodiscard]] static bool enters(const Seen& seen, std::size_t i) {
-    return seen.left_out[i] == 0 && !(seen.at_start[i].faces && seen.middle[i].faces);
-  }
-  /// Their rows are those of the end.
+  /// Rows of points that enter are those of the end.
   void look_at_entering(const SlidingPair& pair, const Vector& displacement, Seen& seen) const {
     bool any = false;
     left_out_.assign(seen.gaps.size(), 1);
     for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
-      if (enters(seen, i)) left_out_[i] = 0;
-      any = any || enters(seen, i);
+      if (seen.enters(i)) left_out_[i] = 0;
+      any = any || seen.enters(i);
     }
     if (any) pair.look(displacement, SlidingPair::Wanted::row, left_out_, seen.any_depth, seen.entering);
   }
@@ -347,6 +353,7 @@ class SlidingContact final : public ContactGeometry {
                       const Vector& tangential, Vector& force) const {
     const SlidingPair& pair = *data_.pairs[k];
     Seen& seen = seen_[k];
+    if (seen.is_apart) return;
     const Index tangents = dimension() - 1;
     left_out_.assign(pair.points().size(), 0);
     bool any = false;
@@ -367,14 +374,16 @@ class SlidingContact final : public ContactGeometry {
 
   SlidingContactData data_;
   double extent_;
-  std::vector<Index> surface_nodes_;  ///< of all pairs, ascending
-  mutable std::vector<Seen> seen_;    ///< per pair
+  Vector at_rest_;                  ///< no displacement
+  mutable std::vector<Seen> seen_;  ///< per pair
+  mutable ApartPairs apart_;
+  RowPlaces places_;
   mutable SlidingRows writer_;
-  mutable Vector at_update_, gap_at_update_;         ///< of the last update
-  mutable bool is_held_ = false, was_held_ = false;  ///< the second until the next step begins
-  mutable bool has_held_ = false;                    ///< in the run so far
-  mutable bool is_step_ = false;                     ///< the last update was of a step
-  mutable bool has_told_ = false;                    ///< of steps that are too long to see what passes
+  mutable Vector at_update_, start_at_update_, gap_at_update_;  ///< of the last update
+  mutable bool is_held_ = false, was_held_ = false;             ///< the second until the next step begins
+  mutable bool has_held_ = false;                               ///< in the run so far
+  mutable bool is_step_ = false;                                ///< the last update was of a step
+  mutable bool has_told_ = false;                               ///< of steps that are too long to see what passes
   mutable std::vector<char> left_out_;
   mutable std::vector<const SlidingView*> views_;
   mutable SlidingCouples couples_;

@@ -240,8 +240,8 @@ SlidingPair::SlidingPair(Data data) : implementation_(std::make_unique<Implement
 
 SlidingPair::~SlidingPair() = default;
 
-const std::vector<SlidingPair::Point>& SlidingPair::points() const {
-  return implementation_->data.points;
+const SlidingPair::Data& SlidingPair::data() const {
+  return implementation_->data;
 }
 
 bool SlidingPair::is_self() const {

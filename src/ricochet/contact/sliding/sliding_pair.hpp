@@ -66,6 +66,7 @@ class SlidingPair {
     std::string multipliers;  ///< the space's name
     std::vector<Index> facets, opposite_facets;
     std::vector<Point> points;
+    bool is_one_of_many = false;  ///< ContactPair::is_one_of_many
 
     /// Both are one surface, whose facets do not see those within two rings around them.
     [[nodiscard]] bool is_self() const { return facets == opposite_facets; }
@@ -77,7 +78,8 @@ class SlidingPair {
   SlidingPair(const SlidingPair&) = delete;
   SlidingPair& operator=(const SlidingPair&) = delete;
 
-  [[nodiscard]] const std::vector<Point>& points() const;
+  [[nodiscard]] const Data& data() const;
+  [[nodiscard]] const std::vector<Point>& points() const { return data().points; }
   [[nodiscard]] bool is_self() const;
   /// Where both surfaces are one: how deep the place that sees least sees into itself.
   [[nodiscard]] double sight() const;

@@ -4,22 +4,35 @@ namespace ricochet {
 
 namespace {
 
-std::vector<Index> points_of(const ContactBoundary& boundary, int contact) {
-  std::vector<Index> result;
-  for (Index point = 0; point < boundary.size(); ++point) {
-    if (boundary.pair[static_cast<std::size_t>(point)] == contact) result.push_back(point);
+/// The points of a pair.
+struct PairPoints {
+  std::vector<Index> points;
+  bool exchanged;  ///< the body of the case's first group has the force opposite to that of the rows
+};
+
+std::vector<PairPoints> points_of(const ContactBoundary& boundary, const std::vector<SensedPair>& pairs) {
+  std::vector<PairPoints> result;
+  for (const SensedPair& pair : pairs) {
+    PairPoints& of_pair = result.emplace_back(PairPoints{{}, pair.exchanged});
+    for (Index point = 0; point < boundary.size(); ++point) {
+      if (boundary.pair[static_cast<std::size_t>(point)] == pair.number) of_pair.points.push_back(point);
+    }
   }
   return result;
 }
 
-/// On the body of the contact's first group: rows have the force on that which carries the multipliers.
-SpaceVector force_on_first(const State& state, const std::vector<Index>& points, bool exchanged, Index dimension) {
-  SpaceVector force = SpaceVector::Zero(dimension);
-  for (const Index point : points) {
-    if (carries_force(state.forces, point)) force += contact_force(state.forces, point);
+/// On the bodies of the first groups: rows have the force on those which carry the multipliers.
+SpaceVector force_on_first(const State& state, const std::vector<PairPoints>& pairs, Index dimension) {
+  SpaceVector sum = SpaceVector::Zero(dimension);
+  for (const PairPoints& pair : pairs) {
+    SpaceVector force = SpaceVector::Zero(dimension);
+    for (const Index point : pair.points) {
+      if (carries_force(state.forces, point)) force += contact_force(state.forces, point);
+    }
+    if (pair.exchanged) force = -force;
+    sum += force;
   }
-  if (exchanged) force = -force;
-  return force;
+  return sum;
 }
 
 class PairForceSensor final : public Sensor {
@@ -27,8 +40,7 @@ class PairForceSensor final : public Sensor {
   PairForceSensor(const SemidiscreteProblem& problem, int contact, bool exchanged)
       : name_("pair_force." + std::to_string(contact)),
         problem_(problem),
-        points_(points_of(problem.contact, contact)),
-        exchanged_(exchanged) {}
+        pairs_(points_of(problem.contact, {SensedPair{contact, exchanged}})) {}
 
   [[nodiscard]] Columns columns() const override {
     Columns columns;
@@ -37,23 +49,19 @@ class PairForceSensor final : public Sensor {
   }
 
   void observe(const Observation& observation, std::vector<double>& row) override {
-    append(force_on_first(observation.state, points_, exchanged_, problem_.dimension), row);
+    append(force_on_first(observation.state, pairs_, problem_.dimension), row);
   }
 
  private:
   std::string name_;
   const SemidiscreteProblem& problem_;
-  std::vector<Index> points_;
-  bool exchanged_;
+  std::vector<PairPoints> pairs_;
 };
 
 class ContactSensor final : public Sensor {
  public:
-  ContactSensor(std::string name, const SemidiscreteProblem& problem, int contact, bool exchanged)
-      : name_(std::move(name)),
-        problem_(problem),
-        points_(points_of(problem.contact, contact)),
-        exchanged_(exchanged) {}
+  ContactSensor(std::string name, const SemidiscreteProblem& problem, const std::vector<SensedPair>& pairs)
+      : name_(std::move(name)), problem_(problem), pairs_(points_of(problem.contact, pairs)) {}
 
   [[nodiscard]] Columns columns() const override {
     Columns columns;
@@ -67,16 +75,18 @@ class ContactSensor final : public Sensor {
     const Index d = problem_.dimension;
     const ContactBoundary& contact = problem_.contact;
     const State& state = observation.state;
-    const SpaceVector force = force_on_first(state, points_, exchanged_, d);
+    const SpaceVector force = force_on_first(state, pairs_, d);
     SpaceVector centre = SpaceVector::Zero(d);
     double pressing = 0.0, area = 0.0;
-    for (const Index point : points_) {
-      const double normal = state.forces.normal_reaction[point];
-      if (!(normal > 0.0)) continue;
-      pressing += normal;
-      area += contact.weights[point];
-      contact.visit_own_nodes(point,
-                              [&](Index node, double weight) { centre += normal * weight * problem_.nodes.col(node); });
+    for (const PairPoints& pair : pairs_) {
+      for (const Index point : pair.points) {
+        const double normal = state.forces.normal_reaction[point];
+        if (!(normal > 0.0)) continue;
+        pressing += normal;
+        area += contact.weights[point];
+        contact.visit_own_nodes(
+            point, [&](Index node, double weight) { centre += normal * weight * problem_.nodes.col(node); });
+      }
     }
     // A ratio of sums: the sensor sees to it itself.
     pressing = problem_.ranks->sum(pressing);
@@ -90,15 +100,14 @@ class ContactSensor final : public Sensor {
  private:
   std::string name_;
   const SemidiscreteProblem& problem_;
-  std::vector<Index> points_;
-  bool exchanged_;
+  std::vector<PairPoints> pairs_;
 };
 
 }  // namespace
 
-std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem, int contact,
-                                            bool exchanged) {
-  return std::make_unique<ContactSensor>(name, problem, contact, exchanged);
+std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem,
+                                            const std::vector<SensedPair>& pairs) {
+  return std::make_unique<ContactSensor>(name, problem, pairs);
 }
 
 std::unique_ptr<Sensor> make_pair_force_sensor(const SemidiscreteProblem& problem, int contact, bool exchanged) {

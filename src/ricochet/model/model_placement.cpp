@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/mesh/boundary_facets.hpp"
+#include "ricochet/model/model_parts.hpp"
+
+/// @file Bodies that rest on an obstacle where the run starts.
+///
+/// The body moves along a direction e, by s, until f(s) = min_i g(x_i + s e) is the gap δ that is wanted, g being the
+/// obstacle's distance at t = 0 and x_i the nodes of the boundary. A distance changes by no more than the way, so that
+///   s ← s − (f(s) − δ)
+/// never goes past the first place with the gap δ, whether the body falls (f > δ) or is lifted out of the obstacle. Its
+/// error shrinks by 1 − cos θ, θ between e and the obstacle's normal where they meet: at once on a plane.
+namespace ricochet {
+
+namespace {
+
+/// A body that slides past an obstacle comes no nearer: s then doubles with each step.
+constexpr int most_rounds = 10'000;
+/// In sizes of what is there: a body that is as far away has missed.
+constexpr double out_of_reach = 1e3;
+
+struct Nearest {
+  double gap = std::numeric_limits<double>::infinity();
+  SpaceVector place;
+};
+
+Nearest nearest_to(const Obstacle& obstacle, const Points& nodes, const SpaceVector& shift) {
+  Nearest result;
+  for (Index i = 0; i < nodes.cols(); ++i) {
+    const SpaceVector place = nodes.col(i) + shift;
+    const double gap = obstacle.gap(place);
+    if (gap < result.gap) result = {gap, place};
+  }
+  return result;
+}
+
+Points boundary_nodes(const Mesh& mesh) {
+  std::vector<Index> numbers;
+  for (const CellFacet& facet : boundary_facets(mesh.cells)) {
+    const std::vector<Index> nodes = nodes_of_facet(mesh.cells, facet);
+    numbers.insert(numbers.end(), nodes.begin(), nodes.end());
+  }
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  Points nodes(mesh.dimension, static_cast<Index>(numbers.size()));
+  for (std::size_t i = 0; i < numbers.size(); ++i) nodes.col(static_cast<Index>(i)) = mesh.nodes.col(numbers[i]);
+  return nodes;
+}
+
+/// Away from the obstacle, of length 1: the normal of a plane, else against gravity, or, without gravity, the normal at
+/// the nearest node. Axisymmetric bodies stay on their axis.
+SpaceVector direction_of(const Case& input, const std::string& key, const Obstacle& obstacle, const Nearest& nearest) {
+  const std::vector<double>& gravity = input.load.gravity;
+  const bool falls = std::any_of(gravity.begin(), gravity.end(), [](double g) { return g != 0.0; });
+  SpaceVector direction = obstacle.normal(nearest.place);
+  if (!obstacle.shape().is_flat() && falls) direction = -vector_of(gravity).stableNormalized();
+  if (!is_axisymmetric(input)) return direction;
+  direction[0] = 0.0;
+  if (direction.norm() == 0.0)
+    refuse(input, key, "an axisymmetric body moves along its axis alone, and the obstacle's normal is across it");
+  return direction.normalized();
+}
+
+}  // namespace
+
+void rest_on_obstacle(const Case& input, const CaseMeshFile& file, const Model& model, Mesh& mesh) {
+  const std::string key = file.section + ".rest_on";
+  std::size_t number = 0;
+  while (input.obstacles[number].name != file.rest_on) ++number;
+  const Obstacle& obstacle = *model.obstacles[number];
+  const Points nodes = boundary_nodes(mesh);
+  Nearest nearest = nearest_to(obstacle, nodes, SpaceVector::Zero(mesh.dimension));
+  const SpaceVector direction = direction_of(input, key, obstacle, nearest);
+  const Vector sides = nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff();
+  const double limit = out_of_reach * (sides.norm() + std::abs(nearest.gap) + file.rest_gap);
+  double way = 0.0;
+  for (int round = 0; std::abs(nearest.gap - file.rest_gap) > obstacle.gap_rounding(nearest.place); ++round) {
+    const double before = way;
+    way -= nearest.gap - file.rest_gap;
+    if (way == before) break;
+    if (!(std::abs(way) < limit) || round > most_rounds) {
+      refuse(
+          input, key,
+          fmt::format("the body does not come to rest on obstacle \"{}\": moved along ({:.4g}) it passes by; say with "
+                      "\"move\" where it is to come down",
+                      file.rest_on, fmt::join(SpaceVector(way < 0.0 ? -direction : direction), ", ")));
+    }
+    nearest = nearest_to(obstacle, nodes, way * direction);
+  }
+  mesh.nodes.colwise() += way * direction;
+  log::info(fmt::format("{} is moved by ({:.6g}) to {} obstacle \"{}\"",
+                        file.part.empty() ? "the body" : "part \"" + file.part + '"',
+                        fmt::join(SpaceVector(way * direction), ", "),
+                        file.rest_gap > 0.0 ? fmt::format("{:g} above", file.rest_gap) : "rest on", file.rest_on));
+}
+
+}  // namespace ricochet
