@@ -1,5 +1,6 @@
 """obstacles.xdmf: the surfaces of the obstacles, where they are at the time of each frame."""
 
+import re
 import unittest
 import xml.etree.ElementTree
 
@@ -52,6 +53,37 @@ class ObstacleFiles(TestCase):
             numpy.testing.assert_allclose(numpy.linalg.norm(points - centre - moved, axis=1), radius, rtol=1e-8)
             self.assertEqual(now.tolist(), cells.tolist())
         self.assertLess((results / "obstacles.xdmf").stat().st_size / len(shown), 80_000)
+
+    def test_a_surface_of_many_triangles_keeps_its_shape(self):
+        """A plate with a bump, 9,800 triangles: a picture of 6,000 covers all of it, and lies on it."""
+        count, half = 70, 1.5
+        steps = numpy.linspace(-half, half, count + 1)
+
+        def height(x, y):
+            return 0.3 * numpy.exp(-(x * x + y * y) / 0.1)
+
+        def corner(i, j):
+            return f"vertex {steps[i]:.9g} {steps[j]:.9g} {height(steps[i], steps[j]):.9g}\n"
+
+        triangles = []
+        for i in range(count):
+            for j in range(count):
+                corners = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]
+                triangles += [corners[0] + corners[1] + corners[2], corners[0] + corners[2] + corners[3]]
+        self.write("plate.stl", "solid plate\n" + "".join(
+            f"facet normal 0 0 0\nouter loop\n{triangle}endloop\nendfacet\n" for triangle in triangles) + "endsolid plate\n")
+        text = falling(MESHES / "tetrahedron_o1_msh41_binary.msh", lowest=[1.3, 0.1, 0.0], highest=[0.3, 1.4, 1.2])
+        text = re.sub(r'type = "plane"\npoint = .*\nnormal = .*\n', 'type = "surface"\nfile = "plate.stl"\n', text)
+        results = self.simulate(self.write("case.toml", text), values={"mesh.move": "[-0.5, -0.5, 0.5]", "time.end": 0.002})
+        _, points, cells = next(surfaces(results, 4))
+        self.assertLessEqual(len(cells), 6000)
+        self.assertGreater(len(cells), 4000)  # no coarser than it must be
+        a, b, c = (points[cells[:, k]] for k in range(3))
+        covered = 0.5 * numpy.cross((b - a)[:, :2], (c - a)[:, :2])
+        self.assertAlmostEqual(covered.sum() / (2 * half) ** 2, 1.0, delta=0.05)  # means of corners draw its rim inwards
+        self.assertGreater(covered.min(), -1e-12)  # nothing is turned over
+        middle = (a + b + c) / 3
+        self.assertLess(numpy.abs(middle[:, 2] - height(middle[:, 0], middle[:, 1])).max(), 0.02)
 
 
 if __name__ == "__main__":

@@ -25,6 +25,7 @@ constexpr double part_of_spacing = 0.25;
 constexpr double least_length = 0.1;
 /// Facets of a picture.
 constexpr std::size_t most_shown = 6000;
+constexpr double most_of_reach = 6.0;
 
 Three in_three(const SpaceVector& point) {
   Three result = Three::Zero();
@@ -140,43 +141,71 @@ class Surface final : public ObstacleShape {
   std::string file_;  ///< for messages
 };
 
-/// Of facets that are near; where they are too many, corners in one cell of a grid become one.
-ObstacleSurface Surface::surface(const Vector& centre, double radius) const {
-  const Three middle = in_three(SpaceVector(centre));
-  const double reach = radius + std::abs(gap(SpaceVector(centre)));
-  const auto& facets = surface_.facets();
-  const auto& corners = surface_.corners();
-  std::vector<int> shown;
-  surface_.tree().visit([&](const BoxTree::Box& box) { return box.exteriorDistance(middle) < reach; },
-                        [&](int facet) { shown.push_back(facet); });
-  std::sort(shown.begin(), shown.end());
-  const double cell = shown.size() > most_shown ? 2.0 * reach / std::sqrt(0.1 * static_cast<double>(most_shown)) : 0.0;
+/// Some facets of a surface, for a picture. With a width of 0 all corners are themselves, else those in one cell of a
+/// grid of that width are one, at their mean.
+ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& facets, double width, double side) {
   std::map<std::array<long, 3>, int> numbers;
-  std::vector<Three> points;
+  std::vector<Three> sums;
+  std::vector<int> counts;
+  std::map<int, int> number_of;  // of each corner
   const auto point_of = [&](int corner) {
-    const Three& at = corners[static_cast<std::size_t>(corner)];
+    const auto [known, is_new] = number_of.try_emplace(corner, 0);
+    if (!is_new) return known->second;
+    const Three& at = surface.corners()[static_cast<std::size_t>(corner)];
     std::array<long, 3> key{corner, -1, -1};
-    if (cell > 0.0) {
-      for (std::size_t k = 0; k < 3; ++k) key[k] = std::lround(at[static_cast<Index>(k)] / cell);
+    if (width > 0.0) {
+      for (std::size_t k = 0; k < 3; ++k)
+        key[k] = static_cast<long>(std::floor((at - surface.box().min())[static_cast<Index>(k)] / width));
     }
-    const auto [entry, added] = numbers.try_emplace(key, static_cast<int>(points.size()));
-    if (added) points.push_back(at);
-    return entry->second;
+    const auto [entry, added] = numbers.try_emplace(key, static_cast<int>(sums.size()));
+    if (added) {
+      sums.push_back(Three::Zero());
+      counts.push_back(0);
+    }
+    sums[static_cast<std::size_t>(entry->second)] += at;
+    ++counts[static_cast<std::size_t>(entry->second)];
+    return known->second = entry->second;
   };
   ObstacleSurface result;
   std::map<std::array<int, 3>, char> known;
-  for (const int facet : shown) {
-    std::array<int, 3> own = facets[static_cast<std::size_t>(facet)];
+  for (const int facet : facets) {
+    std::array<int, 3> own = surface.facets()[static_cast<std::size_t>(facet)];
     for (int& corner : own) corner = point_of(corner);
-    if (surface_.in_space() && (own[0] == own[1] || own[1] == own[2] || own[2] == own[0])) continue;
-    if (cell > 0.0 && !known.try_emplace(own, 1).second) continue;
-    if (side_ < 0.0) std::swap(own[0], own[1]);
-    result.cells.insert(result.cells.end(), own.begin(), own.begin() + (surface_.in_space() ? 3 : 2));
-    if (surface_.in_space()) result.cells.push_back(own[2]);
+    if (surface.in_space() && (own[1] == own[2] || own[2] == own[0])) continue;
+    if (own[0] == own[1]) continue;
+    std::array<int, 3> key = own;  // the same facet is there once, whichever of its corners comes first
+    if (surface.in_space()) std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
+    if (width > 0.0 && !known.try_emplace(key, 1).second) continue;
+    if (side < 0.0) std::swap(own[0], own[1]);
+    result.cells.insert(result.cells.end(), own.begin(), own.begin() + (surface.in_space() ? 3 : 2));
+    if (surface.in_space()) result.cells.push_back(own[2]);
   }
-  const Index d = surface_.in_space() ? 3 : 2;
-  result.points.resize(d, static_cast<Index>(points.size()));
-  for (Index k = 0; k < result.points.cols(); ++k) result.points.col(k) = points[static_cast<std::size_t>(k)].head(d);
+  const Index d = surface.in_space() ? 3 : 2;
+  result.points.resize(d, static_cast<Index>(sums.size()));
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    result.points.col(static_cast<Index>(k)) = (sums[k] / counts[k]).head(d);
+  return result;
+}
+
+/// Of facets that are near; where they are too many, as coarse as it takes, and no coarser: what stands out of a plate
+/// is still seen.
+ObstacleSurface Surface::surface(const Vector& centre, double radius) const {
+  const Three middle = in_three(SpaceVector(centre));
+  const double reach = radius + std::abs(gap(SpaceVector(centre)));
+  // One that is not much larger is shown whole.
+  const bool is_small = surface_.box().diagonal().norm() < most_of_reach * reach;
+  std::vector<int> shown;
+  surface_.tree().visit([&](const BoxTree::Box& box) { return is_small || box.exteriorDistance(middle) < reach; },
+                        [&](int facet) { shown.push_back(facet); });
+  std::sort(shown.begin(), shown.end());
+  constexpr double coarser = 1.2;
+  const std::size_t corners = surface_.in_space() ? 4 : 2;
+  double width = 0.0;
+  ObstacleSurface result = picture_of(surface_, shown, width, side_);
+  while (result.cells.size() > corners * most_shown) {
+    width = width == 0.0 ? 0.5 * reach / std::sqrt(static_cast<double>(shown.size())) : coarser * width;
+    result = picture_of(surface_, shown, width, side_);
+  }
   return result;
 }
 
