@@ -18,7 +18,8 @@ install(FILES ${CMAKE_BINARY_DIR}/ricochetConfig.cmake ${CMAKE_BINARY_DIR}/ricoc
   DESTINATION ${ricochet_cmake_folder} COMPONENT development)
 
 # --- what the program needs while it runs, and its manual page and completion --------------------------------------------
-install(FILES ${CMAKE_BINARY_DIR}/share/ricochet/figure.py ${CMAKE_BINARY_DIR}/share/ricochet/show_in_paraview.py
+install(FILES ${CMAKE_BINARY_DIR}/share/ricochet/figure.py ${CMAKE_BINARY_DIR}/share/ricochet/scene.py
+  ${CMAKE_BINARY_DIR}/share/ricochet/show_in_paraview.py
   ${CMAKE_BINARY_DIR}/share/ricochet/viewer.html
   DESTINATION ${CMAKE_INSTALL_DATADIR}/ricochet COMPONENT program)
 install(DIRECTORY benchmarks cases DESTINATION ${CMAKE_INSTALL_DATADIR}/ricochet COMPONENT program

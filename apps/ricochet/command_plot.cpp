@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "drawing.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/report/animation.hpp"
 #include "ricochet/report/figure.hpp"
 #include "ricochet/report/runs_figure.hpp"
 #include "ricochet/study/study_figure.hpp"
@@ -36,14 +37,31 @@ std::pair<double, double> two_numbers(const std::string& text, char separator, c
   return result;
 }
 
-std::string format_of(const std::string& output) {
+/// The format that the name of a file asks for, which must be one of some.
+std::string format_of(const std::string& output, std::initializer_list<const char*> formats, const char* what) {
   std::string extension = fs::path(output).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const char* known : {".svg", ".pdf", ".png"}) {
-    if (extension == known) return extension.substr(1);
+  for (const char* const known : formats) {
+    if (extension == std::string(".") + known) return known;
   }
-  throw Error(ErrorKind::usage, fmt::format("{}: a figure is an .svg, .pdf or .png file", output));
+  throw Error(ErrorKind::usage, fmt::format("{}: {}", output, what));
+}
+
+std::pair<double, double> interval_of(const std::string& text) {
+  const char* const wanted = "--time takes the first and the last time to be shown, like 0.02:0.05";
+  const std::pair<double, double> interval = two_numbers(text, ':', wanted);
+  if (!(interval.first < interval.second)) throw Error(ErrorKind::usage, wanted);
+  return interval;
+}
+
+std::pair<double, double> size_of(const std::string& text) {
+  const char* const wanted = "--size takes width and height in cm, like 17x6";
+  const std::pair<double, double> size = two_numbers(text, 'x', wanted);
+  for (const double side : {size.first, size.second}) {
+    if (!(side >= 2.0 && side <= 200.0)) throw Error(ErrorKind::usage, fmt::format("{}, from 2 to 200", wanted));
+  }
+  return size;
 }
 
 FigureOptions options_of(const PlotArguments& arguments) {
@@ -52,19 +70,36 @@ FigureOptions options_of(const PlotArguments& arguments) {
   options.labels = arguments.labels;
   options.title = arguments.title;
   options.logarithmic = arguments.logarithmic;
-  if (!arguments.time.empty()) {
-    const char* wanted = "--time takes the first and the last time to be shown, like 0.02:0.05";
-    options.time = two_numbers(arguments.time, ':', wanted);
-    if (!(options.time->first < options.time->second)) throw Error(ErrorKind::usage, wanted);
-  }
-  if (!arguments.size.empty()) {
-    const char* wanted = "--size takes width and height in cm, like 17x6";
-    std::tie(options.width, options.height) = two_numbers(arguments.size, 'x', wanted);
-    for (const double side : {options.width, options.height}) {
-      if (!(side >= 2.0 && side <= 200.0)) throw Error(ErrorKind::usage, fmt::format("{}, from 2 to 200", wanted));
-    }
-  }
+  if (!arguments.time.empty()) options.time = interval_of(arguments.time);
+  if (!arguments.size.empty()) std::tie(options.width, options.height) = size_of(arguments.size);
+  if (arguments.at || arguments.half || arguments.zoom || !arguments.field.empty())
+    throw Error(ErrorKind::usage, "plot: --field, --at, --zoom and --half are for --what animation");
   return options;
+}
+
+/// The body of one run as it moves, or, with --at, at one time.
+int plot_animation(const PlotArguments& arguments) {
+  if (arguments.what.size() > 1 || arguments.directories.size() > 1)
+    throw Error(ErrorKind::usage, "plot: an animation shows one run, and nothing else: name one directory, one --what");
+  if (arguments.logarithmic || !arguments.labels.empty())
+    throw Error(ErrorKind::usage, "plot: --log and --label are for curves, not for --what animation");
+  if (arguments.at && !arguments.time.empty())
+    throw Error(ErrorKind::usage, "plot: --at takes one time, and --time a part of the run: give one of them");
+  const std::string format =
+      arguments.at ? format_of(arguments.output, {"png", "svg", "pdf"}, "a picture is a .png, .svg or .pdf file")
+                   : format_of(arguments.output, {"gif", "mp4"},
+                               "an animation is a .gif or .mp4 file; with --at T a .png, .svg or .pdf of one frame");
+  AnimationOptions options;
+  if (!arguments.field.empty()) options.field = arguments.field;
+  options.time = arguments.at;
+  if (!arguments.time.empty()) options.interval = interval_of(arguments.time);
+  options.title = arguments.title;
+  if (!arguments.size.empty()) std::tie(options.width, options.height) = size_of(arguments.size);
+  options.half = arguments.half;
+  options.zoom = arguments.zoom;
+  draw_figure(describe_animation(arguments.directories.front(), options), format, arguments.output);
+  fmt::print("{}\n", arguments.output);
+  return 0;
 }
 
 }  // namespace
@@ -85,7 +120,9 @@ std::string describe_study(const PlotArguments& arguments, const FigureOptions& 
 }  // namespace
 
 int plot(const PlotArguments& arguments) {
-  const std::string format = format_of(arguments.output);
+  if (std::count(arguments.what.begin(), arguments.what.end(), "animation") > 0) return plot_animation(arguments);
+  const std::string format =
+      format_of(arguments.output, {"svg", "pdf", "png"}, "a figure is an .svg, .pdf or .png file");
   const FigureOptions options = options_of(arguments);
   if (std::any_of(arguments.directories.begin(), arguments.directories.end(), holds_study)) {
     draw_figure(describe_study(arguments, options), format, arguments.output);

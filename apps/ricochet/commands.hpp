@@ -53,6 +53,11 @@ struct PlotArguments {
   std::string time;  ///< "A:B"; empty: all
   std::string size;  ///< "WxH" in cm; empty: what suits
   bool logarithmic = false;
+  // Of animations:
+  std::string field;         ///< empty: the von Mises stress
+  std::optional<double> at;  ///< the time of a single picture
+  bool half = false;         ///< of an axisymmetric body the section alone
+  bool zoom = false;         ///< on the contact
 };
 
 struct StudyArguments {

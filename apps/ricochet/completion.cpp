@@ -89,7 +89,7 @@ Candidates values_of(const DescribedOption& option, const std::string& typed, co
   if (value == "CASE.toml") return files(typed, {".toml"});
   if (value == "PROBLEM.hdf5" || value == "SOLUTION.hdf5") return files(typed, {".hdf5", ".h5"});
   if (value == "FILE.html") return files(typed, {".html"});
-  if (value == "FILE") return files(typed, {".svg", ".pdf", ".png"});
+  if (value == "FILE") return files(typed, {".svg", ".pdf", ".png", ".gif", ".mp4"});
   if (value == "FILE_OR_DIR") return files(typed, {});
   if (value == "DIR" || value == "RUN") return folders(typed);
   if (value == "LEVEL") return words_of({"trace", "debug", "info", "warning", "error", "off"});

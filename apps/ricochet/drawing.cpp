@@ -40,6 +40,10 @@ void draw_figure(const std::string& description, const std::string& format, cons
                             "python3-matplotlib",
                             python_program()));
   }
+  if (outcome.exit_status() == 5) {
+    throw Error(ErrorKind::file_access,
+                "an .mp4 file is made by ffmpeg, which is not here: apt-get install ffmpeg, or write a .gif");
+  }
   if (!outcome.succeeded()) {
     throw Error(ErrorKind::file_access, fmt::format("the figure could not be drawn: {} {}:\n{}", python_program(),
                                                     outcome.description(), read_file(workspace.file("messages"))));

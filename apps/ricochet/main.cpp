@@ -275,11 +275,12 @@ int dispatch(int argc, char** argv) {
       ->type_name("DIR");
   plot->add_option("--what", arguments.plot.what,
                    "energy, force, momentum, pressure, pressure-map, probe:NAME.COLUMN or a column of history.csv; "
-                   "repeated, a panel for each")
+                   "repeated, a panel for each; or animation: the body as it moves")
       ->required()
       ->type_name("WHAT")
       ->allow_extra_args(false);
-  plot->add_option("-o,--output", arguments.plot.output, "the figure: an .svg, .pdf or .png file")
+  plot->add_option("-o,--output", arguments.plot.output,
+                   "the figure: an .svg, .pdf or .png file; of an animation .gif or .mp4")
       ->required()
       ->type_name("FILE");
   plot->add_option("--label", arguments.plot.labels, "what a run is called, in the order of the runs")
@@ -289,6 +290,12 @@ int dispatch(int argc, char** argv) {
   plot->add_option("--time", arguments.plot.time, "the part of the time to be shown")->type_name("A:B");
   plot->add_option("--size", arguments.plot.size, "width and height in cm")->type_name("WxH");
   plot->add_flag("--log", arguments.plot.logarithmic, "a logarithmic scale");
+  plot->add_option("--field", arguments.plot.field, "the field that colours an animation (default: von_mises)")
+      ->type_name("FIELD");
+  plot->add_option("--at", arguments.plot.at, "of an animation, the frame at this time alone, as .png, .svg or .pdf")
+      ->type_name("T");
+  plot->add_flag("--zoom", arguments.plot.zoom, "an animation looks at the contact from near");
+  plot->add_flag("--half", arguments.plot.half, "of an axisymmetric body, the section alone");
   add_common(*plot, arguments.log_level);
 
   add_study(app, arguments.study, arguments.log_level);

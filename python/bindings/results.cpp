@@ -103,15 +103,17 @@ py::tuple surface_of(const RunData& run, Index most) {
                         give(std::move(surface.cells), triangles));
 }
 
-/// (corners per cell, cells × corners, points × 3) of the obstacles in a frame.
+/// (cells × corners, points × 3, number of the obstacle of each cell) of the obstacles in a frame; None without any.
 py::object obstacles_of(const RunData& run, std::size_t frame) {
   if (frame >= run.obstacles.size()) return py::none();
   const ObstacleFrame& shown = run.obstacles[frame];
   std::vector<int> cells = shown.cells;
   std::vector<double> positions = shown.positions;
+  std::vector<int> obstacle = shown.obstacle;
   const auto count = static_cast<Index>(cells.size()) / shown.corners,
              points = static_cast<Index>(positions.size()) / 3;
-  return py::make_tuple(give(std::move(cells), count, shown.corners), give(std::move(positions), points, 3));
+  return py::make_tuple(give(std::move(cells), count, shown.corners), give(std::move(positions), points, 3),
+                        give(std::move(obstacle), count));
 }
 
 std::string describe_runs(const std::vector<std::string>& directories, const std::vector<std::string>& what,

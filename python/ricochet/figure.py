@@ -1,7 +1,7 @@
 """Draws the figures that the program and the Python package describe. Needs matplotlib.
 
-As a script: figure.py FORMAT OUTPUT < DESCRIPTION. It ends with status 3 where matplotlib is missing. The same
-description gives the same bytes.
+As a script: figure.py FORMAT OUTPUT < DESCRIPTION. It ends with status 3 where matplotlib is missing, and with 5 where ffmpeg
+is, which makes films. The same description gives the same bytes.
 """
 
 import json
@@ -316,11 +316,25 @@ def draw_panels(description):
     return figure
 
 
+def draw_scene(description, form, output):
+    """A body as it moves; scene.py is beside this script. Ends with status 5 where a program is missing for the format."""
+    import scene
+
+    try:
+        scene.write_described(description, form, output)
+    except scene.NoFfmpeg as problem:
+        print(problem)
+        sys.exit(5)
+
+
 def main(form, output):
     matplotlib.use("Agg")
     matplotlib.rcdefaults()
     plt.rcParams.update(STYLE)
-    figure = draw_panels(json.load(sys.stdin))
+    description = json.load(sys.stdin)
+    if "frames" in description:
+        return draw_scene(description, form, output)
+    figure = draw_panels(description)
     # What a file says about itself must not change from day to day.
     metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[form]
     figure.savefig(output, format=form, metadata=metadata)

@@ -1,10 +1,15 @@
-"""Pictures of a body: in the plane as it is, in space what can be seen of it."""
+"""Pictures and animations of the frames of a run."""
+
+import os
+import tempfile
 
 import numpy
 
+from .errors import UsageError
+from .files import path_of, write_whole
+from .scene import Camera, NoFfmpeg, Scene, Shot, animate, draw_bar, draw_shot, map_of, norm_of, shown
+
 MOST_TRIANGLES = 20000
-COLOURS = "viridis"
-NAMES = {"von_mises": "von Mises stress", "nodal_von_mises": "von Mises stress"}
 
 
 def on_triangles(run, frame, field, cells, nodes, triangles):
@@ -15,75 +20,65 @@ def on_triangles(run, frame, field, cells, nodes, triangles):
     return values[nodes][triangles].mean(axis=1) if run.is_on_points(field) else values[cells]
 
 
-def view_axes(azimuth, elevation):
-    """To the right, up, and towards who looks."""
-    a, e = numpy.radians([azimuth, elevation])
-    towards = numpy.array([numpy.cos(e) * numpy.cos(a), numpy.cos(e) * numpy.sin(a), numpy.sin(e)])
-    right = numpy.array([-numpy.sin(a), numpy.cos(a), 0.0])
-    return right, numpy.cross(towards, right), towards
+def scene_of(frames, field, scale=1.0):
+    """The scene of some frames of a run, and their shots."""
+    run = frames[0]._run
+    nodes, triangles, cells = run._data.surface(MOST_TRIANGLES)
+    reference = numpy.array(run._data.points)[nodes]
+    shots, of_obstacles = [], None
+    for frame in frames:
+        displacement = frame["displacement"][nodes]
+        points = reference.copy()
+        points[:, :displacement.shape[1]] += scale * displacement
+        obstacles = run._data.obstacles(frame.number)
+        if obstacles is not None and of_obstacles is None:
+            of_obstacles = obstacles[0], obstacles[2]
+        touching = None
+        if "contact_pressure" in run.fields:
+            touching = numpy.flatnonzero(frame["contact_pressure"][nodes] > 0.0)
+        shots.append(Shot(frame.time, points, on_triangles(run, frame, field, cells, nodes, triangles),
+                          None if obstacles is None else obstacles[1], touching))
+    axisymmetric = run.summary.get("parameters", {}).get("mesh.plane") == "axisymmetric"
+    return Scene(run.dimension, field, triangles, reference, of_obstacles, axisymmetric), shots
 
 
-def picture(frame, field="von_mises", *, axes=None, limits=None, scale=1.0, colours=COLOURS, view=(-60.0, 20.0), bar=True):
+def picture(frame, field="von_mises", *, axes=None, limits=None, scale=1.0, colours=None, view=None, bar=True, zoom=False,
+            half=False):
     """A matplotlib figure of the body at the time of a frame, coloured by a field.
 
-    `limits`: of the colours. `scale`: of the displacement. `view`: azimuth and elevation in degrees, in space. `axes`: where
-    to draw; else in a new figure.
+    `limits`: of the colours; without them the scale is logarithmic where a few values would leave all others in one colour.
+    `scale`: of the displacement. `view`: azimuth and elevation in degrees, in space. `zoom`: the contact from near, in space
+    from behind the obstacle. `half`: of an axisymmetric body the section alone. `axes`: where to draw; else in a new figure.
     """
     from matplotlib import pyplot
-    from matplotlib.collections import PolyCollection
 
-    run = frame._run
-    nodes, triangles, cells = run._data.surface(MOST_TRIANGLES)
-    points = numpy.array(run._data.points)
-    displacement = frame["displacement"]
-    points[:, :displacement.shape[1]] += scale * displacement
-    values = on_triangles(run, frame, field, cells, nodes, triangles)
-    corners = points[nodes][triangles]
-    obstacles = run._data.obstacles(frame.number)
+    scene, shots = shown(*scene_of([frame], field, scale), half)
     if axes is None:
         _, axes = pyplot.subplots(figsize=(5, 4), constrained_layout=True)
-    light = numpy.ones(len(corners))
-    if run.dimension == 3:
-        right, up, towards = view_axes(*view)
-        normals = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normals /= numpy.maximum(numpy.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-        light = 0.55 + 0.45 * abs(normals @ (0.8 * towards + 0.6 * up))
-        order = numpy.argsort(corners.mean(axis=1) @ towards)
-        corners, values, light = corners[order], values[order], light[order]
-        project = numpy.stack([right, up], axis=1)
-    else:
-        project = numpy.eye(3)[:, :2]
-    if obstacles is not None:
-        draw_obstacles(axes, *obstacles, project, run.dimension)
-    low, high = limits or (float(numpy.nanmin(values)), float(numpy.nanmax(values)))
-    scale_of_colours = pyplot.Normalize(low, high if high > low else low + 1.0)
-    colour_map = pyplot.get_cmap(colours)
-    rgb = colour_map(scale_of_colours(values))
-    rgb[:, :3] *= light[:, None]
-    flat = corners @ project
-    axes.add_collection(PolyCollection(flat, facecolors=rgb, edgecolors=rgb, linewidths=0.3))
-    frame_of = flat.reshape(-1, 2)
-    room = 0.06 * (frame_of.max(axis=0) - frame_of.min(axis=0)).max()
-    axes.set_xlim(frame_of[:, 0].min() - room, frame_of[:, 0].max() + room)
-    axes.set_ylim(frame_of[:, 1].min() - room, frame_of[:, 1].max() + room)
-    axes.set_aspect("equal")
-    if run.dimension == 3:
-        axes.set_axis_off()
-    else:
-        axes.set_xlabel("x")
-        axes.set_ylabel("y")
-    axes.set_title(f"t = {frame.time:.4g}", fontsize=9)
+    camera, norm, colours = Camera(scene, shots, view, zoom), norm_of(scene, shots, limits), map_of(scene, colours)
+    draw_shot(axes, scene, shots[0], camera, norm, colours)
     if bar:
-        mapped = pyplot.cm.ScalarMappable(norm=scale_of_colours, cmap=colour_map)
-        axes.figure.colorbar(mapped, ax=axes, label=NAMES.get(field, field.replace("_", " ")), shrink=0.8)
+        draw_bar(axes, scene, norm, colours)
     return axes.figure
 
 
-def draw_obstacles(axes, cells, points, project, dimension):
-    from matplotlib.collections import LineCollection, PolyCollection
-
-    shapes = points[cells] @ project
-    if dimension == 2:
-        axes.add_collection(LineCollection(shapes, colors="0.45", linewidths=2.0))
-    else:
-        axes.add_collection(PolyCollection(shapes, facecolors=(0.75, 0.75, 0.75, 0.35), edgecolors="none"))
+def animate_run(run, path, field="von_mises", *, time=None, title="", size=None, view=None, limits=None, zoom=False, half=False,
+                most=200):
+    """Writes the frames of a run as an animation; `path` ends with .gif or .mp4."""
+    path = path_of(path, "animation")
+    form = os.path.splitext(path)[1].lower()[1:]
+    if form not in ("gif", "mp4"):
+        raise UsageError(f"{path}: an animation is a .gif or .mp4 file")
+    frames = [frame for frame in run.frames if time is None or time[0] <= frame.time <= time[1]]
+    if len(frames) < 2:
+        raise UsageError(f"{run.directory}: there are fewer than two frames to be shown (output.fields_every)")
+    scene, shots = shown(*scene_of(frames[::-(-len(frames) // most)], field), half)
+    with tempfile.TemporaryDirectory() as folder:
+        made = os.path.join(folder, f"animation.{form}")
+        try:
+            animate(scene, shots, made, form, title=title, size=size, view=view, limits=limits, zoom=zoom)
+        except NoFfmpeg as problem:
+            raise UsageError(str(problem)) from None
+        with open(made, "rb") as file:
+            write_whole(path, file.read())
+    return path

@@ -106,7 +106,7 @@ class Frame(Mapping):
 
     def plot(self, field="von_mises", **options):
         """A matplotlib figure of the body as it is now, coloured by a field. The options are those of the function
-        ricochet.picture: axes, limits, scale, colours, view, bar."""
+        ricochet.picture: axes, limits, scale, colours, view, bar, zoom, half."""
         from .pictures import picture
 
         return picture(self, field, **options)
@@ -293,6 +293,13 @@ class Run:
         from .figures import plot
 
         return plot([self], *what, **options)
+
+    def animate(self, path, field="von_mises", **options):
+        """Writes the frames as an animation, a .gif or, where ffmpeg is there, an .mp4 file; its path. Options: `time` (first,
+        last), `title`, `size` in cm, `view`, `limits`, `zoom` and `half`, as those of a frame's plot."""
+        from .pictures import animate_run
+
+        return animate_run(self, path, field, **options)
 
     def report(self, path=None):
         """Writes the report for a browser, one file; its path. Without `path`: report.html in the directory."""

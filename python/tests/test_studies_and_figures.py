@@ -107,3 +107,29 @@ def test_pictures_show_what_the_fields_say(puck, tmp_path):
     assert open(report).read().startswith("<!")
     named = run.report(tmp_path / "named.html")
     assert named == str(tmp_path / "named.html") and open(named).read() == open(report).read()
+
+
+def test_a_picture_comes_near_to_what_touches(puck, tmp_path):
+    run = rc.run(puck, tmp_path / "out", {"time.end": 6e-4, "output.fields_every": 200})
+    frame = run.frame(number=-1)
+    touching = frame.positions[frame["contact_pressure"] > 0.0]
+    assert 0 < len(touching) < len(run.points)
+    figure = frame.plot("von_mises", zoom=True)
+    for axis, limits in enumerate((figure.axes[0].get_xlim(), figure.axes[0].get_ylim())):
+        assert limits[0] < touching[:, axis].min() and touching[:, axis].max() < limits[1]
+    whole = frame.plot("von_mises")
+    assert numpy.diff(figure.axes[0].get_xlim()) < numpy.diff(whole.axes[0].get_xlim())
+
+
+def test_an_animation_is_written_whole_or_not_at_all(puck, tmp_path):
+    from PIL import Image
+
+    run = rc.run(puck, tmp_path / "out", {"time.end": 6e-4, "output.fields_every": 200})
+    path = run.animate(tmp_path / "run.gif", "velocity", size=(8, 7))
+    with Image.open(path) as image:
+        assert image.n_frames == len(run.frames)
+    assert [file.name for file in tmp_path.iterdir() if file.is_file()] == ["run.gif"]
+    with pytest.raises(rc.UsageError, match=".gif or .mp4"):
+        run.animate(tmp_path / "run.avi")
+    with pytest.raises(rc.UsageError, match="fewer than two frames"):
+        run.animate(tmp_path / "none.gif", time=(0.1, 0.2))

@@ -35,7 +35,7 @@ class Installation(TestCase):
         figure = self.folder / "energy.svg"
         self.command(program, "plot", self.folder / "by-program", "--what", "energy", "-o", figure)
         self.assertIn("</svg>", figure.read_text(encoding="utf-8"))
-        for script in ("figure.py", "show_in_paraview.py"):
+        for script in ("figure.py", "scene.py", "show_in_paraview.py"):
             self.assertTrue((prefix / "share" / "ricochet" / script).is_file())
         self.command(program, "report", self.folder / "by-program")
         self.assertIn('id="ricochet-runs"', (self.folder / "by-program" / "report.html").read_text(encoding="utf-8"))
