@@ -13,6 +13,7 @@ const keys: [string, string][] = [
   ["+ −", "more, less deformation"],
   ["p", "contact pressures"],
   ["m", "edges of the cells"],
+  ["w", "axisymmetric bodies whole, or their section"],
   ["c", "the same colours for all runs"],
   ["r", "the whole body, from the front"],
   ["k", "where it touches"],
@@ -55,6 +56,7 @@ export function connectKeys(store: Store, player: Player, help: HTMLDialogElemen
     "-": () => deform(-1),
     p: () => store.set("showForces", !store.showForces, "body"),
     m: () => store.set("showMesh", !store.showMesh, "body"),
+    w: () => store.set("whole", !store.whole, "body"),
     c: () => {
       store.set("sharedColours", !store.sharedColours, "body");
       store.changed("contact");

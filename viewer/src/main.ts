@@ -89,7 +89,7 @@ function perRun(store: Store, runs: Run[], make: (run: Run) => HTMLElement, name
   return element;
 }
 
-function toggleButton(store: Store, key: "showMesh" | "showForces" | "sharedColours", text: string, hint: string): HTMLElement {
+function toggleButton(store: Store, key: "showMesh" | "showForces" | "sharedColours" | "whole", text: string, hint: string): HTMLElement {
   const button = el("button.small", { type: "button", title: hint, onclick: () => {
     store.set(key, !store[key], "body");
     if (key === "sharedColours") store.changed("contact");
@@ -158,6 +158,7 @@ function bodySection(store: Store, stage: Stage, runs: Run[]): HTMLElement {
         el("label.control", { title: "Deformation relative to the mean displacement, which is never scaled" }, el("span", {}, "deformation"), scale, scaleText),
         toggleButton(store, "showForces", "pressures", "Contact pressures as bars (key p)"),
         toggleButton(store, "showMesh", "mesh", "Edges of the cells (key m)"),
+        runs.some((run) => run.isAxisymmetric) && toggleButton(store, "whole", "whole", "Axisymmetric bodies with the other half of their section (key w)"),
         runs.length > 1 && toggleButton(store, "sharedColours", "same colours", "The same range of colours for all runs, in bodies and maps (key c)"))),
     el("div.tools", {},
       ...(space ? (["front", "side", "top", "below"] as const).map((name) => view(name)) : [view("front", "fit")]),

@@ -22,6 +22,8 @@ export class Store {
   showMesh = false;
   showForces = true;
   sharedColours = false;
+  /** Axisymmetric bodies are shown with the mirror image of their section. */
+  whole = true;
   scale: ColourScale = "automatic";
   /** Solids are cut across this axis; what is beyond so much of their extent at the start is taken off. */
   cut: Axis | "" = "";
@@ -107,7 +109,7 @@ export class Store {
     this.changed("zoom");
   }
 
-  set<Key extends "deformation" | "field" | "showMesh" | "showForces" | "duration" | "playing" | "quantity" | "sharedColours" | "scale" | "cut" | "cutAt" | "cutFlipped">(
+  set<Key extends "deformation" | "field" | "showMesh" | "showForces" | "duration" | "playing" | "quantity" | "sharedColours" | "whole" | "scale" | "cut" | "cutAt" | "cutFlipped">(
     key: Key,
     value: this[Key],
     topic: Topic,

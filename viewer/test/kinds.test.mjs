@@ -40,6 +40,59 @@ test("a ball in space is turned, coloured, and asked for values", async () => {
   await view.close();
 });
 
+test("a plane in space is shown as far as the body goes over it", async () => {
+  const view = await open(report("ball", ballRun()));
+  const { low, high, box } = await view.page.evaluate(() => {
+    const own = window.ricochet.stage.panels[0].view;
+    own.update();
+    const places = own.obstacles.sheets[0].faces.geometry.attributes.position.array;
+    const along = (k) => Array.from(places).filter((_, i) => i % 3 === k);
+    return { low: [0, 1, 2].map((k) => Math.min(...along(k))), high: [0, 1, 2].map((k) => Math.max(...along(k))), box: own.box };
+  });
+  const size = Math.hypot(...box.high.map((value, k) => value - box.low[k]));
+  for (const k of [0, 1]) {
+    assert.ok(low[k] < box.low[k] && low[k] > box.low[k] - 0.3 * size, `${low[k]} beside ${box.low[k]}`);
+    assert.ok(high[k] > box.high[k] && high[k] < box.high[k] + 0.3 * size, `${high[k]} beside ${box.high[k]}`);
+  }
+  assert.deepEqual([low[2], high[2]], [0, 0], "it stays in its plane");
+  await view.close();
+});
+
+test("an axisymmetric body is whole, and its section alone where that is wanted", async () => {
+  const run = simulate("cases/ball-axisymmetric/ball-axisymmetric.toml", "axisymmetric", { "time.end": 5e-4, "output.fields_every": 5 });
+  const view = await open(report("axisymmetric", run));
+  /** Parts of each half of the picture, above the plane, that are not the background; and that differ from the other half. */
+  const halves = () => view.page.evaluate(() => {
+    const { stage } = window.ricochet;
+    stage.draw();
+    const canvas = document.querySelector(".bodies canvas");
+    const [width, height] = [canvas.width, Math.round(canvas.height / 2)];
+    const copy = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
+    copy.drawImage(canvas, 0, 0);
+    const { data } = copy.getImageData(0, 0, width, height);
+    const at = (x, y) => data.slice(4 * (y * width + x), 4 * (y * width + x) + 3).join();
+    const ground = at(2, 2);
+    const counts = { left: 0, right: 0, unlike: 0 };
+    for (let y = 0; y < height; ++y) {
+      for (let x = 0; x < Math.floor(width / 2) - 2; ++x) {
+        const [left, right] = [at(x, y), at(width - 1 - x, y)];
+        counts.left += left !== ground;
+        counts.right += right !== ground;
+        counts.unlike += left !== right;
+      }
+    }
+    return counts;
+  });
+  const whole = await halves();
+  assert.ok(whole.left > 1000 && whole.unlike < 0.05 * whole.left, JSON.stringify(whole));
+  await view.page.click("text=whole");
+  await settle(view.page);
+  const section = await halves();
+  assert.ok(section.left === 0 && section.right > 0.95 * whole.right, JSON.stringify(section));
+  assert.deepEqual(view.complaints, []);
+  await view.close();
+});
+
 test("stick and slip have colours of their own", async () => {
   const view = await open(report("friction", frictionRun()));
   const { page } = view;

@@ -1,6 +1,7 @@
 import * as three from "three";
 import { themeColour } from "../colours";
 import { indexAt, type Obstacles } from "../data/run";
+import { diagonal, type Box } from "./geometry";
 
 /** The surfaces of obstacles: in the plane lines with what is behind them, in space sheets, from behind only their borders. */
 export class ObstacleView {
@@ -9,19 +10,19 @@ export class ObstacleView {
   private readonly sheets: Sheet[];
   private row = -1;
 
-  /** `middle` of the body at the start: it is on the free side. */
+  /** `box` around the body at all times, `size` of the body at the start. */
   constructor(
     private readonly obstacles: Obstacles,
-    middle: number[],
+    box: Box,
     size: number,
     scene: three.Object3D,
   ) {
     const { corners, cells, obstacle } = obstacles;
     const plane = corners === 2;
-    this.faces = new three.MeshBasicMaterial({ transparent: true, opacity: plane ? 1 : 0.35, side: plane ? three.DoubleSide : three.FrontSide, depthWrite: plane });
+    this.faces = new three.MeshBasicMaterial({ transparent: true, opacity: plane ? 1 : 0.35, side: plane ? three.DoubleSide : three.FrontSide, depthWrite: plane, vertexColors: !plane });
     const groups: number[][][] = [];
     obstacle.forEach((number, c) => (groups[number] ??= []).push(Array.from(cells.subarray(c * corners, (c + 1) * corners))));
-    this.sheets = Array.from(groups, (own) => new Sheet(own ?? [], obstacle.length === 1, middle, size, this.faces, this.lines, scene));
+    this.sheets = Array.from(groups, (own) => new Sheet(own ?? [], obstacle.length === 1, box, size, this.faces, this.lines, scene));
   }
 
   /** 1: as it is drawn at first, less: so much of that. */
@@ -58,12 +59,15 @@ class Sheet {
   private readonly lines: three.LineSegments<three.BufferGeometry, three.LineBasicMaterial>;
   /** In the plane what is behind the line is behind the body, too. */
   private readonly back: number;
+  private bends: boolean[] | null = null;
+  /** Of a plane in space: the part of its picture that is shown, along its first and its last side. */
+  private part: { from: [number, number]; to: [number, number] } | null = null;
 
   /** `isAlone`: there is no other cell in the picture. */
   constructor(
     private readonly cells: number[][],
     private readonly isAlone: boolean,
-    private readonly middle: number[],
+    private readonly box: Box,
     private readonly size: number,
     faceMaterial: three.MeshBasicMaterial,
     lineMaterial: three.LineBasicMaterial,
@@ -72,6 +76,7 @@ class Sheet {
     const plane = cells[0]?.length === 2;
     const faces = new three.BufferGeometry();
     faces.setAttribute("position", new three.BufferAttribute(new Float32Array(18 * cells.length), 3));
+    if (!plane) faces.setAttribute("color", new three.BufferAttribute(new Float32Array(18 * cells.length).fill(1), 3));
     this.faces = new three.Mesh(faces, faceMaterial);
     const lines = new three.BufferGeometry();
     lines.setAttribute("position", new three.BufferAttribute(new Float32Array((plane ? 6 : 24) * cells.length), 3));
@@ -97,10 +102,13 @@ class Sheet {
     const { cells } = this;
     const faces = this.faces.geometry.attributes.position as three.BufferAttribute;
     const lines = this.lines.geometry.attributes.position as three.BufferAttribute;
+    const shades = this.faces.geometry.attributes.color as three.BufferAttribute | undefined;
+    const bends = (this.bends ??= this.findBends(point));
     let face = 0;
     let line = 0;
     cells.forEach((cell, c) => {
       let at = cell.map(point);
+      if (cells.length === 1 && cell.length === 4 && cell[2] !== cell[3]) at = this.besideBody(at);
       if (cell.length === 2 && this.isAlone) at = longer(at[0], at[1]); // a plane goes on beyond the picture
       if (cell.length === 2) {
         const before = c > 0 && cells[c - 1][1] === cell[0] ? cells[c - 1].map(point) : at;
@@ -111,22 +119,58 @@ class Sheet {
           faces.setXYZ(face++, at[corner][0] + depth * behind[corner][0], at[corner][1] + depth * behind[corner][1], 0);
         for (const corner of [0, 1]) lines.setXYZ(line++, at[corner][0], at[corner][1], 0);
       } else {
-        // Seen from the free side only: from behind one looks at what touches.
-        const order = this.facesBody(at) ? [0, 1, 2, 0, 2, 3] : [0, 2, 1, 0, 3, 2];
-        for (const corner of order) faces.setXYZ(face++, at[corner][0], at[corner][1], at[corner][2]);
+        // Counterclockwise from the free side, from which alone it is seen: from behind one looks at what touches.
+        const shade = light(normalOf(at));
+        for (const corner of [0, 1, 2, 0, 2, 3]) {
+          shades?.setXYZ(face, shade, shade, shade);
+          faces.setXYZ(face++, at[corner][0], at[corner][1], at[corner][2]);
+        }
         for (let k = 0; k < 4; ++k)
-          for (const corner of [k, (k + 1) % 4]) lines.setXYZ(line++, at[corner][0], at[corner][1], at[corner][2]);
+          for (const corner of bends[4 * c + k] ? [k, (k + 1) % 4] : [0, 0]) lines.setXYZ(line++, at[corner][0], at[corner][1], at[corner][2]);
       }
     });
+    if (shades) shades.needsUpdate = true;
     faces.needsUpdate = true;
     lines.needsUpdate = true;
   }
 
-  /** By the diagonals: at a pole two corners are the same. */
-  private facesBody([a, b, c, d]: Float64Array[]): boolean {
-    const at = (p: ArrayLike<number>) => new three.Vector3(p[0], p[1], p[2]);
-    const normal = at(c).sub(at(a)).cross(at(d).sub(at(b)));
-    return normal.dot(at(this.middle).sub(at(a))) > 0;
+  /** Of each side of each cell whether a line is drawn: all of a grid; of triangles from a file those at which the surface bends, or ends. */
+  private findBends(point: (i: number) => Float64Array): boolean[] {
+    const sides = new Map<string, three.Vector3[]>();
+    const keyOf = (cell: number[], k: number) => [cell[k], cell[(k + 1) % 4]].sort((a, b) => a - b).join();
+    for (const cell of this.cells.filter(isTriangle)) {
+      const normal = normalOf(cell.map(point));
+      for (let k = 0; k < 4; ++k) sides.set(keyOf(cell, k), [...(sides.get(keyOf(cell, k)) ?? []), normal]);
+    }
+    return this.cells.flatMap((cell) => [0, 1, 2, 3].map((k) => {
+      if (!isTriangle(cell)) return true;
+      const normals = sides.get(keyOf(cell, k))!;
+      return cell[k] !== cell[(k + 1) % 4] && (normals.length !== 2 || normals[0].dot(normals[1]) < sharp);
+    }));
+  }
+
+  /** A plane has no end, and its picture is as large as all that the body goes over, with a margin. */
+  private besideBody([a, b, , d]: Float64Array[]): Float64Array[] {
+    const sides = [b, d].map((corner) => corner.map((value, k) => value - a[k]));
+    this.part ??= this.partOf(a, sides);
+    const { from, to } = this.part;
+    const at = (first: number, last: number) => a.map((value, k) => value + first * sides[0][k] + last * sides[1][k]);
+    return [at(from[0], from[1]), at(to[0], from[1]), at(to[0], to[1]), at(from[0], to[1])];
+  }
+
+  private partOf(a: Float64Array, sides: Float64Array[]): { from: [number, number]; to: [number, number] } {
+    const margin = planeMargin * Math.max(this.size, 0.5 * diagonal(this.box));
+    const ranges = sides.map((side) => {
+      const square = dot(side, side);
+      const places: number[] = [];
+      for (let corner = 0; corner < 8; ++corner) {
+        const place = a.map((value, k) => (corner & (1 << k) ? this.box.high : this.box.low)[k] - value);
+        places.push(dot(place, side) / square);
+      }
+      const more = margin / Math.sqrt(square);
+      return [Math.min(...places) - more, Math.max(...places) + more] as const;
+    });
+    return { from: [ranges[0][0], ranges[1][0]], to: [ranges[0][1], ranges[1][1]] };
   }
 
   /** How far an obstacle's line is shown into the obstacle, which is to its right: not beyond the middle of a round one. */
@@ -138,6 +182,24 @@ class Sheet {
     return isRound ? Math.min(4 * this.size, 0.95 * radius) : 4 * this.size;
   }
 }
+
+/** Of the body. */
+const planeMargin = 0.2;
+/** Cosine of the angle from which an edge is drawn. */
+const sharp = Math.cos((25 * Math.PI) / 180);
+const lightFrom = new three.Vector3(0.3, -0.5, 0.8).normalize();
+
+const isTriangle = (cell: number[]) => cell.length === 4 && cell[2] === cell[3];
+
+/** By the diagonals: at a pole, and of a triangle, two corners are the same. */
+function normalOf([a, b, c, d]: Float64Array[]): three.Vector3 {
+  const at = (p: Float64Array) => new three.Vector3(p[0], p[1], p[2]);
+  return at(c).sub(at(a)).cross(at(d).sub(at(b))).normalize();
+}
+
+const light = (normal: three.Vector3) => 0.55 + 0.45 * Math.max(normal.dot(lightFrom), 0);
+
+const dot = (a: Float64Array, b: Float64Array) => a.reduce((sum, value, k) => sum + value * b[k], 0);
 
 /** Into the obstacle where two pieces meet, so that both end on the same line. */
 function between(piece: Float64Array[], other: Float64Array[], depth: number): [number, number] {

@@ -8,6 +8,7 @@ import { contactQuantity, fieldAt, fieldRange, type FieldValues } from "./fields
 import { bodiesOf, boxOf, boxOverTime, diagonal, outlineOf, OutwardNormals, placeNodes, referencePositions, type Box } from "./geometry";
 import { bodyMaterial } from "./material";
 import { ObstacleView } from "./obstacles";
+import { MirrorImage } from "./mirror";
 import { PeakMarker } from "./peak";
 import { cutOf, SectionView, type Cut } from "./section_view";
 import { ContactZone } from "./zone";
@@ -41,6 +42,8 @@ export class BodyView {
   private readonly outline: three.LineSegments<three.BufferGeometry, three.LineBasicMaterial>;
   private readonly bars: three.Mesh<three.BufferGeometry, three.MeshBasicMaterial>;
   private readonly obstacles: ObstacleView | null;
+  /** null: the run is not axisymmetric. */
+  private readonly image: MirrorImage | null;
   private readonly size: number;
   private drawnField = "";
   private rangeKey = "";
@@ -59,6 +62,7 @@ export class BodyView {
     this.size = diagonal(this.start);
     const plane = body.dimension === 2;
     this.outlineSides = plane ? outlineOf(body) : new Int32Array(0);
+    if (run.isAxisymmetric) this.outlineSides = offAxis(this.outlineSides, this.reference);
     this.normals = new OutwardNormals(body, contactSides(this.outlineSides, run));
     this.normals.update(this.reference);
 
@@ -91,9 +95,10 @@ export class BodyView {
     this.section = body.volume ? new SectionView(body, body.volume, this.content) : null;
     this.peak = run.summary.peak_stress ? new PeakMarker(run, this.section?.reference ?? this.reference) : null;
     if (this.peak) this.scene.add(this.peak.sprite);
-    const { low, high } = this.start;
-    const middle = low.map((value, k) => (value + high[k]) / 2);
-    this.obstacles = run.obstacles ? new ObstacleView(run.obstacles, middle, this.size, this.content) : null;
+    this.obstacles = run.obstacles ? new ObstacleView(run.obstacles, this.box, this.size, this.content) : null;
+    this.image = run.isAxisymmetric ? new MirrorImage(this.content) : null;
+    // The axis is in the middle of the picture.
+    if (this.image) this.box.low[0] = Math.min(this.box.low[0], -this.box.high[0]);
   }
 
   /** Puts this point of space into the middle and makes this length 1. */
@@ -122,6 +127,7 @@ export class BodyView {
     this.updateBars();
     this.obstacles?.update(store.time);
     this.updateColours();
+    this.image?.update(store.whole);
   }
 
   private updateField(): void {
@@ -264,12 +270,17 @@ export class BodyView {
 
   /** What is under a ray: the value of the field and where it is. */
   pick(ray: three.Raycaster): { value: number; place: three.Vector3 } | null {
-    const meshes = [this.mesh, ...(this.section?.mesh.visible ? [this.section.mesh] : [])];
+    const image = this.image?.of(this.mesh);
+    const meshes = [this.mesh, ...(this.section?.mesh.visible ? [this.section.mesh] : []), ...(image ? [image] : [])];
     for (const { geometry } of meshes) geometry.boundingSphere = geometry.boundingBox = null;
     for (const hit of ray.intersectObjects(meshes, false)) {
       const t = hit.faceIndex;
       if (t === null || t === undefined) continue;
       const place = this.content.worldToLocal(hit.point.clone());
+      if (hit.object === image) {
+        const own = this.picked(t, place.clone().setX(-place.x));
+        return { value: own.value, place };
+      }
       if (hit.object === this.section?.mesh) return { value: this.section.valueAt(t, weightsOf(hit, this.section.mesh)), place };
       if (!this.isCutOff(t, weightsOf(hit, this.mesh))) return this.picked(t, place);
     }
@@ -301,6 +312,14 @@ function weightsOf(hit: three.Intersection, mesh: three.Mesh): number[] {
   const corner = (k: number) => new three.Vector3().fromBufferAttribute(mesh.geometry.attributes.position as three.BufferAttribute, 3 * hit.faceIndex! + k);
   const place = mesh.worldToLocal(hit.point.clone());
   return three.Triangle.getBarycoord(place, corner(0), corner(1), corner(2), new three.Vector3())?.toArray() ?? [1, 0, 0];
+}
+
+/** Sides on the axis x = 0 are inside of the body. */
+function offAxis(outline: Int32Array, reference: Float32Array): Int32Array {
+  const sides: number[] = [];
+  for (let i = 0; i < outline.length; i += 2)
+    if (reference[3 * outline[i]] !== 0 || reference[3 * outline[i + 1]] !== 0) sides.push(outline[i], outline[i + 1]);
+  return Int32Array.from(sides);
 }
 
 /** Of an outline the sides between nodes of the contact boundary: at its ends no others take part. */

@@ -108,6 +108,11 @@ export class Run {
     return shift === 0 ? times : times.map((time) => time + shift);
   }
 
+  /** Its body is the section of one that is the same all round the axis x = 0. */
+  get isAxisymmetric(): boolean {
+    return this.summary.parameters["mesh.plane"] === "axisymmetric";
+  }
+
   column(name: string): Float64Array {
     return this.history.get(this.own(name)) ?? new Float64Array(0);
   }
