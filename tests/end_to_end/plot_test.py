@@ -131,6 +131,30 @@ class Plot(TestCase):
                   "-o", figure, "--title", "All of them")
         self.assertLess(texts(figure)["All of them"] + 5, texts(figure)["midpoint"])
 
+    def test_keys_that_are_vectors(self):
+        """By the component in which the runs differ, else by their length: 5, 10 and 13 of Pythagoras' triangles."""
+        def study(name, values):
+            process = run("study", DISC, "--vary", f"initial.velocity={values}", "-o", self.folder / name, "--quiet", "--jobs", "1",
+                          "--log-level", "error", *settings({"time.end": 0.0005, "output.fields_every": 0}))
+            self.assertEqual(process.returncode, 0, process.stderr)
+            return self.folder / name
+
+        one = study("one", "[0,-0.1],[0,-0.2],[0,-0.4]")
+        self.plot(one, "--what", "steps-against-initial.velocity", "-o", "one.svg")
+        self.assertIn("initial.velocity, y", texts(self.folder / "one.svg"))
+        both = study("both", "[0.03,-0.04],[0.06,-0.08],[0.05,-0.12]")
+        for part, name, wanted in (("", "length of initial.velocity", [0.05, 0.1, 0.13]), (".x", "initial.velocity, x", [0.03, 0.06, 0.05])):
+            self.plot(both, "--what", f"steps-against-initial.velocity{part}", "-o", "both.svg")
+            self.assertIn(name, texts(self.folder / "both.svg"))
+            places = sorted(float(x) for x in re.findall(r'<use xlink:href="#m\w+" x="([\d.]+)" y="[\d.]+" style="fill: #1b1f24',
+                                                         (self.folder / "both.svg").read_text(encoding="utf-8")))
+            self.assertEqual(len(places), 3)
+            wanted = sorted(wanted)
+            self.assertAlmostEqual((places[1] - places[0]) / (places[2] - places[0]), (wanted[1] - wanted[0]) / (wanted[2] - wanted[0]),
+                                   delta=1e-4)
+        process = self.plot(both, "--what", "steps-against-initial.velocity.z", "-o", "a.svg", status=1)
+        self.assertIn('no column "initial.velocity.z"', process.stderr)
+
     def test_names_of_ticks_do_not_touch(self):
         study = self.folder / "study"
         names = ",".join(f"a-rather-long-name-{i}" for i in range(6))

@@ -24,6 +24,7 @@ constexpr std::string_view against = "-against-";
 /// What a panel shows: columns of the table, and the axis of the plan along which its lines go.
 struct StudyPanel {
   std::string x, y;
+  std::string part = {};  ///< of a key whose values are vectors: "x", "y", "z" or "length"; empty: chosen
   std::size_t axis = 0;
   bool log_x = false, log_y = false, has_slopes = false;
 };
@@ -55,6 +56,63 @@ void require_column(const std::string& what, const std::string& column, const Re
                                   near.empty() ? "" : fmt::format(" (is \"{}\" meant?)", near)));
 }
 
+/// The components of a vector, as "[0, -0.5]" has them; nothing where the text is none.
+std::vector<double> vector_in(const std::string& text) {
+  if (text.size() < 2 || text.front() != '[' || text.back() != ']') return {};
+  std::vector<double> result;
+  for (std::size_t begin = 1; begin < text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size() - 1);
+    const std::size_t first = std::min(text.find_first_not_of(' ', begin), end);
+    const std::optional<double> number = number_in(text.substr(first, end - first));
+    if (!number) return {};
+    result.push_back(*number);
+    begin = end + 1;
+  }
+  return result;
+}
+
+/// The vectors of a column, one of each row; nothing where a row has none, or one of another dimension.
+std::vector<std::vector<double>> vectors_of(const ResultTable& table, std::size_t column) {
+  std::vector<std::vector<double>> result;
+  for (const auto& row : table.rows) {
+    result.push_back(vector_in(text_of(row[column])));
+    if (result.back().empty() || result.back().size() != result.front().size()) return {};
+  }
+  return result;
+}
+
+/// "initial.velocity.y" is a part of the values of "initial.velocity".
+void take_part(const ResultTable& table, StudyPanel& panel) {
+  const std::size_t dot = panel.x.rfind('.');
+  if (dot == std::string::npos || table.find(panel.x) < table.columns.size()) return;
+  const std::string whole = panel.x.substr(0, dot), part = panel.x.substr(dot + 1);
+  const std::size_t column = table.find(whole);
+  if (column >= table.columns.size() || vectors_of(table, column).empty()) return;
+  const std::size_t dimension = vectors_of(table, column).front().size();
+  const std::size_t number = std::string("xyz").find(part);
+  if (part != "length" && (part.size() != 1 || number >= dimension)) return;
+  panel.x = whole;
+  panel.part = part;
+}
+
+/// What stands on the axis for vectors, one number for each: the part that is asked for, else the only component in
+/// which they differ, else their length.
+std::vector<double> numbers_of(const std::vector<std::vector<double>>& vectors, std::string& part) {
+  std::vector<std::string> differing;
+  for (std::size_t k = 0; k < vectors.front().size(); ++k) {
+    const auto differs = [&](const std::vector<double>& vector) { return vector[k] != vectors.front()[k]; };
+    if (std::any_of(vectors.begin(), vectors.end(), differs)) differing.emplace_back(1, "xyz"[k]);
+  }
+  if (part.empty()) part = differing.size() == 1 ? differing.front() : "length";
+  std::vector<double> numbers;
+  for (const std::vector<double>& vector : vectors) {
+    double length = 0.0;
+    for (const double component : vector) length = std::hypot(length, component);
+    numbers.push_back(part == "length" ? length : vector[std::string("xyz").find(part)]);
+  }
+  return numbers;
+}
+
 /// The axis of a key; of any other column that along which orders are, else the last.
 std::size_t axis_of(const std::string& column, const Study& study) {
   for (const std::string& key : {column, study.questions.order_key}) {
@@ -68,6 +126,7 @@ std::vector<StudyPanel> panels_of(const std::string& what, const Study& study, c
                                   bool logarithmic) {
   if (const std::size_t at = what.find(against); at != std::string::npos) {
     StudyPanel panel{what.substr(at + against.size()), what.substr(0, at)};
+    take_part(table, panel);
     require_column(what, panel.x, table);
     require_column(what, panel.y, table);
     panel.axis = axis_of(panel.x, study);
@@ -87,7 +146,7 @@ std::vector<StudyPanel> panels_of(const std::string& what, const Study& study, c
   for (const std::string& error : errors) {
     require_column(what, error, table);
     const std::string x = of_order ? study.questions.order_key : "processor_seconds";
-    panels.push_back({x, error, axis_of(x, study), true, true, of_order});
+    panels.push_back({x, error, {}, axis_of(x, study), true, true, of_order});
   }
   return panels;
 }
@@ -123,15 +182,13 @@ struct StudyLine {
   std::vector<double> x, y;
 };
 
+/// `numbers`: of each row, on the axis.
 std::vector<StudyLine> lines_of(const StudyPanel& panel, const Study& study, const ResultTable& table,
-                                const std::vector<std::string>& categories) {
-  const std::size_t x_column = table.find(panel.x), y_column = table.find(panel.y);
+                                const std::vector<double>& numbers) {
+  const std::size_t y_column = table.find(panel.y);
   std::vector<StudyLine> lines;
   for (std::size_t i = 0; i < study.runs.size(); ++i) {
-    const std::string text = text_of(table.rows[i][x_column]);
-    const auto place = std::find(categories.begin(), categories.end(), text) - categories.begin();
-    const double number = categories.empty() ? number_of(table.rows[i][x_column]) : static_cast<double>(place);
-    const double x = panel.log_x ? step_of(panel.x, number) : number;
+    const double x = panel.log_x ? step_of(panel.x, numbers[i]) : numbers[i];
     const double y = number_of(table.rows[i][y_column]);
     const bool is_shown =
         std::isfinite(x) && std::isfinite(y) && !(panel.log_x && x <= 0.0) && !(panel.log_y && y <= 0.0);
@@ -193,20 +250,38 @@ bool spans_much(const std::vector<StudyLine>& lines) {
   return least > 0.0 && most > 5.0 * least;
 }
 
-Json describe_panel(StudyPanel panel, const Study& study, const ResultTable& table, const std::string& what) {
-  std::vector<std::string> categories;
-  const std::size_t x_column = table.find(panel.x);
+/// Of each row the number on the axis: its own, that of a part of vectors, or the place of a word among `categories`.
+std::vector<double> places_of(const ResultTable& table, StudyPanel& panel, std::vector<std::string>& categories) {
+  const std::size_t column = table.find(panel.x);
+  if (const auto vectors = vectors_of(table, column); !vectors.empty()) return numbers_of(vectors, panel.part);
+  std::vector<double> numbers, places;
   bool all_numbers = true;
   for (const auto& row : table.rows) {
-    const std::string text = text_of(row[x_column]);
+    const std::string text = text_of(row[column]);
     all_numbers = all_numbers && (text.empty() || number_in(text));
-    if (std::count(categories.begin(), categories.end(), text) == 0) categories.push_back(text);
+    const auto known = std::find(categories.begin(), categories.end(), text);
+    places.push_back(static_cast<double>(known - categories.begin()));
+    numbers.push_back(number_of(row[column]));
+    if (known == categories.end()) categories.push_back(text);
   }
-  if (all_numbers) categories.clear();
-  const std::vector<StudyLine> lines = lines_of(panel, study, table, categories);
+  if (!all_numbers) return places;
+  categories.clear();
+  return numbers;
+}
+
+std::string label_of_part(const StudyPanel& panel) {
+  const std::string label = axis_label(panel.x);
+  if (panel.part.empty()) return label;
+  return panel.part == "length" ? "length of " + label : fmt::format("{}, {}", label, panel.part);
+}
+
+Json describe_panel(StudyPanel panel, const Study& study, const ResultTable& table, const std::string& what) {
+  std::vector<std::string> categories;
+  const std::vector<double> numbers = places_of(table, panel, categories);
+  const std::vector<StudyLine> lines = lines_of(panel, study, table, numbers);
   if (lines.empty()) refuse_figure(what, fmt::format("no run has numbers under {} and {}", panel.x, panel.y));
   Json json{{"kind", "lines"},
-            {"x_label", (panel.log_x && counts_halvings(panel.x) ? "2^-" : "") + axis_label(panel.x)},
+            {"x_label", (panel.log_x && counts_halvings(panel.x) ? "2^-" : "") + label_of_part(panel)},
             {"y_label", axis_label(panel.y)},
             {"log_y", panel.log_y},
             {"categories", categories},
