@@ -45,8 +45,8 @@ Section time_section() {
            .unit = "1",
            .range = {.above = 0.0, .at_most = 0.1},
            .doc = "Of adaptive steps: allowed error of a step, in the norm of the kinetic energy and relative to the "
-                  "root of the largest energy so far. A step with more is taken again with a shorter one. Default: "
-                  "1e-3."},
+                  "root of the largest energy so far, or of what a step of the longest length would bring where motion "
+                  "sets off from rest. A step with more is taken again with a shorter one. Default: 1e-3."},
           {.name = "largest",
            .type = KeyType::number,
            .unit = "time",

@@ -254,24 +254,6 @@ void Simulation::use_level(int number) {
   current_ = found != levels_.end() ? &found->second : &make_level(number, options_);
 }
 
-double Simulation::take_controlled_step() {
-  before_ = state_;
-  while (true) {
-    use_level(control_->level());
-    try {
-      take_step(control_->level() == control_->deepest());
-    } catch (const Error& problem) {
-      if (problem.kind() != ErrorKind::not_converged || !control_->shorten()) throw;
-      continue;
-    }
-    const double energy =
-        problem_.ranks->sum(0.5 * problem_.mass.form(state_.velocity) +
-                            stored_energy(*problem_.internal_force, state_.displacement, state_.internal_strain));
-    if (control_->accept(before_, state_, energy)) return energy;
-    state_ = before_;
-  }
-}
-
 /// Of no use to the equations: for those who look at the state.
 Vector Simulation::set_velocity(const Vector& velocity) {
   Vector change = velocity - state_.velocity, impulse;

@@ -79,6 +79,9 @@ class Simulation : private StageSolve {
   void complete_tied();
   /// Returns kinetic and elastic energy at its end.
   double take_controlled_step();
+  [[nodiscard]] double energy_of_motion() const;
+  /// Tells the control what a step of the longest length would end with.
+  void look_ahead();
   Stage& stage(std::size_t number) override;
   const StageSolution& solve(std::size_t number) override;
   void follow(const Vector& displacement) override { current_->solver->follow(displacement); }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 
 namespace ricochet {
 
@@ -15,9 +16,12 @@ namespace {
 
 constexpr double order = 2.0;  ///< of the error of a step
 constexpr int first_level = 4;
-constexpr double most_created = 100.0;                 ///< times the energy that the motion has by itself
-constexpr double most_growth = 4.0;                    ///< of the largest energy in a step, as the measure of its error
-constexpr double aim = 0.5;                            ///< of the tolerance, for the next step
+constexpr double most_created = 100.0;  ///< times the energy that the motion has by itself
+constexpr double most_growth = 4.0;     ///< of the largest energy in a step, as the measure of its error
+constexpr double aim = 0.5;             ///< of the tolerance, for the next step
+constexpr double part_of_prospect = 0.25;
+/// Growth of the largest energy in an attempt above which more is about to come. Less is rounding, or a step of many.
+constexpr double growth_ahead = 1e-3;
 constexpr int least_patience = 2, most_patience = 64;  ///< steps
 
 }  // namespace
@@ -40,6 +44,32 @@ StepControl::StepControl(const SemidiscreteProblem& problem, const StepControlOp
     refuse(fmt::format("{:.3g} of the smallest step, {:.6g}, lead to the end, {:.6g}; at most {:.0e} are possible",
                        ticks, options.smallest, options.end, most_ticks));
   end_ticks_ = std::max(std::int64_t{1}, static_cast<std::int64_t>(ticks));
+  find_inertia();
+}
+
+void StepControl::find_inertia() {
+  const Supports& supports = problem_.supports;
+  const bool moves = std::any_of(supports.dofs().begin(), supports.dofs().end(),
+                                 [&](Index dof) { return supports.expression(dof).depends_on_time(); });
+  if (!problem_.ranks->any(moves)) return;
+  problem_.mass.multiply(Vector::Ones(problem_.mass.size()), force_);
+  inertia_ = problem_.mass.diagonal();
+  const double scale = problem_.ranks->sum(force_.sum()) / problem_.ranks->sum(inertia_.sum());
+  problem_.ranks->accumulate(inertia_);
+  inertia_ *= scale;
+  for (const Index dof : supports.dofs()) inertia_[dof] = 0.0;
+}
+
+double StepControl::energy_of_change() {
+  if (inertia_.size() == 0) return problem_.ranks->sum(0.5 * problem_.mass.form(change_));
+  problem_.mass.multiply(change_, force_);
+  at_nodes_ = force_;
+  problem_.ranks->accumulate(at_nodes_);
+  double sum = 0.0;
+  for (Index dof = 0; dof < inertia_.size(); ++dof) {
+    if (inertia_[dof] > 0.0) sum += 0.5 * force_[dof] * at_nodes_[dof] / inertia_[dof];
+  }
+  return problem_.ranks->sum(sum);
 }
 
 double StepControl::step_of(int level) const {
@@ -62,10 +92,16 @@ bool StepControl::accept(const State& before, const State& after, double energy)
   // An attempt that blows up must not be judged by its own energy.
   const double scale =
       largest_energy_ > 0.0 ? std::clamp(energy, largest_energy_, most_growth * largest_energy_) : energy;
-  const double own = problem_.ranks->sum(0.5 * problem_.mass.form(change_));
-  error_ = own != 0.0 ? h * h / (6.0 * (h + step_before_)) * std::sqrt(own / scale) / options_.tolerance : 0.0;
+  const double own = energy_of_change();
+  const double measure = std::max(scale, energy_ahead());
+  error_ = own != 0.0 ? h * h / (6.0 * (h + step_before_)) * std::sqrt(own / measure) / options_.tolerance : 0.0;
   if (!std::isfinite(energy) || !std::isfinite(error_)) error_ = std::numeric_limits<double>::infinity();
   const bool grown = level_ < last_level_;
+  wants_prospect_ = !(error_ <= 1.0) && ticks_ >= prospect_ticks_ && energy > (1.0 + growth_ahead) * largest_energy_;
+  if (wants_prospect_) {
+    ++counts_.refused;
+    return false;
+  }
   if (!(error_ <= 1.0)) {
     if (level_ < deepest_) {
       ++counts_.refused;
@@ -102,6 +138,7 @@ bool StepControl::accept(const State& before, const State& after, double energy)
 }
 
 void StepControl::watch(double energy, double created) {
+  count_step();
   own_energy_ = std::max(own_energy_, energy - std::max(created, 0.0));
   if (!(created > most_created * own_energy_)) return;
   throw Error(
@@ -110,6 +147,39 @@ void StepControl::watch(double energy, double created) {
           "t = {:.9g}: the time scheme has created an energy of {:.3g} where the motion had {:.3g}; shorter steps only "
           "make it create more: use scheme \"reduced-kane\" with mass \"equivalent\", or fixed steps",
           time(), created, own_energy_));
+}
+
+/// None counts until it has come: what is found where an attempt was refused serves that attempt, taken again, too.
+void StepControl::take_prospect(int level, double energy) {
+  prospect_ = std::isfinite(energy) ? part_of_prospect * energy : 0.0;
+  prospect_ticks_ = ticks_ + ticks_of(level);
+}
+
+void StepControl::count_step() {
+  if (ticks_ - stretch_ticks_ >= ticks_of(0)) {
+    stretch_ticks_ = ticks_;
+    stretch_steps_ = 0;
+  }
+  ++stretch_steps_;
+  if (stretch_steps_ != many_steps && stretch_steps_ != most_steps) return;
+  const double gone = static_cast<double>(ticks_ - stretch_ticks_) * step_of(deepest_);
+  const std::string pace = fmt::format(
+      "t = {:.9g}: the last {} steps have led no further than {:.3g}, a part of time.largest = {:g}, and the last has "
+      "an error of {:.2g} times time.tolerance: the motion has jumps that steps of no length resolve, or vibrations "
+      "that "
+      "need such steps",
+      time(), stretch_steps_, gone, options_.largest, error_);
+  const std::string advice = fmt::format(
+      "set time.smallest = {:.3g}, below which no step is refused, or a larger time.tolerance; where so many steps are "
+      "meant, a smaller time.largest",
+      step_of(first_level));
+  if (stretch_steps_ == most_steps)
+    throw Error(ErrorKind::not_converged,
+                fmt::format("{}; the run would have a row of history.csv for each; {}", pace, advice));
+  log::warning(
+      fmt::format("{}; at this pace the run takes {:.2g} steps, each a row of history.csv, and it ends with an "
+                  "error after {} of them; {}",
+                  pace, static_cast<double>(stretch_steps_) * options_.end / gone, most_steps, advice));
 }
 
 bool StepControl::shorten() {
@@ -127,19 +197,24 @@ void StepControl::fit_to_end() {
 }
 
 void StepControl::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name + ".ticks", ticks_);
+  snapshot.save(name + ".ticks", Snapshot::Integers{ticks_, prospect_ticks_, stretch_ticks_, stretch_steps_});
   snapshot.save(name + ".levels", Snapshot::Integers{level_, wanted_, last_level_, deepest_});
   snapshot.save(name + ".steps", Snapshot::Integers{finest_, patience_, backoff_});
   snapshot.save(name + ".counts", Snapshot::Integers{counts_.refused, counts_.unsolved, counts_.tolerated});
-  Vector numbers(7);
+  Vector numbers(8);
   numbers << largest_energy_, step_before_, error_, counts_.largest_error, counts_.shortest, counts_.longest,
-      own_energy_;
+      own_energy_, prospect_;
   snapshot.save(name + ".numbers", numbers);
   snapshot.save(name + ".acceleration", acceleration_before_);
 }
 
 void StepControl::load(const Snapshot& snapshot, const std::string& name) {
-  ticks_ = snapshot.integers(name + ".ticks", 0, std::int64_t{1} << 60).at(0);
+  const Snapshot::Integers& ticks = snapshot.integers(name + ".ticks", 0, std::int64_t{1} << 60);
+  if (ticks.size() != 4) Snapshot::refuse(name + ".ticks", "are not four");
+  ticks_ = ticks[0];
+  prospect_ticks_ = ticks[1];
+  stretch_ticks_ = ticks[2];
+  stretch_steps_ = static_cast<long>(ticks[3]);
   const Snapshot::Integers& levels = snapshot.integers(name + ".levels", 0, deepest_);
   if (levels.size() != 4 || levels[3] != deepest_) Snapshot::refuse(name + ".levels", "are those of other steps");
   level_ = static_cast<int>(levels[0]);
@@ -157,7 +232,7 @@ void StepControl::load(const Snapshot& snapshot, const std::string& name) {
   counts_.refused = counts[0];
   counts_.unsolved = counts[1];
   counts_.tolerated = counts[2];
-  const Vector& numbers = snapshot.reals(name + ".numbers", 7);
+  const Vector& numbers = snapshot.reals(name + ".numbers", 8);
   if (!(numbers.array() >= 0.0).all()) Snapshot::refuse(name + ".numbers", "are not all positive");
   largest_energy_ = numbers[0];
   step_before_ = numbers[1];
@@ -166,6 +241,7 @@ void StepControl::load(const Snapshot& snapshot, const std::string& name) {
   counts_.shortest = numbers[4];
   counts_.longest = numbers[5];
   own_energy_ = numbers[6];
+  prospect_ = numbers[7];
   acceleration_before_ = snapshot.reals(name + ".acceleration", problem_.dof_count());
   // The end may be another than that which the length was fitted to.
   level_ = wanted_;

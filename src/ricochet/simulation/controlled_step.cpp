@@ -1,0 +1,71 @@
+#include <algorithm>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/problem/viscous_force.hpp"
+#include "ricochet/simulation/simulation.hpp"
+
+/// @file Steps whose length follows the motion: how a simulation takes them.
+namespace ricochet {
+
+namespace {
+
+/// Level of the shortest step that looks ahead.
+constexpr int shortest_look_ahead = 4;
+
+}  // namespace
+
+/// Returns kinetic and elastic energy, of all ranks.
+double Simulation::energy_of_motion() const {
+  return problem_.ranks->sum(0.5 * problem_.mass.form(state_.velocity) +
+                             stored_energy(*problem_.internal_force, state_.displacement, state_.internal_strain));
+}
+
+double Simulation::take_controlled_step() {
+  before_ = state_;
+  while (true) {
+    use_level(control_->level());
+    try {
+      take_step(control_->level() == control_->deepest());
+    } catch (const Error& problem) {
+      if (problem.kind() != ErrorKind::not_converged || !control_->shorten()) throw;
+      continue;
+    }
+    const double energy = energy_of_motion();
+    if (control_->accept(before_, state_, energy)) return energy;
+    state_ = before_;
+    if (control_->wants_prospect()) look_ahead();
+  }
+}
+
+/// Takes the longest step that has a solution, and takes it back; after some that have none nothing is known. The
+/// account is taken back as a whole: of changes of the step there and back rounding would be left, relative to the
+/// algorithmic energy of the longest step.
+void Simulation::look_ahead() {
+  const EnergyAccount account = *account_;
+  const int shortest = std::min(shortest_look_ahead, control_->deepest());
+  double energy = 0.0;
+  int level = 0;
+  for (bool is_solved = false; !is_solved && level <= shortest; level += is_solved ? 0 : 1) {
+    use_level(level);
+    const double created_before = account_->of_method(state_);
+    try {
+      take_step(false);
+      is_solved = true;
+    } catch (const Error& problem) {
+      if (problem.kind() != ErrorKind::not_converged) throw;
+      state_ = before_;
+      continue;
+    }
+    state_.time += scheme_.step();
+    complete_tied();
+    account_->enter_step(increment_, state_);
+    const double created = problem_.ranks->sum(account_->of_method(state_) - created_before);
+    energy = energy_of_motion() - std::max(created, 0.0);
+  }
+  state_ = before_;
+  use_level(control_->level());
+  account_ = std::make_unique<EnergyAccount>(account);
+  control_->take_prospect(std::min(level, shortest), energy);
+}
+
+}  // namespace ricochet
