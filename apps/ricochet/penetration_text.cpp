@@ -10,8 +10,9 @@ namespace ricochet::program {
 namespace {
 
 std::string found_text(const UnwatchedPenetration& p) {
-  const std::string what = p.obstacle.empty() ? fmt::format("{} and {} overlap", p.bodies[0], p.bodies[1])
-                                              : fmt::format("{} in \"{}\"", p.bodies[0], p.obstacle);
+  const std::string what = p.is_in_itself()     ? p.bodies[0] + " in itself"
+                           : p.obstacle.empty() ? fmt::format("{} and {} overlap", p.bodies[0], p.bodies[1])
+                                                : fmt::format("{} in \"{}\"", p.bodies[0], p.obstacle);
   const std::string kind =
       p.passed_through    ? "PASSED THROUGH WITHIN ONE STEP"
       : p.contact.empty() ? "PENETRATION WITHOUT CONTACT"
@@ -68,6 +69,8 @@ std::string deformation_text(const RunSummary& s) {
                   s.penetration.checked ? " of contact nodes" : " of contact nodes (no others were looked at)",
                   rotation, rotation > s.largest_rotation() ? beyond_text(s) : "");
   for (const UnwatchedPenetration& found : s.penetration.found) text += found_text(found);
+  for (const std::string& what : s.penetration.not_watched)
+    if (s.penetration.checked) text += fmt::format("\n  not watched for interpenetration: {}", what);
   for (const ContactBeyondRim& rim : s.penetration.rims)
     text += fmt::format("\n  the contact of \"{}\" with \"{}\" goes on beyond its group", rim.group, rim.obstacle);
   for (const PairSliding& pair : s.sliding) text += sliding_text(pair, s);
@@ -76,7 +79,7 @@ std::string deformation_text(const RunSummary& s) {
 }
 
 std::string deepest_penetration_text(const RunSummary& s) {
-  return fmt::format("{}{:.3g}", s.penetration.checked ? "" : "≥ ", s.deepest_penetration());
+  return fmt::format("{}{:.3g}", s.penetration.is_complete() ? "" : "≥ ", s.deepest_penetration());
 }
 
 }  // namespace ricochet::program

@@ -26,12 +26,29 @@ def rows_of(run):
                                        f"force {impact['largest_force']:.4g}")
     if len(run.impacts) > 3:
         yield "", f"and {len(run.impacts) - 3} impacts more: run.impacts"
+    yield "interpenetration", penetration_of(summary)
     peak = summary.get("peak_stress")
     if peak:
         place = ", ".join(f"{x:.4g}" for x in peak["place"])
         yield "largest von Mises stress", f"{peak['von_mises']:.4g} at t = {peak['time']:.4g}, place ({place})"
     for entry in run._broken_expectations():
         yield "expectation", run._text_of(entry)
+
+
+def penetration_of(summary):
+    """The deepest one, where no contact prevents it before all else, and what was not watched."""
+    watched = summary.get("unwatched_penetration", {"found": [], "not_watched": ["all but contact nodes"]})
+    of_contacts = f"{summary['extrema'].get('max_penetration', {'maximum': 0.0})['maximum']:.3g} of contact nodes"
+    texts = [of_contacts] + [f"{' and '.join(found['bodies'])}{_where(found)}, {found['depth']:.3g} at t = {found['time']:.4g}"
+                             for found in watched["found"]]
+    left_out = watched.get("not_watched", ["bodies against themselves"])
+    return "; ".join(texts + [f"not watched: {what}" for what in left_out])
+
+
+def _where(found):
+    if found["obstacle"]:
+        return f" in {found['obstacle']}"
+    return " in itself" if len(found["bodies"]) == 1 else ""
 
 
 def image_of(run):

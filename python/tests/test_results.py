@@ -8,6 +8,7 @@ import pytest
 
 import ricochet as rc
 from conftest import ROOT
+from ricochet.page import penetration_of
 
 
 def run_puck(folder, file_format):
@@ -105,7 +106,15 @@ def test_expectations(run, tmp_path, caplog):
 def test_a_page_shows_answers_warnings_and_a_picture(run):
     page = run._repr_html_()
     assert "restitution" in page and "von Mises" in page and "data:image/png;base64" in page
+    assert "interpenetration" in page and "of contact nodes" in page and "not watched" not in page
     assert page.count("<div>") == page.count("</div>")
+
+
+def test_a_page_names_what_was_not_watched():
+    summary = {"extrema": {"max_penetration": {"maximum": 0.0}}, "unwatched_penetration": {"found": [
+        {"obstacle": None, "bodies": ["the body"], "depth": 0.25, "time": 2.0}], "not_watched": ["this"]}}
+    assert penetration_of(summary) == ("0 of contact nodes; the body in itself, 0.25 at t = 2; "
+                                                      "not watched: this")
 
 
 def test_what_is_no_run(tmp_path):

@@ -170,6 +170,8 @@ TRIED_BY_RUNS = [
 ]
 # By the words of the sources: the file, under tests/, and words of the test.
 ELSEWHERE = {
+    'below which no step is refused, or a larger time.tolerance': ("verification/adaptive_steps_test.cpp", "EndWhereTheyDoNotGetOn"),
+    'Give the mesh a group of these facets of this body': ("end_to_end/self_penetration_test.py", "test_facets_without_a_group_of_their_own"),
     "smaller time.step and smaller cells lose less":
         ("end_to_end/warnings_test.py", "test_energy_that_long_steps_take"),
     "}}, the time in which a wave crosses a cell":

@@ -123,6 +123,9 @@ export function penetrationFinding(j: Judgement): Finding {
   if (!j.penetration_checked) {
     return { what, grade: "none", words: `${none ? "none" : size} at contact points, elsewhere not checked`, short: `${none ? "none" : share}, not all checked`, detail: `${detail}; results of a version that looked at contact points only` };
   }
+  if (j.penetration_not_watched !== "") {
+    return { what, grade: "none", words: `${none ? "none" : size} where it was watched; not watched: ${j.penetration_not_watched}`, short: `${none ? "none" : share}, not all watched`, detail: `${detail}; not watched: ${j.penetration_not_watched}` };
+  }
   if (j.contact_beyond_rim !== "") return { what, grade: "fair", words: "contact goes on beyond its group", short: "beyond its group", detail: `group "${j.contact_beyond_rim}" is in contact at its rim; ${detail}` };
   if (none) return { what, grade: "good", words: "none", short: "none", detail };
   if (relative === null) return { what, grade: "none", words: size, short: share, detail };

@@ -279,6 +279,26 @@ test("a force on points that held steps have left at a gap is in doubt", async (
   }
 });
 
+test("what was not watched is not called fine", async () => {
+  const run = shortDisc("unwatched");
+  const file = join(run, "summary.json");
+  const summary = JSON.parse(readFileSync(file, "utf8"));
+  const words = async (name, changes) => {
+    writeFileSync(file, JSON.stringify({ ...summary, unwatched_penetration: { ...summary.unwatched_penetration, ...changes } }));
+    const view = await open(report(name, run));
+    const dd = await view.page.$$eval(".findings dt", (all) => all.filter((dt) => dt.textContent === "Interpenetration")
+      .map((dt) => `${dt.nextElementSibling.className}: ${dt.nextElementSibling.textContent}`));
+    assert.deepEqual(view.complaints, []);
+    await view.close();
+    return dd[0];
+  };
+  assert.match(await words("watched", {}), /^good: .?none$/);
+  assert.match(await words("unwatched", { not_watched: ["bodies against themselves"] }),
+    /^none: .?none where it was watched; not watched: bodies against themselves$/);
+  const found = { obstacle: null, bodies: ["the body"], depth: 0.01, relative_depth: 0.125, time: 0.005, place: [0, 0], first_time: 0.005, groups: [] };
+  assert.match(await words("itself", { depth: 0.01, relative_depth: 0.125, found: [found] }), /^poor: .?12.5 % of the body's size/);
+});
+
 test("a file that was cut off says so", async () => {
   const whole = readFileSync(report("whole", simulate("cases/disc/disc.toml", "plain2", { "time.end": 0.01 })), "utf8");
   const file = join(folder, "cut.html");

@@ -11,10 +11,6 @@ namespace ricochet {
 
 namespace {
 
-double squared_distance(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& point) {
-  return box.squaredExteriorDistance(point);
-}
-
 /// Angle of a triangle between two of its sides.
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -30,7 +26,7 @@ BodySurface::BodySurface(const Points& positions, const std::vector<Piece>& piec
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
   first_piece_.assign(nodes_.size() + 1, 0);
   for (const Piece& piece : pieces) {
-    std::array<int, 3> own{-1, -1, -1};
+    Corners own{-1, -1, -1};
     for (std::size_t k = 0; k < corners; ++k) {
       own[k] = static_cast<int>(std::lower_bound(nodes_.begin(), nodes_.end(), piece[k]) - nodes_.begin());
       ++first_piece_[static_cast<std::size_t>(own[k]) + 1];
@@ -48,7 +44,7 @@ BodySurface::BodySurface(const Points& positions, const std::vector<Piece>& piec
   boxes_.resize(pieces_.size());
   move(positions, Vector());
   tree_ = BoxTree(boxes_);
-  for (const std::array<int, 3>& piece : pieces_) {
+  for (const Corners& piece : pieces_) {
     for (std::size_t k = 0; k < corners; ++k) edge_length_ += (at(piece[k]) - at(piece[(k + 1) % corners])).norm();
   }
   edge_length_ /= static_cast<double>(corners * pieces_.size());
@@ -74,67 +70,51 @@ void BodySurface::place_boxes() {
   }
 }
 
-void BodySurface::try_piece(const Eigen::Vector3d& point, int piece, Closest& best) const {
-  const std::array<int, 3>& corners = pieces_[static_cast<std::size_t>(piece)];
+BodySurface::Closest BodySurface::closest_on_piece(const Eigen::Vector3d& point, int piece) const {
+  const Corners& corners = pieces_[static_cast<std::size_t>(piece)];
   const ClosestPoint found = plane_ ? closest_on_segment(point, at(corners[0]), at(corners[1]))
                                     : closest_on_triangle(point, at(corners[0]), at(corners[1]), at(corners[2]));
-  const double squared = (point - found.position).squaredNorm();
-  if (!(squared < best.squared_distance)) return;
-  best = {squared, found.position, piece, {-1, -1, -1}};
+  Closest result{(point - found.position).squaredNorm(), found.position, piece, {-1, -1, -1}};
   for (std::size_t k = 0; k < 3; ++k) {
-    if (found.corners[k] >= 0) best.corners[k] = corners[static_cast<std::size_t>(found.corners[k])];
+    if (found.corners[k] >= 0) result.corners[k] = corners[static_cast<std::size_t>(found.corners[k])];
   }
+  return result;
 }
 
 BodySurface::Closest BodySurface::closest(const Eigen::Vector3d& point) const {
-  Closest best{std::numeric_limits<double>::infinity(), Eigen::Vector3d::Zero(), -1, {-1, -1, -1}};
-  const std::vector<BoxTree::Node>& nodes = tree_.nodes();
-  std::array<int, BoxTree::deepest> waiting{};
-  std::size_t count = 1;
-  while (count > 0) {
-    const int number = waiting[--count];
-    const BoxTree::Node& box = nodes[static_cast<std::size_t>(number)];
-    if (squared_distance(box.box, point) >= best.squared_distance) continue;
-    for (int i = box.first; i < box.first + box.count; ++i)
-      try_piece(point, tree_.order()[static_cast<std::size_t>(i)], best);
-    if (box.count > 0) continue;
-    // The nearer one first: it comes from the end.
-    const bool first_is_nearer = squared_distance(nodes[static_cast<std::size_t>(number) + 1].box, point) <=
-                                 squared_distance(nodes[static_cast<std::size_t>(box.second)].box, point);
-    waiting[count++] = first_is_nearer ? box.second : number + 1;
-    waiting[count++] = first_is_nearer ? number + 1 : box.second;
-  }
-  return best;
+  return closest_of(point, [](int, const Eigen::Vector3d&) { return true; });
 }
 
-/// Of unit length; zero of a piece without extent.
 Eigen::Vector3d BodySurface::normal_of(int piece) const {
-  const std::array<int, 3>& corners = pieces_[static_cast<std::size_t>(piece)];
+  const Corners& corners = pieces_[static_cast<std::size_t>(piece)];
   const Eigen::Vector3d along = at(corners[1]) - at(corners[0]);
   if (plane_) return Eigen::Vector3d(along[1], -along[0], 0.0).normalized();
   return along.cross(at(corners[2]) - at(corners[0])).normalized();
 }
 
+Eigen::Vector3d BodySurface::normal_at(int node) const {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (const int piece : around(node)) {
+    const Corners& own = pieces_[static_cast<std::size_t>(piece)];
+    const auto here = static_cast<std::size_t>(std::find(own.begin(), own.end(), node) - own.begin());
+    const double weight =
+        plane_ ? 1.0 : angle_between(at(own[(here + 1) % 3]) - at(own[here]), at(own[(here + 2) % 3]) - at(own[here]));
+    normal += normal_of(piece) * weight;
+  }
+  return normal;
+}
+
 /// Of the piece inside of it; at an edge the sum of those of its pieces, at a corner weighted by the pieces' angles
 /// there.
 Eigen::Vector3d BodySurface::normal_at(const Closest& place) const {
-  const std::array<int, 3>& corners = place.corners;
+  const Corners& corners = place.corners;
   const bool inside = corners[1] >= 0 && (plane_ || corners[2] >= 0);
   if (inside) return normal_of(place.piece);
+  if (corners[1] < 0) return normal_at(corners[0]);
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  const auto node = static_cast<std::size_t>(corners[0]);
-  for (int i = first_piece_[node]; i < first_piece_[node + 1]; ++i) {
-    const int piece = around_[static_cast<std::size_t>(i)];
-    const std::array<int, 3>& own = pieces_[static_cast<std::size_t>(piece)];
-    if (corners[1] >= 0) {
-      if (std::find(own.begin(), own.end(), corners[1]) != own.end()) normal += normal_of(piece);
-    } else if (plane_) {
-      normal += normal_of(piece);
-    } else {
-      const auto here = static_cast<std::size_t>(std::find(own.begin(), own.end(), corners[0]) - own.begin());
-      normal += normal_of(piece) *
-                angle_between(at(own[(here + 1) % 3]) - at(own[here]), at(own[(here + 2) % 3]) - at(own[here]));
-    }
+  for (const int piece : around(corners[0])) {
+    const Corners& own = pieces_[static_cast<std::size_t>(piece)];
+    if (std::find(own.begin(), own.end(), corners[1]) != own.end()) normal += normal_of(piece);
   }
   return normal;
 }

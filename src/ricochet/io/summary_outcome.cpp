@@ -142,7 +142,8 @@ Json found_to_json(const UnwatchedPenetration& p) {
           {"first_time", Json::number(p.first_time)},
           {"groups", p.groups},
           {"contact", p.contact.empty() ? Json() : Json(p.contact)},
-          {"passed_through", p.passed_through}};
+          {"passed_through", p.passed_through},
+          {"through_groups", p.through_groups}};
 }
 
 /// The deepest first, by itself, so that it can be named by its path (summary.unwatched_penetration.depth); then all.
@@ -160,6 +161,8 @@ Json penetration_to_json(const PenetrationReport& report) {
   return {{"checked", report.checked},
           {"looks_at_obstacles", report.looks_at_obstacles},
           {"looks_at_bodies", report.looks_at_bodies},
+          {"looks_at_themselves", report.looks_at_themselves},
+          {"not_watched", report.not_watched},
           {"depth", Json::number(deepest != nullptr ? deepest->depth : 0.0)},
           {"relative_depth", Json::number(deepest != nullptr ? deepest->relative_depth : 0.0)},
           {"found", found},
@@ -295,10 +298,13 @@ PenetrationReport penetration_from(const Json& json) {
                             {}});
     if (p.contains("contact") && p.at("contact").is_array()) report.found.back().contact = p.at("contact");
     if (p.contains("passed_through")) report.found.back().passed_through = p.at("passed_through");
+    if (p.contains("through_groups")) report.found.back().through_groups = p.at("through_groups");
   }
   for (const Json& rim : json.at("contact_beyond_rim"))
     report.rims.push_back({rim.at("group"), rim.at("obstacle"), rim.at("time").to_number(), to_numbers(rim.at("place")),
                            rim.at("groups")});
+  report.looks_at_themselves = json.value("looks_at_themselves", 0L);
+  report.not_watched = json.value("not_watched", std::vector<std::string>{bodies_in_themselves});
   return report;
 }
 

@@ -1,6 +1,7 @@
 #include "ricochet/report/judgement.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -167,13 +168,15 @@ void judge_penetration(const RunData& run, Judgement& result) {
   }
   const PenetrationReport& report = run.summary.penetration;
   result.penetration_checked = report.checked;
+  result.penetration_not_watched = fmt::format("{}", fmt::join(report.not_watched, ", "));
   if (!report.rims.empty()) result.contact_beyond_rim = report.rims.front().group;
   const UnwatchedPenetration* deepest = report.deepest();
   if (deepest == nullptr) return;
   result.penetration = std::max(result.penetration, deepest->depth);
   result.relative_penetration = std::max(result.relative_penetration.value_or(0.0), deepest->relative_depth);
-  result.unwatched_penetration = deepest->obstacle.empty() ? deepest->bodies[0] + " and " + deepest->bodies[1]
-                                                           : deepest->bodies[0] + " in \"" + deepest->obstacle + "\"";
+  result.unwatched_penetration = deepest->is_in_itself()     ? deepest->bodies[0] + " in itself"
+                                 : deepest->obstacle.empty() ? deepest->bodies[0] + " and " + deepest->bodies[1]
+                                                             : deepest->bodies[0] + " in \"" + deepest->obstacle + "\"";
 }
 
 }  // namespace

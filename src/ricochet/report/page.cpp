@@ -88,6 +88,7 @@ Json to_json(const Judgement& j) {
           {"penetration", to_json(j.penetration)},
           {"relative_penetration", to_json(j.relative_penetration)},
           {"penetration_checked", j.penetration_checked},
+          {"penetration_not_watched", j.penetration_not_watched},
           {"unwatched_penetration", j.unwatched_penetration},
           {"contact_beyond_rim", j.contact_beyond_rim},
           {"rotation", to_json(j.rotation)},

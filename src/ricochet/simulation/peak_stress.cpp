@@ -13,7 +13,8 @@ namespace {
 /// A state is worth a look of its own when its contact presses harder by this, relative to those looked at.
 constexpr double harder = 5e-3;
 
-/// Time of a look at all cells relative to that of reading a number of a factor: measured, see docs/performance.md.
+}  // namespace
+
 double look_work(const Body& body) {
   double work = 0.0;
   for (const CellBlock& block : body.space->cells) {
@@ -29,8 +30,6 @@ double look_work(const Body& body) {
   }
   return work;
 }
-
-}  // namespace
 
 double step_work(Index dofs, std::size_t factor_entries) {
   constexpr double per_dof = 20.0;

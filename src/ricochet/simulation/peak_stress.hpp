@@ -45,6 +45,8 @@ class PeakStress {
   PeakStressResult result_;
 };
 
+/// Time of a look at all cells relative to that of reading a number of a factor: measured, see docs/performance.md.
+[[nodiscard]] double look_work(const Body& body);
 /// What a step reads at least, in numbers: the factor twice, or the stiffness where there is none.
 [[nodiscard]] double step_work(Index dofs, std::size_t factor_entries);
 

@@ -6,10 +6,13 @@
 /// @file Penetration that no contact prevented, as it was found.
 namespace ricochet {
 
-/// A body that was found inside of an obstacle, or two bodies that were found inside of each other.
+/// What `not_watched` says of bodies that are not looked at for parts of theirs inside of each other.
+inline constexpr const char* bodies_in_themselves = "bodies against themselves";
+
+/// A body that was found inside of an obstacle or of itself, or two bodies that were found inside of each other.
 struct UnwatchedPenetration {
   std::string obstacle;             ///< empty: bodies
-  std::vector<std::string> bodies;  ///< one, or two
+  std::vector<std::string> bodies;  ///< one, also without an obstacle: it is inside of itself; or two
   double depth = 0.0;
   double relative_depth = 0.0;  ///< to the size of the (smaller) body, the diagonal of the box around it
   double time = 0.0;
@@ -20,6 +23,10 @@ struct UnwatchedPenetration {
   std::vector<std::string> contact = {};
   /// The node went through the obstacle within one step, so deep on its way.
   bool passed_through = false;
+  /// Of a body inside of itself: boundary groups of the facet that the node has gone through.
+  std::vector<std::string> through_groups = {};
+
+  [[nodiscard]] bool is_in_itself() const { return obstacle.empty() && bodies.size() == 1; }
 };
 
 /// A contact that goes on beyond its group.
@@ -35,6 +42,11 @@ struct PenetrationReport {
   long looks_at_obstacles = 0, looks_at_bodies = 0;
   std::vector<UnwatchedPenetration> found = {};
   std::vector<ContactBeyondRim> rims = {};
+  long looks_at_themselves = 0;               ///< of bodies
+  std::vector<std::string> not_watched = {};  ///< what was not looked at, in words
+
+  /// Nothing was left out.
+  [[nodiscard]] bool is_complete() const { return checked && not_watched.empty(); }
 
   /// The deepest of what was found; nullptr: nothing was.
   [[nodiscard]] const UnwatchedPenetration* deepest() const;

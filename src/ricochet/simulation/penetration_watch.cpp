@@ -4,12 +4,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/simulation/penetration_words.hpp"
 
 namespace ricochet {
+
+namespace words = penetration_words;
 
 namespace {
 
@@ -37,24 +41,6 @@ std::vector<Index> nodes_of(const std::vector<CellFacet>& boundary, const std::v
   return nodes;
 }
 
-std::string coordinates(const std::vector<double>& place) {
-  std::string text;
-  for (const double value : place) text += fmt::format("{}{:.4g}", text.empty() ? "(" : ", ", value);
-  return text + ")";
-}
-
-std::string when(double time) {
-  return time == 0.0 ? "at the start" : fmt::format("at t = {:.6g}", time);
-}
-
-/// "3.1e-06 (0.00012 of its size)"
-std::string depth_text(const UnwatchedPenetration& p) {
-  return fmt::format("{:.3g} ({:.2g} of {} size)", p.depth, p.relative_depth,
-                     p.bodies.size() == 1 ? "its" : "the smaller one's");
-}
-
-constexpr const char* see_summary = "\"unwatched_penetration\" in summary.json says how deep it gets";
-
 }  // namespace
 
 const UnwatchedPenetration* PenetrationReport::deepest() const {
@@ -65,11 +51,12 @@ const UnwatchedPenetration* PenetrationReport::deepest() const {
 
 PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& problem,
                                    const std::vector<ContactPair>& pairs, const std::vector<NamedObstacle>& obstacles)
-    : PenetrationWatch(body, problem, pairs, obstacles, describe_bodies(body)) {}
+    : PenetrationWatch(body, problem, pairs, obstacles, describe_bodies(body),
+                       std::numeric_limits<double>::infinity()) {}
 
 PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& problem,
                                    const std::vector<ContactPair>& pairs, const std::vector<NamedObstacle>& obstacles,
-                                   BodiesOfMesh bodies)
+                                   BodiesOfMesh bodies, double step_work)
     : body_(body),
       pairs_(pairs),
       named_(obstacles),
@@ -79,9 +66,12 @@ PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& 
       passages_(problem, nodes_of(bodies_.boundary, body.space->cells), obstacles_of(obstacles)),
       body_watch_(problem.nodes, body.space->cells, bodies_.boundary, bodies_.connected, size_,
                   kept_nodes(body, problem.contact, pairs, bodies_.connected.of_node)),
+      self_watch_(body, problem, pairs, bodies_, step_work),
       problem_(problem),
       told_obstacle_(obstacles.size(), 0),
-      told_passage_(obstacles.size(), 0) {
+      told_passage_(obstacles.size(), 0),
+      told_itself_(self_watch_.bodies().size(), 0),
+      told_itself_at_contact_(self_watch_.bodies().size(), 0) {
   for (const Group& group : body.mesh->groups) {
     if (group.dimension == body.mesh->dimension - 1)
       boundary_groups_.push_back({group.name, facet_nodes(*body.space, group.members)});
@@ -98,10 +88,14 @@ void PenetrationWatch::look(const State& state) {
 }
 
 void PenetrationWatch::look_at_bodies(const State& state, bool now) {
-  body_watch_.look(state.displacement, state.time, now, [&]() -> const Vector& {
-    problem_.node_gaps(state.displacement, state.time, node_gap_);
+  bool has_gaps = false;
+  const auto gaps = [&]() -> const Vector& {
+    if (!has_gaps) problem_.node_gaps(state.displacement, state.time, node_gap_);
+    has_gaps = true;
     return node_gap_;
-  });
+  };
+  body_watch_.look(state.displacement, state.time, now, gaps);
+  self_watch_.look(state.displacement, state.time, now, gaps);
 }
 
 void PenetrationWatch::look_at_end(const State& state) {
@@ -115,8 +109,8 @@ void PenetrationWatch::tell() {
     told_obstacle_[k] = 1;
     const UnwatchedPenetration p = in_obstacle(k);
     log::warning(fmt::format("{} {} is {} inside obstacle \"{}\" at {}, where no contact keeps it out: {}; {}",
-                             when(p.time), p.bodies.front(), depth_text(p), p.obstacle, coordinates(p.place), advice(k),
-                             see_summary));
+                             words::when(p.time), p.bodies.front(), words::depth_text(p), p.obstacle,
+                             words::coordinates(p.place), advice(k), words::see_summary));
   }
   for (std::size_t k = 0; k < named_.size(); ++k) {
     if (told_passage_[k] != 0 || !passages_.passages()[k].found()) continue;
@@ -125,17 +119,18 @@ void PenetrationWatch::tell() {
     log::warning(
         fmt::format("{} a node of {} at {} has gone through obstacle \"{}\" within one step, which no contact can "
                     "see; take a time.step in which bodies move by less than the obstacle is thick",
-                    when(p.time), p.bodies.front(), coordinates(p.place), p.obstacle));
+                    words::when(p.time), p.bodies.front(), words::coordinates(p.place), p.obstacle));
   }
   for (; told_rims_ < obstacles_.rims().size(); ++told_rims_) {
     const ContactBeyondRim rim = beyond(obstacles_.rims()[told_rims_]);
     log::warning(
         fmt::format("{} the contact of group \"{}\" with \"{}\" has reached the rim of the group, at {}: what lies "
                     "beyond it goes into the obstacle unhindered; add the boundary beyond it to the group{}",
-                    when(rim.time), rim.group, rim.obstacle, coordinates(rim.place),
+                    words::when(rim.time), rim.group, rim.obstacle, words::coordinates(rim.place),
                     rim.groups.empty() ? "" : fmt::format(" ({})", join_names(rim.groups))));
   }
   tell_bodies();
+  tell_of_themselves();
 }
 
 void PenetrationWatch::tell_bodies() {
@@ -168,8 +163,8 @@ void PenetrationWatch::tell_of(const BodyPair& pair) const {
                               : ", or its groups did not face each other there; extend the groups, or pair them with "
                                 "pair_at where they meet");
   }
-  log::warning(fmt::format("{} {} and {} overlap by {} at {}: {}; {}", when(p.time), p.bodies[0], p.bodies[1],
-                           depth_text(p), coordinates(p.place), why, see_summary));
+  log::warning(fmt::format("{} {} and {} overlap by {} at {}: {}; {}", words::when(p.time), p.bodies[0], p.bodies[1],
+                           words::depth_text(p), words::coordinates(p.place), why, words::see_summary));
 }
 
 /// With sliding = "large" pairs follow the motion, and what helps where small sliding ends is no help.
@@ -187,8 +182,8 @@ void PenetrationWatch::tell_at_contact(const BodyPair& pair) const {
   log::warning(
       fmt::format("{} {} and {} overlap by {} at {}, more than half a facet, though the contact of \"{}\" and \"{}\" "
                   "keeps that node out: {}; {}",
-                  when(p.time), p.bodies[0], p.bodies[1], depth_text(p), coordinates(p.place), p.contact[0],
-                  p.contact[1], why, see_summary));
+                  words::when(p.time), p.bodies[0], p.bodies[1], words::depth_text(p), words::coordinates(p.place),
+                  p.contact[0], p.contact[1], why, words::see_summary));
 }
 
 std::vector<const ContactPair*> PenetrationWatch::contacts_between(int first, int second) const {
@@ -305,7 +300,17 @@ PenetrationReport PenetrationWatch::report() const {
     if (pair.deepest.found()) result.found.push_back(of_pair(pair));
     if (pair.at_contact.found()) result.found.push_back(at_contact(pair));
   }
+  for (const BodyInItself& body : self_watch_.bodies()) {
+    if (body.deepest.found()) result.found.push_back(in_itself(body));
+    if (body.at_contact.found()) result.found.push_back(in_itself_at_contact(body));
+  }
   for (const RimContact& rim : obstacles_.rims()) result.rims.push_back(beyond(rim));
+  result.looks_at_themselves = self_watch_.looks();
+  const auto is_free = [](const NamedObstacle& one) { return one.obstacle->free_motion() != nullptr; };
+  if (named_.size() > 1 && std::any_of(named_.begin(), named_.end(), is_free))
+    result.not_watched.emplace_back("rigid bodies against each other and other obstacles");
+  if (!self_watch_.watches())
+    result.not_watched.push_back(std::string(bodies_in_themselves) + " (several processes have parts of them)");
   return result;
 }
 
@@ -313,6 +318,7 @@ void PenetrationWatch::save(Snapshot& snapshot, const std::string& name) const {
   obstacles_.save(snapshot, name + ".obstacles");
   passages_.save(snapshot, name + ".passages");
   body_watch_.save(snapshot, name + ".bodies");
+  self_watch_.save(snapshot, name + ".themselves");
   snapshot.save(name + ".looks", std::int64_t{looks_});
 }
 
@@ -320,6 +326,7 @@ void PenetrationWatch::load(const Snapshot& snapshot, const std::string& name) {
   obstacles_.load(snapshot, name + ".obstacles");
   passages_.load(snapshot, name + ".passages");
   body_watch_.load(snapshot, name + ".bodies");
+  self_watch_.load(snapshot, name + ".themselves");
   looks_ = snapshot.integer(name + ".looks");
   // What was found was told at once.
   for (std::size_t k = 0; k < told_obstacle_.size(); ++k) told_obstacle_[k] = obstacles_.deepest()[k].found() ? 1 : 0;
@@ -332,6 +339,13 @@ void PenetrationWatch::load(const Snapshot& snapshot, const std::string& name) {
       throw Error(ErrorKind::invalid_input, "the checkpoint's record of penetration is damaged");
     told_pairs_.push_back(pair.deepest.found() ? 1 : 0);
     told_contacts_.push_back(pair.at_contact.found() ? 1 : 0);
+  }
+  for (std::size_t i = 0; i < self_watch_.bodies().size(); ++i) {
+    const BodyInItself& body = self_watch_.bodies()[i];
+    if (body.at_contact.found() && (body.contact < 0 || body.contact >= static_cast<int>(pairs_.size())))
+      throw Error(ErrorKind::invalid_input, "the checkpoint's record of penetration is damaged");
+    told_itself_[i] = body.deepest.found() ? 1 : 0;
+    told_itself_at_contact_[i] = body.at_contact.found() ? 1 : 0;
   }
 }
 

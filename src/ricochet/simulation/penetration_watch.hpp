@@ -7,9 +7,10 @@
 #include "ricochet/simulation/obstacle_watch.hpp"
 #include "ricochet/simulation/passage_watch.hpp"
 #include "ricochet/simulation/penetration_report.hpp"
+#include "ricochet/simulation/self_watch.hpp"
 
 /// @file Penetration that no contact prevents: the whole boundary against every obstacle, and bodies against each
-/// other.
+/// other and against themselves.
 namespace ricochet {
 
 /// An obstacle and its name in the case.
@@ -23,9 +24,10 @@ class PenetrationWatch {
   /// Keeps references to body and problem.
   PenetrationWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
                    const std::vector<NamedObstacle>& obstacles);
-  /// With what is known of the bodies.
+  /// With what is known of the bodies. `step_work`: what looks at bodies against themselves take a share of
+  /// (SelfWatch).
   PenetrationWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
-                   const std::vector<NamedObstacle>& obstacles, BodiesOfMesh bodies);
+                   const std::vector<NamedObstacle>& obstacles, BodiesOfMesh bodies, double step_work);
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
@@ -54,6 +56,10 @@ class PenetrationWatch {
   [[nodiscard]] UnwatchedPenetration through_obstacle(std::size_t obstacle) const;
   [[nodiscard]] UnwatchedPenetration of_pair(const BodyPair& pair) const;
   [[nodiscard]] UnwatchedPenetration at_contact(const BodyPair& pair) const;
+  [[nodiscard]] UnwatchedPenetration in_itself(const BodyInItself& found) const;
+  [[nodiscard]] UnwatchedPenetration in_itself_at_contact(const BodyInItself& found) const;
+  /// Boundary groups of the mesh that all nodes of a facet belong to; −1 is none.
+  [[nodiscard]] std::vector<std::string> groups_of_facet(const std::array<Index, 3>& nodes) const;
   [[nodiscard]] std::vector<const ContactPair*> contacts_between(int first, int second) const;
   void tell_of(const BodyPair& pair) const;
   void tell_at_contact(const BodyPair& pair) const;
@@ -63,6 +69,11 @@ class PenetrationWatch {
   void look_at_bodies(const State& state, bool now);
   void tell();
   void tell_bodies();
+  void tell_of_themselves();
+  void tell_of(const BodyInItself& found) const;
+  void tell_at_contact(const BodyInItself& found) const;
+  /// The contact that would keep a body out of itself, as lines of a case.
+  [[nodiscard]] std::string contact_with_itself(int body, const UnwatchedPenetration& found) const;
 
   const Body& body_;
   const std::vector<ContactPair>& pairs_;
@@ -72,6 +83,7 @@ class PenetrationWatch {
   ObstacleWatch obstacles_;
   PassageWatch passages_;
   BodyWatch body_watch_;
+  SelfWatch self_watch_;
   const SemidiscreteProblem& problem_;
   Vector node_gap_;
   std::vector<BoundaryGroup> boundary_groups_;
@@ -80,6 +92,7 @@ class PenetrationWatch {
   std::vector<char> told_obstacle_, told_passage_;
   std::size_t told_rims_ = 0;
   std::vector<char> told_pairs_, told_contacts_;  ///< of the pairs of bodies
+  std::vector<char> told_itself_, told_itself_at_contact_;
 };
 
 }  // namespace ricochet

@@ -58,7 +58,10 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   summary.penetration.checked = true;
   summary.penetration.found.push_back(
       {"floor", {"the body"}, INFINITY, INFINITY, 0.5, {-INFINITY, 2.0}, 0.25, {"top", "left"}});
+  summary.penetration.found.back().through_groups = {"inside"};
   summary.penetration.rims.push_back({"bottom", "floor", 0.75, {1.0, NAN}, {"left"}});
+  summary.penetration.looks_at_themselves = 17;
+  summary.penetration.not_watched = {"this", "that"};
   summary.bodies.push_back({{}, 0.1});
   Impact impact;
   impact.body = 0;
@@ -83,6 +86,11 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   EXPECT_EQ(found.place, (std::vector<double>{-INFINITY, 2.0}));
   EXPECT_EQ(found.first_time, 0.25);
   EXPECT_EQ(found.groups, (std::vector<std::string>{"top", "left"}));
+  EXPECT_EQ(found.through_groups, (std::vector<std::string>{"inside"}));
+  EXPECT_FALSE(found.is_in_itself());
+  EXPECT_EQ(back.penetration.looks_at_themselves, 17);
+  EXPECT_EQ(back.penetration.not_watched, (std::vector<std::string>{"this", "that"}));
+  EXPECT_FALSE(back.penetration.is_complete());
   ASSERT_EQ(back.penetration.rims.size(), 1u);
   EXPECT_EQ(back.penetration.rims[0].time, 0.75);
   ASSERT_EQ(back.penetration.rims[0].place.size(), 2u);

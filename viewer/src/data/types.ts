@@ -37,7 +37,9 @@ export interface Judgement {
   relative_penetration: number | null;
   /** Whether the boundary outside of contact groups, and bodies against each other, were looked at. */
   penetration_checked: boolean;
-  /** Where no contact prevents it: which body in which obstacle, or which bodies; empty: nowhere. */
+  /** What else was not looked at, in words; empty: nothing. */
+  penetration_not_watched: string;
+  /** Where no contact prevents it: which body in which obstacle or in itself, or which bodies; empty: nowhere. */
   unwatched_penetration: string;
   /** The group of a contact that goes on beyond it; empty: none. */
   contact_beyond_rim: string;
@@ -265,4 +267,4 @@ export interface PageData {
 }
 
 /** Of a judgement, what is text and no number. */
-export const judgementTexts = new Set(["force", "node_force", "unwatched_penetration", "contact_beyond_rim"]);
+export const judgementTexts = new Set(["force", "node_force", "penetration_not_watched", "unwatched_penetration", "contact_beyond_rim"]);

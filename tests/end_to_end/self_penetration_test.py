@@ -1,0 +1,197 @@
+"""Bodies that go through themselves: found and said, with the contact that keeps them out, which is tried; and what is said
+where nobody looked."""
+
+import json
+import unittest
+
+from harness import History, TestCase, run
+from report_page import Page
+from self_contact_test import CLAMP_GEO
+
+CLAMP = '''[mesh]
+file = "clamp.geo"
+[[material]]
+group = "body"
+law = "neo-hookean"
+density = 1.0
+young = 300.0
+poisson = 0.3
+[initial]
+velocity = ["0", "4*(x-0.3)*(0.5-y)"]
+[[probe]]
+name = "upper"
+at = [1.8, 0.65]
+[[probe]]
+name = "lower"
+at = [1.8, 0.35]
+[[probe]]
+name = "upper-tip"
+at = [2.0, 0.65]
+[[probe]]
+name = "lower-tip"
+at = [2.0, 0.35]
+[mass]
+type = "equivalent"
+[time]
+step = 4e-3
+end = 0.1
+'''
+
+
+CRACKED = '''[mesh]
+file = "cracked.msh"
+[[material]]
+group = "body"
+density = 1.0
+young = 1000.0
+poisson = 0.3
+{drive}
+[time]
+step = 5e-3
+end = 0.2
+[output]
+fields_every = 0
+'''
+SLIT = 1e-6
+HELD = '[[support]]\ngroup = "base"\ncomponents = ["x", "y"]\n[[pressure]]\ngroup = "roof"\nvalue = "{}*min(t/0.1, 1)"\n'
+
+
+def cracked(path):
+    """A block of squares of 0.1 with a slit at half of its height, as wide as rounding of a drawing: nodes are double there but for
+    its tip."""
+    columns, rows, tip = 10, 4, 6
+    nodes = [(0.1 * i, 0.1 * j) for j in range(rows + 1) for i in range(columns + 1)]
+    at = lambda i, j: 1 + j * (columns + 1) + i
+    above = {i: len(nodes) + 1 + i for i in range(tip)}
+    nodes += [(0.1 * i, 0.1 * 2 + SLIT) for i in range(tip)]
+    over = lambda i, j: above.get(i, at(i, j)) if j == 2 else at(i, j)
+    cells = [(3, 1, (at(i, j) if j < 2 else over(i, j), at(i + 1, j) if j < 2 else over(i + 1, j), at(i + 1, j + 1), at(i, j + 1)))
+             for j in range(rows) for i in range(columns)]
+    cells += [(1, 2, (at(i, 0), at(i + 1, 0))) for i in range(columns)]
+    cells += [(1, 3, (at(i, rows), at(i + 1, rows))) for i in range(columns)]
+    cells += [(1, 4, (at(i, 2), at(i + 1, 2))) for i in range(tip)]
+    cells += [(1, 5, (over(i, 2), over(i + 1, 2))) for i in range(tip)]
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "5", '2 1 "body"', '1 2 "base"', '1 3 "roof"',
+             '1 4 "lower.lip"', '1 5 "upper.lip"', "$EndPhysicalNames", "$Nodes", str(len(nodes))]
+    lines += [f"{i} {x!r} {y!r} 0" for i, (x, y) in enumerate(nodes, start=1)] + ["$EndNodes", "$Elements", str(len(cells))]
+    lines += [f"{i} {kind} 2 {tag} {tag} {' '.join(map(str, corners))}" for i, (kind, tag, corners) in enumerate(cells, start=1)]
+    path.write_text("\n".join(lines + ["$EndElements"]) + "\n", encoding="ascii")
+
+
+def summary_of(output):
+    return json.loads((output / "summary.json").read_text(encoding="utf-8"))
+
+
+def told(output):
+    return [text for text in summary_of(output)["warnings"] if "through itself" in text]
+
+
+class SelfPenetration(TestCase):
+    def found_in(self, output):
+        entry = summary_of(output)["unwatched_penetration"]
+        self.assertEqual(entry["not_watched"], [])
+        self.assertGreaterEqual(entry["looks_at_themselves"], 2)
+        return entry["found"]
+
+    def clamp(self, name, more="", options=("--quiet",)):
+        (self.folder / "clamp.geo").write_text(CLAMP_GEO)
+        return self.simulate(self.write(f"{name}.toml", CLAMP + more), name, options=options)
+
+    def test_a_clamp_and_the_advice(self):
+        """Its arms go through each other by what two nodes say that face each other; with the contact that is advised none does."""
+        output = self.clamp("alone")
+        history = History(output / "history.csv")
+        overlap = lambda where: max(0.35 + low - 0.65 - high for low, high in zip(
+            history[f"lower{where}.displacement_y"], history[f"upper{where}.displacement_y"]))
+        self.assertGreater(overlap(""), 0.05)
+        [found] = self.found_in(output)
+        self.assertEqual((found["bodies"], found["obstacle"], found["contact"]), (["the body"], None, None))
+        # The arms' ends are deepest; nodes at their corners see nothing before them, those beside them do.
+        self.assertGreater(found["depth"], overlap(""))
+        self.assertLess(found["depth"], overlap("-tip"))
+        self.assertIn("inside", found["groups"])
+        self.assertIn("inside", found["through_groups"])
+        self.assertLess(found["first_time"], found["time"])
+        [warning] = told(output)
+        self.assertIn("the body has gone through itself by", warning)
+        self.assertIn("boundary of groups", warning)
+        lines = warning.partition("Add\n")[2]
+        text = self.expect_status(0, run("info", output)).stdout
+        self.assertIn(f"PENETRATION WITHOUT CONTACT: the body in itself, {found['depth']:.3g} deep", text)
+        self.expect_status(0, run("report", output))
+        judgement = Page(output / "report.html").runs[0]["judgement"]
+        self.assertEqual(judgement["unwatched_penetration"], "the body in itself")
+        self.assertEqual(judgement["penetration"], found["depth"])
+        self.assertEqual(judgement["penetration_not_watched"], "")
+        kept = self.clamp("kept", lines + "\n", ("--quiet", "--set", "time.end=0.16"))
+        self.assertGreater(max(History(kept / "history.csv")["active_contacts"]), 0)
+        self.assertEqual((self.found_in(kept), told(kept)), ([], []))
+
+    def test_facets_without_a_group_of_their_own(self):
+        """A group that another body is in, too, is no side of such a contact: one for the body is asked for, and does."""
+        beside = CLAMP_GEO.replace('Physical Surface("body") = {3};', 'Rectangle(9) = {4, 0, 0, 0.5, 0.5};\nPhysical Surface("body") = {3, 9};')
+        beside = beside.replace('Boundary{ Surface{3}; };', 'Boundary{ Surface{3, 9}; };')
+        groups = beside.index('Physical Curve("lower")')
+        (self.folder / "clamp.geo").write_text(beside[:groups])
+        [warning] = told(self.simulate(self.write("beside.toml", CLAMP), "beside"))
+        self.assertIn("Give the mesh a group of these facets of this body", warning)
+        (self.folder / "clamp.geo").write_text(beside)
+        lines = '[[contact]]\ngroup = "inside"\nagainst = "inside"\nsliding = "large"\n'
+        output = self.simulate(self.write("grouped.toml", CLAMP + lines), "grouped")
+        self.assertEqual((self.found_in(output), told(output)), ([], []))
+
+    def test_a_run_that_is_resumed_has_found_the_same(self):
+        whole = self.clamp("whole", "[output]\ncheckpoint_every = 10\n")
+        part = self.clamp("part", "[output]\ncheckpoint_every = 10\n")
+        (part / "summary.json").unlink()
+        self.expect_status(0, run("run", self.folder / "part.toml", "-o", part, "--resume", "--quiet"))
+        one, other = summary_of(whole), summary_of(part)
+        self.assertTrue(other["resumed_at"])
+        self.assertEqual(other["unwatched_penetration"], one["unwatched_penetration"])
+        self.assertEqual(other["warnings"], one["warnings"])
+
+    def test_a_slit_that_closes_opens_and_flies(self):
+        """Lips that as good as touch are no overlap; pressed they are, by what their displacements say, as the linear law has it."""
+        cracked(self.folder / "cracked.msh")
+        lip = '[[probe]]\nname = "{}"\ngroup = "{}"\n'
+        probes = lip.format("low", "lower.lip") + lip.format("high", "upper.lip")
+        drives = {"pressed": HELD.format(0.5), "pulled": HELD.format(-0.5), "flying": '[initial]\nvelocity = ["3-0.2*y", "1+0.2*x"]\n'}
+        for name, drive in drives.items():
+            output = self.simulate(self.write(f"{name}.toml", CRACKED.format(drive=drive + probes)), name)
+            found = self.found_in(output)
+            if name != "pressed":
+                self.assertEqual((found, told(output)), ([], []), name)
+                continue
+            [found] = found
+            self.assertEqual((found["groups"], found["through_groups"]) in
+                             ((["lower.lip"], ["upper.lip"]), (["upper.lip"], ["lower.lip"])), True, found)
+            # Of opposite nodes: the mouth of the slit closes most.
+            history = History(output / "history.csv")
+            largest = max(low - high for low, high in
+                          zip(history["low.displacement_maximum_y"], history["high.displacement_minimum_y"]))
+            self.assertGreater(found["depth"], 0.0)
+            self.assertLessEqual(found["depth"], 1.01 * largest)
+            [warning] = told(output)
+            self.assertIn('against = "', warning)
+
+    def test_what_was_not_watched_is_not_called_fine(self):
+        """Of results of a version that did not look, and of several processes."""
+        output = self.clamp("old", "[output]\nfields_every = 10\n")
+        summary = summary_of(output)
+        for left_out in ("version", "processes"):
+            entry = dict(summary["unwatched_penetration"], found=[], depth=0.0, relative_depth=0.0)
+            if left_out == "version":
+                del entry["not_watched"], entry["looks_at_themselves"]
+            else:
+                entry["not_watched"] = ["bodies against themselves (several processes have parts of them)"]
+            (output / "summary.json").write_text(json.dumps(dict(summary, unwatched_penetration=entry)), encoding="utf-8")
+            self.assertIn("not watched for interpenetration: bodies against themselves",
+                          self.expect_status(0, run("info", output)).stdout)
+            self.expect_status(0, run("report", output))
+            judgement = Page(output / "report.html").runs[0]["judgement"]
+            self.assertTrue(judgement["penetration_not_watched"].startswith("bodies against themselves"))
+            self.assertTrue(judgement["penetration_checked"])
+
+
+if __name__ == "__main__":
+    unittest.main()
