@@ -5,6 +5,7 @@ What each part said goes into FOLDER; without --logs the end of it is shown wher
 """
 
 import argparse
+import os
 import pathlib
 import shutil
 import subprocess
@@ -22,16 +23,24 @@ GIGABYTES = 10
 
 
 def git(*arguments):
-    return subprocess.run(["git", "-C", SOURCE, *arguments], text=True, capture_output=True, check=True).stdout.strip()
+    """What git says of this checkout, as bytes. It works for the owner alone, who need not be root."""
+    owner = SOURCE.stat()
+    process = subprocess.run(["git", "-C", SOURCE, *arguments], user=owner.st_uid, group=owner.st_gid, extra_groups=[],
+                             env={**os.environ, "HOME": "/nonexistent"}, capture_output=True)
+    if process.returncode != 0:
+        fail(f"git {arguments[0]}: {process.stderr.decode(errors='replace').strip()}")
+    return process.stdout
 
 
 def clone(root):
     """Of what is committed, as a newcomer has it; what is not is told."""
     target = root.path / CLONE.lstrip("/")
-    subprocess.run(["git", "clone", "--quiet", "--depth", "1", f"file://{git('rev-parse', '--show-toplevel')}", target], check=True)
+    bundle = root.folder / "head.bundle"
+    bundle.write_bytes(git("bundle", "create", "--quiet", "-", "HEAD"))
+    subprocess.run(["git", "-c", "advice.detachedHead=false", "clone", "--quiet", bundle, target], check=True)
     changed = git("status", "--porcelain").splitlines()
     note = f"; {len(changed)} files here have changes that are not committed, and are not tried" if changed else ""
-    return git("log", "-1", "--format=%h %s") + note
+    return git("log", "-1", "--format=%h %s").decode(errors="replace").strip() + note
 
 
 def attempt(root, name, logs):
