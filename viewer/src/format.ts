@@ -25,6 +25,19 @@ function superscript(exponent: number): string {
   return (exponent < 0 ? "⁻" : "") + [...String(Math.abs(exponent))].map((digit) => digits[Number(digit)]).join("");
 }
 
+type Sides = { group: string; against?: string };
+/** What contacts between bodies are between, by number. */
+const pairs = new Map<number, string>();
+
+/** Contacts of all runs: their numbers have names where all runs have the same. */
+export function namePairs(contactsOfRuns: Sides[][]): void {
+  pairs.clear();
+  contactsOfRuns[0]?.forEach(({ group, against }, number) => {
+    const same = contactsOfRuns.every((contacts) => contacts[number]?.group === group && contacts[number]?.against === against);
+    if (against !== undefined && same) pairs.set(number, `${group} and ${against}`);
+  });
+}
+
 /** "total_energy" → "total energy", "lowest.reaction_normal" → "lowest: normal reaction". */
 export function columnName(column: string): string {
   const known: Record<string, string> = {
@@ -36,7 +49,7 @@ export function columnName(column: string): string {
     load_potential: "load potential",
   };
   const pair = /^pair_force\.(\d+)_([xyz])$/.exec(column);
-  if (pair) return `between bodies, contact ${pair[1]}, ${pair[2]}`;
+  if (pair) return `between ${pairs.get(Number(pair[1])) ?? `bodies, contact ${pair[1]}`}, ${pair[2]}`;
   const at = column.indexOf(".");
   const probe = at < 0 ? "" : column.slice(0, at);
   const rest = at < 0 ? column : column.slice(at + 1);

@@ -8,7 +8,7 @@ import { followSystem, runColour, toggleTheme } from "./colours";
 import { readPage, type Run } from "./data/run";
 import { details } from "./details";
 import { el, select } from "./elements";
-import { fieldName, number } from "./format";
+import { fieldName, namePairs, number } from "./format";
 import { conclusion, findingsElement, methodWords } from "./glance";
 import { connectKeys, helpDialog } from "./keys";
 import { ContactMap } from "./maps/contact_map";
@@ -193,6 +193,7 @@ function interestingTime(runs: Run[]): number {
 async function start(): Promise<void> {
   const page = document.getElementById("page")!;
   const runs = readPage();
+  namePairs(runs.map((run) => run.summary.contacts));
   await Promise.all(runs.map((run) => run.loadHistory()));
   const store = new Store(runs);
   store.time = Math.min(Math.max(interestingTime(runs), store.start), store.end);

@@ -32,6 +32,7 @@ test("two bodies in contact are told apart, and both show its pressure", async (
   const { page } = view;
   assert.match(await page.textContent("#impacts"), /body "two".*body "one"/s);
   assert.match(await page.getAttribute("dd.outcome", "title"), /^body "one" and body "two", from/);
+  assert.match(await page.textContent("#force, .panel"), /between one\.right and two\.left, x/, "forces are called by what they are between");
   const found = await page.evaluate(() => {
     const { store, stage } = window.ricochet;
     const [run] = store.runs;

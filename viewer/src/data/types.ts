@@ -228,7 +228,7 @@ export interface Summary {
   /** Not in results of older versions; of schemes without a choice the reactions are null. */
   energy_budget?: EnergyBudget | null;
   reactions?: Reactions | null;
-  contacts: { group: string; obstacle: string; multipliers: string; friction: number; friction_bound: number }[];
+  contacts: { group: string; obstacle?: string; against?: string; multipliers: string; friction: number; friction_bound: number }[];
   probes: { name: string; position: number[]; distance: number; in_contact_boundary: boolean }[];
   checks: Record<string, CheckOutcome>;
   warnings: string[];
