@@ -33,7 +33,7 @@ ResultsSize size_of_results(const Case& input, const Model& model) {
 }  // namespace
 
 std::string size_text(double bytes) {
-  return bytes < 1e9 ? fmt::format("{:.2g} MB", 1e-6 * bytes) : fmt::format("{:.2g} GB", 1e-9 * bytes);
+  return bytes < 1e9 ? fmt::format("{:.3g} MB", 1e-6 * bytes) : fmt::format("{:.3g} GB", 1e-9 * bytes);
 }
 
 ResultsOptions results_options(const OutputSection& output) {
