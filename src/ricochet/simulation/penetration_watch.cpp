@@ -88,10 +88,9 @@ void PenetrationWatch::look(const State& state) {
 }
 
 void PenetrationWatch::look_at_bodies(const State& state, bool now) {
-  bool has_gaps = false;
-  const auto gaps = [&]() -> const Vector& {
-    if (!has_gaps) problem_.node_gaps(state.displacement, state.time, node_gap_);
-    has_gaps = true;
+  // Two references are kept without an allocation, no more.
+  const BodyWatch::NodeGaps gaps = [this, &state]() -> const Vector& {
+    problem_.node_gaps(state.displacement, state.time, node_gap_);
     return node_gap_;
   };
   body_watch_.look(state.displacement, state.time, now, gaps);

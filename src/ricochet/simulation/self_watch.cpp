@@ -174,6 +174,7 @@ void SelfWatch::look_at(std::size_t number, const Vector& displacement, double t
   part.surface.move(positions_, displacement);
   const SelfOverlap overlap(part.surface, axisymmetric_);
   const bool at_start = looks_ == 0;
+  const Vector* gap = nullptr;
   const std::vector<Index>& nodes = part.surface.nodes();
   for (int node = 0; node < static_cast<int>(nodes.size()); ++node) {
     const auto i = static_cast<std::size_t>(node);
@@ -193,8 +194,9 @@ void SelfWatch::look_at(std::size_t number, const Vector& displacement, double t
     }
     const Side* const side = contact_at(part, node, found->other_piece);
     if (side != nullptr) {
-      const double gap = side->entry >= 0 ? gaps()[side->entry] : 0.0;
-      allowed += side->allowance + (gap < 0.0 ? -gap : 0.0);
+      if (gap == nullptr) gap = &gaps();
+      const double here = side->entry >= 0 ? (*gap)[side->entry] : 0.0;
+      allowed += side->allowance + (here < 0.0 ? -here : 0.0);
     }
     if (found->depth <= allowed) continue;
     if (side != nullptr) {
