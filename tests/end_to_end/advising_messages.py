@@ -9,7 +9,7 @@ VERBS = "set|use|try|take|give|choose|refine|make|add|extend|pair|let|leave|move
 ADVICE = re.compile(rf"(?:^|[;:,.(]|\bor|\band|\{{\}})\s*\b(?:{VERBS})\s[^;]*|smaller (?:time.step|cells|facets)[^;]*|finer mesh[^;]*", re.I)
 # Settings of the method and of the mesh; that a key is missing, or is there beside another one, is no advice.
 SETTING = re.compile(r"time\.|degree|refine|cells there|mass\b|scheme|multipliers?\b|sliding =|solver\.|law\b|steps?\b|pair_at|restitution|"
-                     r"damping|edge_radius|initial_gap|saint-venant|\"p1\"|friction|smallest|expressions|side facets|set it to 0|the groups?\b|\[\[support")
+                     r"damping|edge_radius|initial_gap|saint-venant|\"p1\"|friction|smallest|expressions|side facets|set it to 0|to the group\b|extend the groups|\[\[support")
 # Of files, directories, processes and programs: what a case says has no part in them.
 OTHER = re.compile(r" -o\b|--|directory|another file|RICOCHET|ulimit|processes|ricochet::|file back|No |/fclib|this process|other threads|stop that run")
 # What is written about keys and commands beforehand, and no message.

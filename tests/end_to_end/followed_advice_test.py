@@ -187,7 +187,6 @@ ELSEWHERE = {
 UNTRIED = [
     'a rigid body that moves by the forces on it: give its mass or density, too',
     'choose a unit of time in which steps are nearer to 1',
-    'leave those of one side of the edge out of the group, or give them a contact of their own',
     'separate them by at least one facet, give them the same, or use multipliers "p0", whose friction is per facet',
     'let the other surface follow (multipliers_on of the tie), or take multipliers "p1"',
     'friction bound has no meaning for its force; use multipliers "dual" or "p1"',
