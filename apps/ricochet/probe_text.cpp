@@ -75,6 +75,7 @@ void print_probes(const RunSummary& summary) {
     }
     fmt::print("\n");
   }
+  for (const auto& [name, sums] : summary.probe_sums) fmt::print("  probe \"{}\": {}\n", name, sums);
 }
 
 }  // namespace ricochet::program

@@ -172,6 +172,23 @@ class Probes(TestCase):
             self.assertAlmostEqual(history["sides.force_y"][row], 10.0 * area, delta=1e-11)
             self.assertAlmostEqual(history["sides.moment_z"][row], 10.0 * first, delta=1e-11)
 
+    def test_supports_apart_from_contacts(self):
+        """Sides held along x share the lower corners with the contact: what acts on these along y is its, not theirs."""
+        corners = '[[probe]]\nname = "other"\nat = [0.1, 0.2]\n[[probe]]\nname = "sides"\nboundary = "sides"\n'
+        text = block_case() + '[[support]]\ngroup = "sides"\ncomponents = ["x"]\n' + corners
+        results = self.simulate(self.write("case.toml", text), values={"time.end": 0.6})
+        history = History(results / "history.csv")
+        pressed = numpy.array(history["foot.reaction_normal"]) + numpy.array(history["other.reaction_normal"])
+        self.assertGreater(pressed.max(), 0.0)
+        numpy.testing.assert_allclose(history["sides.force_y"], pressed, rtol=0, atol=1e-12 * pressed.max())
+        self.assertFalse(numpy.array(history["sides.support_y"]).any())
+        self.assertEqual(history["sides.force_x"], history["sides.support_x"])
+        said = "its force and moment are the sum of supports and of contacts, which share 2 nodes with it; support and"
+        summary = json.loads((results / "summary.json").read_text())
+        self.assertEqual([entry["name"] for entry in summary["probe_sums"]], ["sides"])
+        self.assertTrue(summary["probe_sums"][0]["sums"].startswith(said))
+        self.assertIn(f'probe "sides": {said}', self.expect_status(0, run("info", results)).stdout)
+
     def test_a_ball(self):
         path = SOURCE / "cases/ball/ball.toml"
         case = self.write("ball.toml", with_more(path, BALL_PROBES))

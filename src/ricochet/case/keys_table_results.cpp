@@ -47,8 +47,9 @@ Section probe_section() {
           {.name = "boundary",
            .type = KeyType::groups,
            .doc = "Group of boundary facets, or a list of them: force and moment on the body of supports and "
-                  "obstacles at its nodes (given loads are not counted). Columns NAME.force_x …, NAME.moment_z, in 3D "
-                  "NAME.moment_x …"},
+                  "contacts together at its nodes (given loads are not counted), columns NAME.force_x …, "
+                  "NAME.moment_z, in 3D NAME.moment_x …; and of the supports alone, NAME.support_x …, "
+                  "NAME.support_moment_z, in 3D NAME.support_moment_x …"},
           {.name = "about",
            .type = KeyType::vector,
            .unit = "length",

@@ -44,7 +44,7 @@ void transfer(Archive& archive, Column& column) {
   archive.all(column.name, column.by);
 }
 void transfer(Archive& archive, WatchedPlaces& places) {
-  archive.all(places.probes, places.positions, places.columns, places.nodes);
+  archive.all(places.probes, places.positions, places.columns, places.nodes, places.sums);
 }
 void transfer(Archive& archive, ModelSizes& sizes) {
   archive.all(sizes.nodes, sizes.cells, sizes.dofs, sizes.contact_points, sizes.supported_dofs, sizes.extent);

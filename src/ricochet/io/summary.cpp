@@ -51,6 +51,12 @@ Json probes_to_json(const RunSummary& summary) {
   return result;
 }
 
+Json probe_sums_to_json(const RunSummary& summary) {
+  Json result = Json::array();
+  for (const auto& [name, sums] : summary.probe_sums) result.push_back({{"name", name}, {"sums", sums}});
+  return result;
+}
+
 Json contacts_to_json(const RunSummary& summary) {
   Json result = Json::array();
   for (const ContactDescription& c : summary.contacts) {
@@ -234,6 +240,7 @@ std::string to_json(const RunSummary& s) {
                {"reactions", reactions_to_json(s)},
                {"contacts", contacts_to_json(s)},
                {"probes", probes_to_json(s)},
+               {"probe_sums", probe_sums_to_json(s)},
                {"extrema", extrema_to_json(s)},
                {"checks", checks_to_json(s)},
                {"warnings", s.warnings},
@@ -339,6 +346,8 @@ RunSummary summary_from_json(const std::string& text, const std::string& path) {
                           probe.at("in_contact_boundary").get<bool>() ? 0 : -1});
       s.probe_positions.push_back(probe.at("position"));
     }
+    for (const auto& probe : json.value("probe_sums", Json::array()))
+      s.probe_sums.emplace_back(probe.at("name").get<std::string>(), probe.at("sums").get<std::string>());
     for (const auto& [column, digest] : json.at("extrema").items()) {
       s.columns.push_back(column);
       s.digests.push_back({digest.at("first").to_number(), digest.at("last").to_number(),

@@ -161,6 +161,8 @@ struct RunSummary {
   std::vector<ContactDescription> contacts;
   std::vector<Probe> probes;
   std::vector<std::vector<double>> probe_positions;
+  /// Names of probes of boundaries and contacts, and which forces they sum, in words.
+  std::vector<std::pair<std::string, std::string>> probe_sums = {};
   std::vector<std::pair<std::string, double>> timings;  ///< seconds by phase
   double time_per_step = 0.0;                           ///< seconds
   double processor_seconds = 0.0;                       ///< of all threads; 0: results of a version that did not tell

@@ -23,6 +23,7 @@ struct WatchedPlaces {
   std::vector<Vector> positions;  ///< of each
   std::vector<Columns> columns;   ///< of the sensor of each
   std::vector<Index> nodes;       ///< of a boundary
+  std::string sums;               ///< of which forces its columns are sums, in words; empty: of none
 };
 
 /// A contact of two surfaces: a [[contact]] of the case, or one of the pairs of bodies that such an entry stands for.

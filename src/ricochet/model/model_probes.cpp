@@ -148,6 +148,26 @@ class ProbeFinder {
                       section.name, section.boundary));
     }
     places_.nodes = nodes;
+    places_.sums = sums_of_boundary(nodes);
+    log::info(fmt::format("probe \"{}\": {}", section.name, places_.sums));
+  }
+
+  /// Which forces act at its nodes: where a contact shares some with a support, the sum of both is neither's.
+  [[nodiscard]] std::string sums_of_boundary(const std::vector<Index>& nodes) const {
+    const SemidiscreteProblem& problem = model_.problem;
+    const auto among = [&nodes](Index node) { return std::binary_search(nodes.begin(), nodes.end(), node); };
+    const std::vector<Index>& dofs = problem.supports.dofs();
+    const bool held = std::any_of(dofs.begin(), dofs.end(), [&](Index dof) { return among(dof / problem.dimension); });
+    const std::vector<Index> touching = problem.contact.unique_nodes();
+    const auto shared = std::count_if(touching.begin(), touching.end(), among);
+    if (!held && shared == 0)
+      return "neither a support nor a contact acts at its nodes, and its force is zero (loads are not counted)";
+    if (shared == 0) return "its force is that of the supports at its nodes (loads are not counted)";
+    if (!held) return "its force is that of the contacts at its nodes, which no support holds (loads are not counted)";
+    return fmt::format(
+        "its force and moment are the sum of supports and of contacts, which share {} with it; support and "
+        "support_moment are of the supports alone (loads are not counted)",
+        counted(shared, "node"));
   }
 
   void check_contact(const ProbeSection& section, const std::string& key) {
@@ -162,6 +182,26 @@ class ProbeFinder {
                          "\"group\" for stresses near the surface",
                          *section.contact));
     }
+    places_.sums = sums_of_contact(*section.contact);
+  }
+
+  [[nodiscard]] std::string sums_of_contact(long entry) const {
+    std::vector<const ContactPair*> pairs;
+    for (std::size_t i = 0; i < model_.contacts.size(); ++i) {
+      if (static_cast<long>(model_.contacts[i].entry) == entry) pairs.push_back(&model_.contact_pairs[i]);
+    }
+    if (pairs.size() != 1)
+      return fmt::format(
+          "its force is the sum over {} of contact {}, of each that on the body of its first group; its area is "
+          "that of the pressed parts of the sides that carry the multipliers",
+          counted(pairs.size(), "pair"), entry);
+    const ContactPair& pair = *pairs.front();
+    const std::string on =
+        pair.between_bodies() ? fmt::format("the body of \"{}\"", pair.first_group()) : std::string("the body");
+    return fmt::format(
+        "its force is that of all points of contact {} on {}; its area is that of the pressed part of the facets of "
+        "\"{}\"",
+        entry, on, pair.group);
   }
 
   const Case& input_;

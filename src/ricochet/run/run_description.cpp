@@ -86,7 +86,9 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   for (const ModelContact& contact : model.contacts)
     summary.contacts.push_back(describe_contact(input, contact, contact.pair_of));
   for (std::size_t i = 0; i < summary.contacts.size(); ++i) summary.contacts[i].facing = describe_facing(model, i);
-  for (const WatchedPlaces& places : model.watched) {
+  for (std::size_t number = 0; number < model.watched.size(); ++number) {
+    const WatchedPlaces& places = model.watched[number];
+    if (!places.sums.empty()) summary.probe_sums.emplace_back(input.probes[number].name, places.sums);
     for (std::size_t i = 0; i < places.probes.size(); ++i) {
       Probe& probe = summary.probes.emplace_back(places.probes[i]);
       probe.node = probe.number;

@@ -37,8 +37,9 @@ class Sensor {
 /// With these columns, sums all of them, zero: of a node that other ranks have.
 [[nodiscard]] std::unique_ptr<Sensor> make_absent_sensor(Columns columns);
 
-/// Force and moment on the body of what supports and obstacles do to the nodes of some facets. Moments are about
-/// `about`, with reference positions. Loads that are given are not part of it.
+/// Force and moment on the body of supports and contacts together at the nodes of some facets, and of the supports
+/// alone: where a contact shares nodes with the facets, only the latter are the reaction of the support. Moments are
+/// about `about`, with reference positions. Given loads are not part of either.
 [[nodiscard]] std::unique_ptr<Sensor> make_boundary_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                                            const std::vector<Index>& nodes, const Vector& about);
 

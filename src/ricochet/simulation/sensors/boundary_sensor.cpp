@@ -43,9 +43,8 @@ class BoundarySensor final : public Sensor {
 
   [[nodiscard]] Columns columns() const override {
     Columns columns;
-    add_vector_columns(columns, name_ + ".force", problem_.dimension);
-    if (problem_.dimension == 2) columns.emplace_back(name_ + ".moment_z");
-    if (problem_.dimension == 3) add_vector_columns(columns, name_ + ".moment", 3);
+    add_columns(".force", ".moment", columns);
+    add_columns(".support", ".support_moment", columns);
     return columns;
   }
 
@@ -58,6 +57,7 @@ class BoundarySensor final : public Sensor {
       force += own;
       moment += support.arm.cross(own);
     }
+    const Eigen::Vector3d support_force = force, support_moment = moment;
     for (const Point& point : points_) {
       Eigen::Vector3d own = Eigen::Vector3d::Zero();
       own.head(d) = contact_force(forces, point.number);
@@ -65,12 +65,25 @@ class BoundarySensor final : public Sensor {
       moment += point.arm.cross(own);
     }
     add_sliding(forces, force, moment);
-    if (problem_.axisymmetric) moment.setZero();  // over the ring they cancel
-    append(force.head(d), row);
-    append(moment.tail(d == 2 ? 1 : 3), row);
+    append_values(force, moment, row);
+    append_values(support_force, support_moment, row);
   }
 
  private:
+  void add_columns(const char* force, const char* moment, Columns& columns) const {
+    add_vector_columns(columns, name_ + force, problem_.dimension);
+    if (problem_.dimension == 2) columns.emplace_back(name_ + moment + "_z");
+    if (problem_.dimension == 3) add_vector_columns(columns, name_ + moment, 3);
+  }
+
+  void append_values(const Eigen::Vector3d& force, const Eigen::Vector3d& moment, std::vector<double>& row) const {
+    const Index d = problem_.dimension;
+    append(force.head(d), row);
+    // Over the ring of an axisymmetric body moments cancel.
+    const double part = problem_.axisymmetric ? 0.0 : 1.0;
+    append(part * moment.tail(d == 2 ? 1 : 3), row);
+  }
+
   /// Points whose rows reach other nodes as bodies slide: node by node.
   void add_sliding(const StepForces& forces, Eigen::Vector3d& force, Eigen::Vector3d& moment) const {
     const Index d = problem_.dimension, tangents = d - 1;
