@@ -25,11 +25,23 @@ def boundary_groups(case):
     return {name for entry in entries for name in ([entry] if isinstance(entry, str) else entry)}
 
 
-def probe_columns(probe, dimension, on_contact_boundary, of_facets):
-    """The columns of an entry [[probe]]: of a contact, of a group, or of a point."""
+def boundary_columns(name, dimension):
+    columns = []
+    for force, moment in (("force", "moment"), ("support", "support_moment")):
+        columns += vector_columns(f"{name}.{force}", dimension)
+        columns += [f"{name}.{moment}_z"] if dimension == 2 else vector_columns(f"{name}.{moment}", dimension)
+    return columns
+
+
+def probe_columns(probe, dimension, on_contact_boundary, of_facets, finite):
+    """The columns of an entry [[probe]]: of a contact, of a boundary, of a group, or of a point."""
     name = probe["name"]
     if "contact" in probe:
-        return vector_columns(name + ".force", dimension) + vector_columns(name + ".centre", dimension) + [name + ".area"]
+        areas = ["area", "nominal_area"] if finite else ["area"]
+        return (vector_columns(name + ".force", dimension) + vector_columns(name + ".centre", dimension) +
+                [f"{name}.{area}" for area in areas])
+    if "boundary" in probe:
+        return boundary_columns(name, dimension)
     if "group" in probe:
         columns = [column for quantity in ("displacement", "velocity") for kind in ("average", "minimum", "maximum")
                    for column in vector_columns(f"{name}.{quantity}_{kind}", dimension)]
@@ -38,6 +50,7 @@ def probe_columns(probe, dimension, on_contact_boundary, of_facets):
     if on_contact_boundary:
         columns += [f"{name}.{column}" for column in ("gap", "pressure", "reaction_normal")]
         columns += vector_columns(name + ".reaction_tangential", dimension)
+        columns += [f"{name}.nominal_pressure"] if finite else []
     return columns
 
 
@@ -53,7 +66,8 @@ def documented_columns(dimension, case, points):
     if len(bodies) > 1 and not tied:
         for body in bodies:
             columns += vector_columns(f"momentum.{body}", dimension)
-    if any(material.get("law", "linear") != "linear" for material in case["material"]):
+    finite = any(material.get("law", "linear") != "linear" for material in case["material"])
+    if finite:
         columns += ["integration_error", "newton_rounds"]
     if any("relaxation" in material for material in case["material"]):
         columns += ["viscous_dissipation"]
@@ -64,7 +78,8 @@ def documented_columns(dimension, case, points):
             columns += vector_columns(f"pair_force.{number}", dimension)
     facets, on_contact_boundary = boundary_groups(case), {point["name"] for point in points if point["in_contact_boundary"]}
     for probe in case.get("probe", []):
-        columns += probe_columns(probe, dimension, probe["name"] in on_contact_boundary, probe.get("group") in facets)
+        columns += probe_columns(probe, dimension, probe["name"] in on_contact_boundary, probe.get("group") in facets,
+                                 finite)
     return columns
 
 

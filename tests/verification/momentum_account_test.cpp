@@ -128,6 +128,7 @@ TEST(MomentumAccount, BalancesUnderTrescasLaw) {
       EXPECT_LT(found.angular, 1e-13) << scheme << ' ' << body.name;
       CaseRun run(text);
       const std::unique_ptr<Sensor> contact = make_contact_sensor("contact", run.problem(), {SensedPair{0}});
+      Observer observer(run.problem());
       run.run([&] {
         const StepForces& forces = run.state().forces;
         SpaceVector sum = SpaceVector::Zero(body.dimension);
@@ -136,8 +137,7 @@ TEST(MomentumAccount, BalancesUnderTrescasLaw) {
           if (forces.normal_reaction[i] == 0.0 && carries_force(forces, i)) ++without_pressure;
         }
         std::vector<double> row;
-        const Vector none;
-        contact->observe({run.state(), none, none}, row);
+        contact->observe(observer.observe(run.state()), row);
         for (int k = 0; k < body.dimension; ++k) EXPECT_EQ(row[static_cast<std::size_t>(k)], sum[k]);
       });
     }

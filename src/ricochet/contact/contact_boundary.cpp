@@ -8,6 +8,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/contact/boundary_patch.hpp"
 #include "ricochet/contact/contact_directions.hpp"
+#include "ricochet/contact/contact_surface.hpp"
 #include "ricochet/contact/curved_contact.hpp"
 
 namespace ricochet {
@@ -287,6 +288,7 @@ ContactBoundary make_contact_boundary(const Body& body, const std::vector<Contac
   fill_boundary_nodes(patches, nodes, body, pairs, boundary);
   follow_motion(body, patches, pairs, is_free, *rows, boundary);
   boundary.rows = rows;
+  boundary.surface = std::make_shared<const ContactSurface>(body, pairs, boundary);
   return boundary;
 }
 

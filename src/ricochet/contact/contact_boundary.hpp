@@ -70,6 +70,8 @@ struct ContactPair {
 /// Whether a node may move along a direction of space: false where a support prescribes that component.
 using FreeComponent = std::function<bool(Index node, int component)>;
 
+class ContactSurface;
+
 /// A contact point is a multiplier ψ_i, and carries one normal condition and one normal and tangential reaction. With
 /// D_i = ∫ψ_i over the boundary and the trace c_ij = (1/D_i) ∫ψ_i φ_j (Σ_j c_ij = 1), it sees the mean gap
 /// g_i = (1/D_i) ∫ψ_i g and its reaction is r_i = D_i λ_i for a multiplier λ in stress units: λ_h = Σ_i (r_i/D_i) ψ_i.
@@ -114,6 +116,9 @@ struct ContactBoundary {
   SparseRowMatrix opposite_place;  ///< contact nodes × nodes: where the node faces another body; 0 × 0 without such
   SparseRowMatrix pressure_recovery;  ///< contact nodes × points: pressure at the nodes = this · r_N, in stress units;
                                       ///< any component of the friction traction likewise from that of the reaction
+
+  /// Areas, for reports (contact_surface.hpp).
+  std::shared_ptr<const ContactSurface> surface;
 
   [[nodiscard]] Index size() const { return initial_gap.size(); }
   [[nodiscard]] bool has_friction() const {

@@ -12,6 +12,7 @@
 #include "ricochet/base/selection.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/base/timer.hpp"
+#include "ricochet/contact/contact_surface.hpp"
 #include "ricochet/distributed/cut_problem.hpp"
 #include "ricochet/distributed/model_message.hpp"
 #include "ricochet/distributed/mpi_ranks.hpp"
@@ -201,6 +202,9 @@ std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator
   release_freed_memory();
   if (times != nullptr) times->assembly += timer.restart();
   add_loads(input, *model);
+  // Of its own facets: that of the whole was not sent.
+  ContactBoundary& contact = model->problem.contact;
+  contact.surface = std::make_shared<const ContactSurface>(model->body, model->contact_pairs, contact);
   add_sensors(input, *model);
   model->rotation = std::make_unique<RotationGauge>(model->body);
   model->preconditioners = preconditioners;

@@ -154,9 +154,15 @@ void require_one_kind_of_law(const Case& input, const Model& model) {
   }
 }
 
-void refuse_stretches_of_small_strain(const Case& input, const Model& model) {
+void refuse_fields_of_finite_strain(const Case& input, const Model& model) {
   if (has_finite_strain(model.body)) return;
   for (const std::string& name : input.output.fields) {
+    if (name.starts_with("nominal_")) {
+      refuse(input, "output.fields",
+             fmt::format("\"{}\" is of laws of finite strain, and this case has the linear one, with which it is the "
+                         "same as \"{}\": name that, or set material.law",
+                         name, name.substr(std::string_view("nominal_").size())));
+    }
     if (!name.starts_with("principal_stretch")) continue;
     refuse(input, "output.fields",
            fmt::format("\"{}\" is of laws of finite strain, and this case has the linear one, whose stretches are 1 + "
@@ -193,7 +199,7 @@ void assign_materials(const Case& input, Model& model) {
     warn_of_iterations(input, i, model);
   }
   require_one_kind_of_law(input, model);
-  refuse_stretches_of_small_strain(input, model);
+  refuse_fields_of_finite_strain(input, model);
   Index without = 0;
   for (const int material : model.body.cell_material) without += material < 0 ? 1 : 0;
   if (without > 0) {

@@ -14,7 +14,8 @@ namespace {
 constexpr double most_numbers = 2.5e8;
 
 /// On nodes of the contact boundary; elsewhere they say nothing.
-constexpr std::array contact_names{"contact_pressure", "friction_traction", "gap", "contact_status"};
+constexpr std::array contact_names{"contact_pressure", "friction_traction",        "gap",
+                                   "contact_status",   "nominal_contact_pressure", "nominal_friction_traction"};
 
 bool is_contact(const std::string& name) {
   return std::find(contact_names.begin(), contact_names.end(), name) != contact_names.end();

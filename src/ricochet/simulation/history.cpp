@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "ricochet/base/parallel.hpp"
+#include "ricochet/contact/contact_surface.hpp"
 
 namespace ricochet {
 
@@ -234,8 +235,14 @@ void HistoryRecorder::add_contact_state(const Observation& observation) {
 
 Observation Observer::observe(const State& state) {
   problem_.node_gaps(state.displacement, state.time, gap_);
-  problem_.contact.recover_pressure(state.forces.normal_reaction, pressure_);
-  return {state, gap_, pressure_};
+  const ContactBoundary& contact = problem_.contact;
+  contact.recover_pressure(state.forces.normal_reaction, nominal_pressure_);
+  if (contact.surface == nullptr || !contact.surface->deforms())
+    return {state, gap_, nominal_pressure_, nominal_pressure_};
+  contact.surface->find_stretch(state.displacement, area_, stretch_);
+  true_reaction_ = state.forces.normal_reaction.cwiseQuotient(stretch_);
+  contact.recover_pressure(true_reaction_, pressure_);
+  return {state, gap_, pressure_, nominal_pressure_};
 }
 
 SensorRecorder::SensorRecorder(const SemidiscreteProblem& problem, std::vector<std::shared_ptr<Sensor>> sensors)

@@ -20,7 +20,8 @@ class Observer {
 
  private:
   const SemidiscreteProblem& problem_;
-  Vector gap_, pressure_;
+  Vector gap_, pressure_, nominal_pressure_;
+  Vector area_, stretch_, true_reaction_;  ///< at finite strain (contact_surface.hpp)
 };
 
 /// Rows of some sensors alone: step, time, and their columns.

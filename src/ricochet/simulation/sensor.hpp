@@ -17,8 +17,9 @@ namespace ricochet {
 /// A state, and what several sensors want to know of it.
 struct Observation {
   const State& state;
-  const Vector& gap;       ///< per node of the contact boundary
-  const Vector& pressure;  ///< likewise; of several ranks a part, which the sum over them completes
+  const Vector& gap;               ///< per node of the contact boundary
+  const Vector& pressure;          ///< likewise; of several ranks a part, which the sum over them completes
+  const Vector& nominal_pressure;  ///< per undeformed area: at small strain `pressure`
 };
 
 class Sensor {
@@ -60,8 +61,9 @@ struct SensedPair {
 
 /// Resultant of a [[contact]], the sum over its pairs: force on the body, which between bodies is that of the pair's
 /// first group in the case; centre of pressure Σ r_N X / Σ r_N with the
-/// reference positions X (0 where open), as the moments of boundaries take them, and area of the points that are
-/// pressed (in 2D a length).
+/// reference positions X (0 where open), as the moments of boundaries take them, and area of the pressed part of the
+/// facets on the side that carries the multipliers (in 2D a length; contact_surface.hpp), at finite strain after the
+/// deformation, and before it as "nominal_area".
 [[nodiscard]] std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                                           const std::vector<SensedPair>& pairs);
 

@@ -7,7 +7,7 @@ import { colourRange, type ColourRange, type ColourScale } from "../maps/colour_
 /** Fields that bodies can be coloured by. */
 
 const axes = ["x", "y", "z"];
-const contactOrder = ["contact_pressure", "contact_status", "friction_traction", "gap"];
+const contactOrder = ["contact_pressure", "contact_status", "friction_traction", "gap", "nominal_contact_pressure", "nominal_friction_traction"];
 
 /** Names of the fields of some run, the body's own first. */
 export function fieldNames(runs: Run[]): string[] {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ricochet/contact/contact_surface.hpp"
 #include "ricochet/io/fields/field_source.hpp"
 
 namespace ricochet {
@@ -9,59 +10,82 @@ namespace ricochet {
 namespace {
 
 /// At the nodes; off the contact boundary pressure and traction are 0, the gap is NaN and the status −1. Where two
-/// obstacles meet at a node, the larger pressure, the smaller gap and the larger status are given.
+/// obstacles meet at a node, the larger pressure, the smaller gap and the larger status are given. Pressures and
+/// tractions are those on the deformed surface; at finite strain the nominal ones differ from them.
 class ContactFields final : public FieldSource {
  public:
   explicit ContactFields(const FieldContext& context)
-      : space_(*context.body.space), problem_(context.problem), has_friction_(context.problem.contact.has_friction()) {
+      : space_(*context.body.space),
+        problem_(context.problem),
+        has_friction_(context.problem.contact.has_friction()),
+        deforms_(has_finite_strain(context.body)) {
     const Index nodes = space_.node_count();
     const auto count = static_cast<std::size_t>(nodes);
-    pressure_.assign(count, 0.0);
-    traction_.assign(3 * count, 0.0);
     gap_.assign(count, 0.0);
     status_.assign(count, 0);
-    if (context.wants("contact_pressure"))
-      fields_.push_back({"contact_pressure", FieldPlace::nodes, 1, false, nodes, pressure_.data()});
-    if (context.wants("friction_traction") && has_friction_)
-      fields_.push_back({"friction_traction", FieldPlace::nodes, 3, false, nodes, traction_.data()});
+    add_stresses(context, "contact_pressure", "friction_traction", stresses_);
     if (context.wants("gap")) fields_.push_back({"gap", FieldPlace::nodes, 1, false, nodes, gap_.data()});
     if (context.wants("contact_status"))
       fields_.push_back({"contact_status", FieldPlace::nodes, 1, true, nodes, status_.data()});
+    if (deforms_) add_stresses(context, "nominal_contact_pressure", "nominal_friction_traction", nominal_);
   }
 
   [[nodiscard]] std::vector<Field> fields() const override { return fields_; }
   void evaluate(const State& state) override;
 
  private:
+  struct Stresses {
+    std::vector<double> pressure, traction;
+    bool wanted = false;
+  };
+
   [[nodiscard]] std::size_t number(Index node) const {
     return static_cast<std::size_t>(space_.number[static_cast<std::size_t>(node)]);
   }
-  void evaluate_friction(const State& state);
+  void add_stresses(const FieldContext& context, const char* pressure, const char* traction, Stresses& stresses) {
+    const Index nodes = space_.node_count();
+    stresses.pressure.assign(static_cast<std::size_t>(nodes), 0.0);
+    stresses.traction.assign(static_cast<std::size_t>(3 * nodes), 0.0);
+    stresses.wanted = context.wants_any({pressure, traction});
+    if (context.wants(pressure))
+      fields_.push_back({pressure, FieldPlace::nodes, 1, false, nodes, stresses.pressure.data()});
+    if (context.wants(traction) && has_friction_)
+      fields_.push_back({traction, FieldPlace::nodes, 3, false, nodes, stresses.traction.data()});
+  }
+  void find_true_reactions(const State& state);
+  void evaluate(const ContactRows& rows, const Vector& normal, const Vector& tangential, Stresses& stresses);
+  void evaluate_friction(const ContactRows& rows, const Vector& tangential, std::vector<double>& traction);
   void add_up_pressures();
   void agree_on_status();
 
   const DisplacementSpace& space_;
   const SemidiscreteProblem& problem_;
-  bool has_friction_;
+  bool has_friction_, deforms_;
   std::vector<Field> fields_;
-  std::vector<double> pressure_, traction_, gap_;
+  Stresses stresses_, nominal_;
+  std::vector<double> gap_;
   std::vector<int> status_;
   Vector node_gap_, node_pressure_, node_traction_;
   Index entries_per_node_ = 1;  ///< of the contact boundary, at most
   Vector per_node_;
+  Vector area_, stretch_, true_normal_, true_tangential_;
 };
 
 void ContactFields::evaluate(const State& state) {
-  std::fill(pressure_.begin(), pressure_.end(), 0.0);
   std::fill(gap_.begin(), gap_.end(), std::numeric_limits<double>::quiet_NaN());
   std::fill(status_.begin(), status_.end(), -1);
   const ContactBoundary& contact = problem_.contact;
   problem_.node_gaps(state.displacement, state.time, node_gap_);
-  contact.recover_pressure(state.forces.normal_reaction, node_pressure_);
-  add_up_pressures();
+  const StepForces& forces = state.forces;
+  if (deforms_) {
+    evaluate(*forces.rows, forces.normal_reaction, forces.tangential_reaction, nominal_);
+    find_true_reactions(state);
+    evaluate(*forces.rows, true_normal_, true_tangential_, stresses_);
+  } else {
+    evaluate(*forces.rows, forces.normal_reaction, forces.tangential_reaction, stresses_);
+  }
   for (Index i = 0; i < node_gap_.size(); ++i) {
     const std::size_t node = number(contact.nodes[static_cast<std::size_t>(i)]);
-    pressure_[node] = std::max(pressure_[node], node_pressure_[i]);
     gap_[node] = std::fmin(gap_[node], node_gap_[i]);  // of a number and NaN the number
     status_[node] = std::max(status_[node], 0);
     // A node does what its own contact point does, or, without one, what those do that its pressure comes from.
@@ -78,7 +102,29 @@ void ContactFields::evaluate(const State& state) {
     });
   }
   agree_on_status();
-  if (has_friction_) evaluate_friction(state);
+}
+
+/// Forces per area before the deformation in place of those per area now.
+void ContactFields::find_true_reactions(const State& state) {
+  problem_.contact.surface->find_stretch(state.displacement, area_, stretch_);
+  true_normal_ = state.forces.normal_reaction.cwiseQuotient(stretch_);
+  true_tangential_ = state.forces.tangential_reaction;
+  const Index tangents = problem_.dimension - 1;
+  for (Index row = 0; row < true_tangential_.size(); ++row) true_tangential_[row] /= stretch_[row / tangents];
+}
+
+void ContactFields::evaluate(const ContactRows& rows, const Vector& normal, const Vector& tangential,
+                             Stresses& stresses) {
+  if (!stresses.wanted) return;
+  const ContactBoundary& contact = problem_.contact;
+  std::fill(stresses.pressure.begin(), stresses.pressure.end(), 0.0);
+  contact.recover_pressure(normal, node_pressure_);
+  add_up_pressures();
+  for (Index i = 0; i < node_pressure_.size(); ++i) {
+    double& pressure = stresses.pressure[number(contact.nodes[static_cast<std::size_t>(i)])];
+    pressure = std::max(pressure, node_pressure_[i]);
+  }
+  if (has_friction_) evaluate_friction(rows, tangential, stresses.traction);
 }
 
 /// Each rank knows what its own points do. Entries of a node are the same ones on all of its ranks, in one order.
@@ -121,20 +167,20 @@ void ContactFields::agree_on_status() {
 }
 
 /// The friction traction on the body, in stress units: −t r_T of the points, recovered at the nodes like pressures.
-void ContactFields::evaluate_friction(const State& state) {
+void ContactFields::evaluate_friction(const ContactRows& rows, const Vector& tangential,
+                                      std::vector<double>& traction) {
   const ContactBoundary& contact = problem_.contact;
   const int d = problem_.dimension;
   node_traction_.setZero(problem_.dof_count());
-  for (std::size_t i = 0; i < contact.nodes.size() && state.forces.tangential_reaction.size() > 0; ++i) {
+  for (std::size_t i = 0; i < contact.nodes.size() && tangential.size() > 0; ++i) {
     // On the other body the traction is the opposite one.
     const double sign = contact.is_opposite[i] != 0 ? 1.0 : -1.0;
     contact.visit_recovery(static_cast<Index>(i), [&](Index point, double value) {
-      node_traction_.segment(contact.nodes[i] * d, d) +=
-          sign * value * state.forces.rows->along_tangents(point, state.forces.tangential_reaction);
+      node_traction_.segment(contact.nodes[i] * d, d) += sign * value * rows.along_tangents(point, tangential);
     });
   }
   problem_.ranks->accumulate(node_traction_);
-  take_vector(space_, node_traction_, traction_);
+  take_vector(space_, node_traction_, traction);
 }
 
 }  // namespace

@@ -19,7 +19,9 @@ struct FieldRegistration {
 const std::vector<FieldRegistration>& registrations() {
   static const std::vector<FieldRegistration> all{
       {{"displacement", "velocity", "acceleration"}, make_motion_fields},
-      {{"contact_pressure", "friction_traction", "gap", "contact_status"}, make_contact_fields},
+      {{"contact_pressure", "friction_traction", "gap", "contact_status", "nominal_contact_pressure",
+        "nominal_friction_traction"},
+       make_contact_fields},
       {{"stress", "von_mises", "principal_stress", "strain_energy_density", "nodal_stress", "nodal_von_mises",
         "nodal_principal_stress"},
        make_stress_fields},

@@ -1,3 +1,4 @@
+#include "ricochet/contact/contact_surface.hpp"
 #include "ricochet/simulation/sensor.hpp"
 
 namespace ricochet {
@@ -61,13 +62,14 @@ class PairForceSensor final : public Sensor {
 class ContactSensor final : public Sensor {
  public:
   ContactSensor(std::string name, const SemidiscreteProblem& problem, const std::vector<SensedPair>& pairs)
-      : name_(std::move(name)), problem_(problem), pairs_(points_of(problem.contact, pairs)) {}
+      : name_(std::move(name)), problem_(problem), sensed_(pairs), pairs_(points_of(problem.contact, pairs)) {}
 
   [[nodiscard]] Columns columns() const override {
     Columns columns;
     add_vector_columns(columns, name_ + ".force", problem_.dimension);
     add_vector_columns(columns, name_ + ".centre", problem_.dimension, Reduction::same);
     columns.emplace_back(name_ + ".area");
+    if (problem_.contact.surface->deforms()) columns.emplace_back(name_ + ".nominal_area");
     return columns;
   }
 
@@ -77,13 +79,12 @@ class ContactSensor final : public Sensor {
     const State& state = observation.state;
     const SpaceVector force = force_on_first(state, pairs_, d);
     SpaceVector centre = SpaceVector::Zero(d);
-    double pressing = 0.0, area = 0.0;
+    double pressing = 0.0;
     for (const PairPoints& pair : pairs_) {
       for (const Index point : pair.points) {
         const double normal = state.forces.normal_reaction[point];
         if (!(normal > 0.0)) continue;
         pressing += normal;
-        area += contact.weights[point];
         contact.visit_own_nodes(
             point, [&](Index node, double weight) { centre += normal * weight * problem_.nodes.col(node); });
       }
@@ -94,13 +95,25 @@ class ContactSensor final : public Sensor {
     if (pressing > 0.0) centre /= pressing;
     append(force, row);
     append(centre, row);
-    row.push_back(area);
+    const ContactView view{contact,         *state.forces.rows,           state.forces.normal_reaction,
+                           observation.gap, observation.nominal_pressure, state.displacement,
+                           *problem_.ranks};
+    ContactSurface::Area area;
+    for (const SensedPair& pair : sensed_) {
+      const ContactSurface::Area of_pair = contact.surface->pressed_area(pair.number, view, work_);
+      area.now += of_pair.now;
+      area.nominal += of_pair.nominal;
+    }
+    row.push_back(area.now);
+    if (contact.surface->deforms()) row.push_back(area.nominal);
   }
 
  private:
   std::string name_;
   const SemidiscreteProblem& problem_;
+  std::vector<SensedPair> sensed_;
   std::vector<PairPoints> pairs_;
+  ContactSurface::Work work_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ricochet/contact/contact_surface.hpp"
 #include "ricochet/simulation/sensor.hpp"
 
 namespace ricochet {
@@ -13,6 +14,7 @@ class PointSensor final : public Sensor {
     if (probe_.contact_node < 0) return;
     // All points of this obstacle whose trace reaches the node.
     const ContactBoundary& contact = problem.contact;
+    deforms_ = contact.surface->deforms();
     has_gap_ = !std::isnan(contact.node_initial_gap[probe_.contact_node]);
     const int pair = contact.node_pair[static_cast<std::size_t>(probe_.contact_node)];
     const Obstacle* const obstacle = problem.obstacles[static_cast<std::size_t>(pair)];
@@ -35,6 +37,7 @@ class PointSensor final : public Sensor {
     if (has_gap_) columns.emplace_back(probe_.name + ".gap");
     for (const char* name : {".pressure", ".reaction_normal"}) columns.emplace_back(probe_.name + name);
     add_vector_columns(columns, probe_.name + ".reaction_tangential", d);
+    if (deforms_) columns.emplace_back(probe_.name + ".nominal_pressure");
     return columns;
   }
 
@@ -59,12 +62,14 @@ class PointSensor final : public Sensor {
     for (const double value : {observation.pressure[probe_.contact_node], normal_force}) row.push_back(value);
     force -= normal_force * normal;
     append(force, row);
+    if (deforms_) row.push_back(observation.nominal_pressure[probe_.contact_node]);
   }
 
  private:
   const SemidiscreteProblem& problem_;
   Probe probe_;
   bool has_gap_ = false;                          ///< false where the node faces nothing
+  bool deforms_ = false;                          ///< its pressure differs from the nominal one
   std::vector<std::pair<Index, double>> points_;  ///< with the part of their force that acts on the node
 };
 

@@ -1,0 +1,321 @@
+#include "ricochet/contact/contact_surface.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "ricochet/fem/cell_integration.hpp"
+#include "ricochet/fem/exterior_facets.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr char node_open = 0, node_pressed = 1, node_unknown = 2;
+/// Most corners of the pressed part of a facet: all border nodes of degree 2, and as many crossings.
+constexpr std::size_t most_corners = 16;
+
+/// E/(1 − ν²) of a cell; in plane stress E.
+double plate_modulus(const Body& body, Index cell) {
+  const Material& material = material_of(body, cell);
+  const double poisson = is_plane_stress(body) ? 0.0 : material.poisson();
+  return material.young() / (1.0 - poisson * poisson);
+}
+
+std::vector<double> plate_moduli(const Body& body, const std::vector<Index>& facets) {
+  std::vector<double> result;
+  for (const std::vector<Index>& cells : cells_of_facets(*body.mesh, facets))
+    result.push_back(plate_modulus(body, cells.front()));
+  return result;
+}
+
+}  // namespace
+
+double pressed_part_of_edge(double ratio) {
+  // u = 1 − θ:  u³ + q u − q = 0,  q = 9/(16 ρ²): one real root, by Cardano's formula.
+  const double q = 9.0 / (16.0 * ratio * ratio);
+  if (!(q > 0.0)) return 1.0;  // an infinite ratio
+  if (!std::isfinite(q)) return 0.0;
+  const double u = 2.0 * std::sqrt(q / 3.0) * std::sinh(std::asinh(1.5 * std::sqrt(3.0 / q)) / 3.0);
+  return std::clamp(1.0 - u, 0.0, 1.0);
+}
+
+/// Gathers the facets of all pairs.
+class ContactSurface::Builder {
+ public:
+  Builder(const Body& body, const std::vector<ContactPair>& pairs, const ContactBoundary& boundary,
+          ContactSurface& surface)
+      : body_(body), pairs_(pairs), boundary_(boundary), surface_(surface) {
+    for (const CellBlock& block : body.mesh->facets)
+      surface.shapes_.push_back(
+          make_facet_shape(block.shape, body.mesh->degree, body.space->degree, surface.axisymmetric_));
+    for (std::size_t pair = 0; pair < pairs.size(); ++pair) surface_.patch_of_pair_.push_back(patch_of(pair));
+    std::vector<std::vector<Facet>> facets(pairs.size());
+    for (int patch = 0; patch < patches_; ++patch) {
+      surface_.first_slot_of_patch_.push_back(surface_.slots_.size());
+      slot_of_.clear();
+      for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
+        if (surface_.patch_of_pair_[pair] == patch && !pairs[pair].tied) add_facets(pair, facets[pair]);
+      }
+      add_points(patch);
+    }
+    surface_.first_slot_of_patch_.push_back(surface_.slots_.size());
+    finish(facets);
+  }
+
+ private:
+  /// Pairs of one obstacle share their contact points.
+  int patch_of(std::size_t pair) {
+    for (std::size_t before = 0; before < pair; ++before) {
+      if (pairs_[pair].obstacle != nullptr && pairs_[before].obstacle == pairs_[pair].obstacle)
+        return surface_.patch_of_pair_[before];
+    }
+    return patches_++;
+  }
+
+  std::size_t slot_of(Index node, std::size_t pair) {
+    const auto [known, added] = slot_of_.try_emplace(node, surface_.slots_.size());
+    if (added) surface_.slots_.push_back({node, entry_of(node, pair), 0.0});
+    return known->second;
+  }
+
+  [[nodiscard]] Index entry_of(Index node, std::size_t pair) const {
+    const auto& nodes = boundary_.nodes;
+    for (auto at = std::lower_bound(nodes.begin(), nodes.end(), node); at != nodes.end() && *at == node; ++at) {
+      const auto entry = static_cast<std::size_t>(at - nodes.begin());
+      const auto other = static_cast<std::size_t>(boundary_.node_pair[entry]);
+      if (boundary_.is_opposite[entry] == 0 && surface_.patch_of_pair_[other] == surface_.patch_of_pair_[pair])
+        return static_cast<Index>(entry);
+    }
+    return -1;
+  }
+
+  void add_facets(std::size_t pair, std::vector<Facet>& result) {
+    const ContactPair& contact = pairs_[pair];
+    const std::vector<double> own = plate_moduli(body_, contact.facets);
+    double compliance = 0.0;
+    for (const double modulus : plate_moduli(body_, contact.opposite_facets))
+      compliance += 1.0 / (modulus * static_cast<double>(contact.opposite_facets.size()));
+    for (std::size_t i = 0; i < contact.facets.size(); ++i) {
+      const PlaceInBlocks place = locate_facet(*body_.space, contact.facets[i]);
+      const CellBlock& geometry = body_.mesh->facets[place.block];
+      const CellBlock& block = body_.space->facets[place.block];
+      Facet facet{place.block, surface_.slots_of_facets_.size(), place_of_node_.size(), 0.0,
+                  1.0 / (1.0 / own[i] + compliance)};
+      for (int k = 0; k < block.nodes_per_cell; ++k)
+        surface_.slots_of_facets_.push_back(slot_of(block.cell(place.local)[k], pair));
+      for (int k = 0; k < geometry.nodes_per_cell; ++k) place_of_node_.push_back(geometry.cell(place.local)[k]);
+      result.push_back(facet);
+    }
+  }
+
+  void add_points(int patch) {
+    for (Index point = 0; point < boundary_.size(); ++point) {
+      if (surface_.patch_of_pair_[static_cast<std::size_t>(boundary_.pair[static_cast<std::size_t>(point)])] != patch)
+        continue;
+      boundary_.visit_own_nodes(point, [&](Index node, double weight) {
+        const auto slot = slot_of_.find(node);
+        if (slot != slot_of_.end())
+          of_points_.emplace_back(static_cast<int>(point), static_cast<int>(slot->second), weight);
+      });
+    }
+  }
+
+  void finish(const std::vector<std::vector<Facet>>& facets) {
+    surface_.places_.resize(surface_.dimension_, static_cast<Index>(place_of_node_.size()));
+    for (std::size_t k = 0; k < place_of_node_.size(); ++k)
+      surface_.places_.col(static_cast<Index>(k)) = body_.mesh->nodes.col(place_of_node_[k]);
+    surface_.node_places_.resize(surface_.dimension_, static_cast<Index>(surface_.slots_.size()));
+    for (std::size_t k = 0; k < surface_.slots_.size(); ++k)
+      surface_.node_places_.col(static_cast<Index>(k)) = body_.space->nodes.col(surface_.slots_[k].node);
+    for (const std::vector<Facet>& of_pair : facets) {
+      surface_.first_facet_.push_back(surface_.facets_.size());
+      for (Facet facet : of_pair) {
+        facet.area = surface_.measure(facet, nullptr).whole();
+        const Index count = surface_.shapes_[facet.shape].displacement.node_count();
+        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+          surface_.slots_[surface_.slots_of_facets_[facet.first_slot + k]].area +=
+              facet.area / static_cast<double>(count);
+        surface_.facets_.push_back(facet);
+      }
+    }
+    surface_.first_facet_.push_back(surface_.facets_.size());
+    surface_.slots_of_points_.resize(boundary_.size(), static_cast<Index>(surface_.slots_.size()));
+    surface_.slots_of_points_.setFromTriplets(of_points_.begin(), of_points_.end());
+  }
+
+  const Body& body_;
+  const std::vector<ContactPair>& pairs_;
+  const ContactBoundary& boundary_;
+  ContactSurface& surface_;
+  int patches_ = 0;
+  std::map<Index, std::size_t> slot_of_;  ///< of the patch that is gathered
+  std::vector<Index> place_of_node_;      ///< nodes of the mesh
+  std::vector<Eigen::Triplet<double>> of_points_;
+};
+
+ContactSurface::ContactSurface(const Body& body, const std::vector<ContactPair>& pairs, const ContactBoundary& boundary)
+    : dimension_(body.space->dimension),
+      deforms_(has_finite_strain(body)),
+      axisymmetric_(is_axisymmetric(body)),
+      nodes_(body.space->node_count()) {
+  Builder(body, pairs, boundary, *this);
+}
+
+FacetArea ContactSurface::measure(const Facet& facet, const Vector* displacement) const {
+  using Places = FacetArea::Places;
+  const FacetShape& shape = shapes_[facet.shape];
+  Places places = Places::Zero(), motions = Places::Zero();
+  for (Index k = 0; k < shape.geometry.node_count(); ++k)
+    places.col(k).head(dimension_) = places_.col(static_cast<Index>(facet.first_place) + k);
+  for (Index k = 0; displacement != nullptr && k < shape.displacement.node_count(); ++k) {
+    const std::size_t slot = slots_of_facets_[facet.first_slot + static_cast<std::size_t>(k)];
+    motions.col(k).head(dimension_) = displacement->segment(slots_[slot].node * dimension_, dimension_);
+  }
+  return {shape, places, motions, axisymmetric_};
+}
+
+void ContactSurface::find_stretch(const Vector& displacement, Vector& area_of_slots, Vector& stretch) const {
+  area_of_slots.setZero(static_cast<Index>(slots_.size()));
+  for (const Facet& facet : facets_) {
+    const auto count = static_cast<std::size_t>(shapes_[facet.shape].displacement.node_count());
+    const double share = measure(facet, &displacement).whole() / static_cast<double>(count);
+    for (std::size_t k = 0; k < count; ++k)
+      area_of_slots[static_cast<Index>(slots_of_facets_[facet.first_slot + k])] += share;
+  }
+  stretch.setOnes(slots_of_points_.rows());
+  for (Index point = 0; point < stretch.size(); ++point) {
+    double now = 0.0, before = 0.0;
+    for (SparseRowMatrix::InnerIterator entry(slots_of_points_, point); entry; ++entry) {
+      now += std::abs(entry.value()) * area_of_slots[entry.col()];
+      before += std::abs(entry.value()) * slots_[static_cast<std::size_t>(entry.col())].area;
+    }
+    if (before > 0.0) stretch[point] = now / before;
+  }
+}
+
+/// Finds what the nodes of a pair's patch do. Each rank knows its own points.
+void ContactSurface::find_states(int pair, const ContactView& view, Work& work) const {
+  const ContactBoundary& boundary = view.boundary;
+  const auto patch = static_cast<std::size_t>(patch_of_pair_[static_cast<std::size_t>(pair)]);
+  const std::size_t first = first_slot_of_patch_[patch], last = first_slot_of_patch_[patch + 1];
+  constexpr Index numbers = 3;  // pressure, points that are open, all points
+  // Ranks put their numbers together per node.
+  const bool several = view.ranks.are_several();
+  const auto place = [&](std::size_t slot) {
+    return numbers * (several ? slots_[slot].node : static_cast<Index>(slot - first));
+  };
+  work.exchanged.setZero(numbers * (several ? nodes_ : static_cast<Index>(last - first)));
+  for (std::size_t slot = first; slot < last; ++slot) {
+    const Index entry = slots_[slot].entry;
+    if (entry < 0) continue;
+    double* const sums = work.exchanged.data() + place(slot);
+    sums[0] = view.nominal_pressure[entry];
+    // A point that bears nothing may be closed all the same, as vertices where nodal forces of degree 2 are borne by
+    // the middles alone, and facets whose neighbours bear more: its gap says so.
+    const auto add = [&](Index point) {
+      const bool closed = view.normal_reaction[point] > 0.0 || view.gap[entry] <= view.rows.gap_rounding[point];
+      sums[1] += closed ? 0.0 : 1.0;
+      sums[2] += 1.0;
+    };
+    const Index own = boundary.own_point[static_cast<std::size_t>(entry)];
+    if (own >= 0) add(own);
+    if (own != -1) continue;
+    boundary.visit_recovery(entry, [&](Index point, double weight) {
+      if (weight != 0.0) add(point);
+    });
+  }
+  if (several) view.ranks.accumulate(work.exchanged);
+  work.state.resize(slots_.size());
+  work.pressure.resize(static_cast<Index>(slots_.size()));
+  work.gap.resize(static_cast<Index>(slots_.size()));
+  for (std::size_t slot = first; slot < last; ++slot) {
+    const double* const sums = work.exchanged.data() + place(slot);
+    const auto at = static_cast<Index>(slot);
+    work.pressure[at] = sums[0];
+    work.gap[at] = slots_[slot].entry < 0 ? std::numeric_limits<double>::quiet_NaN() : view.gap[slots_[slot].entry];
+    work.state[slot] = sums[2] == 0.0 ? node_unknown : sums[0] > 0.0 && sums[1] == 0.0 ? node_pressed : node_open;
+  }
+}
+
+/// Returns the part of the way from a pressed node to an open one that is pressed; both are numbers of slots.
+double ContactSurface::covered(const Facet& facet, std::size_t from, std::size_t to, const Work& work) const {
+  const auto inner = static_cast<Index>(from), outer = static_cast<Index>(to);
+  const double gap = work.gap[outer];
+  if (std::isnan(gap) || work.state[to] == node_unknown) return 0.0;
+  if (!(gap > 0.0)) return 1.0;
+  const double edge = (node_places_.col(inner) - node_places_.col(outer)).norm();
+  return pressed_part_of_edge(work.pressure[inner] * edge / (facet.modulus * gap));
+}
+
+double ContactSurface::part_of_segment(const Facet& facet, const Work& work, const FacetArea& integral) const {
+  const Points& at = shapes_[facet.shape].border_points;
+  double sum = 0.0;
+  for (std::size_t k = 0; k + 1 < shapes_[facet.shape].border.size(); ++k) {
+    const std::size_t here = border_slot(facet, k), next = border_slot(facet, k + 1);
+    const double from = at(0, static_cast<Index>(k)), to = at(0, static_cast<Index>(k) + 1);
+    const bool presses = work.state[here] == node_pressed, next_presses = work.state[next] == node_pressed;
+    if (presses && next_presses) {
+      sum += integral.segment(from, to);
+    } else if (presses) {
+      sum += integral.segment(from, from + covered(facet, here, next, work) * (to - from));
+    } else if (next_presses) {
+      sum += integral.segment(to - covered(facet, next, here, work) * (to - from), to);
+    }
+  }
+  return sum;
+}
+
+double ContactSurface::part_of_polygon(const Facet& facet, const Work& work, const FacetArea& integral) const {
+  const FacetShape& shape = shapes_[facet.shape];
+  const std::size_t count = shape.border.size();
+  std::array<Eigen::Vector2d, most_corners> corners;
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t here = border_slot(facet, k), next = border_slot(facet, (k + 1) % count);
+    const Eigen::Vector2d at = shape.border_points.col(static_cast<Index>(k));
+    const Eigen::Vector2d way = shape.border_points.col(static_cast<Index>((k + 1) % count)) - at;
+    const bool presses = work.state[here] == node_pressed;
+    if (presses) corners[found++] = at;
+    if (presses == (work.state[next] == node_pressed)) continue;
+    corners[found++] = at + (presses ? covered(facet, here, next, work) : 1.0 - covered(facet, next, here, work)) * way;
+  }
+  double sum = 0.0;
+  for (std::size_t k = 1; k + 1 < found; ++k) sum += integral.triangle(corners[0], corners[k], corners[k + 1]);
+  return sum;
+}
+
+/// Nodes without a contact point, which supports hold, are pressed where all others of the facet are.
+void ContactSurface::add_part(const Facet& facet, const ContactView& view, const Work& work, Area& sum) const {
+  bool any = false, all = true;
+  for (std::size_t k = 0; k < shapes_[facet.shape].border.size(); ++k) {
+    const char state = work.state[border_slot(facet, k)];
+    any = any || state == node_pressed;
+    all = all && state != node_open;
+  }
+  if (!any) return;
+  const auto part_now = [&](const Vector* displacement) {
+    const FacetArea integral = measure(facet, displacement);
+    if (all) return integral.whole();
+    return shapes_[facet.shape].is_segment ? part_of_segment(facet, work, integral)
+                                           : part_of_polygon(facet, work, integral);
+  };
+  const double nominal = all ? facet.area : part_now(nullptr);
+  sum.nominal += nominal;
+  sum.now += deforms_ ? part_now(&view.displacement) : nominal;
+}
+
+ContactSurface::Area ContactSurface::pressed_area(int pair, const ContactView& view, Work& work) const {
+  find_states(pair, view, work);
+  Area sum;
+  for (std::size_t k = first_facet_[static_cast<std::size_t>(pair)];
+       k < first_facet_[static_cast<std::size_t>(pair) + 1]; ++k)
+    add_part(facets_[k], view, work, sum);
+  return sum;
+}
+
+}  // namespace ricochet
