@@ -66,10 +66,13 @@ void print_methods(const std::vector<Run>& runs, int width) {
 }
 
 /// Marks, and what each means, in the order in which they are explained.
-constexpr std::array<std::pair<const char*, const char*>, 5> meanings{{
+constexpr std::array<std::pair<const char*, const char*>, 6> meanings{{
     {"≥", "not every step was looked at: the stress may have been higher between two looks (output.fields_every)"},
     {"~", "the contact zone is too coarse to trust the force: refine the mesh there"},
     {"?", "cells turn by more than 0.1 rad, which small strain takes for a strain that is not there"},
+    {"^",
+     "linear elasticity has an infinite stress there, as at a re-entrant edge, and the value grows with refinement: "
+     "`ricochet info` says for one run what it sits on"},
     {"!",
      "the method itself lost or created more than a tenth of the energy that this restitution says was lost: take a "
      "smaller time.step, and smaller cells"},
@@ -104,7 +107,8 @@ class Outcome {
     if (!s_.peak_stress) return "-";
     const PeakStressResult& peak = s_.peak_stress->peak;
     return mark("≥", peak.looks < peak.states) + (peak.looks < peak.states ? " " : "") +
-           fmt::format("{:.4g}", peak.von_mises) + mark("?", turned_until(peak.time));
+           fmt::format("{:.4g}", peak.von_mises) + mark("?", turned_until(peak.time)) +
+           mark("^", peak.sits_on != StressRaiser::none);
   }
 
  private:

@@ -9,6 +9,7 @@
 #include "number_text.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/simulation/restitution.hpp"
+#include "ricochet/simulation/stress_raisers.hpp"
 
 namespace ricochet::program {
 
@@ -173,6 +174,8 @@ void print_peak_stress(const RunSummary& summary) {
   fmt::print("  largest von Mises stress {}{:.6g} at t = {:.6g}, in \"{}\" at {} (mean of a cell; {})\n",
              all ? "" : "≥ ", d.peak.von_mises, d.peak.time, d.material, place_text(d.place, summary),
              all ? "looked at in every step" : fmt::format("looked at in {} of {} steps", d.peak.looks, d.peak.states));
+  if (d.peak.sits_on != StressRaiser::none)
+    fmt::print("    it grows with refinement: it sits on {}\n", name_of(d.peak.sits_on));
 }
 
 }  // namespace ricochet::program

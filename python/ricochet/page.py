@@ -30,7 +30,8 @@ def rows_of(run):
     peak = summary.get("peak_stress")
     if peak:
         place = ", ".join(f"{x:.4g}" for x in peak["place"])
-        yield "largest von Mises stress", f"{peak['von_mises']:.4g} at t = {peak['time']:.4g}, place ({place})"
+        remark = f"; grows with refinement: it sits on {peak['sits_on']}" if peak.get("sits_on") else ""
+        yield "largest von Mises stress", f"{peak['von_mises']:.4g} at t = {peak['time']:.4g}, place ({place}){remark}"
     for entry in run._broken_expectations():
         yield "expectation", run._text_of(entry)
 

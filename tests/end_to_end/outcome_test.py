@@ -86,6 +86,19 @@ end = 0.001
         least = "≥ " if peak["states_looked_at"] < peak["states"] else ""
         self.assertIn(f"largest von Mises stress {least}{peak['von_mises']:.6g}", said)
 
+    def test_a_stress_that_grows_with_refinement_is_marked(self):
+        """A clamped block is stressed most at the end of its support, a disc on a floor inside."""
+        clamped = block_case() + '[[support]]\ngroup = "sides"\ncomponents = ["x", "y"]\n'
+        marked = self.simulate(self.write("clamped.toml", clamped), "clamped", {"time.end": 0.1})
+        peak = summary(marked)["peak_stress"]
+        self.assertEqual((peak["grows_with_refinement"], peak["sits_on"]), (True, "the edge of a support"))
+        line = "it grows with refinement: it sits on the edge of a support"
+        self.assertIn(line, self.expect_status(0, run("info", marked)).stdout)
+        disc = self.simulate(DISC, "smooth", {"time.end": 0.02})
+        peak = summary(disc)["peak_stress"]
+        self.assertEqual((peak["grows_with_refinement"], peak["sits_on"]), (False, None))
+        self.assertNotIn("grows with refinement", self.expect_status(0, run("info", disc)).stdout)
+
     def test_they_tell_where_and_on_how_many_points(self):
         folder = self.simulate(PUCK, "puck", {"time.end": 7e-4, "output.history_every": 1})
         impact = summary(folder)["impacts"][0]
@@ -222,7 +235,8 @@ end = 0.001
                 coarse = "~" if hardest["coarse"] else ""
                 force = f"{hardest['largest_force']:.4g}{coarse}{turned(hardest['begin'] + hardest['duration'])}"
                 sampled = peak["states_looked_at"] < peak["states"]
-                stress = [f"{peak['von_mises']:.4g}{turned(peak['time'])}"]
+                grows = "^" if peak["grows_with_refinement"] else ""
+                stress = [f"{peak['von_mises']:.4g}{turned(peak['time'])}{grows}"]
                 self.assertEqual(rows[str(folder)].split()[1:],
                                  [str(len(impacts)), restitution, force] + ["≥"] * sampled + stress)
         self.assertIn("~ the contact zone is too coarse", text)

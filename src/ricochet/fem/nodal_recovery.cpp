@@ -7,6 +7,7 @@
 #include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/fem/cell_integration.hpp"
+#include "ricochet/fem/stress.hpp"
 
 namespace ricochet {
 
@@ -74,17 +75,14 @@ class Recovery {
     }
   }
 
-  /// Cells and their weights for a node.
-  std::vector<std::pair<Index, double>> weights(Index node) const {
-    std::vector<std::pair<Index, double>> result;
+  /// Cells and their weights for a node, for each material around it.
+  std::vector<std::vector<std::pair<Index, double>>> weights(Index node) const {
     std::vector<int> materials;
     visit_cells(node, [&](Index cell) { materials.push_back(material(cell)); });
     std::sort(materials.begin(), materials.end());
     materials.erase(std::unique(materials.begin(), materials.end()), materials.end());
-    for (const int each : materials) {
-      for (const auto& [cell, weight] : fit(node, each))
-        result.emplace_back(cell, weight / static_cast<double>(materials.size()));
-    }
+    std::vector<std::vector<std::pair<Index, double>>> result;
+    for (const int each : materials) result.push_back(fit(node, each));
     return result;
   }
 
@@ -165,21 +163,75 @@ class Recovery {
 
 }  // namespace
 
-SparseRowMatrix make_nodal_recovery(const Body& body) {
+NodalRecovery make_nodal_recovery(const Body& body) {
   const Recovery recovery(body);
   const Index nodes = body.space->node_count();
-  std::vector<std::vector<std::pair<Index, double>>> weights(static_cast<std::size_t>(nodes));
+  std::vector<std::vector<std::vector<std::pair<Index, double>>>> weights(static_cast<std::size_t>(nodes));
   parallel_ranges(nodes, [&](Index first, Index last) {
     for (Index node = first; node < last; ++node) weights[static_cast<std::size_t>(node)] = recovery.weights(node);
   });
+  NodalRecovery result;
   std::vector<Eigen::Triplet<double>> entries;
   for (Index node = 0; node < nodes; ++node) {
-    for (const auto& [cell, weight] : weights[static_cast<std::size_t>(node)])
-      entries.emplace_back(static_cast<int>(node), static_cast<int>(cell), weight);
+    for (const auto& of_material : weights[static_cast<std::size_t>(node)]) {
+      const auto row = static_cast<int>(result.row_node.size());
+      for (const auto& [cell, weight] : of_material) entries.emplace_back(row, static_cast<int>(cell), weight);
+      result.row_node.push_back(node);
+    }
   }
-  SparseRowMatrix result(nodes, body.mesh->cell_count());
-  result.setFromTriplets(entries.begin(), entries.end());
+  result.weights.resize(static_cast<Index>(result.row_node.size()), body.mesh->cell_count());
+  result.weights.setFromTriplets(entries.begin(), entries.end());
   return result;
+}
+
+NodalStress::NodalStress(const Body& body) : body_(body), recovery_(make_nodal_recovery(body)) {}
+
+void NodalStress::fit(const std::vector<double>& cells, std::vector<double>& nodes) {
+  using Tensor = Eigen::Matrix<double, tensor_components, 1>;
+  const auto count = static_cast<std::size_t>(body_.space->node_count());
+  nodes.assign(tensor_components * count, 0.0);
+  von_mises_.assign(count, -1.0);
+  for (Index row = 0; row < recovery_.weights.rows(); ++row) {
+    Tensor sum = Tensor::Zero();
+    for (SparseRowMatrix::InnerIterator entry(recovery_.weights, row); entry; ++entry)
+      sum += entry.value() * Eigen::Map<const Tensor>(cells.data() + tensor_components * entry.col());
+    const auto node = static_cast<std::size_t>(recovery_.row_node[static_cast<std::size_t>(row)]);
+    const double value = von_mises_stress(sum.data());
+    if (!(value > von_mises_[node])) continue;
+    von_mises_[node] = value;
+    Eigen::Map<Tensor>(nodes.data() + tensor_components * body_.space->number[node]) = sum;
+  }
+}
+
+/// Finds the cells that the fit is below; each claims the node at which its fit is largest.
+void NodalStress::claim(const std::vector<double>& cells) {
+  claim_.assign(von_mises_.size(), -1);
+  claimed_value_.assign(von_mises_.size(), 0.0);
+  each_cell(body_.space->cells, [&](Index cell, std::span<const Index> nodes) {
+    const double own = von_mises_stress(cells.data() + tensor_components * cell);
+    Index largest = nodes.front();
+    for (const Index node : nodes) {
+      const double value = von_mises_[static_cast<std::size_t>(node)];
+      const double best = von_mises_[static_cast<std::size_t>(largest)];
+      if (value >= own) return;
+      const auto number = [&](Index each) { return body_.space->number[static_cast<std::size_t>(each)]; };
+      if (value > best || (value == best && number(node) < number(largest))) largest = node;
+    }
+    const auto at = static_cast<std::size_t>(largest);
+    if (claim_[at] >= 0 && !(own > claimed_value_[at])) return;
+    claim_[at] = cell;
+    claimed_value_[at] = own;
+  });
+}
+
+void NodalStress::evaluate(const std::vector<double>& cells, std::vector<double>& nodes) {
+  fit(cells, nodes);
+  claim(cells);
+  for (std::size_t node = 0; node < claim_.size(); ++node) {
+    if (claim_[node] < 0) continue;
+    std::copy_n(cells.begin() + tensor_components * claim_[node], tensor_components,
+                nodes.begin() + tensor_components * body_.space->number[node]);
+  }
 }
 
 }  // namespace ricochet

@@ -7,6 +7,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/json.hpp"
 #include "ricochet/simulation/restitution.hpp"
+#include "ricochet/simulation/stress_raisers.hpp"
 
 namespace ricochet {
 
@@ -201,7 +202,9 @@ Json peak_stress_to_json(const RunSummary& summary) {
           {"cell", d.peak.cell},
           {"element", d.element},
           {"states_looked_at", d.peak.looks},
-          {"states", d.peak.states}};
+          {"states", d.peak.states},
+          {"grows_with_refinement", d.peak.sits_on != StressRaiser::none},
+          {"sits_on", d.peak.sits_on != StressRaiser::none ? Json(name_of(d.peak.sits_on)) : Json()}};
 }
 
 Eigen::Vector3d vector_from(const Json& values) {
@@ -351,6 +354,14 @@ RotationReport rotation_from(const Json& json) {
   return result;
 }
 
+StressRaiser raiser_named(const Json& name) {
+  for (int k = 1; k < stress_raisers && name.is_string(); ++k) {
+    const auto raiser = static_cast<StressRaiser>(k);
+    if (name_of(raiser) == name.get<std::string>()) return raiser;
+  }
+  return StressRaiser::none;
+}
+
 PeakStressDescription peak_stress_from(const Json& json) {
   PeakStressDescription result;
   result.peak = {json.at("von_mises").to_number(),
@@ -358,7 +369,8 @@ PeakStressDescription peak_stress_from(const Json& json) {
                  json.at("step"),
                  json.at("cell"),
                  json.at("states_looked_at"),
-                 json.at("states")};
+                 json.at("states"),
+                 raiser_named(json.value("sits_on", Json()))};
   result.place = to_numbers(json.at("place"));
   result.element = json.at("element");
   result.material = json.at("material");

@@ -36,10 +36,11 @@ double step_work(Index dofs, std::size_t factor_entries) {
   return 2.0 * static_cast<double>(factor_entries) + per_dof * static_cast<double>(dofs);
 }
 
-PeakStress::PeakStress(const Body& body, double step_work, const Ranks& ranks)
+PeakStress::PeakStress(const Body& body, double step_work, const Ranks& ranks, std::unique_ptr<StressRaisers> raisers)
     : body_(body),
       ranks_(ranks),
       stress_(body),
+      raisers_(std::move(raisers)),
       looks_per_step_(std::min(1.0, share * step_work / ranks.sum(look_work(body)))) {}
 
 void PeakStress::enter(const State& state, bool is_frame) {
@@ -73,14 +74,15 @@ void PeakStress::look(const State& state) {
   result_.cell = largest.cell;
   result_.time = state.time;
   result_.step = state.step;
+  if (raisers_) result_.sits_on = raisers_->at(state, largest.cell);
 }
 
 void PeakStress::save(Snapshot& snapshot, const std::string& name) const {
   Vector numbers(6);
   numbers << looks_per_step_, saved_, since_look_, hardest_press_, result_.von_mises, result_.time;
   snapshot.save(name, numbers);
-  snapshot.save(name + ".counts",
-                Snapshot::Integers{result_.step, result_.cell, result_.looks, result_.states, last_look_});
+  snapshot.save(name + ".counts", Snapshot::Integers{result_.step, result_.cell, result_.looks, result_.states,
+                                                     last_look_, static_cast<std::int64_t>(result_.sits_on)});
 }
 
 void PeakStress::load(const Snapshot& snapshot, const std::string& name) {
@@ -92,13 +94,15 @@ void PeakStress::load(const Snapshot& snapshot, const std::string& name) {
   result_.von_mises = numbers[4];
   result_.time = numbers[5];
   const Snapshot::Integers& counts = snapshot.integers(name + ".counts");
-  if (counts.size() != 5 || counts[1] < -1 || counts[1] >= body_.mesh->cell_count())
+  if (counts.size() != 6 || counts[1] < -1 || counts[1] >= body_.mesh->cell_count() || counts[5] < 0 ||
+      counts[5] >= stress_raisers)
     throw Error(ErrorKind::invalid_input, "the checkpoint's largest stress is not one of this mesh");
   result_.step = counts[0];
   result_.cell = counts[1];
   result_.looks = counts[2];
   result_.states = counts[3];
   last_look_ = counts[4];
+  result_.sits_on = static_cast<StressRaiser>(counts[5]);
 }
 
 }  // namespace ricochet

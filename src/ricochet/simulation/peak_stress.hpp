@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
+
 #include "ricochet/base/ranks.hpp"
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/fem/stress.hpp"
 #include "ricochet/scheme/state.hpp"
 #include "ricochet/simulation/peak_stress_result.hpp"
+#include "ricochet/simulation/stress_raisers.hpp"
 
 /// @file The largest von Mises stress of a run: means of cells, as in the field of that name.
 ///
@@ -21,7 +24,9 @@ class PeakStress {
 
   /// `step_work`: how much a step of the whole body does, see step_work(). Keeps a reference to the body.
   /// Of a body that is divided: the largest of the cells of this rank, at the same looks on all.
-  PeakStress(const Body& body, double step_work, const Ranks& ranks = one_rank());
+  /// `raisers`: says what the largest stress sits on; null: nobody asks.
+  PeakStress(const Body& body, double step_work, const Ranks& ranks = one_rank(),
+             std::unique_ptr<StressRaisers> raisers = nullptr);
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
@@ -37,6 +42,7 @@ class PeakStress {
   const Body& body_;
   const Ranks& ranks_;
   CellStress stress_;
+  std::unique_ptr<StressRaisers> raisers_;
   double looks_per_step_;       ///< that may be taken
   double saved_ = 0.0;          ///< looks for states that press harder
   double since_look_ = 0.0;     ///< looks that regular ones have not taken

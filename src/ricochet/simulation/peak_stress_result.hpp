@@ -5,11 +5,16 @@
 /// @file The largest von Mises stress of a run, and what it was looked for in.
 namespace ricochet {
 
+/// Causes of a stress that grows with refinement, see stress_raisers.hpp.
+enum class StressRaiser : char { none, reentrant_edge, support_edge, contact_edge, obstacle_edge };
+inline constexpr int stress_raisers = 5;
+
 struct PeakStressResult {
   double von_mises = 0.0, time = 0.0;
   long step = 0;
   Index cell = -1;             ///< numbered through all blocks; −1: no look yet
   long looks = 0, states = 0;  ///< that were looked at, of so many
+  StressRaiser sits_on = StressRaiser::none;
 };
 
 }  // namespace ricochet

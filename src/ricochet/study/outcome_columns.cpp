@@ -111,6 +111,8 @@ std::string doubts_of(const RunSummary& s) {
     doubts.emplace_back("largest_force: coarse contact");
   if (s.peak_stress && s.peak_stress->peak.looks < s.peak_stress->peak.states)
     doubts.emplace_back("peak_von_mises: at least");
+  if (s.peak_stress && s.peak_stress->peak.sits_on != StressRaiser::none)
+    doubts.emplace_back("peak_von_mises: grows with refinement");
   const auto warnings = std::count_if(s.warnings.begin(), s.warnings.end(), concerns_validity);
   if (warnings > 0) doubts.push_back(counted(warnings, "warning"));
   return fmt::format("{}", fmt::join(doubts, "; "));

@@ -75,7 +75,9 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   impact.first_place = {1.5, -INFINITY};
   impact.before.velocity = {INFINITY, -INFINITY, 0.0};
   summary.impacts.push_back(impact);
-  summary.peak_stress = PeakStressDescription{{INFINITY, 0.5, 3, 7, 2, 4}, {1.5, 2.5}, 8, "steel"};
+  summary.peak_stress = PeakStressDescription{
+      {INFINITY, 0.5, 3, 7, 2, 4, StressRaiser::support_edge}, {1.5, 2.5}, 8, "steel"};
+  summary.probe_sums = {{"pull", "of supports"}, {"fit", "of contact 0"}};
 
   const RunSummary back = read_back(summary);
   ASSERT_EQ(back.penetration.found.size(), 1u);
@@ -110,6 +112,8 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   EXPECT_EQ(back.peak_stress->peak.von_mises, INFINITY);
   EXPECT_EQ(back.peak_stress->place, (std::vector<double>{1.5, 2.5}));
   EXPECT_EQ(back.peak_stress->element, 8);
+  EXPECT_EQ(back.peak_stress->peak.sits_on, StressRaiser::support_edge);
+  EXPECT_EQ(back.probe_sums, summary.probe_sums);
 }
 
 TEST_F(SummaryTest, KeepsBothBodiesOfAnImpact) {

@@ -176,6 +176,8 @@ export interface PeakStress {
   cell: number;
   states_looked_at: number;
   states: number;
+  /** What makes it grow with refinement, as "a re-entrant edge of the body"; null or absent: nothing that is known. */
+  sits_on?: string | null;
 }
 
 /** Of the largest energy; what the method itself did, apart from what acts on the body. */

@@ -80,7 +80,8 @@ export function outcomeElements(run: Run, show: { time: (time: number) => void; 
   if (peak && Number.isFinite(toNumber(peak.von_mises))) {
     const all = peak.states_looked_at >= peak.states;
     result.push(el("dt", {}, "Largest stress"), el("dd.outcome", { title: all ? "von Mises, of all steps" : `von Mises; ${peak.states_looked_at} of ${peak.states} states were looked at: it may be higher between them` },
-      `${all ? "" : "≥ "}${number(peak.von_mises, 4)} `, el("button.link", { type: "button", onclick: () => show.peak() }, `at t = ${number(peak.time, 4)}, ${place(peak, dimension)}`)));
+      `${all ? "" : "≥ "}${number(peak.von_mises, 4)} `, el("button.link", { type: "button", onclick: () => show.peak() }, `at t = ${number(peak.time, 4)}, ${place(peak, dimension)}`),
+      ...(peak.sits_on ? [" ", el("strong.fair", { title: "Linear elasticity has an infinite stress there: the value depends on the mesh and says nothing of the body. Round the edge, or look at the stress elsewhere" }, markElement("fair"), `(grows with refinement: it sits on ${peak.sits_on})`)] : [])));
   }
   return result;
 }

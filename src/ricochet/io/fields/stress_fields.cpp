@@ -10,10 +10,9 @@ namespace {
 class StressFields final : public FieldSource {
  public:
   explicit StressFields(const FieldContext& context)
-      : space_(*context.body.space),
-        stress_of_(context.body),
+      : stress_of_(context.body),
         wants_nodal_(context.wants_any({"nodal_stress", "nodal_von_mises", "nodal_principal_stress"})) {
-    const Index cells = context.body.mesh->cell_count(), nodes = space_.node_count();
+    const Index cells = context.body.mesh->cell_count(), nodes = context.body.space->node_count();
     const auto add = [&](const char* name, FieldPlace place, int components, std::vector<double>& values) {
       const Index rows = place == FieldPlace::cells ? cells : nodes;
       const bool wanted = context.wants(name);
@@ -26,7 +25,7 @@ class StressFields final : public FieldSource {
     wants_principal_ = add("principal_stress", FieldPlace::cells, 3, principal_);
     add("strain_energy_density", FieldPlace::cells, 1, energy_density_);
     if (!wants_nodal_) return;
-    recovery_ = make_nodal_recovery(context.body);
+    nodal_ = std::make_unique<NodalStress>(context.body);
     add("nodal_stress", FieldPlace::nodes, tensor_components, nodal_stress_);
     wants_nodal_von_mises_ = add("nodal_von_mises", FieldPlace::nodes, 1, nodal_von_mises_);
     wants_nodal_principal_ = add("nodal_principal_stress", FieldPlace::nodes, 3, nodal_principal_);
@@ -39,7 +38,7 @@ class StressFields final : public FieldSource {
     if (wants_von_mises_) find_von_mises(stress_, von_mises_);
     if (wants_principal_) find_principal(stress_, principal_);
     if (!wants_nodal_) return;
-    recover();
+    nodal_->evaluate(stress_, nodal_stress_);
     if (wants_nodal_von_mises_) find_von_mises(nodal_stress_, nodal_von_mises_);
     if (wants_nodal_principal_) find_principal(nodal_stress_, nodal_principal_);
   }
@@ -54,23 +53,10 @@ class StressFields final : public FieldSource {
       std::copy(values.begin(), values.end(), result.begin() + static_cast<std::ptrdiff_t>(3 * i));
     }
   }
-  void recover() {
-    for (Index node = 0; node < recovery_.rows(); ++node) {
-      Eigen::Matrix<double, tensor_components, 1> sum = Eigen::Matrix<double, tensor_components, 1>::Zero();
-      for (SparseRowMatrix::InnerIterator entry(recovery_, node); entry; ++entry) {
-        sum += entry.value() * Eigen::Map<const Eigen::Matrix<double, tensor_components, 1>>(
-                                   stress_.data() + tensor_components * entry.col());
-      }
-      Eigen::Map<Eigen::Matrix<double, tensor_components, 1>>(
-          nodal_stress_.data() + tensor_components * space_.number[static_cast<std::size_t>(node)]) = sum;
-    }
-  }
-
-  const DisplacementSpace& space_;
   CellStress stress_of_;
   bool wants_nodal_, wants_von_mises_ = false, wants_principal_ = false;
   bool wants_nodal_von_mises_ = false, wants_nodal_principal_ = false;
-  SparseRowMatrix recovery_;
+  std::unique_ptr<NodalStress> nodal_;
   std::vector<Field> fields_;
   std::vector<double> stress_, von_mises_, principal_, energy_density_;
   std::vector<double> nodal_stress_, nodal_von_mises_, nodal_principal_;
