@@ -115,6 +115,8 @@ ModelPart cut_model(Model& whole, const Division& division, int rank) {
   cut_bodies(whole.bodies, whole, piece, model.bodies);
   cut_watched(whole.watched, piece, whole.problem.contact, model.problem.contact, model.watched);
   model.contact_scales = whole.contact_scales;
+  model.contacts = whole.contacts;
+  for (ModelContact& contact : model.contacts) contact.facets.clear();
   model.contact_pairs = whole.contact_pairs;
   for (ContactPair& pair : model.contact_pairs) pair.facets = places_in(pair.facets, piece.facet_number);
   model.pair_facings = whole.pair_facings;

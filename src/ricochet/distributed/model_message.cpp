@@ -137,6 +137,7 @@ void transfer_problem(Archive& archive, const Case& input, Model& model) {
 void make_of_case(const Case& input, Model& model, std::vector<int> cell_material) {
   assign_materials(input, model);
   model.body.cell_material = std::move(cell_material);
+  make_obstacles(input, model, model.mesh.dimension);
   collect_contacts(input, model);
 }
 
