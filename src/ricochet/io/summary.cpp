@@ -238,6 +238,7 @@ std::string to_json(const RunSummary& s) {
                {"energy_scale", Json::number(s.energy_scale())},
                {"energy_budget", energy_budget_to_json(s)},
                {"reactions", reactions_to_json(s)},
+               {"unsettled_contacts", unsettled_contacts_to_json(s)},
                {"contacts", contacts_to_json(s)},
                {"probes", probes_to_json(s)},
                {"probe_sums", probe_sums_to_json(s)},

@@ -91,7 +91,41 @@ Json iterations_to_json(const RunSummary& summary) {
           {"gradients_per_step", summary.iterations->gradients_per_step}};
 }
 
+Json unsettled_contacts_to_json(const RunSummary& summary) {
+  Json result = Json::array();
+  for (const UnsettledContact& contact : summary.unsettled) {
+    Json place = Json::array();
+    for (const double coordinate : contact.place) place.push_back(Json::number(coordinate));
+    result.push_back({{"contact", contact.contact},
+                      {"share_of_force", Json::number(contact.share)},
+                      {"steps", contact.steps},
+                      {"first_time", Json::number(contact.first_time)},
+                      {"time", Json::number(contact.time)},
+                      {"gap", Json::number(contact.gap)},
+                      {"place", place}});
+  }
+  return result;
+}
+
+namespace {
+
+UnsettledContact unsettled_from(const Json& json) {
+  std::vector<double> place;
+  for (const Json& coordinate : json.at("place")) place.push_back(coordinate.to_number());
+  return {json.at("contact"),
+          json.at("share_of_force").to_number(),
+          json.at("steps"),
+          json.at("first_time").to_number(),
+          json.at("time").to_number(),
+          json.at("gap").to_number(),
+          place};
+}
+
+}  // namespace
+
 void read_method(const Json& json, RunSummary& summary) {
+  for (const Json& contact : json.value("unsettled_contacts", Json::array()))
+    summary.unsettled.push_back(unsettled_from(contact));
   if (const Json processes = json.value("processes", Json()); processes.is_object()) {
     summary.processes = ProcessReport{processes.at("count"),          processes.at("least_dofs"),
                                       processes.at("most_dofs"),      processes.at("messages_per_step"),

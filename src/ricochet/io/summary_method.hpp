@@ -14,6 +14,8 @@ namespace ricochet {
 [[nodiscard]] Json reactions_to_json(const RunSummary& summary);
 /// Null where all steps are of one length.
 [[nodiscard]] Json adaptive_steps_to_json(const RunSummary& summary);
+/// Contacts that slide far, of which held steps have left points at a gap; an empty list if there is none.
+[[nodiscard]] Json unsettled_contacts_to_json(const RunSummary& summary);
 /// Null where there is one.
 [[nodiscard]] Json processes_to_json(const RunSummary& summary);
 /// Null where steps are solved directly.

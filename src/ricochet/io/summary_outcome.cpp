@@ -311,30 +311,6 @@ PenetrationReport penetration_from(const Json& json) {
   return report;
 }
 
-Json unsettled_to_json(const RunSummary& summary) {
-  Json result = Json::array();
-  for (const UnsettledContact& contact : summary.unsettled) {
-    result.push_back({{"contact", contact.contact},
-                      {"share_of_force", Json::number(contact.share)},
-                      {"steps", contact.steps},
-                      {"first_time", Json::number(contact.first_time)},
-                      {"time", Json::number(contact.time)},
-                      {"gap", Json::number(contact.gap)},
-                      {"place", numbers(contact.place)}});
-  }
-  return result;
-}
-
-UnsettledContact unsettled_from(const Json& json) {
-  return {json.at("contact"),
-          json.at("share_of_force").to_number(),
-          json.at("steps"),
-          json.at("first_time").to_number(),
-          json.at("time").to_number(),
-          json.at("gap").to_number(),
-          to_numbers(json.at("place"))};
-}
-
 PairSliding sliding_from(const Json& json) {
   PairSliding pair;
   pair.contact = json.at("contact");
@@ -385,7 +361,6 @@ Json outcome_to_json(const RunSummary& summary) {
           {"impacts", impacts_to_json(summary)},
           {"impacts_left_out", summary.impacts_left_out},
           {"sliding", sliding_to_json(summary)},
-          {"unsettled_contacts", unsettled_to_json(summary)},
           {"rotation", rotation_to_json(summary)},
           {"peak_stress", peak_stress_to_json(summary)}};
 }
@@ -396,8 +371,6 @@ void read_outcome(const Json& json, const std::string& path, RunSummary& summary
   for (const Json& impact : json.value("impacts", Json::array()))
     summary.impacts.push_back(impact_from(impact, summary.bodies, path));
   for (const Json& pair : json.value("sliding", Json::array())) summary.sliding.push_back(sliding_from(pair));
-  for (const Json& contact : json.value("unsettled_contacts", Json::array()))
-    summary.unsettled.push_back(unsettled_from(contact));
   summary.impacts_left_out = json.value("impacts_left_out", 0L);
   if (json.contains("rotation") && json.at("rotation").is_object())
     summary.rotation = rotation_from(json.at("rotation"));
