@@ -1,12 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
+#include <optional>
 
 #include "commands.hpp"
 #include "drawing.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/report/animation.hpp"
 #include "ricochet/report/figure.hpp"
 #include "ricochet/report/runs_figure.hpp"
@@ -20,11 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 double number(std::string_view text, const std::string& option, const char* wanted) {
-  double value = 0.0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size())
-    throw Error(ErrorKind::usage, fmt::format("{}: is no number in \"{}\"; {}", text, option, wanted));
-  return value;
+  const std::optional<double> value = number_in(text);
+  if (!value) throw Error(ErrorKind::usage, fmt::format("{}: is no number in \"{}\"; {}", text, option, wanted));
+  return *value;
 }
 
 /// "A:B" and "WxH".

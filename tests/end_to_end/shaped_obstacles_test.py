@@ -250,6 +250,9 @@ class Refusals(Blocks):
         self.refuse(with_motion("about = [0, 0]"), "give \"rotation\"")
         (self.folder / "m.csv").write_text("0 0 0\n0 1 1\n")
         self.refuse(with_motion('table = "m.csv"'), "m.csv:2: the time 0 does not come after 0")
+        for first in ("0.0 0.0m 0.0", "0 nan 0"):  # no header: letters would be one
+            (self.folder / "m.csv").write_text(f"{first}\n1 1 1\n")
+            self.refuse(with_motion('table = "m.csv"'), "m.csv:1:", f'"{first.split()[1]}" is no finite number')
         (self.folder / "m.csv").write_text("t, ux, uy, uz\n0 0 0 0\n1 1 1 0.5\n")
         self.refuse(with_motion('table = "m.csv"'), 'm.csv:1: the fourth column is called "uz"')
         self.refuse(with_motion("spin = 1.0"), "give its mass or density, too")

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <numeric>
 
 namespace ricochet {
@@ -102,11 +103,22 @@ bool is_digits(std::string_view text, std::size_t least, std::size_t most) {
 }
 
 std::optional<double> number_in(std::string_view text) {
+  if (text.starts_with('+')) {  // which from_chars does not take
+    text.remove_prefix(1);
+    if (text.starts_with('-')) return std::nullopt;
+  }
   double value = 0.0;
-  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
-  const auto [end, problem] = std::from_chars(begin, text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+bool is_like_number(std::string_view word) {
+  if (word.empty()) return false;
+  if (std::string_view("+-.,0123456789").find(word.front()) != std::string_view::npos) return true;
+  std::string start;
+  for (const char c : word) start += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return start == "nan" || start.starts_with("nan(") || start == "inf" || start == "infinity";
 }
 
 std::string join_names(std::span<const std::string> names, std::string_view last_separator, bool quoted) {

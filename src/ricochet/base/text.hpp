@@ -24,8 +24,12 @@ std::string form_of(std::string_view message);
 /// Decimal digits alone, at least so many and at most so many.
 bool is_digits(std::string_view text, std::size_t least, std::size_t most = std::string_view::npos);
 
-/// The number that a text is, with nothing around it but a sign.
+/// The finite number that a text is: decimal, with one sign at most and nothing else around it. None for "0.0m", "+-1",
+/// "1,5", "nan" and "inf".
 std::optional<double> number_in(std::string_view text);
+/// Whether a word can only be meant as a number, well spelt or not: it begins as numbers do, or is "nan" or "inf" of
+/// any spelling. Names of columns are not.
+bool is_like_number(std::string_view word);
 
 /// "a", "a or b", "a, b or c"; with quotes around each when `quoted`.
 std::string join_names(std::span<const std::string> names, std::string_view last_separator = " and ",

@@ -220,8 +220,9 @@ Section obstacle_section() {
            .type = KeyType::text,
            .doc =
                "Text file with the motion, in place of `motion` and `rotation`: in each line t and the components of "
-               "the displacement, perhaps those of the rotation; separated by commas or spaces. Linear between lines, "
-               "constant before the first and after the last."},
+               "the displacement, perhaps those of the rotation; separated by commas, semicolons or spaces, with "
+               "decimal points. Linear between lines, constant before the first and after the last. The first line may "
+               "be a header, whose words begin with letters; '#' begins a comment."},
           parameters_key(),
       }};
   for (Key& key : free_body_keys()) section.keys.push_back(std::move(key));

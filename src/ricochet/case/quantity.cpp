@@ -4,7 +4,7 @@
 
 #include <array>
 #include <charconv>
-#include <cmath>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -98,11 +98,9 @@ std::string dotted_name(const std::string& text, std::string_view prefix, std::s
 }
 
 double read_number(const std::string& text, std::string_view what, std::string_view digits) {
-  double value = 0.0;
-  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (problem != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
-    refuse(text, fmt::format("the {} \"{}\" is not a number", what, digits));
-  return value;
+  const std::optional<double> value = number_in(digits);
+  if (!value) refuse(text, fmt::format("the {} \"{}\" is not a number", what, digits));
+  return *value;
 }
 
 Quantity::Kind function_kind(const std::string& text, const std::string& name) {

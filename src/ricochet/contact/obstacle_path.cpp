@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <fstream>
+#include <sstream>
 
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/input_file.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/number_lines.hpp"
 
 namespace ricochet {
 
@@ -79,24 +79,29 @@ class TablePath final : public ObstaclePath {
   Index dimension_;
 };
 
-[[noreturn]] void refuse_line(const std::string& file, std::size_t line, const std::string& problem) {
-  throw Error(ErrorKind::invalid_input, fmt::format("{}:{}: {}", file, line, problem));
+std::string contents_of(const std::string& file) {
+  const std::string why_not = why_no_input(file);
+  std::ifstream stream;
+  if (why_not.empty()) stream.open(file, std::ios::binary);
+  if (!why_not.empty() || !stream.is_open())
+    throw Error(ErrorKind::file_access,
+                fmt::format("cannot read the motion \"{}\": {}", file, why_not.empty() ? "no such file" : why_not));
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (stream.bad()) throw Error(ErrorKind::file_access, fmt::format("cannot read the motion \"{}\" to its end", file));
+  return std::move(text).str();
 }
 
-/// The numbers of a line; nothing where a word is none.
-bool read_numbers(const std::string& line, std::vector<double>& numbers) {
-  numbers.clear();
-  const char *at = line.data(), *const end = line.data() + line.size();
-  const auto is_separator = [](char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; };
-  while (true) {
-    while (at != end && is_separator(*at)) ++at;
-    if (at == end || *at == '#') return true;
-    double value = 0.0;
-    const auto [next, error] = std::from_chars(at, end, value);
-    if (error != std::errc() || !std::isfinite(value) || (next != end && !is_separator(*next))) return false;
-    numbers.push_back(value);
-    at = next;
-  }
+/// The last number of four is an angle in the plane, and a length is not meant to be one.
+void look_at_angle(const NumberLines& lines, const std::string& file) {
+  const std::array lengths{"z", "uz", "u_z", "dz", "Z", "UZ", "U_Z", "DZ"};
+  const std::string last = lines.header().empty() ? "" : lines.header().back();
+  if (std::find(lengths.begin(), lengths.end(), last) != lengths.end())
+    lines.fail(fmt::format("the fourth column is called \"{}\", and in two dimensions it is the rotation in rad; leave "
+                           "it out, or call it \"rotation\"",
+                           last),
+               lines.header_line());
+  log::info(fmt::format("{}: time, two displacements and the rotation in rad in each line", file));
 }
 
 }  // namespace
@@ -113,50 +118,28 @@ std::unique_ptr<ObstaclePath> make_path(std::vector<Expression> displacement, st
 }
 
 std::unique_ptr<ObstaclePath> read_path(const std::string& file, Index dimension) {
-  const std::string why_not = why_no_input(file);
-  std::ifstream stream;
-  if (why_not.empty()) stream.open(file);
-  if (!why_not.empty() || !stream.is_open())
-    throw Error(ErrorKind::file_access,
-                fmt::format("cannot read the motion \"{}\": {}", file, why_not.empty() ? "no such file" : why_not));
+  const std::string text = contents_of(file);
   const std::size_t still = static_cast<std::size_t>(dimension) + 1, turning = dimension == 2 ? 4 : 7;
-  std::vector<double> times, numbers, values;
-  std::string line, names;
+  std::vector<double> times, values;
   std::size_t columns = 0;
-  for (std::size_t number = 1; std::getline(stream, line); ++number) {
-    if (!read_numbers(line, numbers)) {
-      if (times.empty() && number == 1) {
-        names = line;
-        continue;
-      }
-      refuse_line(file, number, "this line has something else than finite numbers, separated by commas or spaces");
-    }
+  NumberLines lines(file, text, NumberLines::Header::allowed);
+  while (lines.next()) {
+    const std::vector<double>& numbers = lines.numbers();
     if (numbers.empty()) continue;
     if (columns == 0) columns = numbers.size();
     if (numbers.size() != columns || (columns != still && columns != turning)) {
-      refuse_line(
-          file, number,
+      lines.fail(
           fmt::format("{} numbers; each line of a motion in {}D has {} (t and the displacement), or {} with the "
                       "rotation in rad",
                       numbers.size(), dimension, still, turning));
     }
     if (!times.empty() && !(numbers.front() > times.back()))
-      refuse_line(file, number, fmt::format("the time {} does not come after {}", numbers.front(), times.back()));
+      lines.fail(fmt::format("the time {} does not come after {}", numbers.front(), times.back()));
     times.push_back(numbers.front());
     values.insert(values.end(), numbers.begin() + 1, numbers.end());
   }
   if (times.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: the motion has no numbers", file));
-  // The last number of four is an angle in the plane, and a length is not meant to be one.
-  const bool has_angle = dimension == 2 && columns == turning;
-  const std::string last = names.substr(names.find_last_of(",; \t") + 1);
-  const std::array lengths{"z", "uz", "u_z", "dz", "Z", "UZ", "U_Z", "DZ"};
-  if (has_angle && std::find(lengths.begin(), lengths.end(), last) != lengths.end())
-    refuse_line(
-        file, 1,
-        fmt::format("the fourth column is called \"{}\", and in two dimensions it is the rotation in rad; leave "
-                    "it out, or call it \"rotation\"",
-                    last));
-  if (has_angle) log::info(fmt::format("{}: time, two displacements and the rotation in rad in each line", file));
+  if (dimension == 2 && columns == turning) look_at_angle(lines, file);
   const auto rows = static_cast<Index>(columns) - 1, count = static_cast<Index>(times.size());
   return std::make_unique<TablePath>(std::move(times), Eigen::Map<const Points>(values.data(), rows, count), dimension);
 }

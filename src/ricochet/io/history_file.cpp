@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/io/durable_file.hpp"
 
 namespace ricochet {
@@ -115,6 +116,12 @@ HistoryTable read_history(const std::string& path, bool may_grow) {
     table.names.push_back(line.substr(begin, end - begin));
     begin = end + 1;
   }
+  // The row of names may be lost: a row of numbers is none.
+  if (std::any_of(table.names.begin(), table.names.end(), [](const auto& name) { return number_in(name); }))
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}:1: the first row has the names of the columns, and begins with \"{}\": the file is "
+                            "damaged",
+                            path, table.names.front()));
   std::vector<std::vector<double>*> columns;
   for (const std::string& name : table.names) columns.push_back(&table.columns[name]);
   for (long number = 2; std::getline(file, line); ++number) {

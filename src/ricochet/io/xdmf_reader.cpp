@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <optional>
 #include <string_view>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/io/durable_file.hpp"
 
 namespace ricochet {
@@ -41,11 +42,9 @@ class Scanner {
     if (!find(what)) fail(fmt::format("'{}' is missing", what));
   }
   [[nodiscard]] double number(std::string_view text) const {
-    double value = 0.0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-      fail(fmt::format("'{}' is not a number", text));
-    return value;
+    const std::optional<double> value = number_in(text);
+    if (!value) fail(fmt::format("'{}' is not a number", text));
+    return *value;
   }
   [[nodiscard]] std::vector<double> numbers(std::string_view text) const {
     std::vector<double> result;

@@ -65,7 +65,10 @@ void TextReader::end_record() {
 double TextReader::number(const char* what) {
   skip_blanks();
   const char* start = cursor_.position();
-  if (start != cursor_.end() && *start == '+') ++start;  // which from_chars does not take
+  if (start != cursor_.end() && *start == '+') {  // which from_chars does not take
+    ++start;
+    if (start != cursor_.end() && *start == '-') fail_token(what, "a number");
+  }
   double value = 0.0;
   const auto [next, error] = std::from_chars(start, cursor_.end(), value);
   if (error == std::errc::result_out_of_range) {

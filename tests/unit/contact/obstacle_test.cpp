@@ -382,7 +382,11 @@ TEST(Obstacle, FollowsATable) {
   };
   EXPECT_NE(problem("0 0 0\n1 0\n", 2).find("motion.csv:2: 2 numbers"), std::string::npos);
   EXPECT_NE(problem("0 0 0\n0 1 1\n", 2).find("motion.csv:2: the time 0 does not come after 0"), std::string::npos);
-  EXPECT_NE(problem("0 0 0\n1 nan 1\n", 2).find("motion.csv:2: "), std::string::npos);
+  EXPECT_NE(problem("0 0 0\n1 nan 1\n", 2).find("motion.csv:2:3: "), std::string::npos);
+  // The first line, too: a header is letters.
+  EXPECT_NE(problem("0.0 0.0m 0.0\n1 1 1\n", 2).find("motion.csv:1:5: \"0.0m\" is no finite number"),
+            std::string::npos);
+  EXPECT_NE(problem("0 nan 0\n1 1 1\n", 2).find("motion.csv:1:3: "), std::string::npos);
   EXPECT_NE(problem("t x y\n", 2).find("has no numbers"), std::string::npos);
   EXPECT_NE(problem("0 0 0\n", 3).find("motion.csv:1: 3 numbers; each line of a motion in 3D has 4"),
             std::string::npos);

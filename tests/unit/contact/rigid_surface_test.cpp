@@ -348,17 +348,41 @@ TEST_F(RigidSurfaces, SayWhereAFileIsWrong) {
     return std::string("none");
   };
   EXPECT_NE(problem("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 o 0\n")
-                .find("bad.stl:5: \"o\" is no finite number"),
+                .find("bad.stl:5:10: \"o\" is no finite number"),
             std::string::npos);
   EXPECT_NE(problem("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n")
                 .find("expected \"vertex\" but found \"the end of the file\""),
             std::string::npos);
+  for (const std::string normal : {"0 0 1m", "x 0 1", "0 0 -"}) {
+    EXPECT_NE(
+        problem("solid a\nfacet normal " + normal + "\nouter loop\nvertex 0 0 0\n").find("is no number of a normal"),
+        std::string::npos)
+        << normal;
+  }
+  // Some programs write those for triangles without area.
+  const std::string triangle = "\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+  for (const std::string normal : {"nan nan nan", "-nan(ind) 0 NaN", "-1 +.5e3 0"})
+    EXPECT_EQ(problem("solid a\nfacet normal " + normal + triangle), "none") << normal;
   EXPECT_NE(problem("solid a\nendsolid\n").find("no triangles"), std::string::npos);
   EXPECT_NE(problem(std::string(80, ' ') + std::string("\5\0\0\0", 4) + std::string(100, '\1'))
                 .find("the file ends before the 5 triangles"),
             std::string::npos);
   EXPECT_NE(problem("").find("it is cut off, or no STL"), std::string::npos);
   EXPECT_THROW((void)read_stl(folder_.file("absent.stl"), 1.0), Error);
+  const auto problem_of_polygons = [&](const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+    try {
+      (void)read_polygons(file, 1.0);
+    } catch (const Error& error) {
+      return std::string(error.what()).substr(folder_.path().string().size() + 1);
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(problem_of_polygons("0 0\n1, 0 # a corner\n\n2;0\n3;1\n"), "none");
+  EXPECT_NE(problem_of_polygons("0 0\n1 0.0m\n").find("bad.stl:2:3: \"0.0m\" is no finite number"), std::string::npos);
+  EXPECT_NE(problem_of_polygons("x y\n0 0\n1 0\n").find("bad.stl:1:1: \"x\""), std::string::npos);
+  EXPECT_NE(problem_of_polygons("0 0\n1 0 2\n").find("bad.stl:2: a line of a polygon has two numbers"),
+            std::string::npos);
 }
 
 }  // namespace

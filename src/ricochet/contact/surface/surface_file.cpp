@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -12,6 +11,8 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/input_file.hpp"
+#include "ricochet/base/number_lines.hpp"
+#include "ricochet/base/text.hpp"
 
 namespace ricochet {
 
@@ -36,78 +37,48 @@ std::string contents(const std::string& file, int header = 0) {
   throw Error(ErrorKind::invalid_input, where + ": " + problem);
 }
 
-/// Words of a text with the line that each is in.
-class Words {
- public:
-  Words(const std::string& file, const std::string& text)
-      : file_(file), at_(text.data()), end_(text.data() + text.size()) {}
+bool same(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
+           return (x >= 'A' && x <= 'Z' ? x - 'A' + 'a' : x) == y;
+         });
+}
 
-  /// The next word; empty at the end.
-  std::string_view next() {
-    while (at_ != end_ && (*at_ == ' ' || *at_ == '\t' || *at_ == '\r' || *at_ == '\n')) {
-      if (*at_ == '\n') ++line_;
-      ++at_;
-    }
-    const char* const first = at_;
-    while (at_ != end_ && *at_ != ' ' && *at_ != '\t' && *at_ != '\r' && *at_ != '\n') ++at_;
-    return {first, static_cast<std::size_t>(at_ - first)};
-  }
-  void skip_line() {
-    while (at_ != end_ && *at_ != '\n') ++at_;
-  }
-  void expect(std::string_view word) {
-    const std::string_view found = next();
-    if (!same(found, word)) fail(fmt::format("expected \"{}\" but found \"{}\"", word, shown(found)));
-  }
-  double number() {
-    const std::string_view word = next();
-    double value = 0.0;
-    const char* const first = word.starts_with('+') ? word.data() + 1 : word.data();
-    const auto [rest, error] = std::from_chars(first, word.data() + word.size(), value);
-    if (error != std::errc() || rest != word.data() + word.size() || word.empty() || !std::isfinite(value))
-      fail(fmt::format("\"{}\" is no finite number", shown(word)));
-    return value;
-  }
-  [[noreturn]] void fail(const std::string& problem) const { refuse(fmt::format("{}:{}", file_, line_), problem); }
-  static bool same(std::string_view a, std::string_view b) {
-    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
-             return (x >= 'A' && x <= 'Z' ? x - 'A' + 'a' : x) == y;
-           });
-  }
+void expect(TextWords& words, std::string_view word) {
+  const std::string_view found = words.next();
+  if (!same(found, word)) words.fail(fmt::format("expected \"{}\" but found \"{}\"", word, shown_word(found)));
+}
 
- private:
-  static std::string shown(std::string_view word) {
-    if (word.empty()) return "the end of the file";
-    constexpr std::size_t most = 40;
-    return std::string(word.substr(0, most)) + (word.size() > most ? "…" : "");
+/// Normals are not used, and those of triangles without area may be "nan"; a word that is no number is an error.
+void skip_normal(TextWords& words) {
+  for (int k = 0; k < 3; ++k) {
+    const std::string_view word = words.next();
+    const bool is_nan = is_like_number(word) && word.find_first_of("nN") != std::string_view::npos;
+    if (!is_nan && !number_in(word)) words.fail(fmt::format("\"{}\" is no number of a normal", shown_word(word)));
   }
-  const std::string& file_;
-  const char *at_, *end_;
-  int line_ = 1;
-};
+}
 
 SurfaceFacets read_text(const std::string& file, const std::string& text, double scale) {
-  Words words(file, text);
+  TextWords words(file, text);
   SurfaceFacets result;
-  words.expect("solid");
+  expect(words, "solid");
   words.skip_line();
   for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-    if (Words::same(word, "endsolid") || Words::same(word, "solid")) {
+    if (same(word, "endsolid") || same(word, "solid")) {
       words.skip_line();
       continue;
     }
-    if (!Words::same(word, "facet")) words.fail("expected \"facet\" or \"endsolid\"");
-    words.expect("normal");
-    for (int k = 0; k < 3; ++k) (void)words.next();
-    words.expect("outer");
-    words.expect("loop");
+    if (!same(word, "facet")) words.fail("expected \"facet\" or \"endsolid\"");
+    expect(words, "normal");
+    skip_normal(words);
+    expect(words, "outer");
+    expect(words, "loop");
     std::array<Eigen::Vector3d, 3> corners;
     for (Eigen::Vector3d& corner : corners) {
-      words.expect("vertex");
+      expect(words, "vertex");
       for (double& x : corner) x = scale * words.number();
     }
-    words.expect("endloop");
-    words.expect("endfacet");
+    expect(words, "endloop");
+    expect(words, "endfacet");
     result.corners.push_back(corners);
   }
   return result;
@@ -147,39 +118,28 @@ SurfaceFacets read_binary(const std::string& file, const std::string& bytes, dou
 SurfaceFacets read_stl(const std::string& file, double scale) {
   const std::string bytes = contents(file, header_of_stl);
   const bool is_binary = bytes.size() == binary_header + binary_triangle * std::size_t{count_of_binary(bytes)};
-  const bool begins_as_text = Words::same(std::string_view(bytes).substr(0, 5), "solid");
+  const bool begins_as_text = same(std::string_view(bytes).substr(0, 5), "solid");
   SurfaceFacets result = is_binary || !begins_as_text ? read_binary(file, bytes, scale) : read_text(file, bytes, scale);
   if (result.corners.empty()) refuse(file, "there are no triangles in it");
   return result;
 }
 
 SurfaceFacets read_polygons(const std::string& file, double scale) {
-  std::istringstream stream(contents(file));
+  const std::string text = contents(file);
   SurfaceFacets result;
   result.in_space = false;
   std::optional<Eigen::Vector3d> before;
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    line.resize(std::min(line.size(), line.find('#')));
-    for (char& c : line) {
-      if (c == ',' || c == ';') c = ' ';
-    }
-    Words words(file, line);
-    const std::string_view first = words.next();
-    if (first.empty()) {
+  NumberLines lines(file, text, NumberLines::Header::refused);
+  while (lines.next()) {
+    const std::vector<double>& numbers = lines.numbers();
+    if (numbers.empty()) {
       before.reset();
       continue;
     }
-    Eigen::Vector3d corner(0.0, 0.0, 0.0);
-    Words numbers(file, line);
-    try {
-      corner[0] = scale * numbers.number();
-      corner[1] = scale * numbers.number();
-    } catch (const Error&) {
-      refuse(fmt::format("{}:{}", file, number), "a line of a polygon has two numbers, x and y of a corner");
-    }
-    if (!numbers.next().empty())
-      refuse(fmt::format("{}:{}", file, number), "a line of a polygon has two numbers; this one has more");
+    if (numbers.size() != 2)
+      lines.fail(
+          fmt::format("a line of a polygon has two numbers, x and y of a corner; this one has {}", numbers.size()));
+    const Eigen::Vector3d corner(scale * numbers[0], scale * numbers[1], 0.0);
     if (before) result.corners.push_back({*before, corner, corner});
     before = corner;
   }

@@ -19,6 +19,9 @@ NODE_COUNTS = {"quad8": 8, "hexahedron20": 20, "wedge": 6, "wedge15": 15, "pyram
 GENERATORS = {"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SUBSTRUCTURE PATH", "SYMMETRIC MODEL GENERATION"}
 # A number of more digits could not be kept in 64 bits; Abaqus itself takes nine.
 LONGEST_NUMBER = 18
+# Python's own float() and int() take "nan" and "1_0", too.
+NUMBER = {int: re.compile(r"[+-]?\d+", re.ASCII),
+          float: re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([EeDd][+-]?\d+)?", re.ASCII)}
 
 
 def element_kind(name, fail):
@@ -99,7 +102,7 @@ class InpReader:
         return " ".join(words[0].split()).upper(), parameters
 
     def read(self):
-        keyword, parameters, handle = "", {}, None
+        keyword, parameters, handle = None, {}, None
         for line in self.lines(self.path):
             if line.startswith("*"):
                 if handle:
@@ -108,6 +111,8 @@ class InpReader:
                 handle = self.begin(keyword, parameters)
             elif handle:
                 handle(line)
+            elif keyword is None:
+                self.fail(f"data before any keyword: {line[:60]}; a keyword begins with *, as in *NODE")
         if handle:
             handle(None)
         return self.mesh()
@@ -152,10 +157,9 @@ class InpReader:
         for word in words if kind is int else []:
             if len(word) > LONGEST_NUMBER:
                 self.fail(f"{what} should be here; {word[:60]} has more than {LONGEST_NUMBER} digits")
-        try:
-            return [kind(word.replace("D", "E").replace("d", "e") if kind is float else word) for word in words]
-        except ValueError:
+        if not all(NUMBER[kind].fullmatch(word) for word in words):
             self.fail(f"{what} should be here; found {', '.join(words)[:60]}")
+        return [kind(word.replace("D", "E").replace("d", "e") if kind is float else word) for word in words]
 
     @staticmethod
     def words(line):

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// @file Words and numbers of text files, each with its line and column: motions, polygons, ASCII STL.
+namespace ricochet {
+
+/// Words of a text between blanks.
+class TextWords {
+ public:
+  /// Keeps both texts.
+  TextWords(const std::string& file, std::string_view text);
+
+  /// The next word; empty at the end of the text.
+  [[nodiscard]] std::string_view next();
+  void skip_line();
+  /// The finite number that the next word is. Throws Error(invalid_input) where it is none.
+  [[nodiscard]] double number();
+  /// Throws Error(invalid_input) with file, line and column of the last word.
+  [[noreturn]] void fail(const std::string& problem) const;
+
+ private:
+  const std::string& file_;
+  const char *at_, *end_, *line_begin_, *word_;
+  long line_ = 1;
+};
+
+/// A word as messages show it: the beginning of a long one, and "the end of the file" for none.
+[[nodiscard]] std::string shown_word(std::string_view word);
+
+/// Lines of finite numbers, separated by blanks, commas or semicolons; '#' begins a comment. The first line that has
+/// words may be a header: words that begin with letters. A word that begins as a number does, or is "nan", is a number
+/// that is misspelt, and no name of a column.
+class NumberLines {
+ public:
+  enum class Header { allowed, refused };
+  /// Keeps both texts. A byte order mark at the beginning is no part of the first word.
+  NumberLines(const std::string& file, std::string_view text, Header header);
+
+  /// Goes to the next line; false: there is none. Throws Error(invalid_input) with file, line and column where a word
+  /// is no finite number, where nothing stands between two separators, and where commas may be decimal ones.
+  [[nodiscard]] bool next();
+  /// Numbers of this line; none where it is blank, a comment or the header.
+  [[nodiscard]] const std::vector<double>& numbers() const { return numbers_; }
+  /// Words of the header; none if there is no header.
+  [[nodiscard]] const std::vector<std::string>& header() const { return header_; }
+  /// Throws Error(invalid_input) with file and line: of this line, or of another one.
+  [[noreturn]] void fail(const std::string& problem) const { fail(problem, line_); }
+  [[noreturn]] void fail(const std::string& problem, long line) const;
+  [[nodiscard]] long header_line() const { return header_line_; }
+
+ private:
+  /// Words of a line with their columns, from 1 on.
+  struct Word {
+    std::string_view text;
+    std::size_t column;
+  };
+  void split(std::string_view line);
+  [[nodiscard]] bool is_header() const;
+  [[noreturn]] void refuse(const Word& word) const;
+  [[noreturn]] void fail_at(std::size_t column, const std::string& problem) const;
+
+  const std::string& file_;
+  std::string_view rest_;
+  bool may_be_header_, has_header_ = false;
+  long line_ = 0, header_line_ = 0;
+  std::vector<Word> words_;
+  std::vector<double> numbers_;
+  std::vector<std::string> header_;
+};
+
+}  // namespace ricochet

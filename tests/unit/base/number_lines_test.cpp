@@ -1,0 +1,98 @@
+#include "ricochet/base/number_lines.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
+
+/// @file A number that is misspelt is neither skipped nor taken for a header, wherever it stands.
+namespace ricochet {
+namespace {
+
+using Rows = std::vector<std::vector<double>>;
+using Header = NumberLines::Header;
+
+Rows rows_of(const std::string& text, Header header = Header::allowed) {
+  const std::string file = "f";
+  NumberLines lines(file, text, header);
+  Rows rows;
+  while (lines.next()) {
+    if (!lines.numbers().empty()) rows.push_back(lines.numbers());
+  }
+  return rows;
+}
+
+std::string problem_of(const std::string& text, Header header = Header::allowed) {
+  try {
+    (void)rows_of(text, header);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(NumberLines, SeparateNumbersByBlanksCommasOrSemicolons) {
+  const Rows expected{{0.0, 1.5e-3}, {-2.0, 0.25}};
+  for (const std::string text :
+       {"0 1.5e-3\n-2 .25\n", "0,1.5e-3\r\n-2, .25,\r\n", "\t0;1.5e-3 # start\n\n# end\n-2 ; .25",
+        "t ux\n0 1.5e-3\n-2 .25", "# t, ux\n\"t [s]\",µ_x\n0 +1.5E-3\n-2 .25\n",
+        "\xEF\xBB\xBF"
+        "0 1.5e-3\n-2 .25\n"})
+    EXPECT_EQ(rows_of(text), expected) << text;
+}
+
+/// Each of these words was once taken for a header where it stood in the first line.
+TEST(NumberLines, TakeNoMisspeltNumberForAHeader) {
+  for (const std::string word : {"0.0m", "nan", "NaN", "inf", "-Infinity", "1.5.2", "1e", "0x10", "+-1", "--1", "1d3",
+                                 ".", "-", "1e999", "12:30", "3rd"}) {
+    EXPECT_FALSE(number_in(word)) << word;
+    for (const Header header : {Header::allowed, Header::refused}) {
+      EXPECT_EQ(problem_of("0.0 " + word + " 0.0\n", header).find("f:1:5: \"" + word + "\" is no finite number"), 0U)
+          << problem_of("0.0 " + word + " 0.0\n", header);
+      EXPECT_EQ(problem_of(word + "\n", header).find("f:1:1: "), 0U) << word;
+      EXPECT_EQ(problem_of("\n0 0\n0 " + word, header).find("f:3:3: "), 0U) << word;
+    }
+    EXPECT_EQ(problem_of("time x " + word + "\n").find("f:1:"), 0U) << "a header is letters alone: " << word;
+  }
+  EXPECT_EQ(problem_of("\xEF\xBB\xBF"
+                       "0.0m 0\n")
+                .find("f:1:1: "),
+            0U);
+}
+
+TEST(NumberLines, HaveOneHeaderAtMost) {
+  EXPECT_EQ(problem_of("t x\ns mm\n0 1\n").find("f:2:1: \"s\" is no finite number"), 0U);
+  EXPECT_EQ(problem_of("0 1\nt x\n").find("f:2:1: \"t\""), 0U);
+  EXPECT_EQ(problem_of("t x\n0 1\n", Header::refused).find("f:1:1: \"t\""), 0U);
+  const std::string file = "f", text = "# a\n time, ux\n0 1\n";
+  NumberLines lines(file, text, Header::allowed);
+  while (lines.next()) {
+  }
+  EXPECT_EQ(lines.header(), (std::vector<std::string>{"time", "ux"}));
+  EXPECT_EQ(lines.header_line(), 2);
+}
+
+/// A value that is left out would move the others by a column; "0,5;1,0" are two numbers to some, and four to others.
+TEST(NumberLines, RefuseWhatCouldBeReadInTwoWays) {
+  EXPECT_EQ(problem_of("0,,1\n").find("f:1:3: a number is missing before this \",\""), 0U);
+  EXPECT_EQ(problem_of("1 2\n, 1\n").find("f:2:1: a number is missing"), 0U);
+  EXPECT_EQ(problem_of("0,5;1,0\n").find("f:1:2: commas and semicolons"), 0U);
+}
+
+TEST(TextWords, KnowTheirPlaces) {
+  const std::string file = "f", text = "a  12\n\n \tb +.5x";
+  TextWords words(file, text);
+  EXPECT_EQ(words.next(), "a");
+  EXPECT_EQ(words.number(), 12.0);
+  EXPECT_EQ(words.next(), "b");
+  try {
+    (void)words.number();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "f:3:5: \"+.5x\" is no finite number");
+  }
+  EXPECT_EQ(words.next(), "");
+}
+
+}  // namespace
+}  // namespace ricochet

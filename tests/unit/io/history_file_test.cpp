@@ -1,0 +1,36 @@
+#include "ricochet/io/history_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/temporary_folder.hpp"
+
+namespace ricochet {
+namespace {
+
+std::string problem_of(const std::string& text) {
+  const TemporaryFolder folder(std::filesystem::temp_directory_path(), "history");
+  const std::string file = folder.file("history.csv");
+  std::ofstream(file) << text;
+  try {
+    (void)read_history(file, false);
+  } catch (const Error& error) {
+    return std::string(error.what()).substr(folder.path().string().size() + 1);
+  }
+  return "none";
+}
+
+/// A file whose first row is lost has numbers where the names of columns should be.
+TEST(HistoryFile, TakesNoNumbersForNames) {
+  EXPECT_EQ(problem_of("step,time,gap\n0,0,nan\n1,0.5,-1e-3\n"), "none");
+  for (const std::string row : {"0,0,0.1", "1,0.5,nan", "step,time,-0.1"})
+    EXPECT_EQ(problem_of(row + "\n1,0.5,0.1\n").find("history.csv:1: the first row has the names of the columns"), 0U)
+        << row;
+  EXPECT_EQ(problem_of("step,time\n0,0.5m\n").find("history.csv:2: column 2 (\"time\") is not a number"), 0U);
+}
+
+}  // namespace
+}  // namespace ricochet
