@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import unittest
 
 import numpy
@@ -153,6 +154,28 @@ class SameSurface(Blocks):
         for other in (two, three):
             self.agree(one, other, ("kinetic_energy", "obstacle_work", "friction_work"), 1e-9)
         self.assertGreater(abs(one["obstacle_work"][-1]), 1e-3)
+
+
+class Frames(Blocks):
+    def test_edges_are_rounded_alike_in_every_frame(self):
+        """A block and the triangulated floor below it, turned together about the vertical axis: the default edge_radius is
+        that of the facets, whose boxes along the axes become smaller or larger."""
+        radii = []
+        for angle in (0.0, 17.0, 45.0):
+            corners = "".join(
+                "vertex {:.17g} {:.17g} {}\n".format(*(numpy.array([[math.cos(a), -math.sin(a)], [math.sin(a), math.cos(a)]])
+                                                      @ [float(x), float(y)]), z)
+                if line.startswith("vertex") else line + "\n"
+                for a in [math.radians(angle)]
+                for line in box_stl([-5, -5, -2], [5, 5, -0.05]).splitlines()
+                for word, x, y, z in [(line.split() + [0, 0, 0, 0])[:4]])
+            (self.folder / "floor.stl").write_text(corners)
+            text = self.in_space('type = "surface"\nfile = "floor.stl"').replace(
+                "[[material]]", f"turn = {{ angle = {angle}, axis = [0.0, 0.0, 1.0] }}\n[[material]]", 1)
+            text = text.replace("end = 0.4", "end = 0.005")
+            process = self.expect_status(0, run("run", self.write("case.toml", text), "-o", self.folder / "out", "--force"))
+            radii.append(re.search(r"its edges are rounded over a radius of (\S+)", process.stderr + process.stdout)[1])
+        self.assertEqual(len(set(radii)), 1, radii)
 
 
 class Motion(Blocks):

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/point_sets.hpp"
 #include "ricochet/contact/facet_surface.hpp"
 #include "ricochet/fem/reference_element.hpp"
 
@@ -103,7 +104,7 @@ double distance_from_geometry(const TiedNodes& tied, const Mesh& mesh, const Dis
     for (Index facet = 0; facet < nodes.size(); ++facet) {
       Points corners(mesh.dimension, geometry.nodes_per_cell);
       for (int k = 0; k < geometry.nodes_per_cell; ++k) corners.col(k) = mesh.nodes.col(geometry.cell(facet)[k]);
-      const double size = (corners.rowwise().maxCoeff() - corners.rowwise().minCoeff()).norm();
+      const double size = largest_distance(corners);
       for (int k = 0; k < nodes.nodes_per_cell; ++k) {
         const Index node = nodes.cell(facet)[k];
         if (!tied.is_tied(node)) continue;

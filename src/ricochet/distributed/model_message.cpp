@@ -47,7 +47,7 @@ void transfer(Archive& archive, WatchedPlaces& places) {
   archive.all(places.probes, places.positions, places.columns, places.nodes, places.sums);
 }
 void transfer(Archive& archive, ModelSizes& sizes) {
-  archive.all(sizes.nodes, sizes.cells, sizes.dofs, sizes.contact_points, sizes.supported_dofs, sizes.extent);
+  archive.all(sizes.nodes, sizes.cells, sizes.dofs, sizes.contact_points, sizes.supported_dofs, sizes.diameter);
 }
 void transfer(Archive& archive, ContactScale& scale) {
   archive.all(scale.body_size, scale.spacing);

@@ -1,9 +1,9 @@
 #include "ricochet/fem/connected_bodies.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 
+#include "ricochet/base/point_sets.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/mesh_measures.hpp"
 #include "ricochet/fem/wave_speed.hpp"
@@ -69,25 +69,28 @@ std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies
   return result;
 }
 
-std::vector<double> wave_crossing_times(const Body& body, const ConnectedBodies& bodies) {
-  const auto count = static_cast<std::size_t>(bodies.count);
-  const double infinity = std::numeric_limits<double>::infinity();
+std::vector<double> body_diameters(const Body& body, const ConnectedBodies& bodies) {
   const Points& nodes = body.space->nodes;
-  std::vector<Eigen::Vector3d> lowest(count, Eigen::Vector3d::Constant(infinity)), highest(count, -lowest[0]);
+  std::vector<std::vector<Index>> nodes_of(static_cast<std::size_t>(bodies.count));
   for (Index node = 0; node < nodes.cols(); ++node) {
-    if (bodies.of_node[static_cast<std::size_t>(node)] < 0) continue;
-    const auto b = static_cast<std::size_t>(bodies.of_node[static_cast<std::size_t>(node)]);
-    lowest[b].head(nodes.rows()) = lowest[b].head(nodes.rows()).cwiseMin(nodes.col(node));
-    highest[b].head(nodes.rows()) = highest[b].head(nodes.rows()).cwiseMax(nodes.col(node));
+    const int number = bodies.of_node[static_cast<std::size_t>(node)];
+    if (number >= 0) nodes_of[static_cast<std::size_t>(number)].push_back(node);  // else of a rigid body
   }
-  std::vector<double> speed(count, infinity), result;
+  std::vector<double> result;
+  for (const std::vector<Index>& own : nodes_of) result.push_back(enclosing_diameter(nodes(Eigen::all, own)));
+  return result;
+}
+
+std::vector<double> wave_crossing_times(const Body& body, const ConnectedBodies& bodies) {
+  const std::vector<double> diameters = body_diameters(body, bodies);
+  const auto count = static_cast<std::size_t>(bodies.count);
+  std::vector<double> speed(count, std::numeric_limits<double>::infinity()), result;
   for (std::size_t cell = 0; cell < bodies.of_cell.size(); ++cell) {
     const Material& material = body.materials[static_cast<std::size_t>(body.cell_material[cell])];
     double& slowest = speed[static_cast<std::size_t>(bodies.of_cell[cell])];
     slowest = std::min(slowest, compression_wave_speed(material, is_plane_stress(body)));
   }
-  for (std::size_t b = 0; b < count; ++b)
-    result.push_back((highest[b] - lowest[b]).head(nodes.rows()).maxCoeff() / speed[b]);
+  for (std::size_t b = 0; b < count; ++b) result.push_back(diameters[b] / speed[b]);
   return result;
 }
 
@@ -95,17 +98,8 @@ BodiesOfMesh describe_bodies(const Body& body) {
   BodiesOfMesh result;
   result.connected = find_connected_bodies(*body.space);
   result.names = names_of_bodies(*body.mesh, result.connected);
+  result.sizes = body_diameters(body, result.connected);
   result.crossing_times = wave_crossing_times(body, result.connected);
-  std::vector<Eigen::AlignedBox3d> boxes(static_cast<std::size_t>(result.connected.count));
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  const Points& nodes = body.space->nodes;
-  for (Index node = 0; node < nodes.cols(); ++node) {
-    const int number = result.connected.of_node[static_cast<std::size_t>(node)];
-    if (number < 0) continue;  // of a rigid body
-    position.head(nodes.rows()) = nodes.col(node);
-    boxes[static_cast<std::size_t>(number)].extend(position);
-  }
-  for (const Eigen::AlignedBox3d& box : boxes) result.sizes.push_back(box.diagonal().norm());
   result.boundary = boundary_facets(body.space->cells);
   return result;
 }

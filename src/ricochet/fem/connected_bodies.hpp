@@ -23,8 +23,11 @@ struct ConnectedBodies {
 /// and body 0 where there is no such group.
 [[nodiscard]] std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies& bodies);
 
-/// Per body: the time in which a compression wave runs along the longest side of the box around it, at the speed of its
-/// slowest material. Nothing that happens at one end is known at the other one sooner.
+/// Per body: the diameter of the smallest ball around its nodes.
+[[nodiscard]] std::vector<double> body_diameters(const Body& body, const ConnectedBodies& bodies);
+
+/// Per body: the time in which a compression wave crosses the smallest ball around it, at the speed of its slowest
+/// material. By then what happens at one end is known at the other one.
 [[nodiscard]] std::vector<double> wave_crossing_times(const Body& body, const ConnectedBodies& bodies);
 
 /// What a run asks about the bodies of its mesh: of the whole, whatever part of it is here.
@@ -32,7 +35,7 @@ struct BodiesOfMesh {
   ConnectedBodies connected;
   std::vector<std::string> names;
   std::vector<double> crossing_times;  ///< wave_crossing_times
-  std::vector<double> sizes;           ///< the diagonal of the box around each
+  std::vector<double> sizes;           ///< body_diameters
   std::vector<CellFacet> boundary;     ///< of the space's cells that are here
 };
 [[nodiscard]] BodiesOfMesh describe_bodies(const Body& body);

@@ -30,7 +30,8 @@ struct DisplacementSpace {
   [[nodiscard]] Index dof_count() const { return nodes.cols() * dimension; }
 };
 
-/// Diagonal of the box around all nodes: the length that "small" is measured against.
+/// Diagonal of the box around all nodes: a scale of rounding errors alone, as it depends on the axes of the frame by up
+/// to a factor √d. Sizes that decide or are told are those of base/point_sets.hpp.
 [[nodiscard]] double extent(const Points& nodes);
 
 /// Builds the space on a mesh whose geometry is of degree 1 or 2, independently of `degree`.

@@ -152,12 +152,16 @@ MeshMeasure measure_group(const Mesh& mesh, const Group& group, bool axisymmetri
 
 namespace {
 
-/// Of a straight facet, by its vertices.
+/// Size of a straight facet, by its vertices. A quadrilateral that is no plane one is cut along either diagonal, and
+/// the mean of both does not depend on where its numbering begins.
 double facet_size(const Mesh& mesh, CellShape shape, const Index* cell, const std::vector<int>& vertices) {
   const auto at = [&](std::size_t k) { return position(mesh, cell[vertices[k]]); };
   if (shape == CellShape::interval) return (at(1) - at(0)).norm();
-  const double first = 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
-  return shape == CellShape::triangle ? first : first + 0.5 * (at(1) - at(3)).cross(at(2) - at(3)).norm();
+  const auto half = [&](std::size_t i, std::size_t j, std::size_t k) {
+    return 0.5 * (at(j) - at(i)).cross(at(k) - at(i)).norm();
+  };
+  if (shape == CellShape::triangle) return half(0, 1, 2);
+  return 0.5 * (half(0, 1, 2) + half(3, 1, 2) + half(1, 0, 3) + half(2, 0, 3));
 }
 
 /// One cell after the other, with the rules of all blocks made once.

@@ -11,6 +11,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/memory.hpp"
+#include "ricochet/base/point_sets.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/fem/exterior_facets.hpp"
@@ -334,8 +335,9 @@ std::unique_ptr<Model> build(const Case& input, bool with_forces, BuildTimes* ti
   add_standing_columns(input, *model);
   find_probes(input, *model);
   add_sensors(input, *model);
-  model->sizes = {model->space.cell_node_count(), model->mesh.cell_count(),       model->space.dof_count(),
-                  model->problem.contact.size(),  model->problem.supports.size(), extent(model->mesh.nodes)};
+  model->sizes = {model->space.cell_node_count(), model->mesh.cell_count(),
+                  model->space.dof_count(),       model->problem.contact.size(),
+                  model->problem.supports.size(), enclosing_diameter(model->mesh.nodes)};
   model->rotation = std::make_unique<RotationGauge>(model->body);
   model_seconds += timer.restart();
   if (times != nullptr) *times = {read_seconds, model_seconds, assembly_seconds};

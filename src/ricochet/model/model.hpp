@@ -36,7 +36,7 @@ struct ModelContact : ContactSection {
 /// Of the whole body, whatever part of it is here.
 struct ModelSizes {
   Index nodes = 0, cells = 0, dofs = 0, contact_points = 0, supported_dofs = 0;
-  double extent = 0.0;  ///< the diagonal of the box around the mesh
+  double diameter = 0.0;  ///< of the smallest ball around the mesh
 };
 
 struct Model {

@@ -208,7 +208,7 @@ namespace {
 void refuse_overlap_with_obstacle(const Case& input, const Model& model, std::size_t number, const Vector& gap) {
   const ContactPair& pair = model.contact_pairs[number];
   const PointsInside overlap =
-      points_inside(model.problem, gap, static_cast<int>(number), off_by_facets * model.sizes.extent);
+      points_inside(model.problem, gap, static_cast<int>(number), off_by_facets * model.sizes.diameter);
   if (overlap.count == 0) return;
   refuse(input, fmt::format("contact.{}.group", model.contacts[number].entry),
          fmt::format("at the start {} of group \"{}\" {} inside of obstacle \"{}\", the deepest by {:.3g} at {}, and "

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/point_sets.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/keys.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
@@ -63,7 +64,7 @@ class ProbeFinder {
   [[nodiscard]] Index with_multipliers(Index nearest) const {
     const ContactBoundary& contact = model_.problem.contact;
     const Points& positions = model_.space.nodes;
-    const double limit = in_one_place * extent(positions);
+    const double limit = in_one_place * enclosing_diameter(positions);
     bool is_watched = false;
     Index best = -1;
     for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
@@ -86,7 +87,7 @@ class ProbeFinder {
                       section.name, body_of(node)));
     }
     add_node(section.name, node, nearest.distance);
-    const double body_size = extent(model_.space.nodes);
+    const double body_size = enclosing_diameter(model_.space.nodes);
     const std::string message =
         fmt::format("probe \"{}\": the nearest node is {:.3g} away", section.name, nearest.distance);
     if (nearest.distance > 0.1 * body_size) {
@@ -108,7 +109,7 @@ class ProbeFinder {
     const double length = (to - from).norm();
     if (!(length > 0.0)) refuse(input_, key + ".to", "the two ends of the segment are the same point");
     const Vector direction = (to - from) / length;
-    const double limit = section.within.value_or(on_segment * extent(model_.space.nodes));
+    const double limit = section.within.value_or(on_segment * enclosing_diameter(model_.space.nodes));
     struct Found {
       double along;
       Index number, node;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/point_sets.hpp"
 #include "ricochet/base/rounded.hpp"
 #include "ricochet/model/model_parts.hpp"
 
@@ -25,7 +26,7 @@ double node_spacing(const DisplacementSpace& space, const std::vector<Index>& fa
     const Index* nodes = cells.cell(number);
     Points positions(space.nodes.rows(), cells.nodes_per_cell);
     for (Index k = 0; k < positions.cols(); ++k) positions.col(k) = space.nodes.col(nodes[k]);
-    largest = std::max(largest, extent(positions) / space.degree);
+    largest = std::max(largest, largest_distance(positions) / space.degree);
   }
   return largest;
 }

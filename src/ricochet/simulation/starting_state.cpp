@@ -11,6 +11,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/point_sets.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
@@ -219,7 +220,7 @@ void warn_of_closed_gaps(const SemidiscreteProblem& problem, const Vector& press
       smallest = std::min(smallest, gap[i]);
       presses = presses || (i < pressed.size() && pressed[i] > 0.0);
     }
-    if (!presses || !(smallest > seen * extent(problem.nodes))) continue;
+    if (!presses || !(smallest > seen * enclosing_diameter(problem.nodes))) continue;
     log::warning(
         fmt::format("initial.displacement = \"static\" closes the gap of contact.{}, which is {:.3g} wide in the "
                     "mesh: it moves a body until it rests; where that body is to start with a gap, leave the "

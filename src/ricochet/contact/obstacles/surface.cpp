@@ -73,19 +73,17 @@ class Surface final : public ObstacleShape {
   void fit(const ContactScale& scale) override {
     if (!given_radius_) radius_ = std::min(part_of_spacing * scale.spacing, surface_.width_of_smooth());
     if (!surface_.is_closed()) return;
-    // Ascending, without the third in the plane.
-    Three sides = surface_.box().sizes();
-    std::sort(sides.begin(), sides.end());
+    const Three sides = surface_.block_sides();
     const double width = surface_.in_space() ? sides[1] : sides[2], least = surface_.in_space() ? sides[0] : sides[1];
     if (width < scale.spacing) {
       log::warning(
-          fmt::format("{}: the surface is no more than {:.3g} wide, and nodes that may touch it are {:.3g} apart: "
+          fmt::format("{}: the surface is about {:.3g} wide, and nodes that may touch it are {:.3g} apart: "
                       "it can go in between them unseen; take smaller cells there",
                       file_, width, scale.spacing));
     }
     if (given_radius_ && 2.0 * radius_ > least) {
       log::warning(
-          fmt::format("{}: edges are rounded over {:.3g}, more than half of what the surface is thick, {:.3g}: "
+          fmt::format("{}: edges are rounded over {:.3g}, more than half of what the surface is thick, about {:.3g}: "
                       "gaps are off by a part of that; take a smaller edge_radius",
                       file_, radius_, least));
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/point_sets.hpp"
 #include "ricochet/contact/boundary_patch.hpp"
 #include "ricochet/contact/paired_surfaces.hpp"
 #include "ricochet/contact/sliding/sliding_contact.hpp"
@@ -190,9 +191,9 @@ std::unique_ptr<ContactGeometry> follow_sliding(const Body& body, const std::vec
             [](const auto& one, const auto& other) { return one.entry < other.entry; });
   data.node_positions = body.space->nodes;
   data.node_normals = boundary.node_normals;
-  // In extents of the model.
+  // In diameters of the model.
   constexpr double out_of_sight = 1e3;
-  data.out_of_sight = boundary.out_of_sight = out_of_sight * extent(body.space->nodes);
+  data.out_of_sight = boundary.out_of_sight = out_of_sight * enclosing_diameter(body.space->nodes);
   return make_sliding_contact(std::move(data));
 }
 

@@ -8,7 +8,9 @@
 #include <limits>
 #include <numeric>
 
+#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/point_sets.hpp"
 #include "ricochet/contact/closest_point.hpp"
 #include "ricochet/mesh/disjoint_sets.hpp"
 
@@ -66,13 +68,12 @@ void RigidSurface::join_corners(const SurfaceFacets& facets) {
 /// Those of borders that numbers with seven digits may have parted.
 bool RigidSurface::join_borders() {
   constexpr double near = 1e-6;  // of the surface
-  BoxTree::Box all;
   std::vector<int> order;
   for (std::size_t i = 0; i < corners_.size(); ++i) {
-    all.extend(corners_[i]);
     if (corner_normals_[i].is_border) order.push_back(static_cast<int>(i));
   }
-  const double reach = near * all.diagonal().norm();
+  const auto places = Eigen::Map<const Points>(corners_.front().data(), 3, static_cast<Index>(corners_.size()));
+  const double reach = near * enclosing_diameter(places);
   // Along a direction in which few corners of a surface that people make are level.
   const Three direction = Three(0.6182, 0.5432, 0.5681).normalized();
   const auto at = [&](int corner) -> const Three& { return corners_[static_cast<std::size_t>(corner)]; };
@@ -287,6 +288,13 @@ RigidSurface::Moments RigidSurface::moments() const {
   sum.second -= sum.volume * sum.centre * sum.centre.transpose();
   sum.centre += middle;
   return sum;
+}
+
+RigidSurface::Three RigidSurface::block_sides() const {
+  const Moments sums = moments();
+  if (sums.volume == 0.0) return Three::Zero();
+  // Of a block of sides a, b, c they are a²/12, b²/12, c²/12.
+  return symmetric_eigenvalues(Eigen::Matrix3d(12.0 / sums.volume * sums.second)).cwiseMax(0.0).cwiseSqrt();
 }
 
 RigidSurface::Foot RigidSurface::nearest(const Three& point) const {

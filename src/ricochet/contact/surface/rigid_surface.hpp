@@ -55,6 +55,9 @@ class RigidSurface {
   [[nodiscard]] const std::vector<std::array<int, 3>>& facets() const { return facets_; }
   [[nodiscard]] bool in_space() const { return in_space_; }
   [[nodiscard]] const BoxTree& tree() const { return tree_; }
+  /// Sides of the block with the second moments of what a closed surface encloses, ascending; the first is 0 in the
+  /// plane. They do not depend on the axes, as those of the box around it do.
+  [[nodiscard]] Three block_sides() const;
   [[nodiscard]] BoxTree::Box box() const { return tree_.nodes().front().box; }
   /// Of what it encloses, where it is closed: volume, or area in the plane.
   [[nodiscard]] double volume() const;

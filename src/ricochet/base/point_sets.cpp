@@ -1,0 +1,88 @@
+#include "ricochet/base/point_sets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "ricochet/base/dense_decompositions.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Relative: points that are no farther outside of a ball are in it.
+constexpr double rounding = 1e-12;
+
+struct Ball {
+  Vector centre;
+  double radius = 0.0;
+  [[nodiscard]] bool has(const Vector& point) const { return (point - centre).norm() <= (1.0 + rounding) * radius; }
+};
+
+/// The ball with these points on its boundary and its centre among their affine combinations: with a_i = x_i − x_0 and
+/// c = x_0 + Σ λ_i a_i, 2 a_i·a_j λ_j = a_i·a_i. None where they are not independent.
+std::optional<Ball> ball_through(const Points& nodes, const std::vector<Index>& points) {
+  const Index count = static_cast<Index>(points.size()) - 1;
+  const Vector first = nodes.col(points[0]);
+  if (count == 0) return Ball{first, 0.0};
+  Matrix edges(nodes.rows(), count);
+  for (Index k = 0; k < count; ++k) edges.col(k) = nodes.col(points[static_cast<std::size_t>(k) + 1]) - first;
+  const double scale = edges.colwise().norm().maxCoeff();
+  if (!(scale > 0.0)) return std::nullopt;
+  edges /= scale;
+  const Matrix products = edges.transpose() * edges;
+  const SmallCholesky factor(2.0 * products);
+  if (!factor.positive_definite()) return std::nullopt;
+  const Vector middle = scale * (edges * factor.solve(products.diagonal()));
+  return middle.allFinite() ? std::optional(Ball{first + middle, middle.norm()}) : std::nullopt;
+}
+
+/// The smallest ball around at most d + 2 points, of those through some of them, and which these are.
+std::pair<Ball, std::vector<Index>> smallest_ball(const Points& nodes, const std::vector<Index>& points) {
+  std::pair<Ball, std::vector<Index>> best;
+  bool found = false;
+  for (unsigned subset = 1; subset < (1U << points.size()); ++subset) {
+    std::vector<Index> chosen;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if ((subset >> k & 1U) != 0U) chosen.push_back(points[k]);
+    }
+    if (static_cast<Index>(chosen.size()) > nodes.rows() + 1) continue;
+    const std::optional<Ball> ball = ball_through(nodes, chosen);
+    if (!ball || (found && !(ball->radius < best.first.radius))) continue;
+    if (!std::all_of(points.begin(), points.end(), [&](Index point) { return ball->has(nodes.col(point)); })) continue;
+    best = {*ball, chosen};
+    found = true;
+  }
+  return best;
+}
+
+}  // namespace
+
+double largest_distance(const Points& points) {
+  double largest = 0.0;
+  for (Index i = 0; i < points.cols(); ++i) {
+    for (Index k = 0; k < i; ++k) largest = std::max(largest, (points.col(i) - points.col(k)).norm());
+  }
+  return largest;
+}
+
+/// The farthest point joins those that hold the ball, and some of them are let go, until none is outside. The radius
+/// grows each time, so that no set of points comes back; a few rounds do.
+double enclosing_diameter(const Points& points) {
+  if (points.cols() == 0) return 0.0;
+  std::pair<Ball, std::vector<Index>> ball{{points.col(0), 0.0}, {0}};
+  double farthest = 0.0;
+  for (;;) {
+    Index at = 0;
+    farthest = std::sqrt((points.colwise() - ball.first.centre).colwise().squaredNorm().maxCoeff(&at));
+    const double before = ball.first.radius;
+    if (farthest <= (1.0 + rounding) * before || !std::isfinite(farthest)) break;
+    ball.second.push_back(at);
+    ball = smallest_ball(points, ball.second);
+    if (!(ball.first.radius > before)) break;
+  }
+  return 2.0 * farthest;
+}
+
+}  // namespace ricochet
