@@ -264,8 +264,11 @@ Section contact_section() {
            .type = KeyType::choice,
            .standard = "automatic",
            .choices = {"automatic", "group", "against"},
-           .doc = "Between bodies, the side that carries the multipliers. \"automatic\" takes the one with the finer "
-                  "mesh; of meshes that are alike, the more curved one, then the softer one."},
+           .doc =
+               "Between bodies, the side that carries the multipliers. \"automatic\" takes the one within whose facets "
+               "normals turn less (docs/sliding.md), which is the round one against a flat one unless its facets are "
+               "twice as large; where turns are alike, with sliding = \"large\" the smaller one, else the one with "
+               "the finer mesh, then the more curved, then the softer one."},
           {.name = "initial_gap",
            .type = KeyType::choice,
            .standard = "geometry",

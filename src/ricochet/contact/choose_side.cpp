@@ -7,6 +7,7 @@
 #include <map>
 
 #include "ricochet/contact/facet_surface.hpp"
+#include "ricochet/contact/touching_turns.hpp"
 
 namespace ricochet {
 
@@ -14,6 +15,13 @@ namespace {
 
 /// Ratio from which two sides differ.
 constexpr double alike = 1.1;
+
+/// Ratio from which turns within facets differ, and the turn from which forces are off by more than some per cent: both
+/// measured (docs/sliding.md).
+constexpr double alike_turns = 1.25, doubtful_turn = 0.25;
+
+/// Turn below which sides are as good as flat, in rad.
+constexpr double flat = 1e-3;
 
 /// Ratio of areas from which a surface is the smaller one, and the ratio of mesh sizes up to which that decides.
 constexpr double smaller_from = 1.5, coarsest = 3.0;
@@ -79,6 +87,15 @@ double distance_from_curved(const Body& body, const ContactPair& pair) {
   return result;
 }
 
+std::optional<SideDoubt> doubt_side(const Body& body, const ContactPair& pair) {
+  if (pair.tied || pair.is_self()) return std::nullopt;
+  const TouchingTurns turns = touching_turns(body, pair.facets, pair.opposite_facets);
+  if (!(turns.own_of_bends > doubtful_turn)) return std::nullopt;
+  const double least = std::min(turns.own_of_bends, turns.opposite_of_bends);
+  return SideDoubt{turns.own_of_bends, turns.opposite_of_bends,
+                   turns.own_of_bends > alike_turns * turns.opposite_of_bends, std::min(doubtful_turn / least, 1.0)};
+}
+
 SideChoice choose_side(const Body& body, const ContactPair& pair) {
   const Side one = measure(body, pair.facets), other = measure(body, pair.opposite_facets);
   const auto differ = [](double a, double b) { return std::max(a, b) > alike * std::min(a, b); };
@@ -86,6 +103,14 @@ SideChoice choose_side(const Body& body, const ContactPair& pair) {
     return SideChoice{
         opposite, fmt::format("{} ({:.3g} against {:.3g})", what, opposite ? others : own, opposite ? own : others)};
   };
+  const TouchingTurns turns = pair.tied ? TouchingTurns{} : touching_turns(body, pair.facets, pair.opposite_facets);
+  // Edges turn more than all else, and which of them touch is not known beforehand: they are left out where forces
+  // would be wrong without them.
+  const bool by_bends = std::max(turns.own_of_bends, turns.opposite_of_bends) > doubtful_turn;
+  const double own = by_bends ? turns.own_of_bends : turns.own,
+               others = by_bends ? turns.opposite_of_bends : turns.opposite;
+  if (std::max(own, others) > std::max(flat, alike_turns * std::min(own, others)))
+    return choice(others < own, "normals turn less within its facets", own, others);
   if (pair.slides_far && smaller_from * std::min(one.area, other.area) < std::max(one.area, other.area)) {
     const bool is_other = other.area < one.area;
     if ((is_other ? other.size : one.size) < coarsest * (is_other ? one.size : other.size))

@@ -67,6 +67,27 @@ void check_sliding_bodies(const Case& input, const std::string& key, const Model
   check(pair.opposite_facets, "against", pair.opposite_group);
 }
 
+/// Warns of facets that normals turn much within: forces depend on the side then. The advice is tried by
+/// multiplier_side_test.py.
+void warn_of_side(const ContactPair& pair, const SideDoubt& doubt, bool is_chosen) {
+  std::string advice;
+  if (doubt.other_is_better && !is_chosen) {
+    advice = fmt::format("leave multipliers_on out: with the multipliers on \"{}\" they turn by {:.2g}",
+                         pair.opposite_group, doubt.of_other);
+    if (doubt.finer < 1.0) advice += fmt::format(", and facets there {:.2g} times as large", 0.9 * doubt.finer);
+  } else {
+    advice = fmt::format(
+        "take facets of \"{}\" {:.2g} times as large where it is round, or what it touches is; a run "
+        "with multipliers_on = \"{}\" shows by how much forces differ",
+        pair.group, 0.9 * doubt.finer, pair.exchanged ? "group" : "against");
+  }
+  log::warning(
+      fmt::format("contact of \"{}\" against \"{}\": normals turn by {:.2g} rad in the mean within the facets "
+                  "of \"{}\", which carries the multipliers, and forces of a contact that is no wider than a facet may "
+                  "be off by up to as large a part; {}",
+                  pair.first_group(), pair.second_group(), doubt.turn, pair.group, advice));
+}
+
 }  // namespace
 
 ContactPair body_pair(const Case& input, const ModelContact& section, const Model& model) {
@@ -111,6 +132,7 @@ ContactPair body_pair(const Case& input, const ModelContact& section, const Mode
                                     : "group \"" + pair.group + "\" carries the multipliers",
                           choice.reason));
   }
+  if (const std::optional<SideDoubt> doubt = doubt_side(model.body, pair); doubt) warn_of_side(pair, *doubt, is_chosen);
   return pair;
 }
 
