@@ -1,6 +1,7 @@
 #include "ricochet/contact/turning_normal.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "ricochet/mesh/reference_cell.hpp"
 
@@ -12,6 +13,15 @@ namespace {
 constexpr double least_cosine = 0.2;
 /// Volume of the unit vectors that N is made of, below which they are taken for dependent.
 constexpr double least_independent = 0.05;
+
+/// Eigenvectors across `normal` of a symmetric matrix.
+std::pair<TurningNormal::Three, TurningNormal::Three> axes_across(const TurningNormal::Three& normal,
+                                                                  const Eigen::Matrix3d& metric) {
+  const TurningNormal::Three one = normal.unitOrthogonal(), other = normal.cross(one);
+  const double angle =
+      0.5 * std::atan2(2.0 * one.dot(metric * other), one.dot(metric * one) - other.dot(metric * other));
+  return {std::cos(angle) * one + std::sin(angle) * other, std::cos(angle) * other - std::sin(angle) * one};
+}
 
 }  // namespace
 
@@ -51,25 +61,40 @@ void TurningNormal::add_facet(const DisplacementSpace& space, Index facet, const
   crosses_.push_back(area);
 }
 
-/// s and β_k.
+/// s and c, by sums over all facets and all their edges: the order of facets and of their nodes does not matter.
 void TurningNormal::fit(const DisplacementSpace& space, const Three& direction) {
+  std::vector<Three> weights;  // with which c gives the factors of lines
+  Eigen::Matrix3d metric = Eigen::Matrix3d::Zero();
+  const auto add = [&](const Edge& edge, const Three& value, const Three& weight) {
+    lines_.push_back({edge, 0.0});
+    weights.push_back(weight);
+    metric += weight * value.transpose();
+  };
+  for (const Cross& cross : crosses_) {
+    const Three one = vector(cross.one, space.nodes, {}), other = vector(cross.other, space.nodes, {});
+    const bool is_triangle = cross.one.from == cross.other.from;  // whose third edge is the difference
+    add(cross.one, one, is_triangle ? Three(2.0 * one - other) : one);
+    if (cross.other.from >= 0) add(cross.other, other, is_triangle ? Three(2.0 * other - one) : other);
+  }
+  const Three sum = at(space.nodes, {}), normal = sum.normalized();
+  // In two dimensions one of the axes is that across the plane, along which nothing is asked for.
+  if (space.dimension == 2) metric(2, 2) = metric.trace();
+  const auto [one, other] = axes_across(normal, metric);
   Eigen::Matrix3d basis;
-  basis.col(0) = at(space.nodes, {});
-  const Edge one = crosses_.front().one, other = crosses_.front().other;
-  basis.col(1) = vector(one, space.nodes, {});
-  basis.col(2) = vector(other, space.nodes, {});
+  basis << sum, metric * one, metric * other;
   const Eigen::Vector3d lengths = basis.colwise().norm();
-  // Where the sum of area vectors lies in the plane of that facet.
-  if (std::abs((basis * lengths.cwiseInverse().asDiagonal()).determinant()) < least_independent) {
+  const Eigen::Matrix3d units = basis * lengths.cwiseInverse().asDiagonal();
+  // Where the facets around fold so that edges are along the sum of area vectors.
+  if (!(std::abs(units.determinant()) > least_independent)) {
     crosses_.clear();
+    lines_.clear();
     constant_ = direction;
     return;
   }
-  const Three factors =
-      (basis * lengths.cwiseInverse().asDiagonal()).partialPivLu().solve(direction).cwiseQuotient(lengths);
+  const Three factors = units.partialPivLu().solve(direction).cwiseQuotient(lengths);
+  const Three along = factors[1] * one + factors[2] * other;
+  for (std::size_t k = 0; k < lines_.size(); ++k) lines_[k].factor = weights[k].dot(along);
   for (Cross& cross : crosses_) cross.factor *= factors[0];
-  lines_ = {{one, factors[1]}};
-  if (other.from >= 0) lines_.push_back({other, factors[2]});
 }
 
 TurningNormal TurningNormal::mean(const TurningNormal& one, const TurningNormal& other) {

@@ -8,13 +8,14 @@
 /// @file A direction that turns with a surface.
 namespace ricochet {
 
-/// N(x) of the positions x = X + U of a few nodes, with the facets f of a surface around a point and two of their edges
-/// e_k:
-///   N(x) = s Σ_f ± a_f(x) + Σ_k β_k e_k(x),
+/// N(x) of the positions x = X + U of a few nodes, with the facets f of a surface around a point and their edges e_k
+/// (of quadrilaterals their diagonals):
+///   N(x) = s Σ_f ± a_f(x) + Σ_k β_k e_k(x),   β_k = c · e_k(X),
 /// a_f the area vector between the vertices of a facet (in two dimensions the edge turned by a right angle), which
-/// makes N linear in x in two dimensions and quadratic in three. The numbers s and β_k are those with which N(X) is a
-/// given unit vector. Whatever they are, N turns with a surface that turns, and no translation changes it. Everything
-/// has three coordinates; in two dimensions the third is 0.
+/// makes N linear in x in two dimensions and quadratic in three. The number s and the vector c, which is across
+/// Σ_f ± a_f(X), are those with which N(X) is a given unit vector. Whatever they are, N turns with a surface that
+/// turns, and no translation changes it; no order of facets or nodes matters. Everything has three coordinates; in two
+/// dimensions the third is 0.
 class TurningNormal {
  public:
   using Three = Eigen::Vector3d;
@@ -22,7 +23,7 @@ class TurningNormal {
   /// Always `direction` (d).
   explicit TurningNormal(const Vector& direction);
   /// `direction`: N at X, of length 1. Facets (numbered through all blocks) that are seen nearly edge-on along it have
-  /// no part; where all are, or where their sum lies in the plane of one of them, N does not turn.
+  /// no part; where all are, or where edges are along the sum of area vectors, N does not turn.
   TurningNormal(const DisplacementSpace& space, const std::vector<Index>& facets, const Vector& direction);
 
   /// Half of each: N of two surfaces that face each other. One that does not turn has no part.
