@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""Random scenes: what every observer, every description and every account of energy must agree on.
+
+    ./dev bench scenes [--count 1000] [--first 1] [--only FAMILY…] [--seed N] [--keep FOLDER]
+
+A scene is drawn from its seed: bodies in the plane, axisymmetric and in space, at small and finite strain, against obstacles of
+every kind at rest, moving and turning, against free rigid bodies, against each other and themselves. Each is run with some twins.
+Prints a line for each finding, with the seed, the property, its size and the folder that has the cases, then tables, which 1,000
+scenes write into docs/energy.md. Status 1: there are findings.
+"""
+
+import argparse
+import collections
+import concurrent.futures
+import os
+import pathlib
+import random
+import resource
+import shutil
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "bench" / "scenes")]
+import energy
+import properties
+from draw import FAMILIES, scene_of
+from page import write_parts
+
+PROGRAM = pathlib.Path(os.environ.get("RICOCHET_PROGRAM") or ROOT / "build" / "ricochet")
+TWINS = 5  # properties per scene
+DOCUMENTED = (0, 2, 3)  # statuses in which a run may end
+
+
+def judge_run(scene, run, name):
+    """Findings of one run by itself."""
+    found = []
+    if run.status not in DOCUMENTED or run.status != 0 and not run.error():
+        found.append(("status", float("inf"), f"{run.status}: {run.error()[:300]}"))
+    if run.columns:
+        found += energy.findings(scene, run)
+    return [(name, *finding) for finding in found]
+
+
+def examine(seed, folder, wanted=None):
+    """(scene, its status, whether it touches, [(run, property, size, text)], properties, seconds of processors)."""
+    scene = scene_of(seed)
+    folder.mkdir(parents=True, exist_ok=True)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    twins = properties.Twins(scene, PROGRAM, folder)
+    base, found = twins.base, judge_run(scene, twins.base, "base")
+    names = []
+    # A case that is refused has nothing to compare.
+    if base.columns:
+        choices = properties.properties_of(scene)
+        chosen = random.Random(seed + 1)
+        while choices and len(names) < TWINS:
+            name = chosen.choice(choices)
+            choices = [c for c in choices if c != name]
+            names.append(name)
+        names = [n for n in properties.properties_of(scene) if n in wanted] if wanted else names
+        names = list(dict.fromkeys(names))
+    for name in names:
+        differences, twin = properties.check(twins, name)
+        found += [("twin", *d) for d in differences]
+        # Units of a twin are others, and what is said of it is relative.
+        if twin.columns and name not in ("units", "heavy"):
+            found += judge_run(twin.scene, twin, name)
+        elif twin.status not in DOCUMENTED:
+            found.append((name, "status", float("inf"), f"{twin.status}: {twin.error()[:300]}"))
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    touches = max(base.columns.get("active_contacts", [0])) > 0
+    return scene, base, touches, found, names, seconds
+
+
+def report_of(seed, folder, keep, wanted):
+    """What main prints and counts of a scene; its files stay where something is found, or where they are asked for."""
+    scene, base, touches, found, names, seconds = examine(seed, folder, wanted)
+    if not keep and not found:
+        shutil.rmtree(folder, ignore_errors=True)
+    kind = f"{scene.dimension}D" if scene.plane != "axisymmetric" else "axisymmetric"
+    law = "finite" if scene.facts["finite"] else "linear"
+    lines = [f"{seed} {scene.family} {kind} {law} friction {scene.facts['friction']:.2g} {' '.join(scene.facts.get('kinds', []))}: "
+             f"{run}: {name}: {size:.1e}: {text} ({folder})" for run, name, size, text in found]
+    return scene.family, base.status, touches, lines, [f[1] for f in found], names, seconds
+
+
+def seeds_of(options):
+    """The first seeds whose scenes are of the wanted families."""
+    if options.seed is not None:
+        return [options.seed]
+    seeds, seed = [], options.first
+    while len(seeds) < options.count:
+        if not options.only or scene_of(seed).family in options.only:
+            seeds.append(seed)
+        seed += 1
+    return seeds
+
+
+def parse():
+    parser = argparse.ArgumentParser(prog="./dev bench scenes", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=1000, help="how many scenes (default: %(default)s)")
+    parser.add_argument("--first", type=int, default=1, help="seed of the first (default: %(default)s)")
+    parser.add_argument("--seed", type=int, help="this scene alone")
+    parser.add_argument("--only", nargs="+", choices=sorted(set(FAMILIES)), help="families of scenes")
+    parser.add_argument("--properties", nargs="+", metavar="NAME", help="these properties alone, wherever they apply")
+    parser.add_argument("--keep", type=pathlib.Path, help="a folder for the cases and results of all scenes")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="scenes at a time (default: %(default)s)")
+    parser.add_argument("--check", action="store_true", help="only look whether these arguments are right")
+    options = parser.parse_args()
+    if options.count < 1:
+        parser.error("there must be a scene")
+    return options
+
+
+def main():
+    options = parse()
+    if options.check:
+        return 0
+    folder = options.keep or pathlib.Path(tempfile.mkdtemp(prefix="ricochet-scenes-"))
+    begin, total, bad = time.monotonic(), 0.0, 0
+    families = collections.defaultdict(collections.Counter)
+    compared, broken = collections.Counter(), collections.Counter()
+    with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
+        jobs = [pool.submit(report_of, seed, folder / f"scene-{seed}", options.keep is not None, options.properties)
+                for seed in seeds_of(options)]
+        for job in concurrent.futures.as_completed(jobs):
+            family, status, touches, lines, kinds, names, seconds = job.result()
+            families[family].update({"scenes": 1, "touch": touches, f"status {status}": 1, "findings": bool(lines)})
+            compared.update(names)
+            broken.update(set(kinds))
+            total += seconds
+            bad += bool(lines)
+            for line in lines:
+                print(line, flush=True)
+    tables = family_table(families), property_table(compared, broken)
+    print("\n\n".join(tables))
+    print(f"\n{total:.0f} s of processors, {time.monotonic() - begin:.0f} s")
+    if not bad and not options.keep:
+        shutil.rmtree(folder, ignore_errors=True)
+    if options.count >= 1000 and options.seed is None and not options.only and not options.properties:
+        write_parts(ROOT / "docs" / "energy.md", {"random-scenes": tables[0], "random-scenes-properties": tables[1]})
+    return 1 if bad else 0
+
+
+def family_table(families):
+    lines = ["| family | scenes | that touch | refused | stopped | with findings |", "|---|---|---|---|---|---|"]
+    for name in sorted(families):
+        c = families[name]
+        lines.append(f"| {name} | {c['scenes']} | {c['touch']} | {c['status 2']} | {c['status 3']} | {c['findings']} |")
+    return "\n".join(lines)
+
+
+def property_table(compared, broken):
+    lines = ["| property | twins | scenes with findings |", "|---|---|---|"]
+    lines += [f"| {name} | {compared[name] or '–'} | {broken[name]} |" for name in sorted({*compared, *broken, *energy.PROPERTIES})]
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
