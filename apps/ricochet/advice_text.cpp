@@ -235,7 +235,7 @@ std::string obstacle_meeting_text(const Case& input, const Model& model, std::si
   return meeting_text(meets, input, "and would reach it", "and does not reach it by the end of the run");
 }
 
-/// Of every body against every other, the two that are nearest.
+/// Returns, of every body against every other, the two that are nearest.
 void print_pairs(const Model& model, std::size_t entry) {
   const std::string* all = nullptr;
   std::size_t count = 0, nearest = 0;

@@ -10,6 +10,7 @@
 #include "ricochet/simulation/step_control.hpp"
 #include "support/case_run.hpp"
 #include "support/paths.hpp"
+#include "support/thrown_body.hpp"
 
 // Adaptive steps of bodies that are set off from rest by supports, loads and obstacles.
 
@@ -17,6 +18,7 @@ namespace ricochet {
 namespace adaptive_onset_test {
 
 using test_support::CaseRun;
+using test_support::time_of;
 
 /// A block of 35 nodes that is at rest until something sets it off; units of length, mass and time are powers of two.
 std::string onset(const std::string& kind, double length = 1.0, double mass = 1.0, double time = 1.0) {
@@ -55,7 +57,7 @@ std::string onset(const std::string& kind, double length = 1.0, double mass = 1.
 
 const std::vector<std::string> onsets = {"support", "late support", "traction", "pressure", "gravity", "obstacle"};
 
-/// What a run of an onset comes to: the way that kinetic and elastic energy go.
+/// Course of a run of an onset: the way that kinetic and elastic energy go.
 struct Course {
   std::vector<double> time, energy, corner;
   long attempts = 0, tolerated = 0;
@@ -82,7 +84,7 @@ Course course(const std::string& text, const std::vector<std::string>& changes) 
   return result;
 }
 
-/// Of the corner's displacement over time, relative to its largest.
+/// Returns the distance of the corner's displacement over time, relative to its largest.
 double distance(const Course& one, const Course& reference) {
   double worst = 0.0, size = 0.0;
   for (std::size_t i = 0; i < reference.time.size(); ++i) {

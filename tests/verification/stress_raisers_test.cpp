@@ -146,7 +146,7 @@ TEST(StressRaisers, ABlockOnAPlane) {
   });
 }
 
-/// Where the cell in the corner is stiff, the next one has the larger mean and nears the corner with each refinement.
+/// If the cell in the corner is stiff, the next one has the larger mean and nears the corner with each refinement.
 TEST(StressRaisers, ReachTheNextCell) {
   const CaseRun run(static_case(box_mesh("next-cell.msh", CellShape::triangle, 8),
                                 hold("x0", R"("x", "y")") + pull("x1", R"("0", "-0.1")")));

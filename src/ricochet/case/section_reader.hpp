@@ -54,7 +54,7 @@ class SectionReader final : public ParameterCheck {
   [[nodiscard]] std::vector<Expression> axial_formulas(const std::string& name) const;
   [[nodiscard]] std::map<std::string, std::string> conditions(const std::string& name) const;
   [[nodiscard]] SectionReader table(const std::string& name) const;
-  /// Those of a list, or the one that stands in its place; none where it is absent.
+  /// Elements of a list, or the one that stands in its place; none if it is absent.
   [[nodiscard]] std::vector<SectionReader> tables(const std::string& name) const;
 
   /// Of the value, or of the section when the key is absent.

@@ -61,7 +61,7 @@ class BodySurface {
     const int first = first_piece_[static_cast<std::size_t>(node)];
     return {around_.data() + first, static_cast<std::size_t>(first_piece_[static_cast<std::size_t>(node) + 1] - first)};
   }
-  /// Of unit length, out of the body; zero of a piece without extent.
+  /// Unit vector out of the body; zero for a piece without extent.
   [[nodiscard]] Eigen::Vector3d normal_of(int piece) const;
   /// The sum of those of the pieces around a node, weighted by their angles there; of no unit length.
   [[nodiscard]] Eigen::Vector3d normal_at(int node) const;

@@ -236,7 +236,7 @@ class SensorMaker {
     sensors.push_back(std::move(sensor));
   }
 
-  /// Those of a [[contact]].
+  /// Pairs of a [[contact]].
   [[nodiscard]] std::vector<SensedPair> pairs_of(long entry) const {
     std::vector<SensedPair> result;
     for (std::size_t i = 0; i < model_.contacts.size(); ++i) {

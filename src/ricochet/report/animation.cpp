@@ -150,7 +150,7 @@ class SceneWriter {
   }
 
  private:
-  /// Of the surface's nodes, displaced by values with as many components as the field has.
+  /// Positions of the surface's nodes, displaced by values with as many components as the field has.
   [[nodiscard]] std::vector<double> positions_of(const std::vector<float>& displacement) const {
     std::vector<double> result;
     const auto width = static_cast<std::size_t>(displacement_.components);

@@ -43,7 +43,7 @@ struct Judgement {
   std::optional<double> relative_penetration;
   /// Whether the boundary that no contact looks after, and bodies against each other, were looked at, too.
   bool penetration_checked = false;
-  /// What else was not looked at, in words; empty: nothing.
+  /// Further things that were not looked at, in words; empty if there is none.
   std::string penetration_not_watched;
   /// Where no contact prevents it: in which obstacle, or of which bodies; empty: there was none.
   std::string unwatched_penetration;

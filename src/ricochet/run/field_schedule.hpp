@@ -15,7 +15,7 @@ namespace ricochet {
 
 class FieldSchedule {
  public:
-  /// Where the case does not say how often, that depends on the number of steps and on the size of a frame. A run that
+  /// If the case does not say how often, that depends on the number of steps and on the size of a frame. A run that
   /// goes on keeps what it began with, as its end may have been moved.
   FieldSchedule(const Case& input, const Model& model, long steps, const Snapshot* snapshot = nullptr);
   void save(Snapshot& snapshot) const;

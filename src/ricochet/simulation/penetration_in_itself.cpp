@@ -41,7 +41,7 @@ void PenetrationWatch::tell_of(const BodyInItself& found) const {
       named(p.through_groups), words::see_summary, contact_with_itself(found.body, p)));
 }
 
-/// Of groups that are on this body alone: the smallest that has both facets, or one for each.
+/// Names the smallest group on this body alone that has both facets, or one group for each.
 std::string PenetrationWatch::contact_with_itself(int body, const UnwatchedPenetration& found) const {
   std::map<std::string, std::size_t> sizes;
   for (const BoundaryGroup& group : boundary_groups_) {

@@ -6,7 +6,7 @@
 /// @file Penetration that no contact prevented, as it was found.
 namespace ricochet {
 
-/// What `not_watched` says of bodies that are not looked at for parts of theirs inside of each other.
+/// Entry of `not_watched` for bodies that are not looked at for parts of theirs inside of each other.
 inline constexpr const char* bodies_in_themselves = "bodies against themselves";
 
 /// A body that was found inside of an obstacle or of itself, or two bodies that were found inside of each other.
@@ -23,7 +23,7 @@ struct UnwatchedPenetration {
   std::vector<std::string> contact = {};
   /// The node went through the obstacle within one step, so deep on its way.
   bool passed_through = false;
-  /// Of a body inside of itself: boundary groups of the facet that the node has gone through.
+  /// Boundary groups of the facet that the node has gone through, if a body is inside of itself.
   std::vector<std::string> through_groups = {};
 
   [[nodiscard]] bool is_in_itself() const { return obstacle.empty() && bodies.size() == 1; }

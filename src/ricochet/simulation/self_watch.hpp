@@ -86,7 +86,7 @@ class SelfWatch {
   void look_at(std::size_t number, const Vector& displacement, double time, const NodeGaps& gaps);
   /// The contact that keeps a node apart from a piece; null: there is none.
   [[nodiscard]] static const Side* contact_at(const Part& part, int node, int piece);
-  /// What flat pieces miss of a facet that is curved.
+  /// Distance of flat pieces from the curved facet that they stand for.
   [[nodiscard]] double bend_of(const Facet& facet, const Vector& displacement) const;
   [[nodiscard]] std::array<Index, 3> nodes_of(const Part& part, int piece) const;
 

@@ -32,7 +32,7 @@ struct StepControlOptions {
 /// the other dofs, so that ½ fᵀD⁻¹f stands for ½ ΔāᵀMΔā there, D the diagonal of M, scaled to the mass (E. Hinton, T.
 /// Rock, O. C. Zienkiewicz, Earthquake Engng Struct. Dyn. 4 (1976) 245–249), without the supports.
 ///
-/// Where motion sets off from rest the largest energy so far is next to nothing, and no step is short enough beside it:
+/// If motion sets off from rest the largest energy so far is next to nothing, and no step is short enough beside it:
 /// the error of the first step is a fixed part of the motion that this step begins. There the tolerance is relative to
 /// the energy that loads, supports and obstacles are about to bring: a quarter of what a look ahead, a step of the
 /// longest length that is taken back, ends with, for as long as that step goes. (The trapezoidal rule overshoots a

@@ -95,8 +95,8 @@ void take_part(const ResultTable& table, StudyPanel& panel) {
   panel.part = part;
 }
 
-/// What stands on the axis for vectors, one number for each: the part that is asked for, else the only component in
-/// which they differ, else their length.
+/// Returns one number on the axis for each vector: the part that is asked for, else the only component in which they
+/// differ, else their length.
 std::vector<double> numbers_of(const std::vector<std::vector<double>>& vectors, std::string& part) {
   std::vector<std::string> differing;
   for (std::size_t k = 0; k < vectors.front().size(); ++k) {
@@ -250,7 +250,8 @@ bool spans_much(const std::vector<StudyLine>& lines) {
   return least > 0.0 && most > 5.0 * least;
 }
 
-/// Of each row the number on the axis: its own, that of a part of vectors, or the place of a word among `categories`.
+/// Returns the number on the axis for each row: its own, that of a part of vectors, or that of a word among
+/// `categories`.
 std::vector<double> places_of(const ResultTable& table, StudyPanel& panel, std::vector<std::string>& categories) {
   const std::size_t column = table.find(panel.x);
   if (const auto vectors = vectors_of(table, column); !vectors.empty()) return numbers_of(vectors, panel.part);

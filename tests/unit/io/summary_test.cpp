@@ -75,8 +75,8 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   impact.first_place = {1.5, -INFINITY};
   impact.before.velocity = {INFINITY, -INFINITY, 0.0};
   summary.impacts.push_back(impact);
-  summary.peak_stress = PeakStressDescription{
-      {INFINITY, 0.5, 3, 7, 2, 4, StressRaiser::support_edge}, {1.5, 2.5}, 8, "steel"};
+  summary.peak_stress =
+      PeakStressDescription{{INFINITY, 0.5, 3, 7, 2, 4, StressRaiser::support_edge}, {1.5, 2.5}, 8, "steel"};
   summary.probe_sums = {{"pull", "of supports"}, {"fit", "of contact 0"}};
 
   const RunSummary back = read_back(summary);

@@ -185,8 +185,8 @@ ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& 
   return result;
 }
 
-/// Of facets that are near; where they are too many, as coarse as it takes, and no coarser: what stands out of a plate
-/// is still seen.
+/// Shows the facets that are near; if they are too many, as coarse as it takes and no coarser: what stands out of a
+/// plate is still seen.
 ObstacleSurface Surface::surface(const Vector& centre, double radius) const {
   const Three middle = in_three(SpaceVector(centre));
   const double reach = radius + std::abs(gap(SpaceVector(centre)));

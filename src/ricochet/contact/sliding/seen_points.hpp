@@ -8,7 +8,7 @@
 
 namespace ricochet {
 
-/// What the points of a pair have been found to see lately.
+/// Facets that the points of a pair were found to see lately.
 struct SeenPoints {
   using Views = std::vector<SlidingView>;
 
