@@ -304,6 +304,22 @@ class NoFfmpeg(Exception):
         super().__init__("an .mp4 file is made by ffmpeg, which is not here: apt-get install ffmpeg, or write a .gif")
 
 
+def axes_of_animation(figure, dimension, title):
+    """Axes of the body and of the colours, which stay where they are in every frame. Room for words is in centimetres, as
+    their size does not depend on that of the figure."""
+    width, height = (2.54 * side for side in figure.get_size_inches())
+    left, bottom = (0.3, 0.3) if dimension == 3 else (1.7, 1.2)
+    top, right = 1.4 if title else 0.8, 2.2
+
+    def within(x, y, wide, high):
+        return figure.add_axes((x / width, y / height, wide / width, high / height))
+
+    tall = height - bottom - top
+    if title:
+        figure.text(0.5, 1.0 - 0.4 / height, title, fontsize=10, ha="center", va="center")
+    return within(left, bottom, width - left - right - 0.3, tall), within(width - right, bottom + 0.1 * tall, 0.4, 0.8 * tall)
+
+
 def animate(scene, shots, path, form, *, title="", size=None, view=None, limits=None, zoom=False):
     """Writes shots one after the other: "gif" by Pillow, "mp4" by ffmpeg. The same shots give the same .gif."""
     from matplotlib import animation, pyplot
@@ -313,15 +329,11 @@ def animate(scene, shots, path, form, *, title="", size=None, view=None, limits=
         raise NoFfmpeg()
     camera, norm, colours = Camera(scene, shots, view, zoom), norm_of(scene, shots, limits), map_of(scene, None)
     dpi = 100
-    width, height = (side / 2.54 for side in size or (15.0, 12.0))
     # Films have an even number of points.
-    figure = pyplot.figure(figsize=(2 * math.ceil(width * dpi / 2) / dpi, 2 * math.ceil(height * dpi / 2) / dpi), dpi=dpi)
+    figure = pyplot.figure(figsize=[2 * math.ceil(side / 2.54 * dpi / 2) / dpi for side in size or (15.0, 12.0)], dpi=dpi)
     FigureCanvasAgg(figure)
-    axes = figure.add_axes((0.02, 0.03, 0.78, 0.87) if scene.dimension == 3 else (0.12, 0.12, 0.66, 0.77))
-    bar = figure.add_axes((0.83, 0.15, 0.03, 0.65))
+    axes, bar = axes_of_animation(figure, scene.dimension, title)
     figure.colorbar(pyplot.cm.ScalarMappable(norm=norm, cmap=colours), cax=bar, label=scene.label)
-    if title:
-        figure.suptitle(title, fontsize=10)
     writer = animation.PillowWriter(fps=FRAMES_PER_SECOND) if form == "gif" else \
         animation.FFMpegWriter(fps=FRAMES_PER_SECOND, extra_args=["-pix_fmt", "yuv420p"])
     made = f"{path}.{form}"  # writers go by the name

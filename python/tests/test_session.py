@@ -33,7 +33,11 @@ def test_matrices_give_the_energies(puck):
     v, u = session.velocity.reshape(-1), session.displacement.reshape(-1)
     energies = session.energies
     assert 0.5 * v @ (session.mass @ v) == pytest.approx(energies["kinetic_energy"], rel=1e-12)
-    assert 0.5 * u @ (session.stiffness() @ u) == pytest.approx(energies["elastic_energy"], rel=1e-6, abs=1e-14)
+    stiffness = session.stiffness()
+    # The puck has moved as a whole: the sum is one of large terms that cancel.
+    rounding = 8 * numpy.finfo(float).eps * 0.5 * abs(u) @ (abs(stiffness) @ abs(u))
+    assert rounding < 1e-5 * energies["kinetic_energy"]
+    assert 0.5 * u @ (stiffness @ u) == pytest.approx(energies["elastic_energy"], rel=1e-6, abs=rounding)
 
 
 def test_reactions_are_the_force_of_the_history(puck, tmp_path):

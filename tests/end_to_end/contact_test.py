@@ -190,7 +190,7 @@ class Exports(ContactTestCase):
 
     def test_lists_of_steps(self):
         case = self.write("block.toml", block_case())
-        for steps, said in (("10,", '"" is empty'), ("", '"" is empty'), ("5:3", '"5:3" ends before it begins'),
+        for steps, said in (("10,", '"" is empty'), ("", "the value is empty"), ("5:3", '"5:3" ends before it begins'),
                             ("x", '"x" is neither'), ("1;2", '"1;2" is neither'), ("0", "step 0, the initial state"),
                             ("-4", "negative"), ("2:", '"2:" is neither'), ("99999999999999999999", "beyond all steps"),
                             ("31", "the run has 30 steps only")):

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "ricochet/fem/cell_integration.hpp"
@@ -203,7 +202,7 @@ void ContactSurface::find_states(int pair, const ContactView& view, Work& work) 
   const ContactBoundary& boundary = view.boundary;
   const auto patch = static_cast<std::size_t>(patch_of_pair_[static_cast<std::size_t>(pair)]);
   const std::size_t first = first_slot_of_patch_[patch], last = first_slot_of_patch_[patch + 1];
-  constexpr Index numbers = 3;  // pressure, points that are open, all points
+  constexpr Index numbers = 5;  // pressure, points that are open, all points, sum of the gaps, how many have one
   // Ranks put their numbers together per node.
   const bool several = view.ranks.are_several();
   const auto place = [&](std::size_t slot) {
@@ -215,6 +214,8 @@ void ContactSurface::find_states(int pair, const ContactView& view, Work& work) 
     if (entry < 0) continue;
     double* const sums = work.exchanged.data() + place(slot);
     sums[0] = view.nominal_pressure[entry];
+    sums[3] = view.gap[entry];
+    sums[4] = 1.0;
     // A point that bears nothing may be closed all the same, as vertices where nodal forces of degree 2 are borne by
     // the middles alone, and facets whose neighbours bear more: its gap says so.
     const auto add = [&](Index point) {
@@ -237,7 +238,7 @@ void ContactSurface::find_states(int pair, const ContactView& view, Work& work) 
     const double* const sums = work.exchanged.data() + place(slot);
     const auto at = static_cast<Index>(slot);
     work.pressure[at] = sums[0];
-    work.gap[at] = slots_[slot].entry < 0 ? std::numeric_limits<double>::quiet_NaN() : view.gap[slots_[slot].entry];
+    work.gap[at] = sums[3] / sums[4];  // NaN: none has it
     work.state[slot] = sums[2] == 0.0 ? node_unknown : sums[0] > 0.0 && sums[1] == 0.0 ? node_pressed : node_open;
   }
 }

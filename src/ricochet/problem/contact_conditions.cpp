@@ -95,6 +95,7 @@ void observe_obstacles(const SemidiscreteProblem& problem, const Vector& displac
                        Stage& stage) {
   problem.obstacle_velocity(displacement, instant.time, instant.span, stage.obstacle);
   if (!stage.motion || !problem.has_turning_obstacles()) return;
+  stage.motion->observes = true;
   stage.motion->observed = displacement;
   stage.motion->instant = instant;
 }
@@ -111,7 +112,7 @@ void require_no_penetration(const SemidiscreteProblem& problem, const Vector& ba
   ContactMotion& motion = *stage.motion;
   motion.displacement = base;
   motion.time = time;
-  motion.observed.resize(0);
+  motion.observes = false;
   motion.start.resize(0);
   if (start == nullptr) return;
   motion.start = start->displacement;
@@ -156,7 +157,7 @@ void linearize_contact(const SemidiscreteProblem& problem, const Vector& increme
   take_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, stage.gap_offset);
   stage.rows->normal_motion(increment, motion.gap_change);
   stage.gap_offset -= stage.gap_factor * motion.gap_change;
-  if (motion.observed.size() > 0) {
+  if (motion.observes) {
     motion.solution = motion.observed + motion.instant.factor * increment;
     problem.obstacle_velocity(motion.solution, motion.instant.time, motion.instant.span, stage.obstacle);
   }
@@ -186,7 +187,7 @@ LinearizationError linearization_error(const SemidiscreteProblem& problem, const
     error.beyond_all_rounding = std::max(error.beyond_all_rounding,
                                          wrong - 2.0 * (rounding + stage.gap_factor * motion.gap_change_rounding[i]));
   }
-  if (motion.observed.size() > 0) {
+  if (motion.observes) {
     const double obstacle = obstacle_error(problem, solution, increment, stage, motion);
     error.beyond_rounding = std::max(error.beyond_rounding, obstacle);
     error.beyond_all_rounding = std::max(error.beyond_all_rounding, obstacle);

@@ -68,8 +68,9 @@ struct ContactMotion {
   double time = 0.0;
   Vector start;  ///< displacement at the start of the step, if rows are those of the step; else empty
   double start_time = 0.0;
-  /// Displacement and instant at which the velocities of the obstacles are taken, see observe_obstacles(): at
-  /// observed + observed.factor δ. Empty if they do not depend on it.
+  /// Whether the velocities of the obstacles depend on δ. They are then those at observed + instant.factor δ, see
+  /// observe_obstacles().
+  bool observes = false;
   Vector observed;
   ObstacleInstant instant;
   Vector solution, gap_change, gap_change_rounding;  ///< work space: displacement + s δ, G δ

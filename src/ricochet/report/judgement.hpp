@@ -39,7 +39,7 @@ struct Judgement {
   double node_roughness = 0.0;
 
   double penetration = 0.0;  ///< the deepest, at contact points and wherever else was looked
-  /// To the diagonal of the box around the body; nothing where the body is not known.
+  /// Relative to the diameter of the smallest ball around the body; nothing if the body is not known.
   std::optional<double> relative_penetration;
   /// Whether the boundary that no contact looks after, and bodies against each other, were looked at, too.
   bool penetration_checked = false;

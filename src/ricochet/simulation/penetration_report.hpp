@@ -14,7 +14,7 @@ struct UnwatchedPenetration {
   std::string obstacle;             ///< empty: bodies
   std::vector<std::string> bodies;  ///< one, also without an obstacle: it is inside of itself; or two
   double depth = 0.0;
-  double relative_depth = 0.0;  ///< to the size of the (smaller) body, the diagonal of the box around it
+  double relative_depth = 0.0;  ///< to the diameter of the smallest ball around the (smaller) body
   double time = 0.0;
   std::vector<double> place;        ///< of the node, at that time
   double first_time = 0.0;          ///< when it was found

@@ -19,7 +19,7 @@ void NewtonRounds::keep(const Stage& stage) {
   if (!stage.motion) return;
   motion_ = stage.motion->displacement;
   velocity_ = stage.motion->velocity;
-  observed_ = stage.motion->observed;
+  if (stage.motion->observes) observed_ = stage.motion->observed;
 }
 
 void NewtonRounds::evaluate(const Vector& displacement, Vector& force) {
@@ -66,7 +66,7 @@ void NewtonRounds::linearize(const OperatorCoefficients& coefficients, Stage& st
   if (stage.motion) {
     stage.motion->displacement = motion_ + stage.gap_factor * total_;
     if (stage.slip_offset.size() > 0) stage.motion->velocity = velocity_ + stage.slip_factor * total_;
-    if (observed_.size() > 0) stage.motion->observed = observed_ + stage.motion->instant.factor * total_;
+    if (stage.motion->observes) stage.motion->observed = observed_ + stage.motion->instant.factor * total_;
     product_.setZero(total_.size());
     linearize_contact(problem_, product_, stage);
     return;

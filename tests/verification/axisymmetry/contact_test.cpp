@@ -172,7 +172,7 @@ TEST(Axisymmetry, ProbesOfGroupsTakeMeansOverRings) {
   state.displacement = test_support::interpolate(side.test->space, [](const Vector& x) -> Vector { return x; });
   state.velocity = 2.0 * state.displacement;
   const Vector none;
-  const Observation observation{state, none, none};
+  const Observation observation{state, none, none, none};
   for (const bool of_facets : {false, true}) {
     const std::vector<Index>& members = side.test->mesh.group(of_facets ? "y0" : "body", of_facets ? 1 : 2).members;
     const auto sensor = of_facets ? make_facet_group_sensor("end", side.test->body, members)
