@@ -60,6 +60,7 @@ class ContactSurface::Builder {
       for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
         if (surface_.patch_of_pair_[pair] == patch && !pairs[pair].tied) add_facets(pair, facets[pair]);
       }
+      surface_.entries_of_patch_.push_back(entries_of(patch));
       add_points(patch);
     }
     surface_.first_slot_of_patch_.push_back(surface_.slots_.size());
@@ -76,21 +77,24 @@ class ContactSurface::Builder {
     return patches_++;
   }
 
-  std::size_t slot_of(Index node, std::size_t pair) {
+  std::size_t slot_of(Index node) {
     const auto [known, added] = slot_of_.try_emplace(node, surface_.slots_.size());
-    if (added) surface_.slots_.push_back({node, entry_of(node, pair), 0.0});
+    if (added) surface_.slots_.push_back({node, 0.0});
     return known->second;
   }
 
-  [[nodiscard]] Index entry_of(Index node, std::size_t pair) const {
-    const auto& nodes = boundary_.nodes;
-    for (auto at = std::lower_bound(nodes.begin(), nodes.end(), node); at != nodes.end() && *at == node; ++at) {
-      const auto entry = static_cast<std::size_t>(at - nodes.begin());
-      const auto other = static_cast<std::size_t>(boundary_.node_pair[entry]);
-      if (boundary_.is_opposite[entry] == 0 && surface_.patch_of_pair_[other] == surface_.patch_of_pair_[pair])
-        return static_cast<Index>(entry);
+  [[nodiscard]] std::vector<Entry> entries_of(int patch) const {
+    std::vector<Entry> result;
+    for (std::size_t entry = 0; entry < boundary_.nodes.size(); ++entry) {
+      const auto pair = static_cast<std::size_t>(boundary_.node_pair[entry]);
+      const Index node = boundary_.nodes[entry];
+      if (boundary_.is_opposite[entry] != 0 || surface_.patch_of_pair_[pair] != patch) continue;
+      if (!result.empty() && result.back().node == node) continue;  // of a further pair
+      const auto slot = slot_of_.find(node);
+      result.push_back(
+          {static_cast<Index>(entry), node, slot != slot_of_.end() ? static_cast<Index>(slot->second) : Index{-1}});
     }
-    return -1;
+    return result;
   }
 
   void add_facets(std::size_t pair, std::vector<Facet>& result) {
@@ -106,7 +110,7 @@ class ContactSurface::Builder {
       Facet facet{place.block, surface_.slots_of_facets_.size(), place_of_node_.size(), 0.0,
                   1.0 / (1.0 / own[i] + compliance)};
       for (int k = 0; k < block.nodes_per_cell; ++k)
-        surface_.slots_of_facets_.push_back(slot_of(block.cell(place.local)[k], pair));
+        surface_.slots_of_facets_.push_back(slot_of(block.cell(place.local)[k]));
       for (int k = 0; k < geometry.nodes_per_cell; ++k) place_of_node_.push_back(geometry.cell(place.local)[k]);
       result.push_back(facet);
     }
@@ -209,10 +213,9 @@ void ContactSurface::find_states(int pair, const ContactView& view, Work& work) 
     return numbers * (several ? slots_[slot].node : static_cast<Index>(slot - first));
   };
   work.exchanged.setZero(numbers * (several ? nodes_ : static_cast<Index>(last - first)));
-  for (std::size_t slot = first; slot < last; ++slot) {
-    const Index entry = slots_[slot].entry;
-    if (entry < 0) continue;
-    double* const sums = work.exchanged.data() + place(slot);
+  for (const auto& [entry, node, slot] : entries_of_patch_[patch]) {
+    if (slot < 0 && !several) continue;
+    double* const sums = work.exchanged.data() + (several ? numbers * node : place(static_cast<std::size_t>(slot)));
     sums[0] = view.nominal_pressure[entry];
     sums[3] = view.gap[entry];
     sums[4] = 1.0;

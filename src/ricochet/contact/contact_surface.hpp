@@ -64,8 +64,12 @@ class ContactSurface {
   /// A node of a patch of facets whose pairs share their contact points.
   struct Slot {
     Index node;
-    Index entry;  ///< of the boundary's nodes, or −1
     double area;  ///< share of the facets around it
+  };
+  /// A node of the boundary. Of several ranks one may know of its contact though the facets around it are others'.
+  struct Entry {
+    Index entry, node;
+    Index slot;  ///< −1: in no facet of this rank
   };
   class Builder;
 
@@ -88,6 +92,7 @@ class ContactSurface {
   std::vector<int> patch_of_pair_;
   std::vector<std::size_t> first_slot_of_patch_;  ///< per patch, and the end
   std::vector<Slot> slots_;
+  std::vector<std::vector<Entry>> entries_of_patch_;
   std::vector<std::size_t> slots_of_facets_;
   Points places_, node_places_;  ///< of the geometry, and per slot
   Index nodes_;

@@ -113,8 +113,10 @@ void require_no_penetration(const SemidiscreteProblem& problem, const Vector& ba
   motion.displacement = base;
   motion.time = time;
   motion.observes = false;
-  motion.start.resize(0);
-  if (start == nullptr) return;
+  if (start == nullptr) {
+    motion.start.resize(0);
+    return;
+  }
   motion.start = start->displacement;
   motion.start_time = start->time;
 }
