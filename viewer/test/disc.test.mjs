@@ -298,8 +298,9 @@ test("the body is where the results say, and its colours have their values", asy
 
 test("a part of the time can be seen closer", async () => {
   const { page } = view;
-  await page.evaluate(() => window.scrollTo(0, 0));
-  const box = await (await page.$("#chart-energy .u-over")).boundingBox();
+  const plot = await page.$("#chart-energy .u-over");
+  await plot.scrollIntoViewIfNeeded();
+  const box = await plot.boundingBox();
   await page.mouse.move(box.x + 0.2 * box.width, box.y + 30);
   await page.mouse.down();
   await page.mouse.move(box.x + 0.6 * box.width, box.y + 40, { steps: 5 });
