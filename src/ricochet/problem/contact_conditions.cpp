@@ -66,12 +66,18 @@ void take_slip(const SemidiscreteProblem& problem, const Vector& velocity, const
 /// iterations.
 constexpr double same_velocity = 1e-10;
 
+/// Velocities of the obstacles where an increment takes the contact points.
+void take_obstacle_velocity(const SemidiscreteProblem& problem, const Vector& increment, ContactMotion& motion,
+                            ObstacleMotion& velocity) {
+  motion.solution = motion.observed + motion.instant.factor * increment;
+  problem.obstacle_velocity(motion.solution, motion.instant.time, motion.instant.span, velocity);
+}
+
 /// The largest difference, as a motion over the step, between the velocities of obstacles at the solution and those
 /// that its conditions were relative to, at points that carry a force. Negative if they are the same.
 double obstacle_error(const SemidiscreteProblem& problem, const StageSolution& solution, const Vector& increment,
                       const Stage& stage, ContactMotion& motion) {
-  motion.solution = motion.observed + motion.instant.factor * increment;
-  problem.obstacle_velocity(motion.solution, motion.instant.time, motion.instant.span, motion.obstacle);
+  take_obstacle_velocity(problem, increment, motion, motion.obstacle);
   project_motion(*stage.rows, motion.obstacle);
   const bool has_friction = stage.slip_offset.size() > 0;
   const double duration = has_friction ? stage.gap_factor / stage.slip_factor : motion.instant.span;
@@ -159,10 +165,7 @@ void linearize_contact(const SemidiscreteProblem& problem, const Vector& increme
   take_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, stage.gap_offset);
   stage.rows->normal_motion(increment, motion.gap_change);
   stage.gap_offset -= stage.gap_factor * motion.gap_change;
-  if (motion.observes) {
-    motion.solution = motion.observed + motion.instant.factor * increment;
-    problem.obstacle_velocity(motion.solution, motion.instant.time, motion.instant.span, stage.obstacle);
-  }
+  if (motion.observes) take_obstacle_velocity(problem, increment, motion, stage.obstacle);
   project_motion(*stage.rows, stage.obstacle);
   if (stage.slip_offset.size() == 0) return;
   take_slip(problem, motion.velocity, stage.obstacle.tangential, stage);
