@@ -15,7 +15,7 @@ import unittest
 
 import h5py
 
-from harness import DISC, SCHEMES, run, settings, wait_for
+from harness import DISC, MESHES, SCHEMES, run, settings, wait_for
 from interrupted_runs import ResumeTestCase, busy, checkpoints, start
 
 KILLS = 50
@@ -169,6 +169,45 @@ class Resume(ResumeTestCase):
             path.unlink()
         process = self.expect_status(2, run("run", "--resume", output, "--set", "time.end=0.05"))
         self.assertIn("cannot go on to a later time.end", process.stderr)
+
+    def test_goes_on_with_what_the_contact_solver_has_learnt(self):
+        """Where the factor was made anew, on another scale: what a rubber block on a turning wedge costs by sweeps and by Newton's
+        method decides which of them the next step begins with."""
+        wedge = self.write("wedge.txt", "-1 -1.5\n2 -1.6\n0.7 -0.02\n-1 -1.5\n")
+        case = self.write("block.toml", f"""[mesh]
+file = "{MESHES / 'quadrilateral_o1_msh41_ascii.msh'}"
+plane = "stress"
+degree = 2
+refine = 2
+[[material]]
+group = "all"
+density = 1.2
+law = "neo-hookean"
+young = 20.0
+poisson = 0.45
+[obstacle.wedge]
+type = "surface"
+file = "{wedge}"
+rotation = "0.3*t"
+about = [0.0, -1.0]
+[[contact]]
+group = "bottom"
+obstacle = "wedge"
+friction = 0.7
+[initial]
+velocity = [0.0, -0.2]
+[time]
+step = 0.05
+end = 1.0
+[output]
+fields_every = 0
+""")
+        expected = self.simulate(case, "whole", {})
+        for steps in (13, 15, 17):
+            output = self.simulate(case, f"after-{steps}", {"time.end": 0.05 * steps})
+            self.expect_status(0, run("run", "--resume", output, "--quiet", "--set", "time.end=1.0"))
+            with self.subTest(steps=steps):
+                self.assertEqual((expected / "history.csv").read_bytes(), (output / "history.csv").read_bytes())
 
 
 if __name__ == "__main__":

@@ -143,6 +143,8 @@ void CondensedContact::save(Snapshot& snapshot, const std::string& name) const {
 void CondensedContact::load(const Snapshot& snapshot, const std::string& name) {
   const std::vector<Index>& points = snapshot.integers(name + ".candidates", 0, problem_.contact.size() - 1);
   const auto count = static_cast<Index>(points.size());
+  // That of the factor which the state has: a solver whose reactions are scaled forgets what it has learnt.
+  scale_ = contact_.reaction_scale = factor_.scale();
   start_again_with({});
   for (const Index end : snapshot.integers(name + ".taken_up", 1, count)) {
     const auto begin = static_cast<Index>(candidates_.points().size());
