@@ -253,16 +253,8 @@ class SlidingContact final : public ContactGeometry {
   }
 
   void warn_of_long_step() const {
-    for (const auto& pair : data_.pairs) has_told_ = has_told_ || warn_of_blind_step(*pair, writer_.step());
-  }
-
-  /// The longest way that a node of the pair goes between two displacements.
-  [[nodiscard]] double longest_way(const SlidingPair& pair, const Vector& to, const Vector& from) const {
-    double longest = 0.0;
-    const Index d = dimension();
-    for (const Index node : pair.nodes())
-      longest = std::max(longest, (to.segment(node * d, d) - from.segment(node * d, d)).norm());
-    return longest;
+    for (const auto& pair : data_.pairs)
+      has_told_ = has_told_ || warn_of_blind_step(*pair, at_update_, start_at_update_);
   }
 
   /// Rows of surfaces that are far apart are those of planes across the normals of the start, wherever they are.

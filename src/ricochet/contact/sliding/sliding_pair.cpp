@@ -303,14 +303,22 @@ double SlidingPair::node_gap(Index node, const SlidingVector& direction, const V
   return hit.facet >= 0 ? hit.gap : std::numeric_limits<double>::quiet_NaN();
 }
 
-bool warn_of_blind_step(const SlidingPair& pair, const Vector& step) {
-  if (!pair.is_self()) return false;
+double longest_way(const SlidingPair& pair, const Vector& to, const Vector& from) {
   const Index d = pair.dimension();
+  const auto way = [&](Index node) -> SpaceVector { return to.segment(node * d, d) - from.segment(node * d, d); };
   SpaceVector mean = SpaceVector::Zero(d);
-  for (const Index node : pair.nodes()) mean += step.segment(node * d, d);
-  mean /= static_cast<double>(pair.nodes().size());
+  if (pair.is_self()) {
+    for (const Index node : pair.nodes()) mean += way(node);
+    mean /= static_cast<double>(pair.nodes().size());
+  }
   double longest = 0.0;
-  for (const Index node : pair.nodes()) longest = std::max(longest, (step.segment(node * d, d) - mean).norm());
+  for (const Index node : pair.nodes()) longest = std::max(longest, (way(node) - mean).norm());
+  return longest;
+}
+
+bool warn_of_blind_step(const SlidingPair& pair, const Vector& to, const Vector& from) {
+  if (!pair.is_self()) return false;
+  const double longest = longest_way(pair, to, from);
   if (2.0 * longest <= pair.sight()) return false;
   log::warning(fmt::format(
       "a surface that may touch itself moves in a step by up to {:.3g} to either side of its mean motion, and "

@@ -108,8 +108,13 @@ class SlidingPair {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Of a surface that touches itself: parts that come nearer by more in a step (displacements of all nodes) than it sees
-/// into itself may pass through each other unseen. Warns, and is true, where they may.
-bool warn_of_blind_step(const SlidingPair& pair, const Vector& step);
+/// The longest way that a node of the pair goes between two displacements of all nodes; of a surface that touches
+/// itself beside its mean motion. Which of its points may touch decides which of them stand for others, and must not
+/// depend on who looks on.
+[[nodiscard]] double longest_way(const SlidingPair& pair, const Vector& to, const Vector& from);
+
+/// Of a surface that touches itself: parts that come nearer by more in a step than it sees into itself may pass through
+/// each other unseen. Warns, and is true, where they may.
+bool warn_of_blind_step(const SlidingPair& pair, const Vector& to, const Vector& from);
 
 }  // namespace ricochet
