@@ -54,6 +54,9 @@ SpaceVector normal_far_round(const SpaceVector& way, double change, const SpaceV
   return (some - some.dot(along) * along).normalized();
 }
 
+/// In roundings of gaps. What a shorter way leaves out of the work of a force is no more than this times rounding.
+constexpr double least_way = 100.0;
+
 }  // namespace
 
 SpaceVector ObstacleShape::normal_at_middle(const SpaceVector& from, const SpaceVector& to) const {
@@ -66,8 +69,10 @@ SpaceVector corrected_normal(SpaceVector gradient, const SpaceVector& way, doubl
                              const SpaceVector& at_start, const SpaceVector& at_end) {
   const double square = way.squaredNorm(), missing = change - gradient.dot(way);
   // Beside rounding not at once: iterations in which a point that hardly moves is now on this side, now on that would
-  // find one normal, then another.
-  const double part = std::clamp(std::abs(missing) / rounding - 1.0, 0.0, 1.0);
+  // find one normal, then another. A way that is itself little more than rounding, as that of a point which sticks to
+  // an obstacle that turns, has no direction.
+  const double part = std::clamp(std::abs(missing) / rounding - 1.0, 0.0, 1.0) *
+                      std::clamp(std::sqrt(square) / (least_way * rounding) - 1.0, 0.0, 1.0);
   if (square > 0.0 && part > 0.0) gradient += part * missing / square * way;
   const double length = gradient.norm();
   if (!(length > 0.0)) return normal_far_round(way, change, at_start, at_end);
