@@ -210,6 +210,51 @@ class Probes(TestCase):
         for at, _, cell in read:
             self.assertEqual(history["ball.von_mises_maximum"][rows[at]], cell["von_mises"][0].max())
 
+    def test_moments_at_finite_strain_have_the_places_of_their_instant(self):
+        """A rubber puck that is thrown aside and flattened: the impulse of the moments is the change of the angular momentum, to first
+        order in the step, as those are of its end; on a plane they are that of the force at the centre. With reference places
+        half of it was missing."""
+        case = self.write("rolls.toml", f"""[mesh]
+file = "{SOURCE / 'cases' / 'puck' / 'puck.msh'}"
+[[material]]
+group = "puck"
+density = 1200.0
+law = "neo-hookean"
+young = 1.0e6
+poisson = 0.4
+[obstacle.wall]
+type = "plane"
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+[[contact]]
+group = "skin"
+obstacle = "wall"
+friction = 0.3
+[initial]
+velocity = [3.0, -3.0]
+[time]
+step = 4.0e-5
+end = 4.0e-3
+[output]
+fields_every = 0
+[[probe]]
+name = "rim"
+boundary = "skin"
+[[probe]]
+name = "zone"
+contact = 0
+""")
+        errors = []
+        for step in (2e-5, 1e-5):
+            h = History(self.simulate(case, f"rolls-{step}", {"time.step": step}) / "history.csv")
+            moment, steps = numpy.array(h["rim.moment_z"]), numpy.diff(h["time"])
+            of_centre = (numpy.array(h["zone.centre_x"]) * h["zone.force_y"] - numpy.array(h["zone.centre_y"]) * h["zone.force_x"])
+            numpy.testing.assert_allclose(moment, of_centre, rtol=0, atol=1e-12 * abs(moment).max())
+            change = h["angular_momentum_z"][-1] - h["angular_momentum_z"][0]
+            errors.append(abs((steps * moment[1:]).sum() / change - 1))
+        self.assertLess(errors[0], 0.003)
+        self.assertLess(errors[1], 0.6 * errors[0])
+
     def test_what_is_refused(self):
         for probe, message in (
                 ('at = [0.0, 0.0]\ngroup = "body"', "group"),

@@ -40,7 +40,8 @@ class Sensor {
 
 /// Force and moment on the body of supports and contacts together at the nodes of some facets, and of the supports
 /// alone: where a contact shares nodes with the facets, only the latter are the reaction of the support. Moments are
-/// about `about`, with reference positions. Given loads are not part of either.
+/// about `about`, with reference positions, at finite strain with those of the state. Given loads are not part of
+/// either.
 [[nodiscard]] std::unique_ptr<Sensor> make_boundary_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                                            const std::vector<Index>& nodes, const Vector& about);
 
@@ -60,9 +61,9 @@ struct SensedPair {
 };
 
 /// Resultant of a [[contact]], the sum over its pairs: force on the body, which between bodies is that of the pair's
-/// first group in the case; centre of pressure Σ r_N X / Σ r_N with the
-/// reference positions X (0 where open), as the moments of boundaries take them, and area of the pressed part of the
-/// facets on the side that carries the multipliers (in 2D a length; contact_surface.hpp), at finite strain after the
+/// first group in the case; centre of pressure Σ r_N x / Σ r_N with the
+/// places x that the moments of boundaries take (0 where open), and area of the pressed part of the facets on the side
+/// that carries the multipliers (in 2D a length; contact_surface.hpp), at finite strain after the
 /// deformation, and before it as "nominal_area".
 [[nodiscard]] std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                                           const std::vector<SensedPair>& pairs);

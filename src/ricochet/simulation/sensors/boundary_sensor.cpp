@@ -10,32 +10,27 @@ class BoundarySensor final : public Sensor {
  public:
   BoundarySensor(std::string name, const SemidiscreteProblem& problem, const std::vector<Index>& nodes,
                  const Vector& about)
-      : name_(std::move(name)), problem_(problem) {
+      : name_(std::move(name)), problem_(problem), deforms_(!problem.internal_force->is_linear()), about_(about) {
     const Index d = problem.dimension;
     inside_.assign(static_cast<std::size_t>(problem.nodes.cols()), 0);
     for (const Index node : nodes) inside_[static_cast<std::size_t>(node)] = 1;
-    about_ = about;
-    const auto arm = [&](Index node) {
-      Eigen::Vector3d result = Eigen::Vector3d::Zero();
-      result.head(d) = problem.nodes.col(node) - about;
-      return result;
-    };
     for (Index i = 0; i < problem.supports.size(); ++i) {
       const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
       if (problem.axisymmetric && dof % d == 0 && problem.nodes(0, dof / d) == 0.0) continue;  // of the axis itself
-      if (inside_[static_cast<std::size_t>(dof / d)] != 0) supports_.push_back({i, dof % d, arm(dof / d)});
+      if (inside_[static_cast<std::size_t>(dof / d)] != 0) supports_.push_back({i, dof});
     }
-    // Of a point's force the part Σ c_ij acts on these nodes, with the moment Σ c_ij X_j × force.
+    // Of a point's force the part Σ c_ij acts on these nodes, with the moment Σ c_ij X_j × force where places are those
+    // of the reference.
     for (Index point = 0; point < problem.contact.size(); ++point) {
-      if (problem.contact.slides(point)) {
-        sliding_.push_back(point);
+      if (deforms_ || problem.contact.slides(point)) {
+        by_nodes_.push_back(point);
         continue;
       }
       Point own{point, 0.0, Eigen::Vector3d::Zero()};
       problem.contact.visit_nodes(point, [&](Index node, double weight) {
         if (inside_[static_cast<std::size_t>(node)] == 0) return;
         own.part += weight;
-        own.arm += weight * arm(node);
+        own.arm += weight * arm(problem.nodes.col(node));
       });
       if (own.part != 0.0 || !own.arm.isZero(0.0)) points_.push_back(own);
     }
@@ -50,12 +45,13 @@ class BoundarySensor final : public Sensor {
 
   void observe(const Observation& observation, std::vector<double>& row) override {
     const Index d = problem_.dimension;
-    const StepForces& forces = observation.state.forces;
+    const State& state = observation.state;
+    const StepForces& forces = state.forces;
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
-    for (const Support& support : supports_) {
-      const Eigen::Vector3d own = forces.support_reaction[support.number] * Eigen::Vector3d::Unit(support.component);
+    for (const auto& [number, dof] : supports_) {
+      const Eigen::Vector3d own = forces.support_reaction[number] * Eigen::Vector3d::Unit(dof % d);
       force += own;
-      moment += support.arm.cross(own);
+      moment += arm_of(dof / d, state).cross(own);
     }
     const Eigen::Vector3d support_force = force, support_moment = moment;
     for (const Point& point : points_) {
@@ -64,7 +60,7 @@ class BoundarySensor final : public Sensor {
       force += point.part * own;
       moment += point.arm.cross(own);
     }
-    add_sliding(forces, force, moment);
+    add_by_nodes(state, force, moment);
     append_values(force, moment, row);
     append_values(support_force, support_moment, row);
   }
@@ -84,18 +80,32 @@ class BoundarySensor final : public Sensor {
     append(part * moment.tail(d == 2 ? 1 : 3), row);
   }
 
-  /// Points whose rows reach other nodes as bodies slide: node by node.
-  void add_sliding(const StepForces& forces, Eigen::Vector3d& force, Eigen::Vector3d& moment) const {
+  /// From `about` to a place.
+  template <class Place>
+  [[nodiscard]] Eigen::Vector3d arm(const Place& place) const {
+    Eigen::Vector3d result = Eigen::Vector3d::Zero();
+    result.head(problem_.dimension) = place - about_;
+    return result;
+  }
+
+  /// To where a node is: at finite strain that of the state, as for the angular momentum of the history.
+  [[nodiscard]] Eigen::Vector3d arm_of(Index node, const State& state) const {
+    const Index d = problem_.dimension;
+    if (!deforms_) return arm(problem_.nodes.col(node));
+    return arm(problem_.nodes.col(node) + state.displacement.segment(node * d, d));
+  }
+
+  /// Points whose nodes move, or whose rows reach other nodes as bodies slide: node by node.
+  void add_by_nodes(const State& state, Eigen::Vector3d& force, Eigen::Vector3d& moment) const {
+    const StepForces& forces = state.forces;
     const Index d = problem_.dimension, tangents = d - 1;
     const auto add = [&](Index dof, double value) {
       if (inside_[static_cast<std::size_t>(dof / d)] == 0) return;
       const Eigen::Vector3d own = value * Eigen::Vector3d::Unit(dof % d);
-      Eigen::Vector3d arm = Eigen::Vector3d::Zero();
-      arm.head(d) = problem_.nodes.col(dof / d) - about_;
       force += own;
-      moment += arm.cross(own);
+      moment += arm_of(dof / d, state).cross(own);
     };
-    for (const Index point : sliding_) {
+    for (const Index point : by_nodes_) {
       const double normal = forces.normal_reaction[point];
       if (normal != 0.0) forces.rows->visit_normal(point, [&](Index dof, double value) { add(dof, value * normal); });
       if (forces.tangential_reaction.size() == 0) continue;
@@ -107,8 +117,7 @@ class BoundarySensor final : public Sensor {
   }
 
   struct Support {
-    Index number, component;
-    Eigen::Vector3d arm;
+    Index number, dof;
   };
   struct Point {
     Index number;
@@ -117,11 +126,12 @@ class BoundarySensor final : public Sensor {
   };
   std::string name_;
   const SemidiscreteProblem& problem_;
+  bool deforms_;
+  Vector about_;
   std::vector<Support> supports_;
   std::vector<Point> points_;
-  std::vector<Index> sliding_;
-  std::vector<char> inside_;  ///< per node
-  Vector about_;
+  std::vector<Index> by_nodes_;  ///< points
+  std::vector<char> inside_;     ///< per node
 };
 
 }  // namespace

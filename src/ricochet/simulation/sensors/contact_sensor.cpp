@@ -85,8 +85,10 @@ class ContactSensor final : public Sensor {
         const double normal = state.forces.normal_reaction[point];
         if (!(normal > 0.0)) continue;
         pressing += normal;
-        contact.visit_own_nodes(
-            point, [&](Index node, double weight) { centre += normal * weight * problem_.nodes.col(node); });
+        contact.visit_own_nodes(point, [&](Index node, double weight) {
+          centre += normal * weight * problem_.nodes.col(node);
+          if (contact.surface->deforms()) centre += normal * weight * state.displacement.segment(node * d, d);
+        });
       }
     }
     // A ratio of sums: the sensor sees to it itself.
