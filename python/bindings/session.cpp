@@ -223,60 +223,86 @@ void resume(OpenSession& open, const py::bytes& saved) {
 
 template <class Class>
 void bind_looks(Class& session) {
-  session.def_property_readonly("displacement", nodal([](const State& s) -> const Vector& { return s.displacement; }))
-      .def_property_readonly("velocity", nodal([](const State& s) -> const Vector& { return s.velocity; }))
-      .def_property_readonly("acceleration", nodal([](const State& s) -> const Vector& { return s.acceleration; }))
-      .def_property_readonly("reactions",
-                             [](const py::object& self) {
-                               const Vector& r = self.cast<OpenSession&>().state().forces.normal_reaction;
-                               return view(r.data(), r.size(), 0, self);
-                             })
-      .def_property_readonly("friction_reactions",
-                             [](const py::object& self) {
-                               auto& open = self.cast<OpenSession&>();
-                               const Vector& r = open.state().forces.tangential_reaction;
-                               const Index tangents = open.session.problem().dimension - 1;
-                               return view(r.data(), r.size() / tangents, tangents, self);
-                             })
-      .def_property_readonly("contact_status",
-                             [](OpenSession& open) { return numbers_of(open.state().contact_status); })
-      .def_property_readonly("gaps",
-                             [](OpenSession& open) {
-                               Vector gaps;
-                               const State& state = open.state();
-                               open.session.problem().gaps(state.displacement, state.time, gaps);
-                               const Index count = gaps.size();
-                               return give(std::move(gaps), count);
-                             })
-      .def_property_readonly("contact_force", &contact_force)
-      .def_property_readonly("energies", &energies)
-      .def_property_readonly("time", [](OpenSession& open) { return open.state().time; })
-      .def_property_readonly("step_number", [](OpenSession& open) { return open.state().step; })
-      .def_property_readonly("iterations", [](OpenSession& open) { return open.state().iterations; })
-      .def_property_readonly("at_end", [](OpenSession& open) {
-        (void)open.simulation();
-        return open.session.at_end();
-      });
+  session
+      .def_property_readonly("displacement", nodal([](const State& s) -> const Vector& { return s.displacement; }),
+                             "Of the nodes, nodes x dimension; a view.")
+      .def_property_readonly("velocity", nodal([](const State& s) -> const Vector& { return s.velocity; }),
+                             "Of the nodes, nodes x dimension; a view.")
+      .def_property_readonly("acceleration", nodal([](const State& s) -> const Vector& { return s.acceleration; }),
+                             "Of the nodes, nodes x dimension; a view.")
+      .def_property_readonly(
+          "reactions",
+          [](const py::object& self) {
+            const Vector& r = self.cast<OpenSession&>().state().forces.normal_reaction;
+            return view(r.data(), r.size(), 0, self);
+          },
+          "Normal forces of the contact points at the instants of the history (0 where open); a view.")
+      .def_property_readonly(
+          "friction_reactions",
+          [](const py::object& self) {
+            auto& open = self.cast<OpenSession&>();
+            const Vector& r = open.state().forces.tangential_reaction;
+            const Index tangents = open.session.problem().dimension - 1;
+            return view(r.data(), r.size() / tangents, tangents, self);
+          },
+          "Friction forces of the contact points along their tangents; a view.")
+      .def_property_readonly(
+          "contact_status", [](OpenSession& open) { return numbers_of(open.state().contact_status); },
+          "Of the contact points: 0 open, 1 closed without friction, 2 sticking, 3 slipping.")
+      .def_property_readonly(
+          "gaps",
+          [](OpenSession& open) {
+            Vector gaps;
+            const State& state = open.state();
+            open.session.problem().gaps(state.displacement, state.time, gaps);
+            const Index count = gaps.size();
+            return give(std::move(gaps), count);
+          },
+          "Of the contact points, positive where they are apart.")
+      .def_property_readonly(
+          "contact_force", &contact_force,
+          "The force on each node that acted over the last step, nodes x dimension: times the step it is\n"
+          "the change of the momentum. `reactions` are those of the end of the step.")
+      .def_property_readonly("energies", &energies,
+                             "Parts of the energy account, by the names of the columns of the history.")
+      .def_property_readonly(
+          "time", [](OpenSession& open) { return open.state().time; }, "Of the state.")
+      .def_property_readonly(
+          "step_number", [](OpenSession& open) { return open.state().step; }, "Steps that were taken.")
+      .def_property_readonly(
+          "iterations", [](OpenSession& open) { return open.state().iterations; },
+          "Of the contact solver in the last step.")
+      .def_property_readonly(
+          "at_end",
+          [](OpenSession& open) {
+            (void)open.simulation();
+            return open.session.at_end();
+          },
+          "Whether no step is left.");
 }
 
 template <class Class>
 void bind_problem(Class& session) {
   session.def_property_readonly("dimension", [](OpenSession& open) { return open.problem().dimension; })
-      .def_property_readonly("points",
-                             [](OpenSession& open) {
-                               const SemidiscreteProblem& problem = open.problem();
-                               Points points = problem.nodes.leftCols(nodes_of(problem));
-                               return give(std::move(points), nodes_of(problem), problem.dimension);
-                             })
-      .def_property_readonly("node_numbers",
-                             [](OpenSession& open) {
-                               (void)open.problem();
-                               std::vector<Index> numbers = open.session.model().space.number;
-                               numbers.resize(static_cast<std::size_t>(nodes_of(open.session.problem())));
-                               const auto count = static_cast<Index>(numbers.size());
-                               return give(std::move(numbers), count);
-                             })
-      .def_property_readonly("contact_points", &contact_places)
+      .def_property_readonly(
+          "points",
+          [](OpenSession& open) {
+            const SemidiscreteProblem& problem = open.problem();
+            Points points = problem.nodes.leftCols(nodes_of(problem));
+            return give(std::move(points), nodes_of(problem), problem.dimension);
+          },
+          "Reference positions of the nodes, nodes x dimension.")
+      .def_property_readonly(
+          "node_numbers",
+          [](OpenSession& open) {
+            (void)open.problem();
+            std::vector<Index> numbers = open.session.model().space.number;
+            numbers.resize(static_cast<std::size_t>(nodes_of(open.session.problem())));
+            const auto count = static_cast<Index>(numbers.size());
+            return give(std::move(numbers), count);
+          },
+          "Of the nodes in the mesh.")
+      .def_property_readonly("contact_points", &contact_places, "Reference positions of the contact points.")
       .def_property_readonly("mass_parts", [](OpenSession& open) { return parts_of(open.problem().mass.whole()); })
       .def_property_readonly("mass_built",
                              [](OpenSession& open) {
@@ -340,8 +366,10 @@ void bind_session(py::module_& module) {
           py::arg("obstacle"), py::arg("velocity"), py::arg("rotation_rate") = py::none(),
           "From now on this obstacle moves with a constant velocity, and a constant rate of its rotation vector where\n"
           "the case gives it a rotation, from where it is. The first call comes before the session starts.")
-      .def_property_readonly("warnings", [](const OpenSession& open) { return open.session.warnings(); })
-      .def_property_readonly("steps", [](const OpenSession& open) { return open.session.steps(); })
+      .def_property_readonly(
+          "warnings", [](const OpenSession& open) { return open.session.warnings(); }, "What was warned of so far.")
+      .def_property_readonly(
+          "steps", [](const OpenSession& open) { return open.session.steps(); }, "Steps from the start to the end.")
       .def_property_readonly("end", [](OpenSession& open) {
         const double end = open.session.end();
         // The last step ends at or after it, but for rounding: a loop until the end must come there.

@@ -45,8 +45,10 @@ void SteeredPath::steer(double time, const SpaceVector& velocity, const SpaceVec
   Leg leg{time, displacement(time), rotation(time), velocity, SpaceVector::Zero(rotations_)};
   if (rotation_rate.size() > 0) {
     if (!turns())
-      throw Error(ErrorKind::invalid_input,
-                  "it does not turn: give it a rotation in the case, which may be zero, to set the rate of that");
+      throw Error(
+          ErrorKind::invalid_input,
+          "it has no rotation whose rate could be set: give it one in the case, which may be zero, as in rotation = "
+          "\"0\" (a rotation_rate in the case is the turning of its surface in place, and stays what it is)");
     check_rates("rotation rate", rotation_rate, rotations_);
     leg.rotation_rate = rotation_rate;
   }

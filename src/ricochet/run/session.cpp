@@ -195,7 +195,16 @@ void Session::set_obstacle_velocity(const std::string& obstacle, const Vector& v
   steer_from_start(section_of_obstacle(obstacle));
   if (is_complete_already()) refuse_use("the run is complete: there are no steps to come");
   try {
-    steered_path(obstacle).steer(simulation_ != nullptr ? time() : 0.0, velocity, rotation_rate);
+    SteeredPath& path = steered_path(obstacle);
+    const double now = simulation_ != nullptr ? time() : 0.0;
+    const bool is_turning = path.turns() && path.rotation(now + input_.time.step) != path.rotation(now);
+    path.steer(now, velocity, rotation_rate);
+    if (is_turning && rotation_rate.size() == 0) {
+      log::warning(
+          fmt::format("session: obstacle \"{}\" was turning and stops turning, as its velocity is given without a "
+                      "rotation rate: give that, too (zero, where it is to stop)",
+                      obstacle));
+    }
   } catch (const Error& problem) {
     throw Error(problem.kind(), fmt::format("session: obstacle \"{}\": {}", obstacle, problem.what()));
   }

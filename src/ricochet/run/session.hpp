@@ -80,7 +80,8 @@ class Session {
   /// set_load does.
   void set_velocity(const Vector& velocity);
   /// From now on this obstacle moves with a constant velocity (d numbers) and a constant rate of its rotation vector
-  /// (1 or 3 numbers, only where the case gives it a rotation; empty: none), from where it is. The first call for an
+  /// (1 or 3 numbers, only where the case gives it a rotation; empty: none, and what was turning then stops, with a
+  /// warning), from where it is; a `rotation_rate` of the case, of its surface in place, stays. The first call for an
   /// obstacle comes before start(), write_to() and any look at the state. Throws Error(usage) where it comes too late,
   /// and Error(invalid_input) where there is no such obstacle, it moves by the forces on it, or the numbers do not fit.
   void set_obstacle_velocity(const std::string& obstacle, const Vector& velocity, const Vector& rotation_rate = {});
