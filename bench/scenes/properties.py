@@ -20,7 +20,8 @@ from scene import Section, Table
 
 TOLERANCE = {False: 1e-9, True: 1e-5}  # by whether contact follows the motion
 NUDGE, SPREAD, NUDGED = 1e-12, 100.0, 8
-OTHER_SIDE = {False: 0.0, True: 1e-3}  # of flat meshes that match at the start, and are strained
+# Of flat meshes that match at the start. Strained ones no longer do, and both sides are discretizations: up to 5e-3 apart in 1,000 scenes.
+OTHER_SIDE = {False: 0.0, True: 1e-2}
 HEAVY = 1e9  # mass of a free body over that of what it meets
 
 
@@ -149,7 +150,9 @@ class Twins:
         end = self.scene.section("time").keys["end"].text()
         twin = Run(self.program, case, self.folder / "resumed", "--set", f"time.end={half:.17g}")
         if twin.status == 0:
+            before = twin.messages  # what they say of steps counts for the whole
             twin = Run(self.program, case, self.folder / "resumed", "--set", f"time.end={end}", resume=True)
+            twin.messages = before + twin.messages
         twin.scene = self.scene
         same = twin.status == self.base.status and getattr(twin, "bytes", None) == getattr(self.base, "bytes", None)
         return ([] if same else [("resumed", math.inf, f"histories differ; status {self.base.status} and {twin.status} {twin.error()[:200]}")]), twin
