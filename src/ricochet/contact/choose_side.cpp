@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "ricochet/contact/facet_surface.hpp"
@@ -33,8 +34,12 @@ struct Side {
   double area = 0.0;
 };
 
+/// Neighbours at a larger angle, in rad, meet at an edge.
+constexpr double largest_bend = 0.26 * 3.14159265358979323846;
+
 /// Of facets that share a node: the angle of their normals over the distance of their centres, the mean of all.
-double curvature_of(const Body& body, const FacetSurface& surface) {
+/// Neighbours at a larger angle than `most` count as if they were of one plane.
+double curvature_of(const Body& body, const FacetSurface& surface, double most) {
   std::map<Index, std::vector<std::size_t>> around;
   for (std::size_t k = 0; k < surface.facets().size(); ++k) {
     const PlaceInBlocks place = place_in_blocks(body.mesh->facets, surface.facets()[k].number);
@@ -47,7 +52,7 @@ double curvature_of(const Body& body, const FacetSurface& surface) {
   const auto add = [&](const FacetSurface::Facet& a, const FacetSurface::Facet& b) {
     const FacetSurface::Three one = a.area_vector.normalized(), other = b.area_vector.normalized();
     const double angle = std::atan2(one.cross(other).norm(), one.dot(other)), distance = (a.centre - b.centre).norm();
-    sum += angle > rounding && distance > 0.0 ? angle / distance : 0.0;
+    sum += angle > rounding && angle <= most && distance > 0.0 ? angle / distance : 0.0;
     ++count;
   };
   for (const auto& [node, facets] : around) {
@@ -58,7 +63,8 @@ double curvature_of(const Body& body, const FacetSurface& surface) {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-Side measure(const Body& body, const std::vector<Index>& facets) {
+Side measure(const Body& body, const std::vector<Index>& facets,
+             double most = std::numeric_limits<double>::infinity()) {
   const FacetSurface surface(body, facets);
   Side side;
   double& area = side.area;
@@ -70,7 +76,7 @@ Side measure(const Body& body, const std::vector<Index>& facets) {
   }
   side.size /= static_cast<double>(std::max<std::size_t>(surface.facets().size(), 1));
   side.stiffness /= area;
-  side.curvature = curvature_of(body, surface);
+  side.curvature = curvature_of(body, surface, most);
   return side;
 }
 
@@ -80,8 +86,8 @@ double distance_from_curved(const Body& body, const ContactPair& pair) {
   if (body.mesh->degree > 1) return 0.0;
   double result = 0.0;
   for (const std::vector<Index>* const facets : {&pair.facets, &pair.opposite_facets}) {
-    const Side side = measure(body, *facets);
-    const double size = side.size * body.space->degree;  // of facets, not of the distance of their nodes
+    const Side side = measure(body, *facets, largest_bend);  // edges are no curves that facets stand for
+    const double size = side.size * body.space->degree;      // of facets, not of the distance of their nodes
     result = std::max(result, 0.125 * side.curvature * size * size);
   }
   return result;
