@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/linear_algebra/graph_components.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/simulation/held_bodies.hpp"
 #include "ricochet/simulation/starting_stage.hpp"
@@ -23,15 +22,6 @@ constexpr int most_rounds = 100, most_renewals = 12;
 constexpr double proximal_fraction = 1e-10, proximal_fraction_of_unheld = 1e-6;
 /// What may be left of the largest of the forces.
 constexpr double left_of_forces = 1e-10;
-
-/// Whether no body can move as a whole for all that its supports say.
-bool all_are_held_by_supports(const SemidiscreteProblem& problem) {
-  for (const std::vector<Index>& members : graph_components(problem.internal_force->graph(problem.dimension))) {
-    if (members.size() == 1 && problem.is_tied_dof(members.front() * problem.dimension)) continue;
-    if (!are_held_by_supports(problem, members)) return false;
-  }
-  return true;
-}
 
 double proximal_coefficient(const SemidiscreteProblem& problem) {
   const Vector stiffness = problem.internal_force->stiffness_diagonal(), mass = problem.mass.diagonal();

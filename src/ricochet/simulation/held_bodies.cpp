@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ricochet/base/dense_decompositions.hpp"
+#include "ricochet/linear_algebra/graph_components.hpp"
 
 namespace ricochet {
 
@@ -48,6 +49,14 @@ bool are_held_by_supports(const SemidiscreteProblem& problem, const std::vector<
   constexpr double negligible = 1e-8;
   const Vector sizes = symmetric_eigenvalues(square_of_supported_motions(problem, members));
   return sizes[0] > negligible * sizes[sizes.size() - 1];
+}
+
+bool all_are_held_by_supports(const SemidiscreteProblem& problem) {
+  for (const std::vector<Index>& members : graph_components(problem.internal_force->graph(problem.dimension))) {
+    if (members.size() == 1 && problem.is_tied_dof(members.front() * problem.dimension)) continue;
+    if (!are_held_by_supports(problem, members)) return false;
+  }
+  return true;
 }
 
 bool are_held_at_rest(const SemidiscreteProblem& problem, const std::vector<Index>& members) {

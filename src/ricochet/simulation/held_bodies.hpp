@@ -11,7 +11,10 @@ namespace ricochet {
 /// the reference.
 [[nodiscard]] bool are_held_by_supports(const SemidiscreteProblem& problem, const std::vector<Index>& members);
 
-/// The same, and the supports stay where they are: nothing that they prescribe depends on time.
+/// The same of all bodies.
+[[nodiscard]] bool all_are_held_by_supports(const SemidiscreteProblem& problem);
+
+/// The same of one, and the supports stay where they are: nothing that they prescribe depends on time.
 [[nodiscard]] bool are_held_at_rest(const SemidiscreteProblem& problem, const std::vector<Index>& members);
 
 }  // namespace ricochet

@@ -11,6 +11,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/displacement_space.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/simulation/held_bodies.hpp"
 #include "ricochet/simulation/rigid_equilibrium.hpp"
 #include "ricochet/simulation/starting_stage.hpp"
 #include "ricochet/solver/step_solver.hpp"
@@ -193,7 +194,7 @@ std::string as_text(const Vector& vector) {
   }
   const std::string force = fmt::format("({:.3g}, {:.3g}{})", resultant[0], resultant[1],
                                         resultant.size() == 3 ? fmt::format(", {:.3g}", resultant[2]) : "");
-  if (largest(problem, left_over) <= 1e-3 * largest(problem, load)) {
+  if (largest(problem, left_over) <= 1e-3 * largest(problem, load) || all_are_held_by_supports(problem)) {
     throw Error(
         ErrorKind::not_converged,
         fmt::format("initial.displacement = \"static\": the equilibrium was not found to rounding; a force of {:.2g} "
