@@ -69,7 +69,32 @@ class TwoBodiesTraps(TestCase):
         case = self.bodies(wedge(4), strip(3, 2, 0.5), "[time]\nstep = 0.02\nend = 2.0\n", above)
         out = self.simulate(case, values={"part.two.move": "[0.0, 1.51]", "part.one.velocity": "[0.0, 0.1]"})
         [told] = self.warnings(out, "has no force yet")
-        self.assertIn("give the flat side facets as small", told)
+        self.assertIn('refine the mesh of "one.top" there', told)
+
+    def test_a_ridge_is_met_the_less_late_the_finer_the_side_with_the_multipliers_is(self):
+        above = '[[contact]]\ngroup = "one.top"\nagainst = "two.bottom"\n'
+        case = self.bodies(wedge(4), strip(3, 2, 0.5), "[time]\nstep = 0.02\nend = 2.0\n", above)
+        speed, gap = 0.1, 0.01
+
+        def late(side, **refined):
+            out = self.simulate(case, values={"part.two.move": f"[0.0, {1.5 + gap}]", "part.one.velocity": f"[0.0, {speed}]",
+                                              "contact.0.multipliers_on": side, **refined}, options=("--quiet", "--force"))
+            history = History(out / "history.csv")
+            return speed * next(time for time, active in zip(history["time"], history["active_contacts"]) if active > 0) - gap
+
+        for side, carries, other in (("group", "part.one.refine", "part.two.refine"), ("against", "part.two.refine", "part.one.refine")):
+            first = late(side)
+            self.assertAlmostEqual(late(side, **{other: 2}), first, delta=0.02 * first)
+            self.assertLess(late(side, **{carries: 2}), 0.35 * first)
+
+    def test_a_ridge_that_facets_do_not_see_at_all(self):
+        """With sliding = "large" nothing is left to be set but the mesh, and what is said is why."""
+        above = '[[contact]]\ngroup = "one.top"\nagainst = "two.bottom"\nsliding = "large"\nmultipliers_on = "against"\n'
+        case = self.bodies(wedge(4), strip(3, 2, 0.5), "[time]\nstep = 0.02\nend = 2.2\n", above)
+        values = {"part.two.move": "[0.0, 1.51]", "part.one.velocity": "[0.0, 0.1]", "material.0.law": "neo-hookean", "material.1.law": "neo-hookean"}
+        [told] = self.warnings(self.simulate(case, values=values), "more than half a facet")
+        self.assertIn('gaps are means over facets of "two.bottom", which carries the multipliers, and this place does not show in them', told)
+        self.assertEqual(self.warnings(self.simulate(case, name="fine", values={**values, "part.two.refine": 2}), "more than half a facet"), [])
 
     def test_ties_between_bodies_that_move_apart(self):
         tied = '[[contact]]\ngroup = "one.right"\nagainst = "two.left"\ntied = true\n'

@@ -186,6 +186,23 @@ TEST(AdaptiveOnset, EndWhereTheyDoNotGetOn) {
     other.watch(1.0, 0.0);
   }
   EXPECT_LE(steps, 160);
+  // So does a tolerance that the jumps meet; and with a shorter longest step none are so many in one of them.
+  const auto steps_to = [&](const StepControlOptions& options) {
+    StepControl control(run.problem(), options);
+    control.start(still);
+    long count = 0;
+    for (; !control.at_end(); ++count) {
+      jumped.velocity.setConstant(count % 2 == 0 ? 1.0 : -1.0);
+      while (!control.accept(still, jumped, 1.0)) {
+        if (control.wants_prospect()) control.take_prospect(0, 1.0);
+      }
+      control.watch(1.0, 0.0);
+    }
+    return count;
+  };
+  EXPECT_LE(steps_to({.end = 1.0, .largest = 0.1, .smallest = 1e-9, .tolerance = 10.0}), 160);
+  EXPECT_GE(steps_to({.end = 1.0, .largest = 1e-4, .smallest = 1e-5, .tolerance = 1e-3}), 10000);
+  EXPECT_EQ(warnings.size(), 1u);
 }
 
 }  // namespace adaptive_onset_test

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "ricochet/base/error.hpp"
 #include "support/case_run.hpp"
 
 /// @file Schemes that take the internal force half way through a step, at finite strain: what it misses of the change
@@ -86,6 +88,25 @@ TEST(FiniteMidpoint, TheErrorOfAStepIsOfThirdOrder) {
     EXPECT_NEAR(std::log2(errors[0] / errors[1]), 3.0, 0.15) << scheme;
     EXPECT_NEAR(std::log2(errors[1] / errors[2]), 3.0, 0.08) << scheme;
   }
+}
+
+/// A case is refused before, by the line of its law; this is told to programs that put a problem and a scheme together.
+TEST(FiniteMidpoint, SchemesOfTheLinearLawAreRefused) {
+  std::string text = block("midpoint", 1e-3, 1e-2, 10.0);
+  const CaseRun run(text);
+  const std::unique_ptr<Scheme> scheme = make_scheme("klr-conserving", 1e-3);
+  try {
+    const Simulation simulation(run.problem(), *scheme, run.model().initial);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::invalid_input);
+    EXPECT_NE(std::string(error.what()).find("needs a linear material law: set material.law = \"linear\""),
+              std::string::npos)
+        << error.what();
+  }
+  const std::string law = "neo-hookean";
+  const CaseRun linear(text.replace(text.find(law), law.size(), "linear"));
+  EXPECT_NO_THROW(Simulation(linear.problem(), *scheme, linear.model().initial));
 }
 
 }  // namespace finite_midpoint_test

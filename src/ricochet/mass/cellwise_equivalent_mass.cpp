@@ -357,7 +357,7 @@ void CellwiseBuilder::refuse(const Giver& giver) {
                           "all {}; refine the mesh there or set mesh.degree = 2, name only facets that may touch in "
                           "the contact group, or "
                           "use mass type \"equivalent-nodewise\", which needs no whole cell (\"consistent\" and "
-                          "\"lumped\" need none of this)",
+                          "\"lumped\", with scheme \"contact-stabilized\" or \"newmark\", need none of this)",
                           text_of_point(*input_.nodes, node), describe_free_nodes(*input_.nodes, body, free),
                           CellRings::many_cells, d_ + 1, d_ == 3 ? "in one plane" : "on one line"));
 }

@@ -22,8 +22,8 @@ std::string name_of(const MassInput& input, const MassBody& body) {
 [[noreturn]] void refuse(const MassInput& input, const MassBody& body, const std::string& reason) {
   throw Error(ErrorKind::invalid_input,
               fmt::format("mass type \"equivalent-lumped\": {} has {}; refine the mesh, so that nodes off the contact "
-                          "boundary surround its centre of gravity, or use mass type \"lumped\" (with an implicit "
-                          "scheme)",
+                          "boundary surround its centre of gravity, or use mass type \"lumped\" "
+                          "with scheme \"contact-stabilized\" or \"newmark\"",
                           name_of(input, body), reason));
 }
 
@@ -165,7 +165,7 @@ Vector share_contact_mass(const MassInput& input, const Vector& lumped) {
       throw Error(ErrorKind::invalid_input,
                   fmt::format("mass type \"equivalent-lumped\": the body of the contact node at {} has no node off the "
                               "contact boundary that could carry its mass; refine the mesh, or use mass type "
-                              "\"lumped\" (with an implicit scheme)",
+                              "\"lumped\" with scheme \"contact-stabilized\" or \"newmark\"",
                               text_of_point(*input.nodes, node)));
     }
     for (const Index receiver : free) result[receiver] += lumped[node] * (lumped[receiver] / sum);

@@ -59,7 +59,7 @@ class NearestEquivalentMass final : public MassConstruction {
           ErrorKind::invalid_input,
           fmt::format("mass type \"equivalent-nearest\": the body with the node at {} has {}: they cannot carry its "
                       "mass, centre of gravity and moments of inertia; refine the mesh, or use mass type "
-                      "\"consistent\" or \"lumped\"",
+                      "\"consistent\" or \"lumped\" with scheme \"contact-stabilized\" or \"newmark\"",
                       text_of_point(*input.nodes, body.nodes.front()),
                       describe_free_nodes(*input.nodes, body.nodes, free)));
     }

@@ -82,23 +82,26 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
   judge_loss(summary, problem, state);
   if (!(contact_creates || friction_creates || rotates) || is_rounding_of_energy(scale, problem, state)) return;
   if (contact_creates) {
-    const bool best = scheme.suits_singular_mass() && problem.has_singular_mass();
-    const char* const remedy = "scheme \"reduced-kane\" with mass \"equivalent\" creates none";
-    log::warning(
-        fmt::format("contact forces have created energy, {:.2g} of the largest (contact_work less "
-                    "numerical_dissipation of the history); {}{}",
-                    summary.creation_by_method(),
-                    best ? "take a time.step below the time in which a wave crosses a cell, and see that no body "
-                           "starts inside an obstacle; "
-                         : "it comes from the time scheme: ",
-                    remedy));
+    const bool helps = scheme.suits_singular_mass() && problem.has_singular_mass();
+    log::warning(fmt::format(
+        "contact forces have created energy, {:.2g} of the largest (contact_work less numerical_dissipation of the "
+        "history); {} scheme \"reduced-kane\" with mass \"equivalent\", which creates none",
+        summary.creation_by_method(),
+        helps ? "take a time.step below the time in which a wave crosses a cell, or"
+              : "it comes from the time scheme: use"));
   }
   if (friction_creates) {
+    const char* const remedy =
+        problem.has_singular_mass() ? "take a smaller time.step, or"
+        : scheme.suits_singular_mass()
+            ? "with inertia on contact nodes smaller steps are no cure: take mass \"equivalent\" with a smaller "
+              "time.step, or"
+            : "use";
     log::warning(fmt::format(
-        "friction has created energy: friction_work reaches {:.2g} of the largest energy; it comes from the "
-        "weights that {} gives to the forces at the two ends of a step: take a smaller time.step, or "
-        "scheme \"reduced-kane\" with mass \"equivalent\", whose friction creates none",
-        summary.digest("friction_work").maximum / scale, summary.scheme));
+        "friction has created energy: friction_work reaches {:.2g} of the largest energy; it comes from the weights "
+        "that {} gives to the forces at the two ends of a step: {} scheme \"reduced-kane\" with mass \"equivalent\", "
+        "whose friction creates none",
+        summary.digest("friction_work").maximum / scale, summary.scheme, remedy));
   }
   if (rotates) {
     log::warning(fmt::format(

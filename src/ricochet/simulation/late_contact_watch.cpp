@@ -58,11 +58,12 @@ void LateContactWatch::look(const State& state) {
 void LateContactWatch::tell(const Contact& contact, Index entry, double time) const {
   const ContactPair& pair = pairs_[contact.number];
   const Vector place = problem_.nodes.col(problem_.contact.nodes[static_cast<std::size_t>(entry)]);
-  log::warning(
-      fmt::format("at t = {:.6g} a node at ({:.4g}) (reference position) is {:.3g} inside of the other body, and the "
-                  "contact of \"{}\" and \"{}\" has no force yet: gaps are means over facets, and a corner or a ridge "
-                  "against larger facets is met late; give the flat side facets as small as what is to touch it",
-                  time, fmt::join(place, ", "), -gap_[entry], pair.first_group(), pair.second_group()));
+  log::warning(fmt::format(
+      "at t = {:.6g} a node at ({:.4g}) (reference position) is {:.3g} inside of the other body, and the "
+      "contact of \"{}\" and \"{}\" has no force yet: gaps are means over facets of \"{}\", which carries the "
+      "multipliers, and a corner or a ridge is met late by a part of such a facet; refine the mesh of \"{}\" "
+      "there",
+      time, fmt::join(place, ", "), -gap_[entry], pair.first_group(), pair.second_group(), pair.group, pair.group));
 }
 
 void LateContactWatch::save(Snapshot& snapshot, const std::string& name) const {

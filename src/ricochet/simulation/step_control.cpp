@@ -145,7 +145,7 @@ void StepControl::watch(double energy, double created) {
       ErrorKind::not_converged,
       fmt::format(
           "t = {:.9g}: the time scheme has created an energy of {:.3g} where the motion had {:.3g}; shorter steps only "
-          "make it create more: use scheme \"reduced-kane\" with mass \"equivalent\", or fixed steps",
+          "make it create more: use scheme \"reduced-kane\" with mass \"equivalent\"",
           time(), created, own_energy_));
 }
 
