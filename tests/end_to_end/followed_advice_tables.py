@@ -161,7 +161,7 @@ TRIED_BY_RUNS = [
     (r'\[\[material\]\] a law that rotations do not change \(law = "neo-hookean"\)', BLOCK,
      {**KANE, "initial.velocity": '["-3*y", "3*x"]', "material.0.mu": 500.0, "material.0.lambda": 500.0, "mesh.move": "[0.0, 5.0]"},
      [{"material.0.law": "neo-hookean"}]),
-    (r'take a time.step below the time in which a wave crosses a cell, or', BLOCK, {**SLIDES, "mass.type": "equivalent"},
+    (r'take a smaller time.step, below the time in which a wave crosses a cell, or', BLOCK, {**SLIDES, "mass.type": "equivalent"},
      [{"time.step": 5e-4}, KANE]),
     (r'take a smaller time.step, or', BLOCK,
      {**SHAKEN, "mass.type": "equivalent", "time.step": 0.1}, [{"time.step": 0.01}, KANE]),

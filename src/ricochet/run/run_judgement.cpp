@@ -87,7 +87,7 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
         "contact forces have created energy, {:.2g} of the largest (contact_work less numerical_dissipation of the "
         "history); {} scheme \"reduced-kane\" with mass \"equivalent\", which creates none",
         summary.creation_by_method(),
-        helps ? "take a time.step below the time in which a wave crosses a cell, or"
+        helps ? "take a smaller time.step, below the time in which a wave crosses a cell, or"
               : "it comes from the time scheme: use"));
   }
   if (friction_creates) {
