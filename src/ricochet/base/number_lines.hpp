@@ -10,7 +10,7 @@ namespace ricochet {
 /// Words of a text between blanks.
 class TextWords {
  public:
-  /// Keeps both texts.
+  /// Keeps references to both; they must outlive it.
   TextWords(const std::string& file, std::string_view text);
 
   /// The next word; empty at the end of the text.
@@ -36,7 +36,7 @@ class TextWords {
 class NumberLines {
  public:
   enum class Header { allowed, refused };
-  /// Keeps both texts. A byte order mark at the beginning is no part of the first word.
+  /// Keeps references to both; they must outlive it. A byte order mark at the beginning is no part of the first word.
   NumberLines(const std::string& file, std::string_view text, Header header);
 
   /// Goes to the next line; false: there is none. Throws Error(invalid_input) with file, line and column where a word

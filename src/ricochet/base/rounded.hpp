@@ -5,13 +5,13 @@
 /// @file Bounds in messages: a number that a user takes over must not lie on the other side of what it stands for.
 namespace ricochet {
 
-/// The largest number of so many significant digits that is no larger than a positive one, but for rounding.
+/// `value`, positive and finite, rounded down to `digits` significant digits; may exceed it by 1e-9 of it.
 [[nodiscard]] inline double rounded_down(double value, int digits) {
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - digits + 1);
   return std::floor(value / unit * (1.0 + 1e-9)) * unit;
 }
 
-/// The smallest number of so many significant digits that is no smaller, likewise.
+/// The same rounded up; may fall short of it by 1e-9 of it.
 [[nodiscard]] inline double rounded_up(double value, int digits) {
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - digits + 1);
   return std::ceil(value / unit * (1.0 - 1e-9)) * unit;

@@ -18,8 +18,8 @@ namespace ricochet {
 
 namespace {
 
-/// In the child: what ends it is told by waitpid alone. Handlers of this process, as that of Python's faulthandler,
-/// would speak for it; a signal that asks the process to end is for the parent.
+/// Prepares the child. What ends the child is reported by waitpid alone. Handlers of this process, as that of Python's
+/// faulthandler, would speak for it; a signal that asks the process to end is for the parent.
 void prepare_child(pid_t parent, double processor_seconds) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // it was killed sooner
