@@ -26,10 +26,10 @@ namespace ricochet {
 struct ContactView {
   const ContactBoundary& boundary;
   const ContactRows& rows;
-  const Vector& normal_reaction;   ///< per point
-  const Vector& gap;               ///< per node of the boundary
+  const Vector& normal_reaction;   ///< per contact point
+  const Vector& gap;               ///< per entry of boundary.nodes
   const Vector& nominal_pressure;  ///< likewise; of several ranks a part
-  const Vector& displacement;
+  const Vector& displacement;      ///< d per node of the body
   const Ranks& ranks;
 };
 
@@ -39,9 +39,11 @@ class ContactSurface {
     double now = 0.0;      ///< of the deformed surface; at small strain `nominal`
     double nominal = 0.0;  ///< of the undeformed surface
   };
+  /// What pressed_area works in. Of the slots only those of the pair's patch are set.
   struct Work {
-    Vector exchanged, pressure, gap;
-    std::vector<char> state;
+    Vector exchanged;         ///< five sums per slot of the patch; of several ranks per node of the body
+    Vector pressure, gap;     ///< per slot; a gap that no rank has is NaN
+    std::vector<char> state;  ///< per slot: open, pressed or unknown
   };
 
   /// Keeps copies of all that it needs.

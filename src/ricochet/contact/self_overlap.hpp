@@ -10,8 +10,8 @@
 /// the inside of one first, the node lies inside of that part. The depth is the distance to the surface that it has
 /// come through: the closest piece that faces the node's own surface and has the node behind it, or, where that is
 /// less, the way on along a ray. Rays that meet both sides at one place graze an edge and decide nothing, and neither
-/// does a node whose pieces have no common outside. All of three rays must agree, so that the rounding of one of them
-/// finds nothing.
+/// does a node whose pieces have no common outside. All of the up to three rays that lead out of the node's own pieces
+/// must agree, so that the rounding of one of them finds nothing.
 namespace ricochet {
 
 /// Allocates nothing.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "ricochet/contact/facet_surface.hpp"
 #include "ricochet/mesh/disjoint_sets.hpp"
@@ -13,8 +14,8 @@ namespace {
 
 using Three = FacetSurface::Three;
 
-/// Normals that differ by less are those of one plane; a larger angle between neighbours is that of an edge.
-constexpr double level = 1e-6, edge = 0.25 * 3.14159265358979323846;
+/// Facets whose normals differ by less than `level` are coplanar; neighbours at more than `edge` meet at an edge.
+constexpr double level = 1e-6, edge = 0.25 * std::numbers::pi;
 
 /// Angle, in turns between two facets, up to which a normal is seen past the last of them.
 constexpr double past_end = 0.75;

@@ -9,7 +9,9 @@
 /// @file Broad phase of many pairs of surfaces: which of them are too far apart to touch in a step.
 namespace ricochet {
 
-/// Points up to so many times the motion of a step ahead, and up to this part of a cell, have rows.
+/// Distance (length) within which points have rows: four times the step's motion plus a tenth of a cell's height, since
+/// two surfaces close by at most twice the way, and forces move points farther in a step than was known when its rows
+/// were made.
 [[nodiscard]] inline double reach_of_sliding(double way, double height) {
   return 4.0 * way + 0.1 * height;
 }

@@ -31,7 +31,8 @@ class RowPlaces {
     }
   }
 
-  /// Displacements of all nodes, zero at others than those of surfaces. Whether rows are those of a step.
+  /// Sets the displacements of surface nodes at the end and at the start. Leaves other nodes as they are. Returns
+  /// whether rows are those of a step.
   bool read(const Vector& values, Vector& displacement, Vector& start) const {
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const Index at = 1 + static_cast<Index>(i) * dimension_, first = nodes_[i] * dimension_;
