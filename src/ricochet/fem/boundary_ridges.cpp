@@ -13,7 +13,7 @@ namespace ricochet {
 
 namespace {
 
-/// A ridge as that of one facet.
+/// One facet's share of a ridge.
 struct RidgeSide {
   std::array<Index, 2> nodes;  ///< ascending
   std::size_t facet;

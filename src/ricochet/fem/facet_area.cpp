@@ -73,7 +73,7 @@ double FacetArea::segment(double from, double to) const {
   return sum * (to - from);
 }
 
-/// Duffy's map makes a rule of triangles of that of the square.
+/// Maps the rule of the square to a triangle (Duffy).
 double FacetArea::triangle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) const {
   const Eigen::Vector2d first = b - a, second = c - a;
   double sum = 0.0;
