@@ -20,7 +20,7 @@ namespace {
 
 /// A body that slides past an obstacle comes no nearer: s then doubles with each step.
 constexpr int most_rounds = 10'000;
-/// In sizes of what is there: a body that is as far away has missed.
+/// In body sizes plus the initial gap: farther away the body has missed the obstacle.
 constexpr double out_of_reach = 1e3;
 
 struct Nearest {
