@@ -2,7 +2,7 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file Memory of a run before anything is assembled, in bytes, as measured: docs/performance.md.
+/// @file Estimates of a run's memory, in bytes, before anything is assembled.
 namespace ricochet {
 
 /// Peak of a run that is solved by iterations; a factor takes more.
