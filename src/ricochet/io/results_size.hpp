@@ -11,7 +11,7 @@ struct ResultsSize {
   [[nodiscard]] double of(long frames) const { return mesh + static_cast<double>(frames) * frame; }
 };
 
-/// Size for a body of which a rank has a part, with so many nodes and cells in all.
+/// Estimate for the whole body, of `nodes` and `cells`; `body` may be one rank's part.
 [[nodiscard]] ResultsSize results_size(const Body& body, const SemidiscreteProblem& problem,
                                        const ResultsOptions& options, Index nodes, Index cells);
 

@@ -7,6 +7,7 @@
 /// off, replaces or removes would be lost without a word.
 namespace ricochet {
 
+/// Remembers the device, the number and the size of a file, and throws where the file no longer has them.
 class SoleWriter {
  public:
   /// Takes a file that is open for writing as it is now. Throws Error(file_access).
@@ -27,7 +28,7 @@ class SoleWriter {
   std::string path_;
   std::uint64_t device_ = 0, number_ = 0;
   std::int64_t size_ = 0;
-  bool knows_end_ = false;  ///< there was something else than zeros right before that size
+  bool knows_end_ = false;  ///< the last 512 bytes were not all zero
 };
 
 }  // namespace ricochet
