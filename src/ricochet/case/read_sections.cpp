@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/rounded.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/names.hpp"
 #include "ricochet/case/quantity.hpp"
@@ -186,12 +187,11 @@ void check_smallest(const SectionReader& reader, const TimeSection& time) {
       std::min(std::floor(std::log2(StepControl::most_ticks * (time.step / time.end))), 1.0 * StepControl::most_levels);
   const double least = std::ldexp(time.step, -static_cast<int>(levels));
   if (time.smallest >= least * (1.0 - 1e-9)) return;
-  constexpr double rounded_up = 1.05;  // with two digits still long enough
   reader.add_problem(
       "smallest", fmt::format("\"smallest\" is {}, too short beside \"largest\", {}, and \"end\", {}: times are whole "
                               "numbers of it and would not have all of their digits; give at least {:.2g}, or leave "
                               "it out",
-                              time.smallest, time.step, time.end, rounded_up * least));
+                              time.smallest, time.step, time.end, rounded_up(least, 2)));
 }
 
 TimeSection read_time(const SectionReader& reader) {

@@ -107,14 +107,14 @@ TEST(ReadTime, RefusesShortestStepsInWhichTimesCannotBeCounted) {
     EXPECT_EQ(problem(smallest, "0.1"),
               "--set time.smallest=" + smallest + ": \"smallest\" is " + smallest +
                   ", too short beside \"largest\", 0.01, and \"end\", 0.1: times are whole numbers of it and would not "
-                  "have all of their digits; give at least 9.5e-15, or leave it out");
+                  "have all of their digits; give at least 9.1e-15, or leave it out");
   }
-  EXPECT_EQ(problem("9.5e-15", "0.1"), "") << "what the message says is enough";
+  EXPECT_EQ(problem("9.1e-15", "0.1"), "") << "what the message says is enough";
   // Far away the end decides: 2e-9 of it are 1e15.
   EXPECT_EQ(problem("1e-8", "1e6"), "");
   EXPECT_NE(problem("1e-11", "1e6"), "");
-  EXPECT_NE(problem("1e-12", "1e6").find("give at least 1.6e-10"), std::string::npos) << problem("1e-12", "1e6");
-  EXPECT_EQ(problem("1.6e-10", "1e6"), "");
+  EXPECT_NE(problem("1e-12", "1e6").find("give at least 1.5e-10"), std::string::npos) << problem("1e-12", "1e6");
+  EXPECT_EQ(problem("1.5e-10", "1e6"), "");
 }
 
 }  // namespace ricochet::case_test
