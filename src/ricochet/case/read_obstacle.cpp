@@ -53,8 +53,11 @@ void read_free_body(const SectionReader& reader, ObstacleSection& obstacle) {
   for (const char* const key : {"inertia", "centre_of_mass", "spin", "force", "torque", "spring", "damper",
                                 "rotation_spring", "rotation_damper", "hold"})
     only(is_free, key, "is of a rigid body that moves by the forces on it: give its mass or density, too");
-  for (const char* const key : {"motion", "rotation", "table", "rotation_rate"})
+  for (const char* const key : {"motion", "rotation", "table"})
     only(!is_free, key, "is a motion that is given; an obstacle with a mass or density moves by the forces on it");
+  only(!is_free, "rotation_rate",
+       "is a motion that is given; an obstacle with a mass or density moves by the forces on it; "
+       "for a driven roller that a force presses, give it \"spin\", a large \"inertia\" (a flywheel) and \"force\"");
 }
 
 }  // namespace
