@@ -72,6 +72,8 @@ std::vector<std::size_t> frames_of(const RunData& run, const AnimationOptions& o
   const std::size_t every = (frames.size() + drawn_frames - 1) / drawn_frames;
   std::vector<std::size_t> shown;
   for (std::size_t k = 0; k < frames.size(); k += every) shown.push_back(frames[k]);
+  // What the motion has led to is seen whatever is left out on the way.
+  if (shown.back() != frames.back()) shown.push_back(frames.back());
   return shown;
 }
 
@@ -112,7 +114,7 @@ class SceneWriter {
       refuse_animation(fmt::format(
           "{}: --zoom looks at the contact, and the run wrote no contact_pressure (output.fields)", run.directory));
     const Index most = std::min(drawn_triangles, static_cast<Index>(drawn_in_all / static_cast<double>(frames)));
-    surface_ = make_surface(run.results->nodes(), run.results->cells(), std::max<Index>(most, 2'000));
+    surface_ = make_surface(run.results->nodes(), run.results->cells(), most);
   }
 
   [[nodiscard]] std::string surface_text() const {
