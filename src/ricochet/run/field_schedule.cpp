@@ -124,7 +124,9 @@ std::string output_text(const OutputEstimate& estimate) {
     text += fmt::format(
         "{} of fields of {}, {} in all{}{}; ", counted(estimate.frames, "frame"), size_text(estimate.frame_bytes),
         size_text(estimate.results_bytes), estimate.is_compressed ? " before compression" : "",
-        estimate.is_limited ? " (as many as stay below 200 MB, as the case does not say how many)" : "");
+        estimate.is_limited
+            ? fmt::format(" (as many as stay below {}, as the case does not say how many)", size_text(most_bytes))
+            : "");
   }
   return text + fmt::format("history.csv of {}{}", estimate.is_adaptive ? "at least " : "some ",
                             size_text(estimate.history_bytes));

@@ -51,8 +51,10 @@ void NewtonWatch::save(Snapshot& snapshot, const std::string& name) const {
 }
 
 void NewtonWatch::load(const Snapshot& snapshot, const std::string& name) {
-  if (!snapshot.has(name)) return;
+  constexpr double limit = 1e15;  // whole numbers below it are exact
   const Vector& numbers = snapshot.reals(name, 4);
+  if (!(numbers.array() >= 0.0 && numbers.array() < limit).all())
+    Snapshot::refuse(name, fmt::format("has entries that are not from 0 to {:g}", limit));
   weight_ = numbers[0];
   steps_ = static_cast<long>(numbers[1]);
   seconds_ = numbers[2];
@@ -93,18 +95,19 @@ std::string many_iterations_text(const NewtonWatch& watch, const ExplicitRun& ot
                   NewtonWatch::many, watch.steps(), watch.seconds_per_step());
   if (!other.refusal.empty()) {
     return fmt::format(
-        "{}; scheme \"{}\" with mass.type = \"{}\", which solves no system of the whole body, does not "
-        "take this case: {}",
+        "{}; scheme \"{}\" with mass.type = \"{}\", which solves no system of the whole body, "
+        "does not take this case: {}",
         what, scheme, mass, other.refusal);
   }
   const double own = left / step * watch.seconds_per_step(), steps = std::ceil((now + left) / other.step);
   return fmt::format(
-      "{}, which is {} for the rest of the run. Scheme \"{}\" with mass.type = \"{}\" solves no system of the whole "
-      "body "
-      "and takes this case with time.step = {:.2g}, seven tenths of its critical step at rest: {:.2g} steps from the "
-      "start, {} at the pace of the first ones. A slow load may act faster there, as long as the kinetic energy stays "
-      "small beside the elastic one",
-      what, duration_text(own), scheme, mass, other.step, steps, duration_text(steps * other.seconds_per_step));
+      "{}, which is {} for the rest of the run. "
+      "Scheme \"{}\" with mass.type = \"{}\" solves no system of the whole body "
+      "and takes this case with time.step = {:.2g}, {:g} of its critical step at rest: "
+      "{:.2g} steps from the start, {} at the pace of the first ones. "
+      "A slow load may act faster there, as long as the kinetic energy stays small beside the elastic one",
+      what, duration_text(own), scheme, mass, other.step, safe_part, steps,
+      duration_text(steps * other.seconds_per_step));
 }
 
 }  // namespace ricochet

@@ -14,7 +14,6 @@ class NewtonWatch {
   static constexpr int many = 200;
 
   void save(Snapshot& snapshot, const std::string& name) const;
-  /// Loads nothing from checkpoints of earlier versions, which have nothing of it.
   void load(const Snapshot& snapshot, const std::string& name);
 
   /// Enters a step with the seconds that it took. True once in a run, when steps of very many iterations have become

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
+#include "ricochet/base/error.hpp"
+
 namespace ricochet {
 namespace {
 
@@ -36,9 +41,21 @@ TEST(NewtonWatch, GoesOnFromACheckpoint) {
   other.load(snapshot, "newton");
   EXPECT_EQ(tells_after(other, {500, 500}), 1);
   EXPECT_EQ(other.steps(), 4);
-  NewtonWatch older;
-  older.load(Snapshot(), "newton");
-  EXPECT_EQ(older.steps(), 0);
+}
+
+TEST(NewtonWatch, RefusesACheckpointThatIsDamaged) {
+  Snapshot snapshot;
+  NewtonWatch().save(snapshot, "newton");
+  const Vector good = snapshot.reals("newton");
+  for (Index k = 0; k < good.size(); ++k) {
+    for (const double bad : {-1.0, 1e15, std::numeric_limits<double>::infinity(), std::nan("")}) {
+      Vector damaged = good;
+      damaged[k] = bad;
+      snapshot.save("newton", damaged);
+      EXPECT_THROW(NewtonWatch().load(snapshot, "newton"), Error) << k << ": " << bad;
+    }
+  }
+  EXPECT_THROW(NewtonWatch().load(Snapshot(), "newton"), Error);
 }
 
 }  // namespace
