@@ -341,8 +341,6 @@ void PenetrationWatch::load(const Snapshot& snapshot, const std::string& name) {
   }
   for (std::size_t i = 0; i < self_watch_.bodies().size(); ++i) {
     const BodyInItself& body = self_watch_.bodies()[i];
-    if (body.at_contact.found() && (body.contact < 0 || body.contact >= static_cast<int>(pairs_.size())))
-      throw Error(ErrorKind::invalid_input, "the checkpoint's record of penetration is damaged");
     told_itself_[i] = body.deepest.found() ? 1 : 0;
     told_itself_at_contact_[i] = body.at_contact.found() ? 1 : 0;
   }

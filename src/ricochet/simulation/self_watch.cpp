@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "ricochet/base/error.hpp"
 #include "ricochet/contact/surface_pieces.hpp"
 #include "ricochet/mesh/flat_pieces.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
@@ -54,7 +53,10 @@ std::vector<std::vector<CellFacet>> facets_of_bodies(const Body& body, const Bod
 
 SelfWatch::SelfWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
                      const BodiesOfMesh& bodies, double step_work)
-    : positions_(problem.nodes), axisymmetric_(problem.axisymmetric), work_per_step_(share * step_work) {
+    : positions_(problem.nodes),
+      axisymmetric_(problem.axisymmetric),
+      work_per_step_(share * step_work),
+      contacts_(static_cast<int>(pairs.size())) {
   if (problem.ranks->are_several()) return;
   const std::vector<std::vector<CellFacet>> facets = facets_of_bodies(body, bodies);
   for (std::size_t number = 0; number < facets.size(); ++number) {
@@ -277,12 +279,15 @@ void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
   for (std::size_t k = 0; k < found_.size(); ++k) {
     const BodyNumbers of = numbers.segment<numbers_of_body>(numbers_of_body * static_cast<Index>(k));
     BodyInItself& found = found_[k];
+    const auto rest = of.tail<7>();
+    const double node_at_contact = of[DeepestPoint::numbers];
+    const auto is_node = [&](double number) { return number >= -1.0 && number < nodes; };
+    const bool fits = of.allFinite() && is_node(of[0]) && is_node(node_at_contact) &&
+                      rest[0] >= (node_at_contact > -1.0 ? 0.0 : -1.0) && rest[0] < contacts_ &&
+                      std::all_of(rest.data() + 1, rest.data() + 7, is_node);
+    if (!fits) Snapshot::refuse(name + ".found", "has numbers that are none of this problem's nodes and contacts");
     found.deepest = DeepestPoint::from_numbers(of.head<DeepestPoint::numbers>());
     found.at_contact = DeepestPoint::from_numbers(of.segment<DeepestPoint::numbers>(DeepestPoint::numbers));
-    const auto rest = of.tail<7>();
-    const bool fits = of.allFinite() && of[0] < nodes && of[DeepestPoint::numbers] < nodes &&
-                      (rest.tail<6>().array() >= -1.0).all() && (rest.tail<6>().array() < nodes).all();
-    if (!fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of penetration is damaged");
     found.contact = static_cast<int>(rest[0]);
     for (std::size_t i = 0; i < 3; ++i) {
       found.own[i] = static_cast<Index>(rest[1 + static_cast<Index>(i)]);
@@ -291,10 +296,17 @@ void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
     const std::string part = name + "." + std::to_string(k);
     parts_[k].at_start = snapshot.reals(part + ".at_start", parts_[k].at_start.size());
     parts_[k].seen = snapshot.reals(part + ".seen", parts_[k].seen.size());
+    if (!parts_[k].at_start.allFinite() || !(parts_[k].at_start.array() >= 0.0).all())
+      Snapshot::refuse(part + ".at_start", "has entries that are no depths");
+    if (!parts_[k].seen.allFinite()) Snapshot::refuse(part + ".seen", "is not finite");
   }
   saved_ = snapshot.real(name + ".saved");
+  if (!(saved_ >= 0.0) || !std::isfinite(saved_)) Snapshot::refuse(name + ".saved", "is no work");
+  // Infinite where every look that is due is taken.
   work_per_step_ = snapshot.real(name + ".work");
+  if (!(work_per_step_ >= 0.0)) Snapshot::refuse(name + ".work", "is no work");
   looks_ = snapshot.integer(name + ".looks");
+  if (looks_ < 0) Snapshot::refuse(name + ".looks", "is negative");
 }
 
 }  // namespace ricochet

@@ -96,6 +96,7 @@ class SelfWatch {
   std::vector<BodyInItself> found_;           ///< likewise
   double work_per_step_ = 0.0, saved_ = 0.0;  ///< that looks may do, and of that what is left
   long looks_ = 0;
+  int contacts_;  ///< number of ContactPairs
 };
 
 }  // namespace ricochet
