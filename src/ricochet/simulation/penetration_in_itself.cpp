@@ -65,9 +65,8 @@ std::string PenetrationWatch::contact_with_itself(int body, const UnwatchedPenet
   }
   if (bodies_.connected.count == 1 && (group.empty() || against.empty())) group = against = whole_boundary_name;
   if (group.empty() || against.empty())
-    return "Give the mesh a group of these facets of this body, and name it as \"group\" and \"against\" of a "
-           "[[contact]] "
-           "with sliding = \"large\"";
+    return "Give the mesh a group of these facets of this body, "
+           "and name it as \"group\" and \"against\" of a [[contact]] with sliding = \"large\"";
   return fmt::format("Add\n[[contact]]\ngroup = \"{}\"\nagainst = \"{}\"\nsliding = \"large\"", group, against);
 }
 

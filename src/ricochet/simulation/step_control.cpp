@@ -164,21 +164,20 @@ void StepControl::count_step() {
   if (stretch_steps_ != many_steps && stretch_steps_ != most_steps) return;
   const double gone = static_cast<double>(ticks_ - stretch_ticks_) * step_of(deepest_);
   const std::string pace = fmt::format(
-      "t = {:.9g}: the last {} steps have led no further than {:.3g}, a part of time.largest = {:g}, and the last has "
-      "an error of {:.2g} times time.tolerance: the motion has jumps that steps of no length resolve, or vibrations "
-      "that "
-      "need such steps",
+      "t = {:.9g}: the last {} steps have led no further than {:.3g}, a part of time.largest = {:g}, "
+      "and the last has an error of {:.2g} times time.tolerance: "
+      "the motion has jumps that steps of no length resolve, or vibrations that need such steps",
       time(), stretch_steps_, gone, options_.largest, error_);
   const std::string advice = fmt::format(
-      "set time.smallest = {:.3g}, below which no step is refused, or a larger time.tolerance; where so many steps are "
-      "meant, a smaller time.largest",
+      "set time.smallest = {:.3g}, below which no step is refused, or a larger time.tolerance; "
+      "where so many steps are meant, a smaller time.largest",
       step_of(first_level));
   if (stretch_steps_ == most_steps)
     throw Error(ErrorKind::not_converged,
                 fmt::format("{}; the run would have a row of history.csv for each; {}", pace, advice));
   log::warning(
-      fmt::format("{}; at this pace the run takes {:.2g} steps, each a row of history.csv, and it ends with an "
-                  "error after {} of them; {}",
+      fmt::format("{}; at this pace the run takes {:.2g} steps, each a row of history.csv, "
+                  "and it ends with an error after {} of them; {}",
                   pace, static_cast<double>(stretch_steps_) * options_.end / gone, most_steps, advice));
 }
 

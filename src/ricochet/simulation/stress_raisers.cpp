@@ -17,7 +17,7 @@ constexpr double clamped_angle = std::numbers::pi / 3.0;
 /// Change of an obstacle's normal over two cells, from which it is sharp for this mesh: that of 30°.
 constexpr double sharp_change = 0.52;
 
-/// Returns the one that is told where both are there.
+/// Returns the raiser to report where both are present: the earlier enumerator.
 StressRaiser stronger(StressRaiser a, StressRaiser b) {
   if (a == StressRaiser::none || b == StressRaiser::none) return std::max(a, b);
   return std::min(a, b);
