@@ -5,8 +5,8 @@
 
 A scene is drawn from its seed: bodies in the plane, axisymmetric and in space, at small and finite strain, against obstacles of
 every kind at rest, moving and turning, against free rigid bodies, against each other and themselves. Each is run with some twins.
-Prints a line for each finding, with the seed, the property, its size and the folder that has the cases, then tables, which 1,000
-scenes write into docs/energy.md. Status 1: there are findings.
+Prints a line for each finding, with the seed, the property, its size and the folder that has the cases, then tables, which the
+first 1,000 scenes write into docs/energy.md. Status 1: there are findings.
 """
 
 import argparse
@@ -43,8 +43,18 @@ def judge_run(scene, run, name):
     return [(name, *finding) for finding in found]
 
 
+def draw_names(choices, seed):
+    """Of properties, some of which stand there several times so that they are drawn more often: each at most once."""
+    names, chosen = [], random.Random(seed + 1)
+    while choices and len(names) < TWINS:
+        name = chosen.choice(choices)
+        choices = [c for c in choices if c != name]
+        names.append(name)
+    return names
+
+
 def examine(seed, folder, wanted=None):
-    """(scene, its status, whether it touches, [(run, property, size, text)], properties, seconds of processors)."""
+    """(scene, its run, whether it touches, [(run, property, size, text)], properties, seconds of processors)."""
     scene = scene_of(seed)
     folder.mkdir(parents=True, exist_ok=True)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -54,13 +64,7 @@ def examine(seed, folder, wanted=None):
     # A case that is refused has nothing to compare.
     if base.columns:
         choices = properties.properties_of(scene)
-        chosen = random.Random(seed + 1)
-        while choices and len(names) < TWINS:
-            name = chosen.choice(choices)
-            choices = [c for c in choices if c != name]
-            names.append(name)
-        names = [n for n in properties.properties_of(scene) if n in wanted] if wanted else names
-        names = list(dict.fromkeys(names))
+        names = list(dict.fromkeys(c for c in choices if c in wanted)) if wanted else draw_names(choices, seed)
     for name in names:
         differences, twin = properties.check(twins, name)
         found += [("twin", *d) for d in differences]
@@ -140,7 +144,8 @@ def main():
     print(f"\n{total:.0f} s of processors, {time.monotonic() - begin:.0f} s")
     if not bad and not options.keep:
         shutil.rmtree(folder, ignore_errors=True)
-    if options.count >= 1000 and options.seed is None and not options.only and not options.properties:
+    # Tables of other scenes would not be those of the page's text.
+    if options.count >= 1000 and options.first == 1 and options.seed is None and not options.only and not options.properties:
         write_parts(ROOT / "docs" / "energy.md", {"random-scenes": tables[0], "random-scenes-properties": tables[1]})
     return 1 if bad else 0
 
