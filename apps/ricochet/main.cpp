@@ -180,7 +180,8 @@ bool answers_about(const CLI::App& app, int argc, char** argv) {
 }
 
 int dispatch(int argc, char** argv) {
-  CLI::App app{"Ricochet simulates elastic bodies that strike, rest on, slide along and leave rigid obstacles."};
+  CLI::App app{
+      "Ricochet simulates elastic bodies that strike, rest on, slide along and leave each other and rigid obstacles."};
   app.set_version_flag("--version", [] { return fmt::format("ricochet {}\n{}", version, library_versions()); });
   app.require_subcommand(1);
   app.footer(
