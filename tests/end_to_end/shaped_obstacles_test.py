@@ -223,6 +223,7 @@ class Passages(Blocks):
     def test_a_long_step_is_taken_in_parts(self):
         process, found = self.outcome(0.07, -0.39)
         self.assertIn("is taken in parts, as a node went through an obstacle", process.stderr)
+        self.assertNotIn("in parts as short as", process.stderr)
         self.assertNotIn("gone through", process.stderr)
         self.assertEqual(found["found"], [])
         history = History(self.folder / "out0.07" / "history.csv")

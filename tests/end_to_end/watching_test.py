@@ -141,6 +141,16 @@ class Watching(TestCase):
         self.assertIn("of the largest work", process.stdout)
         self.assertLess(json.loads((output / "summary.json").read_text())["checks"]["energy_residual"]["largest"], 1e-8)
 
+    def test_a_step_in_very_short_parts_is_told_once(self):
+        """A block far faster than its waves: no part of its first step has a solution."""
+        case = self.write("case.toml", block_case().replace('scheme = "newmark"\npreset = "trapezoidal"', 'scheme = "reduced-kane"'))
+        process = self.expect_status(3, run("run", case, "-o", self.folder / "out", "--quiet", *settings(
+            {"mass.type": "equivalent", "material.0.law": "neo-hookean", "initial.velocity": "[0.0, -100.0]", "time.end": 0.1})))
+        told = "step 1 is taken in parts as short as 1/32 of it, and perhaps shorter ones, as Newton's method found no solution"
+        self.assertEqual(process.stderr.count(told), 1, process.stderr)
+        warnings = json.loads((self.folder / "out" / "summary.json").read_text())["warnings"]
+        self.assertEqual(len([warning for warning in warnings if "as short as" in warning]), 1, warnings)
+
     def test_a_failed_step_leaves_its_state(self):
         case = self.write("case.toml", block_case().replace('preset = "trapezoidal"', "beta = 0.25\ngamma = 0.5"))
         output = self.folder / "out"

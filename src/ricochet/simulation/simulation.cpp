@@ -29,6 +29,8 @@ std::string level_name(int number) {
 
 /// Halvings of a step that finds no solution.
 constexpr int deepest_cut = 8;
+/// Of a step so many times as long that a user who sees it stand should know why.
+constexpr int short_parts = 5;
 
 constexpr const char* nameless = "this time scheme";
 
@@ -77,6 +79,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
     first = static_cast<int>(snapshot.integer("level"));
   }
   cut_steps_ = snapshot.integer("cut_steps");
+  told_short_parts_ = snapshot.integer("told_short_parts") != 0;
   for (const std::int64_t level : snapshot.integers("levels", 0, control_ ? control_->deepest() : deepest_cut)) {
     const auto number = static_cast<int>(level);
     if (scheme_.step() != length_of(number)) scheme_.change_step(problem_, length_of(number));
@@ -104,6 +107,7 @@ void Simulation::save(Snapshot& snapshot) const {
     if (&level == current_) snapshot.save("level", std::int64_t{number});
   }
   snapshot.save("cut_steps", std::int64_t{cut_steps_});
+  snapshot.save("told_short_parts", std::int64_t{told_short_parts_ ? 1 : 0});
   snapshot.save("levels", std::move(numbers));
   if (control_) control_->save(snapshot, "control");
   account_->save(snapshot, "account");
@@ -281,11 +285,24 @@ void Simulation::end_part(const std::function<void(const State&)>& each_part) {
   if (each_part) each_part(state_);
 }
 
+const char* Simulation::why_no_solution() const {
+  return goes_through_                          ? "a node went through an obstacle"
+         : problem_.internal_force->is_linear() ? "the contact forces did not settle"
+                                                : "Newton's method found no solution";
+}
+
+/// Once in a run.
+void Simulation::tell_short_parts(int level) {
+  if (level < short_parts || std::exchange(told_short_parts_, true)) return;
+  log::warning(fmt::format(
+      "step {} is taken in parts as short as 1/{} of it, and perhaps shorter ones, as {} in longer ones: that takes as "
+      "much longer, while the progress stands, and it may fail in the end",
+      state_.step + 1, 1L << level, why_no_solution()));
+}
+
 /// Parts are of the lengths h 2^-k. After each the longest is tried that fits into what is left.
 void Simulation::take_step_in_parts(const std::function<void(const State&)>& each_part) {
-  const char* const reason = goes_through_                          ? "a node went through an obstacle"
-                             : problem_.internal_force->is_linear() ? "the contact forces did not settle"
-                                                                    : "Newton's method found no solution";
+  const char* const reason = why_no_solution();
   const State start = state_;
   const EnergyAccount account = *account_;
   std::vector<FreeMotion> bodies;
@@ -302,6 +319,7 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
     } catch (const Error& problem) {
       if (problem.kind() == ErrorKind::not_converged && level < deepest_cut) {
         ++level;
+        tell_short_parts(level);
         continue;
       }
       state_ = start;

@@ -73,6 +73,8 @@ class Simulation : private StageSolve {
   void take_step(bool is_shortest);
   void solve_step();
   void attempt_step();
+  [[nodiscard]] const char* why_no_solution() const;
+  void tell_short_parts(int level);
   void take_step_in_parts(const std::function<void(const State&)>& each_part);
   [[nodiscard]] double length_of(int level) const;
   void end_part(const std::function<void(const State&)>& each_part);
@@ -100,6 +102,7 @@ class Simulation : private StageSolve {
   std::optional<StepControl> control_;
   double whole_step_;  ///< without control
   long cut_steps_ = 0;
+  bool told_short_parts_ = false;
   std::vector<PassageWatch> guards_;  ///< of contact nodes, each for the obstacle that they touch
   bool has_guards_ = false;           ///< here or on other ranks
   State unguarded_;                   ///< the start of a step, where there are guards
