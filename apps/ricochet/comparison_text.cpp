@@ -69,7 +69,9 @@ void print_methods(const std::vector<Run>& runs, int width) {
 constexpr std::array<std::pair<const char*, const char*>, 6> meanings{{
     {"≥", "not every step was looked at: the stress may have been higher between two looks (output.fields_every)"},
     {"~", "the contact zone is too coarse to trust the force: refine the mesh there"},
-    {"?", "cells turn by more than 0.1 rad, which small strain takes for a strain that is not there"},
+    {"?",
+     "cells turn by more than 0.1 rad, which small strain takes for a strain that is not there, or the body turns by "
+     "more than the impact bears, as `ricochet info` says for one run"},
     {"^",
      "linear elasticity has an infinite stress there, as at a re-entrant edge, and the value grows with refinement: "
      "`ricochet info` says for one run what it sits on"},
@@ -113,7 +115,7 @@ class Outcome {
 
  private:
   using Place = std::vector<Impact>::const_iterator;
-  /// Whether cells had turned too far for small strain when the impact ended.
+  /// Whether cells, or the body, had turned too far for small strain when the impact ended.
   [[nodiscard]] bool turned_in(Place impact) const {
     return !s_.small_strain_holds_in(static_cast<std::size_t>(impact - s_.impacts.begin()));
   }

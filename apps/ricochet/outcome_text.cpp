@@ -10,6 +10,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/simulation/restitution.hpp"
 #include "ricochet/simulation/stress_raisers.hpp"
+#include "ricochet/simulation/turn_growth.hpp"
 
 namespace ricochet::program {
 
@@ -106,7 +107,7 @@ std::string rotation_text(std::size_t impact, const RunSummary& summary) {
   if (impact >= summary.rotation->until_impact_end.size()) return "";
   return fmt::format(", cells turned by up to {:.3g} rad until {}{}", summary.rotation->until_impact_end[impact],
                      summary.impacts[impact].ended ? "its end" : "now",
-                     summary.small_strain_holds_in(impact) ? "" : " (BEYOND SMALL STRAIN)");
+                     summary.cells_turn_little_in(impact) ? "" : " (BEYOND SMALL STRAIN)");
 }
 
 /// Where the method has changed the energy by much of what the restitution says that the body lost.
@@ -117,6 +118,14 @@ std::string restitution_error_text(const Impact& impact) {
                      error.by_method < 0.0 ? "lost" : "created", percent(std::abs(error.by_method)),
                      impact.other ? "the bodies" : "the body", error.by_impact < 0.0 ? "gained" : "lost",
                      percent(std::abs(error.by_impact)));
+}
+
+/// Where the linear law has changed it by the turn of a body.
+std::string turning_text(const Impact& impact) {
+  if (!is_changed_by_turning(impact)) return "";
+  const double error = restitution_by_turning(impact);
+  return fmt::format(" (BEYOND SMALL STRAIN: too {} by about {:.2g}, as the linear law makes a body that turns grow)",
+                     error > 0.0 ? "large" : "small", std::abs(error));
 }
 
 std::string impact_text(std::size_t number, const RunSummary& summary) {
@@ -133,8 +142,8 @@ std::string impact_text(std::size_t number, const RunSummary& summary) {
   if (const auto restitution = impact.restitution()) {
     const char* const inward = impact.other ? " (their centres still come nearer after the last force)"
                                             : " (its centre still goes towards the obstacle after the last force)";
-    text += fmt::format(", restitution {:.4g}{}{}", *restitution, *restitution < 0.0 ? inward : "",
-                        restitution_error_text(impact));
+    text += fmt::format(", restitution {:.4g}{}{}{}", *restitution, *restitution < 0.0 ? inward : "",
+                        restitution_error_text(impact), turning_text(impact));
   } else if (impact.ended) {
     text += fmt::format(", no restitution ({})", why_no_restitution(impact));
   }

@@ -53,7 +53,7 @@ std::string beyond_text(const RunSummary& s) {
   if (!s.rotation) return " (BEYOND SMALL STRAIN)";
   const std::string since = fmt::format("t = {:.6g} on", s.rotation->time_beyond);
   if (s.impacts.empty()) return fmt::format(" (BEYOND SMALL STRAIN from {})", since);
-  if (s.small_strain_holds_in_impacts())
+  if (s.cells_turn_little_in_impacts())
     return fmt::format(" (beyond small strain from {}, after the last impact had ended)", since);
   return fmt::format(" (BEYOND SMALL STRAIN from {}, before the last impact {})", since,
                      s.impacts.back().ended ? "ended" : "has ended");

@@ -22,6 +22,8 @@ def rows_of(run):
             restitution = "none" + (f" ({impact['why_no_restitution']})" if impact["why_no_restitution"] else "")
         else:
             restitution = f"{restitution:.4g}" + (" (inexact)" if impact["restitution_inexact"] else "")
+            if abs(impact.get("restitution_by_turning", 0)) > 0.01:
+                restitution += " (beyond small strain)"
         yield f"impact {number + 1}", (f"t = {impact['begin']:.4g}, for {impact['duration']:.4g}; restitution {restitution}; largest "
                                        f"force {impact['largest_force']:.4g}")
     if len(run.impacts) > 3:

@@ -59,6 +59,12 @@ def block_case(mesh="quadrilateral_o1_msh41_ascii.msh"):
             + '[[probe]]\nname = "foot"\nat = [1.3, 0.1]\n')
 
 
+# A disc of radius 1 that turns by 0.07 rad until it has left a smooth floor again; no cell turns by more than 0.1 rad.
+SPINNING = body_case(MESHES / "disc_o2_msh41_ascii.msh", [0.0, 0.0], [0.0, 1.0],
+                     '[initial]\nvelocity = ["-0.1*(y - 1.005)", "-0.05 + 0.1*x"]\n', bottom="boundary", degree=2, mass="equivalent",
+                     scheme="reduced-kane", step=0.01, end=0.9).replace("degree", "refine = 2\nmove = [0.0, 1.005]\ndegree", 1)
+
+
 def with_sphere(case, centre, radius, velocity):
     """A case of `body_case` with a sphere that moves in place of the floor."""
     sphere = f'type = "sphere"\ncentre = {centre}\nradius = {radius}\nvelocity = {velocity}\n'

@@ -2,12 +2,13 @@
 
 import json
 import math
+import re
 import unittest
 
 import h5py
 import numpy
 
-from harness import DISC, History, SOURCE, TestCase, block_case, run, settings, with_more
+from harness import DISC, History, SOURCE, SPINNING, TestCase, block_case, run, settings, with_more
 
 # The puck of the first case strikes a wall once and leaves.
 PUCK = SOURCE / "cases" / "puck" / "puck.toml"
@@ -274,6 +275,32 @@ end = 0.001
         self.assertIn(f"(BEYOND SMALL STRAIN from t = {beyond:.6g} on, before the last impact has ended)", said)
         self.expect_status(0, run("report", folder))
         self.assertIn('"rotation_after_impacts":false', (folder / "report.html").read_text(encoding="utf-8"))
+
+    def test_a_body_that_small_strain_makes_grow_as_it_turns(self):
+        """The law of finite strain tells what the restitution should be."""
+        case = self.write("spinning.toml", SPINNING)
+        outcomes = {}
+        for law in ("linear", "neo-hookean"):
+            process = self.expect_status(0, run("run", case, "-o", self.folder / law, *settings({"material.0.law": law})))
+            outcomes[law] = process, summary(self.folder / law)["impacts"][0]
+        (said, grown), (other, true) = outcomes["linear"], outcomes["neo-hookean"]
+        error = grown["restitution"] - true["restitution"]
+        self.assertGreater(error, 0.1)
+        self.assertAlmostEqual(grown["restitution_by_turning"], error, delta=0.15 * error)
+        self.assertAlmostEqual(grown["turn_growth"], 0.5 * grown["restitution_by_turning"] * -grown["normal_velocity_before"], delta=1e-12)
+        self.assertEqual((true["turn_growth"], true["restitution_by_turning"]), (0, 0))
+        told = f"too large by about {grown['restitution_by_turning']:.2g}"
+        self.assertIn(f"the restitution of impact 1 is {told}", said.stderr)
+        self.assertIn(f"(BEYOND SMALL STRAIN: {told}", said.stdout)
+        self.assertNotIn("SMALL STRAIN", other.stdout)
+        self.assertNotIn("too large by", other.stderr)
+        self.assertIn(f"{grown['restitution']:.4g}?", self.expect_status(0, run("info", self.folder / "linear", self.folder / "neo-hookean")).stdout)
+        # The card of the report is red, though no cell turns by 0.1 rad.
+        self.expect_status(0, run("report", self.folder / "linear"))
+        page = (self.folder / "linear" / "report.html").read_text(encoding="utf-8")
+        rotation, limit = (float(re.search(rf'"{name}":([0-9.e-]+)[,}}]', page)[1]) for name in ("rotation", "rotation_limit"))
+        self.assertLess(rotation, 0.1)
+        self.assertLess(limit, rotation)
 
     def test_a_probe_along_a_segment_is_one_line(self):
         more = '[[probe]]\nname = "foot-line"\nfrom = [0.1, 0.2]\nto = [1.3, 0.1]\n'

@@ -163,22 +163,6 @@ double RunSummary::creation_by_method() const {
   return scale > 0.0 ? digest("contact_work").maximum / scale : 0.0;
 }
 
-double RunSummary::largest_rotation() const {
-  return rotation ? rotation->limit : rotation_limit;
-}
-
-bool RunSummary::small_strain_holds_in(std::size_t impact) const {
-  return rotation ? rotation->holds_in_impact(impact) : digest("max_rotation").maximum <= largest_rotation();
-}
-
-bool RunSummary::small_strain_holds_in_impacts() const {
-  if (impacts.empty() || impacts_left_out > 0) return digest("max_rotation").maximum <= largest_rotation();
-  for (std::size_t i = 0; i < impacts.size(); ++i) {
-    if (!small_strain_holds_in(i)) return false;
-  }
-  return true;
-}
-
 double RunSummary::deepest_penetration() const {
   double deepest = digest("max_penetration").maximum;
   for (const UnwatchedPenetration& found : penetration.found) deepest = std::max(deepest, found.depth);

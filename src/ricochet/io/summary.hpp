@@ -203,10 +203,13 @@ struct RunSummary {
   [[nodiscard]] double loss_by_method() const;
   [[nodiscard]] double creation_by_method() const;
   /// False where cells had turned too far for small strain when an impact (numbered from 0) ended.
+  [[nodiscard]] bool cells_turn_little_in(std::size_t impact) const;
+  /// Moreover false where the turn of the whole body has changed the impact (turn_growth.hpp).
   [[nodiscard]] bool small_strain_holds_in(std::size_t impact) const;
   /// That the laws of this run allow; infinite at finite strain.
   [[nodiscard]] double largest_rotation() const;
   /// The same of all impacts; of a run without any at all times.
+  [[nodiscard]] bool cells_turn_little_in_impacts() const;
   [[nodiscard]] bool small_strain_holds_in_impacts() const;
   /// The deepest interpenetration of all, at contact points and elsewhere; of results that did not look elsewhere
   /// (penetration.checked) it may be deeper.

@@ -8,6 +8,7 @@
 #include "ricochet/base/json.hpp"
 #include "ricochet/simulation/restitution.hpp"
 #include "ricochet/simulation/stress_raisers.hpp"
+#include "ricochet/simulation/turn_growth.hpp"
 
 namespace ricochet {
 
@@ -107,6 +108,8 @@ Json impact_to_json(const Impact& impact, int dimension) {
                  {"restitution", restitution ? Json::number(*restitution) : Json()},
                  {"restitution_inexact", restitution_error(impact).is_large},
                  {"method_energy", impact.method_energy ? Json::number(*impact.method_energy) : Json()},
+                 {"turn_growth", Json::number(impact.turn_growth)},
+                 {"restitution_by_turning", Json::number(restitution_by_turning(impact))},
                  {"why_no_restitution", restitution ? Json() : Json(why_no_restitution(impact))},
                  {"normal_velocity_before", Json::number(impact.normal_velocity_before())},
                  {"normal_velocity_after", if_ended(Json::number(impact.normal_velocity_after()))},
@@ -259,6 +262,7 @@ Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies,
   impact.first_place = to_numbers(json.value("first_place", Json::array()));
   const Json method_energy = json.value("method_energy", Json());
   if (method_energy.is_number() || method_energy.is_string()) impact.method_energy = method_energy.to_number();
+  impact.turn_growth = json.value("turn_growth", Json(0.0)).to_number();
   const RigidBody& rigid = rigid_body(impact.body, bodies, path);
   impact.mass = rigid.mass;
   impact.held = rigid.held;

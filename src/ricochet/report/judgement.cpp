@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/simulation/turn_growth.hpp"
 
 namespace ricochet {
 
@@ -179,6 +180,15 @@ void judge_penetration(const RunData& run, Judgement& result) {
                                                              : deepest->bodies[0] + " in \"" + deepest->obstacle + "\"";
 }
 
+/// What a restitution is changed by grows with the square of the angle by which the body has turned.
+double rotation_limit_of(std::size_t number, const RunSummary& summary) {
+  const Impact& impact = summary.impacts[number];
+  if (!is_changed_by_turning(impact)) return std::numeric_limits<double>::infinity();
+  const bool known = summary.rotation && number < summary.rotation->until_impact_end.size();
+  const double rotation = known ? summary.rotation->until_impact_end[number] : summary.digest("max_rotation").maximum;
+  return rotation * std::sqrt(restitution_by_turning_limit / std::abs(restitution_by_turning(impact)));
+}
+
 }  // namespace
 
 Judgement judge(const RunData& run) {
@@ -196,6 +206,8 @@ Judgement judge(const RunData& run) {
   const bool turned = !broken_at(run, {"max_rotation"});
   result.rotation = turned ? largest_magnitude(run.column("max_rotation")) : std::numeric_limits<double>::quiet_NaN();
   result.rotation_limit = run.summary.largest_rotation();
+  for (std::size_t i = 0; i < run.summary.impacts.size(); ++i)
+    result.rotation_limit = std::min(result.rotation_limit, rotation_limit_of(i, run.summary));
   result.rotation_after_impacts =
       result.rotation > result.rotation_limit && run.summary.small_strain_holds_in_impacts();
   return result;

@@ -49,8 +49,9 @@ struct Judgement {
   std::string unwatched_penetration;
   std::string contact_beyond_rim;  ///< the group of a contact that goes on beyond it; empty: none was seen
 
-  double rotation = 0.0;        ///< the largest of a cell, in rad
-  double rotation_limit = 0.0;  ///< above it small strain does not hold; infinite: the laws hold for any rotation
+  double rotation = 0.0;  ///< the largest of a cell, in rad
+  /// Above it small strain does not hold, or less where an impact bears less; infinite: the laws hold for any rotation.
+  double rotation_limit = 0.0;
   /// Whether cells turn too far for small strain only after the last impact, so that it does hold in the impacts.
   bool rotation_after_impacts = false;
 };

@@ -8,6 +8,7 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/run/rotation_watch.hpp"
+#include "ricochet/simulation/turn_growth.hpp"
 
 namespace ricochet {
 
@@ -71,7 +72,7 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
   const double rotation = summary.digest("max_rotation").maximum;
   const bool is_small = std::isfinite(summary.largest_rotation());  // small strain
   // What a body does in free flight after its impacts does not change what they came to.
-  const bool rotates = is_small && rotation > large_rotation && !summary.small_strain_holds_in_impacts();
+  const bool rotates = is_small && rotation > large_rotation && !summary.cells_turn_little_in_impacts();
   if (summary.adaptive && summary.adaptive->counts.tolerated > 0) {
     const StepCounts& counts = summary.adaptive->counts;
     log::warning(
@@ -151,6 +152,25 @@ void judge_strain(const RunSummary& summary, const Body& body) {
       "\"neo-hookean\" holds for any strain; a stiffer body or a slower impact keeps within {:g} %; check the "
       "units, too",
       summary.peak_stress->peak.time, 100.0 * strain, 100.0 * strain_limit));
+}
+
+void judge_turning(const RunSummary& summary) {
+  std::size_t worst = summary.impacts.size();
+  double largest = restitution_by_turning_limit;
+  for (std::size_t i = 0; i < summary.impacts.size(); ++i) {
+    const double error = std::abs(restitution_by_turning(summary.impacts[i]));
+    // Of the others the run has said so when cells turned too far.
+    if (!(error > largest) || !summary.cells_turn_little_in(i)) continue;
+    worst = i;
+    largest = error;
+  }
+  if (worst == summary.impacts.size()) return;
+  const double error = restitution_by_turning(summary.impacts[worst]);
+  log::warning(fmt::format(
+      "the restitution of impact {} is too {} by about {:.2g}, its force and duration are wrong by about a third of "
+      "that part: the linear law makes a body that turns grow, here at a speed of {:.2g} towards the contact, as if an "
+      "obstacle moved; take law = \"neo-hookean\" in [[material]], which holds for any rotation",
+      worst + 1, error > 0.0 ? "large" : "small", largest, summary.impacts[worst].turn_growth));
 }
 
 }  // namespace ricochet

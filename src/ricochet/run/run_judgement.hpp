@@ -22,6 +22,9 @@ void judge_sliding(const RunSummary& summary, const SemidiscreteProblem& problem
 /// strain, that is not small.
 void judge_strain(const RunSummary& summary, const Body& body);
 
+/// Warns of the impact whose restitution is changed most by the turn of a body that small strain makes grow.
+void judge_turning(const RunSummary& summary);
+
 /// Is an energy no more than what ½UᵀKU is rounded to? That of a body that is merely displaced is.
 [[nodiscard]] bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, const State& state);
 

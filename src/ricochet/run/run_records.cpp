@@ -242,6 +242,7 @@ void Run::write_end() {
     judge_unsettled(summary_);
     judge_sliding(summary_, session_.model().problem, session_.model().body);
     judge_strain(summary_, session_.model().body);
+    judge_turning(summary_);
     summary_.warnings = session_.warnings();
   }
   if (contact_export_) summary_.contact_export = contact_export_->report();

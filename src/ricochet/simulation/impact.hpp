@@ -46,6 +46,9 @@ struct Impact {
   /// What the discretization of time has put into all bodies meanwhile (EnergyAccount::of_method); negative: it has
   /// taken it away. Of older results it is not known.
   std::optional<double> method_energy = {};
+  /// Speed at which the linear law makes the bodies thicker towards each other as they turn, the mean over the impulse
+  /// (turn_growth.hpp). 0 where it has not ended, and of older results.
+  double turn_growth = 0.0;
 
   /// Mean direction of the normal impulse, out of the obstacle or the other body; zero without one.
   [[nodiscard]] Eigen::Vector3d normal() const;

@@ -78,6 +78,8 @@ class ImpactRecorder {
     Motion before, after;
     Motion other_before, other_after;  ///< of the other body
     double method_before, method_after;
+    Three turn, other_turn;  ///< TurningBody::turn
+    Three other_arm;         ///< likewise, from the other body's centre of mass
   };
   /// Of an interval: numbers, too.
   static constexpr double no_contact = 0.0, touching = 1.0, apart = 2.0;
@@ -135,7 +137,10 @@ class ImpactRecorder {
   void let_go(Interval& interval) const;
   void touch(Interval& interval, const Acting& acting, double instant);
   void add_impulses(Interval& interval, std::size_t place) const;
-  void begin(Interval& interval, double time, const Force& first) const;
+  void begin(Interval& interval, double time, const Force& first);
+  void take_turns(Interval& interval);
+  [[nodiscard]] bool grows_as_it_turns(int body) const;
+  [[nodiscard]] double growth_in(const Interval& interval, const Impact& impact) const;
   [[nodiscard]] Three place_of(Index point) const;
   static void take_largest(Interval& interval, const Force& force, double instant);
   void file(const Interval& interval);

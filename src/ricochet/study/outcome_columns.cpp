@@ -9,6 +9,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/run/run_case.hpp"
 #include "ricochet/simulation/restitution.hpp"
+#include "ricochet/simulation/turn_growth.hpp"
 
 namespace ricochet {
 
@@ -31,9 +32,9 @@ bool concerns_validity(const std::string& warning) {
   return !warning.starts_with(end_warning);
 }
 
-/// Whether numbers of that impact are those of a body that small strain describes.
+/// Whether cells had turned so far that numbers of that impact are not those of a body that small strain describes.
 bool is_strained(const RunSummary& s, Impacts::const_iterator impact) {
-  return !s.small_strain_holds_in(static_cast<std::size_t>(impact - s.impacts.begin()));
+  return !s.cells_turn_little_in(static_cast<std::size_t>(impact - s.impacts.begin()));
 }
 
 /// A coordinate of the place of the largest stress, in as many as there are dimensions.
@@ -106,6 +107,7 @@ std::string doubts_of(const RunSummary& s) {
   if (const auto first = first_with_restitution(s.impacts); first != s.impacts.end()) {
     if (restitution_error(*first).is_large) doubts.emplace_back("restitution: made by the method");
     if (is_strained(s, first)) doubts.emplace_back("restitution: cells turned");
+    if (is_changed_by_turning(*first)) doubts.emplace_back("restitution: the body turned");
   }
   if (const auto most = hardest(s.impacts); most != s.impacts.end() && most->is_coarse())
     doubts.emplace_back("largest_force: coarse contact");

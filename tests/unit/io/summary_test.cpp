@@ -214,6 +214,26 @@ TEST_F(SummaryTest, KnowsInWhichImpactsCellsHadTurnedTooFar) {
   EXPECT_EQ(read_back(summary).rotation->time_beyond, INFINITY);
 }
 
+TEST_F(SummaryTest, KnowsWhichImpactTheTurnOfABodyHasChanged) {
+  RunSummary summary;
+  summary.bodies.push_back({{2.0}, 0.1});
+  summary.impacts.resize(2);
+  for (Impact& impact : summary.impacts) {
+    impact.mass = 2.0;
+    impact.before.velocity = {0.0, -1.0, 0.0};
+    impact.after.velocity = {0.0, 1.0, 0.0};
+    impact.impulse = impact.normal_impulse = {0.0, 4.0, 0.0};
+  }
+  summary.rotation = RotationReport{0.1, INFINITY, {0.05, 0.05}};
+  summary.impacts[1].turn_growth = 0.0078125;
+  const RunSummary back = read_back(summary);
+  EXPECT_EQ(back.impacts[1].turn_growth, 0.0078125);
+  EXPECT_TRUE(back.small_strain_holds_in(0));
+  EXPECT_FALSE(back.small_strain_holds_in(1));
+  EXPECT_FALSE(back.small_strain_holds_in_impacts());
+  EXPECT_TRUE(back.cells_turn_little_in_impacts());
+}
+
 RunSummary summary_of_works() {
   RunSummary summary;
   summary.columns = {"total_energy", "contact_work", "numerical_dissipation", "friction_work"};

@@ -54,6 +54,13 @@ std::map<std::string, TableCell> by_name(const std::string& run, const RunState&
   return result;
 }
 
+TEST(OutcomeColumns, DoubtARestitutionThatTheTurnOfABodyHasChanged) {
+  RunSummary summary = *finished_run().summary;
+  EXPECT_EQ(doubts_of(summary).find("restitution: the body turned"), std::string::npos);
+  summary.impacts[1].turn_growth = 0.0125;
+  EXPECT_NE(doubts_of(summary).find("restitution: the body turned"), std::string::npos) << doubts_of(summary);
+}
+
 TEST(OutcomeColumns, HaveTheNumbersOfTheRun) {
   const std::map<std::string, TableCell> cells = by_name("007-step=0.5", finished_run());
   const std::map<std::string, std::string> expected{{"run", "007-step=0.5"},
