@@ -104,12 +104,25 @@ bool SelfOverlap::leads_out(int node, const Three& direction) const {
                      [&](int piece) { return surface_.normal_of(piece).dot(direction) > least; });
 }
 
+double SelfOverlap::clearance(int node) const {
+  const Three normal = surface_.normal_at(node).normalized();
+  const Hit first = leads_out(node, normal) ? first_hit(node, normal) : Hit{std::numeric_limits<double>::infinity()};
+  return first.side > 0 ? first.distance : std::numeric_limits<double>::infinity();
+}
+
 /// Before all else. Beyond the axis it goes through the image, as its own image goes through the surface.
-double SelfOverlap::way_inside(int node, const Three& direction) const {
+SelfOverlap::Hit SelfOverlap::first_hit(int node, const Three& direction) const {
   Hit first{std::numeric_limits<double>::infinity()};
   const Three& from = surface_.at(node);
   trace(from, direction, node, first);
-  if (mirrored_) trace(mirrored(from), mirrored(direction), node, first);
+  // On the axis a node is its own image. Elsewhere the image's pieces around it are in the way as any other ones.
+  const int own = from[0] <= rounding_of_rays * surface_.tree().nodes().front().box.max()[0] ? node : -1;
+  if (mirrored_) trace(mirrored(from), mirrored(direction), own, first);
+  return first;
+}
+
+double SelfOverlap::way_inside(int node, const Three& direction) const {
+  const Hit first = first_hit(node, direction);
   return first.side < 0 ? first.distance * direction.norm() : -1.0;
 }
 

@@ -32,6 +32,8 @@ class SelfOverlap {
   [[nodiscard]] double opening(int node) const;
   /// Looks at a node, by its number on the surface, where the surface is now; nothing: it is in no other part.
   [[nodiscard]] std::optional<Found> at(int node) const;
+  /// How far from a node along its normal the outside of another part of the surface is; infinite: it sees none.
+  [[nodiscard]] double clearance(int node) const;
 
  private:
   /// The first place where a ray meets the surface.
@@ -40,6 +42,7 @@ class SelfOverlap {
     int side = 0;     ///< 1: the outside of a piece, −1: the inside, 0: both at one place
   };
   [[nodiscard]] bool leads_out(int node, const Eigen::Vector3d& direction) const;
+  [[nodiscard]] Hit first_hit(int node, const Eigen::Vector3d& direction) const;
   /// How far a ray goes inside of another part; negative: it does not start there.
   [[nodiscard]] double way_inside(int node, const Eigen::Vector3d& direction) const;
   void trace(const Eigen::Vector3d& from, const Eigen::Vector3d& along, int node, Hit& first) const;

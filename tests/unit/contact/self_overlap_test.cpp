@@ -84,6 +84,25 @@ TEST(SelfOverlap, IsThatOfTheArmsOfAClamp) {
 }
 
 /// A clamp that is as thick as it likes: its sides are of triangles.
+/// Nodes between the arms see the other arm; what is outside of the clamp sees nothing of it.
+TEST(SelfOverlap, KnowsHowFarAwayWhatFacesANodeIs) {
+  const std::vector<Two> reference = refined(clamp, 12);
+  const BodySurface surface(as_points(reference), segments(reference.size()));
+  const SelfOverlap test(surface, false);
+  int between = 0;
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    const double clearance = test.clearance(static_cast<int>(i));
+    const Two& at = reference[i];
+    if (is_between(at)) {
+      EXPECT_NEAR(clearance, 1.0, 1e-12);
+      ++between;
+    } else if (at[1] == 0.0 || at[1] == 3.0 || at[0] == 0.0) {
+      EXPECT_TRUE(std::isinf(clearance)) << at.transpose();
+    }
+  }
+  EXPECT_GT(between, 5);
+}
+
 TEST(SelfOverlap, IsTheSameInSpace) {
   const std::vector<Two> reference = refined(clamp, 6);
   const Index count = static_cast<Index>(reference.size());
@@ -146,6 +165,20 @@ TEST(SelfOverlap, GoesOnBeyondAnAxis) {
       EXPECT_NEAR(found->depth, overlap, 1e-12);
     }
     ASSERT_EQ(test.at(2 * parts + 1).has_value(), overlap > 0.0) << "the pole that it went through";
+  }
+}
+
+/// Tubes of long edges around narrow bores: rays across a bore meet the image's wall from outside, first that of the
+/// node's own image.
+TEST(SelfOverlap, IsNoneOfTubes) {
+  for (const double bore : {0.02, 0.3, 2.0}) {
+    for (const int parts : {1, 4, 16}) {
+      const std::vector<Two> outline = refined({{bore, 0.0}, {bore + 1.0, 0.0}, {bore + 1.0, 0.8}, {bore, 0.8}}, parts);
+      const BodySurface surface(as_points(outline), segments(outline.size()));
+      const SelfOverlap test(surface, true);
+      for (std::size_t i = 0; i < outline.size(); ++i)
+        EXPECT_FALSE(test.at(static_cast<int>(i))) << bore << ' ' << parts << ' ' << i;
+    }
   }
 }
 
