@@ -17,6 +17,10 @@ namespace words = penetration_words;
 
 namespace {
 
+/// Edges that nodes may go between two looks at bodies by themselves: what parts that meet go into each other by and
+/// out again unseen is not much more.
+constexpr double most_unseen = 1.0;
+
 std::vector<const Obstacle*> obstacles_of(const std::vector<NamedObstacle>& named) {
   std::vector<const Obstacle*> result;
   for (const NamedObstacle& one : named) result.push_back(one.obstacle);
@@ -308,6 +312,11 @@ PenetrationReport PenetrationWatch::report() const {
   const auto is_free = [](const NamedObstacle& one) { return one.obstacle->free_motion() != nullptr; };
   if (named_.size() > 1 && std::any_of(named_.begin(), named_.end(), is_free))
     result.not_watched.emplace_back("rigid bodies against each other and other obstacles");
+  if (const double unseen = self_watch_.unseen_motion(); unseen > most_unseen) {
+    result.not_watched.push_back(
+        fmt::format("{} between looks ({} of them, and nodes moved by up to {:.2g} edges in between)",
+                    bodies_in_themselves, self_watch_.looks(), unseen));
+  }
   if (!self_watch_.watches())
     result.not_watched.push_back(std::string(bodies_in_themselves) + " (several processes have parts of them)");
   return result;

@@ -1,5 +1,6 @@
 #include "ricochet/simulation/self_watch.hpp"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -138,6 +139,7 @@ void SelfWatch::look(const Vector& displacement, double time, bool now, const No
     const double limit = (is_known ? motion_once_found : motion_before_look) * part.surface.edge_length();
     const bool due = looks_ == 0 || (saved_ >= part.work && is_due(part, limit, displacement));
     if (!due && !now) continue;
+    if (looks_ > 0) enter_unseen(part, displacement);
     look_at(number, displacement, time, gaps);
     if (!due) continue;
     any = true;
@@ -170,19 +172,65 @@ bool SelfWatch::is_due(const Part& part, double limit, const Vector& displacemen
   return false;
 }
 
+/// How far the farthest node has gone since the last look, beside the rigid motion that is nearest to that of the
+/// surface (W. Kabsch, Acta Cryst. A32 (1976) 922): a body that flies and spins has not come nearer to itself.
+double SelfWatch::strain_since(const Part& part, const Vector& displacement) const {
+  using Three = Eigen::Vector3d;
+  const Index d = positions_.rows();
+  const std::vector<Index>& nodes = part.surface.nodes();
+  const auto place = [&](std::size_t i, const Vector& of, Index first) {
+    Three result = Three::Zero();
+    result.head(d) = positions_.col(nodes[i]) + of.segment(first, d);
+    return result;
+  };
+  const auto before = [&](std::size_t i) { return place(i, part.seen, static_cast<Index>(i) * d); };
+  const auto after = [&](std::size_t i) { return place(i, displacement, nodes[i] * d); };
+  Three first = Three::Zero(), last = Three::Zero();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    first += before(i) / static_cast<double>(nodes.size());
+    last += after(i) / static_cast<double>(nodes.size());
+  }
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < nodes.size(); ++i) moments += (after(i) - last) * (before(i) - first).transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> parts(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d turn = parts.matrixU() * parts.matrixV().transpose();
+  if (turn.determinant() < 0.0) turn -= 2.0 * parts.matrixU().col(2) * parts.matrixV().col(2).transpose();
+  double longest = 0.0;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    longest = std::max(longest, (after(i) - last - turn * (before(i) - first)).norm());
+  return longest;
+}
+
+/// Surfaces that were farther apart at the last look than nodes have gone towards each other have not met since.
+void SelfWatch::enter_unseen(Part& part, const Vector& displacement) const {
+  const double way = strain_since(part, displacement);
+  if (2.0 * way > part.clearance) part.unseen = std::max(part.unseen, way / part.surface.edge_length());
+}
+
+double SelfWatch::unseen_motion() const {
+  double most = 0.0;
+  for (const Part& part : parts_) most = std::max(most, part.unseen);
+  return most;
+}
+
 void SelfWatch::look_at(std::size_t number, const Vector& displacement, double time, const NodeGaps& gaps) {
   Part& part = parts_[number];
   BodyInItself& known = found_[number];
   part.surface.move(positions_, displacement);
   const SelfOverlap overlap(part.surface, axisymmetric_);
   const bool at_start = looks_ == 0;
+  part.clearance = std::numeric_limits<double>::infinity();
   const Vector* gap = nullptr;
   const std::vector<Index>& nodes = part.surface.nodes();
   for (int node = 0; node < static_cast<int>(nodes.size()); ++node) {
     const auto i = static_cast<std::size_t>(node);
     if (part.is_left_out[i] != 0) continue;
     const auto found = overlap.at(node);
-    if (!found) continue;
+    if (!found) {
+      // A contact of the body with itself keeps its nodes out whether or not they are looked at.
+      if (part.sides[i].empty()) part.clearance = std::min(part.clearance, overlap.clearance(node));
+      continue;
+    }
     const Eigen::Vector3d& position = part.surface.at(node);
     const auto piece = static_cast<std::size_t>(found->other_piece);
     double allowed =
@@ -266,6 +314,7 @@ void SelfWatch::save(Snapshot& snapshot, const std::string& name) const {
     const std::string part = name + "." + std::to_string(k);
     snapshot.save(part + ".at_start", parts_[k].at_start);
     snapshot.save(part + ".seen", parts_[k].seen);
+    snapshot.save(part + ".unseen", Vector(Eigen::Vector2d(parts_[k].unseen, parts_[k].clearance)));
   }
   snapshot.save(name + ".found", numbers);
   snapshot.save(name + ".saved", saved_);
@@ -299,6 +348,10 @@ void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
     if (!parts_[k].at_start.allFinite() || !(parts_[k].at_start.array() >= 0.0).all())
       Snapshot::refuse(part + ".at_start", "has entries that are no depths");
     if (!parts_[k].seen.allFinite()) Snapshot::refuse(part + ".seen", "is not finite");
+    const Vector& unseen = snapshot.reals(part + ".unseen", 2);
+    if (!(unseen[0] >= 0.0 && unseen[1] >= 0.0)) Snapshot::refuse(part + ".unseen", "has entries below zero");
+    parts_[k].unseen = unseen[0];
+    parts_[k].clearance = unseen[1];
   }
   saved_ = snapshot.real(name + ".saved");
   if (!(saved_ >= 0.0) || !std::isfinite(saved_)) Snapshot::refuse(name + ".saved", "is no work");

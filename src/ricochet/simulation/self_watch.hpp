@@ -54,6 +54,10 @@ class SelfWatch {
   [[nodiscard]] const std::vector<BodyInItself>& bodies() const { return found_; }
   [[nodiscard]] bool watches() const { return !parts_.empty(); }
   [[nodiscard]] long looks() const { return looks_; }
+  /// How far a node has gone between two looks beside a rigid motion of its body, at most, in mean edges, where parts
+  /// that faced each other were near enough to meet by that: those that go through each other and out again meanwhile
+  /// are not found.
+  [[nodiscard]] double unseen_motion() const;
 
  private:
   /// A contact of the body with itself at a node.
@@ -77,11 +81,15 @@ class SelfWatch {
     std::vector<char> is_left_out;         ///< likewise
     Vector at_start;                       ///< likewise, how deep it was
     Vector seen;                           ///< displacement at the last look, d per node
+    double unseen = 0.0;                   ///< see unseen_motion()
+    double clearance = 0.0;                ///< of nodes from surfaces that face them, at the last look, at least
     double size = 0.0, work = 0.0;         ///< work of a look, in that of reading a number
   };
   [[nodiscard]] Part make_part(const Body& body, const std::vector<CellFacet>& facets, double size) const;
   void take_contacts(const Body& body, const ContactBoundary& contact, const std::vector<ContactPair>& pairs,
                      Part& part) const;
+  [[nodiscard]] double strain_since(const Part& part, const Vector& displacement) const;
+  void enter_unseen(Part& part, const Vector& displacement) const;
   [[nodiscard]] bool is_due(const Part& part, double limit, const Vector& displacement) const;
   void look_at(std::size_t number, const Vector& displacement, double time, const NodeGaps& gaps);
   /// The contact that keeps a node apart from a piece; null: there is none.
