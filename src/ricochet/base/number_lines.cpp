@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 #include <utility>
 
@@ -114,8 +115,13 @@ void NumberLines::split(std::string_view line) {
   }
 }
 
+/// Words, which may be quoted, that begin with letters. Others, as numbers in quotes or with a minus of typography, are
+/// numbers that cannot be read.
 bool NumberLines::is_header() const {
-  return std::none_of(words_.begin(), words_.end(), [](const Word& word) { return is_like_number(word.text); });
+  return std::all_of(words_.begin(), words_.end(), [](const Word& word) {
+    const std::string_view text = word.text.substr(word.text.front() == '"' ? 1 : 0);
+    return !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0 && !is_like_number(text);
+  });
 }
 
 void NumberLines::refuse(const Word& word) const {

@@ -31,8 +31,8 @@ class TextWords {
 [[nodiscard]] std::string shown_word(std::string_view word);
 
 /// Lines of finite numbers, separated by blanks, commas or semicolons; '#' begins a comment. The first line that has
-/// words may be a header: words that begin with letters. A word that begins as a number does, or is "nan", is a number
-/// that is misspelt, and no name of a column.
+/// words may be a header: words, which may be in quotes, that begin with letters. A word that begins as a number does,
+/// or is "nan", is a number that is misspelt, and no name of a column.
 class NumberLines {
  public:
   enum class Header { allowed, refused };

@@ -43,8 +43,27 @@ TEST(NumberLines, SeparateNumbersByBlanksCommasOrSemicolons) {
 
 /// Each of these words was once taken for a header where it stood in the first line.
 TEST(NumberLines, TakeNoMisspeltNumberForAHeader) {
-  for (const std::string word : {"0.0m", "nan", "NaN", "inf", "-Infinity", "1.5.2", "1e", "0x10", "+-1", "--1", "1d3",
-                                 ".", "-", "1e999", "12:30", "3rd"}) {
+  for (const std::string word : {"0.0m",
+                                 "nan",
+                                 "NaN",
+                                 "inf",
+                                 "-Infinity",
+                                 "1.5.2",
+                                 "1e",
+                                 "0x10",
+                                 "+-1",
+                                 "--1",
+                                 "1d3",
+                                 ".",
+                                 "-",
+                                 "1e999",
+                                 "12:30",
+                                 "3rd",
+                                 "\"0.0\"",
+                                 "\xE2\x88\x92"
+                                 "0.1",
+                                 "(0.0",
+                                 "\"\""}) {
     EXPECT_FALSE(number_in(word)) << word;
     for (const Header header : {Header::allowed, Header::refused}) {
       EXPECT_EQ(problem_of("0.0 " + word + " 0.0\n", header).find("f:1:5: \"" + word + "\" is no finite number"), 0U)
@@ -64,11 +83,11 @@ TEST(NumberLines, HaveOneHeaderAtMost) {
   EXPECT_EQ(problem_of("t x\ns mm\n0 1\n").find("f:2:1: \"s\" is no finite number"), 0U);
   EXPECT_EQ(problem_of("0 1\nt x\n").find("f:2:1: \"t\""), 0U);
   EXPECT_EQ(problem_of("t x\n0 1\n", Header::refused).find("f:1:1: \"t\""), 0U);
-  const std::string file = "f", text = "# a\n time, ux\n0 1\n";
+  const std::string file = "f", text = "# a\n time, \"ux\"\n0 1\n";
   NumberLines lines(file, text, Header::allowed);
   while (lines.next()) {
   }
-  EXPECT_EQ(lines.header(), (std::vector<std::string>{"time", "ux"}));
+  EXPECT_EQ(lines.header(), (std::vector<std::string>{"time", "\"ux\""}));
   EXPECT_EQ(lines.header_line(), 2);
 }
 
