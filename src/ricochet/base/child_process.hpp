@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ricochet/base/interruption.hpp"
+#include "ricochet/base/kept_children.hpp"
 
 /// @file Running another program. Its arguments go to it as they are: no shell is involved.
 namespace ricochet {
@@ -56,6 +57,7 @@ class RunningChild {
   /// Takes note of how it has ended.
   void collect();
 
+  KeptChildren kept_;
   pid_t process_ = -1;
   ChildOutcome outcome_;
   std::unique_ptr<SharedErrno> error_;

@@ -13,6 +13,7 @@
 #include <cstring>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/kept_children.hpp"
 
 namespace ricochet {
 
@@ -45,6 +46,7 @@ std::string TrialOutcome::description() const {
 }
 
 TrialOutcome try_in_child(const std::function<bool()>& work, double processor_seconds) {
+  const KeptChildren kept;
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0)

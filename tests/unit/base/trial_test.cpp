@@ -21,6 +21,14 @@ TEST(Trial, TellsWhatCameOfTheWork) {
   EXPECT_EQ(crashed.description(), "ended a process with signal 11");
 }
 
+/// As in what a daemon starts that ignores the ends of its children.
+TEST(Trial, TellsWhatCameOfTheWorkWhereEndsOfChildrenAreIgnored) {
+  const auto before = signal(SIGCHLD, SIG_IGN);
+  EXPECT_TRUE(try_in_child([] { return true; }, 10.0).succeeded);
+  EXPECT_EQ(try_in_child([] { return raise(SIGSEGV) == 0; }, 10.0).signal, SIGSEGV);
+  EXPECT_EQ(signal(SIGCHLD, before), SIG_IGN) << "as it was";
+}
+
 TEST(Trial, EndsWhatHasNoEnd) {
   volatile bool goes_on = true;
   const TrialOutcome endless = try_in_child(
