@@ -93,7 +93,13 @@ int plot_animation(const PlotArguments& arguments) {
   options.time = arguments.at;
   if (!arguments.time.empty()) options.interval = interval_of(arguments.time);
   options.title = arguments.title;
-  if (!arguments.size.empty()) std::tie(options.width, options.height) = size_of(arguments.size);
+  if (!arguments.size.empty()) {
+    std::tie(options.width, options.height) = size_of(arguments.size);
+    // Axes, their labels and the bar of colours take so much.
+    constexpr double least = 6.0;
+    if (options.width < least || options.height < least)
+      throw Error(ErrorKind::usage, fmt::format("--size of an animation is {} cm or more in both directions", least));
+  }
   options.half = arguments.half;
   options.zoom = arguments.zoom;
   draw_figure(describe_animation(arguments.directories.front(), options), format, arguments.output);

@@ -95,6 +95,8 @@ struct Hdf5Reader::Dataset {
 Hdf5Reader::Hdf5Reader(std::string path) : path_(std::move(path)) {
   quiet_hdf5();
   std::error_code problem;
+  if (fs::exists(path_, problem) && !fs::is_regular_file(path_, problem) && !fs::is_directory(path_, problem))
+    throw Error(ErrorKind::file_access, fmt::format("{}: is not a regular file, but a pipe or a device", path_));
   if (!fs::exists(path_, problem)) throw Error(ErrorKind::file_access, fmt::format("{}: no such file", path_));
   if (fs::is_directory(path_, problem))
     throw Error(ErrorKind::file_access, fmt::format("{}: is a directory, not a file", path_));
