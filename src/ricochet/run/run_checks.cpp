@@ -137,7 +137,9 @@ void RunChecks::watch(const std::vector<double>& row, const State& state) {
 void RunChecks::judge(Account& account, double residual, double scale, const std::vector<double>& row,
                       const State& state) {
   CheckResult& result = account.result;
-  if (!(scale > 0.0)) return;
+  // Of an energy that is next to nothing its own rounding is a large part: a load may come up as exp(-t²).
+  constexpr double least_scale = 1e-280;
+  if (!(scale > least_scale)) return;
   const bool broken = result.limit > 0.0 && residual > result.limit * scale;
   if (broken && &account == &energy_ && !account.told) {
     // Asked again only when there is much more energy: it takes as long as some steps.
