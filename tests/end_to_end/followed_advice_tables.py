@@ -1,8 +1,10 @@
 """Messages that advise a setting, the case that makes each, and what is taken instead. The test is followed_advice_test.py."""
 
 from followed_advice_cases import (ADAPTIVE, ALL_ROUND, ARC, BALL, BLOCK, BRICKS, CELL, CURVED, EXPLICIT, FEWER, GROUND, GROWS, HELD,
-    HELD_X, HORN, JERKED, KANE, LANDS, LONG, LUMPED, MEETS, NEO, NEWMARK, ON_FACETS, PAIR, PIN, POLYGONS, PRESSED, PRESSED_PAIR, RELAXES,
-    RIDGE, ROD, ROWS, SECOND_ORDER, SHAKEN, SHOE, SIDEWAYS, SLIDES, SLIM, SOLID, STRIKES, STRUCK, TIED, WITH_INERTIA)
+                                   HELD_X, HORN, JERKED, KANE, LANDS, LONG, LUMPED, MEETS, NARROW, NEO, NEWMARK, ON_FACETS, PAIR, PIN,
+                                   POLYGONS, PRESSED, PRESSED_PAIR, RELAXES, RIDGE, ROD, ROWS, SECOND_ORDER, SHAKEN, SHOE, SIDEWAYS,
+                                   SLIDES, SLIM, SOLID, STRIKES, STRUCK, TIED, WITH_INERTIA)
+from harness import SPINNING
 
 
 def step(found):
@@ -60,6 +62,11 @@ TRIED = [
      {"obstacle.floor.radius": 0.1, "obstacle.floor.centre": "[0.7, -0.1]"}, [{"mesh.refine": 5}]),
     (r'it can be past it without having touched; take time.step = (\S+) or less', BALL,
      {"initial.velocity": "[0.0, -300.0]", "time.step": 0.01}, [step]),
+    (r'rad in a step, and the speed of its surface that the step sees is .*; take time.step = (\S+) or less', BALL,
+     {"obstacle.floor.rotation": '"100*t"', "time.step": 0.01},
+     [step, {"obstacle.floor.rotation": None, "obstacle.floor.rotation_rate": 100}]),
+    (r'of what faces lies on facets of ".*" that are covered in part', NARROW, {"contact.0.multipliers_on": "against"},
+     [{"contact.0.multipliers_on": "group"}]),
     (r'make the motion smooth, for example with 0.5\*\(1-cos\(pi\*t/T\)\), and take ten steps or more', JERKED,
      {**NEWMARK, "time.step": 2e-3}, [{"support.0.value": "-0.01*0.5*(1-cos(pi*min(t/0.1, 1)))"}]),
     (r'stretches are 1 \+ principal strain: leave it out, or set material.law', BLOCK, {"output.fields": '["principal_stretch_1"]'},
@@ -153,6 +160,7 @@ TRIED = [
 ]
 # Of messages that only a run says.
 TRIED_BY_RUNS = [
+    (r'take law = "neo-hookean" in \[\[material\]\], which holds for any rotation', SPINNING, {}, [{"material.0.law": "neo-hookean"}]),
     (r'make time.smallest shorter, or the tolerance larger', BLOCK, {**KANE, **ADAPTIVE},
      [{"time.smallest": 1e-5}, {"time.tolerance": 1e-2}]),
     (r'has grown beyond all bounds; use a stable scheme \(reduced-kane with mass "equivalent"\)', BLOCK, GROWS,

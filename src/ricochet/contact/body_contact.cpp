@@ -298,6 +298,8 @@ void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) 
     const double area = own.facets()[k].area * ring;
     facing.area += area;
     facing.covered += std::min(direct[k].covered, 1.0) * area;
+    constexpr double least = 1e-3;
+    if (direct[k].covered > least && direct[k].covered < 1.0 - least) facing.partly_covered += direct[k].covered * area;
   }
 }
 

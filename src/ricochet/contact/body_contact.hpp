@@ -34,6 +34,7 @@ struct PairFacing {
   Index held = 0;                    ///< multipliers that supports hold on both sides
   Index lost = 0;                    ///< pieces of facets that are left out, as they are seen edge-on
   double area = 0.0, covered = 0.0;  ///< of the group that carries the multipliers, and of its part that faces
+  double partly_covered = 0.0;       ///< of `covered` what lies on facets of which a part faces nothing
   double smallest_gap = std::numeric_limits<double>::infinity(), largest_gap = -smallest_gap;  ///< of points
   Index closed = 0;           ///< points whose gap was below zero and is taken for zero
   double gap_rounding = 0.0;  ///< of the smallest

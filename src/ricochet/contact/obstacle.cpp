@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "ricochet/base/error.hpp"
 
@@ -43,6 +44,12 @@ double PlacedObstacle::gap_rounding(const SpaceVector& position) const {
   const double moved = pose_.shift.size() > 0 ? pose_.shift.lpNorm<1>() : 0.0;
   return shape_->gap_rounding(pose_.seen_from(position)) +
          eight_roundings(moved + (pose_.turns() ? position.lpNorm<1>() : 0.0));
+}
+
+double turn_between(const Pose& start, const Pose& end, Index dimension) {
+  if (!start.turns() && !end.turns()) return 0.0;
+  const double squared = half_cosine(rotation_of(start, dimension), rotation_of(end, dimension));
+  return 2.0 * std::acos(std::sqrt(std::clamp(squared, 0.0, 1.0)));
 }
 
 SpaceVector motion_at(const Pose& start, const Pose& end, const SpaceVector& middle) {

@@ -34,6 +34,8 @@ class PlacedObstacle {
 /// For a rotation of half a turn and more there is no such point; it moves then as the one that is seen there at the
 /// end.
 [[nodiscard]] SpaceVector motion_at(const Pose& start, const Pose& end, const SpaceVector& middle);
+/// The angle by which an obstacle in `dimension` dimensions has turned between two poses, from 0 to π.
+[[nodiscard]] double turn_between(const Pose& start, const Pose& end, Index dimension);
 /// Of the same obstacle at two instants, and of a point that goes from one place to another: a unit normal n such that,
 /// with some a > 0,
 ///   n·(Δx − v) = a (gap₁ − gap₀),

@@ -88,6 +88,17 @@ void warn_of_side(const ContactPair& pair, const SideDoubt& doubt, bool is_chose
                   pair.first_group(), pair.second_group(), doubt.turn, pair.group, advice));
 }
 
+/// Contact ends within facets there, and what is known of them is known of nodes beyond its end, too.
+void tell_of_partly_covered(const ContactPair& pair, const PairFacing& facing) {
+  constexpr double felt = 0.02;
+  if (pair.tied || pair.slides_far || facing.partly_covered <= felt * facing.covered) return;
+  log::info(fmt::format(
+      "{}: {:.2g} % of what faces lies on facets of \"{}\" that are covered in part: areas in contact count "
+      "such facets as a whole, and pressures at their nodes are extrapolated (forces are right); let facets "
+      "end where the other surface ends, or put the multipliers on the side whose facets do (multipliers_on)",
+      names_of_pair(pair), 100.0 * facing.partly_covered / facing.covered, pair.group));
+}
+
 }  // namespace
 
 ContactPair body_pair(const Case& input, const ModelContact& section, const Model& model) {
@@ -160,6 +171,7 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
                              names_of_pair(pair), counted(facing.held, "multiplier is", "multipliers are"),
                              facing.held == 1 ? "point is" : "points are"));
   }
+  tell_of_partly_covered(pair, facing);
   if (facing.lost > 0) {
     log::warning(
         fmt::format("{}: {} left out of the contact, as curved facets are seen edge-on there; refine the mesh "

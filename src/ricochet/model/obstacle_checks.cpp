@@ -65,6 +65,42 @@ void warn_of_long_step(const Case& input, const ContactPair& pair, const Model& 
       pair.group, longest, pair.obstacle_name, radius, rounded_down(0.1 * radius / longest * input.time.step, 1)));
 }
 
+/// The largest turn in a step, in rad, from a few hundred instants. Parts of a step are added up: a whole turn is no
+/// rest.
+double largest_turn(const Obstacle& obstacle, Index dimension, const Case& input) {
+  constexpr int most_steps = 500, parts = 16;
+  const double h = input.time.step, steps = std::min(std::ceil(input.time.end / h), static_cast<double>(most_steps));
+  double largest = 0.0;
+  for (int k = 0; k < static_cast<int>(steps); ++k) {
+    const double start = k * input.time.end / steps;
+    double turn = 0.0;
+    for (int part = 0; part < parts; ++part)
+      turn += turn_between(obstacle.pose(start + part * h / parts), obstacle.pose(start + (part + 1) * h / parts),
+                           dimension);
+    largest = std::max(largest, turn);
+  }
+  return largest;
+}
+
+/// Friction sees the motion of the material where a step ends, relative to the chord of the step (motion_at): its speed
+/// is tan(θ/2)/(θ/2) times the true one.
+void warn_of_fast_turn(const Case& input, const ContactPair& pair, Index dimension) {
+  if (!pair.obstacle->turns() || pair.obstacle->free_motion() != nullptr) return;
+  constexpr double most = 0.3, advised = 0.25;
+  const double turn = largest_turn(*pair.obstacle, dimension, input);
+  if (!(turn > most)) return;
+  const std::string wrong =
+      turn < 3.0 ? fmt::format("too large by {:.2g} %", 100.0 * (std::tan(0.5 * turn) / (0.5 * turn) - 1.0))
+                 : "of no use";
+  log::warning(fmt::format(
+      "contact of group \"{}\": obstacle \"{}\" turns by up to {:.3g} rad in a step, and the speed of its surface that "
+      "the step sees is {}; take time.step = {:.1g} or less{}",
+      pair.group, pair.obstacle_name, turn, wrong, rounded_down(advised / turn * input.time.step, 1),
+      pair.obstacle->shape().own_axis().exists
+          ? ", or, where it turns about its own axis, a rotation_rate in place of the rotation"
+          : ""));
+}
+
 /// Distances to what is far away, or has a centre far away, are differences of large numbers.
 void refuse_lost_digits(const Case& input, const ContactPair& pair, const Model& model) {
   const double body = extent(model.space.nodes);
@@ -89,6 +125,7 @@ void check_obstacles(const Case& input, const Model& model) {
     refuse_lost_digits(input, pair, model);
     warn_of_sharp_obstacle(pair, model.space);
     warn_of_long_step(input, pair, model);
+    warn_of_fast_turn(input, pair, model.space.nodes.rows());
   }
 }
 
