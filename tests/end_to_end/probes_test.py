@@ -255,6 +255,15 @@ contact = 0
         self.assertLess(errors[0], 0.003)
         self.assertLess(errors[1], 0.6 * errors[0])
 
+    def test_at_a_node_of_two_contacts(self):
+        """Gap and pressure are those with what is nearer, whichever comes first in the case."""
+        roof = ('[obstacle.roof]\ntype = "plane"\npoint = [0.0, 5.0]\nnormal = [0.0, -1.0]\n'
+                '[[contact]]\ngroup = "bottom"\nobstacle = "roof"\n')
+        text = block_case().replace("[obstacle.floor]", roof + "[obstacle.floor]")
+        process = self.expect_status(0, run("run", self.write("two.toml", text), "-o", self.folder / "two"))
+        self.assertIn('are those with obstacle "floor", which is the nearest one at the start', process.stderr)
+        self.assertAlmostEqual(History(self.folder / "two" / "history.csv")["foot.gap"][0], 0.1)
+
     def test_what_is_refused(self):
         for probe, message in (
                 ('at = [0.0, 0.0]\ngroup = "body"', "group"),

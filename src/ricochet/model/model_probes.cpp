@@ -44,19 +44,36 @@ class ProbeFinder {
     Probe probe{name, node, distance, -1, model_.space.number[static_cast<std::size_t>(node)]};
     const auto& nodes = model_.problem.contact.nodes;
     const auto entries = std::count(nodes.begin(), nodes.end(), node);
-    if (entries > 0) probe.contact_node = std::find(nodes.begin(), nodes.end(), node) - nodes.begin();
+    if (entries > 0) probe.contact_node = nearest_contact(node);
     if (entries > 0 && std::isnan(model_.problem.contact.node_initial_gap[probe.contact_node]))
       log::info(fmt::format("probe \"{}\" is at a node that faces nothing of the other body: it has no gap", name));
     if (entries > 1) {
       const auto first = static_cast<std::size_t>(probe.contact_node);
       const auto pair = static_cast<std::size_t>(model_.problem.contact.node_pair[first]);
       log::warning(fmt::format(
-          "probe \"{}\" is at a node of {} contacts: its gap, pressure and reaction are those with {}", name, entries,
-          model_.contact_pairs[pair].opponent(model_.problem.contact.is_opposite[first] != 0)));
+          "probe \"{}\" is at a node of {} contacts: its gap, pressure and reaction are those with {}, which is the "
+          "nearest "
+          "one at the start",
+          name, entries, model_.contact_pairs[pair].opponent(model_.problem.contact.is_opposite[first] != 0)));
     }
     places_.columns.push_back(make_point_sensor(model_.problem, probe)->columns());
     places_.probes.push_back(std::move(probe));
     places_.positions.emplace_back(model_.space.nodes.col(node));
+  }
+
+  /// The entry of a node in ContactBoundary::nodes; of several that with the least gap at the start, the first of
+  /// equals.
+  [[nodiscard]] Index nearest_contact(Index node) const {
+    const ContactBoundary& contact = model_.problem.contact;
+    Index nearest = -1;
+    for (Index entry = 0; entry < static_cast<Index>(contact.nodes.size()); ++entry) {
+      if (contact.nodes[static_cast<std::size_t>(entry)] != node) continue;
+      // Also true where the one before faces nothing, and has no gap.
+      if (nearest < 0 || (!std::isnan(contact.node_initial_gap[entry]) &&
+                          !(contact.node_initial_gap[entry] >= contact.node_initial_gap[nearest])))
+        nearest = entry;
+    }
+    return nearest;
   }
 
   /// Returns, of nodes of two bodies in contact that lie in one place, one of the side that carries the multipliers,
