@@ -107,6 +107,8 @@ void add_forces_on_free_bodies(const Case& input, Model& model);
 void start_free_bodies(const Case& input, Model& model);
 /// Tells obstacles what touches them.
 void fit_obstacles(const Case& input, Model& model);
+/// Warns of loads and motions, at a place, that come and go within the longest adaptive step.
+void warn_of_brief_changes(const Case& input, const Vector& centre);
 /// Refuses, or warns of, obstacles that gaps to cannot be found for, or that points and steps may miss.
 void check_obstacles(const Case& input, const Model& model);
 

@@ -235,6 +235,7 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
   if (input.time.adaptive) {
     require_changing_steps(*scheme,
                            fmt::format("{}: scheme \"{}\"", input.where("time.step").text(), input.time.scheme));
+    warn_of_brief_changes(input, model.space.nodes.rowwise().mean());
   }
   warn_of_creep(input, *scheme, model.problem);
   if (!input.time.adaptive) warn_of_long_steps(input, *scheme, model);
