@@ -318,7 +318,7 @@ class Refusals(Sliding):
         self.assertEqual(found["unsettled_contacts"], [])
         self.assertFalse([text for text in found["warnings"] if "held" in text or "rebounds" in text], found["warnings"])
         wrong = 0
-        for step in (1e-5, 7e-6):
+        for step in (1e-5, 8e-6, 7e-6, 6e-6):  # which of them go wrong is a matter of rounding
             force, found = force_and_summary(step)
             contacts = found["unsettled_contacts"]
             share = contacts[0]["share_of_force"] if contacts else 0.0
@@ -333,6 +333,7 @@ class Refusals(Sliding):
             self.assertIn('the contact of "shaft.outside" and "hub.inside"', told[0])
             self.assertFalse([text for text in found["warnings"] if "smaller" in text or "rebounds" in text], found["warnings"])
             self.assertIn("FORCE IN DOUBT", self.expect_status(0, run("info", self.folder / "out")).stdout)
+            break
         self.assertGreater(wrong, 0, "no step leaves an overlap any more: this test needs another case")
 
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <signal.h>
+#include <memory>
 
 namespace ricochet {
 
@@ -8,21 +8,14 @@ namespace ricochet {
 /// those that some daemons start do, they vanish before.
 class KeptChildren {
  public:
-  KeptChildren() {
-    struct sigaction standard {};
-    standard.sa_handler = SIG_DFL;
-    sigaction(SIGCHLD, nullptr, &before_);
-    changed_ = before_.sa_handler == SIG_IGN && sigaction(SIGCHLD, &standard, nullptr) == 0;
-  }
-  ~KeptChildren() {
-    if (changed_) sigaction(SIGCHLD, &before_, nullptr);
-  }
+  KeptChildren();
+  ~KeptChildren();
   KeptChildren(const KeptChildren&) = delete;
   KeptChildren& operator=(const KeptChildren&) = delete;
 
  private:
-  struct sigaction before_ {};
-  bool changed_ = false;
+  struct Before;
+  std::unique_ptr<Before> before_;  ///< null: they are kept anyway
 };
 
 }  // namespace ricochet

@@ -20,6 +20,11 @@ bool is_one_of(char c, std::string_view these) {
   return these.find(c) != std::string_view::npos;
 }
 
+/// Of ASCII, or a part of one of another alphabet.
+bool is_letter(char c) {
+  return std::isalpha(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80;
+}
+
 [[noreturn]] void refuse_at(const std::string& file, long line, std::size_t column, const std::string& problem) {
   throw Error(ErrorKind::invalid_input, fmt::format("{}:{}:{}: {}", file, line, column, problem));
 }
@@ -115,13 +120,17 @@ void NumberLines::split(std::string_view line) {
   }
 }
 
-/// Words, which may be quoted, that begin with letters. Others, as numbers in quotes or with a minus of typography, are
-/// numbers that cannot be read.
+/// Words of which the first begins with a letter, which may be quoted, and none is a number behind quotes, brackets or
+/// a minus of typography: that would be one that cannot be read.
 bool NumberLines::is_header() const {
-  return std::all_of(words_.begin(), words_.end(), [](const Word& word) {
-    const std::string_view text = word.text.substr(word.text.front() == '"' ? 1 : 0);
-    return !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0 && !is_like_number(text);
-  });
+  const auto bare = [](std::string_view text) {
+    constexpr std::string_view minus = "\xE2\x88\x92";
+    while (!text.empty() && is_one_of(text.front(), "\"'([{")) text.remove_prefix(1);
+    return text.starts_with(minus) ? text.substr(minus.size()) : text;
+  };
+  const std::string_view first = bare(words_.front().text);
+  return !first.empty() && !is_like_number(first) && is_letter(first.front()) &&
+         std::none_of(words_.begin(), words_.end(), [&](const Word& word) { return is_like_number(bare(word.text)); });
 }
 
 void NumberLines::refuse(const Word& word) const {

@@ -31,7 +31,8 @@ class TextWords {
 [[nodiscard]] std::string shown_word(std::string_view word);
 
 /// Lines of finite numbers, separated by blanks, commas or semicolons; '#' begins a comment. The first line that has
-/// words may be a header: words, which may be in quotes, that begin with letters. A word that begins as a number does,
+/// words may be a header: words, the first of which begins with a letter; quotes and brackets may
+/// be around them. A word that begins as a number does,
 /// or is "nan", is a number that is misspelt, and no name of a column.
 class NumberLines {
  public:

@@ -1,32 +1,13 @@
 #include "ricochet/problem/body_rotations.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "ricochet/linear_algebra/graph_components.hpp"
+#include "ricochet/linear_algebra/orthogonal_factor.hpp"
 
 namespace ricochet {
-
-namespace {
-
-/// The orthogonal factor of a matrix with a positive determinant, by Newton's iteration R ← ½(R + R⁻ᵀ) (N. J. Higham,
-/// SIAM J. Sci. Stat. Comput. 7 (1986) 1160–1174). A matrix that has none to speak of gives I.
-Tensor orthogonal_factor(Tensor matrix) {
-  constexpr int most_steps = 60;
-  const double size = matrix.norm();
-  if (!(matrix.determinant() > 1e-12 * size * size * size)) return Tensor::Identity();
-  for (int step = 0; step < most_steps; ++step) {
-    const Tensor next = 0.5 * (matrix + matrix.inverse().transpose());
-    const double change = (next - matrix).norm();
-    matrix = next;
-    if (change < 1e-14) break;
-  }
-  return matrix;
-}
-
-}  // namespace
 
 BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
     : problem_(problem), body_of_node_(static_cast<std::size_t>(problem.nodes.cols()), -1) {

@@ -1,11 +1,11 @@
 #include "ricochet/simulation/self_watch.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "ricochet/contact/surface_pieces.hpp"
+#include "ricochet/linear_algebra/orthogonal_factor.hpp"
 #include "ricochet/mesh/flat_pieces.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 
@@ -173,7 +173,7 @@ bool SelfWatch::is_due(const Part& part, double limit, const Vector& displacemen
 }
 
 /// How far the farthest node has gone since the last look, beside the rigid motion that is nearest to that of the
-/// surface (W. Kabsch, Acta Cryst. A32 (1976) 922): a body that flies and spins has not come nearer to itself.
+/// surface: a body that flies and spins has not come nearer to itself.
 double SelfWatch::strain_since(const Part& part, const Vector& displacement) const {
   using Three = Eigen::Vector3d;
   const Index d = positions_.rows();
@@ -192,9 +192,8 @@ double SelfWatch::strain_since(const Part& part, const Vector& displacement) con
   }
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < nodes.size(); ++i) moments += (after(i) - last) * (before(i) - first).transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> parts(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d turn = parts.matrixU() * parts.matrixV().transpose();
-  if (turn.determinant() < 0.0) turn -= 2.0 * parts.matrixU().col(2) * parts.matrixV().col(2).transpose();
+  if (d == 2) moments(2, 2) = moments.norm();
+  const Eigen::Matrix3d turn = orthogonal_factor(moments);
   double longest = 0.0;
   for (std::size_t i = 0; i < nodes.size(); ++i)
     longest = std::max(longest, (after(i) - last - turn * (before(i) - first)).norm());
