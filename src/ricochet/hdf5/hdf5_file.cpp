@@ -95,11 +95,11 @@ struct Hdf5Reader::Dataset {
 Hdf5Reader::Hdf5Reader(std::string path) : path_(std::move(path)) {
   quiet_hdf5();
   std::error_code problem;
-  if (fs::exists(path_, problem) && !fs::is_regular_file(path_, problem) && !fs::is_directory(path_, problem))
-    throw Error(ErrorKind::file_access, fmt::format("{}: is not a regular file, but a pipe or a device", path_));
   if (!fs::exists(path_, problem)) throw Error(ErrorKind::file_access, fmt::format("{}: no such file", path_));
   if (fs::is_directory(path_, problem))
     throw Error(ErrorKind::file_access, fmt::format("{}: is a directory, not a file", path_));
+  if (!fs::is_regular_file(path_, problem))
+    throw Error(ErrorKind::file_access, fmt::format("{}: is not a regular file, but a pipe or a device", path_));
   if (access(path_.c_str(), R_OK) != 0)
     throw Error(ErrorKind::file_access, fmt::format("{}: cannot be read: {}", path_, std::strerror(errno)));
   if (H5Fis_hdf5(path_.c_str()) <= 0)
