@@ -67,10 +67,12 @@ double SelfOverlap::opening(int node) const {
   return least;
 }
 
-std::optional<SelfOverlap::Found> SelfOverlap::at(int node) const {
+std::optional<SelfOverlap::Found> SelfOverlap::at(int node, double* clearance) const {
   const Three normal = surface_.normal_at(node).normalized();
-  double way = leads_out(node, normal) ? way_inside(node, normal) : -1.0;
-  if (way < 0.0) return {};
+  const Hit along = leads_out(node, normal) ? first_hit(node, normal) : Hit{std::numeric_limits<double>::infinity()};
+  if (clearance != nullptr) *clearance = along.side > 0 ? along.distance : std::numeric_limits<double>::infinity();
+  if (along.side >= 0) return {};
+  double way = along.distance;
   const Three across = surface_.is_plane() ? Three(-normal[1], normal[0], 0.0) : normal.unitOrthogonal();
   for (const double side : {slant, -slant}) {
     const Three direction = normal + side * across;
@@ -102,12 +104,6 @@ bool SelfOverlap::leads_out(int node, const Three& direction) const {
   const double least = least_lead * direction.norm();
   return std::all_of(around.begin(), around.end(),
                      [&](int piece) { return surface_.normal_of(piece).dot(direction) > least; });
-}
-
-double SelfOverlap::clearance(int node) const {
-  const Three normal = surface_.normal_at(node).normalized();
-  const Hit first = leads_out(node, normal) ? first_hit(node, normal) : Hit{std::numeric_limits<double>::infinity()};
-  return first.side > 0 ? first.distance : std::numeric_limits<double>::infinity();
 }
 
 /// Before all else. Beyond the axis it goes through the image, as its own image goes through the surface.

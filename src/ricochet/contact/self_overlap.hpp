@@ -31,9 +31,8 @@ class SelfOverlap {
   /// knives, where a normal says little of what is outside. A notch that closes beyond itself looks like an edge.
   [[nodiscard]] double opening(int node) const;
   /// Looks at a node, by its number on the surface, where the surface is now; nothing: it is in no other part.
-  [[nodiscard]] std::optional<Found> at(int node) const;
-  /// How far from a node along its normal the outside of another part of the surface is; infinite: it sees none.
-  [[nodiscard]] double clearance(int node) const;
+  /// `clearance`: how far from the node along its normal the outside of another part is; infinite: it sees none.
+  [[nodiscard]] std::optional<Found> at(int node, double* clearance = nullptr) const;
 
  private:
   /// The first place where a ray meets the surface.

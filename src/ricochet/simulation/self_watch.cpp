@@ -224,12 +224,11 @@ void SelfWatch::look_at(std::size_t number, const Vector& displacement, double t
   for (int node = 0; node < static_cast<int>(nodes.size()); ++node) {
     const auto i = static_cast<std::size_t>(node);
     if (part.is_left_out[i] != 0) continue;
-    const auto found = overlap.at(node);
-    if (!found) {
-      // A contact of the body with itself keeps its nodes out whether or not they are looked at.
-      if (part.sides[i].empty()) part.clearance = std::min(part.clearance, overlap.clearance(node));
-      continue;
-    }
+    double clearance = 0.0;
+    const auto found = overlap.at(node, &clearance);
+    // A contact of the body with itself keeps its nodes out whether or not they are looked at.
+    if (part.sides[i].empty()) part.clearance = std::min(part.clearance, clearance);
+    if (!found) continue;
     const Eigen::Vector3d& position = part.surface.at(node);
     const auto piece = static_cast<std::size_t>(found->other_piece);
     double allowed =
