@@ -52,11 +52,12 @@ TEST(Interruption, TemporaryFoldersGo) {
     const TemporaryFolder inner(outer.path(), "inner");
     std::ofstream(inner.file("file")) << "text";
     if (fs::is_empty(outer.path())) _exit(1);
-    _exit(interruption::take_actions() ? 0 : 2);
+    if (!interruption::take_actions()) _exit(2);
+    // The process that takes the actions takes those of the outer folder, too, and may have made it anew: it looks
+    // itself.
+    _exit(fs::exists(outer.path()) ? 3 : 0);
   };
-  // The child takes the actions of the outer folder, too.
   EXPECT_EXIT(scenario(), testing::ExitedWithCode(0), "");
-  EXPECT_FALSE(fs::exists(outer.path()));
 }
 
 /// A run that has come to a stopping point is not ended in the middle; the next run of the same process may be.
