@@ -137,6 +137,15 @@ class Resume(ResumeTestCase):
         process = self.expect_status(2, run("run", self.disc, "-o", output, "--resume", *settings(values)))
         self.assertIn("no checkpoint can be read", process.stderr)
 
+    def test_killed_after_its_last_checkpoint(self):
+        """The last frame is that of the last step, which the checkpoint has: it is not written again."""
+        for form, every in (("xdmf", 8), ("vtkhdf", 8), ("xdmf", 7)):
+            values = {**busy("newmark"), "output.format": form, "output.fields_every": every}
+            output = self.interrupted(values, f"{form}-{every}")
+            process = run("run", self.disc, "-o", output, "--resume", "--quiet", *settings(values))
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.expect_same(self.reference(values), output)
+
     def test_goes_on_to_a_later_end(self):
         """The bytes of one run to that end, whatever is written at an end only."""
         for k, (scheme, more, ends) in enumerate((

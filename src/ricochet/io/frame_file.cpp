@@ -21,6 +21,8 @@ namespace {
 
 /// What a frame takes besides its numbers: names, extents, index; in all, and for each data set.
 constexpr std::int64_t administration = 65536, administration_of_a_set = 8192;
+/// Bytes at the begin of a file in which HDF5 says how long it is (format of superblocks, versions 2 and 3).
+constexpr std::int64_t superblock = 48;
 
 Hdf5Handle file_access(const FrameFileOptions& options) {
   const std::int64_t access = H5Pcreate(H5P_FILE_ACCESS);
@@ -35,6 +37,30 @@ Hdf5Handle file_access(const FrameFileOptions& options) {
     H5Pset_small_data_block_size(access, 0);
   }
   return {access, H5Pclose};
+}
+
+/// Copies what lies between extents, which are in order, and before the first. How long the file is comes last: should
+/// this be interrupted, the count of frames must not still be that of a longer one.
+void copy_gaps(const std::string& from_path, const std::string& to_path, const std::vector<FrameExtent>& extents) {
+  std::ifstream from(from_path, std::ios::binary);
+  std::fstream to(to_path, std::ios::binary | std::ios::in | std::ios::out);
+  std::vector<char> bytes;
+  const auto copy = [&](std::int64_t begin, std::int64_t end) {
+    bytes.resize(static_cast<std::size_t>(std::max<std::int64_t>(end - begin, 0)));
+    from.seekg(begin);
+    from.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    to.seekp(begin);
+    to.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  };
+  std::int64_t at = superblock;
+  for (const FrameExtent& extent : extents) {
+    copy(at, extent.address);
+    at = std::max(at, extent.address + extent.size);
+  }
+  to.flush();
+  copy(0, superblock);
+  to.flush();
+  check_written(to_path, from && to, "the file");
 }
 
 /// The groups above a name ("/mesh" of "/mesh/nodes").
@@ -235,21 +261,8 @@ void FrameFile::repair(const std::vector<FixedDataset>& fixed, Repair repair) co
     }
     std::sort(kept.begin(), kept.end(),
               [](const FrameExtent& a, const FrameExtent& b) { return a.address < b.address; });
-    std::ifstream from(pattern, std::ios::binary);
-    std::fstream to(path_, std::ios::binary | std::ios::in | std::ios::out);
-    std::vector<char> bytes;
-    std::int64_t at = 0;
     kept.push_back({size, 0});
-    for (const FrameExtent& extent : kept) {
-      bytes.resize(static_cast<std::size_t>(std::max<std::int64_t>(extent.address - at, 0)));
-      from.seekg(at);
-      from.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-      to.seekp(at);
-      to.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-      at = std::max(at, extent.address + extent.size);
-    }
-    to.flush();
-    check_written(path_, from && to, "the file");
+    copy_gaps(pattern, path_, kept);
     // Last: HDF5 opens a file that is longer than it says, and none that is shorter, should this be interrupted, too.
     cut_back(path_, size);
   } catch (const Error&) {

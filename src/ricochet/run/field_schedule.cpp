@@ -45,6 +45,7 @@ ResultsOptions results_options(const OutputSection& output) {
 FieldSchedule::FieldSchedule(const Case& input, const Model& model, long steps, const Snapshot* snapshot) {
   if (snapshot != nullptr) {
     every_ = snapshot->integer("fields.every");
+    last_ = snapshot->integer("fields.last");
     const Vector& times = snapshot->reals("fields.interval", 2);
     interval_ = times[0];
     intervals_before_ = times[1];
@@ -69,6 +70,7 @@ FieldSchedule::FieldSchedule(const Case& input, const Model& model, long steps, 
 
 void FieldSchedule::save(Snapshot& snapshot) const {
   snapshot.save("fields.every", std::int64_t{every_});
+  snapshot.save("fields.last", std::int64_t{last_});
   snapshot.save("fields.interval", Vector(Eigen::Vector2d(interval_, intervals_before_)));
 }
 
