@@ -21,7 +21,7 @@ namespace {
 
 /// What a frame takes besides its numbers: names, extents, index; in all, and for each data set.
 constexpr std::int64_t administration = 65536, administration_of_a_set = 8192;
-/// Bytes at the begin of a file in which HDF5 says how long it is (format of superblocks, versions 2 and 3).
+/// Bytes at the start of a file in which HDF5 says how long it is (format of superblocks, versions 2 and 3).
 constexpr std::int64_t superblock = 48;
 
 Hdf5Handle file_access(const FrameFileOptions& options) {
