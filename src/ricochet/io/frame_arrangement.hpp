@@ -56,6 +56,11 @@ class FrameArrangement {
   /// are no values, and of numbers that are in the file in another form than in memory. Throws Error(file_access).
   [[nodiscard]] virtual std::vector<FrameExtent> write(std::int64_t file, const std::string& path,
                                                        const FrameToWrite& frame) const = 0;
+  /// The part of the file that holds the number of frames; empty if nothing does. One write must replace it.
+  [[nodiscard]] virtual FrameExtent count_extent(std::int64_t file) const {
+    (void)file;
+    return {};
+  }
   /// What messages call it.
   [[nodiscard]] virtual std::string name(long frame) const = 0;
   [[nodiscard]] virtual bool keeps_times() const = 0;

@@ -21,8 +21,6 @@ namespace {
 
 /// What a frame takes besides its numbers: names, extents, index; in all, and for each data set.
 constexpr std::int64_t administration = 65536, administration_of_a_set = 8192;
-/// Bytes at the start of a file in which HDF5 says how long it is (format of superblocks, versions 2 and 3).
-constexpr std::int64_t superblock = 48;
 
 Hdf5Handle file_access(const FrameFileOptions& options) {
   const std::int64_t access = H5Pcreate(H5P_FILE_ACCESS);
@@ -39,9 +37,10 @@ Hdf5Handle file_access(const FrameFileOptions& options) {
   return {access, H5Pclose};
 }
 
-/// Copies what lies between extents, which are in order, and before the first. How long the file is comes last: should
-/// this be interrupted, the count of frames must not still be that of a longer one.
-void copy_gaps(const std::string& from_path, const std::string& to_path, const std::vector<FrameExtent>& extents) {
+/// Copies what lies between extents, which are in order, and before the first. This may be interrupted: the number of
+/// frames comes first, so that none of those that are given up counts.
+void copy_gaps(const std::string& from_path, const std::string& to_path, const std::vector<FrameExtent>& extents,
+               const FrameExtent& count) {
   std::ifstream from(from_path, std::ios::binary);
   std::fstream to(to_path, std::ios::binary | std::ios::in | std::ios::out);
   std::vector<char> bytes;
@@ -52,13 +51,13 @@ void copy_gaps(const std::string& from_path, const std::string& to_path, const s
     to.seekp(begin);
     to.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   };
-  std::int64_t at = superblock;
+  copy(count.address, count.address + count.size);
+  to.flush();
+  std::int64_t at = 0;
   for (const FrameExtent& extent : extents) {
     copy(at, extent.address);
     at = std::max(at, extent.address + extent.size);
   }
-  to.flush();
-  copy(0, superblock);
   to.flush();
   check_written(to_path, from && to, "the file");
 }
@@ -155,6 +154,10 @@ void FrameFile::create(const std::string& path, const std::vector<FixedDataset>&
   check_written(path, file >= 0, "the file");
   try {
     for (const FixedDataset& set : fixed) write_fixed(file, path, set);
+    // The indices of HDF5 1.10 grow without a change of what is there. Older ones split their nodes in place: killed in
+    // between, a run would leave a file whose steps cannot be found. (The file itself stays one of 1.8, as those
+    // of 1.10 say that they are open for writing, and cannot be opened when that was never taken back.)
+    if (options_.vtkhdf) H5Fset_libver_bounds(file, H5F_LIBVER_V110, H5F_LIBVER_V110);
     arrangement_->begin(file, path);
   } catch (const Error&) {
     H5Fclose(file);
@@ -235,6 +238,13 @@ std::vector<FrameExtent> FrameFile::write_frame(const std::string& path, const F
   return extents;
 }
 
+FrameExtent FrameFile::count_extent(const std::string& path) const {
+  const Hdf5Handle access = file_access(options_);
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
+  check_written(path, file >= 0, "the file");
+  return arrangement_->count_extent(file);
+}
+
 /// See the file's comment: all bytes but the numbers of the frames that are to stay come from a file of empty frames.
 void FrameFile::repair(const std::vector<FixedDataset>& fixed, Repair repair) const {
   const std::string pattern = path_ + ".pattern";
@@ -262,7 +272,7 @@ void FrameFile::repair(const std::vector<FixedDataset>& fixed, Repair repair) co
     std::sort(kept.begin(), kept.end(),
               [](const FrameExtent& a, const FrameExtent& b) { return a.address < b.address; });
     kept.push_back({size, 0});
-    copy_gaps(pattern, path_, kept);
+    copy_gaps(pattern, path_, kept, count_extent(pattern));
     // Last: HDF5 opens a file that is longer than it says, and none that is shorter, should this be interrupted, too.
     cut_back(path_, size);
   } catch (const Error&) {

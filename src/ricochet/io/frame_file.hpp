@@ -46,6 +46,7 @@ class FrameFile {
   void load(const Snapshot& snapshot, const std::string& name);
   void create(const std::string& path, const std::vector<FixedDataset>& fixed) const;
   std::vector<FrameExtent> write_frame(const std::string& path, const FrameToWrite& frame) const;
+  [[nodiscard]] FrameExtent count_extent(const std::string& path) const;
   [[nodiscard]] std::uint32_t checksum(const std::vector<FrameExtent>& extents,
                                        const std::vector<const void*>* values) const;
   void require_same(const std::vector<FrameExtent>& extents) const;

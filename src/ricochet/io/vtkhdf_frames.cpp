@@ -143,6 +143,12 @@ class VtkHdfFrames : public FrameArrangement {
     return extents;
   }
 
+  /// The header of the group of steps, which has the attribute NSteps.
+  [[nodiscard]] FrameExtent count_extent(std::int64_t file) const override {
+    H5O_info_t info{};
+    if (H5Oget_info_by_name2(file, steps_name, &info, H5O_INFO_BASIC | H5O_INFO_HDR, H5P_DEFAULT) < 0) return {};
+    return {static_cast<std::int64_t>(info.addr), static_cast<std::int64_t>(info.hdr.space.total)};
+  }
   [[nodiscard]] std::string name(long frame) const override { return fmt::format("step {} of /VTKHDF", frame); }
   [[nodiscard]] bool keeps_times() const override { return true; }
 
