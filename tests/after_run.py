@@ -1,0 +1,45 @@
+"""Prints the slowest thirty entries of the last run of CTest, and the tests that were skipped.
+
+    after_run.py BUILD_DIRECTORY
+"""
+
+import pathlib
+import re
+import sys
+
+ENTRY = re.compile(r"^\d+/\d+ Testing: (?P<name>.*?)$(?P<output>.*?)^Test time = +(?P<seconds>[0-9.]+) sec$",
+                   re.MULTILINE | re.DOTALL)
+# GoogleTest names each skipped test (twice), unittest and pytest count them.
+SKIPPED = (re.compile(r"^\[  SKIPPED \] (\S+) \(\d+ ms\)$", re.MULTILINE),
+           re.compile(r"\bskipped=(\d+)\b"), re.compile(r"\b(\d+ skipped)\b"))
+
+
+def entries(build):
+    """Name, seconds and output of each entry."""
+    log = build / "Testing" / "Temporary" / "LastTest.log"
+    text = log.read_text(errors="replace") if log.exists() else ""
+    return [(each["name"], float(each["seconds"]), each["output"]) for each in ENTRY.finditer(text)]
+
+
+def skipped(output):
+    """What an entry skipped: names, or how many."""
+    named, counted, told = (pattern.findall(output) for pattern in SKIPPED)
+    return named + [f"{count} tests" for count in counted] + [f"{count}" for count in told]
+
+
+def main():
+    ran = entries(pathlib.Path(sys.argv[1]))
+    if not ran:
+        return
+    print("\nThe slowest entries, in seconds:")
+    for name, seconds, _ in sorted(ran, key=lambda each: -each[1])[:30]:
+        print(f"{seconds:9.1f}  {name}")
+    found = [(name, what) for name, _, output in ran for what in skipped(output)]
+    if found:
+        print("\nSkipped:")
+    for name, what in found:
+        print(f"  {name}: {what}")
+
+
+if __name__ == "__main__":
+    main()

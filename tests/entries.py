@@ -1,0 +1,63 @@
+"""Writes the CTest entries of a GoogleTest program: one for each source file, whose tests share a process.
+
+    entries.py PROGRAM FOLDER OUTPUT [-x PATTERN]… [NAME=VALUE]…
+
+An entry is named after its file (FOLDER unit, unit/mesh/refine_test.cpp: unit.mesh.refine). NAME=VALUE are properties of
+all entries. -x leaves out tests that match a pattern of --gtest_filter.
+"""
+
+import argparse
+import json
+import pathlib
+import subprocess
+import tempfile
+
+
+def tests_by_file(program, excluded):
+    """The names of the tests of each source file, as --gtest_filter knows them."""
+    with tempfile.TemporaryDirectory() as folder:
+        listing = pathlib.Path(folder) / "tests.json"
+        chosen = [f"--gtest_filter=-{':'.join(excluded)}"] if excluded else []
+        subprocess.run([program, "--gtest_list_tests", f"--gtest_output=json:{listing}", *chosen], check=True,
+                       stdout=subprocess.DEVNULL)
+        suites = json.loads(listing.read_text())["testsuites"]
+    files = {}
+    for suite in suites:
+        for test in suite["testsuite"]:
+            files.setdefault(test["file"], {}).setdefault(suite["name"], []).append(test["name"])
+    return files
+
+
+def filters(files, excluded):
+    """A filter for each file: by suites where these are in no other file."""
+    owners = {}
+    for path, suites in files.items():
+        for suite in suites:
+            owners.setdefault(suite, set()).add(path)
+    for path, suites in sorted(files.items()):
+        patterns = []
+        for suite, names in suites.items():
+            patterns += [f"{suite}.*"] if len(owners[suite]) == 1 else [f"{suite}.{name}" for name in names]
+        yield path, ":".join(patterns) + (f"-{':'.join(excluded)}" if excluded else "")
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("output", type=pathlib.Path)
+    parser.add_argument("-x", action="append", default=[], dest="excluded")
+    parser.add_argument("properties", nargs="*")
+    arguments = parser.parse_args()
+    lines = []
+    for path, chosen in filters(tests_by_file(arguments.program, arguments.excluded), arguments.excluded):
+        parts = pathlib.Path(path).relative_to(arguments.folder).with_suffix("").parts
+        name = ".".join((arguments.folder.name, *parts)).removesuffix("_test")
+        lines.append(f'add_test([=[{name}]=] [=[{arguments.program}]=] [=[--gtest_filter={chosen}]=])')
+        values = " ".join("{} [=[{}]=]".format(*each.split("=", 1)) for each in arguments.properties)
+        lines.append(f"set_tests_properties([=[{name}]=] PROPERTIES {values})")
+    arguments.output.write_text("\n".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    main()
