@@ -314,6 +314,7 @@ def sequence_record(name, problem, by, solver, tolerance, answers):
 def parse():
     root = HERE.parents[1]
     parser = argparse.ArgumentParser(
+        prog="./dev bench contact",
         description="Ricochet's contact solvers against Siconos': makes the set of problems, runs everything, and writes the tables "
                     "and the plot of docs/contact-solvers.md. With any of the options that leave something out, tables are only printed.")
     parser.add_argument("--only", default="", metavar="NAME", help="only the cases with this in their name (case_table.py)")

@@ -172,7 +172,8 @@ def beyond(measured):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="./dev bench distributed", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--repeat", type=int, default=3, help="runs of each kind that is timed (default: 3)")
     parser.add_argument("--directory", type=pathlib.Path, default=BUILD / "bench-distributed", help="of meshes and runs")
     parser.add_argument("--quick", action="store_true", help="small bodies, and no table is written")

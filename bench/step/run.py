@@ -160,7 +160,7 @@ PARTS = {"ratios": measure_ratios, "pairs": measure_pairs, "pairing": measure_pa
 
 def main():
     root = HERE.parents[1]
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser = argparse.ArgumentParser(prog="./dev bench", description=__doc__.split("\n\n")[0])
     parser.add_argument("--only", choices=PARTS, nargs="+", default=list(PARTS), help="these parts; the others stay as they were")
     parser.add_argument("--report", action="store_true", help="only write the page anew from what was measured")
     parser.add_argument("--directory", type=pathlib.Path, default=root / "build/bench-step", help="of meshes and results")

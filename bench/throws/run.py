@@ -76,11 +76,15 @@ def throw(seed, folder, keep):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="./dev bench throws", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", type=int, default=1000)
     parser.add_argument("--first", type=int, default=1)
     parser.add_argument("--keep", type=pathlib.Path, help="a folder for the files of the throws")
+    parser.add_argument("--check", action="store_true", help="only look whether these arguments are right")
     options = parser.parse_args()
+    if options.check:
+        return 0
     counts = collections.defaultdict(lambda: [0, 0, 0])
     bad = 0
     with tempfile.TemporaryDirectory(prefix="ricochet-throws-") as temporary:
