@@ -1,0 +1,46 @@
+"""Revisions of the project: which two are compared, and the worktree in which the earlier one is built."""
+
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "build-bits"
+SOURCE = FOLDER / "source"
+
+
+def git(*arguments, root=ROOT):
+    done = subprocess.run(["git", *arguments], cwd=root, check=False, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise SystemExit(f"./dev bits: git {' '.join(arguments)}: {done.stderr.strip()}")
+    return done.stdout.strip()
+
+
+def is_dirty():
+    return bool(git("status", "--porcelain", "--untracked-files=no"))
+
+
+def commit(revision):
+    """The hash of a revision; without one, of the commit that the working tree changes: HEAD, or the one before."""
+    return git("rev-parse", "--verify", f"{revision or ('HEAD' if is_dirty() else 'HEAD~')}^{{commit}}")
+
+
+def check_out(revision):
+    """The worktree at this commit. Files that are the same keep their times, so that little is compiled again."""
+    if not (SOURCE / ".git").exists():
+        git("worktree", "prune")
+        git("worktree", "add", "--detach", "--force", str(SOURCE), revision)
+    git("checkout", "--detach", "--force", revision, root=SOURCE)
+    return SOURCE
+
+
+def compile_programs(root, with_ranks):
+    """build/ricochet and, where PETSc is there, build/ricochet-mpi."""
+    options = ["-DRICOCHET_WITH_PETSC=ON"] if with_ranks else []
+    targets = ["ricochet_program", *(["ricochet_mpi"] if with_ranks else [])]
+    for command in (["cmake", "--preset", "release", *options],
+                    ["cmake", "--build", "--preset", "release", "--target", *targets]):
+        done = subprocess.run(command, cwd=root, check=False, capture_output=True, text=True)
+        if done.returncode != 0:
+            sys.stderr.write(done.stdout + done.stderr)
+            raise SystemExit(f"./dev bits: {' '.join(command)} failed in {root}")

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Runs the cases of two revisions and compares the bits of what they compute.
+
+    ./dev bits [REVISION] [--quick] [--only TEXT...]
+
+Compares the working tree with REVISION (by default HEAD, or HEAD~ if nothing has changed since HEAD): every case under
+every scheme that takes it, with one and two threads, resumed and, where PETSc is installed, on two ranks: checksums of
+history.csv and of the last frame after 200 steps that cover the time of the case. A run that fails must fail with the same
+status. Prints one line for each difference; the exit status is 1 if there is one. --quick: one thread alone, 50 steps. --only: runs whose names have one of
+these texts. What an earlier comparison has found of a commit is kept in build-bits/.
+"""
+
+import argparse
+import json
+import pathlib
+import platform
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import revisions
+from runs import Side, all_runs
+
+KINDS = ("1 thread", "2 threads", "resumed", "2 ranks")
+QUICK_STEPS, STEPS = 50, 200
+
+
+def has_petsc():
+    return subprocess.run(["pkg-config", "--exists", "PETSc"], check=False).returncode == 0
+
+
+def kept(revision, name):
+    """Where the results of a commit are kept; they hold for the processor that computed them."""
+    processor = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8")
+                      if line.startswith("model name")), platform.processor())
+    return revisions.FOLDER / "results" / f"{revision}-{name}-{processor.replace(' ', '_').replace('/', '_')}.json"
+
+
+def results(root, revision, runs, name):
+    """Those of a commit, kept; of a working tree that has changed (no revision), computed."""
+    path = kept(revision, name) if revision else None
+    found = json.loads(path.read_text()) if path and path.exists() else {}
+    missing = [run for run in runs if str(run) not in found]
+    if missing:
+        revisions.compile_programs(root() if callable(root) else root, has_petsc())
+        found.update(Side(root() if callable(root) else root).results(missing))
+        if path:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(json.dumps(found, indent=0))
+    return {str(run): found[str(run)] for run in runs}
+
+
+def chosen(runs, texts):
+    """Those runs whose names have one of these texts, at least one."""
+    found = [run for run in runs if any(text in str(run) for text in texts)]
+    if not found:
+        raise SystemExit("./dev bits: there is no run to compare")
+    return found
+
+
+def differences(runs, old, new):
+    """A line for each run that is not the same."""
+    texts = {"plan": "run as", "status": "status", "history": "history.csv", "frame": "last frame"}
+    lines = []
+    for name in map(str, runs):
+        parts = [f"{text} {old[name][key] or '-'} -> {new[name][key] or '-'}" for key, text in texts.items()
+                 if old[name][key] != new[name][key]]
+        if parts:
+            lines.append(f"{name}: {', '.join(parts)}")
+    return lines
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./dev bits", description=__doc__.split("\n\n")[2].replace("\n", " "))
+    parser.add_argument("revision", nargs="?")
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--only", nargs="+", default=[""], metavar="TEXT")
+    arguments = parser.parse_args()
+    begun = time.monotonic()
+    revision = revisions.commit(arguments.revision)
+    revisions.compile_programs(revisions.ROOT, has_petsc())
+    steps = QUICK_STEPS if arguments.quick else STEPS
+    kinds = KINDS[:1] if arguments.quick else KINDS if has_petsc() else KINDS[:-1]
+    runs = chosen(all_runs(revisions.ROOT, Side(revisions.ROOT).program, kinds, steps), arguments.only)
+    name = "quick" if arguments.quick else "whole"
+    new = results(revisions.ROOT, None if revisions.is_dirty() else revisions.commit("HEAD"), runs, name)
+    old = results(lambda: revisions.check_out(revision), revision, runs, name)
+    found = differences(runs, old, new)
+    print("\n".join(found), end="\n" if found else "")
+    done = [run for run in new.values() if run["status"] in (0, 5)]
+    print(f"{len(runs)} runs compared with {revision[:8]} ({len(done)} of them to their end, "
+          f"{sum(run['touches'] for run in done)} with contact), {len(found)} differ, "
+          f"{time.monotonic() - begun:.0f} s")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

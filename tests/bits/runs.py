@@ -1,0 +1,143 @@
+"""The runs that two revisions are compared on, and what is compared of each: its exit status, and checksums of its history
+and of its last frame."""
+
+import concurrent.futures
+import dataclasses
+import hashlib
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import tomllib
+
+import h5py
+
+# The settings of a method that are tried in turn, until a case is not refused: those of the case, then masses with inertia
+# on contact nodes, then the diagonal mass without.
+DIAGONAL = (("mass.type=lumped",), ("mass.type=equivalent-lumped",))
+METHODS = ((), ("mass.type=consistent",), *DIAGONAL, ("mass.type=equivalent", "time.preset=textbook-half"))
+REFUSED = 2
+MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+       "OMPI_MCA_mpi_yield_when_idle": "1"}
+
+
+@dataclasses.dataclass(frozen=True)
+class Run:
+    case: str  # relative to the root of the sources
+    scheme: str
+    kind: str  # "1 thread", "2 threads", "resumed", "2 ranks"
+    steps: int
+
+    def __str__(self):
+        return f"{self.case} {self.scheme} ({self.kind})"
+
+
+@dataclasses.dataclass(frozen=True)
+class Plan:
+    """How a run is made: its time steps, and settings of the method."""
+    step: float
+    count: int
+    method: tuple
+
+    def __str__(self):
+        return " ".join((f"{self.count} steps of {self.step:g}", *self.method))
+
+
+def schemes(program):
+    schema = json.loads(subprocess.run([program, "schema"], check=True, capture_output=True, text=True).stdout)
+    return schema["properties"]["time"]["properties"]["scheme"]["enum"]
+
+
+def all_runs(root, program, kinds, steps):
+    """Every case under every scheme in so many steps at most."""
+    cases = sorted(str(path.relative_to(root)) for path in (root / "cases").glob("*/*.toml"))
+    return [Run(case, scheme, kind, steps) for case in cases for scheme in schemes(program) for kind in kinds]
+
+
+def plans(case, steps):
+    """The steps cover the time of the case, so that there is contact. Where they are refused as too long, they are the case's
+    own, and then those of explicit schemes, which end earlier."""
+    time = tomllib.loads(case.read_text())["time"]
+    own = max(round(time["end"] / time["step"]), 1)
+    grids = [(time["step"], own)] if own <= steps else [(time["end"] / steps, steps), (time["step"], steps)]
+    return ([Plan(step, count, method) for step, count in grids for method in METHODS] +
+            [Plan(time["step"] / 20, steps, method) for method in DIAGONAL])
+
+
+class Side:
+    """One of two revisions: its sources and its programs."""
+
+    def __init__(self, root):
+        self.root = pathlib.Path(root)
+        self.program = self.root / "build" / "ricochet"
+        self.mpi_program = self.root / "build" / "ricochet-mpi"
+
+    def results(self, runs):
+        """{name of the run: what is compared}. Runs of one case and scheme are made as the first of them, which is not refused."""
+        groups = {}
+        for run in runs:
+            groups.setdefault((run.case, run.scheme), []).append(run)
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            return {name: result for found in pool.map(self.group, groups.values()) for name, result in found.items()}
+
+    def group(self, runs):
+        candidates = plans(self.root / runs[0].case, runs[0].steps)
+        for plan in candidates:
+            first = self.result(runs[0], plan)
+            if first["status"] != REFUSED:
+                return {str(runs[0]): first} | {str(run): self.result(run, plan) for run in runs[1:]}
+        return {str(run): first for run in runs}
+
+    def result(self, run, plan):
+        with tempfile.TemporaryDirectory() as folder:
+            output = pathlib.Path(folder) / "out"
+            status = self.execute(run, output, plan)
+            return {"plan": str(plan), "status": status, "history": checksum(output / "history.csv"),
+                    "frame": frame_checksum(output / "results.h5"), "touches": has_contact(output / "history.csv")}
+
+    def execute(self, run, output, plan):
+        settings = [f"time.step={plan.step!r}", f"time.scheme={run.scheme}", "output.fields_every=1000000000", *plan.method]
+        begin = [self.program, "run", run.case, "-o", output, "--threads", "2" if run.kind == "2 threads" else "1"]
+        if run.kind == "2 ranks":
+            begin = ["mpirun", "-n", "2", self.mpi_program, "run", run.case, "-o", output, "--threads", "1"]
+        if run.kind != "resumed":
+            return self.call(begin, settings, plan.step * plan.count)
+        settings.append("output.checkpoint_every=1000000000")
+        status = self.call(begin, settings, plan.step * (plan.count // 2))
+        if status not in (0, 5):
+            return status
+        return self.call([self.program, "run", "--resume", output], [], plan.step * plan.count)
+
+    def call(self, command, settings, end):
+        more = [word for setting in (*settings, f"time.end={end!r}") for word in ("--set", setting)]
+        return subprocess.run([*command, "--quiet", "--log-level", "off", *more], cwd=self.root, check=False,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                              env={**os.environ, **MPI, "OPENBLAS_NUM_THREADS": "1"}).returncode
+
+
+def checksum(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:16] if path.exists() else ""
+
+
+def has_contact(path):
+    """Was there contact in any step?"""
+    if not path.exists():
+        return False
+    header, *rows = path.read_text().splitlines()
+    column = header.split(",").index("active_contacts")
+    return any(float(row.split(",")[column]) > 0.0 for row in rows)
+
+
+def frame_checksum(path):
+    """Of all fields of the last frame, with their names."""
+    if not path.exists():
+        return ""
+    total = hashlib.sha256()
+    try:
+        with h5py.File(path) as file:
+            for name, values in sorted(file["frames"][max(file["frames"])].items()):
+                total.update(name.encode() + values[()].tobytes())
+    except (OSError, KeyError, ValueError):
+        return "unreadable"
+    return total.hexdigest()[:16]

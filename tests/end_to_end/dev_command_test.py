@@ -1,0 +1,80 @@
+"""`./dev`: what its help lists is there, its benchmarks refuse wrong options before anything is compiled, and its gate for
+bits finds a change of one rounding."""
+
+import math
+import re
+import subprocess
+import sys
+import unittest
+
+from harness import PROGRAM, SOURCE, TestCase
+
+sys.path.insert(0, str(SOURCE / "tests" / "bits"))
+import run as bits
+from runs import Side, all_runs
+
+
+def python(*arguments):
+    return subprocess.run([sys.executable, "-B", *map(str, arguments)], check=False, capture_output=True, text=True)
+
+
+class Commands(TestCase):
+    def test_commands_and_help_agree(self):
+        text = (SOURCE / "dev").read_text()
+        called = re.search(r"^  ([a-z |]+)\) name=\$1; shift; \"command_\$name\"", text, re.MULTILINE)[1].split(" | ")
+        self.assertEqual(sorted(called), sorted(re.findall(r"^command_(\w+)\(\) \{", text, re.MULTILINE)))
+        shown = subprocess.run([SOURCE / "dev", "--help"], check=True, capture_output=True, text=True).stdout
+        self.assertEqual(sorted(called), sorted(re.findall(r"^  (\w+) +[a-z]", shown, re.MULTILINE)))
+
+    def test_benchmarks(self):
+        text = (SOURCE / "dev").read_text()
+        for script in sorted((SOURCE / "bench").glob("*/run.py")):
+            name = script.parent.name
+            with self.subTest(name):
+                self.assertIn(f"{name}_bench_packages=(", text)
+                self.assertEqual(python(script, "--check").returncode, 0)
+                refused = python(script, "--check", "--nonsense")
+                self.assertEqual(refused.returncode, 2)
+                self.assertIn("./dev bench" if name == "step" else f"./dev bench {name}", refused.stderr)
+
+
+class Bits(TestCase):
+    """Two trees of sources with the same program, one of whose cases is another by one rounding."""
+
+    def tree(self, name, change=lambda text: text):
+        root = self.folder / name
+        (root / "cases").mkdir(parents=True)
+        (root / "build").mkdir()
+        (root / "build" / "ricochet").symlink_to(PROGRAM)
+        for case in ("rod", "layer"):
+            (root / "cases" / case).mkdir()
+            for path in (SOURCE / "cases" / case).iterdir():
+                if path.suffix in (".toml", ".msh", ".geo", ".csv"):
+                    text = path.read_text()
+                    (root / "cases" / case / path.name).write_text(change(text) if path.name == "rod.toml" else text)
+        return Side(root)
+
+    def test_one_rounding_is_found(self):
+        changed = math.nextafter(1.0, 2.0)
+        plain = self.tree("plain")
+        other = self.tree("other", lambda text: re.sub(r"(?m)^density = 1.0$", f"density = {changed!r}", text))
+        runs = [run for run in all_runs(plain.root, plain.program, ("1 thread", "resumed"), 40)
+                if run.scheme in ("reduced-kane", "klr-conserving")]
+        old, again, new = plain.results(runs), plain.results(runs), other.results(runs)
+        self.assertEqual(bits.differences(runs, old, again), [])
+        found = bits.differences(runs, old, new)
+        self.assertEqual([line.split(" ")[0] for line in found], ["cases/rod/rod.toml"] * 4)
+        for line in found:
+            self.assertIn("history.csv", line)
+            self.assertIn("last frame", line)
+        self.assertTrue(all(result["status"] in (0, 5) and result["frame"] for result in old.values()))
+
+    def test_nothing_to_compare_is_an_error(self):
+        runs = all_runs(SOURCE, PROGRAM, ("1 thread",), 10)
+        self.assertEqual(len(bits.chosen(runs, ["rod.toml newmark"])), 1)
+        with self.assertRaisesRegex(SystemExit, "no run to compare"):
+            bits.chosen(runs, ["no such case"])
+
+
+if __name__ == "__main__":
+    unittest.main()
