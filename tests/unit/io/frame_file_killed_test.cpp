@@ -67,35 +67,29 @@ void append(FrameFile& file) {
 template <class Number>
 std::vector<Number> read_step(hid_t file, const DatasetLayout& set, hsize_t step, hid_t type) {
   std::vector<Number> values(static_cast<std::size_t>(set.rows * std::max<Index>(set.columns, 1)));
-  const hid_t dataset = H5Dopen2(file, ("/VTKHDF/" + set.name).c_str(), H5P_DEFAULT);
-  const hid_t space = H5Dget_space(dataset);
+  const Hdf5Handle dataset(H5Dopen2(file, ("/VTKHDF/" + set.name).c_str(), H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
   const hsize_t begin[2] = {step * rows_of_a_step, 0}, count[2] = {rows_of_a_step, static_cast<hsize_t>(set.columns)};
-  const hid_t memory = H5Screate_simple(set.columns > 0 ? 2 : 1, count, nullptr);
+  const Hdf5Handle memory = hdf5_space(set.rows, set.columns);
   const bool good = H5Sselect_hyperslab(space, H5S_SELECT_SET, begin, nullptr, count, nullptr) >= 0 &&
                     H5Dread(dataset, type, memory, space, H5P_DEFAULT, values.data()) >= 0;
-  H5Sclose(memory);
-  H5Sclose(space);
-  H5Dclose(dataset);
   return good ? values : std::vector<Number>();
 }
 
 /// Number of steps that the file counts; -1 if one of them is not there.
 long whole_steps(const std::string& path) {
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file < 0) return -1;
-  const hid_t attribute = H5Aopen_by_name(file, "/VTKHDF/Steps", "NSteps", H5P_DEFAULT, H5P_DEFAULT);
+  const Hdf5Handle attribute(H5Aopen_by_name(file, "/VTKHDF/Steps", "NSteps", H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   long count = 0;
-  if (H5Aread(attribute, H5T_NATIVE_LONG, &count) < 0) count = -1;
-  H5Aclose(attribute);
-  const long counted = count;
-  for (long k = 0; k < counted; ++k) {
+  if (H5Aread(attribute, H5T_NATIVE_LONG, &count) < 0) return -1;
+  for (long k = 0; k < count; ++k) {
     const Step expected(k);
     const auto number = static_cast<hsize_t>(k);
     if (read_step<double>(file, layout[0], number, H5T_NATIVE_DOUBLE) != expected.reals ||
         read_step<int>(file, layout[1], number, H5T_NATIVE_INT) != expected.integers)
-      count = -1;
+      return -1;
   }
-  H5Fclose(file);
   return count;
 }
 
