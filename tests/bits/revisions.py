@@ -17,12 +17,19 @@ def git(*arguments, root=ROOT):
 
 
 def is_dirty():
-    return bool(git("status", "--porcelain", "--untracked-files=no"))
+    """New files count: CMake compiles them."""
+    return bool(git("status", "--porcelain"))
 
 
 def commit(revision):
     """The hash of a revision; without one, of the commit that the working tree changes: HEAD, or the one before."""
     return git("rev-parse", "--verify", f"{revision or ('HEAD' if is_dirty() else 'HEAD~')}^{{commit}}")
+
+
+def cases(revision):
+    """The case files of a commit."""
+    paths = git("ls-tree", "-r", "--name-only", revision, "cases").splitlines()
+    return {path for path in paths if path.count("/") == 2 and path.endswith(".toml")}
 
 
 def check_out(revision):

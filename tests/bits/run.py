@@ -6,11 +6,12 @@
 Compares the working tree with REVISION (by default HEAD, or HEAD~ if nothing has changed since HEAD): every case under
 every scheme that takes it, with one and two threads, resumed and, where PETSc is installed, on two ranks: checksums of
 history.csv and of the last frame after 200 steps that cover the time of the case. A run that fails must fail with the same
-status. Prints one line for each difference; the exit status is 1 if there is one. --quick: one thread alone, 50 steps. --only: runs whose names have one of
-these texts. What an earlier comparison has found of a commit is kept in build-bits/.
+status. Prints one line for each difference; the exit status is 1 if there is one. --quick: one thread alone, 50 steps.
+--only: runs whose names have one of these texts. What an earlier comparison has found of a commit is kept in build-bits/.
 """
 
 import argparse
+import hashlib
 import json
 import pathlib
 import platform
@@ -18,9 +19,10 @@ import subprocess
 import sys
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
 import revisions
-from runs import Side, all_runs
+from runs import Side, all_runs, cases
 
 KINDS = ("1 thread", "2 threads", "resumed", "2 ranks")
 QUICK_STEPS, STEPS = 50, 200
@@ -31,20 +33,29 @@ def has_petsc():
 
 
 def kept(revision, name):
-    """Where the results of a commit are kept; they hold for the processor that computed them."""
+    """Where the results of a commit are kept: they hold for the processor that computed them, and for these runs."""
     processor = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8")
                       if line.startswith("model name")), platform.processor())
-    return revisions.FOLDER / "results" / f"{revision}-{name}-{processor.replace(' ', '_').replace('/', '_')}.json"
+    definition = hashlib.sha256((HERE / "runs.py").read_bytes() + processor.encode()).hexdigest()[:16]
+    return revisions.FOLDER / "results" / f"{revision}-{name}-{definition}.json"
 
 
-def results(root, revision, runs, name):
-    """Those of a commit, kept; of a working tree that has changed (no revision), computed."""
-    path = kept(revision, name) if revision else None
+def working_tree():
+    revisions.compile_programs(revisions.ROOT, has_petsc())
+    return Side(revisions.ROOT)
+
+
+def earlier(revision):
+    root = revisions.check_out(revision)
+    revisions.compile_programs(root, has_petsc())
+    return Side(root)
+
+
+def results(side, path, runs):
+    """What the runs of a side, which is made if need be, compute; kept in the file of this path, if there is one."""
     found = json.loads(path.read_text()) if path and path.exists() else {}
-    missing = [run for run in runs if str(run) not in found]
-    if missing:
-        revisions.compile_programs(root() if callable(root) else root, has_petsc())
-        found.update(Side(root() if callable(root) else root).results(missing))
+    if missing := [run for run in runs if str(run) not in found]:
+        found.update(side().results(missing))
         if path:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(json.dumps(found, indent=0))
@@ -61,10 +72,13 @@ def chosen(runs, texts):
 
 def differences(runs, old, new):
     """A line for each run that is not the same."""
+    def shown(value):
+        return "-" if value in ("", None) else value
+
     texts = {"plan": "run as", "status": "status", "history": "history.csv", "frame": "last frame"}
     lines = []
     for name in map(str, runs):
-        parts = [f"{text} {old[name][key] or '-'} -> {new[name][key] or '-'}" for key, text in texts.items()
+        parts = [f"{text} {shown(old[name][key])} -> {shown(new[name][key])}" for key, text in texts.items()
                  if old[name][key] != new[name][key]]
         if parts:
             lines.append(f"{name}: {', '.join(parts)}")
@@ -79,13 +93,13 @@ def main():
     arguments = parser.parse_args()
     begun = time.monotonic()
     revision = revisions.commit(arguments.revision)
-    revisions.compile_programs(revisions.ROOT, has_petsc())
-    steps = QUICK_STEPS if arguments.quick else STEPS
-    kinds = KINDS[:1] if arguments.quick else KINDS if has_petsc() else KINDS[:-1]
-    runs = chosen(all_runs(revisions.ROOT, Side(revisions.ROOT).program, kinds, steps), arguments.only)
-    name = "quick" if arguments.quick else "whole"
-    new = results(revisions.ROOT, None if revisions.is_dirty() else revisions.commit("HEAD"), runs, name)
-    old = results(lambda: revisions.check_out(revision), revision, runs, name)
+    tree = working_tree()
+    name, steps, kinds = ("quick", QUICK_STEPS, KINDS[:1]) if arguments.quick else ("whole", STEPS, KINDS)
+    if not has_petsc():
+        kinds = [kind for kind in kinds if kind != "2 ranks"]
+    runs = chosen(all_runs(cases(tree.root) | revisions.cases(revision), tree.program, kinds, steps), arguments.only)
+    new = results(lambda: tree, None if revisions.is_dirty() else kept(revisions.commit("HEAD"), name), runs)
+    old = results(lambda: earlier(revision), kept(revision, name), runs)
     found = differences(runs, old, new)
     print("\n".join(found), end="\n" if found else "")
     done = [run for run in new.values() if run["status"] in (0, 5)]

@@ -2,6 +2,7 @@
 and of its last frame."""
 
 import concurrent.futures
+import csv
 import dataclasses
 import hashlib
 import json
@@ -18,6 +19,7 @@ import h5py
 DIAGONAL = (("mass.type=lumped",), ("mass.type=equivalent-lumped",))
 METHODS = ((), ("mass.type=consistent",), *DIAGONAL, ("mass.type=equivalent", "time.preset=textbook-half"))
 REFUSED = 2
+NO_CASE = {"plan": "no such case", "status": None, "history": "", "frame": "", "touches": False}
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
        "OMPI_MCA_mpi_yield_when_idle": "1"}
 
@@ -49,10 +51,14 @@ def schemes(program):
     return schema["properties"]["time"]["properties"]["scheme"]["enum"]
 
 
-def all_runs(root, program, kinds, steps):
+def cases(root):
+    return {str(path.relative_to(root)) for path in root.glob("cases/*/*.toml")}
+
+
+def all_runs(of_cases, program, kinds, steps):
     """Every case under every scheme in so many steps at most."""
-    cases = sorted(str(path.relative_to(root)) for path in (root / "cases").glob("*/*.toml"))
-    return [Run(case, scheme, kind, steps) for case in cases for scheme in schemes(program) for kind in kinds]
+    names = schemes(program)
+    return [Run(case, scheme, kind, steps) for case in sorted(of_cases) for scheme in names for kind in kinds]
 
 
 def plans(case, steps):
@@ -74,7 +80,7 @@ class Side:
         self.mpi_program = self.root / "build" / "ricochet-mpi"
 
     def results(self, runs):
-        """{name of the run: what is compared}. Runs of one case and scheme are made as the first of them, which is not refused."""
+        """{name of the run: what is compared}. All runs of a case and scheme are made as the first of them is accepted."""
         groups = {}
         for run in runs:
             groups.setdefault((run.case, run.scheme), []).append(run)
@@ -82,8 +88,9 @@ class Side:
             return {name: result for found in pool.map(self.group, groups.values()) for name, result in found.items()}
 
     def group(self, runs):
-        candidates = plans(self.root / runs[0].case, runs[0].steps)
-        for plan in candidates:
+        if not (self.root / runs[0].case).exists():
+            return {str(run): NO_CASE for run in runs}
+        for plan in plans(self.root / runs[0].case, runs[0].steps):
             first = self.result(runs[0], plan)
             if first["status"] != REFUSED:
                 return {str(runs[0]): first} | {str(run): self.result(run, plan) for run in runs[1:]}
@@ -124,9 +131,8 @@ def has_contact(path):
     """Was there contact in any step?"""
     if not path.exists():
         return False
-    header, *rows = path.read_text().splitlines()
-    column = header.split(",").index("active_contacts")
-    return any(float(row.split(",")[column]) > 0.0 for row in rows)
+    with path.open(newline="", encoding="utf-8") as file:
+        return any(float(row["active_contacts"]) > 0.0 for row in csv.DictReader(file))
 
 
 def frame_checksum(path):

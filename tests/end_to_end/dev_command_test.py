@@ -11,7 +11,7 @@ from harness import PROGRAM, SOURCE, TestCase
 
 sys.path.insert(0, str(SOURCE / "tests" / "bits"))
 import run as bits
-from runs import Side, all_runs
+from runs import Side, all_runs, cases
 
 
 def python(*arguments):
@@ -58,7 +58,7 @@ class Bits(TestCase):
         changed = math.nextafter(1.0, 2.0)
         plain = self.tree("plain")
         other = self.tree("other", lambda text: re.sub(r"(?m)^density = 1.0$", f"density = {changed!r}", text))
-        runs = [run for run in all_runs(plain.root, plain.program, ("1 thread", "resumed"), 40)
+        runs = [run for run in all_runs(cases(plain.root), plain.program, ("1 thread", "resumed"), 40)
                 if run.scheme in ("reduced-kane", "klr-conserving")]
         old, again, new = plain.results(runs), plain.results(runs), other.results(runs)
         self.assertEqual(bits.differences(runs, old, again), [])
@@ -69,8 +69,16 @@ class Bits(TestCase):
             self.assertIn("last frame", line)
         self.assertTrue(all(result["status"] in (0, 5) and result["frame"] for result in old.values()))
 
+    def test_a_case_of_one_side_is_a_difference(self):
+        plain, other = self.tree("plain"), self.tree("other")
+        (other.root / "cases" / "rod" / "rod.toml").unlink()
+        runs = [run for run in all_runs({"cases/rod/rod.toml"}, plain.program, ("1 thread",), 10)
+                if run.scheme == "reduced-kane"]
+        line, = bits.differences(runs, plain.results(runs), other.results(runs))
+        self.assertIn("-> no such case, status 0 -> -, ", line)
+
     def test_nothing_to_compare_is_an_error(self):
-        runs = all_runs(SOURCE, PROGRAM, ("1 thread",), 10)
+        runs = all_runs(cases(SOURCE), PROGRAM, ("1 thread",), 10)
         self.assertEqual(len(bits.chosen(runs, ["rod.toml newmark"])), 1)
         with self.assertRaisesRegex(SystemExit, "no run to compare"):
             bits.chosen(runs, ["no such case"])
