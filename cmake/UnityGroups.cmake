@@ -1,26 +1,35 @@
-# ricochet_unity_groups(TARGET SIZE): with CMAKE_UNITY_BUILD the sources of one folder and its parts are compiled together, at most SIZE of
-# them, which takes less than half the time: what they all instantiate is instantiated once. A name in an anonymous namespace
-# must then be the only one of its folder; the presets "debug" and "fuzz" compile each file alone, so that none relies on what
-# its neighbour includes.
+# ricochet_unity_groups(TARGET SIZE): with CMAKE_UNITY_BUILD the sources of one layer are compiled together, at most SIZE of them,
+# as templates that several of them use are then instantiated once. A group ends with a folder once it has ten sources, so that an
+# edit compiles little besides the edited room. A name in an anonymous namespace must be the only one of its layer; the presets
+# "debug" and "fuzz" compile each file alone, so that no file relies on the includes of its neighbours.
 function(ricochet_unity_groups target size)
   get_target_property(sources ${target} SOURCES)
-  list(SORT sources)
-  set(last_folder "")
+  set(keys "")
   foreach(source ${sources})
     cmake_path(GET source PARENT_PATH folder)
+    cmake_path(GET source FILENAME name)
     cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${CMAKE_SOURCE_DIR})
-    # A folder's parts go with it: scheme/semi_explicit with scheme, but solver/contact is a library of its own.
-    string(REGEX REPLACE "^(src/ricochet/[^/]*)/.*" "\\1" folder ${folder})
-    if(NOT folder STREQUAL last_folder)
-      set(last_folder ${folder})
+    list(APPEND keys "${folder}!${name}")  # sorts a folder's sources before those of its subfolders
+  endforeach()
+  list(SORT keys)
+  set(last_layer "")
+  set(last_folder "")
+  foreach(key ${keys})
+    string(REGEX REPLACE "!.*" "" folder "${key}")
+    string(REPLACE "!" "/" source "${CMAKE_SOURCE_DIR}/${key}")
+    # The folders of a layer go with it: scheme/reduced with scheme, but solver/contact is a library of its own.
+    string(REGEX REPLACE "^(src/ricochet/[^/]*)/.*" "\\1" layer ${folder})
+    if(NOT layer STREQUAL last_layer)
       set(count 0)
       set(group 0)
-    elseif(count EQUAL ${size})
+    elseif(count EQUAL ${size} OR (count GREATER_EQUAL 10 AND NOT folder STREQUAL last_folder))
       set(count 0)
       math(EXPR group "${group} + 1")
     endif()
+    set(last_layer ${layer})
+    set(last_folder ${folder})
     math(EXPR count "${count} + 1")
-    string(MAKE_C_IDENTIFIER "${folder}_${group}" name)
+    string(MAKE_C_IDENTIFIER "${layer}_${group}" name)
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${name})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)

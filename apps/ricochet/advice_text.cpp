@@ -19,7 +19,7 @@
 #include "ricochet/fem/wave_speed.hpp"
 #include "ricochet/mesh/derived_groups.hpp"
 #include "ricochet/run/run_description.hpp"
-#include "ricochet/simulation/rigid_bodies.hpp"
+#include "ricochet/simulation/impact/rigid_bodies.hpp"
 
 namespace ricochet::program {
 

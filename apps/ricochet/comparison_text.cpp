@@ -12,7 +12,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/io/summary.hpp"
-#include "ricochet/simulation/restitution.hpp"
+#include "ricochet/simulation/impact/restitution.hpp"
 
 namespace ricochet::program {
 

@@ -8,9 +8,9 @@
 
 #include "number_text.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/simulation/restitution.hpp"
-#include "ricochet/simulation/stress_raisers.hpp"
-#include "ricochet/simulation/turn_growth.hpp"
+#include "ricochet/simulation/impact/restitution.hpp"
+#include "ricochet/simulation/impact/turn_growth.hpp"
+#include "ricochet/simulation/monitor/stress_raisers.hpp"
 
 namespace ricochet::program {
 

@@ -15,11 +15,12 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/base/timer.hpp"
-#include "ricochet/contact/choose_side.hpp"
-#include "ricochet/contact/tied_surfaces.hpp"
+#include "ricochet/contact/construction/make_contact_boundary.hpp"
+#include "ricochet/contact/mortar/choose_side.hpp"
+#include "ricochet/contact/mortar/tied_surfaces.hpp"
 #include "ricochet/linear_algebra/library_versions.hpp"
 #include "ricochet/run/session.hpp"
-#include "ricochet/simulation/history.hpp"
+#include "ricochet/simulation/history/history.hpp"
 
 // What the time steps of a case cost, next to the limits that a step with contact should approach (limits.hpp). Steps
 // and limits take turns, so that both see the same machine. Prints one JSON object.

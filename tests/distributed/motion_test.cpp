@@ -4,6 +4,7 @@
 
 #include "distributed/cut_body.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/contact/construction/make_contact_boundary.hpp"
 #include "ricochet/problem/internal_force.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/simulation/simulation.hpp"

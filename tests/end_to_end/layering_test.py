@@ -2,17 +2,18 @@
 headers bring stays inside a few source files."""
 
 import collections
+import graphlib
 import re
 import unittest
 
 from harness import SOURCE
 
-LAYERS = ["base", "linear_algebra", "hdf5", "mesh", "fem", "contact", "mass", "problem", "scheme", "solver", "fclib",
+LAYERS = ["base", "linear_algebra", "hdf5", "mesh", "rigid", "fem", "contact", "mass", "problem", "scheme", "solver", "fclib",
           "simulation", "io", "case", "model", "run", "study", "report", "distributed"]
 # The library ricochet_contact: solvers of the contact problem and its files, without finite elements or time.
 CONTACT_LIBRARY = ("base", "linear_algebra", "hdf5", "solver/contact", "fclib")
-# linear_algebra is a tool of the layers from mass on: meshes, elements and contact do without it.
-WITHOUT_LINEAR_ALGEBRA = {"mesh", "fem", "contact"}
+# linear_algebra is a tool of the layers from mass on: meshes, obstacles, elements and contact do without it.
+WITHOUT_LINEAR_ALGEBRA = {"mesh", "rigid", "fem", "contact"}
 # A scheme and a step solver speak of stages, which are in problem/: neither knows the other.
 STRANGERS = {("scheme", "solver"), ("solver", "scheme")}
 
@@ -62,6 +63,21 @@ class Layering(unittest.TestCase):
                 if backwards or forbidden or (parts[1] == "linear_algebra" and layer in WITHOUT_LINEAR_ALGEBRA):
                     wrong.append(f"{path.relative_to(SOURCE)} includes {include}")
         self.assertEqual(wrong, [])
+
+    def test_folders_of_a_layer_have_an_order(self):
+        """Each folder can be read after those that it includes: no two of them need each other."""
+        needs = collections.defaultdict(set)
+        for path in sources():
+            if path.is_relative_to(SOURCE / "src"):
+                folder = str(path.parent.relative_to(SOURCE / "src"))
+                needs[folder] |= {include.rpartition("/")[0] for include in includes(path)
+                                  if include.startswith("ricochet/") and include != "ricochet/version.hpp"} - {folder}
+        self.assertGreater(len(needs), 40)
+        try:
+            list(graphlib.TopologicalSorter(needs).static_order())
+        except graphlib.CycleError as error:
+            circle = error.args[1]
+            self.fail(f"these folders include each other, each the one before it: {', '.join(circle)}")
 
     def test_contact_matrices_are_read_by_contact_and_solvers_alone(self):
         """All others ask ContactRows and ContactBoundary: rows may follow the motion."""

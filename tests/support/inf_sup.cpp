@@ -8,7 +8,7 @@
 #include <map>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/contact/multipliers/multiplier_space.hpp"
 
 namespace ricochet::test_support {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/contact/surface/surface_file.hpp"
+#include "ricochet/rigid/surface/surface_file.hpp"
 
 /// @file Triangulated bodies whose distances are known.
 namespace ricochet {

@@ -7,7 +7,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
-#include "ricochet/simulation/momentum_account.hpp"
+#include "ricochet/simulation/history/momentum_account.hpp"
 #include "ricochet/simulation/step_control.hpp"
 #include "support/case_run.hpp"
 #include "support/paths.hpp"

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "ricochet/fem/connected_bodies.hpp"
-#include "ricochet/simulation/impacts.hpp"
-#include "ricochet/simulation/restitution.hpp"
-#include "ricochet/simulation/rigid_bodies.hpp"
+#include "ricochet/simulation/impact/impacts.hpp"
+#include "ricochet/simulation/impact/restitution.hpp"
+#include "ricochet/simulation/impact/rigid_bodies.hpp"
 #include "support/case_run.hpp"
 #include "support/strip.hpp"
 

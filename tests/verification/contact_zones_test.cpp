@@ -1,4 +1,4 @@
-#include "ricochet/solver/contact_zones.hpp"
+#include "ricochet/solver/subdomain/contact_zones.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "ricochet/solver/contact_clusters.hpp"
-#include "ricochet/solver/stage_operator.hpp"
+#include "ricochet/solver/stage/stage_operator.hpp"
+#include "ricochet/solver/subdomain/contact_clusters.hpp"
 #include "support/case_run.hpp"
 
 // Contact of many points: zones that are solved one apart from the other, in the iterative path.

@@ -6,7 +6,7 @@
 #include <map>
 #include <memory>
 
-#include "ricochet/simulation/momentum_account.hpp"
+#include "ricochet/simulation/history/momentum_account.hpp"
 #include "support/case_run.hpp"
 #include "support/motion_totals.hpp"
 #include "support/same_snapshots.hpp"

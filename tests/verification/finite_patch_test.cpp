@@ -7,7 +7,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/fem/stress.hpp"
 #include "ricochet/io/fields/field_source.hpp"
-#include "ricochet/simulation/history.hpp"
+#include "ricochet/simulation/history/history.hpp"
 #include "support/case_run.hpp"
 #include "support/two_bodies.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/simulation/history.hpp"
-#include "ricochet/simulation/momentum_account.hpp"
+#include "ricochet/simulation/history/history.hpp"
+#include "ricochet/simulation/history/momentum_account.hpp"
 #include "support/case_run.hpp"
 #include "support/motion_totals.hpp"
 #include "support/thrown_body.hpp"

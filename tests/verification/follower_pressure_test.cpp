@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/simulation/momentum_account.hpp"
+#include "ricochet/simulation/history/momentum_account.hpp"
 #include "support/case_run.hpp"
 #include "support/convergence.hpp"
 #include "support/motion_totals.hpp"

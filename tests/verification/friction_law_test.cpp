@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 

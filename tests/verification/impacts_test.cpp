@@ -1,4 +1,4 @@
-#include "ricochet/simulation/impacts.hpp"
+#include "ricochet/simulation/impact/impacts.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "ricochet/fem/connected_bodies.hpp"
-#include "ricochet/simulation/momentum_account.hpp"
-#include "ricochet/simulation/peak_stress.hpp"
+#include "ricochet/simulation/history/momentum_account.hpp"
+#include "ricochet/simulation/monitor/peak_stress.hpp"
 #include "support/case_run.hpp"
 #include "support/strip.hpp"
 #include "support/thrown_body.hpp"

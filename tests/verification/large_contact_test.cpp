@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "ricochet/mass/mass.hpp"
-#include "ricochet/solver/contact_columns.hpp"
-#include "ricochet/solver/stage_operator.hpp"
-#include "ricochet/solver/stage_solver.hpp"
+#include "ricochet/solver/delassus/contact_columns.hpp"
+#include "ricochet/solver/stage/stage_operator.hpp"
+#include "ricochet/solver/stage/stage_solver.hpp"
 #include "ricochet/solver/step_estimate.hpp"
 #include "support/case_run.hpp"
 

@@ -1,9 +1,9 @@
-#include "ricochet/simulation/momentum_account.hpp"
+#include "ricochet/simulation/history/momentum_account.hpp"
 
 #include <gtest/gtest.h>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/simulation/sensor.hpp"
+#include "ricochet/simulation/history/sensor.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 

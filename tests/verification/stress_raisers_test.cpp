@@ -1,4 +1,4 @@
-#include "ricochet/simulation/stress_raisers.hpp"
+#include "ricochet/simulation/monitor/stress_raisers.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

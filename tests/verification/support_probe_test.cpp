@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "ricochet/simulation/history.hpp"
+#include "ricochet/simulation/history/history.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 #include "support/two_bodies.hpp"

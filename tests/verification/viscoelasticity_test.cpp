@@ -7,7 +7,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/problem/viscous_force.hpp"
-#include "ricochet/simulation/momentum_account.hpp"
+#include "ricochet/simulation/history/momentum_account.hpp"
 #include "support/case_run.hpp"
 #include "support/motion_totals.hpp"
 #include "support/same_snapshots.hpp"

@@ -3,13 +3,13 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/contact/multiplier_space.hpp"
-#include "ricochet/contact/obstacle.hpp"
+#include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "ricochet/fem/material_law.hpp"
 #include "ricochet/io/fields/field_source.hpp"
 #include "ricochet/mass/mass.hpp"
+#include "ricochet/rigid/obstacle.hpp"
 #include "ricochet/scheme/scheme.hpp"
-#include "ricochet/simulation/history.hpp"
+#include "ricochet/simulation/history/history.hpp"
 
 /// @file Names a case file may use that other parts of the program define: scheme_names(), mass_names(),
 /// multiplier_space_names() and field_names() come from their registries, so registering something is

@@ -1,6 +1,6 @@
 #include "ricochet/fem/cell_dilatation.hpp"
-#include "ricochet/fem/laws/packed_law.hpp"
 #include "ricochet/fem/pack_kernels.hpp"
+#include "ricochet/fem/packed_law.hpp"
 
 /// @file Mean dilatation of packs of cells.
 namespace ricochet {

@@ -22,7 +22,7 @@ struct DisplacementSpace {
   /// Pairs of nodes of different cells that belong to one body, since one of them is tied to the other.
   std::vector<std::pair<Index, Index>> glued = {};
 
-  /// The last nodes, which are of no cell: those of rigid bodies (contact/free_motion.hpp).
+  /// The last nodes, which are of no cell: those of rigid bodies (rigid/free_motion.hpp).
   Index nodes_without_cells = 0;
 
   [[nodiscard]] Index node_count() const { return nodes.cols(); }

@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "ricochet/simulation/column_digest.hpp"
-#include "ricochet/simulation/impact.hpp"
-#include "ricochet/simulation/peak_stress_result.hpp"
-#include "ricochet/simulation/penetration_report.hpp"
-#include "ricochet/simulation/probe.hpp"
-#include "ricochet/simulation/sliding_report.hpp"
+#include "ricochet/simulation/history/column_digest.hpp"
+#include "ricochet/simulation/history/probe.hpp"
+#include "ricochet/simulation/impact/impact.hpp"
+#include "ricochet/simulation/monitor/peak_stress_result.hpp"
+#include "ricochet/simulation/monitor/penetration_report.hpp"
+#include "ricochet/simulation/monitor/sliding_report.hpp"
 #include "ricochet/simulation/step_counts.hpp"
 
 /// @file summary.json: what ran, sizes, timings, extrema, warnings.

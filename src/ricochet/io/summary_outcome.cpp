@@ -6,9 +6,9 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/json.hpp"
-#include "ricochet/simulation/restitution.hpp"
-#include "ricochet/simulation/stress_raisers.hpp"
-#include "ricochet/simulation/turn_growth.hpp"
+#include "ricochet/simulation/impact/restitution.hpp"
+#include "ricochet/simulation/impact/turn_growth.hpp"
+#include "ricochet/simulation/monitor/stress_raisers.hpp"
 
 namespace ricochet {
 

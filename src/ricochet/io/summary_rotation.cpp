@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "ricochet/io/summary.hpp"
-#include "ricochet/simulation/turn_growth.hpp"
+#include "ricochet/simulation/impact/turn_growth.hpp"
 
 /// @file Whether small strain holds in a run's impacts, as far as rotations go.
 namespace ricochet {

@@ -17,7 +17,7 @@
 #include "ricochet/fem/exterior_facets.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 #include "ricochet/model/model_parts.hpp"
-#include "ricochet/solver/memory_estimate.hpp"
+#include "ricochet/solver/stage/memory_estimate.hpp"
 
 namespace ricochet {
 

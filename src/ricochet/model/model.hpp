@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "ricochet/case/case.hpp"
-#include "ricochet/contact/body_contact.hpp"
+#include "ricochet/contact/mortar/body_contact.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
-#include "ricochet/simulation/history.hpp"
-#include "ricochet/simulation/starting_state.hpp"
+#include "ricochet/simulation/history/history.hpp"
+#include "ricochet/simulation/statics/starting_state.hpp"
 #include "ricochet/simulation/step_control.hpp"
 #include "ricochet/solver/step_solver.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/contact/choose_side.hpp"
+#include "ricochet/contact/mortar/choose_side.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/model/model_parts.hpp"
 #include "ricochet/problem/points_inside.hpp"

@@ -6,8 +6,9 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/contact/body_contact.hpp"
-#include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/contact/construction/make_contact_boundary.hpp"
+#include "ricochet/contact/mortar/body_contact.hpp"
+#include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "ricochet/model/model_parts.hpp"
 
 /// @file What [[contact]] asks for.

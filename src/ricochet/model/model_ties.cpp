@@ -8,7 +8,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/contact/tied_surfaces.hpp"
+#include "ricochet/contact/mortar/tied_surfaces.hpp"
 #include "ricochet/mesh/build_mesh.hpp"
 #include "ricochet/model/model_parts.hpp"
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "ricochet/fem/rotation_gauge.hpp"
-#include "ricochet/simulation/turn_growth.hpp"
+#include "ricochet/simulation/impact/turn_growth.hpp"
 
 namespace ricochet {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "ricochet/base/timer.hpp"
-#include "ricochet/solver/memory_estimate.hpp"
+#include "ricochet/solver/stage/memory_estimate.hpp"
 
 namespace ricochet {
 

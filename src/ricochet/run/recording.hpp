@@ -11,11 +11,11 @@
 #include "ricochet/run/method_watch.hpp"
 #include "ricochet/run/rotation_watch.hpp"
 #include "ricochet/run/run_checks.hpp"
-#include "ricochet/simulation/impacts.hpp"
-#include "ricochet/simulation/late_contact_watch.hpp"
-#include "ricochet/simulation/peak_stress.hpp"
-#include "ricochet/simulation/penetration_watch.hpp"
-#include "ricochet/simulation/sliding_watch.hpp"
+#include "ricochet/simulation/impact/impacts.hpp"
+#include "ricochet/simulation/monitor/late_contact_watch.hpp"
+#include "ricochet/simulation/monitor/peak_stress.hpp"
+#include "ricochet/simulation/monitor/penetration_watch.hpp"
+#include "ricochet/simulation/monitor/sliding_watch.hpp"
 
 /// @file Everything that is written while a run goes on: history and fields.
 namespace ricochet {

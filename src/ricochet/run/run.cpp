@@ -16,7 +16,7 @@
 #include "ricochet/run/old_run.hpp"
 #include "ricochet/run/run_description.hpp"
 #include "ricochet/run/run_identity.hpp"
-#include "ricochet/solver/memory_estimate.hpp"
+#include "ricochet/solver/stage/memory_estimate.hpp"
 
 namespace ricochet {
 

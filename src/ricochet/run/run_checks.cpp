@@ -8,7 +8,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/run/run_judgement.hpp"
-#include "ricochet/simulation/history.hpp"
+#include "ricochet/simulation/history/history.hpp"
 
 namespace ricochet {
 

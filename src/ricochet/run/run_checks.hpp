@@ -5,7 +5,7 @@
 
 #include "ricochet/io/summary.hpp"
 #include "ricochet/model/model.hpp"
-#include "ricochet/simulation/momentum_account.hpp"
+#include "ricochet/simulation/history/momentum_account.hpp"
 
 /// @file What a run must keep: its accounts of energy, momentum and angular momentum. Section [check] of a case.
 namespace ricochet {

@@ -8,7 +8,7 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/run/rotation_watch.hpp"
-#include "ricochet/simulation/turn_growth.hpp"
+#include "ricochet/simulation/impact/turn_growth.hpp"
 
 namespace ricochet {
 

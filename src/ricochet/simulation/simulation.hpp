@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "ricochet/scheme/scheme.hpp"
-#include "ricochet/simulation/energy_account.hpp"
-#include "ricochet/simulation/passage_watch.hpp"
-#include "ricochet/simulation/starting_state.hpp"
+#include "ricochet/simulation/history/energy_account.hpp"
+#include "ricochet/simulation/monitor/passage_watch.hpp"
+#include "ricochet/simulation/statics/starting_state.hpp"
 #include "ricochet/simulation/step_control.hpp"
 #include "ricochet/solver/step_solver.hpp"
 

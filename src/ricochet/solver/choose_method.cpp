@@ -7,7 +7,7 @@
 
 #include "ricochet/base/memory.hpp"
 #include "ricochet/linear_algebra/graph_components.hpp"
-#include "ricochet/solver/stage_product.hpp"
+#include "ricochet/solver/stage/stage_product.hpp"
 #include "ricochet/solver/step_estimate.hpp"
 
 namespace ricochet {

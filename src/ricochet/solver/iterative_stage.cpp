@@ -1,5 +1,6 @@
-#include <fmt/format.h>
+#include "ricochet/solver/iterative_stage.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -8,12 +9,11 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/linear_algebra/block_jacobi.hpp"
 #include "ricochet/linear_algebra/single_gradients.hpp"
-#include "ricochet/solver/contact_zones.hpp"
-#include "ricochet/solver/gathered_zones.hpp"
-#include "ricochet/solver/moved_product.hpp"
-#include "ricochet/solver/stage_operator.hpp"
-#include "ricochet/solver/stage_product.hpp"
-#include "ricochet/solver/stage_solver.hpp"
+#include "ricochet/solver/gathered/gathered_zones.hpp"
+#include "ricochet/solver/stage/moved_product.hpp"
+#include "ricochet/solver/stage/stage_operator.hpp"
+#include "ricochet/solver/stage/stage_product.hpp"
+#include "ricochet/solver/subdomain/contact_zones.hpp"
 
 namespace ricochet {
 

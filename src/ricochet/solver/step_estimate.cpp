@@ -6,8 +6,8 @@
 #include "ricochet/base/timer.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/solver/choose_method.hpp"
-#include "ricochet/solver/stage_operator.hpp"
-#include "ricochet/solver/stage_solver.hpp"
+#include "ricochet/solver/delassus/direct_stage.hpp"
+#include "ricochet/solver/stage/stage_operator.hpp"
 
 namespace ricochet {
 

@@ -1,18 +1,19 @@
 #include "ricochet/solver/step_solver.hpp"
 
 #include <fmt/format.h>
-
 #include <stdexcept>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/solver/choose_method.hpp"
-#include "ricochet/solver/gathered_contact.hpp"
+#include "ricochet/solver/corotated/turned_stage.hpp"
+#include "ricochet/solver/delassus/direct_stage.hpp"
+#include "ricochet/solver/gathered/gathered_contact.hpp"
+#include "ricochet/solver/gathered/gathered_stage.hpp"
+#include "ricochet/solver/iterative_stage.hpp"
 #include "ricochet/solver/newton_rounds.hpp"
-#include "ricochet/solver/stage_solver.hpp"
 #include "ricochet/solver/tangent_rounds.hpp"
-#include "ricochet/solver/turned_stage.hpp"
 
 namespace ricochet {
 

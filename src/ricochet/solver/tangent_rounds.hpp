@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ricochet/linear_algebra/anderson_acceleration.hpp"
-#include "ricochet/solver/stage_solver.hpp"
+#include "ricochet/solver/stage/stage_solver.hpp"
 
 /// @file Contact conditions that follow the motion.
 namespace ricochet {

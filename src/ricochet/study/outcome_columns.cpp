@@ -8,8 +8,8 @@
 
 #include "ricochet/base/text.hpp"
 #include "ricochet/run/run_case.hpp"
-#include "ricochet/simulation/restitution.hpp"
-#include "ricochet/simulation/turn_growth.hpp"
+#include "ricochet/simulation/impact/restitution.hpp"
+#include "ricochet/simulation/impact/turn_growth.hpp"
 
 namespace ricochet {
 

@@ -8,14 +8,14 @@
 #include <random>
 
 #include "ricochet/base/point_sets.hpp"
-#include "ricochet/contact/choose_side.hpp"
-#include "ricochet/contact/facet_surface.hpp"
-#include "ricochet/contact/surface/rigid_surface.hpp"
-#include "ricochet/contact/touching_turns.hpp"
+#include "ricochet/contact/mortar/choose_side.hpp"
+#include "ricochet/contact/mortar/facet_surface.hpp"
+#include "ricochet/contact/mortar/touching_turns.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/fem/mesh_measures.hpp"
 #include "ricochet/model/model_parts.hpp"
-#include "ricochet/simulation/facet_sizes.hpp"
+#include "ricochet/rigid/surface/rigid_surface.hpp"
+#include "ricochet/simulation/monitor/facet_sizes.hpp"
 #include "support/surface_files.hpp"
 #include "support/two_bodies.hpp"
 

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "ricochet/base/temporary_folder.hpp"
-#include "ricochet/contact/obstacle.hpp"
+#include "ricochet/rigid/obstacle.hpp"
 
 /// @file The normal of a step of a point that sticks to an obstacle which turns.
 namespace ricochet {

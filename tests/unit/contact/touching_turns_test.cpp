@@ -1,10 +1,10 @@
-#include "ricochet/contact/touching_turns.hpp"
+#include "ricochet/contact/mortar/touching_turns.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "ricochet/contact/choose_side.hpp"
+#include "ricochet/contact/mortar/choose_side.hpp"
 #include "support/two_bodies.hpp"
 
 /// @file A flat body below a round one: within a facet of size h the normals of a circle of radius R turn by h/R, those

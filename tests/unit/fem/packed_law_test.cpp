@@ -1,4 +1,4 @@
-#include "ricochet/fem/laws/packed_law.hpp"
+#include "ricochet/fem/packed_law.hpp"
 
 #include <gtest/gtest.h>
 

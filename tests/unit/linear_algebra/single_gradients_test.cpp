@@ -7,7 +7,7 @@
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/linear_algebra/block_jacobi.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
-#include "ricochet/solver/stage_operator.hpp"
+#include "ricochet/solver/stage/stage_operator.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 

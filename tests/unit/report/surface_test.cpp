@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "ricochet/contact/surface_pieces.hpp"
 #include "ricochet/report/contact_line.hpp"
+#include "ricochet/simulation/monitor/surface_pieces.hpp"
 #include "support/box_mesh.hpp"
 
 namespace ricochet {

@@ -1,4 +1,4 @@
-#include "ricochet/simulation/body_watch.hpp"
+#include "ricochet/simulation/monitor/body_watch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "ricochet/simulation/energy_account.hpp"
+#include "ricochet/simulation/history/energy_account.hpp"
 
 #include <gtest/gtest.h>
 
-#include "ricochet/simulation/deepest_point.hpp"
+#include "ricochet/simulation/monitor/deepest_point.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 

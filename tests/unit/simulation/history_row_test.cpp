@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "ricochet/simulation/history.hpp"
+#include "ricochet/simulation/history/history.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 

@@ -1,4 +1,4 @@
-#include "ricochet/simulation/restitution.hpp"
+#include "ricochet/simulation/impact/restitution.hpp"
 
 #include <gtest/gtest.h>
 

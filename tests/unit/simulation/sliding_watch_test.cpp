@@ -1,4 +1,4 @@
-#include "ricochet/simulation/sliding_watch.hpp"
+#include "ricochet/simulation/monitor/sliding_watch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
-#include "ricochet/simulation/penetration_watch.hpp"
+#include "ricochet/simulation/monitor/penetration_watch.hpp"
 #include "support/case_run.hpp"
 #include "support/two_bodies.hpp"
 

@@ -1,4 +1,4 @@
-#include "ricochet/simulation/turn_growth.hpp"
+#include "ricochet/simulation/impact/turn_growth.hpp"
 
 #include <gtest/gtest.h>
 

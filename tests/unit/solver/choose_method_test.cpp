@@ -4,8 +4,8 @@
 
 #include "ricochet/linear_algebra/block_jacobi.hpp"
 #include "ricochet/simulation/simulation.hpp"
-#include "ricochet/solver/stage_operator.hpp"
-#include "ricochet/solver/stage_product.hpp"
+#include "ricochet/solver/stage/stage_operator.hpp"
+#include "ricochet/solver/stage/stage_product.hpp"
 #include "ricochet/solver/step_estimate.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"

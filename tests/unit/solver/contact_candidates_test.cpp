@@ -1,4 +1,4 @@
-#include "ricochet/solver/contact_candidates.hpp"
+#include "ricochet/solver/delassus/contact_candidates.hpp"
 
 #include <gtest/gtest.h>
 

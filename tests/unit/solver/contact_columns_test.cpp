@@ -1,4 +1,4 @@
-#include "ricochet/solver/contact_columns.hpp"
+#include "ricochet/solver/delassus/contact_columns.hpp"
 
 #include <gtest/gtest.h>
 

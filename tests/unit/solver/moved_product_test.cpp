@@ -1,4 +1,4 @@
-#include "ricochet/solver/moved_product.hpp"
+#include "ricochet/solver/stage/moved_product.hpp"
 
 #include <gtest/gtest.h>
 

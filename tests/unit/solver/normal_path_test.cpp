@@ -1,4 +1,4 @@
-#include "ricochet/solver/normal_path.hpp"
+#include "ricochet/solver/mean_reaction/normal_path.hpp"
 
 #include <gtest/gtest.h>
 

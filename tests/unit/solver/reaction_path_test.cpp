@@ -1,4 +1,4 @@
-#include "ricochet/solver/reaction_path.hpp"
+#include "ricochet/solver/mean_reaction/reaction_path.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/solver/turned_rows.hpp"
+#include "ricochet/solver/corotated/turned_rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-#include "ricochet/contact/body_contact.hpp"
+#include "ricochet/contact/mortar/body_contact.hpp"
+#include "ricochet/contact/construction/make_contact_boundary.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +8,7 @@
 #include <cmath>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 #include "support/two_bodies.hpp"
 

@@ -1,4 +1,4 @@
-#include "ricochet/contact/contact_boundary.hpp"
+#include "ricochet/contact/construction/make_contact_boundary.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <set>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 #include "support/box_mesh.hpp"
 #include "support/paths.hpp"

@@ -1,9 +1,10 @@
 #include "ricochet/contact/contact_stress.hpp"
+#include "ricochet/contact/construction/make_contact_boundary.hpp"
 
 #include <gtest/gtest.h>
 
 #include "ricochet/base/dense_decompositions.hpp"
-#include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "ricochet/problem/internal_force.hpp"
 #include "support/box_mesh.hpp"
 

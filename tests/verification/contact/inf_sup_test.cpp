@@ -9,7 +9,7 @@
 #include <map>
 #include <sstream>
 
-#include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "support/box_mesh.hpp"
 #include "support/paths.hpp"
 

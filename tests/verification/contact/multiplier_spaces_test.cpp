@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "ricochet/contact/contact_boundary.hpp"
-#include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/contact/construction/make_contact_boundary.hpp"
+#include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "support/box_mesh.hpp"
 
 /// @file The multiplier spaces: partition of unity, biorthogonality on curved facets, mean gaps, areas, pressures.

@@ -9,9 +9,10 @@
 #include <map>
 #include <sstream>
 
-#include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/contact/construction/make_contact_boundary.hpp"
+#include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
-#include "ricochet/simulation/static_equilibrium.hpp"
+#include "ricochet/simulation/statics/static_equilibrium.hpp"
 #include "support/box_mesh.hpp"
 #include "support/paths.hpp"
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "ricochet/contact/construction/make_contact_boundary.hpp"
 #include "ricochet/contact/contact_surface.hpp"
 #include "ricochet/fem/facet_integration.hpp"
 #include "support/box_mesh.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ricochet/mesh/merge_parts.hpp"
-#include "ricochet/simulation/momentum_account.hpp"
+#include "ricochet/simulation/history/momentum_account.hpp"
 #include "ricochet/solver/step_solver.hpp"
 #include "support/case_run.hpp"
 #include "support/two_bodies.hpp"

@@ -1,4 +1,4 @@
-#include "ricochet/contact/tied_surfaces.hpp"
+#include "ricochet/contact/mortar/tied_surfaces.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/contact/construction/make_contact_boundary.hpp"
 #include "ricochet/fem/reference_element.hpp"
 #include "ricochet/simulation/simulation.hpp"
 #include "support/box_mesh.hpp"

@@ -3,8 +3,8 @@
 #include <map>
 #include <vector>
 
-#include "ricochet/contact/facet_surface.hpp"
-#include "ricochet/contact/surface_segments.hpp"
+#include "ricochet/contact/mortar/facet_surface.hpp"
+#include "ricochet/contact/mortar/surface_segments.hpp"
 
 /// @file The two surfaces of a pair wherever their nodes have moved to.
 namespace ricochet {

@@ -8,7 +8,7 @@
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/rounded.hpp"
-#include "ricochet/contact/pair_integration.hpp"
+#include "ricochet/contact/mortar/pair_integration.hpp"
 #include "ricochet/contact/sliding/moving_surfaces.hpp"
 
 namespace ricochet {

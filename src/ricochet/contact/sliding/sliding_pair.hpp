@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "ricochet/contact/body_contact.hpp"
-#include "ricochet/contact/surface_segments.hpp"
+#include "ricochet/contact/mortar/body_contact.hpp"
+#include "ricochet/contact/mortar/surface_segments.hpp"
 #include "ricochet/contact/turning_normal.hpp"
 
 /// @file Two surfaces that slide along each other without limit: what faces what is found anew at every displacement.

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "ricochet/fem/laws/packed_law.hpp"
+#include "ricochet/fem/packed_law.hpp"
 
 namespace ricochet {
 

@@ -1,5 +1,5 @@
 #include "ricochet/fem/laws/elastic_constants.hpp"
-#include "ricochet/fem/laws/packed_law.hpp"
+#include "ricochet/fem/packed_law.hpp"
 
 namespace ricochet {
 

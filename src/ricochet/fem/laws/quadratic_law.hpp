@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ricochet/fem/laws/packed_law.hpp"
+#include "ricochet/fem/packed_law.hpp"
 
 /// @file Laws whose energy is quadratic in the strain they are given: small or Green's.
 namespace ricochet {

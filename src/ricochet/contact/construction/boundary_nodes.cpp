@@ -1,0 +1,102 @@
+#include "ricochet/contact/construction/boundary_nodes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/contact/contact_directions.hpp"
+#include "ricochet/contact/multipliers/multiplier_space.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Multipliers that share a node must agree on what holds there.
+void check_agreement(const ContactPair& first, const ContactPair& second, bool held) {
+  if (first.multipliers != second.multipliers) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("contact groups \"{}\" and \"{}\" share a node against obstacle \"{}\" with different "
+                            "multipliers (\"{}\" and \"{}\"); separate them by at least one facet or give them the "
+                            "same",
+                            first.group, second.group, first.obstacle_name, first.multipliers, second.multipliers));
+  }
+  if (held || first.friction == second.friction) return;
+  if (anchor_of(first.multipliers) == MultiplierAnchor::facet) return;  // each facet has its own
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("contact groups \"{}\" and \"{}\" share a node against obstacle \"{}\" with different "
+                          "friction coefficients or bounds; separate them by at least one facet, give them the same, "
+                          "or use multipliers \"p0\", whose friction is per facet",
+                          first.group, second.group, first.obstacle_name));
+}
+
+/// It makes no difference which of the two obstacles carries a node.
+bool carry_alike(const ContactPair& one, const ContactPair& other) {
+  if (!one.friction.any() && !other.friction.any()) return true;
+  return one.friction == other.friction && !one.obstacle->moves() && !other.obstacle->moves();
+}
+
+/// The surfaces agree here, to rounding, in place and direction.
+bool coincide(const Obstacle& one, const Obstacle& other, const Vector& at) {
+  constexpr double same_direction = 1e-8;
+  if ((one.normal(at) - other.normal(at)).norm() > same_direction) return false;
+  return std::abs(one.gap(at) - other.gap(at)) <= one.gap_rounding(at) + other.gap_rounding(at);
+}
+
+}  // namespace
+
+BoundaryNodes::BoundaryNodes(const Body& body, const std::vector<ContactPair>& pairs, const FreeComponent& is_free) {
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (pairs[k].between_bodies()) continue;
+    for (const Index node : facet_nodes(*body.space, pairs[k].facets)) {
+      const auto [entry, added] = nodes_.try_emplace({node, pairs[k].obstacle});
+      if (added) {
+        // Where the normal turns with the motion, only a node that supports hold altogether is held along it.
+        const int d = body.space->dimension;
+        const Vector normal = pairs[k].obstacle->has_constant_normals()
+                                  ? Vector(pairs[k].obstacle->normal(body.space->nodes.col(node)))
+                                  : Vector(Vector::Constant(d, 1.0 / std::sqrt(d)));
+        entry->second = {static_cast<int>(k), !has_free_part(node, normal, is_free)};
+        held_count_ += entry->second.held ? 1 : 0;
+      }
+      check_agreement(pairs[static_cast<std::size_t>(entry->second.first_pair)], pairs[k], entry->second.held);
+    }
+  }
+  check_coincidence(body, pairs);
+}
+
+bool BoundaryNodes::is_held(Index node, const Obstacle* obstacle) const {
+  return nodes_.at({node, obstacle}).held;
+}
+
+int BoundaryNodes::first_pair(Index node, const Obstacle* obstacle) const {
+  const auto known = nodes_.find({node, obstacle});
+  return known != nodes_.end() ? known->second.first_pair : -1;
+}
+
+/// Conditions at a node may depend on one another: the step has one motion then, too. But where two surfaces are one
+/// and the same, it must not matter which of them carries the node: how they share the force is not determined.
+void BoundaryNodes::check_coincidence(const Body& body, const std::vector<ContactPair>& pairs) const {
+  for (auto one = nodes_.begin(); one != nodes_.end(); ++one) {
+    for (auto other = std::next(one); other != nodes_.end() && other->first.first == one->first.first; ++other) {
+      if (one->second.held || other->second.held) continue;
+      const ContactPair& first = pairs[static_cast<std::size_t>(one->second.first_pair)];
+      const ContactPair& second = pairs[static_cast<std::size_t>(other->second.first_pair)];
+      const Vector at = body.space->nodes.col(one->first.first);
+      if (carry_alike(first, second) || !coincide(*first.obstacle, *second.obstacle, at)) continue;
+      std::string place;
+      for (const double coordinate : at) place += fmt::format("{}{}", place.empty() ? "" : ", ", coordinate);
+      throw Error(ErrorKind::invalid_input,
+                  fmt::format("obstacles \"{}\" and \"{}\" are one and the same surface at the node at ({}), with "
+                              "different friction or motion: which of them carries the node is not determined; remove "
+                              "one of these contacts or move one of the obstacles",
+                              std::min(first.obstacle_name, second.obstacle_name),
+                              std::max(first.obstacle_name, second.obstacle_name), place));
+    }
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,177 @@
+#include "ricochet/contact/construction/boundary_patch.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+
+namespace ricochet {
+
+namespace {
+
+using Patches = std::vector<std::unique_ptr<BoundaryPatch>>;
+
+Patches collect_patches(const Body& body, const std::vector<ContactPair>& pairs) {
+  Patches patches;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (pairs[k].tied) continue;
+    const auto same = [&](const auto& patch) {
+      return patch->obstacle == pairs[k].obstacle && patch->multipliers == pairs[k].multipliers;
+    };
+    auto patch = pairs[k].between_bodies() ? patches.end() : std::find_if(patches.begin(), patches.end(), same);
+    if (patch == patches.end()) {
+      patches.push_back(std::make_unique<BoundaryPatch>());
+      patch = patches.end() - 1;
+      (*patch)->obstacle = pairs[k].obstacle;
+      (*patch)->multipliers = pairs[k].multipliers;
+      (*patch)->facets.body = &body;
+    }
+    (*patch)->facets.parts.push_back({static_cast<int>(k), pairs[k].facets});
+  }
+  return patches;
+}
+
+void make_obstacle_patch(const Body& body, const BoundaryNodes& nodes, BoundaryPatch& patch) {
+  const Obstacle* const obstacle = patch.obstacle;
+  patch.facets.is_held = [&nodes, obstacle](Index node) { return nodes.is_held(node, obstacle); };
+  patch.space = make_multiplier_space(patch.multipliers, patch.facets);
+  patch.kept = patch.space->multipliers();
+  // Those that could only press against supports are left out.
+  std::erase_if(patch.kept,
+                [&](const Multiplier& multiplier) { return only_presses_supports(multiplier, patch.facets); });
+  take_obstacle_conditions(body, patch);
+}
+
+void make_body_patch(const Body& body, const ContactPair& pair, const FreeComponent& is_free, BoundaryPatch& patch,
+                     PairFacing& facing) {
+  const BodyPairing pairing(body, pair);
+  patch.facets.parts.front().facets = pairing.facing_facets();
+  patch.space = make_multiplier_space(patch.multipliers, patch.facets);
+  if (pairing.facing_facets().empty()) return;
+  BodyContact bodies = pairing.make(*patch.space, is_free);
+  patch.kept = std::move(bodies.multipliers);
+  patch.conditions = std::move(bodies.conditions);
+  patch.nodes = std::move(bodies.nodes);
+  patch.opposite_recovery = std::move(bodies.opposite_recovery);
+  facing = bodies.facing;
+}
+
+/// Nodal forces at tied nodes are left out: a tied node's gap is a mean of those of the nodes that it follows, on the
+/// same surface. These get its share of the area, D' = D + Pᵀ D_s, and with it of the force, so that a uniform pressure
+/// p still has the forces p D' and is recovered from them: of r' at the nodes that stay, a node had D/D' r', and a tied
+/// one Σ P D_s/D' r'. Nodes that it follows inside the seam carry no contact.
+void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
+  std::vector<Multiplier> kept;
+  std::vector<PointConditions> conditions;
+  std::map<Index, int> number;
+  for (std::size_t i = 0; i < patch.kept.size(); ++i) {
+    if (tied.is_tied(patch.kept[i].node)) continue;
+    number[patch.kept[i].node] = static_cast<int>(kept.size());
+    kept.push_back(patch.kept[i]);
+    conditions.push_back(patch.conditions[i]);
+  }
+  std::vector<Index> lost;
+  std::vector<TiedNodes::Weights> areas(patch.kept.size());  // of each: (multiplier that stays, area that goes there)
+  for (std::size_t i = 0; i < patch.kept.size(); ++i) {
+    const Multiplier& multiplier = patch.kept[i];
+    double known = 0.0;
+    for (const auto& [node, weight] : tied.spread({{multiplier.node, 1.0}})) {
+      const auto at = number.find(node);
+      if (at == number.end()) continue;
+      areas[i].emplace_back(at->second, weight * multiplier.weight);
+      known += weight;
+    }
+    if (!tied.is_tied(multiplier.node)) continue;
+    if (areas[i].empty()) lost.push_back(multiplier.node);
+    for (auto& [to, area] : areas[i]) {
+      area = known > 0.0 ? area / known : 0.0;
+      kept[static_cast<std::size_t>(to)].weight += area;
+    }
+  }
+  if (!lost.empty()) {
+    const Vector at = patch.facets.body->space->nodes.col(lost.front());
+    log::warning(
+        fmt::format("{} at tied nodes, first at ({:.6g}), and {} left out: no node that these follow is in the "
+                    "contact; let the other surface follow (multipliers_on of the tie), or take multipliers "
+                    "\"p1\"",
+                    counted(lost.size(), "contact point lies", "contact points lie"), fmt::join(at, ", "),
+                    lost.size() == 1 ? "is" : "are"));
+  }
+  const auto hand_on = [&](std::vector<Eigen::Triplet<double>>& recovery) {
+    std::vector<Eigen::Triplet<double>> result;
+    for (const auto& entry : recovery) {
+      for (const auto& [to, area] : areas[static_cast<std::size_t>(entry.col())]) {
+        const double whole = kept[static_cast<std::size_t>(to)].weight;
+        const double part = whole != 0.0 ? area / whole : 1.0;
+        result.emplace_back(entry.row(), static_cast<int>(to), part * entry.value());
+      }
+    }
+    recovery = std::move(result);
+  };
+  hand_on(patch.recovery);
+  hand_on(patch.opposite_recovery);
+  patch.kept = std::move(kept);
+  patch.conditions = std::move(conditions);
+}
+
+/// Traces act on nodes that are not tied. Where points are, and what is recovered at nodes, stays as it is.
+void follow_ties(const TiedNodes& tied, BoundaryPatch& patch) {
+  if (!patch.space->has_functions()) leave_out_tied_forces(tied, patch);
+  for (PointConditions& conditions : patch.conditions) conditions.opposite = tied.spread(conditions.opposite);
+  for (const Multiplier& multiplier : patch.kept) patch.free_traces.push_back(tied.spread(multiplier.trace));
+}
+
+void find_reached_nodes(BoundaryPatch& patch) {
+  for (const Multiplier& multiplier : patch.kept) {
+    for (const auto& [node, weight] : multiplier.trace) patch.reached.push_back(node);
+  }
+}
+
+void number_points(const Patches& patches) {
+  using Order = std::tuple<Index, int, std::size_t, std::size_t>;
+  std::vector<Order> order;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    patches[p]->numbers.resize(patches[p]->kept.size());
+    for (std::size_t i = 0; i < patches[p]->kept.size(); ++i) {
+      const Multiplier& multiplier = patches[p]->kept[i];
+      order.emplace_back(multiplier.node >= 0 ? multiplier.node : multiplier.trace.front().first, multiplier.pair, p,
+                         i);
+    }
+  }
+  std::sort(order.begin(), order.end());
+  for (std::size_t number = 0; number < order.size(); ++number) {
+    const auto& [node, pair, p, i] = order[number];
+    patches[p]->numbers[i] = static_cast<int>(number);
+  }
+}
+
+}  // namespace
+
+Patches make_patches(const Body& body, const std::vector<ContactPair>& pairs, const BoundaryNodes& nodes,
+                     const FreeComponent& is_free, std::vector<PairFacing>& facings) {
+  Patches patches = collect_patches(body, pairs);
+  facings.assign(pairs.size(), {});
+  const TiedNodes none;
+  for (const auto& patch : patches) {
+    const auto first = static_cast<std::size_t>(patch->first_pair());
+    if (patch->obstacle != nullptr) {
+      make_obstacle_patch(body, nodes, *patch);
+    } else if (pairs[first].slides_far) {
+      make_sliding_patch(body, pairs[first], is_free, *patch, facings[first]);
+    } else {
+      make_body_patch(body, pairs[first], is_free, *patch, facings[first]);
+    }
+    if (!patch->kept.empty()) patch->recovery = patch->space->pressure_recovery(patch->kept);
+    find_reached_nodes(*patch);
+    follow_ties(body.tied != nullptr ? *body.tied : none, *patch);
+  }
+  number_points(patches);
+  return patches;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,332 @@
+#include "ricochet/contact/mortar/body_contact.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/contact/contact_directions.hpp"
+#include "ricochet/contact/mortar/pair_nodes.hpp"
+#include "ricochet/fem/mesh_measures.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+
+namespace ricochet {
+
+namespace {
+
+using Three = Eigen::Vector3d;
+
+/// Directions that agree to this are one: those of a flat surface.
+constexpr double same_direction = 1e-13;
+/// Of a multiplier's whole area: what is covered by less is no contact point.
+constexpr double least_cover = 1e-8;
+/// Length of the mean of unit normals below which there is no direction.
+constexpr double folded = 0.5;
+/// Of a facet's size: so far off the rim a surface is continued to find a direction.
+constexpr double beyond_rim = 0.25;
+/// Of the height of cells: surfaces that overlap by no more touch, and their coordinates have been rounded.
+constexpr double rounding_of_files = 1e-6;
+
+}  // namespace
+
+void refuse_fold(const ContactPair& pair, const PairFacing& facing) {
+  if (facing.agreement >= folded) return;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("contact group \"{}\": its facets around the node at ({:.6g}) fold so sharply that they "
+                          "have no common direction in which \"{}\" could be met; leave those of one side of the "
+                          "edge out of the group, or give them a contact of their own",
+                          pair.group, fmt::join(facing.edge, ", "), pair.opposite_group));
+}
+
+struct BodyPairing::Implementation {
+  const Body& body;
+  const ContactPair& pair;
+  PairedSurfaces surfaces;
+  const FacetMap& map = surfaces.map;
+  const FacetSurface &own = surfaces.own, &opposite = surfaces.opposite;
+  const SegmentFinder& finder = surfaces.finder;
+  std::vector<Three> normals;              ///< per own facet
+  std::map<Index, Three> opposite_normal;  ///< of opposite facets, by number
+  std::vector<FacetSegments> direct;       ///< per own facet, along its own normal
+  std::vector<Index> facing;
+
+  Implementation(const Body& of_body, const ContactPair& of_pair)
+      : body(of_body), pair(of_pair), surfaces(of_body, of_pair) {
+    for (const FacetSurface::Facet& facet : opposite.facets())
+      opposite_normal[facet.number] = facet.area_vector.normalized();
+    for (std::size_t k = 0; k < own.facets().size(); ++k) {
+      normals.push_back(known_normal(own.facets()[k].area_vector.normalized()));
+      direct.push_back(finder.find(static_cast<int>(k), -normal_of(k)));
+      if (!direct.back().segments.empty()) facing.push_back(own.facets()[k].number);
+    }
+  }
+
+  [[nodiscard]] const Three& normal_of(std::size_t facet) const { return normals[facet]; }
+  /// One that has been met lately, where it differs by no more than rounding: all facets of a plane have the very same.
+  [[nodiscard]] Three known_normal(const Three& normal) const {
+    constexpr std::size_t memory = 16;
+    for (std::size_t k = normals.size(); k > 0 && k + memory > normals.size(); --k) {
+      if ((normals[k - 1] - normal).norm() <= same_direction) return normals[k - 1];
+    }
+    return normal;
+  }
+  [[nodiscard]] bool faces(std::size_t facet) const { return !direct[facet].segments.empty(); }
+  [[nodiscard]] Vector in_mesh(const Three& values) const { return values.head(body.mesh->dimension); }
+
+  AnchorDirections find_directions(bool at_facets, PairFacing& found) const;
+  [[nodiscard]] AnchorDirections normals_seen(bool at_facets) const;
+  [[nodiscard]] Three normal_between_nodes(const SegmentFinder::Hit& hit, const std::map<Index, AreaSum>& areas) const;
+  [[nodiscard]] std::vector<std::pair<Index, Three>> normals_at_nodes(Index facet,
+                                                                      const std::map<Index, AreaSum>& areas) const;
+  [[nodiscard]] Three middle_direction(const Three& at, const Three& own_direction, const Three& seen, double height,
+                                       const std::map<Index, AreaSum>* faced) const;
+  void take_functions(const MultiplierSpace& space, const AnchorDirections& directions, BodyContact& result) const;
+  void take_nodes_as_points(const MultiplierSpace& space, const AnchorDirections& directions,
+                            BodyContact& result) const;
+  void leave_out_held(const FreeComponent& is_free, BodyContact& result) const;
+  void summarize(bool has_gaps, BodyContact& result) const;
+};
+
+/// n_i: between minus the mean normal of the facing facets around the anchor, and the normal of the surface that the
+/// anchor faces along it. Normals of one side alone are off those of the contact by their angle at the edges of a
+/// contact of curved bodies; that is of first order in a/R, has the opposite sign on the other side, and would make
+/// friction between equal bodies that are only pressed.
+AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, PairFacing& found) const {
+  AnchorDirections directions;
+  const std::map<Index, AreaSum> faced = areas_around_faced_nodes(surfaces, direct);
+  const AnchorDirections seen = normals_seen(at_facets);
+  const std::set<Index> own_facing(facing.begin(), facing.end());
+  const std::map<Index, AreaSum> own_areas = areas_around_nodes(body, own, &own_facing);
+  const auto near = [](const Three& known, const Three& found) {
+    return (found - known).norm() > same_direction ? found : known;
+  };
+  if (at_facets) {
+    for (std::size_t k = 0; k < own.facets().size(); ++k) {
+      if (!faces(k)) continue;
+      const FacetSurface::Facet& facet = own.facets()[k];
+      directions[facet.number] =
+          middle_direction(facet.centre, -normal_of(k), seen.at(facet.number), facet.height, nullptr);
+    }
+    return directions;
+  }
+  for (const auto& [node, sum] : own_areas) {
+    const double agreement = sum.vector.norm() / sum.size;
+    if (agreement >= found.agreement) continue;
+    found.agreement = agreement;
+    found.edge = in_mesh(surfaces.position(node));
+  }
+  refuse_fold(pair, found);
+  // On a flat surface all facets and multipliers have the very same one.
+  for (std::size_t k = 0; k < own.facets().size(); ++k) {
+    if (!faces(k)) continue;
+    for (const auto& [node, normal] : normals_at_nodes(own.facets()[k].number, own_areas))
+      directions.try_emplace(node, near(-normal_of(k), -normal));
+  }
+  for (auto& [node, direction] : directions) {
+    Three at = surfaces.position(node);
+    at.head(body.mesh->dimension) += own.shift();
+    direction = middle_direction(at, direction, seen.at(node), own.height_at(node), &faced);
+  }
+  return directions;
+}
+
+/// At the nodes of a facet: between vertices the mean of theirs, as the opposite side's normals are taken, too.
+std::vector<std::pair<Index, Three>> BodyPairing::Implementation::normals_at_nodes(
+    Index facet, const std::map<Index, AreaSum>& areas) const {
+  const PlaceInBlocks place = locate_facet(*body.space, facet);
+  const CellBlock& block = body.space->facets[place.block];
+  std::vector<std::pair<Index, Three>> result;
+  for (const std::vector<int>& vertices : node_vertices(block.shape, body.space->degree)) {
+    Three sum = Three::Zero();
+    for (const int v : vertices) sum += areas.at(block.cell(place.local)[v]).vector.normalized();
+    result.emplace_back(block.cell(place.local)[result.size()], sum.normalized());
+  }
+  return result;
+}
+
+/// Per anchor the mean normal of what its facets see along their own normals.
+AnchorDirections BodyPairing::Implementation::normals_seen(bool at_facets) const {
+  AnchorDirections result;
+  for (std::size_t k = 0; k < own.facets().size(); ++k) {
+    if (!faces(k)) continue;
+    Three sum = Three::Zero();
+    for (const SurfaceSegment& segment : direct[k].segments)
+      sum += segment.weights.sum() * opposite_normal.at(segment.opposite);
+    const Index facet = own.facets()[k].number;
+    const std::vector<Index> anchors = at_facets ? std::vector{facet} : facet_nodes(*body.space, {facet});
+    for (const Index anchor : anchors) result.try_emplace(anchor, Three::Zero()).first->second += sum;
+  }
+  for (auto& [anchor, sum] : result) {
+    if (!at_facets) take_across_axis(body, anchor, sum);
+    sum.normalize();
+  }
+  return result;
+}
+
+/// The normals at the vertices, from the areas around them, interpolated.
+Three BodyPairing::Implementation::normal_between_nodes(const SegmentFinder::Hit& hit,
+                                                        const std::map<Index, AreaSum>& areas) const {
+  Matrix values;
+  map.hats(hit.facet, hit.local, values);
+  const PlaceInBlocks place = locate_facet(*body.space, hit.facet);
+  const Index* const nodes = body.space->facets[place.block].cell(place.local);
+  Three normal = Three::Zero();
+  for (Index k = 0; k < values.rows(); ++k) {
+    const auto around = areas.find(nodes[k]);
+    if (around != areas.end()) normal += values(k, 0) * around->second.vector.normalized();
+  }
+  return normal;
+}
+
+/// The middle of the own direction and the normal of the opposite surface at the place that is seen along that very
+/// middle: that of the facet there where `faced` is null. So surfaces that are mirror images have the normal of the
+/// mirror, at any gap; along the own direction another place would be seen, off by the gap times its slope. Where the
+/// rounds find no such place, what is seen along the own direction decides, or that direction alone.
+Three BodyPairing::Implementation::middle_direction(const Three& at, const Three& own_direction, const Three& seen,
+                                                    double height, const std::map<Index, AreaSum>* faced) const {
+  constexpr int most_rounds = 30;
+  const auto from = [&](const Three& direction) -> std::optional<Three> {
+    SegmentFinder::Hit hit = finder.find_point(at, direction, 0.5 * height);
+    if (hit.facet < 0) hit = finder.find_point(at, direction, 0.5 * height, beyond_rim);
+    if (hit.facet < 0) return {};
+    const Three normal = faced != nullptr ? normal_between_nodes(hit, *faced) : opposite_normal.at(hit.facet);
+    if (!(normal.dot(own_direction) > 0.0)) return {};
+    return (own_direction + normal.normalized()).normalized();
+  };
+  std::optional<Three> direction = (own_direction + seen).normalized();
+  for (int round = 0; round < most_rounds && direction; ++round) {
+    const std::optional<Three> next = from(*direction);
+    if (next && (*next - *direction).norm() <= same_direction)
+      return (*next - own_direction).norm() > same_direction ? *next : own_direction;
+    direction = next;
+  }
+  direction = from(own_direction);
+  return direction && (*direction - own_direction).norm() > same_direction ? *direction : own_direction;
+}
+
+void BodyPairing::Implementation::take_functions(const MultiplierSpace& space, const AnchorDirections& directions,
+                                                 BodyContact& result) const {
+  PairIntegration integration(body, map, own, finder, space, directions);
+  for (std::size_t k = 0; k < own.facets().size(); ++k) {
+    if (faces(k)) integration.add_facet(static_cast<int>(k), normal_of(k), direct[k]);
+  }
+  result.facing.lost = integration.lost();
+  const bool at_facets = anchor_of(pair.multipliers) == MultiplierAnchor::facet;
+  const bool by_quadrature = body.mesh->degree > body.space->degree;
+  for (const auto& [anchor, sums] : integration.sums()) {
+    if (!(sums.weight > least_cover * sums.whole)) {
+      ++result.facing.uncovered;
+      continue;
+    }
+    result.multipliers.push_back({space.patch().parts.front().pair, at_facets ? -1 : anchor, at_facets ? anchor : -1,
+                                  sums.weight, fractions(sums.own, sums.weight)});
+    PointConditions conditions{in_mesh(directions.at(anchor)), fractions(sums.opposite, sums.weight), 0.0, 0.0};
+    if (by_quadrature) conditions.gap = sums.gap / sums.weight;
+    result.conditions.push_back(std::move(conditions));
+  }
+}
+
+/// Nodal forces: a node against the place of the other surface that it faces.
+void BodyPairing::Implementation::take_nodes_as_points(const MultiplierSpace& space, const AnchorDirections& directions,
+                                                       BodyContact& result) const {
+  constexpr double at_node = 1e-6;
+  for (Multiplier multiplier : space.multipliers()) {
+    const BodyContact::Node facing = surfaces.node_facing(multiplier.node, true, directions.at(multiplier.node));
+    if (facing.opposite.empty()) {
+      ++result.facing.uncovered;
+      continue;
+    }
+    const bool matches = std::any_of(facing.opposite.begin(), facing.opposite.end(),
+                                     [](const auto& entry) { return entry.second > 1.0 - at_node; });
+    result.facing.matches = result.facing.matches && matches;
+    result.conditions.push_back({facing.normal, facing.opposite, facing.gap, 0.0});
+    result.multipliers.push_back(std::move(multiplier));
+  }
+}
+
+/// Points that could only press against supports: on both sides.
+void BodyPairing::Implementation::leave_out_held(const FreeComponent& is_free, BodyContact& result) const {
+  result.facing.held = result.keep([&](const Multiplier& multiplier, const PointConditions& conditions) {
+    const auto is_free_here = [&](const auto& entry) { return has_free_part(entry.first, conditions.normal, is_free); };
+    return std::any_of(multiplier.trace.begin(), multiplier.trace.end(), is_free_here) ||
+           std::any_of(conditions.opposite.begin(), conditions.opposite.end(), is_free_here);
+  });
+}
+
+/// Gaps and their rounding, and what of the group faces.
+void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) const {
+  const double size = extent(body.space->nodes);
+  double height = std::numeric_limits<double>::infinity();
+  for (const FacetSurface::Facet& facet : own.facets()) height = std::min(height, facet.height);
+  const auto closes = [&](double gap) { return gap < 0.0 && (pair.closed_gaps || gap > -rounding_of_files * height); };
+  PairFacing& facing = result.facing;
+  facing.points = static_cast<Index>(result.multipliers.size());
+  for (std::size_t i = 0; i < result.multipliers.size(); ++i) {
+    PointConditions& point = result.conditions[i];
+    Vector apart = Vector::Zero(body.mesh->dimension);
+    double lengths = 0.0;
+    const auto add = [&](const NodeWeights& weights, double sign) {
+      for (const auto& [node, weight] : weights) {
+        const Vector at = body.space->nodes.col(node);
+        apart += sign * weight * at;
+        lengths += std::abs(weight) * (at.lpNorm<1>() + size);
+      }
+    };
+    add(result.multipliers[i].trace, 1.0);
+    add(point.opposite, -1.0);
+    if (!has_gaps) point.gap = point.normal.dot(apart);
+    point.gap_rounding = 8.0 * std::numeric_limits<double>::epsilon() * lengths;
+    if (point.gap < facing.smallest_gap) {
+      facing.smallest_gap = point.gap;
+      facing.gap_rounding = point.gap_rounding;
+    }
+    facing.largest_gap = std::max(facing.largest_gap, point.gap);
+    if (!closes(point.gap)) continue;
+    if (point.gap < -point.gap_rounding) ++facing.closed;
+    point.gap = 0.0;
+  }
+  for (BodyContact::Node& node : result.nodes) {
+    if (closes(node.gap)) node.gap = 0.0;
+  }
+  for (std::size_t k = 0; k < own.facets().size(); ++k) {
+    const double ring = is_axisymmetric(body) ? ring_length(own.facets()[k].centre[0]) : 1.0;
+    const double area = own.facets()[k].area * ring;
+    facing.area += area;
+    facing.covered += std::min(direct[k].covered, 1.0) * area;
+    constexpr double least = 1e-3;
+    if (direct[k].covered > least && direct[k].covered < 1.0 - least) facing.partly_covered += direct[k].covered * area;
+  }
+}
+
+BodyPairing::BodyPairing(const Body& body, const ContactPair& pair)
+    : implementation_(std::make_unique<Implementation>(body, pair)) {}
+
+BodyPairing::~BodyPairing() = default;
+
+const std::vector<Index>& BodyPairing::facing_facets() const {
+  return implementation_->facing;
+}
+
+BodyContact BodyPairing::make(const MultiplierSpace& space, const FreeComponent& is_free) const {
+  const Implementation& own = *implementation_;
+  BodyContact result;
+  const bool at_facets = anchor_of(own.pair.multipliers) == MultiplierAnchor::facet;
+  const AnchorDirections directions = own.find_directions(at_facets, result.facing);
+  if (space.has_functions()) {
+    own.take_functions(space, directions, result);
+  } else {
+    own.take_nodes_as_points(space, directions, result);
+  }
+  own.leave_out_held(is_free, result);
+  result.nodes = nodes_of_points(own.surfaces, own.direct, at_facets ? AnchorDirections{} : directions, result);
+  result.opposite_recovery = opposite_pressure(own.surfaces, own.direct, space, result.multipliers);
+  own.summarize(space.has_functions() && own.body.mesh->degree > own.body.space->degree, result);
+  return result;
+}
+
+}  // namespace ricochet

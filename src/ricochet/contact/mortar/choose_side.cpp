@@ -1,0 +1,133 @@
+#include "ricochet/contact/mortar/choose_side.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "ricochet/contact/mortar/facet_surface.hpp"
+#include "ricochet/contact/mortar/touching_turns.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Ratio from which two sides differ.
+constexpr double alike = 1.1;
+
+/// Ratio from which turns within facets differ, and the turn from which forces are off by more than some per cent: both
+/// measured (docs/sliding.md).
+constexpr double alike_turns = 1.25, doubtful_turn = 0.25;
+
+/// Turn below which sides are as good as flat, in rad.
+constexpr double flat = 1e-3;
+
+/// Ratio of areas from which a surface is the smaller one, and the ratio of mesh sizes up to which that decides.
+constexpr double smaller_from = 1.5, coarsest = 3.0;
+
+struct Side {
+  double size = 0.0;       ///< mean distance of nodes on the facets
+  double curvature = 0.0;  ///< mean turn of the normal per length from facet to facet
+  double stiffness = 0.0;  ///< the mean of Young's modulus behind the facets, by area
+  double area = 0.0;
+};
+
+/// Neighbours at a larger angle, in rad, meet at an edge.
+constexpr double largest_bend = 0.26 * 3.14159265358979323846;
+
+/// Of facets that share a node: the angle of their normals over the distance of their centres, the mean of all.
+/// Neighbours at a larger angle than `most` count as if they were of one plane.
+double curvature_of(const Body& body, const FacetSurface& surface, double most) {
+  std::map<Index, std::vector<std::size_t>> around;
+  for (std::size_t k = 0; k < surface.facets().size(); ++k) {
+    const PlaceInBlocks place = place_in_blocks(body.mesh->facets, surface.facets()[k].number);
+    const CellBlock& block = body.mesh->facets[place.block];
+    for (int v = 0; v < vertex_count(block.shape); ++v) around[block.cell(place.local)[v]].push_back(k);
+  }
+  constexpr double rounding = 1e-6;
+  double sum = 0.0;
+  Index count = 0;
+  const auto add = [&](const FacetSurface::Facet& a, const FacetSurface::Facet& b) {
+    const FacetSurface::Three one = a.area_vector.normalized(), other = b.area_vector.normalized();
+    const double angle = std::atan2(one.cross(other).norm(), one.dot(other)), distance = (a.centre - b.centre).norm();
+    sum += angle > rounding && angle <= most && distance > 0.0 ? angle / distance : 0.0;
+    ++count;
+  };
+  for (const auto& [node, facets] : around) {
+    for (std::size_t i = 0; i < facets.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) add(surface.facets()[facets[j]], surface.facets()[facets[i]]);
+    }
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+Side measure(const Body& body, const std::vector<Index>& facets,
+             double most = std::numeric_limits<double>::infinity()) {
+  const FacetSurface surface(body, facets);
+  Side side;
+  double& area = side.area;
+  for (std::size_t k = 0; k < surface.facets().size(); ++k) {
+    const FacetSurface::Facet& facet = surface.facets()[k];
+    side.size += facet.size / body.space->degree;
+    side.stiffness += facet.area * material_of(body, surface.cells()[k]).young();
+    area += facet.area;
+  }
+  side.size /= static_cast<double>(std::max<std::size_t>(surface.facets().size(), 1));
+  side.stiffness /= area;
+  side.curvature = curvature_of(body, surface, most);
+  return side;
+}
+
+}  // namespace
+
+double distance_from_curved(const Body& body, const ContactPair& pair) {
+  if (body.mesh->degree > 1) return 0.0;
+  double result = 0.0;
+  for (const std::vector<Index>* const facets : {&pair.facets, &pair.opposite_facets}) {
+    const Side side = measure(body, *facets, largest_bend);  // edges are no curves that facets stand for
+    const double size = side.size * body.space->degree;      // of facets, not of the distance of their nodes
+    result = std::max(result, 0.125 * side.curvature * size * size);
+  }
+  return result;
+}
+
+std::optional<SideDoubt> doubt_side(const Body& body, const ContactPair& pair) {
+  if (pair.tied || pair.is_self()) return std::nullopt;
+  const TouchingTurns turns = touching_turns(body, pair.facets, pair.opposite_facets);
+  if (!(turns.own_of_bends > doubtful_turn)) return std::nullopt;
+  const double least = std::min(turns.own_of_bends, turns.opposite_of_bends);
+  return SideDoubt{turns.own_of_bends, turns.opposite_of_bends,
+                   turns.own_of_bends > alike_turns * turns.opposite_of_bends, std::min(doubtful_turn / least, 1.0)};
+}
+
+SideChoice choose_side(const Body& body, const ContactPair& pair) {
+  const Side one = measure(body, pair.facets), other = measure(body, pair.opposite_facets);
+  const auto differ = [](double a, double b) { return std::max(a, b) > alike * std::min(a, b); };
+  const auto choice = [](bool opposite, const char* what, double own, double others) {
+    return SideChoice{
+        opposite, fmt::format("{} ({:.3g} against {:.3g})", what, opposite ? others : own, opposite ? own : others)};
+  };
+  const TouchingTurns turns = pair.tied ? TouchingTurns{} : touching_turns(body, pair.facets, pair.opposite_facets);
+  // Edges turn more than all else, and which of them touch is not known beforehand: they are left out where forces
+  // would be wrong without them.
+  const bool by_bends = std::max(turns.own_of_bends, turns.opposite_of_bends) > doubtful_turn;
+  const double own = by_bends ? turns.own_of_bends : turns.own,
+               others = by_bends ? turns.opposite_of_bends : turns.opposite;
+  if (std::max(own, others) > std::max(flat, alike_turns * std::min(own, others)))
+    return choice(others < own, "normals turn less within its facets", own, others);
+  if (pair.slides_far && smaller_from * std::min(one.area, other.area) < std::max(one.area, other.area)) {
+    const bool is_other = other.area < one.area;
+    if ((is_other ? other.size : one.size) < coarsest * (is_other ? one.size : other.size))
+      return choice(is_other, "its surface is smaller", one.area, other.area);
+  }
+  if (differ(one.size, other.size)) return choice(other.size < one.size, "its mesh is finer", one.size, other.size);
+  if (differ(one.curvature, other.curvature))
+    return choice(other.curvature > one.curvature, "it is more curved", one.curvature, other.curvature);
+  if (differ(one.stiffness, other.stiffness))
+    return choice(other.stiffness < one.stiffness, "it is softer", one.stiffness, other.stiffness);
+  return {false, "both sides are alike"};
+}
+
+}  // namespace ricochet

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "ricochet/fem/facet_map.hpp"
+#include "ricochet/mesh/search/box_tree.hpp"
+
+/// @file One side of a contact between bodies: its facets, cut into flat pieces, where they can be found.
+namespace ricochet {
+
+/// Everything has three coordinates; in two dimensions the third is 0.
+class FacetSurface {
+ public:
+  using Three = Eigen::Vector3d;
+  /// A segment or, in three dimensions, a triangle between nodes of a facet.
+  struct Piece {
+    int facet = 0;               ///< its place in facets()
+    std::array<Index, 3> nodes;  ///< of the mesh, at the corners
+    std::array<Three, 3> corners;
+    Three normal;  ///< out of the body, of length 1
+  };
+  struct Facet {
+    Index number = 0;  ///< through all blocks
+    int first_piece = 0, piece_count = 0;
+    double area = 0.0;           ///< of the pieces
+    Three area_vector{0, 0, 0};  ///< ∫ N of them, out of the body: a length in two dimensions, an area in three
+    Three centre{0, 0, 0};       ///< the mean of its vertices
+    double size = 0.0;           ///< the longest distance between corners
+    double height = 0.0;         ///< of the cell behind it, or what take_heights() says
+  };
+
+  /// `facets`: numbered through all blocks, ascending. They are seen where they are displaced by `shift` (d; empty: not
+  /// at all).
+  FacetSurface(const Body& body, const std::vector<Index>& facets, const Vector& shift = {});
+  /// Of a surface that moves: facets of second order have all their pieces, whether or not they are curved at the
+  /// start.
+  [[nodiscard]] static FacetSurface moving(const Body& body, const std::vector<Index>& facets);
+  /// Takes the pieces to where the nodes of the mesh are now; sizes and heights stay those of the start. Allocates
+  /// nothing.
+  void move(const Points& nodes);
+
+  /// How deep what is behind each of the facets is, where more is known than the height of its cell.
+  void take_heights(const std::vector<double>& heights) {
+    for (std::size_t k = 0; k < facets_.size(); ++k) facets_[k].height = heights[k];
+  }
+
+  [[nodiscard]] const std::vector<Facet>& facets() const { return facets_; }
+  [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
+  [[nodiscard]] const BoxTree& tree() const { return tree_; }
+  /// Behind each of the facets, numbered through all blocks.
+  [[nodiscard]] const std::vector<Index>& cells() const { return cells_; }
+  /// The least height of the cells behind the facets around a node.
+  [[nodiscard]] double height_at(Index node) const { return node_height_.at(node); }
+  [[nodiscard]] const Vector& shift() const { return shift_; }
+
+ private:
+  FacetSurface(const Body& body, const std::vector<Index>& facets, const Vector& shift, bool moves);
+  void add_facet(const Body& body, Index facet, Index cell);
+  void place(Facet& facet);
+
+  std::vector<Facet> facets_;
+  std::vector<Index> cells_;
+  std::vector<Piece> pieces_;
+  std::map<Index, double> node_height_;
+  Vector shift_;
+  bool plane_, moves_;
+  std::vector<BoxTree::Box> boxes_;  ///< of the pieces
+  BoxTree tree_;
+};
+
+}  // namespace ricochet

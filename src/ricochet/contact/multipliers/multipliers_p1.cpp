@@ -1,0 +1,79 @@
+#include <map>
+#include <set>
+
+#include "ricochet/contact/multipliers/multiplier_space.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// One multiplier per vertex, continuous: ψ_v is the (multi)linear hat function of the vertex, whatever the degree of
+/// the displacement. Vertices that supports hold have no multiplier; the hats of the held vertices of a facet are
+/// shared equally by its others, so that Σψ = 1 up to the support and a uniform pressure stays in the space. Pressures
+/// at nodes are λ_v at vertices (0 at held ones) and the mean of the vertices at middle nodes.
+class P1Multipliers final : public MultiplierSpace {
+ public:
+  using MultiplierSpace::MultiplierSpace;
+
+  [[nodiscard]] std::vector<Multiplier> multipliers() const override {
+    return integrate_multipliers(*this, MultiplierAnchor::node);
+  }
+
+  [[nodiscard]] std::vector<Eigen::Triplet<double>> pressure_recovery(
+      const std::vector<Multiplier>& kept) const override {
+    std::map<Index, int> number;
+    for (std::size_t i = 0; i < kept.size(); ++i) number[kept[i].node] = static_cast<int>(i);
+    const DisplacementSpace& space = *patch().body->space;
+    std::set<Index> done;
+    std::vector<Eigen::Triplet<double>> result;
+    for (const ContactPatch::Part& part : patch().parts) {
+      for (const Index facet : part.facets) {
+        const PlaceInBlocks place = locate_facet(space, facet);
+        const CellBlock& block = space.facets[place.block];
+        const Index* nodes = block.cell(place.local);
+        const auto& vertices_of = node_vertices(block.shape, space.degree);
+        for (std::size_t k = 0; k < vertices_of.size(); ++k) {
+          const Index node = nodes[k];
+          if (!done.insert(node).second) continue;
+          std::vector<int> known;
+          for (const int v : vertices_of[k]) {
+            const auto vertex = number.find(nodes[v]);
+            if (vertex != number.end()) known.push_back(vertex->second);
+          }
+          for (const int vertex : known) {
+            const double weight = kept[static_cast<std::size_t>(vertex)].weight;
+            result.emplace_back(static_cast<int>(node), vertex, 1.0 / (weight * static_cast<double>(known.size())));
+          }
+        }
+      }
+    }
+    return result;
+  }
+
+  void evaluate(const FacetQuadrature& facet, FacetMultipliers& result) const override {
+    result.anchors.clear();
+    std::vector<Index> free;
+    Eigen::RowVectorXd held = Eigen::RowVectorXd::Zero(facet.measure.size());
+    for (Index v = 0; v < facet.vertex_count(); ++v) {
+      if (is_held(facet.nodes[v])) {
+        held += facet.hats->row(v);
+        continue;
+      }
+      free.push_back(v);
+      result.anchors.push_back(facet.nodes[v]);
+    }
+    result.values.resize(static_cast<Index>(free.size()), facet.measure.size());
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      result.values.row(static_cast<Index>(k)) = facet.hats->row(free[k]) + held / static_cast<double>(free.size());
+    }
+  }
+};
+
+}  // namespace
+
+MultiplierSpaceRegistration p1_multipliers() {
+  return {"p1", {[](const ContactPatch& patch) { return std::make_unique<P1Multipliers>(patch); }}};
+}
+
+}  // namespace ricochet

@@ -1,0 +1,142 @@
+#include "ricochet/rigid/free_motion.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace ricochet {
+
+namespace {
+
+using Three = Eigen::Vector3d;
+
+/// a × b; of vectors in the plane its third component.
+SpaceVector cross(const SpaceVector& a, const SpaceVector& b) {
+  if (a.size() == 3) return Three(a).cross(Three(b));
+  return SpaceVector::Constant(1, a[0] * b[1] - a[1] * b[0]);
+}
+
+/// Of a torque or a rotation in the plane nothing changes.
+SpaceVector turned(const Pose::Rotation& axes, const SpaceVector& about_axes) {
+  return about_axes.size() == 3 ? SpaceVector(axes * about_axes) : about_axes;
+}
+SpaceVector turned_back(const Pose::Rotation& axes, const SpaceVector& in_space) {
+  return in_space.size() == 3 ? SpaceVector(axes.transpose() * in_space) : in_space;
+}
+
+}  // namespace
+
+Pose::Rotation cayley(const SpaceVector& rotation) {
+  const double square = 0.25 * rotation.squaredNorm(), factor = 1.0 / (1.0 + square);
+  if (rotation.size() == 1) {
+    const double c = (1.0 - square) * factor, s = rotation[0] * factor;
+    Eigen::Matrix2d result;
+    result << c, -s, s, c;
+    return result;
+  }
+  Eigen::Matrix3d skew;
+  skew << 0.0, -rotation[2], rotation[1], rotation[2], 0.0, -rotation[0], -rotation[1], rotation[0], 0.0;
+  return Eigen::Matrix3d::Identity() + factor * (skew + 0.5 * skew * skew);
+}
+
+FreeMotion::FreeMotion(Inertia inertia, Index node)
+    : inertia_(std::move(inertia)), node_(node), gyration_((inertia_.moments / inertia_.mass).cwiseSqrt()) {
+  const Index d = dimension();
+  if (inertia_.principal.size() == 0) inertia_.principal = Pose::Rotation::Identity(d, d);
+  axes_ = inertia_.principal;
+  turned_ = SpaceVector::Zero(gyration_.size());
+}
+
+SpaceVector FreeMotion::turn(const Vector& displacement) const {
+  const SpaceVector now = displacement.segment(rotation_node() * dimension(), gyration_.size());
+  return (now - turned_).cwiseQuotient(gyration_);
+}
+
+void FreeMotion::begin_step(const Vector& displacement) {
+  const SpaceVector now = displacement.segment(rotation_node() * dimension(), gyration_.size());
+  if (now == turned_) return;
+  axes_ = axes(displacement);
+  turned_ = now;
+  // The product of rotations is one to rounding, which grows with their number.
+  if (dimension() == 3) {
+    const Eigen::Quaterniond unit(Eigen::Matrix3d{axes_});
+    axes_ = unit.normalized().toRotationMatrix();
+  } else {
+    axes_ /= std::sqrt(axes_(0, 0) * axes_(0, 0) + axes_(1, 0) * axes_(1, 0));
+  }
+}
+
+void FreeMotion::save(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name + ".axes", Vector(axes_.reshaped()));
+  snapshot.save(name + ".turned", Vector(turned_));
+}
+
+void FreeMotion::load(const Snapshot& snapshot, const std::string& name) {
+  const Index d = dimension();
+  axes_ = snapshot.reals(name + ".axes", d * d).reshaped(d, d);
+  turned_ = snapshot.reals(name + ".turned", gyration_.size());
+}
+
+Pose::Rotation FreeMotion::axes(const Vector& displacement) const {
+  const SpaceVector rotation = turn(displacement);
+  return rotation.isZero(0.0) ? axes_ : Pose::Rotation(axes_ * cayley(rotation));
+}
+
+SpaceVector FreeMotion::centre(const Vector& displacement) const {
+  return inertia_.centre + displacement.segment(node_ * dimension(), dimension());
+}
+
+Pose FreeMotion::pose(const Vector& displacement) const {
+  Pose result;
+  result.rotation = axes(displacement) * inertia_.principal.transpose();
+  result.shift = centre(displacement) - result.rotation * inertia_.centre;
+  return result;
+}
+
+void FreeMotion::write_row(const SpaceVector& direction, const SpaceVector& arm, const Pose::Rotation& axes,
+                           double* row) const {
+  for (const double n : direction) *row++ = n;
+  const SpaceVector lever = turned_back(axes, cross(arm, direction)).cwiseQuotient(gyration_);
+  for (const double l : lever) *row++ = l;
+  if (dimension() == 2) *row = 0.0;
+}
+
+SpaceVector FreeMotion::torque(const Vector& force) const {
+  const SpaceVector own = force.segment(rotation_node() * dimension(), gyration_.size());
+  return turned(axes_, own.cwiseProduct(gyration_));
+}
+
+void FreeMotion::add_torque(const SpaceVector& torque, Vector& force) const {
+  force.segment(rotation_node() * dimension(), gyration_.size()) += turned_back(axes_, torque).cwiseQuotient(gyration_);
+}
+
+SpaceVector FreeMotion::angular_momentum(const Vector& displacement, const Vector& velocity) const {
+  const SpaceVector own = velocity.segment(rotation_node() * dimension(), gyration_.size());
+  return turned(axes(displacement), inertia_.mass * own.cwiseProduct(gyration_));
+}
+
+SpaceVector FreeMotion::spin(const Vector& displacement, const Vector& velocity) const {
+  const SpaceVector own = velocity.segment(rotation_node() * dimension(), gyration_.size());
+  return turned(axes(displacement), own.cwiseQuotient(gyration_));
+}
+
+SpaceVector FreeMotion::velocity_of_spin(const SpaceVector& spin, const Vector& displacement) const {
+  const SpaceVector own = turned_back(axes(displacement), spin).cwiseProduct(gyration_);
+  SpaceVector result = SpaceVector::Zero(dimension());
+  result.head(own.size()) = own;
+  return result;
+}
+
+/// g = (1 − ½Θ^)⁻¹ [2J(Θ − hW₀) + Θ × JΘ]/h² − 2J(Θ − hW₀)/h².
+void FreeMotion::add_gyroscopic_force(const Vector& end, const Vector& velocity, double step, Vector& force) const {
+  if (!has_gyroscopic_force()) return;
+  const Three rotation = turn(end), moments = inertia_.moments;
+  const Three spin = Three(velocity.segment<3>(rotation_node() * 3)).cwiseQuotient(Three(gyration_));
+  const Three linear = 2.0 * moments.cwiseProduct(rotation - step * spin);
+  const Three sum = linear + rotation.cross(Three(moments.cwiseProduct(rotation)));
+  // (1 − ½Θ^)⁻¹ v = (v + ½Θ×v + ¼Θ(Θ·v))/(1 + ¼Θ²)
+  const Three solved =
+      (sum + 0.5 * rotation.cross(sum) + 0.25 * rotation.dot(sum) * rotation) / (1.0 + 0.25 * rotation.squaredNorm());
+  force.segment<3>(rotation_node() * 3) -= 1.0 / (step * step) * (solved - linear).cwiseQuotient(Three(gyration_));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "ricochet/base/snapshot.hpp"
+#include "ricochet/rigid/pose.hpp"
+
+/// @file Rigid bodies that move by the forces on them.
+namespace ricochet {
+
+/// A rigid body has two nodes among those of the problem, at its centre of mass and without cells. The displacement of
+/// the first is that of the centre. That of the second is ℓ_k Θ_k, with Θ the rotation so far about its principal axes,
+/// step by step, and ℓ_k = √(J_k/m) its radii of gyration: with the mass m on either node the kinetic energy is
+/// ½VᵀMV. In the plane its second component is always zero.
+///
+/// Over a step from the rotation A₀ (of principal axes) to A₁ = A₀ cay(Θ), cay(Θ) = (1 − ½Θ^)⁻¹(1 + ½Θ^), a point of
+/// the body moves by Δc + θ × a, with θ = A₀Θ and a its arm about the centre at the mean of both places, exactly. With
+/// the spin W about the axes, Θ = ½h(W₀ + W₁), and a torque τ = A₀τ₀ of the step in space,
+///   A₁JW₁ − A₀JW₀ = hτ,   ½W₁ᵀJW₁ − ½W₀ᵀJW₀ = θ·τ
+/// hold together, to rounding (J. C. Simo, K. K. Wong, Int. J. Numer. Methods Engng. 31 (1991) 19–52), where
+///   (2/h²) J(Θ − hW₀) = τ₀ − g(Θ, W₀),
+/// g the gyroscopic torque (gyroscopic_force): none in the plane.
+class FreeMotion {
+ public:
+  struct Inertia {
+    double mass = 0.0;
+    SpaceVector centre;        ///< of mass, as the obstacle is described
+    SpaceVector moments;       ///< J_k about the centre: 1 in the plane, 3 in space
+    Pose::Rotation principal;  ///< axes as columns, in space; empty: those of space
+  };
+  /// `node`: the first of its nodes.
+  FreeMotion(Inertia inertia, Index node);
+
+  [[nodiscard]] const Inertia& inertia() const { return inertia_; }
+  [[nodiscard]] Index centre_node() const { return node_; }
+  [[nodiscard]] Index rotation_node() const { return node_ + 1; }
+  [[nodiscard]] Index dimension() const { return inertia_.centre.size(); }
+  /// ℓ.
+  [[nodiscard]] const SpaceVector& gyration() const { return gyration_; }
+
+  /// From here on displacements are those of a step that begins with this one.
+  void begin_step(const Vector& displacement);
+  void save(Snapshot& snapshot, const std::string& name) const;
+  void load(const Snapshot& snapshot, const std::string& name);
+
+  /// At a displacement of the step.
+  [[nodiscard]] Pose pose(const Vector& displacement) const;
+  [[nodiscard]] SpaceVector centre(const Vector& displacement) const;
+  /// A at a displacement, and A₀: of the principal axes, in space.
+  [[nodiscard]] Pose::Rotation axes(const Vector& displacement) const;
+  [[nodiscard]] const Pose::Rotation& axes_at_start() const { return axes_; }
+  /// The change of n·(place of the body's point there) with the displacements of its nodes: 2d numbers; `arm` about the
+  /// centre, and the axes that θ is about.
+  void write_row(const SpaceVector& direction, const SpaceVector& arm, const Pose::Rotation& axes, double* row) const;
+  /// About the centre, of forces on its second node (about A₀): a vector in space, of one component in the plane.
+  [[nodiscard]] SpaceVector torque(const Vector& force) const;
+  /// Adds a torque in space to forces of a step.
+  void add_torque(const SpaceVector& torque, Vector& force) const;
+  /// The angular momentum about the centre at a displacement with this velocity, likewise.
+  [[nodiscard]] SpaceVector angular_momentum(const Vector& displacement, const Vector& velocity) const;
+  /// The spin in space.
+  [[nodiscard]] SpaceVector spin(const Vector& displacement, const Vector& velocity) const;
+  /// V of a spin in space at a displacement: for the second node.
+  [[nodiscard]] SpaceVector velocity_of_spin(const SpaceVector& spin, const Vector& displacement) const;
+
+  /// Adds −g/ℓ of a step of length h from a velocity, that ends at a displacement.
+  void add_gyroscopic_force(const Vector& end, const Vector& velocity, double step, Vector& force) const;
+  [[nodiscard]] bool has_gyroscopic_force() const { return dimension() == 3; }
+
+ private:
+  [[nodiscard]] SpaceVector turn(const Vector& displacement) const;
+
+  Inertia inertia_;
+  Index node_;
+  SpaceVector gyration_;
+  Pose::Rotation axes_;  ///< A₀
+  SpaceVector turned_;   ///< the second node's displacement at the start of the step
+};
+
+/// cay(Θ); in the plane Θ has one component.
+[[nodiscard]] Pose::Rotation cayley(const SpaceVector& rotation);
+
+}  // namespace ricochet

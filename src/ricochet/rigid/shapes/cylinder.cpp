@@ -1,0 +1,100 @@
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "ricochet/rigid/shapes/grid_surface.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Without ends: a shaft that bodies stay outside of, or a bore that they stay inside of. Gap ±(|p| − R), p the part of
+/// x − o across the axis. As on a sphere, the normal at the middle of a step is that of the step.
+class Cylinder final : public ObstacleShape {
+ public:
+  Cylinder(const Vector& centre, const Vector& axis, double radius, double side)
+      : centre_(centre), axis_(unit_vector(axis, "the axis of a cylinder")), radius_(radius), sign_(side) {}
+
+  [[nodiscard]] double gap(const SpaceVector& position) const override {
+    return sign_ * (across(position).stableNorm() - radius_);
+  }
+  /// On the axis, where no direction is nearest, some one across it.
+  [[nodiscard]] SpaceVector normal(const SpaceVector& position) const override {
+    const Eigen::Vector3d from_axis = across(position);
+    const double distance = from_axis.stableNorm();
+    return sign_ * (distance > 0.0 ? Eigen::Vector3d(from_axis / distance) : axis_.unitOrthogonal());
+  }
+  [[nodiscard]] SpaceVector normal_of_step(const SpaceVector& from, const SpaceVector& to) const override {
+    return normal_at_middle(from, to);
+  }
+  [[nodiscard]] double gap_rounding(const SpaceVector& position) const override {
+    return eight_roundings(position.lpNorm<1>() + centre_.lpNorm<1>() + radius_);
+  }
+  [[nodiscard]] double least_radius() const override {
+    return sign_ > 0.0 ? radius_ : std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] SpaceVector centre() const override { return centre_; }
+  [[nodiscard]] OwnAxis own_axis() const override { return {true, axis_}; }
+
+  /// A piece of it, beside the body along the axis.
+  [[nodiscard]] ObstacleSurface surface(const Vector& centre, double radius) const override {
+    const Eigen::Vector3d middle = centre_ + axis_.dot(Eigen::Vector3d(centre) - centre_) * axis_;
+    const Eigen::Vector3d first = axis_.unitOrthogonal(), second = sign_ * axis_.cross(first);
+    constexpr int sectors = 64, rings = 4;
+    const double half = 2.0 * radius;
+    return grid_surface(rings, sectors, true, [&](int ring, int sector) -> Eigen::Vector3d {
+      const double angle = -2.0 * std::numbers::pi * sector / sectors;
+      return middle + half * (2.0 * ring / rings - 1.0) * axis_ +
+             radius_ * (std::cos(angle) * first + std::sin(angle) * second);
+    });
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector3d across(const SpaceVector& position) const {
+    const Eigen::Vector3d from_centre = Eigen::Vector3d(position) - centre_;
+    return from_centre - axis_.dot(from_centre) * axis_;
+  }
+
+  Eigen::Vector3d centre_, axis_;
+  double radius_, sign_;
+};
+
+std::vector<Key> cylinder_keys() {
+  return {{.name = "centre",
+           .type = KeyType::vector,
+           .unit = "length",
+           .required = true,
+           .doc = "A point of the cylinder's axis."},
+          {.name = "axis",
+           .type = KeyType::vector,
+           .unit = "1",
+           .required = true,
+           .doc = "Direction of the axis, of any length but zero. The cylinder has no ends; in two dimensions take a "
+                  "sphere, which is a circle there."},
+          {.name = "radius",
+           .type = KeyType::number,
+           .unit = "length",
+           .required = true,
+           .range = positive,
+           .doc = "Radius of the cylinder."},
+          obstacle_side_key("Where bodies are: \"outside\" of a shaft, or \"inside\" of a bore.")};
+}
+
+void check_cylinder(const ParameterCheck& place, const Parameters& values) {
+  check_direction(place, values, "axis", "is the direction of the cylinder's axis");
+}
+
+}  // namespace
+
+ObstacleRegistration cylinder_obstacle() {
+  const auto make = [](const Parameters& parameters) {
+    require_space(parameters, "centre", "a cylinder", "take a sphere, which is a circle there");
+    return std::make_unique<Cylinder>(as_vector(parameters.vector("centre")), as_vector(parameters.vector("axis")),
+                                      parameters.number("radius"), obstacle_side(parameters));
+  };
+  return {"cylinder", make, cylinder_keys(), {}, check_cylinder};
+}
+
+}  // namespace ricochet

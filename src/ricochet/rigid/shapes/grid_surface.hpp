@@ -1,0 +1,27 @@
+#pragma once
+
+#include "ricochet/rigid/obstacle_shape.hpp"
+
+/// @file Pictures of surfaces in space that have two parameters.
+namespace ricochet {
+
+/// (rows + 1) × columns points point(i, k), where the last column meets the first if `closes`, else (columns + 1).
+/// Seen from outside, i to k is a turn counterclockwise.
+template <class PointAt>
+[[nodiscard]] ObstacleSurface grid_surface(int rows, int columns, bool closes, const PointAt& point) {
+  const int wide = closes ? columns : columns + 1;
+  ObstacleSurface result{Points(3, (rows + 1) * wide), {}};
+  for (int i = 0; i <= rows; ++i) {
+    for (int k = 0; k < wide; ++k) result.points.col(i * wide + k) = point(i, k);
+  }
+  for (int i = 0; i < rows; ++i) {
+    for (int k = 0; k < columns; ++k) {
+      const int next = closes ? (k + 1) % columns : k + 1;
+      for (const int corner : {i * wide + k, (i + 1) * wide + k, (i + 1) * wide + next, i * wide + next})
+        result.cells.push_back(corner);
+    }
+  }
+  return result;
+}
+
+}  // namespace ricochet

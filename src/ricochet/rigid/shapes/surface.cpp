@@ -1,0 +1,287 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "ricochet/base/checksum.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/rigid/obstacle_shape.hpp"
+#include "ricochet/rigid/surface/rigid_surface.hpp"
+
+namespace ricochet {
+
+namespace {
+
+using Three = RigidSurface::Three;
+
+/// Where a case gives no radius it is this part of the distance between contact nodes: what is smaller than that
+/// distance contact does not see.
+constexpr double part_of_spacing = 0.25;
+/// A derivative that is shorter, as in a plate that is thinner than the radius, has no direction to speak of.
+constexpr double least_length = 0.1;
+/// Facets of a picture.
+constexpr std::size_t most_shown = 6000;
+constexpr double most_of_reach = 6.0;
+
+Three in_three(const SpaceVector& point) {
+  Three result = Three::Zero();
+  result.head(point.size()) = point;
+  return result;
+}
+
+/// A body from a file. With a radius, the gap near the surface is the mean height above the facets that are so near
+/// (RigidSurface::mean_height): its derivative, the normal, turns round edges and in corners, and does not jump. It is
+/// exact on faces and rounds edges: at a right-angled one it is off by 15 % of the radius at most. Farther away than
+/// the radius, and without one, it is the exact distance.
+class Surface final : public ObstacleShape {
+ public:
+  Surface(RigidSurface surface, double side, std::optional<double> radius, std::string checksum, std::string file)
+      : surface_(std::move(surface)),
+        side_(side),
+        given_radius_(radius),
+        checksum_(std::move(checksum)),
+        file_(std::move(file)) {
+    if (given_radius_) radius_ = *given_radius_;
+  }
+
+  [[nodiscard]] double gap(const SpaceVector& position) const override { return look(in_three(position)).gap; }
+  [[nodiscard]] SpaceVector normal(const SpaceVector& position) const override {
+    const Three unit = look(in_three(position)).gradient.normalized();
+    return unit.head(position.size());
+  }
+  [[nodiscard]] SpaceVector gradient(const SpaceVector& position) const override {
+    return look(in_three(position)).gradient.head(position.size());
+  }
+  [[nodiscard]] double gap_rounding(const SpaceVector& position) const override {
+    const BoxTree::Box box = surface_.box();
+    return eight_roundings(position.lpNorm<1>() + box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).lpNorm<1>());
+  }
+  [[nodiscard]] SpaceVector centre() const override { return SpaceVector::Zero(surface_.in_space() ? 3 : 2); }
+  [[nodiscard]] std::optional<Solid> solid() const override {
+    if (side_ < 0.0 || !surface_.is_closed()) return std::nullopt;
+    const RigidSurface::Moments moments = surface_.moments();
+    const Index d = surface_.in_space() ? 3 : 2;
+    // ∫ (|r|² 1 − r rᵀ); in the plane its last entry.
+    const Eigen::Matrix3d inertia = moments.second.trace() * Eigen::Matrix3d::Identity() - moments.second;
+    return Solid{moments.volume, moments.centre.head(d),
+                 d == 3 ? Matrix(inertia) : Matrix(inertia.bottomRightCorner(1, 1))};
+  }
+  void fit(const ContactScale& scale) override {
+    if (!given_radius_) radius_ = std::min(part_of_spacing * scale.spacing, surface_.width_of_smooth());
+    if (!surface_.is_closed()) return;
+    const Three sides = surface_.block_sides();
+    const double width = surface_.in_space() ? sides[1] : sides[2], least = surface_.in_space() ? sides[0] : sides[1];
+    if (width < scale.spacing) {
+      log::warning(
+          fmt::format("{}: the surface is about {:.3g} wide, and nodes that may touch it are {:.3g} apart: "
+                      "it can go in between them unseen; take smaller cells there",
+                      file_, width, scale.spacing));
+    }
+    if (given_radius_ && 2.0 * radius_ > least) {
+      log::warning(
+          fmt::format("{}: edges are rounded over {:.3g}, more than half of what the surface is thick, about {:.3g}: "
+                      "gaps are off by a part of that; take a smaller edge_radius",
+                      file_, radius_, least));
+    }
+  }
+  [[nodiscard]] std::string remarks() const override {
+    return radius_ > 0.0 ? fmt::format("its edges are rounded over a radius of {:.3g}", radius_)
+                         : std::string("its edges are sharp: normals jump there");
+  }
+  [[nodiscard]] std::string checksum() const override { return checksum_; }
+  [[nodiscard]] ObstacleSurface surface(const Vector& centre, double radius) const override;
+
+ private:
+  struct Look {
+    double gap;
+    Three gradient;
+  };
+  [[nodiscard]] Look look(const Three& at) const {
+    const RigidSurface::Foot foot = surface_.nearest(at);
+    const Look exact = exact_look(at, foot);
+    const double distance = std::abs(exact.gap) / radius_;
+    if (!(distance < 1.0) || foot.on_border) return exact;
+    const RigidSurface::Height mean = surface_.mean_height(at, radius_);
+    if (!(mean.weight > 0.0)) return exact;
+    // All of the mean up to half of the radius, from there on less and less.
+    const double t = std::max(2.0 * distance - 1.0, 0.0);
+    const double part = t * t * (3.0 - 2.0 * t), slope = 12.0 * t * (1.0 - t) / radius_;
+    const double height = side_ * mean.value;
+    const double away = exact.gap < 0.0 ? -1.0 : 1.0;
+    const Three turned = (1.0 - part) * side_ * mean.gradient + part * exact.gradient +
+                         slope * away * (exact.gap - height) * exact.gradient;
+    if (!(turned.norm() > least_length)) return exact;
+    return {(1.0 - part) * height + part * exact.gap, turned};
+  }
+  /// The distance and its derivative: towards the point, or that of the edge where the two are too near to tell. Beyond
+  /// a border nothing is behind the surface.
+  [[nodiscard]] Look exact_look(const Three& at, const RigidSurface::Foot& foot) const {
+    const Three away = at - foot.position;
+    const double along = away.dot(foot.normal), distance = away.norm();
+    if (foot.on_facet) return {side_ * along, side_ * foot.normal};
+    constexpr double near = 1e-10;
+    const Three size = at.cwiseAbs() + foot.position.cwiseAbs();
+    if (distance <= near * size.maxCoeff()) return {side_ * (along < 0.0 ? -distance : distance), side_ * foot.normal};
+    if (foot.on_border) return {distance, away / distance};
+    const double sign = along < 0.0 ? -side_ : side_;
+    return {sign * distance, sign / distance * away};
+  }
+
+  RigidSurface surface_;
+  double side_;
+  std::optional<double> given_radius_;
+  double radius_ = 0.0;
+  std::string checksum_;
+  std::string file_;  ///< for messages
+};
+
+/// Some facets of a surface, for a picture. With a width of 0 all corners are themselves, else those in one cell of a
+/// grid of that width are one, at their mean.
+ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& facets, double width, double side) {
+  std::map<std::array<long, 3>, int> numbers;
+  std::vector<Three> sums;
+  std::vector<int> counts;
+  std::map<int, int> number_of;  // of each corner
+  const auto point_of = [&](int corner) {
+    const auto [known, is_new] = number_of.try_emplace(corner, 0);
+    if (!is_new) return known->second;
+    const Three& at = surface.corners()[static_cast<std::size_t>(corner)];
+    std::array<long, 3> key{corner, -1, -1};
+    if (width > 0.0) {
+      for (std::size_t k = 0; k < 3; ++k)
+        key[k] = static_cast<long>(std::floor((at - surface.box().min())[static_cast<Index>(k)] / width));
+    }
+    const auto [entry, added] = numbers.try_emplace(key, static_cast<int>(sums.size()));
+    if (added) {
+      sums.push_back(Three::Zero());
+      counts.push_back(0);
+    }
+    sums[static_cast<std::size_t>(entry->second)] += at;
+    ++counts[static_cast<std::size_t>(entry->second)];
+    return known->second = entry->second;
+  };
+  ObstacleSurface result;
+  std::map<std::array<int, 3>, char> known;
+  for (const int facet : facets) {
+    std::array<int, 3> own = surface.facets()[static_cast<std::size_t>(facet)];
+    for (int& corner : own) corner = point_of(corner);
+    if (surface.in_space() && (own[1] == own[2] || own[2] == own[0])) continue;
+    if (own[0] == own[1]) continue;
+    std::array<int, 3> key = own;  // the same facet is there once, whichever of its corners comes first
+    if (surface.in_space()) std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
+    if (width > 0.0 && !known.try_emplace(key, 1).second) continue;
+    if (side < 0.0) std::swap(own[0], own[1]);
+    result.cells.insert(result.cells.end(), own.begin(), own.begin() + (surface.in_space() ? 3 : 2));
+    if (surface.in_space()) result.cells.push_back(own[2]);
+  }
+  const Index d = surface.in_space() ? 3 : 2;
+  result.points.resize(d, static_cast<Index>(sums.size()));
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    result.points.col(static_cast<Index>(k)) = (sums[k] / counts[k]).head(d);
+  return result;
+}
+
+/// Shows the facets that are near; if they are too many, as coarse as it takes and no coarser: what stands out of a
+/// plate is still seen.
+ObstacleSurface Surface::surface(const Vector& centre, double radius) const {
+  const Three middle = in_three(SpaceVector(centre));
+  const double reach = radius + std::abs(gap(SpaceVector(centre)));
+  // One that is not much larger is shown whole.
+  const bool is_small = surface_.box().diagonal().norm() < most_of_reach * reach;
+  std::vector<int> shown;
+  surface_.tree().visit([&](const BoxTree::Box& box) { return is_small || box.exteriorDistance(middle) < reach; },
+                        [&](int facet) { shown.push_back(facet); });
+  std::sort(shown.begin(), shown.end());
+  constexpr double coarser = 1.2;
+  const std::size_t corners = surface_.in_space() ? 4 : 2;
+  double width = 0.0;
+  ObstacleSurface result = picture_of(surface_, shown, width, side_);
+  while (result.cells.size() > corners * most_shown) {
+    width = width == 0.0 ? 0.5 * reach / std::sqrt(static_cast<double>(shown.size())) : coarser * width;
+    result = picture_of(surface_, shown, width, side_);
+  }
+  return result;
+}
+
+std::vector<Key> surface_keys() {
+  return {
+      {.name = "file",
+       .type = KeyType::text,
+       .required = true,
+       .doc = "The surface: STL, binary or ASCII, whose triangles turn counterclockwise seen from outside; in two "
+              "dimensions a text file with x and y of a corner of a polygon in each line, the obstacle to the right "
+              "of its lines, an empty line between polygons. What it encloses is the obstacle; behind one with a "
+              "border, everything is that faces it from behind."},
+      {.name = "scale",
+       .type = KeyType::number,
+       .unit = "1",
+       .standard = "1",
+       .range = positive,
+       .doc = "Factor on all coordinates of the file: 1e-3 for millimetres in a case in metres."},
+      {.name = "edge_radius",
+       .type = KeyType::number,
+       .unit = "length",
+       .range = nonnegative,
+       .doc =
+           "Gaps and normals are means over the facets that are so near, which rounds edges; 0: edges are sharp, and "
+           "normals jump there. Absent: a quarter of the largest distance between nodes of the contacts with it, and "
+           "of a surface that bends by no more than 30 degrees at any edge no more than the width of its facets."},
+      obstacle_side_key("Where bodies are: \"outside\" of what the surface encloses, or \"inside\"; then it must be "
+                        "closed.")};
+}
+
+void tell_of(const RigidSurface& surface, const std::string& file) {
+  const char* const noun = surface.in_space() ? "triangle" : "segment";
+  if (surface.was_turned_round())
+    log::warning(fmt::format("{}: the surface was inside out, its normals pointing inwards; all {}s were turned round",
+                             file, noun));
+  if (surface.joined_count() > 0)
+    log::info(
+        fmt::format("{}: {} corners at borders lie within a millionth of its size of others: they are taken for "
+                    "one, and the border there is closed",
+                    file, surface.joined_count()));
+  if (surface.flat_count() > 0)
+    log::info(fmt::format("{}: {} {}s without {} touch nothing but by their neighbours", file, surface.flat_count(),
+                          noun, surface.in_space() ? "an area" : "a length"));
+  if (surface.is_closed()) return;
+  const Three& place = surface.border_place();
+  log::info(
+      fmt::format("{}: the surface is not closed: {} {} to one {} only, one of them at ({:.4g}, {:.4g}, {:.4g}); "
+                  "what is behind it counts as inside of the obstacle",
+                  file, surface.border_count(), surface.in_space() ? "edges belong" : "corners belong", noun, place[0],
+                  place[1], place[2]));
+}
+
+}  // namespace
+
+ObstacleRegistration surface_obstacle() {
+  const auto make = [](const Parameters& parameters) {
+    const std::string& file = parameters.text("file");
+    const double scale = parameters.number("scale"), side = obstacle_side(parameters);
+    std::string extension = std::filesystem::path(file).extension().string();
+    for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    RigidSurface surface(extension == ".stl" ? read_stl(file, scale) : read_polygons(file, scale), file);
+    if (side < 0.0 && !surface.is_closed()) {
+      const Three& place = surface.border_place();
+      throw Error(
+          ErrorKind::invalid_input,
+          fmt::format("{}: bodies are to be inside of this surface, but it is not closed: {} of its {} belong to "
+                      "one {} only, the first at ({:.6g}, {:.6g}, {:.6g}); close it, or take side = \"outside\"",
+                      file, surface.border_count(), surface.in_space() ? "edges" : "corners",
+                      surface.in_space() ? "triangle" : "segment", place[0], place[1], place[2]));
+    }
+    tell_of(surface, file);
+    std::optional<double> radius;
+    if (parameters.has("edge_radius")) radius = parameters.number("edge_radius");
+    Checksum sum;
+    for (const Three& corner : surface.corners()) sum.add(corner.data(), 3);
+    return std::make_unique<Surface>(std::move(surface), side, radius, sum.text(), file);
+  };
+  return {"surface", make, surface_keys()};
+}
+
+}  // namespace ricochet

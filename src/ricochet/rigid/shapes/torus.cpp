@@ -1,0 +1,118 @@
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <numbers>
+
+#include "ricochet/rigid/shapes/grid_surface.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// A ring that bodies stay outside of, or a round pipe that closes on itself and that they stay inside of. With ρ and z
+/// across and along the axis, the gap is ±(√((ρ − R)² + z²) − r).
+class Torus final : public ObstacleShape {
+ public:
+  Torus(const Vector& centre, const Vector& axis, double ring_radius, double tube_radius, double side)
+      : centre_(centre),
+        axis_(unit_vector(axis, "the axis of a torus")),
+        ring_radius_(ring_radius),
+        tube_radius_(tube_radius),
+        sign_(side) {}
+
+  [[nodiscard]] double gap(const SpaceVector& position) const override {
+    return sign_ * (from_ring(position).stableNorm() - tube_radius_);
+  }
+  /// On the ring in the middle of the tube, where no direction is nearest, that of the axis.
+  [[nodiscard]] SpaceVector normal(const SpaceVector& position) const override {
+    const Eigen::Vector3d offset = from_ring(position);
+    const double distance = offset.stableNorm();
+    return sign_ * (distance > 0.0 ? Eigen::Vector3d(offset / distance) : axis_);
+  }
+  [[nodiscard]] double gap_rounding(const SpaceVector& position) const override {
+    return eight_roundings(position.lpNorm<1>() + centre_.lpNorm<1>() + ring_radius_ + tube_radius_);
+  }
+  /// Inside the tube it is the side towards the axis that bulges, along the ring.
+  [[nodiscard]] double least_radius() const override {
+    return sign_ > 0.0 ? tube_radius_ : ring_radius_ - tube_radius_;
+  }
+  [[nodiscard]] SpaceVector centre() const override { return centre_; }
+  [[nodiscard]] std::optional<Solid> solid() const override {
+    if (sign_ < 0.0) return std::nullopt;
+    const double ring = ring_radius_ * ring_radius_, tube = tube_radius_ * tube_radius_;
+    const double volume = 2.0 * std::numbers::pi * std::numbers::pi * ring_radius_ * tube;
+    const double across = 0.5 * ring + 0.625 * tube, along = ring + 0.75 * tube;
+    const Eigen::Matrix3d inertia = across * Eigen::Matrix3d::Identity() + (along - across) * axis_ * axis_.transpose();
+    return Solid{volume, centre_, volume * inertia};
+  }
+  [[nodiscard]] OwnAxis own_axis() const override { return {true, axis_}; }
+
+  [[nodiscard]] ObstacleSurface surface(const Vector&, double) const override {
+    const Eigen::Vector3d first = axis_.unitOrthogonal(), second = axis_.cross(first);
+    constexpr int around = 96, section = 32;
+    return grid_surface(section, around, true, [&](int i, int k) -> Eigen::Vector3d {
+      const double turned = 2.0 * std::numbers::pi * k / around,
+                   in_tube = -sign_ * 2.0 * std::numbers::pi * i / section;
+      const Eigen::Vector3d out = std::cos(turned) * first + std::sin(turned) * second;
+      return centre_ + (ring_radius_ + tube_radius_ * std::cos(in_tube)) * out +
+             tube_radius_ * std::sin(in_tube) * axis_;
+    });
+  }
+
+ private:
+  /// From the nearest point of the ring; on the axis from some one.
+  [[nodiscard]] Eigen::Vector3d from_ring(const SpaceVector& position) const {
+    const Eigen::Vector3d from_centre = Eigen::Vector3d(position) - centre_;
+    const Eigen::Vector3d across = from_centre - axis_.dot(from_centre) * axis_;
+    const double distance = across.stableNorm();
+    const Eigen::Vector3d out = distance > 0.0 ? Eigen::Vector3d(across / distance) : axis_.unitOrthogonal();
+    return from_centre - ring_radius_ * out;
+  }
+
+  Eigen::Vector3d centre_, axis_;
+  double ring_radius_, tube_radius_, sign_;
+};
+
+std::vector<Key> torus_keys() {
+  return {
+      {.name = "centre", .type = KeyType::vector, .unit = "length", .required = true, .doc = "Centre of the torus."},
+      {.name = "axis",
+       .type = KeyType::vector,
+       .unit = "1",
+       .required = true,
+       .doc = "Direction of the axis that the torus is the same all round, of any length but zero."},
+      {.name = "ring_radius",
+       .type = KeyType::number,
+       .unit = "length",
+       .required = true,
+       .range = positive,
+       .doc = "Distance of the middle of the tube from the axis."},
+      {.name = "tube_radius",
+       .type = KeyType::number,
+       .unit = "length",
+       .required = true,
+       .range = positive,
+       .doc = "Radius of the tube, less than `ring_radius`."},
+      obstacle_side_key("Where bodies are: \"outside\" of a ring, or \"inside\" of a pipe.")};
+}
+
+void check_torus(const ParameterCheck& place, const Parameters& values) {
+  check_direction(place, values, "axis", "is the direction of the torus' axis");
+  if (place.is_usable("ring_radius") && place.is_usable("tube_radius") &&
+      values.number("tube_radius") >= values.number("ring_radius"))
+    place.add_problem("tube_radius", "\"tube_radius\" must be less than \"ring_radius\": the torus would meet itself");
+}
+
+}  // namespace
+
+ObstacleRegistration torus_obstacle() {
+  const auto make = [](const Parameters& parameters) {
+    require_space(parameters, "centre", "a torus", "take two circles there");
+    return std::make_unique<Torus>(as_vector(parameters.vector("centre")), as_vector(parameters.vector("axis")),
+                                   parameters.number("ring_radius"), parameters.number("tube_radius"),
+                                   obstacle_side(parameters));
+  };
+  return {"torus", make, torus_keys(), {}, check_torus};
+}
+
+}  // namespace ricochet

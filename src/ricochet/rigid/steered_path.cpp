@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/rigid/obstacle_path.hpp"
+
+/// @file Obstacles whose motion a program sets while the run goes on.
+namespace ricochet {
+
+namespace {
+
+/// A step sees an obstacle at its ends and in the step before: older legs are asked for by nobody.
+constexpr std::size_t most_legs = 8;
+
+void check_rates(const char* what, const SpaceVector& rates, Index wanted) {
+  if (rates.size() != wanted)
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("its {} has {} numbers where {} are needed", what, rates.size(), wanted));
+  if (!rates.allFinite()) throw Error(ErrorKind::invalid_input, fmt::format("its {} is not finite", what));
+}
+
+}  // namespace
+
+SteeredPath::SteeredPath(std::unique_ptr<const ObstaclePath> before, Index dimension)
+    : before_(std::move(before)), dimension_(dimension), rotations_(dimension == 3 ? 3 : 1) {}
+
+const SteeredPath::Leg* SteeredPath::leg_at(double time) const {
+  for (auto leg = legs_.rbegin(); leg != legs_.rend(); ++leg) {
+    if (time >= leg->start) return &*leg;
+  }
+  return nullptr;
+}
+
+SpaceVector SteeredPath::displacement(double time) const {
+  if (const Leg* leg = leg_at(time)) return leg->displacement + (time - leg->start) * leg->velocity;
+  return before_ != nullptr ? before_->displacement(time) : SpaceVector(SpaceVector::Zero(dimension_));
+}
+
+SpaceVector SteeredPath::rotation(double time) const {
+  if (const Leg* leg = leg_at(time)) return leg->rotation + (time - leg->start) * leg->rotation_rate;
+  return turns() ? before_->rotation(time) : SpaceVector(SpaceVector::Zero(rotations_));
+}
+
+void SteeredPath::steer(double time, const SpaceVector& velocity, const SpaceVector& rotation_rate) {
+  check_rates("velocity", velocity, dimension_);
+  Leg leg{time, displacement(time), rotation(time), velocity, SpaceVector::Zero(rotations_)};
+  if (rotation_rate.size() > 0) {
+    if (!turns())
+      throw Error(
+          ErrorKind::invalid_input,
+          "it has no rotation whose rate could be set: give it one in the case, which may be zero, as in rotation = "
+          "\"0\" (a rotation_rate in the case is the turning of its surface in place, and stays what it is)");
+    check_rates("rotation rate", rotation_rate, rotations_);
+    leg.rotation_rate = rotation_rate;
+  }
+  while (!legs_.empty() && legs_.back().start >= time) legs_.pop_back();
+  if (legs_.size() == most_legs) legs_.erase(legs_.begin());
+  legs_.push_back(std::move(leg));
+}
+
+void SteeredPath::save(Snapshot& snapshot, const std::string& name) const {
+  const Index width = 1 + 2 * (dimension_ + rotations_);
+  Vector numbers(width * static_cast<Index>(legs_.size()));
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    const Leg& leg = legs_[i];
+    numbers.segment(static_cast<Index>(i) * width, width) << leg.start, leg.displacement, leg.rotation, leg.velocity,
+        leg.rotation_rate;
+  }
+  snapshot.save(name, numbers);
+}
+
+void SteeredPath::load(const Snapshot& snapshot, const std::string& name) {
+  const Vector& numbers = snapshot.reals(name);
+  const Index width = 1 + 2 * (dimension_ + rotations_);
+  if (numbers.size() % width != 0 || numbers.size() / width > static_cast<Index>(most_legs))
+    Snapshot::refuse(name, "is no motion of an obstacle of this case");
+  legs_.clear();
+  for (Index first = 0; first < numbers.size(); first += width) {
+    Index at = first;
+    const auto take = [&](Index count) -> SpaceVector { return numbers.segment((at += count) - count, count); };
+    Leg leg{.start = numbers[at++], .displacement = {}, .rotation = {}, .velocity = {}, .rotation_rate = {}};
+    leg.displacement = take(dimension_);
+    leg.rotation = take(rotations_);
+    leg.velocity = take(dimension_);
+    leg.rotation_rate = take(rotations_);
+    legs_.push_back(std::move(leg));
+  }
+}
+
+}  // namespace ricochet

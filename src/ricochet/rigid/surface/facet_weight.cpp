@@ -1,0 +1,94 @@
+#include "ricochet/rigid/surface/facet_weight.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace ricochet {
+
+namespace {
+
+using Three = Eigen::Vector3d;
+
+/// Where the line a + s (b − a) is inside of the circle of a squared radius about the origin, cut to [0, 1]. False:
+/// nowhere.
+bool part_inside(const Three& a, const Three& along, double square, double& first, double& last) {
+  const double length = along.squaredNorm(), middle = -a.dot(along) / length;
+  const double discriminant = middle * middle - (a.squaredNorm() - square) / length;
+  if (!(length > 0.0) || !(discriminant > 0.0)) return false;
+  const double half = std::sqrt(discriminant);
+  first = std::clamp(middle - half, 0.0, 1.0);
+  last = std::clamp(middle + half, 0.0, 1.0);
+  return last > first;
+}
+
+/// Integrals over the part of a flat figure inside of a circle of radius R about the origin: of R² − r², and of y.
+struct Part {
+  double weight = 0.0;
+  Three moment = Three::Zero();
+};
+
+/// Of the triangle (0, a, b), signed by its turn about the normal. Where the side is outside of the circle it is a
+/// sector, θ R⁴/4 and R³/3 times the difference of the unit vectors, turned; else a triangle.
+void add_sector(const Three& a, const Three& b, const Three& normal, double square, Part& sum) {
+  const auto turn = [&](const Three& from, const Three& to) {
+    const double first = from.norm(), last = to.norm();
+    if (!(first > 0.0) || !(last > 0.0)) return;
+    sum.weight += 0.25 * square * square * std::atan2(normal.dot(from.cross(to)), from.dot(to));
+    sum.moment += square * std::sqrt(square) / 3.0 * Three(to / last - from / first).cross(normal);
+  };
+  double first = 0.0, last = 0.0;
+  const Three along = b - a;
+  if (!part_inside(a, along, square, first, last)) return turn(a, b);
+  const Three from = a + first * along, to = a + last * along;
+  const double area = 0.5 * normal.dot(from.cross(to));
+  sum.weight += area * (square - (from.squaredNorm() + from.dot(to) + to.squaredNorm()) / 6.0);
+  sum.moment += area / 3.0 * (from + to);
+  if (first > 0.0) turn(a, from);
+  if (last < 1.0) turn(to, b);
+}
+
+/// Its area alone.
+double area_of_sector(const Three& a, const Three& b, const Three& normal, double square) {
+  const auto turn = [&](const Three& from, const Three& to) {
+    return 0.5 * square * std::atan2(normal.dot(from.cross(to)), from.dot(to));
+  };
+  double first = 0.0, last = 0.0;
+  const Three along = b - a;
+  if (!part_inside(a, along, square, first, last)) return turn(a, b);
+  const Three from = a + first * along, to = a + last * along;
+  return 0.5 * normal.dot(from.cross(to)) + (first > 0.0 ? turn(a, from) : 0.0) + (last < 1.0 ? turn(to, b) : 0.0);
+}
+
+}  // namespace
+
+FacetWeight weight_of_triangle(const std::array<Three, 3>& corners, const Three& normal, const Three& at,
+                               double radius) {
+  const double height = normal.dot(at - corners[0]);
+  const double square = radius * radius - height * height;
+  if (!(square > 0.0)) return {};
+  const Three foot = at - height * normal;
+  Part sum;
+  double area = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Three a = corners[k] - foot, b = corners[(k + 1) % 3] - foot;
+    add_sector(a, b, normal, square, sum);
+    area += area_of_sector(a, b, normal, square);
+  }
+  if (!(sum.weight > 0.0)) return {};
+  return {sum.weight, -2.0 * (area * height * normal - sum.moment)};
+}
+
+FacetWeight weight_of_segment(const Three& a, const Three& b, const Three& at, double radius) {
+  double first = 0.0, last = 0.0;
+  const Three from = a - at, along = b - a;
+  if (!part_inside(from, along, radius * radius, first, last)) return {};
+  const auto integral = [&](double s) {
+    return s * (radius * radius - from.squaredNorm() - s * from.dot(along) - s * s * along.squaredNorm() / 3.0);
+  };
+  const double length = along.norm();
+  const Three moment = (last - first) * (from + 0.5 * (first + last) * along);
+  return {length * (integral(last) - integral(first)), 2.0 * length * moment};
+}
+
+}  // namespace ricochet

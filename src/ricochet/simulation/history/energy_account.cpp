@@ -1,0 +1,170 @@
+#include "ricochet/simulation/history/energy_account.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/problem/viscous_force.hpp"
+
+namespace ricochet {
+
+EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state)
+    : problem_(problem), scheme_(scheme), rule_(scheme.work_rule()), previous_(state.forces) {
+  const Energies start = energies(state);
+  initial_ = start.total() + start.algorithmic;
+  initial_algorithmic_ = start.algorithmic;
+  if (problem.contact.has_sliding_pairs()) problem.gaps(state.displacement, state.time, gap_before_);
+}
+
+EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
+                             const Snapshot& snapshot, const std::string& name)
+    : problem_(problem), scheme_(scheme), rule_(scheme.work_rule()), previous_(state.forces) {
+  const Vector& works = snapshot.reals(name + ".works", 10);
+  works_ = {works[0], works[1], works[2], works[3], works[4], works[5], works[6], works[7], works[8], works[9]};
+  initial_ = snapshot.real(name + ".initial");
+  initial_algorithmic_ = snapshot.real(name + ".initial_algorithmic");
+  if (problem.contact.has_sliding_pairs()) gap_before_ = snapshot.reals(name + ".gap_before", problem.contact.size());
+}
+
+void EnergyAccount::save(Snapshot& snapshot, const std::string& name) const {
+  Vector works(10);
+  works << works_.load, works_.contact, works_.friction, works_.support, works_.obstacle, works_.damping,
+      works_.numerical_dissipation, works_.integration_error, works_.viscous_dissipation, works_.re_pairing;
+  snapshot.save(name + ".works", works);
+  if (problem_.contact.has_sliding_pairs()) snapshot.save(name + ".gap_before", gap_before_);
+  snapshot.save(name + ".initial", initial_);
+  snapshot.save(name + ".initial_algorithmic", initial_algorithmic_);
+}
+
+EnergyAccount::StepWorks EnergyAccount::works_of(const StepForces& forces, const Vector& increment,
+                                                 const ObstacleMotion& obstacle) {
+  StepWorks result;
+  const Vector &normal = forces.acting_normal(), &tangential = forces.acting_tangential();
+  result.contact = normal.dot(gap_increment_);
+  if (tangential.size() > 0) result.friction = -tangential.dot(slip_increment_);
+  if (obstacle.normal.size() > 0) {
+    result.obstacle = normal.dot(obstacle.normal);
+    if (tangential.size() > 0) result.obstacle -= tangential.dot(obstacle.tangential);
+  }
+  if (forces.support_reaction.size() > 0) result.support = problem_.supports.work(forces.support_reaction, increment);
+  if (forces.varying_load.size() > 0) result.load = forces.varying_load.dot(increment);
+  if (forces.damping_force.size() > 0) result.damping = -forces.damping_force.dot(increment);
+  return result;
+}
+
+void EnergyAccount::find_motion(const ContactRows& rows, const Vector& increment, ObstacleMotion& obstacle) {
+  project_motion(rows, obstacle);
+  motion_from_obstacles(rows, increment, obstacle, gap_increment_);
+  if (problem_.contact.has_friction()) slip_on_obstacles(rows, increment, obstacle, slip_increment_);
+}
+
+void EnergyAccount::look_at_gaps(const State& state) {
+  problem_.gaps(state.displacement, state.time, gap_now_);
+  unsettled_gap_ = 0.0;
+  for (Index i = 0; i < gap_now_.size(); ++i) {
+    if (problem_.contact.slides(i) && state.forces.normal_reaction[i] > 0.0 &&
+        gap_now_[i] < problem_.contact.out_of_sight)
+      unsettled_gap_ = std::max(unsettled_gap_, std::abs(gap_now_[i]));
+  }
+}
+
+/// Along the rows that the motion has just been found along.
+void EnergyAccount::enter_re_pairing(const StepForces& forces, double weight) {
+  const Vector& normal = forces.acting_normal();
+  for (Index i = 0; i < normal.size(); ++i) {
+    if (normal[i] == 0.0 || !problem_.contact.slides(i)) continue;
+    // From nothing to something is no change of a gap.
+    if (std::max(gap_now_[i], gap_before_[i]) >= problem_.contact.out_of_sight) continue;
+    works_.re_pairing += weight * normal[i] * (gap_increment_[i] - (gap_now_[i] - gap_before_[i]));
+  }
+}
+
+/// `rows`: those that the motion was found along before.
+void EnergyAccount::enter(const StepForces& forces, double weight, const Vector& increment, const ContactRows*& rows) {
+  if (weight == 0.0) return;
+  if (rows != forces.rows.get()) find_motion(*forces.rows, increment, obstacle_);
+  rows = forces.rows.get();
+  const StepWorks step = works_of(forces, increment, obstacle_);
+  if (gap_now_.size() > 0) enter_re_pairing(forces, weight);
+  works_.contact += weight * step.contact;
+  works_.friction += weight * step.friction;
+  works_.obstacle += weight * step.obstacle;
+  works_.support += weight * step.support;
+  works_.load += weight * step.load;
+  works_.damping += weight * step.damping;
+}
+
+void EnergyAccount::enter_step(const Vector& increment, const State& state) {
+  obstacle_ = state.obstacle_increment;
+  if (problem_.contact.has_sliding_pairs()) look_at_gaps(state);
+  // Forces work along the rows that they act through: those of the two ends of a step differ where they follow the
+  // motion, and with the account of either for the other energy would be missing.
+  const ContactRows* rows = nullptr;
+  enter(previous_, rule_.previous_weight, increment, rows);
+  enter(state.forces, rule_.current_weight, increment, rows);
+  for (const StepPart& part : scheme_.other_parts()) {
+    obstacle_ = part.obstacle_increment;
+    rows = nullptr;
+    enter(part.forces, part.weight, part.increment, rows);
+  }
+  const StepCorrections corrections = scheme_.step_corrections(problem_);
+  works_.contact += corrections.contact_work;
+  works_.friction += corrections.friction_work;
+  works_.support += corrections.support_work;
+  works_.load += corrections.load_work;
+  works_.numerical_dissipation += corrections.numerical_dissipation;
+  works_.integration_error += corrections.integration_error;
+  works_.viscous_dissipation += corrections.viscous_dissipation;
+  previous_ = state.forces;
+  std::swap(gap_before_, gap_now_);
+  algorithmic_.reset();
+}
+
+void EnergyAccount::change_step(const State& state, const std::function<void()>& change) {
+  const double before = algorithmic(state);
+  change();
+  algorithmic_.reset();
+  works_.numerical_dissipation -= algorithmic(state) - before;
+}
+
+void EnergyAccount::enter_impulse(const State& state, const std::function<void()>& change) {
+  const auto energy = [&] {
+    algorithmic_.reset();
+    const Energies now = energies(state);
+    return now.total() + now.algorithmic;
+  };
+  const double before = energy();
+  change();
+  works_.load += energy() - before;
+}
+
+/// Rows of the history and what watches the method ask for the same.
+double EnergyAccount::algorithmic(const State& state) {
+  if (!algorithmic_) algorithmic_ = scheme_.algorithmic_energy(problem_, state);
+  return *algorithmic_;
+}
+
+double EnergyAccount::of_method(const State& state) {
+  return works_.contact + works_.integration_error - works_.numerical_dissipation -
+         (algorithmic(state) - initial_algorithmic_);
+}
+
+Energies EnergyAccount::energies(const State& state) {
+  const bool at_state = scheme_.energy_instant() == 0.0;
+  if (!at_state) scheme_.energy_state(state, displacement_, velocity_);
+  const Vector& displacement = at_state ? state.displacement : displacement_;
+  const Vector* const force = scheme_.internal_force(state);
+  Energies result;
+  result.kinetic = 0.5 * problem_.mass.form(velocity(state));
+  result.elastic = force != nullptr ? problem_.internal_force->energy(displacement, *force)
+                                    : stored_energy(*problem_.internal_force, displacement, state.internal_strain);
+  result.load_potential = -problem_.loads.constant().dot(displacement);
+  result.algorithmic = algorithmic(state);
+  return result;
+}
+
+double EnergyAccount::residual(const Energies& now) const {
+  return now.total() + now.algorithmic - initial_ - works_.sum() + works_.numerical_dissipation +
+         works_.viscous_dissipation - works_.integration_error;
+}
+
+}  // namespace ricochet

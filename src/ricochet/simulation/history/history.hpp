@@ -1,0 +1,118 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/simulation/history/column_digest.hpp"
+#include "ricochet/simulation/history/energy_account.hpp"
+#include "ricochet/simulation/history/sensor.hpp"
+
+/// @file One row of numbers per step: energies, works, forces, momenta, counts, probes.
+namespace ricochet {
+
+/// What sensors observe, computed once per row.
+class Observer {
+ public:
+  explicit Observer(const SemidiscreteProblem& problem) : problem_(problem) {}
+  [[nodiscard]] Observation observe(const State& state);
+
+ private:
+  const SemidiscreteProblem& problem_;
+  Vector gap_, pressure_, nominal_pressure_;
+  Vector area_, stretch_, true_reaction_;  ///< at finite strain (contact_surface.hpp)
+};
+
+/// Rows of some sensors alone: step, time, and their columns.
+class SensorRecorder {
+ public:
+  SensorRecorder(const SemidiscreteProblem& problem, std::vector<std::shared_ptr<Sensor>> sensors);
+
+  [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
+  /// The reference stays valid until the next call.
+  [[nodiscard]] const std::vector<double>& row(const State& state);
+
+ private:
+  const SemidiscreteProblem& problem_;
+  Observer observer_;
+  std::vector<std::shared_ptr<Sensor>> sensors_;
+  std::vector<std::string> columns_;
+  std::vector<Reduction> reductions_;
+  std::vector<double> row_;
+};
+
+/// The place of a column that must be there; throws std::logic_error where it is not.
+[[nodiscard]] std::size_t column_index(const std::vector<std::string>& columns, const std::string& name);
+
+/// The bodies of a mesh that have columns of their own; none where there is one body.
+struct HistoryBodies {
+  std::vector<std::string> labels = {};  ///< momentum.LABEL_x
+  std::vector<int> of_node = {};
+};
+
+class HistoryRecorder {
+ public:
+  HistoryRecorder(const SemidiscreteProblem& problem, const RotationGauge& rotation,
+                  std::vector<std::shared_ptr<Sensor>> sensors = {}, HistoryBodies bodies = {});
+
+  /// Names of the columns, in the order of a row.
+  [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
+  /// The same of a history that is yet to come.
+  [[nodiscard]] static Columns columns_of(const SemidiscreteProblem& problem,
+                                          const std::vector<std::shared_ptr<Sensor>>& sensors,
+                                          const HistoryBodies& bodies = {});
+  /// Of every history of a body of this dimension; with those of finite strain and of stress that relaxes, names that a
+  /// probe cannot have.
+  [[nodiscard]] static Columns standard_columns(int dimension);
+  [[nodiscard]] static Columns finite_strain_columns();
+  [[nodiscard]] static Columns relaxation_columns();
+  [[nodiscard]] static Columns sliding_columns(bool touches_itself);
+  /// The row of a state. The reference stays valid until the next call.
+  [[nodiscard]] const std::vector<double>& row(const State& state, EnergyAccount& account);
+
+ private:
+  void weigh_nodes();
+  void weigh_positions();
+  void place_free_bodies(const State& state);
+  [[nodiscard]] double left_out_points();
+  void add_contact_force(const State& state);
+  void add_momentum(const State& state, const Vector& velocity);
+  void sum_of_bodies(const Vector& values);
+  void add_contact_state(const Observation& observation);
+
+  const SemidiscreteProblem& problem_;
+  const RotationGauge& rotation_;
+  Observer observer_;
+  std::vector<std::shared_ptr<Sensor>> sensors_;
+  HistoryBodies bodies_;
+  std::vector<double> body_momentum_;  ///< d of each
+  bool finite_strain_;
+  std::vector<std::string> columns_;
+  std::vector<Reduction> reductions_;
+  std::vector<double> row_;
+  std::vector<char> takes_part_;
+  /// Momentum and angular momentum are Σ node_weight_ p and Σ node_arm_ × p over the nodes. Where M = m ⊗ I, as it is
+  /// for a density, p is the velocity, and these are m 1 and m x of the reference positions x: no product with M. Else
+  /// p is M V, and these are 1 and x. At finite strain x are the positions of the state.
+  Vector node_weight_;
+  Points node_arm_;
+  Vector momentum_, position_;  ///< M V, x
+};
+
+/// Digests of all columns, row by row.
+class HistoryDigest {
+ public:
+  void add(const std::vector<double>& row);
+  void save(Snapshot& snapshot, const std::string& name) const;
+  /// Throws Error(invalid_input) where it is not of so many columns.
+  void load(const Snapshot& snapshot, const std::string& name, std::size_t columns);
+  [[nodiscard]] const std::vector<ColumnDigest>& columns() const { return columns_; }
+  [[nodiscard]] long rows() const { return rows_; }
+
+ private:
+  std::vector<ColumnDigest> columns_;
+  long rows_ = 0;
+};
+
+}  // namespace ricochet

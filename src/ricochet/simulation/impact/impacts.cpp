@@ -1,0 +1,341 @@
+#include "ricochet/simulation/impact/impacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/simulation/history/sensor.hpp"
+
+namespace ricochet {
+
+namespace {
+
+Eigen::Vector3d vector_of(const std::array<double, 3>& numbers) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+void add(std::array<double, 3>& sum, double weight, const Eigen::Vector3d& values) {
+  for (int k = 0; k < 3; ++k) sum[static_cast<std::size_t>(k)] += weight * values[k];
+}
+
+std::array<double, 3> numbers_of(const Eigen::Vector3d& values) {
+  return {values[0], values[1], values[2]};
+}
+
+}  // namespace
+
+ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
+                               const std::vector<ContactPair>& pairs, std::vector<int> body_of_node,
+                               std::vector<double> separation)
+    : problem_(problem),
+      scheme_(scheme),
+      rigid_(problem, std::move(body_of_node), static_cast<int>(separation.size())),
+      separation_(std::move(separation)) {
+  separation_.resize(rigid_.bodies().size(), 0.0);
+  find_places(pairs);
+  open_.assign(places_.size(), Interval{});
+  for (std::size_t place = 0; place < places_.size(); ++place) open_[place].place = static_cast<double>(place);
+  filed_.reserve(most_impacts);
+  current_.resize(places_.size());
+  find_forces(state.forces, state.obstacle_increment, previous_);
+  take_velocity(state, velocity_before_);
+  displacement_before_ = state.displacement;
+}
+
+/// The velocity that momenta are accounted for with.
+void ImpactRecorder::take_velocity(const State& state, Vector& velocity) {
+  if (scheme_.energy_instant() == 0.0) {
+    velocity = state.velocity;
+  } else {
+    scheme_.energy_state(state, scratch_, velocity);
+  }
+}
+
+void ImpactRecorder::find_forces(const StepForces& acting, const ObstacleMotion& travel,
+                                 std::vector<Force>& forces) const {
+  forces.assign(places_.size(), Force{});
+  const int d = problem_.dimension;
+  for (const auto& [point, place, part] : parts_) {
+    if (!carries_acting_force(acting, point)) continue;
+    Force& force = forces[place];
+    const double pressing = std::abs(part) * acting.acting_normal()[point];
+    const SpaceVector own = part * acting_contact_force(acting, point);
+    ++force.points;
+    if (const double size = own.norm(); force.leading < 0 || size > force.leading_size) {
+      force.leading = point;
+      force.leading_size = size;
+    }
+    if (problem_.axisymmetric) {
+      add_along_axis(point, part, own, acting, travel, force);
+      continue;
+    }
+    force.all.head(d) += own;
+    force.normal.head(d) += part * acting.acting_normal()[point] * acting.rows->normal(point);
+    force.pressing += pressing;
+    if (travel.normal.size() == 0) continue;
+    force.travel += pressing * travel.normal[point];
+    force.sliding.head(d) += pressing * acting.rows->along_tangents(point, travel.tangential);
+  }
+  add_up_ranks(forces);
+}
+
+/// Of equal forces the first rank's leads.
+void ImpactRecorder::add_up_ranks(std::vector<Force>& forces) const {
+  if (!problem_.ranks->are_several()) return;
+  constexpr std::size_t sums = 12, numbers = sums + 4;
+  std::vector<double> own;
+  for (const Force& force : forces) {
+    own.insert(own.end(), force.all.data(), force.all.data() + 3);
+    own.insert(own.end(), force.normal.data(), force.normal.data() + 3);
+    own.insert(own.end(), force.sliding.data(), force.sliding.data() + 3);
+    own.insert(own.end(), {force.pressing, force.travel, static_cast<double>(force.points), force.leading_size});
+    const Three place = force.leading >= 0 ? place_of(force.leading) : Three{};
+    own.insert(own.end(), place.begin(), place.end());
+  }
+  for (Force& force : forces) force = Force{};
+  for (const std::vector<double>& of_rank : problem_.ranks->of_all(own)) {
+    const double* at = of_rank.data();
+    for (Force& force : forces) {
+      force.all += Eigen::Map<const Eigen::Vector3d>(at);
+      force.normal += Eigen::Map<const Eigen::Vector3d>(at + 3);
+      force.sliding += Eigen::Map<const Eigen::Vector3d>(at + 6);
+      force.pressing += at[9];
+      force.travel += at[10];
+      force.points += std::lround(at[11]);
+      if (at[sums] > force.leading_size) {
+        force.leading_size = at[sums];
+        std::copy_n(at + sums + 1, 3, force.leading_place.begin());
+      }
+      at += numbers;
+    }
+  }
+}
+
+/// What is left of a point's force, and of its obstacle's motion, over the ring: of rings that press on a cone, the
+/// part along the axis.
+void ImpactRecorder::add_along_axis(Index point, double part, const SpaceVector& own, const StepForces& acting,
+                                    const ObstacleMotion& travel, Force& force) const {
+  const double reaction = acting.acting_normal()[point], slope = acting.rows->normal(point)[1];
+  force.all[1] += own[1];
+  force.normal[1] += part * reaction * slope;
+  const double pressing = std::abs(part) * reaction;
+  force.pressing += pressing * std::abs(slope);
+  if (travel.normal.size() > 0) force.travel += pressing * travel.normal[point];
+}
+
+void ImpactRecorder::find_other_forces() {
+  const std::span<const StepPart> parts = scheme_.other_parts();
+  others_.resize(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    others_[i].weight = parts[i].weight;
+    find_forces(parts[i].forces, parts[i].obstacle_increment, others_[i].forces);
+  }
+}
+
+void ImpactRecorder::enter_impulse(const State& state) {
+  take_velocity(state, velocity_before_);
+}
+
+ImpactRecorder::Acting ImpactRecorder::acting_in(std::size_t place) const {
+  Acting acting;
+  const Force &previous = previous_[place], &current = current_[place];
+  if (scheme_.work_rule().previous_weight != 0.0 && previous.any()) acting.previous = &previous;
+  if (current.any()) acting.current = &current;
+  for (const OtherForces& each : others_) {
+    const Force& force = each.forces[place];
+    if (force.any() && (acting.other == nullptr || force.size() > acting.other->size())) acting.other = &force;
+  }
+  return acting;
+}
+
+void ImpactRecorder::enter_step(const State& state, double method_energy) {
+  if (places_.empty()) return;
+  method_energy_ = method_energy;
+  find_forces(state.forces, state.obstacle_increment, current_);
+  find_other_forces();
+  motion_ = nullptr;
+  if (state.step <= 1 && first_step_ == 0.0) first_step_ = scheme_.step();
+  const double instant = state.time + scheme_.acting_instant() * scheme_.step();
+  for (std::size_t place = 0; place < places_.size(); ++place) enter_place(place, instant);
+  std::swap(previous_, current_);
+  method_before_ = method_energy_;
+  take_velocity(state, velocity_before_);
+  displacement_before_ = state.displacement;
+}
+
+void ImpactRecorder::enter_place(std::size_t place, double instant) {
+  Interval& interval = open_[place];
+  const Acting acting = acting_in(place);
+  const bool touched = interval.phase == touching;
+  if (acting.any() != touched && motion_ == nullptr) motion_ = &rigid_.motion(velocity_before_, displacement_before_);
+  if (!acting.any()) {
+    if (touched) let_go(interval);
+    return;
+  }
+  if (!touched) touch(interval, acting, instant);
+  add_impulses(interval, place);
+  const double h = scheme_.step();
+  if (acting.current == nullptr) {
+    if (acting.other == nullptr) return;
+    // It acts before the instant of the others.
+    interval.end = instant;
+    interval.contact_time += 0.5 * h;
+    take_largest(interval, *acting.other, instant);
+    return;
+  }
+  const Force& current = *acting.current;
+  interval.end = instant + 0.5 * h;
+  interval.contact_time += h;
+  interval.pressing += h * current.pressing;
+  interval.travel += current.travel;
+  add(interval.sliding, 1.0, current.sliding);
+  take_largest(interval, current, instant);
+}
+
+/// At the beginning of the step.
+ImpactRecorder::Motion ImpactRecorder::motion_of(int body) const {
+  const RigidMotionState& now = (*motion_)[static_cast<std::size_t>(body)];
+  return {numbers_of(now.velocity), numbers_of(now.spin), now.kinetic_energy, now.rigid_kinetic_energy};
+}
+
+double ImpactRecorder::separation_at(const Interval& interval) const {
+  const Place& place = places_[static_cast<std::size_t>(interval.place)];
+  return std::max(separation(place.body), place.other < 0 ? 0.0 : separation(place.other));
+}
+
+void ImpactRecorder::let_go(Interval& interval) const {
+  const Place& place = places_[static_cast<std::size_t>(interval.place)];
+  interval.after = motion_of(place.body);
+  if (place.other >= 0) interval.other_after = motion_of(place.other);
+  interval.method_after = method_energy_;  // letting go costs energy, too
+  interval.phase = apart;
+}
+
+void ImpactRecorder::touch(Interval& interval, const Acting& acting, double instant) {
+  const double h = scheme_.step();
+  const bool acts_before = acting.previous != nullptr;
+  // Only at the start does a force act before the first instant of the steps.
+  const double time = acts_before ? 0.0 : std::max(0.0, instant - 0.5 * h);
+  if (interval.phase == apart && time - interval.end < std::max(2.0 * h, separation_at(interval))) {
+    interval.intervals += 1.0;
+  } else {
+    if (interval.phase == apart) file(interval);
+    begin(interval, time, acting.first());
+  }
+  interval.phase = touching;
+  if (!acts_before) return;
+  // It acts in the first half of the step, and may be the only one that does.
+  interval.end = instant - 0.5 * h;
+  interval.contact_time += 0.5 * h;
+  take_largest(interval, *acting.previous, instant - h);
+}
+
+void ImpactRecorder::add_impulses(Interval& interval, std::size_t place) const {
+  const WorkRule rule = scheme_.work_rule();
+  const double h = scheme_.step();
+  const auto add_impulse = [&](const Force& force, double weight) {
+    add(interval.impulse, h * weight, force.all);
+    add(interval.normal_impulse, h * weight, force.normal);
+  };
+  add_impulse(previous_[place], rule.previous_weight);
+  add_impulse(current_[place], rule.current_weight);
+  for (const OtherForces& each : others_) add_impulse(each.forces[place], each.weight);
+}
+
+void ImpactRecorder::take_largest(Interval& interval, const Force& force, double instant) {
+  interval.most_points = std::max(interval.most_points, static_cast<double>(force.points));
+  const double size = force.size();
+  if (!(size > interval.largest)) return;
+  interval.largest = size;
+  interval.largest_time = instant;
+}
+
+/// In the reference configuration.
+ImpactRecorder::Three ImpactRecorder::place_of(Index point) const {
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  double sum = 0.0;
+  problem_.contact.visit_own_nodes(point, [&](Index node, double weight) {
+    place.head(problem_.dimension) += weight * problem_.nodes.col(node);
+    sum += weight;
+  });
+  return numbers_of(place / sum);
+}
+
+void ImpactRecorder::begin(Interval& interval, double time, const Force& first) {
+  const double place = interval.place;
+  interval = {};
+  interval.place = place;
+  interval.begin = interval.end = time;
+  interval.from_start = time > 0.0 ? 0.0 : 1.0;
+  // The first instant with a force can be the end of the first step.
+  const bool in_first_step = time < first_step_;
+  interval.from_inside = in_first_step && places_[static_cast<std::size_t>(place)].begins_inside ? 1.0 : 0.0;
+  interval.intervals = 1.0;
+  interval.first_place = first.leading >= 0 ? place_of(first.leading) : first.leading_place;
+  const Place& at = places_[static_cast<std::size_t>(interval.place)];
+  interval.before = motion_of(at.body);
+  if (at.other >= 0) interval.other_before = motion_of(at.other);
+  interval.method_before = method_before_;
+  take_turns(interval);
+}
+
+void ImpactRecorder::file(const Interval& interval) {
+  if (filed_.size() < most_impacts) {
+    filed_.push_back(interval);
+  } else {
+    ++left_out_;
+  }
+}
+
+Impact ImpactRecorder::describe(const Interval& interval) const {
+  const auto motion = [](const Motion& numbers) {
+    return RigidMotionState{vector_of(numbers.velocity), vector_of(numbers.spin), numbers.kinetic,
+                            numbers.rigid_kinetic};
+  };
+  const Place& place = places_[static_cast<std::size_t>(interval.place)];
+  Impact result;
+  result.body = place.body;
+  result.obstacle = place.obstacle;
+  result.begin = interval.begin;
+  result.end = interval.end;
+  result.ended = interval.phase != touching;
+  result.from_start = interval.from_start != 0.0;
+  result.from_inside = interval.from_inside != 0.0;
+  result.intervals = std::lround(interval.intervals);
+  result.contact_time = interval.contact_time;
+  result.impulse = vector_of(interval.impulse);
+  result.normal_impulse = vector_of(interval.normal_impulse);
+  result.largest_force = interval.largest;
+  result.largest_force_time = interval.largest_time;
+  result.contact_points = std::lround(interval.most_points);
+  result.all_contact_points = place.points;
+  result.first_place.assign(interval.first_place.begin(), interval.first_place.begin() + problem_.dimension);
+  if (interval.pressing > 0.0) {
+    result.obstacle_velocity = interval.travel / interval.pressing;
+    result.obstacle_sliding = vector_of(interval.sliding) / interval.pressing;
+  }
+  const RigidBody& body = rigid_.bodies()[static_cast<std::size_t>(place.body)];
+  result.mass = body.mass;
+  result.held = body.held;
+  result.before = motion(interval.before);
+  if (result.ended) result.after = motion(interval.after);
+  if (place.other >= 0) {
+    const RigidBody& other = rigid_.bodies()[static_cast<std::size_t>(place.other)];
+    result.other = OtherBody{place.other, other.mass, motion(interval.other_before), {}, other.held};
+    if (result.ended) result.other->after = motion(interval.other_after);
+  }
+  result.method_energy = (result.ended ? interval.method_after : method_before_) - interval.method_before;
+  if (result.ended) result.turn_growth = growth_in(interval, result);
+  return result;
+}
+
+std::vector<Impact> ImpactRecorder::impacts() const {
+  std::vector<Impact> result;
+  for (const Interval& interval : filed_) result.push_back(describe(interval));
+  for (const Interval& interval : open_) {
+    if (interval.phase != no_contact) result.push_back(describe(interval));
+  }
+  std::stable_sort(result.begin(), result.end(), [](const Impact& a, const Impact& b) { return a.begin < b.begin; });
+  return result;
+}
+
+}  // namespace ricochet

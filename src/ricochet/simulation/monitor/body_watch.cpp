@@ -1,0 +1,169 @@
+#include "ricochet/simulation/monitor/body_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/simulation/monitor/surface_pieces.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Of the length of an edge.
+constexpr double motion_between_looks = 0.25;
+/// How much farther bodies may move that were found to overlap, and told: then it is the depth only that is looked for.
+constexpr double resolution_of_found = 4.0;
+
+}  // namespace
+
+BodyWatch::BodyWatch(const Points& positions, const std::vector<CellBlock>& cells,
+                     const std::vector<CellFacet>& boundary, const ConnectedBodies& bodies,
+                     const std::vector<double>& size, const std::vector<KeptNode>& kept)
+    : positions_(positions) {
+  if (bodies.count < 2) return;
+  std::vector<std::vector<CellFacet>> facets(static_cast<std::size_t>(bodies.count));
+  for (const CellFacet& facet : boundary) {
+    const Index node = cells[facet.block].cell(facet.cell)[0];
+    facets[static_cast<std::size_t>(bodies.of_node[static_cast<std::size_t>(node)])].push_back(facet);
+  }
+  resolution_ = std::numeric_limits<double>::infinity();
+  for (const std::vector<CellFacet>& own : facets) {
+    surfaces_.emplace_back(positions, surface_pieces(positions, cells, own));
+    const std::vector<Index>& nodes = surfaces_.back().nodes();
+    size_.push_back(size[static_cast<std::size_t>(nodes.front())]);
+    resolution_ = std::min(resolution_, motion_between_looks * surfaces_.back().edge_length());
+    nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
+  }
+  seen_.setZero(static_cast<Index>(nodes_.size()) * positions.rows());
+  take_kept(kept, bodies);
+}
+
+void BodyWatch::take_kept(const std::vector<KeptNode>& kept, const ConnectedBodies& bodies) {
+  for (const KeptNode& one : kept) {
+    const int of = bodies.of_node[static_cast<std::size_t>(one.node)];
+    const std::vector<Index>& nodes = surfaces_[static_cast<std::size_t>(of)].nodes();
+    const auto at = std::lower_bound(nodes.begin(), nodes.end(), one.node);
+    if (at == nodes.end() || *at != one.node) continue;
+    std::vector<Kept>& list = kept_[{of, one.other}];
+    list.resize(nodes.size());
+    Kept& entry = list[static_cast<std::size_t>(at - nodes.begin())];
+    if (one.allowance > entry.allowance) entry = {one.allowance, one.contact, one.entry};
+  }
+}
+
+/// Gaps of nodes that face nothing are no numbers.
+double BodyWatch::Kept::depth_allowed(const Vector& gap) const {
+  return allowance + (entry >= 0 && gap[entry] < 0.0 ? -gap[entry] : 0.0);
+}
+
+void BodyWatch::look(const Vector& displacement, double time, bool now, const NodeGaps& gaps) {
+  if (surfaces_.empty()) return;
+  const bool due = looks_ == 0 || is_due(displacement);
+  if (!due && !now) return;
+  for (BodySurface& surface : surfaces_) surface.move(positions_, displacement);
+  gap_ = kept_.empty() ? nullptr : &gaps();
+  double apart = std::numeric_limits<double>::infinity();
+  const int count = static_cast<int>(surfaces_.size());
+  for (int first = 0; first < count; ++first) {
+    for (int second = first + 1; second < count; ++second) {
+      const double between = look_at(first, second, time);
+      apart =
+          std::min(apart, has_found(first, second) ? std::max(between, resolution_of_found * resolution_) : between);
+    }
+  }
+  if (!due) return;
+  ++looks_;
+  const Index d = positions_.rows();
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    seen_.segment(static_cast<Index>(i) * d, d) = displacement.segment(nodes_[i] * d, d);
+  free_way_ = 0.5 * std::max(apart, resolution_);  // both may have moved
+}
+
+bool BodyWatch::is_due(const Vector& displacement) const {
+  const Index d = positions_.rows();
+  const double limit = free_way_ * free_way_;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    double squared = 0.0;
+    for (Index k = 0; k < d; ++k) {
+      const double moved = displacement[nodes_[i] * d + k] - seen_[static_cast<Index>(i) * d + k];
+      squared += moved * moved;
+    }
+    if (squared >= limit) return true;
+  }
+  return false;
+}
+
+double BodyWatch::look_at(int first, int second, double time) {
+  const Eigen::AlignedBox3d& box = surfaces_[static_cast<std::size_t>(first)].box();
+  const double apart = box.exteriorDistance(surfaces_[static_cast<std::size_t>(second)].box());
+  if (apart > 0.0) return apart;
+  return std::min(look_at_nodes(first, second, time), look_at_nodes(second, first, time));
+}
+
+double BodyWatch::look_at_nodes(int of, int inside, double time) {
+  const BodySurface& own = surfaces_[static_cast<std::size_t>(of)];
+  const BodySurface& other = surfaces_[static_cast<std::size_t>(inside)];
+  const double size = std::min(size_[static_cast<std::size_t>(of)], size_[static_cast<std::size_t>(inside)]);
+  double apart = std::numeric_limits<double>::infinity();
+  const auto kept = kept_.find({of, inside});
+  for (std::size_t i = 0; i < own.nodes().size(); ++i) {
+    const Eigen::Vector3d& position = own.positions()[i];
+    double distance = other.box().exteriorDistance(position);
+    if (!(distance > 0.0)) distance = other.signed_distance(position);
+    apart = std::min(apart, std::abs(distance));
+    const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * position.lpNorm<Eigen::Infinity>();
+    if (-distance <= std::max(rounding_of_depth * size, rounding)) continue;
+    const Kept here = kept != kept_.end() ? kept->second[i] : Kept{};
+    if (here.contact >= 0 && -distance <= here.depth_allowed(*gap_)) continue;
+    BodyPair& pair = pair_of(std::min(of, inside), std::max(of, inside));
+    if (here.contact < 0) {
+      pair.deepest.enter(own.nodes()[i], -distance, time, position);
+    } else if (-distance > pair.at_contact.depth) {
+      pair.at_contact.enter(own.nodes()[i], -distance, time, position);
+      pair.contact = here.contact;
+    }
+  }
+  return apart;
+}
+
+bool BodyWatch::has_found(int first, int second) const {
+  return std::any_of(pairs_.begin(), pairs_.end(),
+                     [&](const BodyPair& pair) { return pair.first == first && pair.second == second; });
+}
+
+BodyPair& BodyWatch::pair_of(int first, int second) {
+  for (BodyPair& pair : pairs_) {
+    if (pair.first == first && pair.second == second) return pair;
+  }
+  pairs_.push_back({first, second, {}, {}, -1});
+  return pairs_.back();
+}
+
+void BodyWatch::save(Snapshot& snapshot, const std::string& name) const {
+  constexpr Index numbers = 3 + 2 * DeepestPoint::numbers;
+  Vector pairs(numbers * static_cast<Index>(pairs_.size()));
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    pairs.segment<numbers>(numbers * static_cast<Index>(i)) << pairs_[i].first, pairs_[i].second, pairs_[i].contact,
+        pairs_[i].deepest.to_numbers(), pairs_[i].at_contact.to_numbers();
+  snapshot.save(name + ".pairs", pairs);
+  snapshot.save(name + ".seen", seen_);
+  snapshot.save(name + ".free_way", free_way_);
+  snapshot.save(name + ".looks", std::int64_t{looks_});
+}
+
+void BodyWatch::load(const Snapshot& snapshot, const std::string& name) {
+  constexpr Index numbers = 3 + 2 * DeepestPoint::numbers;
+  const Vector& pairs = snapshot.reals(name + ".pairs");
+  pairs_.clear();
+  for (Index i = 0; i + numbers <= pairs.size(); i += numbers)
+    pairs_.push_back({static_cast<int>(pairs[i]), static_cast<int>(pairs[i + 1]),
+                      DeepestPoint::from_numbers(pairs.segment<DeepestPoint::numbers>(i + 3)),
+                      DeepestPoint::from_numbers(pairs.segment<DeepestPoint::numbers>(i + 3 + DeepestPoint::numbers)),
+                      static_cast<int>(pairs[i + 2])});
+  seen_ = snapshot.reals(name + ".seen", seen_.size());
+  free_way_ = snapshot.real(name + ".free_way");
+  looks_ = snapshot.integer(name + ".looks");
+}
+
+}  // namespace ricochet

@@ -1,0 +1,120 @@
+#include "ricochet/simulation/monitor/facet_sizes.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "ricochet/fem/mesh_measures.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Of facets; a displacement of half a facet takes a node from its middle to its end.
+constexpr double half = 0.5;
+
+std::set<int> bodies_of(const Body& body, const std::vector<Index>& facets, const std::vector<int>& body_of_node) {
+  std::set<int> result;
+  for (const Index node : facet_nodes(*body.space, facets)) result.insert(body_of_node[static_cast<std::size_t>(node)]);
+  return result;
+}
+
+}  // namespace
+
+FacetSizes facet_sizes(const Body& body, const std::vector<Index>& facets) {
+  const auto count = static_cast<std::size_t>(body.space->node_count());
+  FacetSizes result{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
+  for (const Index facet : facets) {
+    const double size = facet_diameter(*body.mesh, facet);
+    for (const Index node : facet_nodes(*body.space, {facet})) {
+      double &smallest = result.smallest[static_cast<std::size_t>(node)],
+             &largest = result.largest[static_cast<std::size_t>(node)];
+      smallest = smallest > 0.0 ? std::min(smallest, size) : size;
+      largest = std::max(largest, size);
+    }
+  }
+  return result;
+}
+
+namespace {
+
+/// Both sides of a pair that slides far: which facets a node faces is not known beforehand.
+void add_sliding_nodes(const Body& body, const ContactBoundary& contact, const ContactPair& pair, int number,
+                       const std::vector<int>& body_of_node, std::vector<KeptNode>& result) {
+  const FacetSizes own = facet_sizes(body, pair.facets), opposite = facet_sizes(body, pair.opposite_facets);
+  const double size = std::max(*std::max_element(own.largest.begin(), own.largest.end()),
+                               *std::max_element(opposite.largest.begin(), opposite.largest.end()));
+  const std::set<int> own_bodies = bodies_of(body, pair.facets, body_of_node);
+  const std::set<int> opposite_bodies = bodies_of(body, pair.opposite_facets, body_of_node);
+  std::map<Index, Index> entries;
+  for (std::size_t entry = 0; entry < contact.nodes.size(); ++entry) {
+    if (contact.node_pair[entry] == number) entries[contact.nodes[entry]] = static_cast<Index>(entry);
+  }
+  const auto add = [&](const std::vector<Index>& facets, const std::set<int>& others) {
+    for (const Index node : facet_nodes(*body.space, facets)) {
+      const auto known = entries.find(node);
+      for (const int other : others) {
+        if (other != body_of_node[static_cast<std::size_t>(node)])
+          result.push_back({node, other, number, known != entries.end() ? known->second : -1, half * size});
+      }
+    }
+  };
+  add(pair.facets, opposite_bodies);
+  add(pair.opposite_facets, own_bodies);
+}
+
+}  // namespace
+
+std::vector<KeptNode> kept_nodes(const Body& body, const ContactBoundary& contact,
+                                 const std::vector<ContactPair>& pairs, const std::vector<int>& body_of_node) {
+  std::vector<KeptNode> result;
+  for (std::size_t number = 0; number < pairs.size(); ++number) {
+    const ContactPair& pair = pairs[number];
+    if (!pair.has_two_sides()) continue;
+    if (pair.slides_far) {
+      add_sliding_nodes(body, contact, pair, static_cast<int>(number), body_of_node, result);
+      continue;
+    }
+    const FacetSizes own = facet_sizes(body, pair.facets), opposite = facet_sizes(body, pair.opposite_facets);
+    const std::set<int> own_bodies = bodies_of(body, pair.facets, body_of_node);
+    const std::set<int> opposite_bodies = bodies_of(body, pair.opposite_facets, body_of_node);
+    for (std::size_t entry = 0; entry < contact.nodes.size(); ++entry) {
+      if (contact.node_pair[entry] != static_cast<int>(number)) continue;
+      const auto node = static_cast<std::size_t>(contact.nodes[entry]);
+      const bool is_opposite = contact.is_opposite[entry] != 0;
+      double size = (is_opposite ? opposite : own).largest[node];
+      // Of the facets that it faces, the conditions may be the coarser ones.
+      for (SparseRowMatrix::InnerIterator at(contact.opposite_place, static_cast<Index>(entry)); at; ++at)
+        size = std::max(size, (is_opposite ? own : opposite).largest[static_cast<std::size_t>(at.col())]);
+      for (const int other : is_opposite ? own_bodies : opposite_bodies) {
+        if (other != body_of_node[node])
+          result.push_back(
+              {contact.nodes[entry], other, static_cast<int>(number), static_cast<Index>(entry), half * size});
+      }
+    }
+  }
+  return result;
+}
+
+Vector slip_limits(const Body& body, const ContactBoundary& contact, const std::vector<ContactPair>& pairs) {
+  Vector result = Vector::Zero(contact.size());
+  for (std::size_t number = 0; number < pairs.size(); ++number) {
+    if (!pairs[number].has_two_sides() || pairs[number].slides_far) continue;
+    const FacetSizes own = facet_sizes(body, pairs[number].facets),
+                     opposite = facet_sizes(body, pairs[number].opposite_facets);
+    for (Index point = 0; point < contact.size(); ++point) {
+      if (contact.pair[static_cast<std::size_t>(point)] != static_cast<int>(number)) continue;
+      double smallest = std::numeric_limits<double>::infinity();
+      contact.visit_nodes(point, [&](Index node, double) {
+        for (const FacetSizes* sizes : {&own, &opposite}) {
+          const double size = sizes->smallest[static_cast<std::size_t>(node)];
+          if (size > 0.0) smallest = std::min(smallest, size);
+        }
+      });
+      result[point] = half * smallest;
+    }
+  }
+  return result;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,80 @@
+#include "ricochet/simulation/monitor/late_contact_watch.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/fem/connected_bodies.hpp"
+#include "ricochet/simulation/monitor/facet_sizes.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Of what the contact itself is allowed, half of the largest facet: smooth surfaces are off by h²/8R before they
+/// touch.
+constexpr double allowed = 0.2;
+
+}  // namespace
+
+LateContactWatch::LateContactWatch(const Body& body, const SemidiscreteProblem& problem,
+                                   const std::vector<ContactPair>& pairs)
+    : problem_(problem), pairs_(pairs) {
+  const ContactBoundary& contact = problem.contact;
+  std::map<int, std::vector<Node>> nodes;
+  for (const KeptNode& kept : kept_nodes(body, contact, pairs, find_connected_bodies(*body.space).of_node)) {
+    // Of the far side of a pair that slides no gaps are known.
+    if (kept.entry >= 0) nodes[kept.contact].push_back({kept.entry, allowed * kept.allowance});
+  }
+  for (auto& [number, of_contact] : nodes) {
+    Contact watched{static_cast<std::size_t>(number), {}, std::move(of_contact)};
+    for (Index point = 0; point < contact.size(); ++point) {
+      if (contact.pair[static_cast<std::size_t>(point)] == number) watched.points.push_back(point);
+    }
+    contacts_.push_back(std::move(watched));
+  }
+}
+
+void LateContactWatch::look(const State& state) {
+  bool known = false;
+  for (Contact& contact : contacts_) {
+    if (contact.told) continue;
+    const bool acts = std::any_of(contact.points.begin(), contact.points.end(),
+                                  [&](Index point) { return state.forces.normal_reaction[point] > 0.0; });
+    if (acts) continue;
+    if (!known) problem_.node_gaps(state.displacement, state.time, gap_);
+    known = true;
+    const auto inside = std::find_if(contact.nodes.begin(), contact.nodes.end(),
+                                     [&](const Node& node) { return gap_[node.entry] < -node.allowance; });
+    if (inside == contact.nodes.end()) continue;
+    contact.told = true;
+    tell(contact, inside->entry, state.time);
+  }
+}
+
+void LateContactWatch::tell(const Contact& contact, Index entry, double time) const {
+  const ContactPair& pair = pairs_[contact.number];
+  const Vector place = problem_.nodes.col(problem_.contact.nodes[static_cast<std::size_t>(entry)]);
+  log::warning(fmt::format(
+      "at t = {:.6g} a node at ({:.4g}) (reference position) is {:.3g} inside of the other body, and the "
+      "contact of \"{}\" and \"{}\" has no force yet: gaps are means over facets of \"{}\", which carries the "
+      "multipliers, and a corner or a ridge is met late by a part of such a facet; refine the mesh of \"{}\" "
+      "there",
+      time, fmt::join(place, ", "), -gap_[entry], pair.first_group(), pair.second_group(), pair.group, pair.group));
+}
+
+void LateContactWatch::save(Snapshot& snapshot, const std::string& name) const {
+  Snapshot::Integers told;
+  for (const Contact& contact : contacts_) told.push_back(contact.told ? 1 : 0);
+  snapshot.save(name + ".told", told);
+}
+
+void LateContactWatch::load(const Snapshot& snapshot, const std::string& name) {
+  const Snapshot::Integers& told = snapshot.integers(name + ".told", 0, 1);
+  for (std::size_t i = 0; i < std::min(told.size(), contacts_.size()); ++i) contacts_[i].told = told[i] != 0;
+}
+
+}  // namespace ricochet

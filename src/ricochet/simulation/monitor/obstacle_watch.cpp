@@ -1,0 +1,157 @@
+#include "ricochet/simulation/monitor/obstacle_watch.hpp"
+
+#include <algorithm>
+
+namespace ricochet {
+
+namespace {
+
+/// A facet beyond a rim that rises by no more than this is taken for one that touches, too.
+constexpr double flat_slope = 0.25;
+
+Eigen::Vector3d in_space(const Vector& position) {
+  Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  result.head(position.size()) = position;
+  return result;
+}
+
+}  // namespace
+
+ObstacleWatch::ObstacleWatch(const SemidiscreteProblem& problem, const std::vector<CellBlock>& cells,
+                             const std::vector<CellFacet>& boundary, const std::vector<const Obstacle*>& obstacles,
+                             const std::vector<double>& size)
+    : problem_(problem),
+      obstacles_(obstacles),
+      size_(size),
+      nodes_(obstacles.size()),
+      deepest_(obstacles.size()),
+      position_(problem.dimension) {
+  for (const Obstacle* obstacle : obstacles) placed_.push_back(obstacle->at(0.0));
+  for (std::size_t k = 0; k < obstacles.size(); ++k) find_nodes(cells, boundary, k);
+}
+
+void ObstacleWatch::find_nodes(const std::vector<CellBlock>& cells, const std::vector<CellFacet>& boundary,
+                               std::size_t obstacle) {
+  const ContactBoundary& contact = problem_.contact;
+  std::vector<Index> contact_node(static_cast<std::size_t>(problem_.nodes.cols()), -1);
+  for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
+    if (problem_.obstacles[static_cast<std::size_t>(contact.node_pair[i])] == obstacles_[obstacle])
+      contact_node[static_cast<std::size_t>(contact.nodes[i])] = static_cast<Index>(i);
+  }
+  std::vector<Index>& alone = nodes_[obstacle];
+  for (const CellFacet& facet : boundary) {
+    RimFacet rim{obstacle, {}, {}};
+    for (const Index node : nodes_of_facet(cells, facet)) {
+      const Index entry = contact_node[static_cast<std::size_t>(node)];
+      if (entry >= 0) rim.inside.push_back(entry);
+      if (entry >= 0) continue;
+      alone.push_back(node);
+      if (!is_held_by_supports(obstacle, node)) rim.outside.push_back(node);
+    }
+    if (!rim.inside.empty() && !rim.outside.empty()) rim_.push_back(std::move(rim));
+  }
+  std::sort(alone.begin(), alone.end());
+  alone.erase(std::unique(alone.begin(), alone.end()), alone.end());
+}
+
+/// Along the obstacle's normal: supports then do what contact would, and such a node is no contact node though its
+/// facets are.
+bool ObstacleWatch::is_held_by_supports(std::size_t obstacle, Index node) const {
+  const Vector normal = obstacles_[obstacle]->normal(problem_.nodes.col(node));
+  for (Index k = 0; k < normal.size(); ++k) {
+    if (normal[k] != 0.0 && !problem_.supports.contains(node * normal.size() + k)) return false;
+  }
+  return true;
+}
+
+void ObstacleWatch::look(const State& state) {
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    if (obstacles_[k]->moves() || obstacles_[k]->free_motion() != nullptr)
+      placed_[k] = obstacles_[k]->at(state.time, state.displacement);
+    for (const Index node : nodes_[k]) look_at_node(k, node, state);
+  }
+  for (const RimFacet& facet : rim_) look_at_rim(facet, state);
+}
+
+double ObstacleWatch::gap(std::size_t obstacle, Index node, const Vector& displacement) {
+  const int d = problem_.dimension;
+  for (int k = 0; k < d; ++k) position_[k] = problem_.nodes(k, node) + displacement[node * d + k];
+  return placed_[obstacle].gap(position_);
+}
+
+void ObstacleWatch::look_at_start(const State& state) {
+  std::vector<char> on_boundary(static_cast<std::size_t>(problem_.nodes.cols()), 0);
+  for (const Index node : problem_.contact.nodes) on_boundary[static_cast<std::size_t>(node)] = 1;
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    for (Index node = 0; node < problem_.nodes.cols(); ++node) {
+      if (problem_.is_of_free_body(node)) break;
+      if (on_boundary[static_cast<std::size_t>(node)] == 0) look_at_node(k, node, state);
+    }
+  }
+}
+
+void ObstacleWatch::look_at_node(std::size_t obstacle, Index node, const State& state) {
+  const double depth = -gap(obstacle, node, state.displacement);
+  if (!(depth > deepest_[obstacle].depth) || depth <= rounding_of_depth * size_[static_cast<std::size_t>(node)] ||
+      depth <= placed_[obstacle].gap_rounding(position_))
+    return;
+  deepest_[obstacle].enter(node, depth, state.time, in_space(position_));
+}
+
+bool ObstacleWatch::has_told(int pair) const {
+  return std::any_of(rims_.begin(), rims_.end(), [pair](const RimContact& rim) { return rim.pair == pair; });
+}
+
+/// Of nodes at which no contact point is anchored the gap tells.
+bool ObstacleWatch::is_pressed(std::size_t obstacle, Index contact_node, const State& state) {
+  const Index point = problem_.contact.own_point[static_cast<std::size_t>(contact_node)];
+  if (point >= 0) return state.contact_status[static_cast<std::size_t>(point)] != ContactStatus::open;
+  const Index node = problem_.contact.nodes[static_cast<std::size_t>(contact_node)];
+  return gap(obstacle, node, state.displacement) <= rounding_of_depth * size_[static_cast<std::size_t>(node)];
+}
+
+void ObstacleWatch::look_at_rim(const RimFacet& facet, const State& state) {
+  const ContactBoundary& contact = problem_.contact;
+  const Vector& u = state.displacement;
+  for (const Index entry : facet.inside) {
+    const int pair = contact.node_pair[static_cast<std::size_t>(entry)];
+    if (has_told(pair) || !is_pressed(facet.obstacle, entry, state)) continue;
+    const Index node = contact.nodes[static_cast<std::size_t>(entry)];
+    const double here = gap(facet.obstacle, node, u);
+    const Eigen::Vector3d from = in_space(position_);
+    const bool is_flat = std::all_of(facet.outside.begin(), facet.outside.end(), [&](Index other) {
+      const double rise = gap(facet.obstacle, other, u) - here;
+      return rise < flat_slope * (in_space(position_) - from).norm();
+    });
+    if (!is_flat) continue;
+    (void)gap(facet.obstacle, node, u);
+    rims_.push_back({pair, node, state.time, in_space(position_)});
+  }
+}
+
+void ObstacleWatch::save(Snapshot& snapshot, const std::string& name) const {
+  Vector numbers(DeepestPoint::numbers * static_cast<Index>(deepest_.size()));
+  for (std::size_t k = 0; k < deepest_.size(); ++k)
+    numbers.segment<DeepestPoint::numbers>(DeepestPoint::numbers * static_cast<Index>(k)) = deepest_[k].to_numbers();
+  snapshot.save(name + ".deepest", numbers);
+  Vector rims(6 * static_cast<Index>(rims_.size()));
+  for (std::size_t i = 0; i < rims_.size(); ++i) {
+    const RimContact& rim = rims_[i];
+    rims.segment<6>(6 * static_cast<Index>(i)) << rim.pair, static_cast<double>(rim.node), rim.time, rim.place;
+  }
+  snapshot.save(name + ".rims", rims);
+}
+
+void ObstacleWatch::load(const Snapshot& snapshot, const std::string& name) {
+  const Vector& numbers =
+      snapshot.reals(name + ".deepest", DeepestPoint::numbers * static_cast<Index>(deepest_.size()));
+  for (std::size_t k = 0; k < deepest_.size(); ++k)
+    deepest_[k] = DeepestPoint::from_numbers(
+        numbers.segment<DeepestPoint::numbers>(DeepestPoint::numbers * static_cast<Index>(k)));
+  const Vector& rims = snapshot.reals(name + ".rims");
+  rims_.clear();
+  for (Index i = 0; i + 6 <= rims.size(); i += 6)
+    rims_.push_back({static_cast<int>(rims[i]), static_cast<Index>(rims[i + 1]), rims[i + 2], rims.segment<3>(i + 3)});
+}
+
+}  // namespace ricochet

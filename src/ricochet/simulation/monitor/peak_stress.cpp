@@ -1,0 +1,108 @@
+#include "ricochet/simulation/monitor/peak_stress.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/fem/cell_integration.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// A state is worth a look of its own when its contact presses harder by this, relative to those looked at.
+constexpr double harder = 5e-3;
+
+}  // namespace
+
+double look_work(const Body& body) {
+  double work = 0.0;
+  for (const CellBlock& block : body.space->cells) {
+    const int d = body.mesh->dimension, geometry = body.mesh->degree, degree = body.space->degree;
+    const bool is_simplex = block.shape == CellShape::triangle || block.shape == CellShape::tetrahedron;
+    double per_cell = d == 2 ? 70.0 : 120.0;
+    if (!is_simplex || geometry > 1 || degree > 1) {
+      const QuadratureRule rule = quadrature(block.shape, stiffness_quadrature_degree(block.shape, geometry, degree));
+      const double per_point = d == 2 ? 60.0 + 6.0 * block.nodes_per_cell : 100.0 + 30.0 * block.nodes_per_cell;
+      per_cell = static_cast<double>(rule.weights.size()) * per_point;
+    }
+    work += per_cell * static_cast<double>(block.size());
+  }
+  return work;
+}
+
+double step_work(Index dofs, std::size_t factor_entries) {
+  constexpr double per_dof = 20.0;
+  return 2.0 * static_cast<double>(factor_entries) + per_dof * static_cast<double>(dofs);
+}
+
+PeakStress::PeakStress(const Body& body, double step_work, const Ranks& ranks, std::unique_ptr<StressRaisers> raisers)
+    : body_(body),
+      ranks_(ranks),
+      stress_(body),
+      raisers_(std::move(raisers)),
+      looks_per_step_(std::min(1.0, share * step_work / ranks.sum(look_work(body)))) {}
+
+void PeakStress::enter(const State& state, bool is_frame) {
+  ++result_.states;
+  // Half of the looks come regularly; the others are saved until contact presses harder than it did.
+  since_look_ += looks_per_step_ < 1.0 ? 0.5 * looks_per_step_ : 1.0;
+  saved_ += 0.5 * looks_per_step_;
+  const double press = ranks_.sum(state.forces.normal_reaction.sum());
+  const bool presses_harder = press > (1.0 + harder) * hardest_press_;
+  if (is_frame || since_look_ >= 1.0) {
+    since_look_ = 0.0;
+  } else if (presses_harder && saved_ >= 1.0) {
+    saved_ -= 1.0;
+  } else {
+    return;
+  }
+  hardest_press_ = std::max(hardest_press_, press);
+  look(state);
+}
+
+void PeakStress::enter_frame(const State& state) {
+  if (last_look_ != state.step) look(state);
+}
+
+void PeakStress::look(const State& state) {
+  ++result_.looks;
+  last_look_ = state.step;
+  const LargestOfCells largest = stress_.largest_von_mises(state.displacement, state.internal_strain);
+  if (result_.cell >= 0 && !(largest.value > result_.von_mises)) return;
+  result_.von_mises = std::max(0.0, largest.value);
+  result_.cell = largest.cell;
+  result_.time = state.time;
+  result_.step = state.step;
+  if (raisers_) result_.sits_on = raisers_->at(state, largest.cell);
+}
+
+void PeakStress::save(Snapshot& snapshot, const std::string& name) const {
+  Vector numbers(6);
+  numbers << looks_per_step_, saved_, since_look_, hardest_press_, result_.von_mises, result_.time;
+  snapshot.save(name, numbers);
+  snapshot.save(name + ".counts", Snapshot::Integers{result_.step, result_.cell, result_.looks, result_.states,
+                                                     last_look_, static_cast<std::int64_t>(result_.sits_on)});
+}
+
+void PeakStress::load(const Snapshot& snapshot, const std::string& name) {
+  const Vector& numbers = snapshot.reals(name, 6);
+  looks_per_step_ = numbers[0];
+  saved_ = numbers[1];
+  since_look_ = numbers[2];
+  hardest_press_ = numbers[3];
+  result_.von_mises = numbers[4];
+  result_.time = numbers[5];
+  const Snapshot::Integers& counts = snapshot.integers(name + ".counts");
+  if (counts.size() != 6 || counts[1] < -1 || counts[1] >= body_.mesh->cell_count() || counts[5] < 0 ||
+      counts[5] >= stress_raisers)
+    throw Error(ErrorKind::invalid_input, "the checkpoint's largest stress is not one of this mesh");
+  result_.step = counts[0];
+  result_.cell = counts[1];
+  result_.looks = counts[2];
+  result_.states = counts[3];
+  last_look_ = counts[4];
+  result_.sits_on = static_cast<StressRaiser>(counts[5]);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,358 @@
+#include "ricochet/simulation/monitor/penetration_watch.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/simulation/monitor/penetration_words.hpp"
+
+namespace ricochet {
+
+namespace words = penetration_words;
+
+namespace {
+
+/// Edges that nodes may go between two looks at bodies by themselves: what parts that meet go into each other by and
+/// out again unseen is not much more.
+constexpr double most_unseen = 1.0;
+
+std::vector<const Obstacle*> obstacles_of(const std::vector<NamedObstacle>& named) {
+  std::vector<const Obstacle*> result;
+  for (const NamedObstacle& one : named) result.push_back(one.obstacle);
+  return result;
+}
+
+/// Of the body that a node belongs to, per node.
+std::vector<double> sizes_at_nodes(const std::vector<double>& size_of_body, const ConnectedBodies& bodies) {
+  std::vector<double> result;
+  for (const int body : bodies.of_node) result.push_back(body < 0 ? 0.0 : size_of_body[static_cast<std::size_t>(body)]);
+  return result;
+}
+
+/// Ascending, each once.
+std::vector<Index> nodes_of(const std::vector<CellFacet>& boundary, const std::vector<CellBlock>& cells) {
+  std::vector<Index> nodes;
+  for (const CellFacet& facet : boundary) {
+    for (const Index node : nodes_of_facet(cells, facet)) nodes.push_back(node);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+}  // namespace
+
+const UnwatchedPenetration* PenetrationReport::deepest() const {
+  const auto largest = std::max_element(
+      found.begin(), found.end(), [](const auto& a, const auto& b) { return a.relative_depth < b.relative_depth; });
+  return largest == found.end() ? nullptr : &*largest;
+}
+
+PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& problem,
+                                   const std::vector<ContactPair>& pairs, const std::vector<NamedObstacle>& obstacles)
+    : PenetrationWatch(body, problem, pairs, obstacles, describe_bodies(body),
+                       std::numeric_limits<double>::infinity()) {}
+
+PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& problem,
+                                   const std::vector<ContactPair>& pairs, const std::vector<NamedObstacle>& obstacles,
+                                   BodiesOfMesh bodies, double step_work)
+    : body_(body),
+      pairs_(pairs),
+      named_(obstacles),
+      bodies_(std::move(bodies)),
+      size_(sizes_at_nodes(bodies_.sizes, bodies_.connected)),
+      obstacles_(problem, body.space->cells, bodies_.boundary, obstacles_of(obstacles), size_),
+      passages_(problem, nodes_of(bodies_.boundary, body.space->cells), obstacles_of(obstacles)),
+      body_watch_(problem.nodes, body.space->cells, bodies_.boundary, bodies_.connected, size_,
+                  kept_nodes(body, problem.contact, pairs, bodies_.connected.of_node)),
+      self_watch_(body, problem, pairs, bodies_, step_work),
+      problem_(problem),
+      told_obstacle_(obstacles.size(), 0),
+      told_passage_(obstacles.size(), 0),
+      told_itself_(self_watch_.bodies().size(), 0),
+      told_itself_at_contact_(self_watch_.bodies().size(), 0) {
+  for (const Group& group : body.mesh->groups) {
+    if (group.dimension == body.mesh->dimension - 1)
+      boundary_groups_.push_back({group.name, facet_nodes(*body.space, group.members)});
+  }
+}
+
+void PenetrationWatch::look(const State& state) {
+  if (looks_ == 0) obstacles_.look_at_start(state);
+  ++looks_;
+  obstacles_.look(state);
+  passages_.look(state);
+  look_at_bodies(state, false);
+  tell();
+}
+
+void PenetrationWatch::look_at_bodies(const State& state, bool now) {
+  // Two references are kept without an allocation, no more.
+  const BodyWatch::NodeGaps gaps = [this, &state]() -> const Vector& {
+    problem_.node_gaps(state.displacement, state.time, node_gap_);
+    return node_gap_;
+  };
+  body_watch_.look(state.displacement, state.time, now, gaps);
+  self_watch_.look(state.displacement, state.time, now, gaps);
+}
+
+void PenetrationWatch::look_at_end(const State& state) {
+  look_at_bodies(state, true);
+  tell();
+}
+
+void PenetrationWatch::tell() {
+  for (std::size_t k = 0; k < named_.size(); ++k) {
+    if (told_obstacle_[k] != 0 || !obstacles_.deepest()[k].found()) continue;
+    told_obstacle_[k] = 1;
+    const UnwatchedPenetration p = in_obstacle(k);
+    log::warning(fmt::format("{} {} is {} inside obstacle \"{}\" at {}, where no contact keeps it out: {}; {}",
+                             words::when(p.time), p.bodies.front(), words::depth_text(p), p.obstacle,
+                             words::coordinates(p.place), advice(k), words::see_summary));
+  }
+  for (std::size_t k = 0; k < named_.size(); ++k) {
+    if (told_passage_[k] != 0 || !passages_.passages()[k].found()) continue;
+    told_passage_[k] = 1;
+    const UnwatchedPenetration p = through_obstacle(k);
+    log::warning(
+        fmt::format("{} a node of {} at {} has gone through obstacle \"{}\" within one step, which no contact can "
+                    "see; take a time.step in which bodies move by less than the obstacle is thick",
+                    words::when(p.time), p.bodies.front(), words::coordinates(p.place), p.obstacle));
+  }
+  for (; told_rims_ < obstacles_.rims().size(); ++told_rims_) {
+    const ContactBeyondRim rim = beyond(obstacles_.rims()[told_rims_]);
+    log::warning(
+        fmt::format("{} the contact of group \"{}\" with \"{}\" has reached the rim of the group, at {}: what lies "
+                    "beyond it goes into the obstacle unhindered; add the boundary beyond it to the group{}",
+                    words::when(rim.time), rim.group, rim.obstacle, words::coordinates(rim.place),
+                    rim.groups.empty() ? "" : fmt::format(" ({})", join_names(rim.groups))));
+  }
+  tell_bodies();
+  tell_of_themselves();
+}
+
+void PenetrationWatch::tell_bodies() {
+  const std::vector<BodyPair>& pairs = body_watch_.pairs();
+  told_pairs_.resize(pairs.size(), 0);
+  told_contacts_.resize(pairs.size(), 0);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (told_pairs_[i] == 0 && pairs[i].deepest.found()) {
+      told_pairs_[i] = 1;
+      tell_of(pairs[i]);
+    }
+    if (told_contacts_[i] == 0 && pairs[i].at_contact.found()) {
+      told_contacts_[i] = 1;
+      tell_at_contact(pairs[i]);
+    }
+  }
+}
+
+void PenetrationWatch::tell_of(const BodyPair& pair) const {
+  const UnwatchedPenetration p = of_pair(pair);
+  const std::vector<const ContactPair*> contacts = contacts_between(pair.first, pair.second);
+  std::string why = "no [[contact]] keeps these bodies apart, they go through each other";
+  if (!contacts.empty()) {
+    std::vector<std::string> names;
+    for (const ContactPair* contact : contacts)
+      names.push_back(fmt::format("\"{}\" and \"{}\"", contact->first_group(), contact->second_group()));
+    const bool follows = std::all_of(contacts.begin(), contacts.end(), [](const auto* c) { return c->slides_far; });
+    why = fmt::format("the contact of {} does not reach so far{}", fmt::join(names, ", "),
+                      follows ? "; extend the groups"
+                              : ", or its groups did not face each other there; extend the groups, or pair them with "
+                                "pair_at where they meet");
+  }
+  log::warning(fmt::format("{} {} and {} overlap by {} at {}: {}; {}", words::when(p.time), p.bodies[0], p.bodies[1],
+                           words::depth_text(p), words::coordinates(p.place), why, words::see_summary));
+}
+
+/// With sliding = "large" pairs follow the motion, and what helps where small sliding ends is no help.
+void PenetrationWatch::tell_at_contact(const BodyPair& pair) const {
+  const UnwatchedPenetration p = at_contact(pair);
+  const ContactPair& contact = pairs_[static_cast<std::size_t>(pair.contact)];
+  const std::string why =
+      contact.slides_far
+          ? fmt::format(
+                "gaps are means over facets of \"{}\", which carries the multipliers, and this place does not "
+                "show in them: the force of this contact is not to be trusted from here on",
+                contact.group)
+          : "the facets that faced each other at the start no longer do, as the bodies have slid along or past each "
+            "other; set sliding = \"large\", pair them with pair_at where they meet, or let them move less";
+  log::warning(
+      fmt::format("{} {} and {} overlap by {} at {}, more than half a facet, though the contact of \"{}\" and \"{}\" "
+                  "keeps that node out: {}; {}",
+                  words::when(p.time), p.bodies[0], p.bodies[1], words::depth_text(p), words::coordinates(p.place),
+                  p.contact[0], p.contact[1], why, words::see_summary));
+}
+
+std::vector<const ContactPair*> PenetrationWatch::contacts_between(int first, int second) const {
+  std::vector<const ContactPair*> result;
+  const auto holds = [&](const std::vector<Index>& facets, int body) {
+    const std::vector<Index> nodes = facet_nodes(*body_.space, facets);
+    return std::any_of(nodes.begin(), nodes.end(),
+                       [&](Index node) { return bodies_.connected.of_node[static_cast<std::size_t>(node)] == body; });
+  };
+  for (const ContactPair& pair : pairs_) {
+    if (!pair.has_two_sides()) continue;
+    if ((holds(pair.facets, first) && holds(pair.opposite_facets, second)) ||
+        (holds(pair.facets, second) && holds(pair.opposite_facets, first)))
+      result.push_back(&pair);
+  }
+  return result;
+}
+
+std::string PenetrationWatch::advice(std::size_t obstacle) const {
+  const Index node = obstacles_.deepest()[obstacle].node;
+  if (!is_on_boundary(node))
+    return "the body is in the obstacle, not beside it: move one of them, or take the other side";
+  std::vector<std::string> groups;
+  for (const ContactPair& pair : pairs_) {
+    if (pair.obstacle != named_[obstacle].obstacle) continue;
+    const std::vector<Index> nodes = facet_nodes(*body_.space, pair.facets);
+    if (std::binary_search(nodes.begin(), nodes.end(), node))
+      return fmt::format("it is in the contact group \"{}\", but supports hold it", pair.group);
+    groups.push_back(pair.group);
+  }
+  const std::vector<std::string> own = groups_of(node);
+  const std::string place =
+      own.empty() ? "no boundary group of the mesh holds it; \"boundary\" is built in and names all of the boundary"
+                  : fmt::format("it belongs to the boundary group{} {}", own.size() == 1 ? "" : "s", join_names(own));
+  if (groups.empty()) return fmt::format("no [[contact]] names this obstacle ({})", place);
+  return fmt::format("the [[contact]] group {} does not reach so far; extend it ({})", join_names(groups), place);
+}
+
+bool PenetrationWatch::is_on_boundary(Index node) const {
+  return std::any_of(bodies_.boundary.begin(), bodies_.boundary.end(), [&](const CellFacet& facet) {
+    const std::vector<Index> nodes = nodes_of_facet(body_.space->cells, facet);
+    return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
+  });
+}
+
+std::vector<std::string> PenetrationWatch::groups_of(Index node) const {
+  std::vector<std::string> names;
+  for (const BoundaryGroup& group : boundary_groups_) {
+    if (std::binary_search(group.nodes.begin(), group.nodes.end(), node)) names.push_back(group.name);
+  }
+  return names;
+}
+
+std::vector<double> PenetrationWatch::place_of(const Eigen::Vector3d& place) const {
+  return {place.data(), place.data() + body_.mesh->dimension};
+}
+
+UnwatchedPenetration PenetrationWatch::describe(const DeepestPoint& deepest, const std::vector<int>& bodies) const {
+  UnwatchedPenetration result;
+  double size = size_[static_cast<std::size_t>(deepest.node)];
+  for (const int body : bodies) {
+    result.bodies.push_back(bodies_.names[static_cast<std::size_t>(body)]);
+    size = std::min(size, bodies_.sizes[static_cast<std::size_t>(body)]);
+  }
+  result.depth = deepest.depth;
+  result.relative_depth = deepest.depth / size;
+  result.time = deepest.time;
+  result.place = place_of(deepest.place);
+  result.first_time = deepest.first_time;
+  result.groups = groups_of(deepest.node);
+  return result;
+}
+
+UnwatchedPenetration PenetrationWatch::in_obstacle(std::size_t obstacle) const {
+  const DeepestPoint& deepest = obstacles_.deepest()[obstacle];
+  UnwatchedPenetration result = describe(deepest, {bodies_.connected.of_node[static_cast<std::size_t>(deepest.node)]});
+  result.obstacle = named_[obstacle].name;
+  return result;
+}
+
+UnwatchedPenetration PenetrationWatch::through_obstacle(std::size_t obstacle) const {
+  const DeepestPoint& deepest = passages_.passages()[obstacle];
+  UnwatchedPenetration result = describe(deepest, {bodies_.connected.of_node[static_cast<std::size_t>(deepest.node)]});
+  result.obstacle = named_[obstacle].name;
+  result.passed_through = true;
+  return result;
+}
+
+UnwatchedPenetration PenetrationWatch::of_pair(const BodyPair& pair) const {
+  return describe(pair.deepest, {pair.first, pair.second});
+}
+
+UnwatchedPenetration PenetrationWatch::at_contact(const BodyPair& pair) const {
+  UnwatchedPenetration result = describe(pair.at_contact, {pair.first, pair.second});
+  const ContactPair& contact = pairs_[static_cast<std::size_t>(pair.contact)];
+  result.contact = {contact.first_group(), contact.second_group()};
+  return result;
+}
+
+ContactBeyondRim PenetrationWatch::beyond(const RimContact& rim) const {
+  const ContactPair& pair = pairs_[static_cast<std::size_t>(rim.pair)];
+  std::vector<std::string> groups = groups_of(rim.node);
+  std::erase(groups, pair.group);
+  return {pair.group, pair.obstacle_name, rim.time, place_of(rim.place), groups};
+}
+
+PenetrationReport PenetrationWatch::report() const {
+  PenetrationReport result{true, looks_, body_watch_.looks()};
+  for (std::size_t k = 0; k < named_.size(); ++k) {
+    if (obstacles_.deepest()[k].found()) result.found.push_back(in_obstacle(k));
+    if (passages_.passages()[k].found()) result.found.push_back(through_obstacle(k));
+  }
+  for (const BodyPair& pair : body_watch_.pairs()) {
+    if (pair.deepest.found()) result.found.push_back(of_pair(pair));
+    if (pair.at_contact.found()) result.found.push_back(at_contact(pair));
+  }
+  for (const BodyInItself& body : self_watch_.bodies()) {
+    if (body.deepest.found()) result.found.push_back(in_itself(body));
+    if (body.at_contact.found()) result.found.push_back(in_itself_at_contact(body));
+  }
+  for (const RimContact& rim : obstacles_.rims()) result.rims.push_back(beyond(rim));
+  result.looks_at_themselves = self_watch_.looks();
+  const auto is_free = [](const NamedObstacle& one) { return one.obstacle->free_motion() != nullptr; };
+  if (named_.size() > 1 && std::any_of(named_.begin(), named_.end(), is_free))
+    result.not_watched.emplace_back("rigid bodies against each other and other obstacles");
+  if (const double unseen = self_watch_.unseen_motion(); unseen > most_unseen) {
+    result.not_watched.push_back(
+        fmt::format("{} between looks ({} of them, and nodes moved by up to {:.2g} edges in between)",
+                    bodies_in_themselves, self_watch_.looks(), unseen));
+  }
+  if (!self_watch_.watches())
+    result.not_watched.push_back(std::string(bodies_in_themselves) + " (several processes have parts of them)");
+  return result;
+}
+
+void PenetrationWatch::save(Snapshot& snapshot, const std::string& name) const {
+  obstacles_.save(snapshot, name + ".obstacles");
+  passages_.save(snapshot, name + ".passages");
+  body_watch_.save(snapshot, name + ".bodies");
+  self_watch_.save(snapshot, name + ".themselves");
+  snapshot.save(name + ".looks", std::int64_t{looks_});
+}
+
+void PenetrationWatch::load(const Snapshot& snapshot, const std::string& name) {
+  obstacles_.load(snapshot, name + ".obstacles");
+  passages_.load(snapshot, name + ".passages");
+  body_watch_.load(snapshot, name + ".bodies");
+  self_watch_.load(snapshot, name + ".themselves");
+  looks_ = snapshot.integer(name + ".looks");
+  // What was found was told at once.
+  for (std::size_t k = 0; k < told_obstacle_.size(); ++k) told_obstacle_[k] = obstacles_.deepest()[k].found() ? 1 : 0;
+  for (std::size_t k = 0; k < told_passage_.size(); ++k) told_passage_[k] = passages_.passages()[k].found() ? 1 : 0;
+  told_rims_ = obstacles_.rims().size();
+  told_pairs_.clear();
+  told_contacts_.clear();
+  for (const BodyPair& pair : body_watch_.pairs()) {
+    if (pair.at_contact.found() && (pair.contact < 0 || pair.contact >= static_cast<int>(pairs_.size())))
+      throw Error(ErrorKind::invalid_input, "the checkpoint's record of penetration is damaged");
+    told_pairs_.push_back(pair.deepest.found() ? 1 : 0);
+    told_contacts_.push_back(pair.at_contact.found() ? 1 : 0);
+  }
+  for (std::size_t i = 0; i < self_watch_.bodies().size(); ++i) {
+    const BodyInItself& body = self_watch_.bodies()[i];
+    told_itself_[i] = body.deepest.found() ? 1 : 0;
+    told_itself_at_contact_[i] = body.at_contact.found() ? 1 : 0;
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,363 @@
+#include "ricochet/simulation/monitor/self_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/linear_algebra/orthogonal_factor.hpp"
+#include "ricochet/mesh/flat_pieces.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/simulation/monitor/surface_pieces.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Parts of the mean edge that nodes may move by against the body's mean motion between two looks, as others may come
+/// towards them by as much; the second once an overlap was found and told, when only its depth is looked for.
+constexpr double motion_before_look = 0.0125, motion_once_found = 0.125;
+/// Part of the mean edge up to which overlaps of the start are those of facets that stand for curved surfaces.
+constexpr double overlap_of_facets = 0.5;
+/// SelfOverlap::opening at the start, at least: corners of cubes have 0.58.
+constexpr double least_opening = 0.5;
+/// Time of a look at a node relative to that of reading a number of a factor: measured, 0.2 µs in the plane and up to
+/// 1 µs in space to 0.4 ns.
+constexpr double work_per_node_in_plane = 500.0, work_per_node_in_space = 2500.0;
+/// Most looks that are saved for later, and those that there are at the start.
+constexpr double most_saved = 4.0;
+constexpr Index numbers_of_body = 2 * DeepestPoint::numbers + 7;
+
+using BodyNumbers = Eigen::Matrix<double, numbers_of_body, 1>;
+
+BodyNumbers to_numbers(const BodyInItself& found) {
+  BodyNumbers result;
+  result << found.deepest.to_numbers(), found.at_contact.to_numbers(), found.contact, static_cast<double>(found.own[0]),
+      static_cast<double>(found.own[1]), static_cast<double>(found.own[2]), static_cast<double>(found.through[0]),
+      static_cast<double>(found.through[1]), static_cast<double>(found.through[2]);
+  return result;
+}
+
+std::vector<std::vector<CellFacet>> facets_of_bodies(const Body& body, const BodiesOfMesh& bodies) {
+  std::vector<std::vector<CellFacet>> result(static_cast<std::size_t>(bodies.connected.count));
+  for (const CellFacet& facet : bodies.boundary) {
+    const std::vector<Index> nodes = nodes_of_facet(body.space->cells, facet);
+    // A facet on an axis is no surface.
+    if (is_axisymmetric(body) &&
+        std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return is_on_axis(body, node); }))
+      continue;
+    result[static_cast<std::size_t>(bodies.connected.of_node[static_cast<std::size_t>(nodes[0])])].push_back(facet);
+  }
+  return result;
+}
+
+}  // namespace
+
+SelfWatch::SelfWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
+                     const BodiesOfMesh& bodies, double step_work)
+    : positions_(problem.nodes),
+      axisymmetric_(problem.axisymmetric),
+      work_per_step_(share * step_work),
+      contacts_(static_cast<int>(pairs.size())) {
+  if (problem.ranks->are_several()) return;
+  const std::vector<std::vector<CellFacet>> facets = facets_of_bodies(body, bodies);
+  for (std::size_t number = 0; number < facets.size(); ++number) {
+    parts_.push_back(make_part(body, facets[number], bodies.sizes[number]));
+    take_contacts(body, problem.contact, pairs, parts_.back());
+    found_.emplace_back().body = static_cast<int>(number);
+    saved_ += most_saved * parts_.back().work;
+  }
+}
+
+SelfWatch::Part SelfWatch::make_part(const Body& body, const std::vector<CellFacet>& facets, double size) const {
+  const std::vector<CellBlock>& cells = body.space->cells;
+  Part part(BodySurface(positions_, surface_pieces(positions_, cells, facets)));
+  for (const CellFacet& facet : facets) {
+    const CellShape shape = facet_shape(cells[facet.block].shape);
+    part.facets.push_back({shape, nodes_of_facet(cells, facet)});
+    const int degree = degree_of(shape, static_cast<int>(part.facets.back().nodes.size()));
+    part.facet_of_piece.insert(part.facet_of_piece.end(), flat_pieces(shape, degree).size(), part.facets.size() - 1);
+  }
+  const std::size_t count = part.surface.nodes().size();
+  part.sides.resize(count);
+  const SelfOverlap start(part.surface, axisymmetric_);
+  for (int node = 0; node < static_cast<int>(count); ++node)
+    part.is_left_out.push_back(start.opening(node) < least_opening ? 1 : 0);
+  part.at_start.setZero(static_cast<Index>(count));
+  part.seen.setZero(static_cast<Index>(count) * positions_.rows());
+  part.size = size;
+  part.work = (positions_.rows() == 2 ? work_per_node_in_plane : work_per_node_in_space) * static_cast<double>(count);
+  return part;
+}
+
+/// Takes those of the body with itself, and leaves out nodes that are tied.
+void SelfWatch::take_contacts(const Body& body, const ContactBoundary& contact, const std::vector<ContactPair>& pairs,
+                              Part& part) const {
+  const std::vector<Index>& nodes = part.surface.nodes();
+  const auto number_of = [&](Index node) {
+    const auto found = std::lower_bound(nodes.begin(), nodes.end(), node);
+    return found != nodes.end() && *found == node ? static_cast<std::size_t>(found - nodes.begin()) : nodes.size();
+  };
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const ContactPair& pair = pairs[k];
+    if (!pair.between_bodies()) continue;
+    double largest = 0.0;
+    for (const auto* const facets : {&pair.facets, &pair.opposite_facets}) {
+      const std::vector<double> sizes = facet_sizes(body, *facets).largest;
+      largest = std::max(largest, *std::max_element(sizes.begin(), sizes.end()));
+    }
+    for (const bool opposite : {false, true}) {
+      for (const Index node : facet_nodes(*body.space, opposite ? pair.opposite_facets : pair.facets)) {
+        const std::size_t at = number_of(node);
+        if (at == nodes.size()) continue;
+        if (pair.tied) part.is_left_out[at] = 1;
+        std::vector<Side>& sides = part.sides[at];
+        if (sides.empty() || sides.back().contact != static_cast<int>(k))
+          sides.push_back({static_cast<int>(k), false, false, -1, 0.5 * largest});
+        (opposite ? sides.back().opposite : sides.back().own) = true;
+      }
+    }
+    for (std::size_t entry = 0; entry < contact.nodes.size(); ++entry) {
+      if (contact.node_pair[entry] != static_cast<int>(k)) continue;
+      const std::size_t at = number_of(contact.nodes[entry]);
+      if (at == nodes.size() || part.sides[at].empty()) continue;
+      if (Side& side = part.sides[at].back(); side.contact == static_cast<int>(k))
+        side.entry = static_cast<Index>(entry);
+    }
+  }
+}
+
+void SelfWatch::look(const Vector& displacement, double time, bool now, const NodeGaps& gaps) {
+  if (parts_.empty()) return;
+  double all = 0.0;
+  for (const Part& part : parts_) all += part.work;
+  saved_ = std::min(saved_ + work_per_step_, most_saved * all);
+  bool any = false;
+  for (std::size_t number = 0; number < parts_.size(); ++number) {
+    Part& part = parts_[number];
+    const BodyInItself& found = found_[number];
+    const bool is_known = found.deepest.found() || found.at_contact.found();
+    const double limit = (is_known ? motion_once_found : motion_before_look) * part.surface.edge_length();
+    const bool due = looks_ == 0 || (saved_ >= part.work && is_due(part, limit, displacement));
+    if (!due && !now) continue;
+    if (looks_ > 0) enter_unseen(part, displacement);
+    look_at(number, displacement, time, gaps);
+    if (!due) continue;
+    any = true;
+    if (looks_ > 0 && std::isfinite(saved_)) saved_ -= part.work;
+    const Index d = positions_.rows();
+    const std::vector<Index>& nodes = part.surface.nodes();
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      part.seen.segment(static_cast<Index>(i) * d, d) = displacement.segment(nodes[i] * d, d);
+  }
+  if (any) ++looks_;
+}
+
+/// Looks at the motion against the mean one, which brings no two parts of the surface together.
+bool SelfWatch::is_due(const Part& part, double limit, const Vector& displacement) const {
+  const Index d = positions_.rows();
+  const std::vector<Index>& nodes = part.surface.nodes();
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  const auto moved = [&](std::size_t i, Index k) {
+    return displacement[nodes[i] * d + k] - part.seen[static_cast<Index>(i) * d + k];
+  };
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (Index k = 0; k < d; ++k) mean[k] += moved(i, k);
+  }
+  mean /= static_cast<double>(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    double squared = 0.0;
+    for (Index k = 0; k < d; ++k) squared += (moved(i, k) - mean[k]) * (moved(i, k) - mean[k]);
+    if (squared >= limit * limit) return true;
+  }
+  return false;
+}
+
+/// How far the farthest node has gone since the last look, beside the rigid motion that is nearest to that of the
+/// surface: a body that flies and spins has not come nearer to itself.
+double SelfWatch::strain_since(const Part& part, const Vector& displacement) const {
+  using Three = Eigen::Vector3d;
+  const Index d = positions_.rows();
+  const std::vector<Index>& nodes = part.surface.nodes();
+  const auto place = [&](std::size_t i, const Vector& of, Index first) {
+    Three result = Three::Zero();
+    result.head(d) = positions_.col(nodes[i]) + of.segment(first, d);
+    return result;
+  };
+  const auto before = [&](std::size_t i) { return place(i, part.seen, static_cast<Index>(i) * d); };
+  const auto after = [&](std::size_t i) { return place(i, displacement, nodes[i] * d); };
+  Three first = Three::Zero(), last = Three::Zero();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    first += before(i) / static_cast<double>(nodes.size());
+    last += after(i) / static_cast<double>(nodes.size());
+  }
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < nodes.size(); ++i) moments += (after(i) - last) * (before(i) - first).transpose();
+  if (d == 2) moments(2, 2) = moments.norm();
+  const Eigen::Matrix3d turn = orthogonal_factor(moments);
+  double longest = 0.0;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    longest = std::max(longest, (after(i) - last - turn * (before(i) - first)).norm());
+  return longest;
+}
+
+/// Surfaces that were farther apart at the last look than nodes have gone towards each other have not met since.
+void SelfWatch::enter_unseen(Part& part, const Vector& displacement) const {
+  const double way = strain_since(part, displacement);
+  if (2.0 * way > part.clearance) part.unseen = std::max(part.unseen, way / part.surface.edge_length());
+}
+
+double SelfWatch::unseen_motion() const {
+  double most = 0.0;
+  for (const Part& part : parts_) most = std::max(most, part.unseen);
+  return most;
+}
+
+void SelfWatch::look_at(std::size_t number, const Vector& displacement, double time, const NodeGaps& gaps) {
+  Part& part = parts_[number];
+  BodyInItself& known = found_[number];
+  part.surface.move(positions_, displacement);
+  const SelfOverlap overlap(part.surface, axisymmetric_);
+  const bool at_start = looks_ == 0;
+  part.clearance = std::numeric_limits<double>::infinity();
+  const Vector* gap = nullptr;
+  const std::vector<Index>& nodes = part.surface.nodes();
+  for (int node = 0; node < static_cast<int>(nodes.size()); ++node) {
+    const auto i = static_cast<std::size_t>(node);
+    if (part.is_left_out[i] != 0) continue;
+    double clearance = 0.0;
+    const auto found = overlap.at(node, &clearance);
+    // A contact of the body with itself keeps its nodes out whether or not they are looked at.
+    if (part.sides[i].empty()) part.clearance = std::min(part.clearance, clearance);
+    if (!found) continue;
+    const Eigen::Vector3d& position = part.surface.at(node);
+    const auto piece = static_cast<std::size_t>(found->other_piece);
+    double allowed =
+        rounding_of_depth * part.size + 2.0 * part.at_start[node] +
+        16.0 * std::numeric_limits<double>::epsilon() * position.lpNorm<Eigen::Infinity>() +
+        bend_of(part.facets[part.facet_of_piece[piece]], displacement) +
+        bend_of(part.facets[part.facet_of_piece[static_cast<std::size_t>(found->own_piece)]], displacement);
+    if (at_start && found->depth <= overlap_of_facets * part.surface.edge_length()) {
+      part.at_start[node] = found->depth;
+      continue;
+    }
+    const Side* const side = contact_at(part, node, found->other_piece);
+    if (side != nullptr) {
+      if (gap == nullptr) gap = &gaps();
+      const double here = side->entry >= 0 ? (*gap)[side->entry] : 0.0;
+      allowed += side->allowance + (here < 0.0 ? -here : 0.0);
+    }
+    if (found->depth <= allowed) continue;
+    if (side != nullptr) {
+      if (found->depth > known.at_contact.depth) known.contact = side->contact;
+      known.at_contact.enter(nodes[i], found->depth, time, position);
+    } else if (found->depth > known.deepest.depth) {
+      known.deepest.enter(nodes[i], found->depth, time, position);
+      known.own = nodes_of(part, found->own_piece);
+      known.through = nodes_of(part, found->other_piece);
+    }
+  }
+}
+
+const SelfWatch::Side* SelfWatch::contact_at(const Part& part, int node, int piece) {
+  for (const Side& side : part.sides[static_cast<std::size_t>(node)]) {
+    const auto faces = [&](int corner) {
+      if (corner < 0) return true;
+      const std::vector<Side>& there = part.sides[static_cast<std::size_t>(corner)];
+      return std::any_of(there.begin(), there.end(), [&](const Side& other) {
+        return other.contact == side.contact && ((side.own && other.opposite) || (side.opposite && other.own));
+      });
+    };
+    const BodySurface::Corners& corners = part.surface.pieces()[static_cast<std::size_t>(piece)];
+    if (std::all_of(corners.begin(), corners.end(), faces)) return &side;
+  }
+  return nullptr;
+}
+
+/// A quarter of what nodes of a facet of second order are away from where they are on a straight one, since pieces lead
+/// from node to node; what the nodes of a quadrilateral of first order are away from a plane.
+double SelfWatch::bend_of(const Facet& facet, const Vector& displacement) const {
+  const Index d = positions_.rows();
+  const auto at = [&](int k) {
+    Eigen::Vector3d result = Eigen::Vector3d::Zero();
+    const Index node = facet.nodes[static_cast<std::size_t>(k)];
+    result.head(d) = positions_.col(node) + displacement.segment(node * d, d);
+    return result;
+  };
+  const auto vertices = static_cast<std::size_t>(vertex_count(facet.shape));
+  if (facet.nodes.size() == vertices)
+    return facet.shape == CellShape::quadrilateral ? 0.25 * (at(0) - at(1) - at(2) + at(3)).norm() : 0.0;
+  const std::vector<std::vector<int>>& vertices_of = node_vertices(facet.shape, 2);
+  double most = 0.0;
+  for (std::size_t k = vertices; k < facet.nodes.size(); ++k) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const int v : vertices_of[k]) mean += at(v) / static_cast<double>(vertices_of[k].size());
+    most = std::max(most, (at(static_cast<int>(k)) - mean).norm());
+  }
+  return 0.25 * most;
+}
+
+std::array<Index, 3> SelfWatch::nodes_of(const Part& part, int piece) const {
+  std::array<Index, 3> result{-1, -1, -1};
+  const BodySurface::Corners& corners = part.surface.pieces()[static_cast<std::size_t>(piece)];
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (corners[k] >= 0) result[k] = part.surface.nodes()[static_cast<std::size_t>(corners[k])];
+  }
+  return result;
+}
+
+void SelfWatch::save(Snapshot& snapshot, const std::string& name) const {
+  Vector numbers(numbers_of_body * static_cast<Index>(found_.size()));
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    numbers.segment<numbers_of_body>(numbers_of_body * static_cast<Index>(k)) = to_numbers(found_[k]);
+    const std::string part = name + "." + std::to_string(k);
+    snapshot.save(part + ".at_start", parts_[k].at_start);
+    snapshot.save(part + ".seen", parts_[k].seen);
+    snapshot.save(part + ".unseen", Vector(Eigen::Vector2d(parts_[k].unseen, parts_[k].clearance)));
+  }
+  snapshot.save(name + ".found", numbers);
+  snapshot.save(name + ".saved", saved_);
+  snapshot.save(name + ".work", work_per_step_);
+  snapshot.save(name + ".looks", std::int64_t{looks_});
+}
+
+void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
+  const Vector& numbers = snapshot.reals(name + ".found", numbers_of_body * static_cast<Index>(found_.size()));
+  const auto nodes = static_cast<double>(positions_.cols());
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    const BodyNumbers of = numbers.segment<numbers_of_body>(numbers_of_body * static_cast<Index>(k));
+    BodyInItself& found = found_[k];
+    const auto rest = of.tail<7>();
+    const double node_at_contact = of[DeepestPoint::numbers];
+    const auto is_node = [&](double number) { return number >= -1.0 && number < nodes; };
+    const bool fits = of.allFinite() && is_node(of[0]) && is_node(node_at_contact) &&
+                      rest[0] >= (node_at_contact > -1.0 ? 0.0 : -1.0) && rest[0] < contacts_ &&
+                      std::all_of(rest.data() + 1, rest.data() + 7, is_node);
+    if (!fits) Snapshot::refuse(name + ".found", "has numbers that are none of this problem's nodes and contacts");
+    found.deepest = DeepestPoint::from_numbers(of.head<DeepestPoint::numbers>());
+    found.at_contact = DeepestPoint::from_numbers(of.segment<DeepestPoint::numbers>(DeepestPoint::numbers));
+    found.contact = static_cast<int>(rest[0]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      found.own[i] = static_cast<Index>(rest[1 + static_cast<Index>(i)]);
+      found.through[i] = static_cast<Index>(rest[4 + static_cast<Index>(i)]);
+    }
+    const std::string part = name + "." + std::to_string(k);
+    parts_[k].at_start = snapshot.reals(part + ".at_start", parts_[k].at_start.size());
+    parts_[k].seen = snapshot.reals(part + ".seen", parts_[k].seen.size());
+    if (!parts_[k].at_start.allFinite() || !(parts_[k].at_start.array() >= 0.0).all())
+      Snapshot::refuse(part + ".at_start", "has entries that are no depths");
+    if (!parts_[k].seen.allFinite()) Snapshot::refuse(part + ".seen", "is not finite");
+    const Vector& unseen = snapshot.reals(part + ".unseen", 2);
+    if (!(unseen[0] >= 0.0 && unseen[1] >= 0.0)) Snapshot::refuse(part + ".unseen", "has entries below zero");
+    parts_[k].unseen = unseen[0];
+    parts_[k].clearance = unseen[1];
+  }
+  saved_ = snapshot.real(name + ".saved");
+  if (!(saved_ >= 0.0) || !std::isfinite(saved_)) Snapshot::refuse(name + ".saved", "is no work");
+  // Infinite where every look that is due is taken.
+  work_per_step_ = snapshot.real(name + ".work");
+  if (!(work_per_step_ >= 0.0)) Snapshot::refuse(name + ".work", "is no work");
+  looks_ = snapshot.integer(name + ".looks");
+  if (looks_ < 0) Snapshot::refuse(name + ".looks", "is negative");
+}
+
+}  // namespace ricochet

@@ -1,0 +1,260 @@
+#include "ricochet/simulation/monitor/sliding_watch.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/simulation/monitor/facet_sizes.hpp"
+
+namespace ricochet {
+
+SlidingWatch::SlidingWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs)
+    : problem_(problem), pairs_(pairs), limit_(slip_limits(body, problem.contact, pairs)) {
+  const ContactBoundary& contact = problem.contact;
+  size_ = extent(problem.nodes);
+  for (std::size_t number = 0; number < pairs.size(); ++number) {
+    if (!pairs[number].has_two_sides()) continue;
+    if (pairs[number].slides_far) {
+      add_far_contact(static_cast<int>(number));
+      continue;
+    }
+    Largest largest;
+    largest.contact = static_cast<int>(number);
+    for (Index point = 0; point < contact.size(); ++point) {
+      if (contact.pair[static_cast<std::size_t>(point)] != largest.contact) continue;
+      points_.push_back(point);
+      at_.push_back(largest_.size());
+    }
+    largest_.push_back(largest);
+  }
+}
+
+void SlidingWatch::add_far_contact(int number) {
+  const ContactBoundary& contact = problem_.contact;
+  const Index d = problem_.dimension;
+  const Vector stiffness = problem_.internal_force->stiffness_diagonal();
+  FarContact& far = far_.emplace_back();
+  far.contact = number;
+  far.is_self = pairs_[static_cast<std::size_t>(number)].is_self();
+  for (Index point = 0; point < contact.size(); ++point) {
+    if (!contact.slides(point) || contact.pair[static_cast<std::size_t>(point)] != number) continue;
+    // The nodes of the point along its row, as the row moves them, and all others at rest: of the other side, too.
+    double sum = 0.0, squares = 0.0;
+    contact.visit_own_nodes(point, [&](Index node, double weight) {
+      sum += weight * weight * stiffness.segment(node * d, d).maxCoeff();
+      squares += weight * weight;
+    });
+    far.points.push_back(point);
+    far.stiffness.push_back(squares > 0.0 ? sum / (squares * squares) : 0.0);
+  }
+}
+
+/// Of the mean vector across the gap what is along the surface: where facets were paired it is along the normal.
+double SlidingWatch::slip_of(Index point, const State& state) const {
+  const Index d = problem_.dimension;
+  SpaceVector apart = SpaceVector::Zero(d);
+  problem_.contact.visit_nodes(point, [&](Index node, double weight) {
+    apart += weight * (problem_.nodes.col(node) + state.displacement.segment(node * d, d));
+  });
+  const SpaceVector normal = state.forces.rows->normal(point);
+  return (apart - apart.dot(normal) * normal).norm();
+}
+
+/// A held step leaves a gap, or an overlap, at points that carry a force.
+void SlidingWatch::look_at_far_contacts(const State& state) {
+  tell_of_held(state);
+  if (state.step == 0) return;
+  const bool has_held = problem_.contact.geometry->has_held();
+  if (has_held) problem_.gaps(state.displacement, state.time, gap_);
+  for (FarContact& contact : far_) {
+    double force = 0.0;
+    for (const Index point : contact.points) force += std::max(0.0, state.forces.normal_reaction[point]);
+    contact.largest_force = std::max(contact.largest_force, force);
+    if (!has_held) continue;
+    enter(contact, state);
+    if (contact.is_told || contact.share() <= UnsettledContact::doubtful) continue;
+    contact.is_told = true;
+    tell(contact);
+  }
+}
+
+/// Enters a contact with the gaps at the end of a step. (Of a surface that touches itself others stand for points
+/// without a force.)
+void SlidingWatch::enter(FarContact& contact, const State& state) const {
+  constexpr double settled = 1e-9;
+  double force = 0.0, missing = 0.0;
+  Index widest = -1;
+  for (std::size_t i = 0; i < contact.points.size(); ++i) {
+    const Index point = contact.points[i];
+    const double reaction = state.forces.normal_reaction[point], gap = gap_[point];
+    if (std::abs(gap) <= settled * size_ || gap >= problem_.contact.out_of_sight) continue;
+    if (!(reaction > 0.0) && (gap > 0.0 || contact.is_self)) continue;
+    if (gap > 0.0) force += reaction;
+    if (gap < 0.0) missing -= gap * contact.stiffness[i];
+    if (widest < 0 || std::abs(gap) > std::abs(gap_[widest])) widest = point;
+  }
+  if (widest < 0) return;
+  if (contact.steps++ == 0) contact.first_time = state.time;
+  if (!(force + missing > contact.force)) return;
+  contact.force = force + missing;
+  contact.missing = missing;
+  contact.time = state.time;
+  contact.gap = gap_[widest];
+  contact.point = widest;
+}
+
+void SlidingWatch::tell(const FarContact& contact) const {
+  const ContactPair& pair = pairs_[static_cast<std::size_t>(contact.contact)];
+  log::warning(fmt::format(
+      "at t = {:.6g} what faces what of \"{}\" and \"{}\" changed from one iteration of the step to the next, and was "
+      "held: points are left at gaps of up to {:.3g}, as at ({:.4g}) (reference position), which nothing closes while "
+      "they "
+      "are pressed, and up to {:.3g} % of the force of this contact is at stake. No energy is made of that. The column "
+      "unsettled_gap has the gap for every step, \"unsettled_contacts\" in summary.json the largest share of the force",
+      contact.time, pair.first_group(), pair.second_group(), contact.gap, fmt::join(place_of(contact.point), ", "),
+      100.0 * contact.share()));
+}
+
+/// Warns of the first held step, whatever it leaves.
+void SlidingWatch::tell_of_held(const State& state) {
+  if (has_told_held_ || !problem_.contact.geometry->has_held()) return;
+  has_told_held_ = true;
+  log::warning(
+      fmt::format("at t = {:.6g} what faces what of bodies that slide far changed from one iteration of a step to the "
+                  "next, and was held: forces of such steps give no energy, but have a moment, which the angular "
+                  "momentum of free bodies shows",
+                  state.time));
+}
+
+void SlidingWatch::look(const State& state) {
+  if (!far_.empty()) look_at_far_contacts(state);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Index point = points_[i];
+    if (!(state.forces.normal_reaction[point] > 0.0)) continue;
+    Largest& largest = largest_[at_[i]];
+    const double slip = slip_of(point, state);
+    if (!(slip > largest.ratio * limit_[point])) continue;
+    largest.ratio = slip / limit_[point];
+    largest.slip = slip;
+    largest.limit = limit_[point];
+    largest.time = state.time;
+    largest.point = point;
+  }
+  for (Largest& largest : largest_) {
+    if (largest.is_beyond || !(largest.ratio > 1.0)) continue;
+    largest.is_beyond = true;
+    largest.time_beyond = largest.time;
+    tell(largest);
+  }
+}
+
+std::vector<double> SlidingWatch::place_of(Index point) const {
+  Vector place = Vector::Zero(problem_.dimension);
+  if (point >= 0)
+    problem_.contact.visit_own_nodes(point,
+                                     [&](Index node, double weight) { place += weight * problem_.nodes.col(node); });
+  return {place.data(), place.data() + place.size()};
+}
+
+void SlidingWatch::tell(const Largest& largest) const {
+  const ContactPair& pair = pairs_[static_cast<std::size_t>(largest.contact)];
+  log::warning(fmt::format(
+      "at t = {:.6g} the bodies of \"{}\" and \"{}\" have slid along each other by {:.3g} at ({:.4g}) (reference "
+      "position), more than half of the smaller facet there ({:.3g}): a contact between bodies keeps the facets "
+      "together that faced each other {}, and from here on its pressures act at other places than those that touch; "
+      "set sliding = \"large\" in this [[contact]], limit the motion, or pair the bodies with pair_at where they are "
+      "pressed",
+      largest.time, pair.first_group(), pair.second_group(), largest.slip, fmt::join(place_of(largest.point), ", "),
+      largest.limit, pair.pair_at.size() > 0 ? "at pair_at" : "at the start"));
+}
+
+std::vector<PairSliding> SlidingWatch::report() const {
+  std::vector<PairSliding> result;
+  for (const Largest& largest : largest_) {
+    PairSliding pair;
+    pair.contact = largest.contact;
+    pair.slip = largest.slip;
+    pair.limit = largest.limit;
+    pair.time = largest.time;
+    if (largest.point >= 0) pair.place = place_of(largest.point);
+    if (largest.is_beyond) pair.time_beyond = largest.time_beyond;
+    result.push_back(pair);
+  }
+  return result;
+}
+
+std::vector<UnsettledContact> SlidingWatch::unsettled() const {
+  std::vector<UnsettledContact> result;
+  for (const FarContact& far : far_) {
+    if (far.steps == 0) continue;
+    result.push_back({far.contact, far.share(), far.steps, far.first_time, far.time, far.gap, place_of(far.point)});
+  }
+  return result;
+}
+
+void SlidingWatch::save(Snapshot& snapshot, const std::string& name) const {
+  Vector numbers(7 * static_cast<Index>(largest_.size()));
+  for (std::size_t i = 0; i < largest_.size(); ++i) {
+    const Largest& largest = largest_[i];
+    numbers.segment<7>(7 * static_cast<Index>(i)) << largest.ratio, largest.slip, largest.limit, largest.time,
+        largest.time_beyond, static_cast<double>(largest.point), largest.is_beyond ? 1.0 : 0.0;
+  }
+  snapshot.save(name, numbers);
+  snapshot.save(name + ".has_told", std::int64_t{has_told_held_ ? 2 : 0});
+  Vector far(9 * static_cast<Index>(far_.size()));
+  for (std::size_t i = 0; i < far_.size(); ++i) {
+    const FarContact& each = far_[i];
+    far.segment<9>(9 * static_cast<Index>(i)) << each.largest_force, each.force, static_cast<double>(each.steps),
+        each.first_time, each.time, each.gap, static_cast<double>(each.point), each.is_told ? 1.0 : 0.0, each.missing;
+  }
+  snapshot.save(name + ".far", far);
+}
+
+/// Loads nothing from checkpoints of earlier versions, which have nothing of contacts that slide far.
+void SlidingWatch::load_far(const Snapshot& snapshot, const std::string& name) {
+  if (!snapshot.has(name)) return;
+  const Vector& numbers = snapshot.reals(name, 9 * static_cast<Index>(far_.size()));
+  for (std::size_t i = 0; i < far_.size(); ++i) {
+    const auto of = numbers.segment<9>(9 * static_cast<Index>(i));
+    const bool fits = of.allFinite() && of[2] >= 0.0 && of[2] < 1e15 && of[6] >= -1.0 &&
+                      of[6] < static_cast<double>(problem_.contact.size()) && of[6] == std::floor(of[6]) &&
+                      (of[7] == 0.0 || of[7] == 1.0);
+    if (!fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of sliding is damaged");
+    FarContact& far = far_[i];
+    far.largest_force = of[0];
+    far.force = of[1];
+    far.steps = static_cast<long>(of[2]);
+    far.first_time = of[3];
+    far.time = of[4];
+    far.gap = of[5];
+    far.point = static_cast<Index>(of[6]);
+    far.is_told = of[7] != 0.0;
+    far.missing = of[8];
+  }
+}
+
+void SlidingWatch::load(const Snapshot& snapshot, const std::string& name) {
+  const Vector& numbers = snapshot.reals(name, 7 * static_cast<Index>(largest_.size()));
+  has_told_held_ = (snapshot.integer(name + ".has_told") & 2) != 0;
+  load_far(snapshot, name + ".far");
+  for (std::size_t i = 0; i < largest_.size(); ++i) {
+    const auto of = numbers.segment<7>(7 * static_cast<Index>(i));
+    const bool fits = of.allFinite() && of[5] >= -1.0 && of[5] < static_cast<double>(problem_.contact.size()) &&
+                      of[5] == std::floor(of[5]) && (of[6] == 0.0 || of[6] == 1.0);
+    if (!fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of sliding is damaged");
+    Largest& largest = largest_[i];
+    largest.ratio = of[0];
+    largest.slip = of[1];
+    largest.limit = of[2];
+    largest.time = of[3];
+    largest.time_beyond = of[4];
+    largest.point = static_cast<Index>(of[5]);
+    largest.is_beyond = of[6] != 0.0;
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,226 @@
+#include "ricochet/simulation/monitor/stress_raisers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace ricochet {
+
+namespace {
+
+constexpr double right_angle = 0.5 * std::numbers::pi;
+/// A support on this much of a direction does not count as one along it.
+constexpr double nearly_across = 0.05;
+/// The free angle beside a clamped face from which the stress at the border is infinite, for common Poisson's ratios.
+constexpr double clamped_angle = std::numbers::pi / 3.0;
+/// Change of an obstacle's normal over two cells, from which it is sharp for this mesh: that of 30°.
+constexpr double sharp_change = 0.52;
+
+/// Returns the raiser to report where both are present: the earlier enumerator.
+StressRaiser stronger(StressRaiser a, StressRaiser b) {
+  if (a == StressRaiser::none || b == StressRaiser::none) return std::max(a, b);
+  return std::min(a, b);
+}
+
+}  // namespace
+
+std::string name_of(StressRaiser raiser) {
+  static const std::array<std::string, stress_raisers> names{"", "a re-entrant edge of the body",
+                                                             "the edge of a support", "a sharp edge in contact",
+                                                             "contact with a sharp edge of an obstacle"};
+  return names[static_cast<std::size_t>(raiser)];
+}
+
+StressRaisers::StressRaisers(const Body& body, const SemidiscreteProblem& problem,
+                             const std::vector<ContactPair>& pairs, const BodiesOfMesh& bodies)
+    : body_(body), problem_(problem), bodies_(bodies) {
+  const auto count = static_cast<std::size_t>(body.space->node_count());
+  of_node_.assign(count, StressRaiser::none);
+  touching_.assign(count, 0);
+  for (const ContactPair& pair : pairs) {
+    if (pair.tied) continue;
+    const char kind = pair.between_bodies() || pair.friction.any() ? 2 : 1;
+    for (const std::vector<Index>* const facets : {&pair.facets, &pair.opposite_facets}) {
+      for (const Index node : facet_nodes(*body.space, *facets))
+        touching_[static_cast<std::size_t>(node)] = std::max(touching_[static_cast<std::size_t>(node)], kind);
+    }
+  }
+  std::vector<std::vector<Index>> facets;
+  for (const CellFacet& facet : bodies.boundary) {
+    facets.push_back(nodes_of_facet(body.space->cells, facet));
+    facet_held_.push_back(held(facets.back()));
+    facet_touches_.push_back(std::all_of(facets.back().begin(), facets.back().end(),
+                                         [this](Index node) { return touching_[static_cast<std::size_t>(node)] != 0; })
+                                 ? 1
+                                 : 0);
+  }
+  for (const Ridge& ridge : boundary_ridges(body, bodies.boundary)) judge(ridge);
+  reach_neighbours();
+  std::sort(contact_edges_.begin(), contact_edges_.end(),
+            [](const ContactEdge& a, const ContactEdge& b) { return a.node < b.node; });
+  contact_edges_.erase(std::unique(contact_edges_.begin(), contact_edges_.end(),
+                                   [](const ContactEdge& a, const ContactEdge& b) { return a.node == b.node; }),
+                       contact_edges_.end());
+  for (std::size_t facet = 0; facet < facets.size(); ++facet) {
+    if (facet_touches_[facet] == 0) continue;
+    for (const Index node : facets[facet]) {
+      const auto edge = std::lower_bound(contact_edges_.begin(), contact_edges_.end(), node,
+                                         [](const ContactEdge& a, Index b) { return a.node < b; });
+      if (edge != contact_edges_.end() && edge->node == node)
+        edge->beside.insert(edge->beside.end(), facets[facet].begin(), facets[facet].end());
+    }
+  }
+}
+
+/// Components that supports hold at all of some nodes, one bit each.
+unsigned StressRaisers::held(Nodes nodes) const {
+  const int d = problem_.dimension;
+  unsigned result = (1U << static_cast<unsigned>(d)) - 1U;
+  for (const Index node : nodes) {
+    for (int k = 0; k < d; ++k) {
+      if (!problem_.supports.contains(node * d + k)) result &= ~(1U << static_cast<unsigned>(k));
+    }
+  }
+  return result;
+}
+
+StressRaisers::Hold StressRaisers::hold_of(unsigned held, const Eigen::Vector3d& normal) const {
+  if (held == 0) return Hold::free;
+  int along = 0, across = 0;
+  for (int k = 0; k < problem_.dimension; ++k) {
+    if ((held >> static_cast<unsigned>(k) & 1U) == 0) continue;
+    const double part = std::abs(normal[k]);
+    if (part <= nearly_across) {
+      ++across;
+    } else if (part * part >= 1.0 - nearly_across * nearly_across) {
+      ++along;
+    } else {
+      return Hold::fixed;
+    }
+  }
+  const bool is_mirror = (along == 1 && across == 0) || (along == 0 && across == problem_.dimension - 1);
+  return is_mirror ? Hold::mirror : Hold::fixed;
+}
+
+void StressRaisers::mark(const Ridge& ridge, StressRaiser raiser) {
+  for (const Index node : ridge.nodes) {
+    StressRaiser& known = of_node_[static_cast<std::size_t>(node)];
+    known = stronger(known, raiser);
+  }
+}
+
+void StressRaisers::judge(const Ridge& ridge) {
+  std::array<Hold, 2> hold;
+  for (std::size_t k = 0; k < 2; ++k) hold[k] = hold_of(facet_held_[ridge.facets[k]], ridge.normals[k]);
+  if (hold[0] == Hold::mirror && hold[1] == Hold::mirror) return;
+  const bool is_mirrored = hold[0] == Hold::mirror || hold[1] == Hold::mirror;
+  // With its mirror image the body has twice the angle.
+  const double turn = is_mirrored ? 2.0 * (ridge.turn - right_angle) : ridge.turn;
+  const bool sharp = is_sharp(turn, ridge.nearby);
+  const bool is_clamp_end = !is_mirrored && hold[0] != hold[1];
+  if (is_clamp_end && std::numbers::pi - turn > clamped_angle) {
+    mark(ridge, StressRaiser::support_edge);
+  } else if (sharp && turn < 0.0) {
+    mark(ridge, is_mirrored ? StressRaiser::support_edge : StressRaiser::reentrant_edge);
+  } else if (sharp && (facet_touches_[ridge.facets[0]] != 0 || facet_touches_[ridge.facets[1]] != 0)) {
+    for (const Index node : ridge.nodes)
+      contact_edges_.push_back({node, touching_[static_cast<std::size_t>(node)] == 2, {}});
+  }
+}
+
+/// Takes in the nodes beside those of raisers: the mean of the cell in a corner is often less than that of the next
+/// one.
+void StressRaisers::reach_neighbours() {
+  const std::vector<StressRaiser> own = of_node_;
+  each_cell(body_.space->cells, [&](Index, Nodes nodes) {
+    StressRaiser first = StressRaiser::none;
+    for (const Index node : nodes) first = stronger(first, own[static_cast<std::size_t>(node)]);
+    for (const Index node : nodes) {
+      StressRaiser& known = of_node_[static_cast<std::size_t>(node)];
+      known = stronger(known, first);
+    }
+  });
+}
+
+SpaceVector StressRaisers::position(const State& state, Index node) const {
+  const Index d = problem_.dimension;
+  return problem_.nodes.col(node) + state.displacement.segment(node * d, d);
+}
+
+void StressRaisers::find_pressed(const State& state) {
+  pressed_.assign(of_node_.size(), 0);
+  const Vector& reaction = state.forces.normal_reaction;
+  for (Index point = 0; point < reaction.size(); ++point) {
+    if (!(reaction[point] > 0.0)) continue;
+    state.forces.rows->visit_normal(point, [&](Index dof, double value) {
+      const auto node = static_cast<std::size_t>(dof / problem_.dimension);
+      if (value != 0.0 && node < pressed_.size()) pressed_[node] = 1;
+    });
+  }
+}
+
+/// The edge of another body lies on this one, as where equal faces meet: neither presses into the other.
+bool StressRaisers::is_flush(const State& state, Index node, double size) const {
+  const SpaceVector at = position(state, node);
+  return std::any_of(contact_edges_.begin(), contact_edges_.end(), [&](const ContactEdge& other) {
+    return other.node != node && (position(state, other.node) - at).norm() <= 1e-3 * size;
+  });
+}
+
+/// Looks at edges within the size of the cell around its nodes, those of other bodies around its pressed ones.
+bool StressRaisers::presses_by_edge(const State& state, Nodes nodes, double size) const {
+  const std::vector<int>& body_of = bodies_.connected.of_node;
+  const auto body = [&](Index node) { return body_of[static_cast<std::size_t>(node)]; };
+  const auto presses = [this](Index node) { return pressed_[static_cast<std::size_t>(node)] != 0; };
+  const auto is_near = [&](Index edge) {
+    const bool is_own = body(edge) == body(nodes.front());
+    return std::any_of(nodes.begin(), nodes.end(), [&](Index node) {
+      return (is_own || presses(node)) && (position(state, node) - position(state, edge)).norm() <= size;
+    });
+  };
+  return std::any_of(contact_edges_.begin(), contact_edges_.end(), [&](const ContactEdge& edge) {
+    if (!presses(edge.node) || !is_near(edge.node) || is_flush(state, edge.node, size)) return false;
+    return edge.is_open_ended || !std::all_of(edge.beside.begin(), edge.beside.end(), presses);
+  });
+}
+
+/// The obstacle's normal turns from side to side as at a bulge that cells of this size cannot follow.
+bool StressRaisers::touches_sharp_obstacle(const State& state, Nodes nodes, double size) const {
+  const ContactBoundary& contact = problem_.contact;
+  const int d = problem_.dimension;
+  for (std::size_t entry = 0; entry < contact.nodes.size(); ++entry) {
+    const Index node = contact.nodes[entry];
+    if (pressed_[static_cast<std::size_t>(node)] == 0 || std::find(nodes.begin(), nodes.end(), node) == nodes.end())
+      continue;
+    const Obstacle* const obstacle = problem_.obstacles[static_cast<std::size_t>(contact.node_pair[entry])];
+    if (obstacle == nullptr || obstacle->shape().is_flat()) continue;
+    const PlacedObstacle placed = obstacle->at(state.time, state.displacement);
+    const SpaceVector at = position(state, node), normal = placed.normal(at);
+    for (int axis = 0; axis < d; ++axis) {
+      SpaceVector side = SpaceVector::Unit(d, axis);
+      side -= side.dot(normal) * normal;
+      if (side.norm() < 0.5) continue;
+      side.normalize();
+      if ((placed.normal(at + size * side) - placed.normal(at - size * side)).dot(side) > sharp_change) return true;
+    }
+  }
+  return false;
+}
+
+StressRaiser StressRaisers::at(const State& state, Index cell) {
+  const PlaceInBlocks place = locate_cell(*body_.space, cell);
+  const CellBlock& block = body_.space->cells[place.block];
+  const Nodes nodes(block.cell(place.local), static_cast<std::size_t>(block.nodes_per_cell));
+  StressRaiser first = StressRaiser::none;
+  for (const Index node : nodes) first = stronger(first, of_node_[static_cast<std::size_t>(node)]);
+  if (first != StressRaiser::none || state.forces.normal_reaction.size() == 0) return first;
+  double size = 0.0;
+  for (const Index node : nodes)
+    size = std::max(size, (problem_.nodes.col(node) - problem_.nodes.col(nodes.front())).norm());
+  find_pressed(state);
+  if (presses_by_edge(state, nodes, size)) return StressRaiser::contact_edge;
+  return touches_sharp_obstacle(state, nodes, size) ? StressRaiser::obstacle_edge : StressRaiser::none;
+}
+
+}  // namespace ricochet

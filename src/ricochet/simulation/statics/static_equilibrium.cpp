@@ -1,0 +1,308 @@
+#include "ricochet/simulation/statics/static_equilibrium.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/fem/displacement_space.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/simulation/statics/held_bodies.hpp"
+#include "ricochet/simulation/statics/rigid_equilibrium.hpp"
+#include "ricochet/simulation/statics/starting_stage.hpp"
+#include "ricochet/solver/step_solver.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Part of the loads that the test of an equilibrium may leave unbalanced (in places: see below), with room to spare. A
+/// body of which more is unbalanced is refused at once.
+constexpr double clearly_unbalanced = 1e-4;
+
+double lowest_local_frequency_squared(const SemidiscreteProblem& problem) {
+  const Vector stiffness = problem.internal_force->stiffness_diagonal();
+  const Vector mass = problem.mass.diagonal();
+  double lowest = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < mass.size(); ++i) {
+    if (mass[i] > 0.0) lowest = std::min(lowest, stiffness[i] / mass[i]);
+  }
+  return lowest;
+}
+
+/// Tells rounding from a force that still moves the body.
+class EquilibriumTest {
+ public:
+  explicit EquilibriumTest(const SemidiscreteProblem& problem)
+      : EquilibriumTest(problem, problem.internal_force->tangent()) {}
+
+  /// True when what is left is rounding of the internal forces' terms, and small beside the loads that act.
+  [[nodiscard]] bool passed(const Vector& displacement, const Vector& left_over) const {
+    Vector deformation;
+    rigid_.remove(displacement, deformation);
+    const double terms = largest(problem_, magnitude_ * deformation.cwiseAbs()) + load_;
+    const double left = largest(problem_, left_over);
+    return left <= 1e-13 * terms && (load_ == 0.0 || left <= 1e-6 * load_);
+  }
+
+ private:
+  EquilibriumTest(const SemidiscreteProblem& problem, const SparseMatrix& stiffness)
+      : problem_(problem), magnitude_(stiffness.cwiseAbs()), rigid_(problem.nodes, stiffness) {
+    Vector load;
+    problem.loads.total(0.0, load);
+    load_ = largest(problem, load);
+  }
+
+  const SemidiscreteProblem& problem_;
+  SparseMatrix magnitude_;  ///< |K|
+  RigidMotion rigid_;
+  double load_ = 0.0;  ///< the largest
+};
+
+/// Friction in a static equilibrium. Where a point is at rest relative to its obstacle, the slip is its displacement
+/// from the undeformed body, as if the loads had been applied in one increment. Where it slides, friction has the
+/// direction of that sliding; a body that friction would then accelerate has no equilibrium but one without it.
+class StaticFriction {
+ public:
+  StaticFriction(const SemidiscreteProblem& problem, const Vector& velocity) : problem_(problem) {
+    if (!problem.contact.has_friction()) return;
+    Stage stage = contact_stage(problem, Vector::Zero(problem.dof_count()), {});
+    observe_obstacles(problem, Vector::Zero(problem.dof_count()), {}, stage);
+    require_friction(problem, velocity, 1.0, stage);
+    slide_.setZero(stage.slip_offset.size());
+    sliding_.assign(static_cast<std::size_t>(problem.contact.size()), 0);
+    const double size = extent(problem.nodes);
+    for (Index i = 0; i < problem.contact.size(); ++i) {
+      const Vector rate = stage.slip_offset.segment(i * tangents(), tangents());
+      const bool is_rough = problem.contact.friction_coefficient[i] > 0.0 || problem.contact.friction_bound[i] > 0.0;
+      if (!is_rough || rate.lpNorm<1>() <= stage.slip_offset_rounding[i]) continue;
+      slide_.segment(i * tangents(), tangents()) = (size / rate.norm()) * rate;
+      sliding_[static_cast<std::size_t>(i)] = 1;
+    }
+    if (problem.contact.follows_motion() && sliding_points() > 0) {
+      throw Error(
+          ErrorKind::invalid_input,
+          "initial.displacement = \"static\": friction on a curved obstacle that moves at t = 0 is not available "
+          "in a static start: let the obstacle rest, leave friction out, or give the displacement by expressions");
+    }
+  }
+
+  [[nodiscard]] const std::vector<char>& sliding() const { return sliding_; }
+  [[nodiscard]] Index sliding_points() const { return std::count(sliding_.begin(), sliding_.end(), 1); }
+  void leave_out_sliding() { left_out_ = true; }
+
+  void require(const Vector& displacement, Stage& stage) const {
+    if (!problem_.contact.has_friction()) return;
+    require_friction(problem_, displacement, 1.0, stage);
+    if (left_out_) stage.frictionless = sliding_;
+    // Increments vanish at the equilibrium, and beside them only the slide is left: its direction is that of friction.
+    for (std::size_t i = 0; i < sliding_.size(); ++i) {
+      const Index first = static_cast<Index>(i) * tangents();
+      if (sliding_[i] != 0) stage.slip_offset.segment(first, tangents()) = slide_.segment(first, tangents());
+    }
+  }
+
+ private:
+  [[nodiscard]] Index tangents() const { return problem_.dimension - 1; }
+
+  const SemidiscreteProblem& problem_;
+  std::vector<char> sliding_;  ///< per contact point
+  Vector slide_;               ///< by the size of the body, where it slides
+  bool left_out_ = false;
+};
+
+/// Proximal point iterations: (εM + K) δ = L − K U + Gᵀr, then U += δ.
+class ProximalPoint {
+ public:
+  /// ε as a fraction of the least K_ii/M_ii: of the softest region, where stiffnesses differ.
+  ProximalPoint(const SemidiscreteProblem& problem, const StaticFriction& friction, double fraction,
+                const StepSolverOptions& options)
+      : problem_(problem),
+        friction_(friction),
+        epsilon_(fraction * lowest_local_frequency_squared(problem)),
+        solver_(make_step_solver(problem, {{epsilon_, 1.0, 0.0, StageDofs::all}}, options)) {
+    problem.supports.values(0.0, supported_);
+  }
+
+  void iterate(StaticEquilibrium& at) {
+    Stage stage = contact_stage(problem_, at.displacement, residual_force(problem_, at.displacement, Vector()));
+    for (Index i = 0; i < problem_.supports.size(); ++i) {
+      stage.prescribed[i] = supported_[i] - at.displacement[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
+    }
+    friction_.require(at.displacement, stage);
+    solver_->solve(0, stage, solution_);
+    at.displacement += solution_.increment;
+    at.normal_reaction = solution_.normal_reaction;
+    problem_.mass.multiply(solution_.increment, left_over_);
+    left_over_ *= epsilon_;
+    for (const Index dof : problem_.supports.dofs()) left_over_[dof] = 0.0;
+  }
+
+  /// The force that is not in equilibrium yet.
+  [[nodiscard]] const Vector& left_over() const { return left_over_; }
+  [[nodiscard]] double largest_left_over() const { return largest(problem_, left_over_); }
+
+ private:
+  const SemidiscreteProblem& problem_;
+  const StaticFriction& friction_;
+  double epsilon_;
+  std::unique_ptr<StepSolver> solver_;
+  StageSolution solution_;
+  Vector supported_, left_over_;
+};
+
+/// What to think of first where friction is involved.
+std::string role_of_friction(const SemidiscreteProblem& problem, const StaticFriction& friction) {
+  if (friction.sliding_points() > 0) return ", and friction does not hold points that slide at t = 0";
+  return problem.contact.has_friction() ? ", and contact with friction does not hold it (it slides or tips)" : "";
+}
+
+std::string as_text(const Vector& vector) {
+  std::string text;
+  for (const double component : vector) text += fmt::format("{}{:.3g}", text.empty() ? "" : ", ", component);
+  return "(" + text + ")";
+}
+
+/// A body that no reactions can hold has no equilibrium, whatever an iteration might say.
+[[noreturn]] void refuse_unheld(const SemidiscreteProblem& problem, const StaticFriction& friction,
+                                const UnheldMotion& motion) {
+  std::string how = "turns or tips over: a moment has";
+  if (!motion.force.isZero(0.0)) {
+    how = fmt::format("{} in the direction {}: a force of {} has", motion.slides ? "slides" : "moves",
+                      as_text(motion.force.normalized()), as_text(motion.force));
+  }
+  throw Error(
+      ErrorKind::invalid_input,
+      fmt::format("initial.displacement = \"static\": there is no equilibrium under the loads at t = 0: the body "
+                  "around {} {} nothing to balance it{}; add a [[support]] that holds it in the direction in "
+                  "which it moves or turns{}, or give the displacement by expressions",
+                  as_text(motion.centre), how, role_of_friction(problem, friction),
+                  motion.slides ? ", raise the friction" : ""));
+}
+
+[[noreturn]] void refuse_static(const SemidiscreteProblem& problem, const StaticFriction& friction,
+                                const Vector& left_over) {
+  Vector load;
+  problem.loads.total(0.0, load);
+  Vector resultant = Vector::Zero(problem.dimension);
+  for (Index node = 0; node < problem.nodes.cols(); ++node) {
+    resultant += left_over.segment(node * problem.dimension, problem.dimension);
+  }
+  const std::string force = fmt::format("({:.3g}, {:.3g}{})", resultant[0], resultant[1],
+                                        resultant.size() == 3 ? fmt::format(", {:.3g}", resultant[2]) : "");
+  if (largest(problem, left_over) <= 1e-3 * largest(problem, load) || all_are_held_by_supports(problem)) {
+    throw Error(
+        ErrorKind::not_converged,
+        fmt::format("initial.displacement = \"static\": the equilibrium was not found to rounding; a force of {:.2g} "
+                    "of the largest load is left. {}tiffnesses that differ by many orders of magnitude or very slender "
+                    "bodies are likely causes; give the displacement by expressions instead",
+                    largest(problem, left_over) / largest(problem, load),
+                    problem.contact.has_friction() ? "Friction that just does not hold the body, s" : "S"));
+  }
+  throw Error(
+      ErrorKind::invalid_input,
+      fmt::format("initial.displacement = \"static\": there is no equilibrium under the loads at t = 0: a resultant "
+                  "force of {} still moves the body{}; add a [[support]] in the direction in which it is free to move "
+                  "or turn, or give the displacement by expressions",
+                  force, role_of_friction(problem, friction)));
+}
+
+/// Iterates until the test is passed. False after many iterations or, with `give_up_early`, as soon as the force left
+/// over is no longer reduced.
+bool converges(ProximalPoint& point, const EquilibriumTest& test, bool give_up_early, StaticEquilibrium& at) {
+  constexpr int rounds = 60;
+  double before = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < rounds; ++k) {
+    point.iterate(at);
+    if (test.passed(at.displacement, point.left_over())) return true;
+    const double now = point.largest_left_over();
+    if (give_up_early && k >= 5 && now > 0.95 * before) return false;
+    before = now;
+  }
+  return false;
+}
+
+/// The equilibrium by proximal point iterations. ε well below the lowest elastic frequency squared converges in a few
+/// of them, wherever the body has to go. Slender or very uneven bodies have lower frequencies: ε is taken down while
+/// the iteration stalls. Friction starts with a larger one: where it is all that holds the body, a small ε leaves a
+/// condensed operator on which stick and slip of single points hardly show beside the rigid motion.
+bool find_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& friction, const EquilibriumTest& test,
+                      const StepSolverOptions& options, StaticEquilibrium& at, Vector& left_over) {
+  for (const double fraction : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
+    if (fraction > 1e-8 && !problem.contact.has_friction()) continue;
+    ProximalPoint point(problem, friction, fraction, options);
+    if (converges(point, test, false, at)) return true;
+    left_over = point.left_over();
+  }
+  return false;
+}
+
+/// As find_equilibrium, for a body that slides: most have none.
+bool find_sliding_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& friction,
+                              const EquilibriumTest& test, const StepSolverOptions& options, StaticEquilibrium& at) {
+  ProximalPoint point(problem, friction, 1e-4, options);
+  try {
+    return converges(point, test, true, at);
+  } catch (const Error& problem_of_contact) {
+    if (problem_of_contact.kind() != ErrorKind::not_converged) throw;
+    return false;
+  }
+}
+
+}  // namespace
+
+StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess, const Vector& velocity,
+                                     const StepSolverOptions& step_options) {
+  require_linear(*problem.internal_force, "initial.displacement = \"static\"");
+  // Without inertia iterations converge badly, and not at all where contact alone holds a body: a factor where it fits.
+  StepSolverOptions options = step_options;
+  if (options.method == SolverMethod::iterative) options.method = SolverMethod::automatic;
+  options.solves = 0;
+  const StaticEquilibrium start{guess, Vector::Zero(problem.contact.size())};
+  StaticEquilibrium result = start;
+  StaticFriction friction(problem, velocity);
+  const EquilibriumTest test(problem);
+  const auto held = [&](const std::vector<char>& frictionless) -> std::optional<UnheldMotion> {
+    // Where normals follow the motion, those at the start do not tell what holds the body where it comes to rest.
+    if (problem.contact.follows_motion()) return {};
+    const std::optional<UnheldMotion> unheld = find_unheld_motion(problem, frictionless);
+    if (unheld && unheld->unbalanced > clearly_unbalanced) refuse_unheld(problem, friction, *unheld);
+    return unheld;
+  };
+  std::optional<UnheldMotion> unheld = held({});
+  bool found = friction.sliding_points() > 0 && find_sliding_equilibrium(problem, friction, test, options, result);
+  if (!found) {
+    if (friction.sliding_points() > 0) unheld = held(friction.sliding());
+    result = start;
+    friction.leave_out_sliding();
+    Vector left_over;
+    try {
+      found = find_equilibrium(problem, friction, test, options, result, left_over);
+    } catch (const Error& problem_of_contact) {
+      if (problem_of_contact.kind() != ErrorKind::not_converged) throw;
+      if (unheld) refuse_unheld(problem, friction, *unheld);
+      throw Error(ErrorKind::not_converged,
+                  fmt::format("initial.displacement = \"static\": {}; there may be no equilibrium{}",
+                              problem_of_contact.what(), role_of_friction(problem, friction)));
+    }
+    if (!found && unheld) refuse_unheld(problem, friction, *unheld);
+    if (!found) refuse_static(problem, friction, left_over);
+    if (friction.sliding_points() > 0) {
+      log::info(
+          fmt::format("initial.displacement = \"static\": {} at t = 0, and no equilibrium holds "
+                      "their friction: it is left out of the static start there and acts from t = 0 on",
+                      counted(friction.sliding_points(), "contact point slides", "contact points slide")));
+    }
+  }
+  // A small ε leaves rounding of the size of weight/ε in the gaps of a body that only contact holds. A large one, from
+  // where we are now, takes it away.
+  ProximalPoint near(problem, friction, 1e-2, options);
+  for (int polish = 0; polish < 3; ++polish) near.iterate(result);
+  return result;
+}
+
+}  // namespace ricochet

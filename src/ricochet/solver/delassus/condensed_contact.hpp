@@ -1,0 +1,125 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/problem/stage.hpp"
+#include "ricochet/solver/contact/contact_solver.hpp"
+#include "ricochet/solver/corotated/turned_rows.hpp"
+#include "ricochet/solver/delassus/contact_candidates.hpp"
+#include "ricochet/solver/delassus/contact_columns.hpp"
+#include "ricochet/solver/delassus/contact_layer.hpp"
+#include "ricochet/solver/mean_reaction/mean_reaction.hpp"
+
+/// @file The contact conditions of a stage, condensed on its candidates for contact.
+///
+/// With 2ᵏA = PᵀLLᵀP, y = L⁻¹P 2ᵏb and, for the rows H = [G; B_T] of the candidates (those of a point together),
+/// Y = L⁻¹PHᵀ and W = YᵀY, a reaction ρ = 2ᵏ (r_N, −r_T) adds Yρ to y, and the contact problem is stated on
+///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + W ρ.
+/// Where the stage has a layer, with U = (1 − ℓ/2) V and Z = W − V, V = 2⁻ᵏ H A_c⁻¹ Hᵀ, on
+///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + Z ρ̄ + U ρ.
+/// Where directions turn, columns are those of E with H = D E (turned_rows.hpp).
+namespace ricochet {
+
+class CondensedContact {
+ public:
+  /// `unknown` is per dof: its number among the unknowns of the factor, or −1 where the stage does not solve for it.
+  /// Keeps references to the problem and the factor.
+  /// `all_points`: every contact point is a candidate from the start.
+  CondensedContact(const SemidiscreteProblem& problem, std::vector<int> unknown, const SparseCholesky& factor,
+                   bool all_points = false, std::unique_ptr<ContactLayer> layer = nullptr);
+
+  /// Finds the reactions on the candidates, adds Yρ to y and the iterations to those of the solution. Throws
+  /// Error(not_converged), and Error(invalid_input) where no motion of linear bodies meets the conditions of contact.
+  void solve(const Stage& stage, Vector& y, StageSolution& solution);
+  /// With the increment that followed: false when no other point penetrates. True: those that do are candidates now,
+  /// and the stage must be solved again. Completes the solution by m where the stage has a layer.
+  bool take_up_penetrating(const Stage& stage, const Vector& increment, StageSolution& solution);
+
+  /// The factor has been made anew: so are columns and W, by the rows of the next stage.
+  void take_factor();
+
+  /// The candidates with the order in which they came, which decides the bits of W, and the contact solver's warm
+  /// start.
+  void save(Snapshot& snapshot, const std::string& name) const;
+  void load(const Snapshot& snapshot, const std::string& name);
+
+  /// Shows the contact problem of a stage that is solved, if it had one, to the observer (one that could not be solved
+  /// is shown at once).
+  void report() const;
+  /// None if empty.
+  void observe(ContactObserver observer) { observer_ = std::move(observer); }
+  /// In the contact solver, all calls so far.
+  [[nodiscard]] double solver_seconds() const { return solver_seconds_; }
+
+ private:
+  [[nodiscard]] Index rows_of(Index point) const;
+  [[nodiscard]] bool turns(Index point) const;
+  template <class Enter>
+  void visit_rows(Index point, const Enter& enter) const;
+  template <class Enter>
+  void visit_columns(Index point, const Enter& enter) const;
+  void take_rows(const Stage& stage);
+  void take_scale(double scale);
+  void scale_warm_start(double ratio);
+  void renew_columns(const std::vector<char>& is_new);
+  void use_condensed(Matrix w);
+  void take_up(std::vector<Index> points);
+  void add_candidates(const std::vector<Index>& points);
+  bool choose_candidates(const Stage& stage);
+  void start_again_with(const std::vector<Index>& points);
+  void sort_by_place(std::vector<Index>& points) const;
+  [[nodiscard]] SparseMatrix transposed_columns(const std::vector<Index>& points, const std::vector<int>& unknown,
+                                                Index unknowns) const;
+  [[nodiscard]] Matrix take_condensed();
+  void give_condensed(Matrix w);
+  void use_end_weight(double theta);
+  void take_starting_points(const Stage& stage);
+  void solve_mean(const Stage& stage);
+  void append_columns(const std::vector<Index>& points, Matrix& w);
+  void append_supported();
+  void hold_directions_without_trace(Matrix& w) const;
+  void find_offsets(const Stage& stage, const Vector& y);
+  void choose_friction(const Stage& stage);
+  [[nodiscard]] bool try_contact();
+  void solve_contact();
+  void log_iterations() const;
+  [[nodiscard]] std::size_t closed_points() const;
+  void give(const Stage& stage, StageSolution& solution) const;
+  void give_mean(const Stage& stage, StageSolution& solution) const;
+  [[noreturn]] void throw_no_mean() const;
+  [[noreturn]] void throw_not_solved() const;
+  [[noreturn]] void throw_contradiction(const std::vector<Index>& contradiction) const;
+
+  const SemidiscreteProblem& problem_;
+  const SparseCholesky& factor_;
+  std::vector<int> unknown_;
+  double scale_;
+  bool friction_;
+  bool all_points_;
+  bool must_ask_ = false;  ///< points have penetrated where none was thought to touch
+  bool asked_ = false;     ///< the candidates took part in the last stage
+  bool has_new_factor_ = false;
+  const ContactRows* rows_;     ///< those of the stage that is being solved
+  std::vector<long> revision_;  ///< of each candidate's rows in W; −1: of rows that never change
+  ContactCandidates candidates_;
+  std::vector<Index> taken_up_;  ///< how many candidates there were after each call of take_up
+  ContactColumns columns_;
+  TurnedRows turned_;
+  Vector of_columns_;                    ///< per row of E
+  std::unique_ptr<ContactLayer> layer_;  ///< null: the stage has none
+  Matrix condensed_;  ///< of columns, where there is a layer or rows turn; else it is the contact operator itself
+  MeanReaction mean_;
+  SparseRowMatrix supported_;   ///< H on supported dofs: rows × supports
+  Vector coefficient_, bound_;  ///< of friction, per candidate; the bound in units of r
+  ContactProblem contact_;      ///< W, q, and the friction of the stage
+  std::unique_ptr<ContactSolver> solver_;
+  ContactSolution contact_solution_;
+  Vector motion_;  ///< G δ, per contact point
+  ContactObserver observer_;
+  double solver_seconds_ = 0.0;
+  int iterations_ = 0;  ///< of all contact problems of the last stage: a mean may need several
+};
+
+}  // namespace ricochet

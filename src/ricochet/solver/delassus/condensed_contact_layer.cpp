@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/solver/delassus/condensed_contact.hpp"
+
+// The contact operator, from YᵀY and a layer where there is one, and the means of reactions that a layer allows.
+
+namespace ricochet {
+
+/// The rows of the stage: of candidates whose rows are others than the last time, W is made anew, and columns where
+/// rows do more than turn.
+void CondensedContact::take_rows(const Stage& stage) {
+  rows_ = stage.rows.get();
+  const bool all_new = has_new_factor_;
+  has_new_factor_ = false;
+  if (all_new) take_scale(factor_.scale());
+  if (candidates_.points().empty() || (rows_->revision.empty() && !all_new)) return;
+  std::vector<char> is_new(static_cast<std::size_t>(turned_.size()), all_new ? 1 : 0);
+  bool any = all_new, have_columns = !all_new;
+  for (std::size_t i = 0; i < revision_.size() && !rows_->revision.empty(); ++i) {
+    const long revision = rows_->revision[static_cast<std::size_t>(candidates_.points()[i])];
+    if (revision == revision_[i]) continue;
+    revision_[i] = revision;
+    any = true;
+    turned_.take(*rows_, candidates_.points()[i], i);
+    if (turned_.turns(i)) continue;
+    have_columns = false;
+    std::fill(is_new.begin() + turned_.first(i), is_new.begin() + turned_.first(i + 1), char{1});
+  }
+  if (!any) return;
+  if (have_columns) {
+    use_condensed(take_condensed());
+  } else {
+    renew_columns(is_new);
+  }
+}
+
+void CondensedContact::take_factor() {
+  has_new_factor_ = true;
+}
+
+/// Powers of two: nothing is rounded.
+void CondensedContact::take_scale(double scale) {
+  const double ratio = scale / scale_;
+  scale_ = contact_.reaction_scale = scale;
+  if (ratio == 1.0 || solver_ == nullptr) return;
+  bound_ *= ratio;
+  contact_.friction_bound = bound_;
+  contact_solution_.reaction *= ratio;
+  scale_warm_start(ratio);
+}
+
+void CondensedContact::scale_warm_start(double ratio) {
+  if (ratio != 1.0 && solver_->warm_start().size() > 0) solver_->set_warm_start(Vector(ratio * solver_->warm_start()));
+}
+
+void CondensedContact::renew_columns(const std::vector<char>& is_new) {
+  Matrix w = take_condensed();
+  columns_.renew(transposed_columns(candidates_.points(), unknown_, factor_.size()), is_new, w);
+  if (layer_) layer_->renew(transposed_columns(candidates_.points(), layer_->unknown(), layer_->size()), is_new);
+  use_condensed(std::move(w));
+}
+
+/// For other rows of the same candidates: the contact solver starts where it was.
+void CondensedContact::use_condensed(Matrix w) {
+  append_supported();
+  give_condensed(std::move(w));
+  Snapshot memory;
+  solver_->save(memory, "solver");
+  solver_->analyse(contact_);
+  solver_->load(memory, "solver");
+}
+
+/// Where B_T has no trace in a direction (a support holds the body there), any positive diagonal keeps W definite and
+/// makes the friction along it zero.
+void CondensedContact::hold_directions_without_trace(Matrix& w) const {
+  for (std::size_t i = 0; i + 1 < contact_.row_offset.size(); ++i) {
+    const Index row = contact_.row_offset[i];
+    for (Index k = row + 1; k < contact_.row_offset[i + 1]; ++k) {
+      if (w(k, k) == 0.0) w(k, k) = w(row, row);
+    }
+  }
+}
+
+/// YᵀY of the candidates so far, on rows of E.
+Matrix CondensedContact::take_condensed() {
+  if (layer_ || turned_.any()) return std::move(condensed_);
+  return contact_.contact_operator != nullptr ? *contact_.contact_operator->dense() : Matrix();
+}
+
+/// The operator of the contact problem, from YᵀY of all candidates.
+void CondensedContact::give_condensed(Matrix w) {
+  if (turned_.any()) {
+    condensed_ = std::move(w);
+    w = turned_.product(condensed_);
+  }
+  if (!layer_) {
+    hold_directions_without_trace(w);
+    contact_.contact_operator = make_dense_operator(std::move(w));
+    return;
+  }
+  Matrix layer = layer_->compliance() / scale_;
+  if (turned_.any()) layer = turned_.product(layer);
+  mean_.prepare((1.0 - 0.5 * layer_->weight()) * layer, w - layer, contact_.row_offset, layer_->mean());
+  if (!turned_.any()) condensed_ = std::move(w);
+  use_end_weight(mean_.theta());
+}
+
+/// U + θ Z.
+void CondensedContact::use_end_weight(double theta) {
+  Matrix w = mean_.combined(theta);
+  hold_directions_without_trace(w);
+  contact_.contact_operator = make_dense_operator(std::move(w));
+}
+
+void CondensedContact::take_starting_points(const Stage& stage) {
+  std::vector<Index> pressing;
+  if (layer_) pressing = pressing_at_start(layer_->mean(), stage);
+  must_ask_ = must_ask_ || !pressing.empty();
+  std::erase_if(pressing, [&](Index point) { return candidates_.number(point) >= 0; });
+  if (!pressing.empty()) take_up(pressing);
+}
+
+void CondensedContact::solve_mean(const Stage& stage) {
+  const Index tangents = problem_.dimension - 1;
+  Vector start_gap(contact_.points()), start = Vector::Zero(contact_.rows());
+  for (Index i = 0; i < contact_.points(); ++i) {
+    const Index point = candidates_.points()[static_cast<std::size_t>(i)];
+    const Index row = contact_.row_offset[static_cast<std::size_t>(i)];
+    start_gap[i] = stage.start_gap[point] / stage.gap_factor;
+    start[row] = scale_ * stage.start_normal_reaction[point];
+    for (Index k = 1; row + k < contact_.row_offset[static_cast<std::size_t>(i) + 1]; ++k)
+      start[row + k] = -scale_ * stage.start_tangential_reaction[point * tangents + k - 1];
+  }
+  const Vector offset = contact_.offset;
+  const auto solve = [&] { return try_contact(); };
+  // The problem that is left, and exported, is the last that was solved.
+  if (mean_.solve(contact_, offset, start_gap, start, solve, contact_solution_)) return;
+  contact_.offset = offset;
+  if (layer_->mean() == ReactionMean::path) throw_no_mean();
+  if (!mean_.is_usable()) {  // the operator is that of the end reactions
+    solve_contact();
+    mean_.take_end(contact_solution_.reaction);
+    return;
+  }
+  // The end reaction alone is always right.
+  log::debug(
+      fmt::format("contact: the mean of the reactions was not found ({}), the end reactions act", mean_.reason()));
+  const Vector last = solver_->warm_start();  // of the last problem that was solved
+  use_end_weight(1.0);
+  solver_->analyse(contact_);
+  solver_->set_warm_start(last);
+  solve_contact();
+  mean_.take_end(contact_solution_.reaction);
+  use_end_weight(mean_.theta());
+  solver_->analyse(contact_);
+  solver_->set_warm_start(contact_solution_.reaction);
+}
+
+void CondensedContact::give_mean(const Stage& stage, StageSolution& solution) const {
+  const Index tangents = problem_.dimension - 1;
+  solution.mean_normal_reaction.setZero(solution.normal_reaction.size());
+  solution.mean_tangential_reaction = solution.tangential_reaction;
+  // Gaps and slips are gap_factor times the motions of the contact problem.
+  solution.path_contact_work = -stage.gap_factor * mean_.path_work() / scale_;
+  solution.path_friction_work = stage.gap_factor * mean_.friction_work() / scale_;
+  solution.end_weight = mean_.end_weight();
+  for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
+    const Index point = candidates_.points()[i], row = contact_.row_offset[i];
+    solution.mean_normal_reaction[point] = mean_.mean()[row] / scale_;
+    for (Index k = 1; row + k < contact_.row_offset[i + 1]; ++k)
+      solution.mean_tangential_reaction[point * tangents + k - 1] = -mean_.mean()[row + k] / scale_;
+  }
+}
+
+void CondensedContact::throw_no_mean() const {
+  throw Error(ErrorKind::not_converged,
+              fmt::format("the mean of the reactions over the step was not found ({} points): {}; such steps are far "
+                          "longer than the time in which a wave crosses a cell: take shorter ones, or scheme "
+                          "\"reduced-kane\"",
+                          contact_.points(), mean_.reason()));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,153 @@
+#include "ricochet/solver/delassus/contact_candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace ricochet {
+
+namespace {
+
+/// A stage may move points this many times as far as the last one did.
+constexpr double reserve = 2.0;
+/// Points within so many reaches are taken up together.
+constexpr double ahead = 8.0;
+/// Points are taken up before they are needed up to so many, or so many times those that carried a force in the last
+/// stage. The others are taken up when they penetrate.
+constexpr std::size_t most_ahead = 512;
+constexpr std::size_t room_to_grow = 3;
+/// More candidates than so many times that are not kept for an instant.
+constexpr std::size_t flood = 4;
+/// Of the points that penetrate, those by more than this part of the deepest are taken up at once, but not more than
+/// there are candidates: a body that nothing held has fallen through its obstacle with all points, and the deepest ones
+/// may be enough to hold it.
+constexpr double deep = 0.5;
+/// Candidates are dropped when they are so many times those near the obstacle, and more than these, for so long.
+constexpr std::size_t oversize = 3;
+constexpr std::size_t few_points = 32;
+constexpr int patience = 100;
+
+}  // namespace
+
+void ContactCandidates::take_up(const std::vector<Index>& points) {
+  for (const Index point : points) {
+    number_[static_cast<std::size_t>(point)] = static_cast<Index>(points_.size());
+    points_.push_back(point);
+  }
+}
+
+void ContactCandidates::clear() {
+  for (const Index point : points_) number_[static_cast<std::size_t>(point)] = -1;
+  points_.clear();
+  oversized_stages_ = 0;
+}
+
+void ContactCandidates::save_history(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name + ".largest_motion", largest_motion_);
+  snapshot.save(name + ".oversized_stages", oversized_stages_);
+  snapshot.save(name + ".closed", static_cast<std::int64_t>(closed_));
+}
+
+void ContactCandidates::load_history(const Snapshot& snapshot, const std::string& name) {
+  largest_motion_ = snapshot.real(name + ".largest_motion");
+  oversized_stages_ = static_cast<int>(snapshot.integer(name + ".oversized_stages"));
+  closed_ = static_cast<std::size_t>(snapshot.integers(name + ".closed", 0, static_cast<Index>(number_.size())).at(0));
+}
+
+/// What stages have moved points by, or what this one must, where points are inside at δ = 0.
+void ContactCandidates::look_at(const Stage& stage) {
+  double deepest = 0.0;
+  for (Index i = 0; i < stage.gap_offset.size(); ++i) {
+    if (stage.eligible[static_cast<std::size_t>(i)] != 0) deepest = std::max(deepest, -stage.gap_offset[i]);
+  }
+  reach_ = reserve * std::max(ranks_->maximum(deepest), stage.gap_factor * largest_motion_);
+}
+
+bool ContactCandidates::is_below(const Stage& stage, Index point, double limit, bool candidates) const {
+  const auto at = static_cast<std::size_t>(point);
+  return stage.eligible[at] != 0 && (number_[at] >= 0) == candidates && stage.gap_offset[point] <= limit;
+}
+
+std::size_t ContactCandidates::count_below(const Stage& stage, double limit, bool candidates) const {
+  std::size_t count = 0;
+  for (Index i = 0; i < stage.gap_offset.size(); ++i) count += is_below(stage, i, limit, candidates) ? 1 : 0;
+  return count;
+}
+
+bool ContactCandidates::some_may_touch(const Stage& stage) const {
+  for (Index i = 0; i < stage.gap_offset.size(); ++i) {
+    if (stage.eligible[static_cast<std::size_t>(i)] != 0 && stage.gap_offset[i] <= reach_) return true;
+  }
+  return false;
+}
+
+std::size_t ContactCandidates::most() const {
+  return std::max(most_ahead, room_to_grow * closed_);
+}
+
+bool ContactCandidates::are_too_many() const {
+  return points_.size() > flood * most();
+}
+
+std::vector<Index> ContactCandidates::nearest(const Stage& stage) const {
+  const double limit = ahead * reach_;
+  std::vector<Index> result;
+  for (Index i = 0; i < stage.gap_offset.size(); ++i) {
+    if (stage.eligible[static_cast<std::size_t>(i)] != 0 && stage.gap_offset[i] <= limit) result.push_back(i);
+  }
+  if (result.size() <= most()) return result;
+  const auto last = result.begin() + static_cast<std::ptrdiff_t>(most());
+  std::nth_element(result.begin(), last, result.end(), [&](Index a, Index b) {
+    return std::pair(stage.gap_offset[a], a) < std::pair(stage.gap_offset[b], b);
+  });
+  result.erase(last, result.end());
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+std::vector<Index> ContactCandidates::approaching(const Stage& stage) const {
+  if (count_below(stage, reach_, false) == 0) return {};
+  std::vector<Index> result = nearest(stage);
+  std::erase_if(result, [&](Index point) { return number(point) >= 0; });
+  return result;
+}
+
+std::vector<Index> ContactCandidates::penetrating(const Stage& stage, const Vector& motion, bool left_out) const {
+  std::vector<Index> result;
+  double deepest = 0.0;
+  const auto gap = [&](Index point) { return stage.gap_offset[point] + stage.gap_factor * motion[point]; };
+  for (Index i = 0; i < motion.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const bool was_asked = number_[at] >= 0 && !left_out;
+    if (stage.eligible[at] == 0 || was_asked || !(gap(i) < -stage.gap_offset_rounding[i])) continue;
+    result.push_back(i);
+    deepest = std::max(deepest, -gap(i));
+  }
+  std::erase_if(result, [&](Index point) { return -gap(point) < deep * deepest; });
+  std::stable_sort(result.begin(), result.end(), [&](Index a, Index b) { return gap(a) < gap(b); });
+  result.resize(std::min(result.size(), std::max(few_points, points_.size())));
+  return result;
+}
+
+void ContactCandidates::learn(const Stage& stage, const Vector& motion, std::size_t closed) {
+  closed_ = closed;
+  largest_motion_ = 0.0;
+  for (Index i = 0; i < motion.size(); ++i) {
+    if (stage.eligible[static_cast<std::size_t>(i)] != 0)
+      largest_motion_ = std::max(largest_motion_, std::abs(motion[i]));
+  }
+  largest_motion_ = ranks_->maximum(largest_motion_);
+}
+
+std::vector<Index> ContactCandidates::worth_keeping(const Stage& stage) {
+  if (points_.size() <= few_points) return {};
+  const std::size_t near = std::min(count_below(stage, ahead * reach_, true), most());
+  const bool oversized = points_.size() > oversize * std::max(near, few_points);
+  oversized_stages_ = oversized ? oversized_stages_ + 1 : 0;
+  if (oversized_stages_ < patience && !are_too_many()) return {};
+  std::vector<Index> result = nearest(stage);
+  std::erase_if(result, [&](Index point) { return number(point) < 0; });
+  return result;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "ricochet/linear_algebra/sparse_cholesky.hpp"
+#include "ricochet/solver/stage/stage_solver.hpp"
+
+/// @file Stages that are solved with a factor of the whole operator.
+namespace ricochet {
+
+/// A on the dofs that a stage solves for, and what its factorization would take.
+struct AnalysedOperator {
+  std::vector<int> dofs;      ///< ascending
+  SparseRowMatrix supported;  ///< A's rows of supported dofs: supports × all dofs
+  SparseCholesky factor;      ///< of A on these dofs, analysed
+};
+[[nodiscard]] AnalysedOperator analyse_operator(const SemidiscreteProblem& problem,
+                                                const OperatorCoefficients& coefficients);
+
+/// Forward solve, condensed contact, back solve. `layer`: of A_c, where the coefficients name one; kept. Throws
+/// Error(invalid_input) when A is not positive definite.
+[[nodiscard]] std::unique_ptr<StageSolver> make_direct_stage(const SemidiscreteProblem& problem,
+                                                             const OperatorCoefficients& coefficients,
+                                                             AnalysedOperator analysed,
+                                                             const StepSolverOptions& options,
+                                                             FactoredStage* layer = nullptr);
+
+}  // namespace ricochet

@@ -1,0 +1,59 @@
+#include "ricochet/solver/delassus/factored_stage.hpp"
+
+#include <stdexcept>
+
+#include "ricochet/solver/stage/stage_operator.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// The factor, once it is one.
+SparseCholesky factorized(SparseCholesky factor, const SemidiscreteProblem& problem,
+                          const OperatorCoefficients& coefficients, const std::vector<int>& dofs) {
+  factor.factorize();
+  if (!factor.positive_definite())
+    refuse_operator(problem, coefficients, dofs[static_cast<std::size_t>(factor.failed_unknown())]);
+  return factor;
+}
+
+}  // namespace
+
+FactoredStage::FactoredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                             const std::vector<int>& dofs, SparseCholesky factor, bool all_points, FactoredStage* layer)
+    : factor_(factorized(std::move(factor), problem, coefficients, dofs)),
+      contact_(problem, number_dofs(problem, dofs), factor_, all_points,
+               layer != nullptr ? std::make_unique<ContactLayer>(problem, coefficients, *layer) : nullptr) {
+  dof_at_.reserve(dofs.size());
+  for (const int unknown : factor_.permutation()) dof_at_.push_back(dofs[static_cast<std::size_t>(unknown)]);
+  factor_vector_.setZero(factor_.work_size());
+}
+
+void FactoredStage::refactorize(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                                const SparseMatrix& matrix) {
+  factor_.refactorize(matrix);
+  if (!factor_.positive_definite()) {
+    std::vector<int> dofs(dof_at_.size());
+    for (std::size_t i = 0; i < dof_at_.size(); ++i)
+      dofs[static_cast<std::size_t>(factor_.permutation()[i])] = dof_at_[i];
+    refuse_operator(problem, coefficients, dofs[static_cast<std::size_t>(factor_.failed_unknown())]);
+  }
+  contact_.take_factor();
+}
+
+/// y = L⁻¹P 2ᵏ b, y += Yρ, δ = Pᵀ L⁻ᵀ y; again with more contact points where others have penetrated.
+void FactoredStage::solve(const Stage& stage, const Vector& right_hand_side, StageSolution& solution,
+                          Vector& increment) {
+  if (!factor_.positive_definite()) throw std::logic_error("a stage is solved after its operator has been refused");
+  const double scale = factor_.scale();
+  do {
+    for (std::size_t i = 0; i < dof_at_.size(); ++i)
+      factor_vector_[static_cast<Index>(i)] = scale * right_hand_side[dof_at_[i]];
+    factor_.solve_lower(factor_vector_);
+    contact_.solve(stage, factor_vector_, solution);
+    factor_.solve_upper(factor_vector_);
+    for (std::size_t i = 0; i < dof_at_.size(); ++i) increment[dof_at_[i]] = factor_vector_[static_cast<Index>(i)];
+  } while (contact_.take_up_penetrating(stage, increment, solution));
+}
+
+}  // namespace ricochet

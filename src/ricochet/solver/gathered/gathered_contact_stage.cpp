@@ -1,0 +1,161 @@
+#include <algorithm>
+#include <array>
+
+#include "ricochet/solver/gathered/gathered_contact.hpp"
+#include "ricochet/solver/gathered/number_reader.hpp"
+
+/// @file Stages and their solutions, point by point, between the ranks and the home of their contact.
+namespace ricochet {
+
+namespace {
+
+/// Which vectors a stage has.
+constexpr std::size_t stage_parts = 4;
+enum StagePart : std::size_t { with_slip, with_frictionless, with_start, with_start_friction };
+
+/// A number per point of some vector; 0 where it is not part of a stage.
+double value_of(const Vector& values, Index i) {
+  return values.size() > 0 ? values[i] : 0.0;
+}
+
+void set_value(Vector& values, Index i, double value) {
+  if (values.size() > 0) values[i] = value;
+}
+
+void add_value(Vector& values, Index i, double value) {
+  if (values.size() > 0) values[i] += value;
+}
+
+}  // namespace
+
+void GatheredContact::gather(const Stage& stage, const Vector& x, const std::vector<Index>& points, Stage& at_home) {
+  const Ranks& ranks = *problem_.ranks;
+  if (problem_.contact.follows_motion()) gather_rows(*stage.rows);
+  stage.rows->normal_motion(x, motion_);
+  if (stage.slip_offset.size() > 0) stage.rows->tangential_motion(x, slip_);
+  Ranks::ForEach<double> told(static_cast<std::size_t>(ranks.size()));
+  if (!points.empty()) tell_points(stage, points, told[static_cast<std::size_t>(nodes_.home())]);
+  known_ = ranks.exchange(std::move(told));
+  at_home.gap_factor = stage.gap_factor;
+  at_home.slip_factor = stage.slip_factor;
+  if (is_home()) read_points(at_home);
+}
+
+void GatheredContact::tell_points(const Stage& stage, const std::vector<Index>& points,
+                                  std::vector<double>& message) const {
+  const Index tangents = d_ - 1;
+  const bool slips = stage.slip_offset.size() > 0;
+  for (const bool has :
+       {slips, !stage.frictionless.empty(), stage.start_gap.size() > 0, stage.start_tangential_reaction.size() > 0})
+    message.push_back(has ? 1.0 : 0.0);
+  for (const Index point : points) {
+    const auto at = static_cast<std::size_t>(point);
+    message.insert(message.end(),
+                   {static_cast<double>(point), static_cast<double>(stage.eligible[at]),
+                    stage.gap_offset[point] + stage.gap_factor * motion_[point], stage.gap_offset_rounding[point],
+                    stage.frictionless.empty() ? 0.0 : static_cast<double>(stage.frictionless[at]),
+                    value_of(stage.slip_offset_rounding, point), value_of(stage.start_gap, point),
+                    value_of(stage.start_normal_reaction, point)});
+    for (Index row = point * tangents; row < (point + 1) * tangents; ++row) {
+      message.push_back(slips ? stage.slip_offset[row] + stage.slip_factor * slip_[row] : 0.0);
+      message.push_back(value_of(stage.start_tangential_reaction, row));
+    }
+  }
+}
+
+void GatheredContact::read_points(Stage& at_home) const {
+  const Index count = point_count(), tangents = d_ - 1;
+  std::array<bool, stage_parts> has{};
+  for (const std::vector<double>& from : known_) {
+    for (std::size_t k = 0; k < stage_parts && !from.empty(); ++k) has[k] = has[k] || from[k] != 0.0;
+  }
+  at_home.rows = rows_;
+  at_home.prescribed.resize(0);
+  at_home.eligible.assign(static_cast<std::size_t>(count), 0);
+  at_home.gap_offset.setZero(count);
+  at_home.gap_offset_rounding.setZero(count);
+  at_home.slip_offset.setZero(has[with_slip] ? count * tangents : 0);
+  at_home.slip_offset_rounding.setZero(has[with_slip] ? count : 0);
+  at_home.frictionless.assign(has[with_frictionless] ? static_cast<std::size_t>(count) : 0, 0);
+  at_home.start_gap.setZero(has[with_start] ? count : 0);
+  at_home.start_normal_reaction.setZero(has[with_start] ? count : 0);
+  at_home.start_tangential_reaction.setZero(has[with_start_friction] ? count * tangents : 0);
+  for (std::size_t rank = 0; rank < known_.size(); ++rank) {
+    NumberReader numbers(known_[rank]);
+    for (std::size_t k = 0; k < stage_parts && !numbers.is_at_end(); ++k) numbers.next();
+    while (!numbers.is_at_end()) {
+      const Index point = number(static_cast<int>(rank), numbers.integer());
+      const auto at = static_cast<std::size_t>(point);
+      at_home.eligible[at] = numbers.next() != 0.0 ? 1 : 0;
+      at_home.gap_offset[point] = numbers.next();
+      at_home.gap_offset_rounding[point] = numbers.next();
+      const bool is_frictionless = numbers.next() != 0.0;
+      if (has[with_frictionless]) at_home.frictionless[at] = is_frictionless ? 1 : 0;
+      set_value(at_home.slip_offset_rounding, point, numbers.next());
+      set_value(at_home.start_gap, point, numbers.next());
+      set_value(at_home.start_normal_reaction, point, numbers.next());
+      for (Index row = point * tangents; row < (point + 1) * tangents; ++row) {
+        set_value(at_home.slip_offset, row, numbers.next());
+        set_value(at_home.start_tangential_reaction, row, numbers.next());
+      }
+    }
+  }
+}
+
+void GatheredContact::spread(const StageSolution& at_home, const std::vector<Index>& points,
+                             StageSolution& solution) const {
+  const Ranks& ranks = *problem_.ranks;
+  const auto size = static_cast<std::size_t>(ranks.size());
+  Ranks::ForEach<std::int64_t> asked(size);
+  asked[static_cast<std::size_t>(nodes_.home())].assign(points.begin(), points.end());
+  const Ranks::ForEach<std::int64_t> wanted = ranks.exchange(std::move(asked));
+  Ranks::ForEach<double> told(size);
+  for (std::size_t rank = 0; is_home() && rank < size; ++rank)
+    tell_solution(at_home, static_cast<int>(rank), wanted[rank], told[rank]);
+  const Ranks::ForEach<double> known = ranks.exchange(std::move(told));
+  read_solution(known[static_cast<std::size_t>(nodes_.home())], points, solution);
+  // Works of the path are sums over points, like those of any rank.
+  if (!is_home()) return;
+  solution.path_contact_work = at_home.path_contact_work;
+  solution.path_friction_work = at_home.path_friction_work;
+}
+
+void GatheredContact::tell_solution(const StageSolution& at_home, int rank, const std::vector<std::int64_t>& points,
+                                    std::vector<double>& message) const {
+  const Index tangents = d_ - 1;
+  message = {static_cast<double>(at_home.iterations), at_home.mean_normal_reaction.size() > 0 ? 1.0 : 0.0,
+             at_home.end_weight};
+  for (const std::int64_t own : points) {
+    const Index point = number(rank, own);
+    message.insert(message.end(), {at_home.normal_reaction[point], value_of(at_home.mean_normal_reaction, point),
+                                   static_cast<double>(at_home.contact_status[static_cast<std::size_t>(point)])});
+    for (Index row = point * tangents; row < (point + 1) * tangents; ++row) {
+      message.push_back(value_of(at_home.tangential_reaction, row));
+      message.push_back(value_of(at_home.mean_tangential_reaction, row));
+    }
+  }
+}
+
+void GatheredContact::read_solution(const std::vector<double>& message, const std::vector<Index>& points,
+                                    StageSolution& solution) const {
+  const Index count = problem_.contact.size(), tangents = d_ - 1;
+  const bool has_friction = problem_.contact.has_friction();
+  NumberReader numbers(message);
+  solution.iterations += static_cast<int>(numbers.integer());
+  const bool has_mean = numbers.next() != 0.0;
+  solution.end_weight = numbers.next();
+  if (has_mean) solution.mean_normal_reaction.setZero(count);
+  if (has_mean && has_friction) solution.mean_tangential_reaction.setZero(count * tangents);
+  for (const Index point : points) {
+    add_value(solution.normal_reaction, point, numbers.next());
+    set_value(solution.mean_normal_reaction, point, numbers.next());
+    ContactStatus& status = solution.contact_status[static_cast<std::size_t>(point)];
+    status = std::max(status, static_cast<ContactStatus>(numbers.integer()));
+    for (Index row = point * tangents; row < (point + 1) * tangents; ++row) {
+      add_value(solution.tangential_reaction, row, numbers.next());
+      set_value(solution.mean_tangential_reaction, row, numbers.next());
+    }
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,81 @@
+#include "ricochet/solver/gathered/gathered_nodes.hpp"
+
+#include <algorithm>
+
+namespace ricochet {
+
+GatheredNodes::GatheredNodes(const Ranks& ranks, int home, const std::vector<Index>& nodes, const GatheredNodes* first)
+    : ranks_(&ranks), home_(home), nodes_(nodes) {
+  std::sort(nodes_.begin(), nodes_.end());
+  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  const auto size = static_cast<std::size_t>(ranks.size());
+  Ranks::ForEach<std::int64_t> told(size), owns(size);
+  for (const Index node : nodes_) {
+    told[static_cast<std::size_t>(home)].push_back(ranks.number_of(node));
+    owns[static_cast<std::size_t>(home)].push_back(ranks.is_owned(node) ? 1 : 0);
+    if (ranks.is_owned(node)) owned_.push_back(node);
+  }
+  const Ranks::ForEach<std::int64_t> known = ranks.exchange(std::move(told)), owned = ranks.exchange(std::move(owns));
+  if (!is_home()) return;
+  if (first != nullptr) numbers_ = first->numbers_;
+  std::vector<std::int64_t> before = numbers_, others;
+  std::sort(before.begin(), before.end());
+  for (const auto& list : known) {
+    for (const std::int64_t number : list) {
+      if (!std::binary_search(before.begin(), before.end(), number)) others.push_back(number);
+    }
+  }
+  std::sort(others.begin(), others.end());
+  others.erase(std::unique(others.begin(), others.end()), others.end());
+  numbers_.insert(numbers_.end(), others.begin(), others.end());
+  for (std::size_t place = 0; place < numbers_.size(); ++place)
+    place_.emplace_back(numbers_[place], static_cast<Index>(place));
+  std::sort(place_.begin(), place_.end());
+  places_.resize(size);
+  owned_places_.resize(size);
+  for (std::size_t rank = 0; rank < size; ++rank) {
+    for (std::size_t i = 0; i < known[rank].size(); ++i) {
+      places_[rank].push_back(place_of(known[rank][i]));
+      if (owned[rank][i] != 0) owned_places_[rank].push_back(places_[rank].back());
+    }
+  }
+}
+
+Index GatheredNodes::place_of(std::int64_t number) const {
+  const auto found = std::lower_bound(place_.begin(), place_.end(), std::pair(number, Index{0}));
+  return found != place_.end() && found->first == number ? found->second : -1;
+}
+
+Vector GatheredNodes::gather(const Vector& values, int per_node) const {
+  Ranks::ForEach<double> told(static_cast<std::size_t>(ranks_->size()));
+  std::vector<double>& own = told[static_cast<std::size_t>(home_)];
+  for (const Index node : owned_)
+    own.insert(own.end(), values.data() + node * per_node, values.data() + (node + 1) * per_node);
+  const Ranks::ForEach<double> known = ranks_->exchange(std::move(told));
+  if (!is_home()) return {};
+  Vector result = Vector::Zero(count() * per_node);
+  for (std::size_t rank = 0; rank < known.size(); ++rank) {
+    const double* from = known[rank].data();
+    for (const Index place : owned_places_[rank]) {
+      std::copy_n(from, per_node, result.data() + place * per_node);
+      from += per_node;
+    }
+  }
+  return result;
+}
+
+void GatheredNodes::spread(const Vector& at_home, int per_node, Vector& values) const {
+  Ranks::ForEach<double> told(static_cast<std::size_t>(ranks_->size()));
+  for (std::size_t rank = 0; rank < places_.size(); ++rank) {
+    for (const Index place : places_[rank])
+      told[rank].insert(told[rank].end(), at_home.data() + place * per_node, at_home.data() + (place + 1) * per_node);
+  }
+  const Ranks::ForEach<double> known = ranks_->exchange(std::move(told));
+  const double* from = known[static_cast<std::size_t>(home_)].data();
+  for (const Index node : nodes_) {
+    std::copy_n(from, per_node, values.data() + node * per_node);
+    from += per_node;
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,139 @@
+#include "ricochet/solver/gathered/gathered_stage.hpp"
+
+#include <algorithm>
+
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
+#include "ricochet/solver/delassus/direct_stage.hpp"
+#include "ricochet/solver/delassus/factored_stage.hpp"
+#include "ricochet/solver/gathered/gathered_contact.hpp"
+#include "ricochet/solver/gathered/gathered_matrix.hpp"
+#include "ricochet/solver/stage/stage_operator.hpp"
+#include "ricochet/solver/stage/stage_terms.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// A stage on the dofs of contact nodes: all of it is solved at home. Supports are on the right-hand side, and in the
+/// gaps.
+class GatheredStage final : public StageSolver {
+ public:
+  GatheredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                const StepSolverOptions& options, GatheredContact& contact);
+
+  void solve(const Stage& stage, StageSolution& solution) override;
+  void refactorize(const Vector&) override {
+    throw Error(ErrorKind::invalid_input, "bodies of finite strain cannot be divided among processes");
+  }
+  void show_contact() const override {
+    if (stage_) stage_->show_contact();
+  }
+  void observe_contact(const ContactObserver& observer) override {
+    if (stage_) stage_->observe_contact(observer);
+  }
+  void save(Snapshot& snapshot, const std::string& name) const override {
+    if (stage_) stage_->save(snapshot, name);
+  }
+  void load(const Snapshot& snapshot, const std::string& name) override {
+    problem_.ranks->together([&] {
+      if (stage_) stage_->load(snapshot, name);
+    });
+  }
+  [[nodiscard]] double contact_seconds() const override { return stage_ ? stage_->contact_seconds() : 0.0; }
+  [[nodiscard]] std::size_t factor_entries() const override { return stage_ ? stage_->factor_entries() : 0; }
+  [[nodiscard]] FactoredStage* factored() override { return stage_ ? stage_->factored() : nullptr; }
+
+ private:
+  const SemidiscreteProblem& problem_;
+  GatheredContact& contact_;
+  SparseRowMatrix supported_;  ///< this rank's part of A's rows of supported dofs: supports × dofs
+  std::vector<Index> points_;  ///< that take part
+  Vector right_hand_side_, held_, contact_force_;
+  // At home:
+  std::unique_ptr<SemidiscreteProblem> near_;
+  std::unique_ptr<StageSolver> stage_;
+  Stage near_stage_;
+  StageSolution near_solution_;
+};
+
+/// A's rows of supported dofs, without making the whole of A.
+SparseRowMatrix supported_part(const SemidiscreteProblem& problem, const StageTerms& terms) {
+  const int d = problem.dimension;
+  std::vector<Index> nodes;
+  for (const Index dof : problem.supports.dofs()) nodes.push_back(dof / d);
+  if (nodes.empty()) return {0, problem.dof_count()};
+  for (const NodeMatrix::Term& term : terms.all()) {
+    const std::vector<Index> more = layers_around(MatrixGraph(term.matrix->pattern()), nodes, 1).nodes;
+    nodes.insert(nodes.end(), more.begin(), more.end());
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  const std::vector<int> supports =
+      number_dofs(problem, {problem.supports.dofs().begin(), problem.supports.dofs().end()});
+  std::vector<int> row, column;
+  for (const Index node : nodes) {
+    for (Index dof = node * d; dof < (node + 1) * d; ++dof) {
+      row.push_back(supports[static_cast<std::size_t>(dof)]);
+      column.push_back(static_cast<int>(dof));
+    }
+  }
+  return extract(terms.principal(nodes), row, problem.supports.size(), column, problem.dof_count());
+}
+
+GatheredStage::GatheredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                             const StepSolverOptions& options, GatheredContact& contact)
+    : problem_(problem), contact_(contact) {
+  const int d = problem.dimension;
+  const std::vector<Index>& nodes = contact.nodes().nodes();
+  const StageTerms terms(problem, coefficients, Vector());
+  supported_ = supported_part(problem, terms);
+  const SparseMatrix on_contact = terms.principal(nodes);
+  const SparseMatrix gathered = gather_matrix(*problem.ranks, on_contact, nodes, d, contact.nodes());
+  near_ = contact.make_problem(contact.nodes());
+  problem.ranks->together([&] {
+    if (!contact.is_home()) return;
+    AnalysedOperator analysed;
+    analysed.dofs = solved_dofs(*near_, StageDofs::contact);
+    analysed.supported.resize(0, near_->dof_count());
+    const std::vector<int> number = number_dofs(*near_, analysed.dofs);
+    const auto count = static_cast<Index>(analysed.dofs.size());
+    analysed.factor.analyse(extract(gathered, number, count, number, count));
+    stage_ = make_direct_stage(*near_, coefficients, std::move(analysed), options);
+  });
+}
+
+void GatheredStage::solve(const Stage& stage, StageSolution& solution) {
+  const Ranks& ranks = *problem_.ranks;
+  const int d = problem_.dimension;
+  held_.setZero(problem_.dof_count());
+  prescribe(problem_, stage, held_);
+  right_hand_side_ = stage.right_hand_side;
+  if (problem_.supports.size() > 0) right_hand_side_.noalias() -= supported_.transpose() * stage.prescribed;
+  ranks.accumulate(right_hand_side_);
+  points_.clear();
+  for (Index point = 0; point < problem_.contact.size(); ++point) {
+    if (stage.eligible[static_cast<std::size_t>(point)] != 0) points_.push_back(point);
+  }
+  contact_.gather(stage, held_, points_, near_stage_);
+  near_stage_.right_hand_side = contact_.nodes().gather(right_hand_side_, d);
+  ranks.together([&] {
+    if (stage_) stage_->solve(near_stage_, near_solution_);
+  });
+  solution.open_all(problem_.contact.size(), problem_.contact.has_friction() ? d - 1 : 0);
+  solution.increment = held_;
+  contact_.nodes().spread(near_solution_.increment, d, solution.increment);
+  // What is held at a contact node is no part of what is solved for.
+  prescribe(problem_, stage, solution.increment);
+  contact_.spread(near_solution_, points_, solution);
+  find_support_reaction(problem_, stage, supported_, contact_force_, solution);
+}
+
+}  // namespace
+
+std::unique_ptr<StageSolver> make_gathered_stage(const SemidiscreteProblem& problem,
+                                                 const OperatorCoefficients& coefficients,
+                                                 const StepSolverOptions& options, GatheredContact& contact) {
+  return std::make_unique<GatheredStage>(problem, coefficients, options, contact);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,148 @@
+#include "ricochet/solver/gathered/gathered_zones.hpp"
+
+#include <algorithm>
+
+#include "ricochet/solver/gathered/zones_at_home.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Each home has all contact points and what is near them, and hears of all in every round.
+constexpr std::size_t most_homes = 16;
+
+class GatheredZones final : public NearContact {
+ public:
+  GatheredZones(const NearBody& body, bool all_points, GatheredContact& contact, FactoredStage* layer)
+      : body_(body), all_points_(all_points) {
+    homes_.push_back({nullptr, std::make_unique<ZonesAtHome>(body, all_points, contact, layer)});
+  }
+
+  void make(const std::vector<Index>& points) override;
+  void clear() override {
+    for (const Home& home : homes_) home.zones->clear();
+    active_ = 0;
+  }
+  [[nodiscard]] bool are_made() const override { return active_ > 0; }
+  [[nodiscard]] const std::vector<Index>& nodes() const override { return nodes_; }
+  void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
+  void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
+                   Vector& motion) override;
+
+  void save(Snapshot& snapshot, const std::string& name) const override {
+    visit([&](const ContactZones& zones) { zones.save(snapshot, name); });
+  }
+  void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) override {
+    make(points);
+    body_.problem.ranks->together([&] { visit([&](ContactZones& zones) { zones.load_made(snapshot, name); }); });
+  }
+  void report() const override {
+    visit([](const ContactZones& zones) { zones.report(); });
+  }
+  void observe(const ContactObserver& observer) override {
+    observer_ = observer;
+    visit([&](ContactZones& zones) { zones.observe(observer); });
+  }
+  [[nodiscard]] double contact_seconds() const override {
+    double sum = 0.0;
+    for (const Home& home : homes_) sum += home.zones->earlier_seconds();
+    visit([&](const ContactZones& zones) { sum += zones.contact_seconds(); });
+    return sum;
+  }
+  [[nodiscard]] std::size_t factor_entries() const override {
+    std::size_t sum = 0;
+    visit([&](const ContactZones& zones) { sum += zones.factor_entries(); });
+    return sum;
+  }
+
+ private:
+  struct Home {
+    std::unique_ptr<GatheredContact> contact;  ///< null of the first, which others keep
+    std::unique_ptr<ZonesAtHome> zones;
+  };
+  /// Those of this rank.
+  template <class Visit>
+  void visit(const Visit& visit) const {
+    for (std::size_t i = 0; i < active_; ++i) {
+      if (homes_[i].zones->zones() != nullptr) visit(*homes_[i].zones->zones());
+    }
+  }
+  void find_homes(std::size_t zones);
+
+  NearBody body_;
+  bool all_points_;
+  std::vector<Home> homes_;
+  std::size_t active_ = 0;     ///< homes that have zones
+  std::vector<Index> points_;  ///< of this rank
+  std::vector<Index> nodes_;   ///< of this rank, near the points of all
+  ContactObserver observer_;
+};
+
+/// For so many zones.
+void GatheredZones::find_homes(std::size_t zones) {
+  const auto ranks = static_cast<std::size_t>(body_.problem.ranks->size());
+  active_ = std::min({zones, ranks, most_homes});
+  while (homes_.size() < active_) {
+    auto contact = std::make_unique<GatheredContact>(body_.problem, homes_.size());
+    auto at_home = std::make_unique<ZonesAtHome>(body_, all_points_, *contact, nullptr);
+    homes_.push_back({std::move(contact), std::move(at_home)});
+  }
+}
+
+void GatheredZones::make(const std::vector<Index>& points) {
+  clear();
+  points_ = points;
+  NearNodes near;
+  near.layers = body_.nearby.layers_to_solve(points, body_.coefficients, body_.product);
+  near.nodes = body_.nearby.nodes_around(points, near.layers);
+  near.matrix = body_.product.principal(near.nodes);
+  const Ranks& ranks = *body_.problem.ranks;
+  homes_.front().zones->gather_body(points, near);
+  std::size_t zones = 0;
+  ranks.together([&] { zones = homes_.front().zones->divide_here(); });
+  find_homes(static_cast<std::size_t>(ranks.maximum(static_cast<double>(zones))));
+  for (std::size_t i = 1; i < active_; ++i) homes_[i].zones->gather_body(points, near);
+  ranks.together([&] {
+    for (std::size_t i = 0; i < active_; ++i) {
+      if (i > 0) homes_[i].zones->divide_here();
+      homes_[i].zones->make_here(i, active_);
+    }
+  });
+  nodes_ = std::move(near.nodes);
+  observe(observer_);
+}
+
+void GatheredZones::solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) {
+  for (std::size_t i = 0; i < active_; ++i) homes_[i].zones->gather(stage, x, points_, residual);
+  body_.problem.ranks->together([&] {
+    for (std::size_t i = 0; i < active_; ++i) homes_[i].zones->solve_here();
+  });
+  solution.open_all(body_.problem.contact.size(),
+                    body_.problem.contact.has_friction() ? body_.problem.dimension - 1 : 0);
+  for (std::size_t i = 0; i < active_; ++i) homes_[i].zones->spread(points_, x, solution);
+}
+
+void GatheredZones::find_motion(const ContactRows&, const StageSolution& solution, const Vector& increment,
+                                Vector& motion) {
+  const int d = body_.problem.dimension;
+  if (motion.size() != body_.problem.dof_count()) motion.setZero(body_.problem.dof_count());
+  for (const Index node : homes_.front().zones->contact().nodes().nodes())
+    motion.segment(node * d, d) = increment.segment(node * d, d);
+  const auto is_zero = [](const Vector& values) { return values.isZero(0.0); };
+  const bool acts = !is_zero(solution.normal_reaction) || !is_zero(solution.tangential_reaction) ||
+                    !is_zero(solution.acting_normal()) || !is_zero(solution.acting_tangential());
+  if (body_.problem.ranks->any(acts)) homes_.front().zones->add_motion(motion);
+}
+
+}  // namespace
+
+std::unique_ptr<NearContact> make_gathered_zones(const SemidiscreteProblem& problem,
+                                                 const OperatorCoefficients& coefficients,
+                                                 const std::vector<char>& solved, const StageProduct& product,
+                                                 PointsNearby& nearby, bool all_points, GatheredContact& contact,
+                                                 FactoredStage* layer) {
+  return std::make_unique<GatheredZones>(NearBody{problem, coefficients, solved, product, nearby}, all_points, contact,
+                                         layer);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,132 @@
+#include "ricochet/solver/mean_reaction/path_active_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ricochet {
+
+namespace {
+
+/// Of U_pp: what is left of it beside the set, at which p depends on the set.
+constexpr double dependent = 1e-11;
+
+}  // namespace
+
+/// x = U⁻¹x on the set.
+void PathActiveSet::solve(Vector& x) const {
+  const auto count = static_cast<Index>(set_.size());
+  const auto lower = factor_.topLeftCorner(count, count).triangularView<Eigen::Lower>();
+  lower.solveInPlace(x);
+  lower.transpose().solveInPlace(x);
+}
+
+/// False: it depends on those that are there.
+bool PathActiveSet::append(const Matrix& u, Index point, double least) {
+  const auto count = static_cast<Index>(set_.size());
+  if (factor_.rows() <= count) factor_.conservativeResize(u.rows(), u.cols());
+  row_ = u(set_, point);
+  factor_.topLeftCorner(count, count).triangularView<Eigen::Lower>().solveInPlace(row_);
+  const double left = u(point, point) - row_.squaredNorm();
+  if (left <= least * u(point, point)) return false;
+  factor_.row(count).head(count) = row_;
+  factor_(count, count) = std::sqrt(left);
+  set_.push_back(point);
+  return true;
+}
+
+/// Of those asked for, as many as are independent.
+void PathActiveSet::factorize(const Matrix& u) {
+  set_.clear();
+  for (const Index point : asked_) (void)append(u, point, dependent);
+}
+
+void PathActiveSet::remove(const Matrix& u, std::size_t place) {
+  asked_ = set_;
+  asked_.erase(asked_.begin() + static_cast<std::ptrdiff_t>(place));
+  const auto last = static_cast<Index>(asked_.size());
+  for (auto i = static_cast<Index>(place); i < last; ++i) reaction_[i] = reaction_[i + 1];
+  reaction_.conservativeResize(last);
+  factorize(u);
+}
+
+/// The guess, without dependent points and those that would pull.
+void PathActiveSet::start(const Matrix& u, const Vector& q) {
+  factorize(u);
+  for (;;) {
+    reaction_ = -q(set_);
+    solve(reaction_);
+    asked_.clear();
+    for (std::size_t i = 0; i < set_.size(); ++i) {
+      if (reaction_[static_cast<Index>(i)] >= 0.0) asked_.push_back(set_[i]);
+    }
+    if (asked_.size() == set_.size()) return;
+    factorize(u);
+  }
+}
+
+/// Raises the reaction of a point until its gap closes; those that would pull leave the set on the way.
+bool PathActiveSet::take_in(const Matrix& u, Index point, double gap) {
+  double own = 0.0;
+  for (;;) {
+    direction_ = u(set_, point);
+    const double whole = u(point, point);
+    Vector& change = direction_;
+    row_ = change;
+    solve(change);
+    const double left = whole - row_.dot(change);
+    double length = left > dependent * whole ? -gap / left : std::numeric_limits<double>::infinity();
+    std::size_t leaves = set_.size();
+    for (std::size_t i = 0; i < set_.size(); ++i) {
+      const auto at = static_cast<Index>(i);
+      if (change[at] <= 0.0 || reaction_[at] >= length * change[at]) continue;
+      length = reaction_[at] / change[at];
+      leaves = i;
+    }
+    if (!(length < std::numeric_limits<double>::infinity())) return false;
+    reaction_ -= length * change;
+    own += length;
+    gap += length * left;
+    if (leaves < set_.size()) {
+      remove(u, leaves);
+      continue;
+    }
+    if (!append(u, point, 0.1 * dependent)) return false;  // found independent above, by another way
+    reaction_.conservativeResize(reaction_.size() + 1);
+    reaction_[reaction_.size() - 1] = own;
+    return true;
+  }
+}
+
+bool PathActiveSet::find(const Matrix& u, const Vector& q, const std::vector<char>& eligible, double gap_rounding,
+                         std::vector<char>& pressing) {
+  asked_.clear();
+  for (std::size_t i = 0; i < pressing.size(); ++i) {
+    if (pressing[i] != 0 && eligible[i] != 0) asked_.push_back(static_cast<Index>(i));
+  }
+  start(u, q);
+  const std::size_t most = 20 * pressing.size() + 100;
+  for (std::size_t round = 0; round < most; ++round) {
+    gap_ = q;
+    for (std::size_t i = 0; i < set_.size(); ++i) gap_ += reaction_[static_cast<Index>(i)] * u.col(set_[i]);
+    for (const Index point : set_) gap_[point] = 0.0;
+    Index deepest = -1;
+    for (Index i = 0; i < gap_.size(); ++i) {
+      if (eligible[static_cast<std::size_t>(i)] == 0 || gap_[i] >= -gap_rounding) continue;
+      if (deepest < 0 || gap_[i] < gap_[deepest]) deepest = i;
+    }
+    if (deepest < 0) {
+      std::fill(pressing.begin(), pressing.end(), char{0});
+      for (const Index point : set_) pressing[static_cast<std::size_t>(point)] = 1;
+      return true;
+    }
+    if (!take_in(u, deepest, gap_[deepest])) return false;
+    // What rounding has left in the reactions of the way is gone.
+    row_ = -q(set_);
+    solve(row_);
+    reaction_ = row_.cwiseMax(0.0);
+  }
+  return false;
+}
+
+}  // namespace ricochet

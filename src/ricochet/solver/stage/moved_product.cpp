@@ -1,0 +1,45 @@
+#include "ricochet/solver/stage/moved_product.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Columns are stored whole, two thirds dearer than A: of more than one in so many nodes they are not kept.
+constexpr Index nodes_per_column = 16;
+
+}  // namespace
+
+void MovedProduct::make(const StageProduct& product, const std::vector<Index>& nodes, Index all_nodes, int d) {
+  clear();
+  product_ = &product;
+  is_whole_ = static_cast<Index>(nodes.size()) * nodes_per_column > all_nodes;
+  if (is_whole_) return;
+  columns_ = product.columns(nodes);
+  for (const Index node : nodes) {
+    for (Index dof = node * d; dof < (node + 1) * d; ++dof) dofs_.push_back(static_cast<int>(dof));
+  }
+  before_.resize(static_cast<Index>(dofs_.size()));
+  motion_.resize(before_.size());
+}
+
+void MovedProduct::begin(const Vector& x) {
+  if (is_whole_) {
+    before_ = x;
+    return;
+  }
+  for (std::size_t i = 0; i < dofs_.size(); ++i) before_[static_cast<Index>(i)] = x[dofs_[i]];
+}
+
+void MovedProduct::multiply(const Vector& x, Vector& y) {
+  if (is_whole_) {
+    motion_ = x - before_;
+    product_->multiply(motion_, y);
+    return;
+  }
+  for (std::size_t i = 0; i < dofs_.size(); ++i)
+    motion_[static_cast<Index>(i)] = x[dofs_[i]] - before_[static_cast<Index>(i)];
+  y.setZero(x.size());
+  y.noalias() += columns_ * motion_;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "ricochet/solver/stage/stage_product.hpp"
+#include "ricochet/solver/subdomain/contact_zone.hpp"
+#include "ricochet/solver/subdomain/near_contact.hpp"
+#include "ricochet/solver/subdomain/points_nearby.hpp"
+
+/// @file The parts of a body near its contact, each solved directly, all from the same residual.
+namespace ricochet {
+
+/// A zone is a cluster of contact points with some layers of nodes around them, the points of other clusters that it
+/// contains included. Of its solution only the reactions of its own points are kept, and the motion of the nodes that
+/// are nearer to its own points than to those of other zones: a restricted additive Schwarz method. All nodes of a
+/// point are moved by its zone, so contact and friction hold to rounding. Many points are then no large dense problem,
+/// and the price of contact grows as their number.
+class ContactZones final : public NearContact {
+ public:
+  /// Keeps references to the problem, the product and the graph; `solved` tells per dof whether the stage solves for
+  /// it.
+  ContactZones(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+               const std::vector<char>& solved, const StageProduct& product, PointsNearby& nearby, bool all_points,
+               FactoredStage* layer);
+
+  void make(const std::vector<Index>& points) override {
+    divide(points);
+    make_share(0, 1);
+  }
+  /// In two parts, where others make zones, too: how many there are, and every `count`-th one from `number` on.
+  std::size_t divide(const std::vector<Index>& points);
+  void make_share(std::size_t number, std::size_t count);
+  void clear() override;
+  [[nodiscard]] bool are_made() const override { return !zones_.empty(); }
+  [[nodiscard]] const std::vector<Index>& nodes() const override { return nodes_; }
+  void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
+  void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
+                   Vector& motion) override {
+    motion_layer_->find_motion(rows, solution, increment, motion);
+  }
+
+  /// Of nodes around the points of a zone, from now on; 0: as many as the wave crosses cells, found with the next ones.
+  void set_layers(int layers) { layers_ = layers; }
+  [[nodiscard]] int layers() const { return layers_; }
+  [[nodiscard]] std::size_t count() const { return zones_.size(); }
+
+  void save(Snapshot& snapshot, const std::string& name) const override;
+  void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) override;
+  /// The same of zones that are made.
+  void load_made(const Snapshot& snapshot, const std::string& name);
+  void report() const override;
+  void observe(const ContactObserver& observer) override;
+  [[nodiscard]] double contact_seconds() const override;
+  [[nodiscard]] std::size_t factor_entries() const override;
+
+ private:
+  [[nodiscard]] std::vector<ContactZone::Extent> zones_of(const std::vector<Index>& points, std::size_t most);
+
+  const SemidiscreteProblem& problem_;
+  OperatorCoefficients coefficients_;
+  const std::vector<char>& solved_;
+  const StageProduct& product_;
+  PointsNearby& nearby_;
+  bool all_points_;
+  FactoredStage* layer_;
+  std::unique_ptr<ContactLayer> motion_layer_;  ///< null: the stage has none
+  int layers_ = 0;                              ///< 0: not known yet
+  std::vector<Index> nodes_;                    ///< of all zones
+  std::vector<ContactZone::Extent> extents_;    ///< of all zones, until they are made
+  bool is_one_ = false;                         ///< there is no other zone, here or elsewhere
+  std::vector<std::unique_ptr<ContactZone>> zones_;
+  ContactObserver observer_;
+  double earlier_contact_seconds_ = 0.0;
+  Stage stage_;                        ///< on the correction
+  Vector correction_, motion_, slip_;  ///< and G x and B_T x of the start
+  StageSolution solution_;             ///< of one zone
+};
+
+}  // namespace ricochet

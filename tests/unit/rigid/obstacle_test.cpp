@@ -1,0 +1,397 @@
+#include "ricochet/rigid/obstacle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/temporary_folder.hpp"
+
+/// @file What every obstacle promises of its gap, normal and motion.
+namespace ricochet {
+namespace {
+
+using Numbers = std::vector<double>;
+
+/// Every registered type but surfaces from files (rigid_surface_test.cpp), askew, in the dimensions that it has.
+std::unique_ptr<ObstacleShape> shape_of(const std::string& type, Index dimension, const std::string& side) {
+  const auto cut = [&](Numbers values) {
+    values.resize(static_cast<std::size_t>(dimension));
+    return values;
+  };
+  Parameters parameters;
+  if (type != "plane") parameters.set("side", side);
+  if (type == "plane") {
+    parameters.set("point", cut({0.1, -0.4, 0.2}));
+    parameters.set("normal", cut({1.0, 2.0, -0.5}));
+  } else if (type == "implicit") {
+    parameters.set("expression", dimension == 2 ? std::string("(x - 0.1)^2 + 2*(y + 0.4)^2 - 0.6")
+                                                : std::string("(x - 0.1)^2 + 2*(y + 0.4)^2 + z^2 + 0.3*x*z - 0.6"));
+  } else {
+    parameters.set("centre", cut({0.1, -0.4, 0.2}));
+    if (type == "torus") {
+      parameters.set("ring_radius", 0.9);
+      parameters.set("tube_radius", 0.4);
+    } else {
+      parameters.set("radius", 0.8);
+    }
+    if (type != "sphere") parameters.set("axis", Numbers{1.0, 2.0, -0.5});
+  }
+  return make_obstacle_shape(type, parameters);
+}
+
+/// The same, moving; turntables turn in their plane, too.
+std::unique_ptr<Obstacle> placed(const std::string& type, Index dimension, const std::string& side = "outside") {
+  const Vector velocity = Eigen::Vector3d(0.3, -0.2, 0.5).head(dimension);
+  std::unique_ptr<ObstacleShape> shape = shape_of(type, dimension, side);
+  const double spin = shape->own_axis().exists ? 0.7 : 0.0;
+  return std::make_unique<Obstacle>(std::move(shape), make_uniform_path(velocity), spin, Vector::Zero(dimension));
+}
+
+/// Digits that gaps and normals of a type have.
+double rounding_of(const std::string& type) {
+  return type == "implicit" ? 1e-11 : 1e-14;
+}
+
+class Obstacles : public testing::TestWithParam<std::tuple<std::string, Index, std::string>> {
+ protected:
+  [[nodiscard]] Index dimension() const { return std::get<1>(GetParam()); }
+  [[nodiscard]] std::unique_ptr<Obstacle> make() const { return placed(type(), dimension(), std::get<2>(GetParam())); }
+  [[nodiscard]] const std::string& type() const { return std::get<0>(GetParam()); }
+  [[nodiscard]] double rounding() const { return rounding_of(type()); }
+  [[nodiscard]] Vector random_point() {
+    Vector point(dimension());
+    for (double& x : point) x = 4.0 * static_cast<double>(random_()) / 4294967296.0 - 2.0;
+    return point;
+  }
+  std::mt19937 random_{3};
+};
+
+TEST_P(Obstacles, HaveUnitNormalsThatAreTheDerivativeOfTheGap) {
+  const auto obstacle = make();
+  for (int k = 0; k < 50; ++k) {
+    const Vector point = random_point();
+    const SpaceVector normal = obstacle->normal(point);
+    EXPECT_NEAR(normal.norm(), 1.0, 1e-15);
+    constexpr double h = 1e-6;
+    for (Index i = 0; i < dimension(); ++i) {
+      const Vector step = h * Vector::Unit(dimension(), i);
+      const double slope = (obstacle->gap(point + step) - obstacle->gap(point - step)) / (2.0 * h);
+      EXPECT_NEAR(normal[i], slope, type() == "implicit" ? 1e-7 : 2e-8);
+    }
+  }
+}
+
+/// Along the normal of a step it goes out where the gap grows, in where it shrinks, and neither where it stays.
+TEST_P(Obstacles, HaveNormalsOfStepsThatKnowTheChangeOfTheGap) {
+  const auto obstacle = make();
+  int near = 0;
+  for (int k = 0; k < 200; ++k) {
+    const Vector from = random_point();
+    Vector to = from + 0.3 * random_point();
+    SpaceVector normal = obstacle->shape().normal_of_step(from, to);
+    EXPECT_NEAR(normal.norm(), 1.0, 1e-15);
+    EXPECT_GE(normal.dot(obstacle->normal(to)), 0.0);
+    // Whatever a step does: no force along its normal gives energy.
+    EXPECT_GE(normal.dot(to - from) * (obstacle->gap(to) - obstacle->gap(from)), -rounding());
+    if (normal.dot(obstacle->normal(to)) < 0.5) continue;                          // too far round
+    if (normal == obstacle->normal(to) && !obstacle->shape().is_flat()) continue;  // too far round
+    if (std::abs(normal.dot(to - from)) < rounding()) continue;                    // far round, across the way
+    ++near;
+    const double change = obstacle->gap(to) - obstacle->gap(from);
+    EXPECT_GE(normal.dot(to - from) * change, -rounding());
+    const double factor = type() == "implicit" || type() == "torus" ? 0.2 : 1.0;
+    EXPECT_GE(std::abs(normal.dot(to - from)), factor * std::abs(change) - rounding());
+    EXPECT_LT((obstacle->shape().normal_of_step(to, to) - obstacle->normal(to)).norm(), 1e-15);
+    to += (obstacle->gap(from) - obstacle->gap(to)) * obstacle->normal(to);
+    normal = obstacle->shape().normal_of_step(from, to);
+    if (normal != obstacle->normal(to)) {
+      EXPECT_NEAR(normal.dot(to - from), 0.0, 2.0 * rounding());
+    }
+  }
+  EXPECT_GT(near, 50);
+}
+
+/// The gap is a distance: along the normal it changes by as much as one goes, until the surface and beyond.
+TEST_P(Obstacles, HaveGapsThatAreDistances) {
+  const auto obstacle = make();
+  for (int k = 0; k < 50; ++k) {
+    const Vector point = random_point();
+    const double gap = obstacle->gap(point);
+    const Vector foot = point - gap * obstacle->normal(point);
+    EXPECT_NEAR(obstacle->gap(foot), 0.0, rounding());
+    EXPECT_GT(obstacle->gap_rounding(point), 0.0);
+    EXPECT_LT(obstacle->gap_rounding(point), 1e-13);
+    if (obstacle->shape().is_flat())
+      EXPECT_NEAR(obstacle->gap(0.5 * (point + foot)), 0.5 * gap, 1e-14);
+    else
+      EXPECT_NE(obstacle->normal(point), obstacle->normal(random_point()));
+  }
+}
+
+/// Surfaces for pictures lie on the obstacle, also after it has moved.
+TEST_P(Obstacles, HaveSurfacesWhereTheyAre) {
+  const auto obstacle = make();
+  constexpr double time = 0.5;
+  const SpaceVector moved = obstacle->translation(time);
+  EXPECT_TRUE(obstacle->moves());
+  EXPECT_GT(moved.norm(), 0.1);
+  const Points start = obstacle->surface(random_point(), 0.3).points;
+  const Points later = obstacle->surface_points(start, time);
+  ASSERT_GT(start.cols(), 1);
+  ASSERT_EQ(later.cols(), start.cols());
+  EXPECT_LT((obstacle->surface_points(start, 0.0) - start).cwiseAbs().maxCoeff(), 1e-14);
+  for (Index k = 0; k < start.cols(); ++k) {
+    const double coarse = type() == "implicit" ? 0.01 : 1e-14;  // cuts of a grid
+    EXPECT_NEAR(obstacle->gap(SpaceVector(start.col(k))), 0.0, coarse);
+    EXPECT_NEAR(obstacle->at(time).gap(SpaceVector(later.col(k))), 0.0, coarse);
+    // The picture keeps its size.
+    EXPECT_NEAR((later.col(k) - later.col(0)).norm(), (start.col(k) - start.col(0)).norm(), 1e-14);
+  }
+  // What the material does, the surface does along its normal.
+  const Vector foot = later.col(0);
+  const Vector normal = obstacle->at(time).normal(foot);
+  EXPECT_NEAR(obstacle->surface_velocity(foot, time).dot(normal), moved.dot(normal) / time, 1e-12);
+  const Vector way = later.col(0) - start.col(0);
+  EXPECT_NEAR(way.dot(normal), moved.dot(normal), 1e-14);
+}
+
+/// The cells' sides tell where the obstacle is, and what they share is there once.
+TEST_P(Obstacles, HaveSurfacesThatFaceOut) {
+  const auto obstacle = make();
+  // A part, and all that there is.
+  for (const double radius : {0.1, 3.0}) {
+    const ObstacleSurface surface = obstacle->surface(random_point(), radius);
+    const auto corners = static_cast<std::size_t>(surface.corners());
+    ASSERT_EQ(corners, dimension() == 2 ? 2U : 4U);
+    ASSERT_EQ(surface.cells.size() % corners, 0U);
+    std::vector<int> uses(static_cast<std::size_t>(surface.points.cols()), 0);
+    for (std::size_t c = 0; c < surface.cells.size(); c += corners) {
+      std::vector<Vector> at;
+      for (std::size_t k = c; k < c + corners; ++k) {
+        ASSERT_GE(surface.cells[k], 0);
+        ASSERT_LT(surface.cells[k], surface.points.cols());
+        ++uses[static_cast<std::size_t>(surface.cells[k])];
+        at.emplace_back(surface.points.col(surface.cells[k]));
+      }
+      if (dimension() == 2) {
+        const Vector along = at[1] - at[0], middle = 0.5 * (at[0] + at[1]);
+        const Eigen::Vector2d left(-along[1], along[0]);
+        EXPECT_NEAR(left.dot(Eigen::Vector2d(obstacle->normal(middle))), along.norm(), 0.02 * along.norm() + 1e-15);
+        if (type() != "implicit") {
+          EXPECT_EQ(surface.cells[c], c > 0 ? surface.cells[c - 1] : 0);
+        }
+      } else {
+        const Eigen::Vector3d one = at[2] - at[0], other = at[3] - at[1], area = one.cross(other);
+        const Vector middle = 0.25 * (at[0] + at[1] + at[2] + at[3]);
+        EXPECT_GT(area.dot(Eigen::Vector3d(obstacle->normal(middle))),
+                  (type() == "implicit" ? 0.5 : 0.97) * area.norm());
+        if (type() != "implicit") {
+          EXPECT_GT(area.norm(), 0.0);
+        }
+      }
+    }
+    EXPECT_EQ(std::count(uses.begin(), uses.end(), 0), 0);
+    // One more than cells at a pole or an end, not four for each cell.
+    const auto cells = static_cast<Index>(surface.cells.size() / corners);
+    const bool has_rims = type() == "cylinder" || type() == "torus" || type() == "implicit";
+    EXPECT_LE(surface.points.cols(), obstacle->shape().is_flat() ? 4 : has_rims ? 3 * cells / 2 : cells + 1);
+    for (Index i = 0; i < surface.points.cols(); ++i) {
+      for (Index k = 0; k < i && dimension() == 3 && type() == "sphere"; ++k)
+        ASSERT_GT((surface.points.col(i) - surface.points.col(k)).lpNorm<1>(), 1e-9) << i << " is " << k << " again";
+    }
+  }
+}
+
+/// Planes are shown beside the body when they move along themselves, and turn; spheres go with what moves them.
+TEST(Obstacle, IsShownWhereItCanBeSeen) {
+  const auto plane = placed("plane", 3);
+  const ObstacleSurface square = plane->surface(Vector::Zero(3), 0.3);
+  const Points later = plane->surface_points(square.points, 0.5);
+  const Vector start_middle = square.points.rowwise().mean(), middle = later.rowwise().mean();
+  const Vector normal = plane->normal(middle);
+  EXPECT_NEAR((middle - start_middle).norm(), std::abs(plane->translation(0.5).dot(normal)), 1e-15);
+  const Vector before = square.points.col(0) - start_middle, after = later.col(0) - middle;
+  EXPECT_NEAR(before.dot(after), std::cos(0.7 * 0.5) * before.squaredNorm(), 1e-15);
+
+  const auto sphere = placed("sphere", 3);
+  const ObstacleSurface cap = sphere->surface(Vector::Zero(3), 0.3);
+  const Points moved = sphere->surface_points(cap.points, 0.5);
+  EXPECT_LT(((moved - cap.points).colwise() - Vector(sphere->translation(0.5))).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Obstacles, testing::ValuesIn([] {
+                           std::vector<std::tuple<std::string, Index, std::string>> all;
+                           for (const std::string& type : obstacle_registry().names()) {
+                             if (type == "surface") continue;
+                             const bool in_space = type == "cylinder" || type == "torus";
+                             for (const Index dimension : {2, 3}) {
+                               if (dimension == 2 && in_space) continue;
+                               all.emplace_back(type, dimension, "outside");
+                               if (type != "plane" && type != "implicit") all.emplace_back(type, dimension, "inside");
+                             }
+                           }
+                           return all;
+                         }()),
+                         [](const auto& info) {
+                           return std::get<0>(info.param) + "_" + std::get<2>(info.param) + "_" +
+                                  std::to_string(std::get<1>(info.param)) + "d";
+                         });
+
+TEST(Obstacle, IsRefusedWithoutItsValuesOrWithOthers) {
+  const auto message = [](const std::string& type, const Parameters& parameters) {
+    try {
+      (void)make_obstacle(type, parameters);
+    } catch (const Error& problem) {
+      return std::string(problem.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(message("cone", {}),
+            "unknown obstacle type \"cone\"; known: \"plane\", \"sphere\", \"cylinder\", "
+            "\"torus\", \"surface\" and \"implicit\"");
+  EXPECT_EQ(message("sphere", {{"centre", Numbers{0.0, 0.0}}}),
+            "obstacle type \"sphere\" needs the parameter \"radius\"");
+  EXPECT_NE(message("plane", {{"centre", Numbers{0.0, 0.0}}}).find("has no parameter \"centre\""), std::string::npos);
+  EXPECT_EQ(message("sphere", {{"centre", 1.0}, {"radius", 1.0}}),
+            "obstacle type \"sphere\": the parameter \"centre\" is 1; it must be a vector of 2 or 3 numbers");
+  EXPECT_EQ(message("sphere", {{"centre", Numbers{0.0, 0.0}}, {"radius", -1.0}}),
+            "obstacle type \"sphere\": the parameter \"radius\" is -1; it must be a positive number");
+  EXPECT_EQ(message("plane", {{"point", Numbers{0.0, 0.0}}, {"normal", Numbers{0.0, 0.0}}}),
+            "the normal of a plane is zero");
+  EXPECT_EQ(message("cylinder", {{"centre", Numbers{0.0, 0.0}}, {"axis", Numbers{0.0, 1.0}}, {"radius", 1.0}}),
+            "a cylinder needs three dimensions; in two take a sphere, which is a circle there");
+  EXPECT_NE(message("implicit", {{"expression", std::string("x + t")}}).find("depends on t"), std::string::npos);
+  EXPECT_NE(message("implicit", {{"expression", std::string("2")}}).find("the same everywhere"), std::string::npos);
+}
+
+/// x² has no slope where it is zero, and x − 3 has one everywhere.
+TEST(Obstacle, RefusesAnExpressionWithoutASlope) {
+  const auto gap = [](const std::string& expression) {
+    return Obstacle(make_obstacle_shape("implicit", {{"expression", expression}}), nullptr, 0.0, Vector::Zero(2))
+        .gap(Eigen::Vector2d(0.1, 0.2));
+  };
+  EXPECT_NEAR(gap("7*(x - 3)"), -2.9, 1e-14);
+  EXPECT_THROW((void)gap("(x - 0.1)^2"), Error);
+  try {
+    (void)gap("(x - 0.05)^2");
+    ADD_FAILURE() << "a gap to a surface without slope";
+  } catch (const Error& problem) {
+    EXPECT_NE(std::string(problem.what()).find("vanishes at (0.05"), std::string::npos) << problem.what();
+  }
+}
+
+/// A plane that tilts, a sphere that goes round and a cylinder that does both: gaps at an instant are those of the
+/// shape where it is, and a step's normal knows what the gap has changed by beside the obstacle's own motion.
+TEST(Obstacle, TurnsAndIsWhereItsPoseSays) {
+  std::mt19937 random(5);
+  const auto number = [&] { return 2.0 * static_cast<double>(random()) / 4294967296.0 - 1.0; };
+  for (const auto& [type, dimension] : {std::pair<std::string, Index>{"plane", 2},
+                                        {"plane", 3},
+                                        {"sphere", 2},
+                                        {"sphere", 3},
+                                        {"cylinder", 3},
+                                        {"torus", 3},
+                                        {"implicit", 3}}) {
+    SCOPED_TRACE(type);
+    const std::vector<std::string> motion{"0.3*sin(2*t)", "0.1 - t^2", "0.2*t"}, turn{"0.4*t", "0.9*t + t^2", "-0.3*t"};
+    std::vector<Expression> displacement, rotation;
+    for (Index k = 0; k < dimension; ++k) displacement.emplace_back(motion[static_cast<std::size_t>(k)]);
+    for (Index k = 0; k < (dimension == 2 ? 1 : 3); ++k) rotation.emplace_back(turn[static_cast<std::size_t>(k)]);
+    const Vector about = Eigen::Vector3d(0.2, 0.5, -0.3).head(dimension);
+    const Obstacle obstacle(shape_of(type, dimension, "outside"), make_path(displacement, rotation, dimension), 0.0,
+                            about);
+    ASSERT_TRUE(obstacle.turns());
+    EXPECT_FALSE(obstacle.has_constant_normals());
+    const double start = 0.2, end = 0.35;
+    const PlacedObstacle before = obstacle.at(start), after = obstacle.at(end);
+    int near = 0;
+    for (int k = 0; k < 100; ++k) {
+      SpaceVector of_shape(dimension), other(dimension);
+      for (double& x : of_shape) x = 1.5 * number();
+      for (double& x : other) x = 0.2 * number();
+      other += of_shape;
+      const SpaceVector from = before.pose().in_space(of_shape), to = after.pose().in_space(other);
+      EXPECT_NEAR(before.gap(from), obstacle.shape().gap(of_shape), type == "implicit" ? 1e-11 : 1e-13);
+      EXPECT_LT((before.pose().seen_from(from) - of_shape).norm(), 1e-14);
+      const SpaceVector normal = normal_of_step(before, from, after, to);
+      EXPECT_NEAR(normal.norm(), 1.0, 1e-14);
+      // The velocity of what is at the mean place, over the step and at an instant.
+      const SpaceVector own =
+          (end - start) * obstacle.surface_velocity(0.5 * (from + to), 0.5 * (start + end), end - start);
+      EXPECT_LT((own - motion_at(before.pose(), after.pose(), 0.5 * (from + to))).norm(), 1e-14);
+      const SpaceVector at_start = obstacle.surface_velocity(from, start);
+      const SpaceVector ahead = obstacle.pose(start + 1e-5).in_space(of_shape),
+                        behind = obstacle.pose(start - 1e-5).in_space(of_shape);
+      EXPECT_LT((at_start - (ahead - behind) / 2e-5).norm(), 1e-5);
+      const double change = after.gap(to) - before.gap(from);
+      EXPECT_GE(normal.dot(to - from - own) * change, -1e-12);
+      // Far round it is that of the end, or gives nothing.
+      if (std::abs(normal.dot(to - from - own)) < 1e-12 || (normal - after.normal(to)).norm() < 1e-14) continue;
+      ++near;
+      EXPECT_GE(normal.dot(to - from - own) * change, -1e-13);
+      EXPECT_GE(std::abs(normal.dot(to - from - own)), 0.2 * std::abs(change) - 1e-12);
+      if (type == "plane") {
+        EXPECT_LE(std::abs(normal.dot(to - from - own)), 1.02 * std::abs(change) + 1e-13);
+      }
+    }
+    EXPECT_GT(near, 40);
+  }
+}
+
+/// Rounding of differences would be a velocity, and friction at the start would have its direction.
+TEST(Obstacle, HasNoVelocityWhereItStartsFromRest) {
+  const Vector about = Eigen::Vector2d(0.0, 0.0);
+  const auto velocity = [&](const std::string& motion, double time_scale) {
+    const Obstacle obstacle(shape_of("plane", 2, "outside"), make_path({Expression(motion), Expression("0")}, {}, 2),
+                            0.0, about, time_scale);
+    return obstacle.surface_velocity(about, 0.0)[0];
+  };
+  for (const double step : {1e-2, 1e-3, 5e-4, 2e-4, 1e-4, 7e-5, 3e-6, 1e-7, 1e-9}) {
+    SCOPED_TRACE(step);
+    for (const std::string rest : {"1.5e-4*(1 - cos(2*pi*t/0.2))", "4*t^2", "t^3", "0.1 + 3*t^2", "1e3*sin(t)^2"})
+      EXPECT_EQ(velocity(rest, step), 0.0) << rest;
+    EXPECT_NEAR(velocity("0.03*t + 0.2*t^2", step), 0.03, 1e-12 / step);
+    EXPECT_NEAR(velocity("-2*sin(t)", step), -2.0, 1e-11 + 1e-12 / step);
+  }
+}
+
+TEST(Obstacle, FollowsATable) {
+  const TemporaryFolder folder(std::filesystem::temp_directory_path(), "path");
+  const std::string file = folder.file("motion.csv");
+  std::ofstream(file) << "t,x,y,angle\n0,0,0,0\n1, 2, 0, 0.5\n# half as fast\n3,4,-1,0.5\n";
+  const auto path = read_path(file, 2);
+  EXPECT_TRUE(path->turns());
+  EXPECT_NEAR(path->displacement(0.5)[0], 1.0, 1e-15);
+  EXPECT_NEAR(path->displacement(2.0)[1], -0.5, 1e-15);
+  EXPECT_NEAR(path->rotation(0.2)[0], 0.1, 1e-15);
+  EXPECT_EQ(path->displacement(-1.0)[0], 0.0);
+  EXPECT_EQ(path->displacement(9.0)[0], 4.0);
+  const auto problem = [&](const std::string& text, Index dimension) {
+    std::ofstream(file) << text;
+    try {
+      (void)read_path(file, dimension);
+    } catch (const Error& error) {
+      return std::string(error.what()).substr(folder.path().string().size());
+    }
+    return std::string("none");
+  };
+  EXPECT_NE(problem("0 0 0\n1 0\n", 2).find("motion.csv:2: 2 numbers"), std::string::npos);
+  EXPECT_NE(problem("0 0 0\n0 1 1\n", 2).find("motion.csv:2: the time 0 does not come after 0"), std::string::npos);
+  EXPECT_NE(problem("0 0 0\n1 nan 1\n", 2).find("motion.csv:2:3: "), std::string::npos);
+  // The first line, too: a header is letters.
+  EXPECT_NE(problem("0.0 0.0m 0.0\n1 1 1\n", 2).find("motion.csv:1:5: \"0.0m\" is no finite number"),
+            std::string::npos);
+  EXPECT_NE(problem("0 nan 0\n1 1 1\n", 2).find("motion.csv:1:3: "), std::string::npos);
+  EXPECT_NE(problem("t x y\n", 2).find("has no numbers"), std::string::npos);
+  EXPECT_NE(problem("0 0 0\n", 3).find("motion.csv:1: 3 numbers; each line of a motion in 3D has 4"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -1,0 +1,389 @@
+#include "ricochet/rigid/surface/rigid_surface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/temporary_folder.hpp"
+#include "ricochet/mesh/search/closest_point.hpp"
+#include "ricochet/rigid/obstacle_shape.hpp"
+#include "ricochet/rigid/surface/facet_weight.hpp"
+#include "support/surface_files.hpp"
+
+/// @file Surfaces from files: distances against closed forms and against looking at every facet, and what is refused.
+namespace ricochet {
+namespace {
+
+using Three = Eigen::Vector3d;
+
+class RigidSurfaces : public testing::Test {
+ protected:
+  [[nodiscard]] double number() { return 2.0 * static_cast<double>(random_()) / 4294967296.0 - 1.0; }
+  [[nodiscard]] Three point(double reach) { return reach * Three(number(), number(), number()); }
+  [[nodiscard]] std::unique_ptr<ObstacleShape> shape(const SurfaceFacets& facets, Parameters parameters = {}) {
+    write_text_stl(facets, folder_.file("body.stl"));
+    parameters.set("file", folder_.file("body.stl"));
+    return make_obstacle_shape("surface", parameters);
+  }
+  TemporaryFolder folder_{std::filesystem::temp_directory_path(), "surface"};
+  std::mt19937 random_{11};
+};
+
+/// Of a block, by its three coordinates.
+double distance_to_block(const Three& at, const Three& low, const Three& high) {
+  const Three q = (at - 0.5 * (low + high)).cwiseAbs() - 0.5 * (high - low);
+  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+TEST_F(RigidSurfaces, HaveTheDistancesOfABlockInsideAndOutside) {
+  const Three low(-0.3, 0.1, -0.6), high(0.5, 0.4, 0.2);
+  for (const int n : {1, 3}) {
+    const auto outside = shape(block_surface(low, high, n)),
+               inside = shape(block_surface(low, high, n), {{"side", std::string("inside")}});
+    for (int k = 0; k < 2000; ++k) {
+      const Three at = point(1.0);
+      const double exact = distance_to_block(at, low, high);
+      ASSERT_NEAR(outside->gap(SpaceVector(at)), exact, 1e-14) << at.transpose();
+      ASSERT_NEAR(inside->gap(SpaceVector(at)), -exact, 1e-14);
+    }
+  }
+}
+
+/// Two blocks that make an L: edges that go in, corners of both kinds.
+TEST_F(RigidSurfaces, KnowInsideFromOutsideAtEdgesThatGoIn) {
+  // One polygon in the plane, with the lines of the L, carried along the third axis by hand.
+  const std::vector<Eigen::Vector2d> outline{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+  SurfaceFacets facets;
+  const auto at = [&](std::size_t i, double z) { return Three(outline[i][0], outline[i][1], z); };
+  for (std::size_t i = 0; i < 6; ++i) {
+    const std::size_t k = (i + 1) % 6;
+    facets.corners.push_back({at(i, 0), at(k, 0), at(k, 1)});
+    facets.corners.push_back({at(i, 0), at(k, 1), at(i, 1)});
+  }
+  for (const auto& [a, b, c] : {std::array<std::size_t, 3>{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}}) {
+    facets.corners.push_back({at(a, 1), at(b, 1), at(c, 1)});
+    facets.corners.push_back({at(a, 0), at(c, 0), at(b, 0)});
+  }
+  const RigidSurface surface(facets, "L");
+  EXPECT_TRUE(surface.is_closed());
+  EXPECT_NEAR(surface.volume(), 3.0, 1e-14);
+  const auto shown = shape(facets);
+  for (int k = 0; k < 5000; ++k) {
+    const Three p = Three(1.0, 1.0, 0.5) + point(1.5);
+    const bool inside = p[2] > 0 && p[2] < 1 && p[0] > 0 && p[1] > 0 && p[0] < 2 && p[1] < 2 && (p[0] < 1 || p[1] < 1);
+    const double gap = shown->gap(SpaceVector(p));
+    ASSERT_EQ(gap < 0.0, inside) << p.transpose() << ": " << gap;
+    const double blocks =
+        std::min(distance_to_block(p, {0, 0, 0}, {2, 1, 1}), distance_to_block(p, {0, 0, 0}, {1, 2, 1}));
+    if (!inside) {
+      ASSERT_NEAR(gap, blocks, 1e-14);
+    }
+  }
+}
+
+TEST_F(RigidSurfaces, FindTheNearestOfAllFacets) {
+  const SurfaceFacets facets = sphere_surface({0.1, 0.2, 0.3}, 0.7, 3);
+  const RigidSurface surface(facets, "sphere");
+  EXPECT_EQ(surface.facets().size(), 1280U);
+  EXPECT_EQ(surface.corners().size(), 642U);
+  for (int k = 0; k < 300; ++k) {
+    const Three at = point(1.5);
+    double least = 1e300;
+    for (const auto& [a, b, c] : facets.corners)
+      least = std::min(least, (closest_on_triangle(at, a, b, c).position - at).norm());
+    EXPECT_EQ((surface.nearest(at).position - at).norm(), least);
+  }
+}
+
+/// The distance to it tends to that of the sphere with the square of the size of its triangles, its mean normals, too.
+TEST_F(RigidSurfaces, TendToASphere) {
+  double gap_before = 0.0, normal_before = 0.0;
+  for (const int level : {2, 3, 4}) {
+    const double size = 1.2 / std::pow(2.0, level);
+    const auto sphere = shape(sphere_surface({0, 0, 0}, 1.0, level), {{"edge_radius", size}});
+    double gap = 0.0, normal = 0.0;
+    random_.seed(7);
+    for (int k = 0; k < 400; ++k) {
+      const Three out = point(1.0).normalized(), at = 1.01 * out;
+      gap = std::max(gap, std::abs(sphere->gap(SpaceVector(at)) - 0.01));
+      normal = std::max(normal, (Three(sphere->normal(SpaceVector(Three(1.0 * out)))) - out).norm());
+    }
+    if (level > 2) {
+      EXPECT_GT(gap_before / gap, 3.4);
+      EXPECT_GT(normal_before / normal, 1.7);
+    }
+    gap_before = gap;
+    normal_before = normal;
+  }
+  EXPECT_LT(gap_before, 1.2e-3);
+  EXPECT_LT(normal_before, 2e-2);
+}
+
+/// ∫ over the facet by a fine sum.
+TEST_F(RigidSurfaces, WeighFacetsExactly) {
+  for (int k = 0; k < 20; ++k) {
+    const std::array<Three, 3> corners{point(1.0), point(1.0), point(1.0)};
+    const Three at = point(0.7), normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    constexpr double radius = 0.8;
+    constexpr int n = 600;
+    double sum = 0.0;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; i + j < n; ++j) {
+        for (const double third : {1.0 / 3.0, 2.0 / 3.0}) {
+          if (third > 0.5 && i + j + 1 >= n) continue;
+          const Three y =
+              corners[0] + (i + third) / n * (corners[1] - corners[0]) + (j + third) / n * (corners[2] - corners[0]);
+          sum += std::max(radius * radius - (y - at).squaredNorm(), 0.0);
+        }
+      }
+    }
+    sum *= 0.5 * normal.norm() / (n * n);
+    const FacetWeight weight = weight_of_triangle(corners, normal.normalized(), at, radius);
+    EXPECT_NEAR(weight.value, sum, 2e-5);
+    double line = 0.0;
+    for (int i = 0; i < 4000; ++i) {
+      const Three y = corners[0] + (i + 0.5) / 4000 * (corners[1] - corners[0]);
+      line += std::max(radius * radius - (y - at).squaredNorm(), 0.0) * (corners[1] - corners[0]).norm() / 4000;
+    }
+    const FacetWeight on_line = weight_of_segment(corners[0], corners[1], at, radius);
+    EXPECT_NEAR(on_line.value, line, 1e-5);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      constexpr double h = 1e-5;
+      const Three ahead = at + h * Three::Unit(i), behind = at - h * Three::Unit(i);
+      const auto triangle = [&](const Three& x) {
+        return weight_of_triangle(corners, normal.normalized(), x, radius).value;
+      };
+      const auto segment = [&](const Three& x) { return weight_of_segment(corners[0], corners[1], x, radius).value; };
+      EXPECT_NEAR(weight.gradient[i], (triangle(ahead) - triangle(behind)) / (2.0 * h), 1e-7);
+      EXPECT_NEAR(on_line.gradient[i], (segment(ahead) - segment(behind)) / (2.0 * h), 1e-6);
+    }
+  }
+}
+
+/// Whatever the triangles are: the height above a plane, with a derivative that turns around edges and does not jump.
+TEST_F(RigidSurfaces, HaveMeanHeightsWhoseDerivativesTurnAroundEdges) {
+  const Three low(-1, -1, -1), high(1, 1, 1);
+  const RigidSurface coarse(block_surface(low, high), "coarse"), fine(block_surface(low, high, 7), "fine");
+  constexpr double radius = 0.3;
+  for (const RigidSurface* surface : {&coarse, &fine}) {
+    const RigidSurface::Height above = surface->mean_height({0.2, 0.1, 1.05}, radius);
+    EXPECT_NEAR(above.value, 0.05, 1e-15);
+    EXPECT_LT((above.gradient - Three(0, 0, 1)).norm(), 1e-14);
+    EXPECT_LT(
+        (surface->mean_height({1.0, 0.1, 1.0}, radius).gradient.normalized() - Three(1, 0, 1).normalized()).norm(),
+        1e-14);
+    EXPECT_LT(
+        (surface->mean_height({1.0, 1.0, 1.0}, radius).gradient.normalized() - Three(1, 1, 1).normalized()).norm(),
+        1e-14);
+  }
+  Three before = coarse.mean_height({0.6, 0.35, 1.0}, radius).gradient;
+  double off = 0.0;
+  for (int k = 1; k <= 400; ++k) {
+    const Three at(0.6 + 0.001 * k, 0.35, 1.0);
+    const RigidSurface::Height on_coarse = coarse.mean_height(at, radius), on_fine = fine.mean_height(at, radius);
+    ASSERT_LT((on_coarse.gradient - on_fine.gradient).norm(), 1e-12);
+    ASSERT_NEAR(on_coarse.value, on_fine.value, 1e-14);
+    ASSERT_LT((on_coarse.gradient - before).norm(), 0.02);
+    before = on_coarse.gradient;
+    off = std::max(off, std::abs(on_coarse.value));
+  }
+  EXPECT_LT(off, 0.13 * radius);
+  EXPECT_GT(off, 0.1 * radius);
+}
+
+/// The derivative of the gap in all of its parts, near edges and corners and beyond the radius.
+TEST_F(RigidSurfaces, HaveNormalsAlongTheDerivativeOfTheGap) {
+  const auto block = shape(block_surface({-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}, 2), {{"edge_radius", 0.15}});
+  const auto polygon = [&] {
+    std::ofstream(folder_.file("l.txt")) << "0 0\n2 0\n2 1\n1 1\n1 2\n0 2\n0 0\n";
+    return make_obstacle_shape("surface", {{"file", folder_.file("l.txt")}, {"edge_radius", 0.3}});
+  }();
+  int looked_at = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const bool in_plane = k % 4 == 0;
+    const ObstacleShape& surface = in_plane ? *polygon : *block;
+    const SpaceVector at =
+        in_plane ? SpaceVector(Eigen::Vector2d(1.0 + 1.2 * number(), 1.0 + 1.2 * number())) : SpaceVector(point(0.7));
+    const double gap = surface.gap(at);
+    if (gap < -0.05 || gap > 0.25) continue;
+    SpaceVector slope(at.size());
+    constexpr double h = 1e-6;
+    for (Index i = 0; i < at.size(); ++i) {
+      SpaceVector ahead = at, behind = at;
+      ahead[i] += h;
+      behind[i] -= h;
+      slope[i] = (surface.gap(ahead) - surface.gap(behind)) / (2.0 * h);
+    }
+    EXPECT_LT((slope.normalized() - surface.normal(at)).norm(), 1e-4) << at.transpose() << ": " << gap;
+    EXPECT_LT((slope - surface.gradient(at)).norm(), 1e-4) << at.transpose() << ": " << gap;
+    ++looked_at;
+  }
+  EXPECT_GT(looked_at, 1000);
+}
+
+/// Of steps of any length at rounded edges, where the gap changes by less than one goes. The direction of a way that is
+/// rounding says nothing: forces of a node that sticks there would change from one iteration to the next.
+TEST_F(RigidSurfaces, HaveNormalsOfStepsThatDoNotFollowRounding) {
+  const auto block = shape(block_surface({-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}, 2), {{"edge_radius", 0.15}});
+  int rounded = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const SpaceVector from = point(0.6);
+    if (std::abs(block->gap(from)) > 0.02) continue;
+    if (block->gradient(from).norm() < 0.99) ++rounded;
+    for (int digits = 4; digits <= 15; ++digits) {
+      const double length = std::pow(10.0, -digits);
+      const SpaceVector way = length * point(1.0);
+      const SpaceVector normal = block->normal_of_step(from, from + way);
+      // It turns by a way beside the radius; 2e-8 is what is left of rounding beside ways of 1e-7.
+      EXPECT_LT((normal - block->normal(from)).norm(), 100.0 * length + 2e-8) << from.transpose() << ", " << length;
+    }
+    const SpaceVector to = from + SpaceVector(point(0.02));
+    const double change = block->gap(to) - block->gap(from);
+    EXPECT_GE(block->normal_of_step(from, to).dot(to - from) * change, -1e-16);
+  }
+  EXPECT_GT(rounded, 50);
+}
+
+TEST_F(RigidSurfaces, AreTheSameFromTextAndFromBytes) {
+  SurfaceFacets facets = sphere_surface({0, 0, 0}, 0.5, 2);
+  for (auto& triangle : facets.corners) {
+    for (Three& corner : triangle) corner = corner.cast<float>().cast<double>();
+  }
+  write_text_stl(facets, folder_.file("a.stl"));
+  write_binary_stl(facets, folder_.file("b.stl"));
+  const SurfaceFacets text = read_stl(folder_.file("a.stl"), 2.0), bytes = read_stl(folder_.file("b.stl"), 2.0);
+  ASSERT_EQ(text.corners.size(), facets.corners.size());
+  ASSERT_EQ(bytes.corners.size(), facets.corners.size());
+  for (std::size_t i = 0; i < facets.corners.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(text.corners[i][k], 2.0 * facets.corners[i][k]);
+      EXPECT_EQ(bytes.corners[i][k], 2.0 * facets.corners[i][k]);
+    }
+  }
+}
+
+/// A square whose sides are lines of a file, and a line that has ends.
+TEST_F(RigidSurfaces, AreInThePlaneToo) {
+  const auto polygon = [&](const std::string& text, Parameters parameters = {}) {
+    std::ofstream(folder_.file("body.txt")) << text;
+    parameters.set("file", folder_.file("body.txt"));
+    return make_obstacle_shape("surface", parameters);
+  };
+  // Both ways round.
+  for (const std::string text : {"0 0\n1, 0\n1 1\n0 1 # last\n0 0\n", "0 0\n0 1\n1 1\n1 0\n0 0\n"}) {
+    const auto square = polygon(text);
+    EXPECT_NEAR(square->gap(Eigen::Vector2d(0.5, 0.7)), -0.3, 1e-15);
+    EXPECT_NEAR(square->gap(Eigen::Vector2d(2.0, 2.0)), std::sqrt(2.0), 1e-15);
+    EXPECT_NEAR(square->gap(Eigen::Vector2d(0.5, -0.25)), 0.25, 1e-15);
+    EXPECT_LT((square->normal(Eigen::Vector2d(0.5, -0.25)) - Eigen::Vector2d(0, -1)).norm(), 1e-15);
+  }
+  // The body is below, to the right of lines that go to the left... beyond its ends nothing is behind it.
+  const auto line = polygon("1 0\n-1 0\n");
+  EXPECT_NEAR(line->gap(Eigen::Vector2d(0.3, -0.2)), 0.2, 1e-15);
+  EXPECT_NEAR(line->gap(Eigen::Vector2d(0.3, 0.2)), -0.2, 1e-15);
+  EXPECT_NEAR(line->gap(Eigen::Vector2d(4.0, 4.0)), 5.0, 1e-15);
+  EXPECT_THROW((void)polygon("1 0\n-1 0\n", {{"side", std::string("inside")}}), Error);
+  EXPECT_THROW((void)polygon("1 0\n-1 0 3\n"), Error);
+  EXPECT_THROW((void)polygon("1 0\n-1 b\n"), Error);
+  EXPECT_THROW((void)polygon("# nothing\n"), Error);
+}
+
+TEST_F(RigidSurfaces, RefuseWhatHasNoInside) {
+  const auto problem = [&](const SurfaceFacets& facets, Parameters parameters = {}) {
+    try {
+      (void)shape(facets, std::move(parameters));
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::invalid_input);
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  const SurfaceFacets block = block_surface({0, 0, 0}, {1, 1, 1});
+  EXPECT_EQ(problem(block), "none");
+  SurfaceFacets open = block;
+  open.corners.erase(open.corners.begin() + 4);
+  EXPECT_EQ(problem(open), "none");
+  EXPECT_NE(problem(open, {{"side", std::string("inside")}})
+                .find("it is not closed: 3 of its edges belong to one triangle only"),
+            std::string::npos);
+  SurfaceFacets turned = block;
+  std::swap(turned.corners[4][0], turned.corners[4][1]);
+  EXPECT_NE(problem(turned).find("are neighbours that are turned against each other"), std::string::npos);
+  EXPECT_NE(problem(turned).find("triangle 5 at ("), std::string::npos);
+  SurfaceFacets twice = block;
+  twice.corners.push_back(block.corners[2]);
+  EXPECT_NE(problem(twice).find("triangle 3 at ("), std::string::npos);
+  EXPECT_NE(problem(twice).find("are one and the same"), std::string::npos);
+  SurfaceFacets joined = block;
+  for (const auto& triangle : block_surface({1, 1, 0}, {2, 2, 1}).corners) joined.corners.push_back(triangle);
+  EXPECT_NE(problem(joined).find("4 triangles meet at the edge at (1, 1, 0.5)"), std::string::npos);
+  // Inside out as a whole it is turned round.
+  SurfaceFacets inside_out = block;
+  for (auto& triangle : inside_out.corners) std::swap(triangle[0], triangle[1]);
+  EXPECT_TRUE(RigidSurface(inside_out, "block").was_turned_round());
+  EXPECT_NEAR(shape(inside_out)->gap(Three(0.5, 0.5, 1.25)), 0.25, 1e-15);
+  EXPECT_NEAR(shape(inside_out)->gap(Three(1.5, 0.5, 1.5)), std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR(shape(inside_out)->gap(Three(0.9, 0.8, 0.9)), -0.1, 1e-15);
+  // A triangle without area, out of two corners that are one.
+  SurfaceFacets flat = block;
+  flat.corners.push_back({block.corners[0][0], block.corners[0][0], block.corners[0][1]});
+  EXPECT_EQ(RigidSurface(flat, "block").flat_count(), 1);
+  EXPECT_NEAR(shape(flat)->gap(Three(0.5, 0.5, 1.25)), 0.25, 1e-15);
+}
+
+TEST_F(RigidSurfaces, SayWhereAFileIsWrong) {
+  const std::string file = folder_.file("bad.stl");
+  const auto problem = [&](const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+    try {
+      (void)read_stl(file, 1.0);
+    } catch (const Error& error) {
+      return std::string(error.what()).substr(folder_.path().string().size() + 1);
+    }
+    return std::string("none");
+  };
+  EXPECT_NE(problem("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 o 0\n")
+                .find("bad.stl:5:10: \"o\" is no finite number"),
+            std::string::npos);
+  EXPECT_NE(problem("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n")
+                .find("expected \"vertex\" but found \"the end of the file\""),
+            std::string::npos);
+  for (const std::string normal : {"0 0 1m", "x 0 1", "0 0 -"}) {
+    EXPECT_NE(
+        problem("solid a\nfacet normal " + normal + "\nouter loop\nvertex 0 0 0\n").find("is no number of a normal"),
+        std::string::npos)
+        << normal;
+  }
+  // Some programs write those for triangles without area.
+  const std::string triangle = "\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+  for (const std::string normal : {"nan nan nan", "-nan(ind) 0 NaN", "-1 +.5e3 0"})
+    EXPECT_EQ(problem("solid a\nfacet normal " + normal + triangle), "none") << normal;
+  EXPECT_NE(problem("solid a\nendsolid\n").find("no triangles"), std::string::npos);
+  EXPECT_NE(problem(std::string(80, ' ') + std::string("\5\0\0\0", 4) + std::string(100, '\1'))
+                .find("the file ends before the 5 triangles"),
+            std::string::npos);
+  EXPECT_NE(problem("").find("it is cut off, or no STL"), std::string::npos);
+  EXPECT_THROW((void)read_stl(folder_.file("absent.stl"), 1.0), Error);
+  const auto problem_of_polygons = [&](const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+    try {
+      (void)read_polygons(file, 1.0);
+    } catch (const Error& error) {
+      return std::string(error.what()).substr(folder_.path().string().size() + 1);
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(problem_of_polygons("0 0\n1, 0 # a corner\n\n2;0\n3;1\n"), "none");
+  EXPECT_NE(problem_of_polygons("0 0\n1 0.0m\n").find("bad.stl:2:3: \"0.0m\" is no finite number"), std::string::npos);
+  EXPECT_NE(problem_of_polygons("x y\n0 0\n1 0\n").find("bad.stl:1:1: \"x\""), std::string::npos);
+  EXPECT_NE(problem_of_polygons("0 0\n1 0 2\n").find("bad.stl:2: a line of a polygon has two numbers"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace ricochet
