@@ -1,10 +1,10 @@
 """A puck strikes a wall at an angle, with several coefficients of friction.
 
-Physics: while it slips all the way, Coulomb's law holds for the impulses, too: what the wall takes from the momentum
-along itself is F times what it gives across. So the velocity along the wall falls as v_x - F (1 + e) v_n, a straight line, until the
-puck grips: a disc does at F = v_x / (3 (1 + e) v_n), about 0.5 here.
+Physics: if the puck slips during the whole contact, Coulomb's law also holds for the impulses: the impulse along the wall is F times
+the normal impulse. The velocity after the impact is then v_x - F (1 + e) v_n along the wall, a linear function of F, up to the
+coefficient at which the puck sticks: for a disc F = v_x / (3 (1 + e) v_n), about 0.5 here.
 
-It shows: a case file with changes, columns of the history, impacts, a picture of a frame.
+The example shows: a case file with changed values, columns of the history, impacts, a picture of a frame.
 """
 
 import pathlib
@@ -22,7 +22,7 @@ frictions = [0.0, 0.1, 0.2, 0.3]
 figure, (force, law, body) = plt.subplots(1, 3, figsize=(11, 3.2), constrained_layout=True)
 ratios = []
 for friction in frictions:
-    # rc.run would warn that other frictions do not give what the case expects of its own.
+    # rc.run would warn that, with another friction, the case's [[expect]] entries do not hold.
     with rc.Session(case, {"contact.0.friction": friction}) as session:
         session.write_to(out / f"friction-{friction}", force=True)
         session.run()

@@ -1,10 +1,10 @@
-"""A plate is pressed on a block by a controller that sees the contact force.
+"""A controller measures the contact force and presses a plate on a block.
 
-Physics: the plate moves down with a velocity in proportion to what is missing in the force. The block of height H and width w, free
-to widen without cost (Poisson's ratio 0), is a spring of stiffness E w / H per depth: under the force P the plate has gone down
-by P H / (E w), and the work that it has done is P² H / (2 E w), plus what the block has lost in damping.
+Physics: the plate moves down with a velocity in proportion to the error of the force. The block of height H and width w does not
+widen (Poisson's ratio 0) and acts as a spring of stiffness E w / H per depth. Under the force P the plate has moved down by
+P H / (E w), and it has done the work P² H / (2 E w), plus the energy that the block has lost by damping.
 
-It shows: a Session, set_obstacle_velocity in a loop, views of the state, the account of energy.
+The example shows: a Session, set_obstacle_velocity in a loop, views of the state, the energy account.
 """
 
 import pathlib
@@ -34,7 +34,7 @@ case = {
     "time": {"step": 1e-4, "end": 0.4},
 }
 session = rc.Session(case, mesh=mesh)
-session.set_obstacle_velocity("plate", [0.0, 0.0])  # before the start: this plate will move
+session.set_obstacle_velocity("plate", [0.0, 0.0])  # before the start: announces that this plate moves
 
 plate, rows = 0.0, []
 while session.time < session.end:
@@ -48,7 +48,7 @@ while session.time < session.end:
     rows.append((session.time, session.reactions.sum(), plate, target))
 time, force, plate, target = np.array(rows).T
 
-depth = -plate[-1] - 1e-4  # the plate began 0.1 mm above the block
+depth = -plate[-1] - 1e-4  # the plate starts 0.1 mm above the block
 expected = 1000.0 * H / (E * w)
 energies = session.energies
 print(f"force {force[-1]:.3f} N/m (asked 1000), before the change {force[time < 0.2][-1]:.3f} (asked 2000)")

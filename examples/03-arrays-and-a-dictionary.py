@@ -1,9 +1,9 @@
-"""A bar strikes a wall: a mesh made of arrays, a case made of a dictionary, no file.
+"""A bar strikes a wall: the mesh is made from arrays and the case from a dictionary, without any file.
 
-Physics: with Poisson's ratio 0 the strip is a rod. A front of pressure rho c v runs from the wall to the free end and back, so that
-contact lasts 2 L / c under the constant force rho c v per area, and the bar leaves with the velocity that it came with.
+Physics: with Poisson's ratio 0 the strip is a rod. A front with the pressure rho c v travels from the wall to the free end and back.
+Contact therefore lasts 2 L / c under the constant force rho c v per area, and the bar leaves with the speed at which it arrived.
 
-It shows: rc.Mesh of arrays with groups of nodes, a dictionary as a case, history against a closed form.
+The example shows: rc.Mesh from arrays with groups of nodes, a dictionary as a case, comparison of the history with a closed form.
 """
 
 import pathlib

@@ -1,9 +1,9 @@
 """A rubber ring falls on a floor: its mesh comes from Gmsh's Python module.
 
-Physics: the floor's impulse is what changes the momentum, sum of F dt = m (v_1 - v_0) + m g t, to rounding; without friction the total
-energy of the account is constant; and until it touches the ring falls freely, v = v_0 - g t.
+Physics: the impulse of the floor and that of the weight change the momentum: the sum of F dt is m (v_1 - v_0) + m g t, to rounding.
+Without friction the total energy is constant. Until it touches the floor, the ring falls freely: v = v_0 - g t.
 
-It shows: rc.Mesh.from_gmsh with physical groups, gravity, momentum and energy of the history, a picture of the body.
+The example shows: rc.Mesh.from_gmsh with physical groups, gravity, momentum and energy in the history, a picture of the body.
 """
 
 import pathlib
@@ -47,7 +47,7 @@ run = rc.run(case, out, mesh=mesh, force=True)
 history, time = run.history, run.time
 mass = -history["momentum_y"][0] / v
 exact = density * np.pi * (outer**2 - inner**2)
-# Forces in the history are those at the ends of steps; an impact has the impulse of what acted over them.
+# Forces in the history are those at the ends of steps. The impulse of an impact is that of the forces that acted over the steps.
 impulse = run.impacts[0]["impulse"][1]
 change = history["momentum_y"][-1] - history["momentum_y"][0] + mass * g * time[-1]
 free = history["momentum_y"][time < 0.9 * gap / v] / mass

@@ -1,10 +1,10 @@
-"""The order of a scheme: a block that stays pressed on a floor while its load varies, with steps that are halved.
+"""The order of a scheme: a block stays pressed on a floor while its load varies, and the step is halved repeatedly.
 
-Physics: with contact closed and loads that are smooth in time the motion is smooth, and a scheme of second order makes a quarter of
-the error with half the step. The exact solution in time is not needed: differences between successive steps fall by the same factor, 4
-(Richardson).
+Physics: if contact stays closed and loads are smooth in time, the motion is smooth, and with half the step a scheme of second order
+has a quarter of the error. The exact solution in time is not needed: the differences between the results of successive steps
+decrease by the same factor, 4 (Richardson).
 
-It shows: rc.study over a key of the case, its table (of pandas where it is there), the runs behind it.
+The example shows: rc.study over a key of the case, its table (a pandas table if pandas is installed), and its runs.
 """
 
 import pathlib
@@ -39,7 +39,7 @@ study = rc.study(case, {"time.step": steps}, out / "study", mesh=mesh, jobs=2, f
                  quantities=["history.top.displacement_y[-1]", "min(history.active_contacts)"])
 table = study.table
 columns = ["time.step", "history.top.displacement_y[-1]", "min(history.active_contacts)"]
-print(table[columns].to_string(index=False) if hasattr(table, "to_string") else table)  # with pandas, or without
+print(table[columns].to_string(index=False) if hasattr(table, "to_string") else table)  # with or without pandas
 
 value = study["history.top.displacement_y[-1]"]
 differences = abs(np.diff(value))

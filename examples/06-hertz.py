@@ -1,10 +1,10 @@
-"""A ball strikes a plane slowly: force against indentation, beside Hertz.
+"""A ball strikes a plane slowly: force over indentation, compared with Hertz.
 
-Physics: P = 4/3 E* sqrt(R) d^(3/2), E* = E / (1 - nu²), where d is how far the centre of mass has come towards the plane after the first
-touch. Striking slowly, the ball has no time for waves: Hertz' contact is a spring, whose largest force follows from the energy, and contact
-lasts 2.943 d_max / v. What is left, 1 % here, is that a ball is no half-space (cases/hertz says more).
+Physics: P = 4/3 E* sqrt(R) d^(3/2), E* = E / (1 - nu²), where d is the distance by which the centre of mass has approached the plane
+since the first touch. In a slow impact waves are negligible. Hertz' contact is then a spring: its largest force follows from the
+energy, and contact lasts 2.943 d_max / v. The remaining difference of 1 % arises because a ball is not a half-space (see cases/hertz).
 
-It shows: a callback on every step, the mass matrix of scipy for the centre of mass, an axisymmetric body.
+The example shows: a callback in every step, the mass matrix (of scipy) for the centre of mass, an axisymmetric body.
 """
 
 import pathlib

@@ -1,10 +1,10 @@
-"""A block on a rough floor is pulled by a spring whose other end moves on at a constant speed, then stops.
+"""A spring pulls a block over a rough floor. The other end of the spring, the puller, moves at a constant speed and then stops.
 
-Physics: it sticks until the spring has k X = F m g. From there m x'' = k (X - x) - F m g, with X = V t: the block moves as
-x = V s - V/w sin(w s), s = t - t_0, w² = k / m, and rests for an instant after each period. Once the puller has stopped the block
-comes to rest and stays wherever the spring does not overcome friction, |k (X - x)| <= F m g.
+Physics: the block sticks until the force of the spring reaches k X = F m g at the time t_0. Then m x'' = k (X - x) - F m g with X = V t.
+The motion is x = V s - V/w sin(w s) with s = t - t_0 and w² = k / m, and the block is at rest for an instant after each period. After
+the puller has stopped, the block comes to rest, at any position at which the spring does not overcome friction, |k (X - x)| <= F m g.
 
-It shows: set_load in every step, contact_status, a closed form over many steps.
+The example shows: set_load in every step, contact_status, a closed form over many steps.
 """
 
 import pathlib
@@ -39,7 +39,7 @@ case = {
 }
 session = rc.Session(case, mesh=mesh)
 session.start()
-share = np.asarray(session.mass.sum(axis=1)).ravel()[::2] / mass  # the spring pulls at the whole body, as gravity does
+share = np.asarray(session.mass.sum(axis=1)).ravel()[::2] / mass  # the spring acts on the whole body, as gravity does
 
 rows = []
 while session.time < session.end:

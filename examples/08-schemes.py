@@ -1,10 +1,10 @@
-"""A disc bounces under five schemes: what becomes of its energy and of the contact force.
+"""A disc bounces under five schemes: energy and contact force.
 
-Physics: without gravity, friction and damping all energy is m v²/2 for ever, and the contact force is one smooth hump whose impulse is
-at most 2 m v: what is missing vibrates in the disc. Textbook schemes with inertia on the contact nodes create energy, make the force
-oscillate, or lose energy; the default, with the equivalent mass, does none of these.
+Physics: without gravity, friction and damping the total energy is always m v²/2, and the contact force is one smooth hump. Its impulse is
+at most 2 m v; the difference is due to vibrations that remain in the disc. Textbook schemes with inertia on the contact nodes create
+energy, make the force oscillate, or lose energy. The default, with the equivalent mass, does none of these.
 
-It shows: runs of one dictionary that differ in scheme and mass, rc.plot of several runs, the variation of a force as a measure.
+The example shows: runs of one dictionary that differ in scheme and mass, and the variation of a force as a measure.
 """
 
 import pathlib
@@ -36,7 +36,7 @@ schemes = {
     "Moreau-Jean, consistent mass": {"time.scheme": "moreau-jean", "mass.type": "consistent"},
     "generalized-alpha, consistent mass": {"time.scheme": "generalized-alpha", "mass.type": "consistent"},
 }
-rc.set_log_level("error")  # the library warns of what is to be shown here: contact that creates energy
+rc.set_log_level("error")  # the library would warn that contact creates energy, which this example demonstrates
 runs = {}
 for number, (name, changes) in enumerate(schemes.items()):
     runs[name] = run = rc.run(case, out / f"run-{number}", changes, force=True)
@@ -56,7 +56,7 @@ assert np.isclose(impulse, momentum[-1] - momentum[0], rtol=1e-9) and 0.98 < imp
 assert abs(np.diff(force)).sum() / (2 * force.max()) < 1.5, "the default's force is not smooth"
 
 figure, axes = plt.subplots(2, 1, figsize=(8, 5.5), sharex=True, constrained_layout=True)
-for name, run in reversed(runs.items()):  # the default is drawn last, over the others
+for name, run in reversed(runs.items()):  # draws the default last, over the others
     width = 2.5 if name.startswith("reduced-kane") else 0.8
     axes[0].plot(1e3 * run.time, run.history["total_energy"] / energy[0], linewidth=width, label=name)
     axes[1].plot(1e3 * run.time, run.history["contact_force_y"], linewidth=width)

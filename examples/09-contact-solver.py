@@ -1,9 +1,9 @@
-"""The contact solver alone, on random problems.
+"""The contact solver by itself, on random problems.
 
 Physics: without friction r minimizes 1/2 r W r + q r over r >= 0, which scipy's nnls solves with the Cholesky factor of W. With friction
-Coulomb's law must hold at every point: a force in the cone, no penetration, and slip against the friction.
+Coulomb's law must hold at every point: the force is in the friction cone, nothing penetrates, and friction opposes the slip.
 
-It shows: rc.contact.solve and Solver with dense and scipy.sparse matrices, warm starts, checks of a solution that need no solver.
+The example shows: rc.contact.solve and Solver with dense and scipy.sparse matrices, warm starts, checks of a solution without a solver.
 """
 
 import pathlib
@@ -21,7 +21,7 @@ out = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "out/09-contact-solver"
 out.mkdir(parents=True, exist_ok=True)
 random = np.random.default_rng(1)
 
-# Without friction, one row per point: against scipy.
+# Without friction, one row per point, compared with scipy.
 n = 60
 A = random.standard_normal((n, n))
 W, q = A @ A.T / n + 0.1 * np.eye(n), random.standard_normal(n)
@@ -32,7 +32,7 @@ difference = abs(found.reaction.ravel() - reference).max() / reference.max()
 print(f"frictionless, {n} points: differs from scipy's nnls by {difference:.1e}")
 assert difference < 1e-8
 
-# With friction, three rows per point, a sparse matrix: a chain of points that feel their neighbours.
+# With friction, three rows per point and a sparse matrix: a chain of points, each coupled to its neighbours.
 points, F = 400, 0.6
 blocks = sparse.diags([-0.4, 1.0, -0.4], [-1, 0, 1], shape=(points, points))
 turn = random.standard_normal((3, 3))
@@ -41,7 +41,7 @@ W = ((W + W.T) / 2).tocsc()
 solver = rc.contact.Solver(W, F)
 q = random.standard_normal(3 * points)
 counts = []
-for _ in range(10):  # loads that change a little: each solution is the start of the next one
+for _ in range(10):  # the loads change a little: each solution is the initial guess of the next one
     found = solver.solve(q)
     assert np.allclose(found.motion.ravel(), q + W @ found.reaction.ravel(), atol=1e-12)
     counts.append(found.iterations)

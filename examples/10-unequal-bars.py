@@ -1,10 +1,10 @@
-"""A long bar strikes a short one of the same material: restitution without any loss.
+"""A long bar strikes a short one of the same material: a restitution below 1 without any loss of energy.
 
-Physics (Saint-Venant): fronts of pressure rho c V / 2 run into both bars. The short one is free again as soon as its front has come back,
-after 2 l / c, and flies off with V in one piece. The long one keeps a wave in it and V (1 - l / L) on average. So Newton's coefficient of
-restitution is l / L although nothing is lost: vibration has the rest.
+Physics (Saint-Venant): fronts with the pressure rho c V / 2 travel into both bars. The front in the short bar has returned after 2 l / c.
+The short bar then leaves the contact with the velocity V and without vibration. The long bar keeps a wave and moves at V (1 - l / L) on
+average. Newton's coefficient of restitution is therefore l / L although no energy is lost: the rest is vibration of the long bar.
 
-It shows: two bodies in one mesh of arrays, contact between bodies, probes of groups, momentum exchange.
+The example shows: two bodies in one mesh of arrays, contact between bodies, probes of groups, momentum exchange.
 """
 
 import pathlib
@@ -20,7 +20,7 @@ h, height, V = 0.01, 0.04, 0.01  # E = rho = 1, so that c = 1
 
 
 def bar(x0, x1):
-    """Points, quads and lines of the sides of a strip of two cells in height."""
+    """Points, quads and side lines of a strip that is two cells high."""
     n = round((x1 - x0) / h)
     x, y = np.meshgrid(np.linspace(x0, x1, n + 1), np.linspace(0, height, 3), indexing="ij")
     corner = (np.arange(n)[:, None] * 3 + np.arange(2)).ravel()

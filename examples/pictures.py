@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the pictures of the gallery: runs all examples, or those that are named, and keeps their pictures in few colours.
+"""Draws the pictures of the gallery: runs all examples, or those named, and stores their pictures with a reduced number of colours.
 
     PYTHONPATH=build/python python3 examples/pictures.py [NAME...]
 """

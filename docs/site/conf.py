@@ -1,5 +1,6 @@
 """The site: `./dev docs` builds it with Sphinx. Its pages are those of the repository (`include_patterns`), as they are read there,
-and those of this folder."""
+and those of this folder. The source is build/site-source, a folder of links to the repository's, in which index.md of this folder is at the root:
+the first page of the site is index.html."""
 
 import os
 import pathlib
@@ -16,9 +17,9 @@ copyright = author
 version = release = re.search(r"project\(ricochet VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "breathe", "sphinx_copybutton"]
-root_doc = "docs/site/index"
-include_patterns = ["docs/*.md", "docs/tutorials/*.md", "docs/site/**.md", "docs/site/**.rst", "cases/README.md", "cases/*/README.md", "benchmarks/README.md",
-                    "benchmarks/*/README.md", "bench/*/README.md", "examples/README.md", "CHANGELOG.md", "CONTRIBUTING.md"]
+root_doc = "index"
+include_patterns = ["index.md", "docs/*.md", "docs/tutorials/*.md", "docs/developers/*.md", "docs/site/*.rst", "cases/README.md", "cases/*/README.md",
+                    "benchmarks/README.md", "benchmarks/*/README.md", "bench/*/README.md", "examples/README.md", "CHANGELOG.md", "CONTRIBUTING.md"]
 html_theme = "furo"
 html_title = f"Ricochet {release}"
 html_static_path = ["static"]
@@ -46,14 +47,26 @@ breathe_default_project = "ricochet"
 breathe_default_members = ("members",)
 
 
+# In the site both are its index.
+FIRST_PAGES = (ROOT / "docs/site/index.md", ROOT / "README.md")
+
+
 def as_sphinx_reads_it(app, name, source):
-    """Formulas in fences as the repository shows them, and links to folders, of which a site has no page."""
+    """Formulas in fences as the repository shows them, links to folders, of which a site has no page, and links from and to the index,
+    which is docs/site/index.md in the repository."""
+    if name == root_doc:
+        source[0] = source[0].replace("](../../", "](").replace("](../", "](docs/")
     text = re.sub(r"\$`([^`]*)`\$", r"$\1$", source[0].replace("```math", "```{math}"))
     here = (ROOT / name).parent
 
     def shown(match):
         words, target = match.groups()
-        return words if "://" not in target and (here / target.split("#")[0]).is_dir() and target[0] != "#" else match.group(0)
+        if "://" in target or target[0] == "#":
+            return match.group(0)
+        path = here / target.split("#")[0]
+        if path.resolve() in FIRST_PAGES:
+            return f"[{words}]({os.path.relpath(ROOT / 'index.md', here)})"
+        return words if path.is_dir() else match.group(0)
 
     source[0] = re.sub(r"\[([^\]\n]+)\]\(([^)\s]+)\)", shown, text)
 

@@ -1,4 +1,4 @@
-// Draws the pictures of docs/report.md and the README's animation from reports in the browser, into docs/figures.
+// Draws the pictures of docs/report.md and the animation of docs/disc.md from reports in the browser, into docs/figures.
 import { execFileSync } from "node:child_process";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
