@@ -1,4 +1,5 @@
-# Everything comes by name from Debian 12. Each find is strict, so that a missing package is named here and not by the linker.
+# All dependencies are found by name, as in Debian 12. Each search is strict, so that a missing package is reported here
+# and not by the linker.
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Basix REQUIRED)
@@ -16,10 +17,10 @@ find_package(BLAS REQUIRED)
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 find_package(PkgConfig REQUIRED)
-# Debian has it beside the parallel one, others call it hdf5.
+# Debian installs it beside the parallel one; others call it hdf5.
 pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial hdf5)
 
-# Included and linked by the library's own sources only: nothing of it appears in a public header but Eigen.
+# Used by the library's own sources only: no public header includes any of these except Eigen.
 add_library(ricochet_dependencies INTERFACE)
 target_include_directories(ricochet_dependencies SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR} ${HDF5_INCLUDE_DIRS})
 target_link_libraries(ricochet_dependencies INTERFACE

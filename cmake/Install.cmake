@@ -1,4 +1,4 @@
-# What is installed, by component: each is a package of cmake/Packages.cmake.
+# Installed files, by component: each is a package of cmake/Packages.cmake.
 include(CMakePackageConfigHelpers)
 install(TARGETS ricochet_contact ricochet EXPORT ricochetTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
@@ -17,7 +17,7 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/ricochetConfigVersion.cmake
 install(FILES ${CMAKE_BINARY_DIR}/ricochetConfig.cmake ${CMAKE_BINARY_DIR}/ricochetConfigVersion.cmake
   DESTINATION ${ricochet_cmake_folder} COMPONENT development)
 
-# --- what the program needs while it runs, and its manual page and completion --------------------------------------------
+# --- files that the program needs at run time, its manual page and completion ----------------------------------------
 install(FILES ${CMAKE_BINARY_DIR}/share/ricochet/figure.py ${CMAKE_BINARY_DIR}/share/ricochet/scene.py
   ${CMAKE_BINARY_DIR}/share/ricochet/show_in_paraview.py
   ${CMAKE_BINARY_DIR}/share/ricochet/viewer.html
@@ -29,7 +29,7 @@ install(FILES ${RICOCHET_USER_FILES}/bash-completion/completions/ricochet
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
 install(FILES ${RICOCHET_USER_FILES}/fish/vendor_completions.d/ricochet.fish
   DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
-# Debian keeps what packages bring apart from what an administrator adds.
+# Debian separates the files of packages from those of an administrator.
 if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
   set(ricochet_zsh_folder zsh/vendor-completions)
 else()
@@ -38,14 +38,14 @@ endif()
 install(FILES ${RICOCHET_USER_FILES}/zsh/vendor-completions/_ricochet
   DESTINATION ${CMAKE_INSTALL_DATADIR}/${ricochet_zsh_folder} COMPONENT program)
 
-# --- to read -------------------------------------------------------------------------------------------------------------
-# The pages as they are written, and the site where `./dev docs` has built it.
+# --- documentation ---------------------------------------------------------------------------------------------------
+# The sources of the pages, and the site if `./dev docs` has built it.
 if(IS_DIRECTORY ${CMAKE_SOURCE_DIR}/build/site)
   install(DIRECTORY build/site/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/ricochet/html COMPONENT documentation)
 endif()
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/ricochet COMPONENT documentation)
 install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/ricochet COMPONENT documentation)
-# Packages have a file of their own for the licence (cmake/Packages.cmake).
+# Packages have a separate file for the licence (cmake/Packages.cmake).
 if(NOT RICOCHET_PACKAGE)
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/ricochet COMPONENT documentation)
 endif()

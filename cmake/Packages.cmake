@@ -1,4 +1,4 @@
-# Packages for Debian (`./dev package`), one for each component of cmake/Install.cmake. They are made only where the prefix
+# Packages for Debian (`./dev package`), one for each component of cmake/Install.cmake. They are made only if the prefix
 # is /usr and RICOCHET_PACKAGE is set: the preset "package".
 if(NOT RICOCHET_PACKAGE)
   return()
@@ -26,19 +26,19 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
-# The library's interface is C++ that changes with every version: programs take the one that they were built with.
+# The library's interface is C++ that changes with every version: programs need the version with which they were built.
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=")
 set(ricochet_same_library "libricochet0 (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
 
-# --- what every package has: who may do what with it, and what has changed ---------------------------------------------
+# --- files of every package: licence and changes ---------------------------------------------------------------------
 file(READ LICENSE licence)
-string(REGEX REPLACE "^[^\n]*\n\n[^\n]*\n\n" "" licence "${licence}")  # its name and whose it is, which are in the heading
+string(REGEX REPLACE "^[^\n]*\n\n[^\n]*\n\n" "" licence "${licence}")  # title and copyright, which the heading contains
 string(REGEX REPLACE "\n\n" "\n.\n" licence "${licence}")
 string(REGEX REPLACE "\n([^\n])" "\n \\1" RICOCHET_LICENCE "\n${licence}")
 string(STRIP "${RICOCHET_LICENCE}" RICOCHET_LICENCE)
 configure_file(packaging/debian/copyright.in packages/copyright @ONLY)
-# Of the packages themselves; reproducible where SOURCE_DATE_EPOCH is set.
+# Files of the packages themselves; reproducible if SOURCE_DATE_EPOCH is set.
 string(TIMESTAMP RICOCHET_PACKAGE_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)
 configure_file(packaging/debian/changelog.in packages/changelog.Debian @ONLY)
 configure_file(CHANGELOG.md packages/changelog COPYONLY)
@@ -71,7 +71,7 @@ endfunction()
 set(about "Ricochet simulates elastic bodies that strike, rest on, slide along and leave\neach other and rigid obstacles: \
 elastodynamics with unilateral contact and\nCoulomb friction by finite elements, in two and three dimensions.\n\n")
 set(CPACK_COMPONENTS_ALL "")
-# gmsh, meshio and matplotlib are run as programs, by what the program or the library starts.
+# The program and the library start gmsh, meshio and matplotlib as separate programs.
 ricochet_package(program ricochet science "elastodynamics with contact and friction (program)"
   "${about}This package has the command-line program with its manual page, cases and\npublished benchmarks."
   DEPENDS ${ricochet_same_library} RECOMMENDS gmsh python3-meshio python3-matplotlib

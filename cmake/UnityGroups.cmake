@@ -1,8 +1,9 @@
-# ricochet_unity_groups(TARGET SIZE): with CMAKE_UNITY_BUILD the sources of one layer are compiled together, at most SIZE of them,
-# as templates that several of them use are then instantiated once. A group ends with a folder once it has ten sources, so that an
-# edit compiles little besides the edited room. A name in an anonymous namespace must be the only one of its layer; the presets
-# "debug" and "fuzz" compile each file alone, so that no file relies on the includes of its neighbours.
-function(ricochet_unity_groups target size)
+# ricochet_unity_groups(TARGET SIZE): with CMAKE_UNITY_BUILD the sources of one layer are compiled together, at most
+# SIZE of them, as templates that several of them use are then instantiated once. A group ends with a folder once it has
+# ten sources, so that an edit recompiles little besides the edited room. Names in anonymous namespaces must be unique
+# within their layer; the presets "debug" and "fuzz" compile each file alone, so that no file relies on the includes of
+# its neighbours.
+function(ricochet_unity_groups target)
   get_target_property(sources ${target} SOURCES)
   set(keys "")
   foreach(source ${sources})
@@ -17,12 +18,17 @@ function(ricochet_unity_groups target size)
   foreach(key ${keys})
     string(REGEX REPLACE "!.*" "" folder "${key}")
     string(REPLACE "!" "/" source "${CMAKE_SOURCE_DIR}/${key}")
-    # The folders of a layer go with it: scheme/reduced with scheme, but solver/contact is a library of its own.
+    # The folders of a layer belong to it: scheme/reduced to scheme, but solver/contact is a library of its own.
     string(REGEX REPLACE "^(src/ricochet/[^/]*)/.*" "\\1" layer ${folder})
     if(NOT layer STREQUAL last_layer)
       set(count 0)
       set(group 0)
-    elseif(count EQUAL ${size} OR (count GREATER_EQUAL 10 AND NOT folder STREQUAL last_folder))
+      set(size 40)
+      cmake_path(GET layer FILENAME layer_name)
+      if(layer MATCHES "^src/" AND layer_name IN_LIST RICOCHET_EDITED_LAYERS)
+        set(size 6)
+      endif()
+    elseif(count EQUAL size OR (size EQUAL 6 AND count GREATER_EQUAL 4 AND NOT folder STREQUAL last_folder))
       set(count 0)
       math(EXPR group "${group} + 1")
     endif()

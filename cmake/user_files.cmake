@@ -1,6 +1,6 @@
-# cmake -DPROGRAM=… -DSOURCE=… -DVERSION=… -DOUTPUT=… [-DCOMPRESS=ON] -P: the manual page and the completion of shells. The program prints
-# them, so that they know what it knows.
-# Leaks inside libraries are not looked for here (builds with sanitizers).
+# cmake -DPROGRAM=… -DSOURCE=… -DVERSION=… -DOUTPUT=… [-DCOMPRESS=ON] -P: makes the manual page and the completion of
+# shells. The program prints them, so that they always match its options. Leaks inside libraries are not checked here
+# (builds with sanitizers).
 set(ENV{ASAN_OPTIONS} detect_leaks=0)
 macro(ask variable)
   execute_process(COMMAND ${PROGRAM} ${ARGN} OUTPUT_VARIABLE ${variable} COMMAND_ERROR_IS_FATAL ANY)
@@ -9,7 +9,7 @@ endmacro()
 ask(COMMANDS manual-page)
 string(STRIP "${COMMANDS}" COMMANDS)
 configure_file(${SOURCE}/packaging/ricochet.1.in ${OUTPUT}/man/man1/ricochet.1 @ONLY)
-if(COMPRESS)  # as packages must have it
+if(COMPRESS)  # as packages require
   execute_process(COMMAND gzip -9nkf ${OUTPUT}/man/man1/ricochet.1 COMMAND_ERROR_IS_FATAL ANY)
 endif()
 
