@@ -20,13 +20,13 @@
 #include "ricochet/linear_algebra/library_versions.hpp"
 #include "ricochet/version.hpp"
 
-/// @file ricochet-mpi: `ricochet run` by several processes. The first one speaks.
+/// @file ricochet-mpi: `ricochet run` on several processes. Only the first process writes messages.
 namespace {
 
 using namespace ricochet;
 
 constexpr int defect_status = 70;
-/// In seconds: where a process has failed, for the others to come to the same end. Then all are ended.
+/// Seconds that a process that has failed waits for the others to fail as well; then all are ended.
 constexpr double patience = 1.5;
 
 struct Arguments {
@@ -77,7 +77,7 @@ int dispatch(int argc, char** argv, const WorldRanks& ranks, const Communicator&
   log::set_level(log::parse_level(arguments.log_level));
   if (arguments.run.quiet && log::enabled(log::Level::info) && !log::enabled(log::Level::debug))
     log::set_level(log::Level::warning);
-  // What others warn of the first one says for them.
+  // The first process issues the warnings of the others.
   if (!ranks.is_first()) log::set_level(log::Level::off);
   set_thread_count(arguments.threads);
   reserve_blas_memory(arguments.threads);
@@ -88,7 +88,8 @@ int dispatch(int argc, char** argv, const WorldRanks& ranks, const Communicator&
   return program::run(arguments.run);
 }
 
-/// What has failed on all is said by the first, what has failed on one by that one, which ends the others.
+/// Reports an error. If all processes have failed, the first reports it; if only this one has, it reports the error
+/// itself and ends the others.
 int end(const WorldRanks& ranks, int status, const std::string& message) {
   if (Processes::all_arrive(patience)) {
     if (ranks.is_first()) std::fputs(fmt::format("ricochet-mpi: {}\n", message).c_str(), stderr);

@@ -25,7 +25,7 @@ namespace ricochet::program {
 
 namespace {
 
-/// Of a mean normal: below this length the facets are not flat.
+/// Length of a mean normal below which the facets are not flat.
 constexpr double flat = 1.0 - 1e-6;
 
 std::string normal_text(const MeshMeasure& measure, int dimension) {
@@ -37,7 +37,7 @@ std::string normal_text(const MeshMeasure& measure, int dimension) {
                      vector_text(direction.head(dimension)));
 }
 
-/// The largest coordinate: places are rounded to a part of it.
+/// Returns the largest coordinate, relative to which positions are rounded.
 double reach(const Mesh& mesh) {
   return mesh.nodes.cwiseAbs().maxCoeff();
 }
@@ -101,7 +101,7 @@ void print_steps(const Case& input, const Model& model, const ConnectedBodies& c
       rounded_down(median, 2), step, step / median);
 }
 
-/// When a node at this gap meets the obstacle; infinite if it does not.
+/// Returns the time at which a node with this gap meets the obstacle; infinite if it does not.
 double time_of_contact(double gap, double velocity, double acceleration) {
   const double never = std::numeric_limits<double>::infinity();
   if (gap <= 0.0) return 0.0;
@@ -114,7 +114,7 @@ double time_of_contact(double gap, double velocity, double acceleration) {
   return acceleration < 0.0 ? -(velocity + root) / acceleration : never;
 }
 
-/// Whether nothing acts on bodies before they touch but gravity, so that it can be told when they do.
+/// Returns true if only gravity acts on bodies before they touch, so that the time of contact can be predicted.
 bool flies_freely(const Case& input) {
   return input.tractions.empty() && input.load.body_force.empty() && input.initial.displacement.empty() &&
          !input.initial.static_equilibrium;
@@ -125,7 +125,7 @@ std::string meeting_text(double time, const Case& input, const std::string& woul
                              : " " + does_not;
 }
 
-/// Whether no support holds a body along the direction of contact of one of the pair's points.
+/// Returns true if no support holds a body along the direction of contact of one of the pair's points.
 bool is_free_along_normals(const Case& input, const Model& model, int pair) {
   const ContactBoundary& contact = model.problem.contact;
   std::array<bool, 3> held{};
@@ -141,8 +141,8 @@ bool is_free_along_normals(const Case& input, const Model& model, int pair) {
   return true;
 }
 
-/// Time at which points of a pair that face the other side would meet it in free flight: gravity moves both bodies
-/// alike. None if no point faces anything, or if a surface faces itself, which takes a deformation.
+/// Returns the time at which facing points of a pair would meet in free flight, in which gravity moves both bodies
+/// equally. None if no point faces the other side, or if a surface faces itself, as it must then deform.
 std::optional<double> time_of_meeting(const Model& model, std::size_t pair) {
   if (model.contact_pairs[pair].is_self()) return {};
   const ContactBoundary& contact = model.problem.contact;
@@ -161,7 +161,7 @@ std::optional<double> time_of_meeting(const Model& model, std::size_t pair) {
   return meets;
 }
 
-/// Prints how two bodies face each other and, where they fly freely, when they would meet.
+/// Prints how two bodies face each other and, if they fly freely, when they would meet.
 void print_bodies_contact(const Case& input, const Model& model, std::size_t pair) {
   const FacingDescription facing = *describe_facing(model, pair);
   std::string text = facing_text(facing);
@@ -182,8 +182,8 @@ struct Flight {
   }
 };
 
-/// Time at which the first of some nodes meets an obstacle, which may move and turn as it likes: gaps at instants of
-/// the run, as many as cost little, and halvings in between. Infinite if none does.
+/// Returns the time at which the first of some nodes meets an obstacle with any motion: gaps are evaluated at as many
+/// instants of the run as are cheap, followed by bisection. Infinite if none does.
 double time_of_contact(const std::vector<Flight>& flights, const Obstacle& obstacle, double end) {
   constexpr double evaluations = 1e6;
   constexpr int least_instants = 100, most_instants = 10000, halvings = 50;
@@ -206,12 +206,12 @@ double time_of_contact(const std::vector<Flight>& flights, const Obstacle& obsta
   return std::numeric_limits<double>::infinity();
 }
 
-/// Time of contact with an obstacle at rest, whose gap changes along its normal as the node moves.
+/// Returns the time of contact with an obstacle at rest, whose gap changes along its normal as the node moves.
 double time_of_contact(const Flight& flight, double gap, const SpaceVector& normal) {
   return time_of_contact(gap, normal.dot(flight.velocity), normal.dot(flight.acceleration));
 }
 
-/// Words of print_contact on a pair's nodes that fly towards an obstacle.
+/// Returns the words of print_contact about a pair's nodes that fly towards an obstacle.
 std::string obstacle_meeting_text(const Case& input, const Model& model, std::size_t pair) {
   const ContactBoundary& contact = model.problem.contact;
   const int d = model.mesh.dimension;
@@ -235,7 +235,7 @@ std::string obstacle_meeting_text(const Case& input, const Model& model, std::si
   return meeting_text(meets, input, "and would reach it", "and does not reach it by the end of the run");
 }
 
-/// Returns, of every body against every other, the two that are nearest.
+/// Prints, for contact of every body with every other, the number of pairs and the nearest two bodies.
 void print_pairs(const Model& model, std::size_t entry) {
   const std::string* all = nullptr;
   std::size_t count = 0, nearest = 0;

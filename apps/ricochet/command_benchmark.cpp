@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// benchmarks.toml of the folder that was asked for, or the one that comes with the program.
+/// Returns benchmarks.toml of the requested folder, or the one installed with the program.
 std::string manifest_file(const std::string& folder) {
   if (!folder.empty()) {
     const std::string path = (fs::path(folder) / "benchmarks.toml").string();

@@ -109,7 +109,7 @@ void describe_contact_problem(const std::string& path) {
 
 namespace {
 
-/// Before anything is solved.
+/// Checks the output before anything is solved.
 void check_output(const std::string& output) {
   namespace fs = std::filesystem;
   if (output.empty()) return;
@@ -151,7 +151,7 @@ int contact(const ContactArguments& arguments) {
   solver->solve(reduction.problem, {.tolerance = arguments.tolerance, .record = arguments.record}, solution);
   print_solution(arguments, solution, timer.seconds());
   if (!arguments.output.empty()) {
-    // A solver that does not treat the problem may have no reactions at all.
+    // A solver that does not support the problem may return no reactions at all.
     if (solution.reaction.size() != reduction.problem.rows() || !solution.reaction.allFinite() ||
         !solution.motion.allFinite()) {
       solution.reaction.setZero(reduction.problem.rows());

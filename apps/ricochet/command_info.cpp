@@ -36,14 +36,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "triangles", "tetrahedra", …; of one cell "triangle".
+/// Returns "triangles", "tetrahedra", …; for a single cell "triangle".
 std::string shape_text(const CellBlock& block) {
   const std::string singular = name(block.shape);
   if (block.size() == 1) return singular;
   return singular.ends_with("hedron") ? singular.substr(0, singular.size() - 2) + "a" : singular + "s";
 }
 
-/// gmsh may run shell commands for it, so only `run` and `validate --mesh` hand it over.
+/// Returns true for a file for which gmsh may run shell commands; only `run` and `validate --mesh` pass it to gmsh.
 bool must_be_meshed_first(const MeshFile& file) {
   return may_run_commands(file.path) && !is_meshed(file);
 }
@@ -51,7 +51,7 @@ bool must_be_meshed_first(const MeshFile& file) {
 void describe_mesh(const std::string& path) {
   MeshFile file;
   file.path = path;
-  file.bodies_may_touch = true;  // what belongs together a case says
+  file.bodies_may_touch = true;  // a case states which bodies touch
   if (must_be_meshed_first(file)) {
     fmt::print(
         "{}: a geometry that was not meshed yet: its groups and sizes are not known. The gmsh program meshes it when a "
@@ -95,7 +95,7 @@ void print_files(const Case& input) {
                placement_text(part));
 }
 
-/// Files that are not meshed yet, and must not be without being asked.
+/// Returns the files that are not meshed yet and must not be meshed without a request.
 std::string unmeshed_files(const Case& input) {
   std::vector<std::string> paths;
   for (const CaseMeshFile& file : mesh_files(input)) {
@@ -137,20 +137,20 @@ void describe_case(const std::string& path, const std::vector<std::string>& over
   fmt::print("  a run writes {}\n", output_text(estimate_output(input, *model)));
 }
 
-/// The lines of a message after its first one further in.
+/// Indents the lines of a message after its first.
 std::string indented(std::string text) {
   for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1))
     text.insert(at + 1, "  ");
   return text;
 }
 
-/// Of several processes those of the first.
+/// Returns the checkpoints of a run; with several processes, those of the first.
 std::vector<CheckpointFile> checkpoints_of(const std::string& directory) {
   std::vector<CheckpointFile> files = checkpoint_files(directory);
   return files.empty() ? checkpoint_files(checkpoint_folder_of_first_rank(directory)) : files;
 }
 
-/// None: the directory has checkpoints, but no summary that can be read.
+/// Returns the summary; none if the directory has checkpoints but no readable summary.
 std::optional<RunSummary> summary_of(const std::string& directory) {
   try {
     return read_summary_of_run(directory);
@@ -233,7 +233,7 @@ int info(const InfoArguments& arguments) {
       describe_case(path, arguments.overrides);
     } else if (fs::path(path).extension() == ".ckpt") {
       describe_checkpoint(path);
-    } else if (is_foreign_mesh(path)) {  // some of which are HDF5 files, too
+    } else if (is_foreign_mesh(path)) {  // some of which are HDF5 files as well
       describe_mesh(path);
     } else if (is_hdf5_file(path) || fs::path(path).extension() == ".hdf5") {
       describe_contact_problem(path);

@@ -26,7 +26,7 @@ double number(std::string_view text, const std::string& option, const char* want
   return *value;
 }
 
-/// "A:B" and "WxH".
+/// Parses "A:B" and "WxH".
 std::pair<double, double> two_numbers(const std::string& text, char separator, const char* wanted) {
   const std::size_t at = text.find(separator);
   if (at == std::string::npos) throw Error(ErrorKind::usage, fmt::format("\"{}\": {}", text, wanted));
@@ -36,7 +36,7 @@ std::pair<double, double> two_numbers(const std::string& text, char separator, c
   return result;
 }
 
-/// The format that the name of a file asks for, which must be one of some.
+/// Returns the format given by the extension of a file, which must be one of the supported ones.
 std::string format_of(const std::string& output, std::initializer_list<const char*> formats, const char* what) {
   std::string extension = fs::path(output).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -76,7 +76,7 @@ FigureOptions options_of(const PlotArguments& arguments) {
   return options;
 }
 
-/// The body of one run as it moves, or, with --at, at one time.
+/// Draws the moving body of one run or, with --at, its state at one time.
 int plot_animation(const PlotArguments& arguments) {
   if (arguments.what.size() > 1 || arguments.directories.size() > 1)
     throw Error(ErrorKind::usage, "plot: an animation shows one run, and nothing else: name one directory, one --what");
@@ -95,7 +95,7 @@ int plot_animation(const PlotArguments& arguments) {
   options.title = arguments.title;
   if (!arguments.size.empty()) {
     std::tie(options.width, options.height) = size_of(arguments.size);
-    // Axes, their labels and the bar of colours take so much.
+    // The axes, their labels and the colour bar need this much space.
     constexpr double least = 6.0;
     if (options.width < least || options.height < least)
       throw Error(ErrorKind::usage, fmt::format("--size of an animation is {} cm or more in both directions", least));
@@ -111,7 +111,7 @@ int plot_animation(const PlotArguments& arguments) {
 
 namespace {
 
-/// Of one study; a figure shows one.
+/// Describes the figure of a study; a figure shows only one study.
 std::string describe_study(const PlotArguments& arguments, const FigureOptions& options) {
   if (arguments.directories.size() > 1)
     throw Error(ErrorKind::usage, "plot: a figure of a study shows this study alone: name no other directory");

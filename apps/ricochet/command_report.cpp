@@ -36,7 +36,7 @@ std::string viewer_file() {
   return path;
 }
 
-/// Runs that the viewer compares well on one page.
+/// Number of runs that the viewer compares well on one page.
 constexpr std::size_t most_runs_on_a_page = 12;
 
 std::string svg_of(const std::string& description) {
@@ -45,7 +45,8 @@ std::string svg_of(const std::string& description) {
   return read_file(workspace.file("figure.svg"));
 }
 
-/// Beside the study's page one of its runs, where they are few. Its name, or empty.
+/// Writes a page of the study's first completed runs beside the page of the study. Returns its name, or "" if there are
+/// none.
 std::string write_page_of_runs(const Study& study, double most_megabytes) {
   std::vector<std::string> directories;
   for (const StudyRun& run : study.runs) {

@@ -54,7 +54,7 @@ void print_summary(const RunSummary& s, const std::string& directory) {
 
 namespace {
 
-/// `--resume DIR` stands for the case and the settings that the run in DIR was begun with.
+/// Replaces `--resume DIR` by the case and the settings with which the run in DIR began.
 RunArguments with_origin(RunArguments arguments) {
   if (!arguments.resume) {
     if (holds_run(arguments.case_file)) {
@@ -87,14 +87,15 @@ RunArguments with_origin(RunArguments arguments) {
 
 namespace {
 
-/// Each process reads the case. Throws Error(file_access) on all where some cannot, or read another text.
+/// Requires that each process reads the same case. Throws Error(file_access) on all processes if some cannot read it or
+/// read another text.
 void require_same_case_file(const Ranks& ranks, const std::string& path) {
   constexpr double unreadable = -1.0;
   double own = unreadable;
   try {
     const std::string text = read_file(path);
     own = static_cast<double>(Checksum().add_bytes(text.data(), text.size()).value());
-  } catch (const Error&) {  // reading the case says why, where no process can
+  } catch (const Error&) {  // reading the case reports the reason if no process can
   }
   const Ranks::ForEach<double> all = ranks.of_all({own});
   for (std::size_t i = 1; i < all.size(); ++i) {
@@ -109,7 +110,7 @@ void require_same_case_file(const Ranks& ranks, const std::string& path) {
   }
 }
 
-/// Each of them would run the whole case.
+/// Warns of processes started by mpirun, each of which would run the whole case.
 void warn_of_launcher(const Ranks& ranks) {
   const char* const size = std::getenv("OMPI_COMM_WORLD_SIZE");
   const char* const rank = std::getenv("OMPI_COMM_WORLD_RANK");
@@ -141,16 +142,16 @@ int run(const RunArguments& given) {
     options.output_directory =
         (std::filesystem::path("out") / std::filesystem::path(arguments.case_file).stem()).string();
   }
-  // Until the run has its directory, which need not be there: whatever is said is about the case.
+  // Messages refer to the case until the run has created its directory.
   if (options.quiet) log::set_run_name(arguments.case_file);
   options.ranks = arguments.ranks;
   Session session(arguments.case_file, arguments.overrides);
   session.set_model_builder(arguments.builder);
   const RunSummary summary = run_case(session, options);
   if (arguments.ranks->is_first()) print_summary(summary, options.output_directory);
-  // Whichever process was told.
+  // Any process may have received the signal.
   if (summary.status == "interrupted") return 128 + static_cast<int>(arguments.ranks->maximum(stop_signal()));
-  // The first process knows, and all end for it.
+  // The first process evaluates the expectations, and all end accordingly.
   arguments.ranks->together([&summary] {
     for (const ExpectationResult& e : summary.expectations) {
       if (e.checked && !e.holds) {

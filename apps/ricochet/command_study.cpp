@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// `--resume DIR` stands for -o DIR; without a case it is the plan that is there that goes on.
+/// Interprets `--resume DIR` as -o DIR; without a case, the existing plan continues.
 StudyArguments with_directory(StudyArguments arguments) {
   std::error_code ignored;
   const bool names_nothing_else = arguments.output_directory.empty() && arguments.vary.empty();
@@ -44,7 +44,7 @@ StudyPlan plan_of(const StudyArguments& arguments) {
   return plan;
 }
 
-/// What is asked now takes the place of what was asked before.
+/// Replaces earlier questions by those that are asked now.
 StudyQuestions questions_of(const StudyArguments& arguments, StudyQuestions questions) {
   if (!arguments.quantities.empty()) questions.quantities = arguments.quantities;
   if (!arguments.exact.empty()) {

@@ -21,8 +21,8 @@ namespace ricochet::program {
 
 namespace {
 
-/// A start whose factorizations take longer than this, in seconds by estimate, is left to the run: they take the memory
-/// that a user wants to know before.
+/// Estimated seconds of factorizations above which the start is left to the run: they need the memory that a user wants
+/// to know in advance.
 constexpr double longest_start = 3.0;
 
 std::string short_duration_text(double seconds) {
@@ -49,7 +49,8 @@ void print_estimate(const StageEstimate& stage, std::size_t number) {
       100e-9 * stage.bytes_per_point, stage.chosen.reason);
 }
 
-/// "0.2 s while nothing touches, 12 s while a quarter of the 40 contact points press, 2 min 30 s while all do".
+/// Returns a text such as "0.2 s while nothing touches, 12 s while a quarter of the 40 contact points press, 2 min 30 s
+/// while all do".
 template <class Text>
 std::string range_text(const CostRange& range, Index points, const Text& text) {
   if (points == 0) return text(range.most);
@@ -66,7 +67,7 @@ std::string iterations_note(const CostEstimate& cost) {
   return "";
 }
 
-/// What a run will take, and seconds until its first step.
+/// Prints estimates for the run, and returns the seconds until its first step.
 double print_estimates(const Case& input, const Model& model, const Scheme& scheme) {
   const CostEstimate cost = estimate_cost(input, model, scheme);
   for (std::size_t k = 0; k < cost.stages.size(); ++k) print_estimate(cost.stages[k], k);
@@ -94,15 +95,15 @@ double print_estimates(const Case& input, const Model& model, const Scheme& sche
   return cost.factorization_seconds;
 }
 
-/// Whether there is a mesh of it to be checked, or one may be made: gmsh may run shell commands of the file, and
-/// meshing may take long.
+/// Returns true if there is a mesh to check, or one may be made: gmsh may run shell commands of the file, and meshing
+/// may take long.
 bool has_mesh(const MeshFile& file) {
   if (!needs_gmsh_program(file.path)) return true;
   try {
     return is_meshed(file);
   } catch (const Error& problem) {
     if (problem.kind() != ErrorKind::invalid_input) throw;
-    log::warning(problem.what());  // the gmsh program is not there
+    log::warning(problem.what());  // the gmsh program is not installed
     return false;
   }
 }
@@ -146,7 +147,8 @@ int validate(const ValidateArguments& arguments) {
   refuse_bodies_inside_obstacles(input, model);
   session.scheme().analyse(model.problem);
   const double start_seconds = print_estimates(input, model, session.scheme());
-  // The start of a run, thrown away: some things do not go together, and some operators cannot be factorized.
+  // The start of a run, whose result is discarded: it detects incompatible settings and operators that cannot be
+  // factorized.
   const bool starts = start_seconds <= longest_start;
   if (starts) session.start();
   fmt::print("{}: valid: {}, {}, {}, {}, {}\n", case_file, counted(model.space.cell_node_count(), "node"),

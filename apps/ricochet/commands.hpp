@@ -6,7 +6,7 @@
 
 #include "ricochet/run/session.hpp"
 
-/// @file The sub-commands, one file each. Each returns the exit status, or throws ricochet::Error which carries it.
+/// @file The sub-commands, one file each. Each returns the exit status, or throws ricochet::Error, which carries it.
 namespace ricochet::program {
 
 struct RunArguments {
@@ -15,17 +15,17 @@ struct RunArguments {
   std::vector<std::string> overrides;
   bool force = false, resume = false;
   bool quiet = false;
-  std::optional<std::string> export_contact;  ///< steps, like 10,20,50:60
+  std::optional<std::string> export_contact;  ///< steps, such as 10,20,50:60
   std::string export_contact_to;              ///< directory; empty: contact/ in the output directory
-  // Of several processes:
+  // With several processes:
   const Ranks* ranks = &one_rank();
-  Session::ModelBuilder builder = {};  ///< none: build_model
+  Session::ModelBuilder builder = {};  ///< null: build_model
 };
 
 struct ValidateArguments {
   std::string case_file;
   std::vector<std::string> overrides;
-  bool mesh = false;  ///< also where that takes the gmsh program, and was not done before
+  bool mesh = false;  ///< also mesh files that need the gmsh program and have not been meshed before
 };
 
 struct InfoArguments {
@@ -38,12 +38,12 @@ struct ContactArguments {
   double tolerance = 0.0;
   std::string output;  ///< empty: none
   bool record = false;
-  bool list = false;  ///< the solvers, nothing else
+  bool list = false;  ///< only list the solvers
 };
 
 struct ReportArguments {
   std::vector<std::string> directories;
-  std::string output;  ///< empty: report.html in the directory, or in the folder that all directories are in
+  std::string output;  ///< empty: report.html in the directory, or in the common folder of all directories
   double most_megabytes = 20.0;
 };
 
@@ -51,12 +51,12 @@ struct PlotArguments {
   std::vector<std::string> directories, what, labels;
   std::string output, title;
   std::string time;  ///< "A:B"; empty: all
-  std::string size;  ///< "WxH" in cm; empty: what suits
+  std::string size;  ///< "WxH" in cm; empty: chosen to suit the panels
   bool logarithmic = false;
-  // Of animations:
+  // For animations:
   std::string field;         ///< empty: the von Mises stress
-  std::optional<double> at;  ///< the time of a single picture
-  bool half = false;         ///< of an axisymmetric body the section alone
+  std::optional<double> at;  ///< time of a single picture
+  bool half = false;         ///< section only, for an axisymmetric body
   bool zoom = false;         ///< on the contact
 };
 
@@ -65,7 +65,7 @@ struct StudyArguments {
   std::vector<std::string> vary, overrides;
   std::vector<std::string> quantities, exact, compare;
   std::string reference, order;
-  int jobs = 0;  ///< 0: as many as the cores bear
+  int jobs = 0;  ///< 0: as many as the cores support
   int threads = 1;
   bool resume = false, force = false, quiet = false;
 };
@@ -73,8 +73,8 @@ struct StudyArguments {
 struct BenchmarkArguments {
   std::vector<std::string> names;
   std::string output_directory = "out/benchmark";
-  std::string scheme;  ///< "all" or a list; empty: that of each case
-  std::string folder;  ///< with benchmarks.toml; empty: that of the program
+  std::string scheme;  ///< "all" or a list; empty: the scheme of each case
+  std::string folder;  ///< folder with benchmarks.toml; empty: that of the program
   int jobs = 0;        ///< 0: as many as there are cores
   bool list = false, resume = false, force = false, quiet = false;
 };
@@ -88,11 +88,11 @@ int report(const ReportArguments& arguments);
 int plot(const PlotArguments& arguments);
 int study(const StudyArguments& arguments);
 int benchmark(const BenchmarkArguments& arguments);
-/// The table of benchmarks that were run.
+/// Prints the table of existing benchmarks.
 void describe_benchmarks(const std::string& directory);
-/// The table of a study.
+/// Prints the table of a study.
 void describe_study(const std::string& directory);
-/// A contact problem in a few lines.
+/// Describes a contact problem in a few lines.
 void describe_contact_problem(const std::string& path);
 
 }  // namespace ricochet::program

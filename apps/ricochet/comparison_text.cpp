@@ -23,7 +23,8 @@ struct Run {
   RunSummary summary;
 };
 
-/// Of the first probe on a contact boundary; where there is none, of the resultant in its largest direction.
+/// Returns the variation of the force at the first probe on a contact boundary; if there is none, of the resultant in
+/// its largest direction.
 double force_variation(const RunSummary& s) {
   const auto probe = std::find_if(s.probes.begin(), s.probes.end(), [](const Probe& p) { return p.contact_node >= 0; });
   if (probe != s.probes.end()) return s.digest(probe->name + ".reaction_normal").total_variation;
@@ -65,7 +66,7 @@ void print_methods(const std::vector<Run>& runs, int width) {
   }
 }
 
-/// Marks, and what each means, in the order in which they are explained.
+/// Marks and their meanings, in the order of their explanation.
 constexpr std::array<std::pair<const char*, const char*>, 6> meanings{{
     {"≥", "not every step was looked at: the stress may have been higher between two looks (output.fields_every)"},
     {"~", "the contact zone is too coarse to trust the force: refine the mesh there"},
@@ -81,7 +82,7 @@ constexpr std::array<std::pair<const char*, const char*>, 6> meanings{{
     {"*", "of the first impact with a restitution; there are more, which `ricochet info` lists for one run"},
 }};
 
-/// Numbers of a run as the table shows them. Marks go into `marks`.
+/// Numbers of a run for the table. Marks are added to `marks`.
 class Outcome {
  public:
   Outcome(const RunSummary& summary, std::set<std::string>& marks) : s_(summary), marks_(marks) {}
@@ -95,7 +96,7 @@ class Outcome {
            mark("!", restitution_error(*first).is_large);
   }
 
-  /// Of a body on an obstacle; "-" where the results tell no impacts.
+  /// Returns the largest force of a body on an obstacle; "-" if the results contain no impacts.
   [[nodiscard]] std::string largest_force() const {
     const auto hardest = std::max_element(s_.impacts.begin(), s_.impacts.end(), [](const Impact& a, const Impact& b) {
       return a.largest_force < b.largest_force;
@@ -115,7 +116,7 @@ class Outcome {
 
  private:
   using Place = std::vector<Impact>::const_iterator;
-  /// Whether cells, or the body, had turned too far for small strain when the impact ended.
+  /// Returns true if cells or the body had rotated too far for small strain when the impact ended.
   [[nodiscard]] bool turned_in(Place impact) const {
     return !s_.small_strain_holds_in(static_cast<std::size_t>(impact - s_.impacts.begin()));
   }

@@ -26,13 +26,13 @@ Candidates words_of(const std::vector<std::string>& names) {
   return result;
 }
 
-/// A path as it was typed, with the user's own folder in the place of "~/".
+/// Returns a path as typed, with "~/" replaced by the user's home folder.
 fs::path expanded(const std::string& typed) {
   const char* const home = std::getenv("HOME");
   return typed.starts_with("~/") && home != nullptr ? fs::path(home) / typed.substr(2) : fs::path(typed);
 }
 
-/// Entries of the folder that is being typed, each as the whole word: folders with a "/", and files that are wanted.
+/// Returns the entries of the folder being typed, each as the whole word: folders with a "/", and matching files.
 Candidates entries(const std::string& typed, const std::function<bool(const fs::path&)>& wants_file,
                    const std::function<bool(const std::string&)>& ends_at) {
   const std::string folder = typed.substr(0, typed.rfind('/') + 1);
@@ -60,7 +60,7 @@ Candidates files(const std::string& typed, const std::vector<std::string>& exten
   return entries(typed, wanted, [](const std::string&) { return false; });
 }
 
-/// A folder that holds a run or a study is a whole word: nothing in it is wanted.
+/// Returns folders. One that holds a run or a study is complete, as nothing inside it can follow.
 Candidates folders(const std::string& typed) {
   const auto is_result = [](const std::string& path) { return holds_run(path) || holds_study(path); };
   return entries(
@@ -76,14 +76,14 @@ Candidates benchmark_names() {
   return result;
 }
 
-/// The last of names that commas separate.
+/// Completes the last of names separated by commas.
 Candidates listed(const std::string& typed, std::vector<std::string> names) {
   const std::string before = typed.substr(0, typed.rfind(',') + 1);
   for (std::string& name : names) name.insert(0, before);
   return words_of(names);
 }
 
-/// What an option's value may be, by what the help calls it.
+/// Returns the possible values of an option, according to the name of its value in the help.
 Candidates values_of(const DescribedOption& option, const std::string& typed, const std::string& case_file) {
   const std::string& value = option.value;
   if (value == "CASE.toml") return files(typed, {".toml"});
@@ -115,9 +115,9 @@ Candidates options_of(const DescribedCommand& command) {
   return result;
 }
 
-/// The words before the last, as the command takes them.
+/// The words before the last, as the command interprets them.
 struct Typed {
-  const DescribedOption* open = nullptr;  ///< the option whose value comes next
+  const DescribedOption* open = nullptr;  ///< option whose value comes next
   std::vector<std::string> positionals;
 };
 

@@ -11,8 +11,8 @@ namespace ricochet::program {
 
 namespace {
 
-/// Entries that a case file has of a list or a named section, as key paths name them. The file may be half written and
-/// is not parsed: only headings are looked for.
+/// Returns the entries of a list or a named section in a case file, as in key paths. The file may be incomplete and is
+/// not parsed: only its headings are searched.
 std::vector<std::string> entries_of(const Section& section, const std::string& case_file) {
   std::vector<std::string> result;
   if (!why_no_input(case_file).empty()) return result;
@@ -46,7 +46,7 @@ std::vector<std::string> named_values(const Key& key) {
   return key.type == KeyType::components || key.type == KeyType::names ? std::vector<std::string>{} : key.choices;
 }
 
-/// `equals`: where the value begins. `--vary` takes several, with commas between.
+/// `equals` is the position of the equals sign. `--vary` accepts several values, separated by commas.
 std::vector<Candidate> values_of(const std::string& typed, std::size_t equals) try {
   std::vector<Candidate> result;
   const KeyPath found = parse_key_path(typed.substr(0, equals));
@@ -55,7 +55,7 @@ std::vector<Candidate> values_of(const std::string& typed, std::size_t equals) t
   for (const std::string& value : named_values(*found.key)) result.push_back({before + value});
   return result;
 } catch (const Error&) {
-  return {};  // no such key: the run will say so
+  return {};  // no such key: the run will report it
 }
 
 }  // namespace

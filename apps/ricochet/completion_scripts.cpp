@@ -7,8 +7,8 @@ namespace ricochet::program {
 
 namespace {
 
-// bash splits words at "=" and ":", too. What no blank parts is one word for the program, and of its answers only what
-// comes behind the last of these is what bash takes.
+// bash also splits words at "=" and ":". For the program, text without blanks is a single word, and of each of its
+// answers bash needs only the part after the last of these characters.
 constexpr const char* bash_script = R"~sh~(# Completion of ricochet for bash: the program itself says what may come.
 _ricochet() {
   local words=() word line=$COMP_LINE i typed candidate IFS=$'\n'

@@ -4,16 +4,16 @@
 #include <string_view>
 #include <vector>
 
-/// @file The command line as data, for what is made from it: the manual page and the completion of shells. main.cpp
-/// makes it from the parser's own tables, so that neither can say what the program does not know.
+/// @file The command line as data, for the manual page and the completion of shells. main.cpp derives it from the
+/// parser's own tables, so that neither can describe anything that the program does not support.
 namespace ricochet::program {
 
 struct DescribedOption {
   std::vector<std::string> names;  ///< "-o", "--output"; empty for a positional
-  std::string value;               ///< what its value is called ("DIR"); empty for a flag
+  std::string value;               ///< name of its value ("DIR"); empty for a flag
   std::string doc;
   bool required = false;
-  bool many = false;  ///< a positional that takes all that follow
+  bool many = false;  ///< a positional that accepts all following words
 
   [[nodiscard]] bool is_positional() const { return names.empty(); }
 };
@@ -26,7 +26,7 @@ struct DescribedCommand {
   std::vector<DescribedCommand> commands = {};
 };
 
-/// The command or option of that name, or nullptr.
+/// Returns the command or option of that name, or null.
 [[nodiscard]] const DescribedCommand* find_command(const DescribedCommand& parent, std::string_view name);
 [[nodiscard]] const DescribedOption* find_option(const DescribedCommand& command, std::string_view name);
 

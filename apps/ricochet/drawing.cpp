@@ -26,7 +26,7 @@ void draw_figure(const std::string& description, const std::string& format, cons
   const TemporaryFolder workspace(fs::temp_directory_path(), "ricochet-plot");
   ChildProcess child;
   child.arguments = {python_program(), "-B", script, format, workspace.file("figure")};
-  child.variables = {"MPLCONFIGDIR=" + workspace.file("matplotlib")};  // the user's own settings change nothing
+  child.variables = {"MPLCONFIGDIR=" + workspace.file("matplotlib")};  // settings of the user have no effect
   child.input = workspace.file("description.json");
   child.output = workspace.file("messages");
   std::ofstream(child.input) << description;
@@ -48,7 +48,7 @@ void draw_figure(const std::string& description, const std::string& format, cons
     throw Error(ErrorKind::file_access, fmt::format("the figure could not be drawn: {} {}:\n{}", python_program(),
                                                     outcome.description(), read_file(workspace.file("messages"))));
   }
-  // Under a temporary name first: what was there stays until all of the new file is.
+  // Written under a temporary name first: the old file stays until the new one is complete.
   const std::string part = output + ".part";
   std::error_code problem;
   fs::copy_file(workspace.file("figure"), part, fs::copy_options::overwrite_existing, problem);

@@ -2,11 +2,11 @@
 
 #include <string>
 
-/// @file Files that come with the program.
+/// @file Files that are installed with the program.
 namespace ricochet::program {
 
-/// share/ricochet/NAME beside the program (in a build directory) or beside the folder it is in (where it is installed);
-/// empty: it is not there.
+/// Returns share/ricochet/NAME beside the program (in a build directory) or beside its folder (if installed); "" if it
+/// does not exist.
 [[nodiscard]] std::string installed_file(const std::string& name);
 
 }  // namespace ricochet::program

@@ -144,7 +144,7 @@ program::DescribedOption described(const CLI::Option& option) {
   if (!option.get_default_str().empty()) result.doc += " (default: " + option.get_default_str() + ")";
   const int most = option.get_items_expected_max();
   if (most > 0) result.value = option.get_type_name();
-  // CLI11 puts what a number is checked for behind its name: "N:INT in [1 - 1024]".
+  // CLI11 appends the range of a number to its name: "N:INT in [1 - 1024]".
   if (const std::size_t bounds = result.value.find(" in ["); bounds != std::string::npos) {
     result.doc += ", in " + result.value.substr(bounds + 4);
     result.value.resize(result.value.rfind(':', bounds));
@@ -156,7 +156,7 @@ program::DescribedOption described(const CLI::Option& option) {
   return result;
 }
 
-/// With all that `--help` lists, and nothing else.
+/// Describes a command with exactly those items that `--help` lists.
 program::DescribedCommand described(const CLI::App& command) {
   program::DescribedCommand result{command.get_name(), command.get_description(), command.get_footer(), {}, {}};
   for (const CLI::Option* option : command.get_options()) result.options.push_back(described(*option));
@@ -165,8 +165,8 @@ program::DescribedCommand described(const CLI::App& command) {
   return result;
 }
 
-/// `ricochet complete -- WORD...`, which completion scripts call, and `ricochet manual-page`, which the build calls:
-/// what they are about is the command line itself, which must not be parsed for them. False: it is none of these.
+/// Handles `ricochet complete -- WORD...`, which completion scripts call, and `ricochet manual-page`, which the build
+/// calls: both refer to the command line itself, which must not be parsed for them. Returns false for other commands.
 bool answers_about(const CLI::App& app, int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (words.size() >= 2 && words[0] == "complete" && words[1] == "--") {
@@ -344,10 +344,10 @@ int dispatch(int argc, char** argv) {
   return program::schema(arguments.markdown);
 }
 
-/// The exit status; says what has gone wrong.
+/// Returns the exit status; reports errors.
 int run_program(int argc, char** argv) {
   try {
-    prepare_blas();  // before there are threads; and whatever is asked for, an environment that is wrong is refused
+    prepare_blas();  // before there are threads; and a wrong environment is refused for every command
     program::wait_for_stop_signals("ricochet");
     const int status = dispatch(argc, argv);
     program::flush_standard_output();

@@ -8,7 +8,7 @@ namespace ricochet::program {
 
 namespace {
 
-/// Text as roff shows it: hyphens that can be typed again, and no line that begins like a request.
+/// Escapes text for roff: hyphens are typeable, and no line begins like a request.
 std::string roff(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -53,7 +53,7 @@ std::string bold(const std::string& text) {
   return fmt::format("\\fB{}\\fP", roff(text));
 }
 
-/// "-o DIR, --output DIR"
+/// Returns "-o DIR, --output DIR".
 std::string title_of(const DescribedOption& option) {
   std::string title;
   for (const std::string& name : option.names) {
@@ -71,7 +71,7 @@ std::string roff_options(const DescribedCommand& command) {
   return text;
 }
 
-/// "ricochet report DIR ... [options]"
+/// Returns "ricochet report DIR ... [options]".
 std::string synopsis_of(const DescribedCommand& command) {
   std::string text = bold("ricochet " + command.name);
   for (const DescribedOption& option : command.options) {
@@ -90,7 +90,7 @@ std::string manual_of_commands(const DescribedCommand& program) {
     text +=
         fmt::format(".SS {}\n.nh\n{}\n.hy\n.PP\n{}\n", roff(command.name), synopsis_of(command), sentence(command.doc));
     text += roff_options(command);
-    // Commands that say nothing of their own have the words of the program, which are a section of the page.
+    // Commands without a footer of their own have that of the program, which is a section of the page.
     if (!command.footer.empty() && command.footer != program.footer) text += ".PP\n" + roff(command.footer) + "\n";
   }
   return text;

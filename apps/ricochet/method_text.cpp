@@ -12,9 +12,9 @@ namespace ricochet::program {
 
 namespace {
 
-/// Of the largest energy: below it is rounding of many steps.
+/// Rounding over many steps, relative to the largest energy.
 constexpr double rounding_of_energies = 1e-8;
-/// Of the larger of two numbers: what is less beside it is not told.
+/// Ratio to the larger of two numbers below which the smaller one is not reported.
 constexpr double beside = 0.01;
 
 std::string energy_text(const RunSummary& summary) {
@@ -22,7 +22,7 @@ std::string energy_text(const RunSummary& summary) {
   const double most = std::max(lost, created);
   if (!(most > rounding_of_energies)) return fmt::format("the method kept the energy to {:.1e} of the largest", most);
   const bool both = std::min(lost, created) > beside * most;
-  // Not where it is the number that was just said.
+  // Omitted if it equals the number just reported.
   const bool gave_back =
       summary.method_energy && std::abs(std::abs(summary.method_energy->at_end) - most) > beside * most;
   const char* const up_to = both || gave_back ? "up to " : "";

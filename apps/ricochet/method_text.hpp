@@ -4,17 +4,17 @@
 
 #include "ricochet/io/summary.hpp"
 
-/// @file What the method itself did to the energy of a run, and which reactions acted.
+/// @file Energy gained or lost by the method in a run, and the reactions that acted.
 namespace ricochet::program {
 
-/// "the method lost 1.2 % of the largest energy (…); reactions: mean, end weight 0 to 0.33"
+/// Prints "the method lost 1.2 % of the largest energy (…); reactions: mean, end weight 0 to 0.33".
 void print_method(const RunSummary& summary);
-/// For a table: "-1.2 %"; "0" where energy is kept to rounding. The larger one of what was lost and created.
+/// Returns the larger of the losses and gains for a table: "-1.2 %"; "0" if energy is kept up to rounding.
 [[nodiscard]] std::string method_energy_mark(const RunSummary& summary);
-/// "mean, end weight 0 to 0.33"; empty where the scheme has no choice.
+/// Returns "mean, end weight 0 to 0.33"; empty if the scheme has no choice.
 [[nodiscard]] std::string reactions_text(const RunSummary& summary);
 
-/// "150 steps of 0.01", "71 steps of 0.001 to 0.016 (4 refused)".
+/// Returns "150 steps of 0.01" or "71 steps of 0.001 to 0.016 (4 refused)".
 [[nodiscard]] std::string steps_text(const RunSummary& summary);
 
 }  // namespace ricochet::program

@@ -9,7 +9,7 @@ namespace ricochet::program {
 
 namespace {
 
-/// Sums over all nodes of a mesh are rounded to less than this part of their terms.
+/// Rounding of sums over all nodes of a mesh, relative to their terms.
 constexpr double rounding = 1e-12;
 
 }  // namespace

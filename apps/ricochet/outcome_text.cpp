@@ -16,30 +16,30 @@ namespace ricochet::program {
 
 namespace {
 
-/// Of gyration.
+/// Returns the radius of gyration.
 double radius_of(const BodyDescription& body) {
   return std::sqrt(body.rigid.inertia.diagonal().maxCoeff() / body.rigid.mass);
 }
 
-/// Of a place of the mesh in its reference configuration.
+/// Returns a position of the mesh in its reference configuration.
 std::string place_text(const std::vector<double>& place, const RunSummary& summary) {
   double size = 0.0;
   for (const BodyDescription& body : summary.bodies) size = std::max(size, body.rigid.centre.norm() + radius_of(body));
   return vector_text(Eigen::Map<const Vector>(place.data(), static_cast<Index>(place.size())), size, 5);
 }
 
-/// In the plane there is one number. Components of less than `least` are 0.
+/// Returns a spin; in the plane it is a single number. Components smaller than `least` are 0.
 std::string spin_text(const Eigen::Vector3d& spin, int dimension, double least) {
   const auto shown = [&](Index k) { return std::abs(spin[k]) > least ? spin[k] : 0.0; };
   if (dimension == 2) return fmt::format("{:.4g}", shown(2));
   return vector_text(Eigen::Vector3d(shown(0), shown(1), shown(2)), 0.0, 5);
 }
 
-/// A body that does not spin shows rounding: what moves its edge by less than this part of its speed, or of what the
-/// larger spin does, is none.
+/// Rounding of a spin, relative to the speed of the body and to the larger spin: a spin that moves the edge of the body
+/// more slowly counts as zero.
 constexpr double rounding_of_spin = 1e-6;
 
-/// Empty where the body does not spin.
+/// Returns "" if the body does not spin.
 std::string spins_text(int body, const RigidMotionState& before, const RigidMotionState& after,
                        const RunSummary& summary) {
   const double largest = std::max(before.spin.norm(), after.spin.norm());
@@ -67,7 +67,7 @@ std::string spins_text(const Impact& impact, const RunSummary& summary) {
   return text;
 }
 
-/// bodies "one" and "two".
+/// Returns bodies "one" and "two".
 std::string bodies_text(const Impact& impact, const RunSummary& summary) {
   constexpr std::string_view prefix = "body ";
   const std::string one = body_text(impact.body, summary), two = body_text(impact.other->number, summary);
@@ -78,21 +78,21 @@ std::string bodies_text(const Impact& impact, const RunSummary& summary) {
   return fmt::format("bodies {} and {}", one.substr(prefix.size()), two.substr(prefix.size()));
 }
 
-/// "bodies "one" and "two" ", "body "left" on "floor" ", and the obstacle alone where there is one body.
+/// Returns "bodies "one" and "two" ", "body "left" on "floor" ", or only the obstacle if there is a single body.
 std::string parties_text(const Impact& impact, const RunSummary& summary) {
   if (impact.other) return bodies_text(impact, summary) + " ";
   const std::string on = fmt::format("on \"{}\" ", impact.obstacle);
   return summary.bodies.size() > 1 ? body_text(impact.body, summary) + " " + on : on;
 }
 
-/// That of the normal parts of the contact forces, and of all of them where friction makes another number of it.
+/// Returns the impulse of the normal contact forces, and the total impulse if friction makes it differ.
 std::string impulse_text(const Impact& impact) {
   const std::string normal = fmt::format("{:.4g}", impact.normal_impulse.norm());
   const std::string whole = fmt::format("{:.4g}", impact.impulse.norm());
   return "normal impulse " + normal + (whole == normal ? "" : " (with friction " + whole + ")");
 }
 
-/// How much of the mesh the impact has seen.
+/// Returns how much of the mesh took part in the impact.
 std::string resolution_text(const Impact& impact) {
   if (impact.contact_points == 0) return "";
   const std::string points = fmt::format(", at most {} of {} at once", impact.contact_points,
@@ -101,7 +101,7 @@ std::string resolution_text(const Impact& impact) {
   return points + ": the contact zone is too coarse to trust the largest force and the duration; refine the mesh there";
 }
 
-/// Of a run in which cells turn too far: whether they had when this impact ended.
+/// Returns, for a run in which cells rotate too far, whether they had done so when this impact ended.
 std::string rotation_text(std::size_t impact, const RunSummary& summary) {
   if (!summary.rotation || !std::isfinite(summary.rotation->time_beyond)) return "";
   if (impact >= summary.rotation->until_impact_end.size()) return "";
@@ -110,7 +110,7 @@ std::string rotation_text(std::size_t impact, const RunSummary& summary) {
                      summary.cells_turn_little_in(impact) ? "" : " (BEYOND SMALL STRAIN)");
 }
 
-/// Where the method has changed the energy by much of what the restitution says that the body lost.
+/// Returns a note if the energy error of the method is large compared with the loss that the restitution implies.
 std::string restitution_error_text(const Impact& impact) {
   const RestitutionError error = restitution_error(impact);
   if (!error.is_large) return "";
@@ -120,7 +120,7 @@ std::string restitution_error_text(const Impact& impact) {
                      percent(std::abs(error.by_impact)));
 }
 
-/// Where the linear law has changed it by the turn of a body.
+/// Returns a note if the linear law has changed the restitution through the rotation of a body.
 std::string turning_text(const Impact& impact) {
   if (!is_changed_by_turning(impact)) return "";
   const double error = restitution_by_turning(impact);
@@ -153,10 +153,10 @@ std::string impact_text(std::size_t number, const RunSummary& summary) {
 }
 
 void print_no_contact(const RunSummary& summary) {
-  // Results of a version that told no impacts list no bodies: nothing is known of them.
+  // Results of a version without impacts list no bodies either: nothing is known about contact.
   if (summary.contacts.empty() || summary.bodies.empty() || summary.steps == 0) return;
   if (!summary.impacts.empty() || summary.impacts_left_out > 0) return;
-  // As where a body touches itself.
+  // As if a body touches itself.
   if (summary.digest("active_contacts").maximum > 0.0) {
     fmt::print("  contact forces have acted, but within one body: that is no impact\n");
     return;

@@ -21,10 +21,10 @@ std::string found_text(const UnwatchedPenetration& p) {
                      fmt::join(p.place, ", "));
 }
 
-/// Of its limit; less is none.
+/// Slip, relative to its limit, below which it counts as none.
 constexpr double rounding_of_slip = 1e-6;
 
-/// Of a contact that was pressed somewhere.
+/// Describes the sliding of a contact that was pressed somewhere.
 std::string sliding_text(const PairSliding& pair, const RunSummary& s) {
   if (!(pair.slip > rounding_of_slip * pair.limit)) return "";
   if (pair.contact < 0 || pair.contact >= static_cast<int>(s.contacts.size())) return "";
@@ -48,7 +48,7 @@ std::string unsettled_text(const UnsettledContact& unsettled, const RunSummary& 
       contact.group, contact.opponent, unsettled.gap, unsettled.first_time);
 }
 
-/// Since when cells have turned too far. What comes after the last impact does not change what it came to.
+/// Returns the time from which cells have rotated too far. Rotations after the last impact do not affect its results.
 std::string beyond_text(const RunSummary& s) {
   if (!s.rotation) return " (BEYOND SMALL STRAIN)";
   const std::string since = fmt::format("t = {:.6g} on", s.rotation->time_beyond);

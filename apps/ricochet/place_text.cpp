@@ -11,7 +11,7 @@ namespace ricochet::program {
 
 namespace {
 
-/// Positions of the nodes of cells at t = 0, but for what a static equilibrium adds.
+/// Returns the positions of the nodes of cells at t = 0, without the displacement of a static equilibrium.
 Points starting_positions(const Model& model) {
   const Points& nodes = model.space.nodes;
   const Points positions =

@@ -12,14 +12,14 @@ namespace ricochet::program {
 
 namespace {
 
-/// Nodes of one [[probe]]: the entries from `first` on, before `last`.
+/// Nodes of one [[probe]]: the entries from `first` up to, but excluding, `last`.
 struct ProbeNodes {
   std::string name;
   std::size_t first, last;
   bool is_segment;
 };
 
-/// A probe's own name has no dot: those of a segment are called NAME.0, NAME.1 and so on.
+/// Returns the probes. The name of a probe has no dot; the nodes of a segment are called NAME.0, NAME.1 and so on.
 std::vector<ProbeNodes> probes_of(const RunSummary& summary) {
   std::vector<ProbeNodes> result;
   for (std::size_t i = 0; i < summary.probes.size(); ++i) {
@@ -40,7 +40,7 @@ std::string place_text(const RunSummary& summary, std::size_t probe) {
   return vector_text(Eigen::Map<const Vector>(at.data(), static_cast<Index>(at.size())));
 }
 
-/// Probes with rows of their own have no digest.
+/// Returns true if the force of a probe has a digest; probes with rows of their own have none.
 bool has_force(const RunSummary& summary, const Probe& probe) {
   return probe.contact_node >= 0 && std::find(summary.columns.begin(), summary.columns.end(),
                                               probe.name + ".reaction_normal") != summary.columns.end();

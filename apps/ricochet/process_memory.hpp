@@ -1,15 +1,14 @@
 #pragma once
 
-/// @file How the memory of a process is managed, from its beginning on.
+/// @file Management of the memory of a process, from its start.
 namespace ricochet::program {
 
-/// Where memory is limited, OpenBLAS must not have threads of its own: it starts them when it is loaded, and one that
-/// gets no memory asks for it for ever, takes what others have given back, and does not end. The program is then begun
-/// again without them.
+/// Restarts the program without threads of OpenBLAS if memory is limited. OpenBLAS starts its threads when it is
+/// loaded; a thread that gets no memory requests it for ever, takes the memory that others release, and does not end.
 void restart_without_blas_threads(char** argv);
 
-/// Matrices of contact points come and go in every round of a step. Memory that is given back to the system each time,
-/// and comes back as pages of zeros, costs as much as the products.
+/// Keeps released memory in the process. Matrices of contact points are allocated and released in every iteration of a
+/// step; returning memory to the system each time, and receiving it as pages of zeros, costs as much as the products.
 void keep_memory();
 
 }  // namespace ricochet::program

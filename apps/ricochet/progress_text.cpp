@@ -31,7 +31,7 @@ double seconds_of(const RunSummary& summary, const std::string& phase) {
 std::string status_text(const std::string& directory, const RunSummary& summary) {
   if (summary.status == "done") return "";
   if (summary.status == "failed") return " (FAILED)";
-  // A run that has neither ended nor is going on was killed.
+  // A run that has not ended and is not running was killed.
   return is_running(directory, summary) ? " (running)" : " (interrupted)";
 }
 
@@ -67,7 +67,7 @@ void print_checkpoints(const std::string& directory, const RunSummary& summary) 
 
 void print_progress(const std::string& directory, const RunSummary& summary) {
   if (summary.status == "done") return;
-  // The summary is seconds old, and older than the history where the run was killed.
+  // The summary is seconds old, and older than the history if the run was killed.
   const long step = std::max(summary.steps, last_history_step(directory + "/history.csv"));
   if (summary.adaptive) {
     fmt::print("  step {}, t = {:.6g} of {:.6g} ({:.3g} %)\n", summary.steps, summary.adaptive->time, summary.end_time,
@@ -113,7 +113,7 @@ void describe_checkpoint(const std::string& path) {
 
 void print_cost(const RunSummary& s) {
   const std::string all = s.timings.empty() ? "" : fmt::format(", {} in all", duration_text(s.timings.back().second));
-  // Of several processes print_solver says it.
+  // With several processes, print_solver reports it.
   const std::string memory =
       s.peak_memory > 0.0 && !s.processes
           ? fmt::format(", {:.3g} {} of memory at most", (s.peak_memory < 1e9 ? 1e-6 : 1e-9) * s.peak_memory,

@@ -1,15 +1,15 @@
-"""Shows a run in ParaView: the body deformed and coloured by von Mises stress, whose range is that of all times, in
-space cut open, the nodes that carry contact pressure as dots coloured by it, and the obstacles in grey. It takes both
-formats of fields (results.xdmf, results.vtkhdf).
+"""Shows a run in ParaView: the deformed body coloured by von Mises stress, with a range over all times and cut open in
+space, dots at the nodes under contact pressure, coloured by it, and the obstacles in grey. Supports both formats of
+fields (results.xdmf, results.vtkhdf).
 
     pvbatch show_in_paraview.py DIR PICTURE.png [TIME]    # a picture of the frame nearest to the time, else of the last
-    pvpython show_in_paraview.py DIR                      # says what there is
+    pvpython show_in_paraview.py DIR                      # describes the results
     RICOCHET_RUN=DIR paraview --script=show_in_paraview.py
 
 As a macro (in ParaView: Macros, Import new macro) it shows the run whose results.xdmf or results.vtkhdf is open and
 selected, else that of the directory RICOCHET_RUN.
 
-Times in files of the format vtkhdf are known to ParaView 5.12 and later; earlier ones show the first frame."""
+ParaView 5.12 and later reads the times of vtkhdf files; earlier versions show the first frame."""
 
 import os
 import sys
@@ -19,11 +19,11 @@ GREY, WHITE, BLACK = [0.62, 0.62, 0.62], [1.0, 1.0, 1.0], [0.0, 0.0, 0.0]
 
 
 class Problem(Exception):
-    """What the user is told, in one sentence."""
+    """Error message for the user, in one sentence."""
 
 
 def find_files(directory):
-    """The files of the body and of the obstacles; None: there are no obstacles."""
+    """Returns the files of the body and of the obstacles; the latter is None if there are no obstacles."""
     for body, obstacles in (("results.vtkhdf", "obstacles.vtkhdf"), ("results.xdmf", "obstacles.xdmf")):
         path = os.path.join(directory, body)
         if os.path.exists(path):
@@ -64,14 +64,14 @@ def times_of(reader):
 
 
 class Body:
-    """The body where it is, and what its fields come to over all times."""
+    """The deformed body, and the ranges of its fields over all times."""
 
     def __init__(self, simple, path, has_obstacles):
         self.reader = open_file(simple, path)
         self.reader.UpdatePipeline()
         self.times = times_of(self.reader)
         source = self.reader
-        if has_obstacles and path.endswith(".xdmf"):  # which shows the obstacles, too
+        if has_obstacles and path.endswith(".xdmf"):  # shows the obstacles as well
             source = simple.MergeBlocks(Input=simple.ExtractBlock(Input=source, Selectors=["/Root/body"]))
             source.UpdatePipeline(self.times[0] if self.times else 0.0)
         self.shown = source
@@ -122,7 +122,7 @@ def colour(simple, view, display, place, name, limits, preset, title, bar_at, in
 
 
 def flat_axis(obstacle_bounds):
-    """Across which the obstacles are flat: what is up in space; z where they are not."""
+    """Returns the axis across which the obstacles are flat, which points up in space; z if they are not flat."""
     if obstacle_bounds is None:
         return 2
     extents = [obstacle_bounds[2 * k + 1] - obstacle_bounds[2 * k] for k in range(3)]
@@ -130,7 +130,7 @@ def flat_axis(obstacle_bounds):
 
 
 def cut_open(simple, body, up):
-    """The half away from the camera: stress is largest inside, above what the body stands on."""
+    """Returns the half away from the camera: stress is largest inside, above the support of the body."""
     clip = simple.Clip(registrationName="half of the body", Input=body.shown, ClipType="Plane")
     bounds = body.shown.GetDataInformation().GetBounds()
     clip.ClipType.Origin = [0.5 * (bounds[2 * k] + bounds[2 * k + 1]) for k in range(3)]
@@ -154,7 +154,7 @@ def show_body(simple, view, body, shown):
 
 
 def show_pressure(simple, view, body):
-    """Dots at the nodes that carry some; nothing where the run has none."""
+    """Shows dots at nodes under contact pressure; nothing if the run has none."""
     largest = body.ranges.get(PRESSURE, (0.0, 0.0))[1]
     if largest <= 0.0:
         return
@@ -169,7 +169,7 @@ def show_pressure(simple, view, body):
 
 
 def show_obstacles(simple, view, path):
-    """Their bounds, or None."""
+    """Shows the obstacles. Returns their bounds, or None."""
     if path is None:
         return None
     reader = open_file(simple, path)
@@ -183,7 +183,7 @@ def show_obstacles(simple, view, path):
 
 
 def set_camera(view, body, up):
-    """All of the motion in sight: from the front in the plane, in space from above."""
+    """Sets the camera so that all of the motion is visible: from the front in the plane, from above in space."""
     low, high = body.bounds[0::2], body.bounds[1::2]
     centre = [0.5 * (a + b) for a, b in zip(low, high)]
     size = sum((b - a) ** 2 for a, b in zip(low, high)) ** 0.5 or 1.0
@@ -198,7 +198,7 @@ def set_camera(view, body, up):
 
 
 def show_run(simple, directory, time=None):
-    """The view, and what is told of the run."""
+    """Returns the view and a description of the run."""
     body_file, obstacle_file = find_files(directory)
     body = Body(simple, body_file, obstacle_file is not None)
     view = simple.GetActiveViewOrCreate("RenderView")
@@ -213,7 +213,7 @@ def show_run(simple, directory, time=None):
     up = flat_axis(show_obstacles(simple, view, obstacle_file))
     show_body(simple, view, body, body.shown if body.is_plane() else cut_open(simple, body, up))
     show_pressure(simple, view, body)
-    simple.Render(view)  # the first time that sets a camera of its own
+    simple.Render(view)  # the first rendering sets a camera of its own
     set_camera(view, body, up)
     simple.Render(view)
     told = [f"{os.path.abspath(body_file)}: {max(len(body.times), 1)} frames"]
@@ -229,7 +229,7 @@ def show_run(simple, directory, time=None):
 
 
 def main(arguments):
-    from paraview import simple  # here: tests import this file where there is no ParaView
+    from paraview import simple  # here: tests import this file without ParaView
     try:
         if len(arguments) > 3:
             raise Problem("at most DIR PICTURE.png TIME are understood")

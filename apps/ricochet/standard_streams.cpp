@@ -22,7 +22,7 @@ void open_closed_streams() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
     if (descriptor == STDOUT_FILENO) output_was_closed = true;
-    // The lowest that is free is this one, as those below are open.
+    // The lowest free descriptor is this one, as those below are open.
     if (open("/dev/null", O_RDWR) != descriptor) _exit(static_cast<int>(ErrorKind::file_access));
   }
 }
@@ -36,7 +36,7 @@ void require_standard_output() {
 }
 
 void flush_standard_output() {
-  const int before = errno;  // of what was too long to wait in memory
+  const int before = errno;  // error of output that was written before
   errno = 0;
   std::fflush(stdout);
   const int problem = errno != 0 ? errno : before;

@@ -19,24 +19,24 @@ namespace ricochet::program {
 
 namespace {
 
-/// For a step to come to its end, in milliseconds; what is done after it takes some more of the two seconds.
+/// Milliseconds for a step to complete; of two seconds in all, the rest is for the output after it.
 constexpr int patience = 1200;
 
 constexpr std::chrono::milliseconds same_request{250};
 
 std::atomic<int> received = 0;
-std::atomic<const char*> speaker = nullptr;  ///< null: says nothing
+std::atomic<const char*> speaker = nullptr;  ///< null: no messages
 std::atomic<bool> steps_end = false;
 
 void say(const std::string& what) {
   if (const char* name = speaker) interruption::say(fmt::format("\n{}: {}\n", name, what).c_str());
 }
 
-// SIGHUP: the terminal or the connection to it has gone.
+// SIGHUP: the terminal or the connection to it is gone.
 constexpr int stop_signals[] = {SIGINT, SIGTERM, SIGHUP};
 
-/// All threads hold these signals back, so that one thread can wait for them: those that libraries start before main()
-/// begins (OpenBLAS does) inherit what is blocked here.
+/// Blocks these signals in all threads, so that one thread can wait for them: threads that libraries start before
+/// main() (OpenBLAS does) inherit the mask.
 void hold_signals(int, char**, char**) {
   sigset_t held;
   sigemptyset(&held);
@@ -45,7 +45,7 @@ void hold_signals(int, char**, char**) {
 }
 __attribute__((section(".preinit_array"), used)) void (*const hold_signals_first)(int, char**, char**) = hold_signals;
 
-/// The next signal, or 0 after so many milliseconds (−1: no end).
+/// Returns the next signal, or 0 after so many milliseconds (−1: no limit).
 int next_signal(const sigset_t& awaited, int milliseconds) {
   const struct timespec limit { milliseconds / 1000, milliseconds % 1000 * 1000000L };
   for (;;) {
@@ -55,8 +55,9 @@ int next_signal(const sigset_t& awaited, int milliseconds) {
   }
 }
 
-/// Another request to stop after the first signal, which came at an instant, as next_signal() returns it. Programs such
-/// as timeout send a signal to a process and to its group: the same one again at once is the same request.
+/// Returns, like next_signal(), another request to stop after the first signal, which arrived at the given instant.
+/// Programs such as timeout send a signal to a process and to its group: the same signal repeated at once is the same
+/// request.
 int next_request(const sigset_t& awaited, int first, std::chrono::steady_clock::time_point instant, int milliseconds) {
   using std::chrono::steady_clock;
   const auto end = steady_clock::now() + std::chrono::milliseconds(milliseconds);
@@ -69,7 +70,7 @@ int next_request(const sigset_t& awaited, int first, std::chrono::steady_clock::
   }
 }
 
-/// Puts things in order and ends the process, on a thread of its own: another signal must not wait for that.
+/// Cleans up and ends the process, on a separate thread: another signal must not wait for it.
 void end_process(int signal) {
   try {
     std::thread([signal] {
@@ -102,7 +103,7 @@ void wait(const sigset_t& awaited) {
 
 void wait_for_stop_signals(const char* program_name) {
   speaker = program_name;
-  // A file that may not grow any more is an error like a full disk.
+  // A file that reached its size limit is an error like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   sigset_t awaited;
   sigemptyset(&awaited);
@@ -113,7 +114,7 @@ void wait_for_stop_signals(const char* program_name) {
   }
   try {
     std::thread(wait, awaited).detach();
-  } catch (const std::system_error&) {  // no room for a thread: signals end the process as they do elsewhere
+  } catch (const std::system_error&) {  // no room for a thread: signals end the process in the usual way
     pthread_sigmask(SIG_UNBLOCK, &awaited, nullptr);
   }
 }

@@ -14,20 +14,20 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/types.hpp"
 
-/// @file Values as bytes and back, for another process of the same program.
+/// @file Binary serialization of values, for another process of the same program.
 namespace ricochet {
 
-/// One description serves both ways: `archive(value)` appends the value, or fills it. What has parts has a function
-/// transfer(Archive&, Value&) beside it, which names them. Between processes of one machine type: nothing is said of
-/// versions or the order of bytes.
+/// Serializes in both directions by one description: `archive(value)` appends the value or reads it. A composite type
+/// has a function transfer(Archive&, Value&) beside it, which passes its parts to the archive. Both processes must run
+/// on the same kind of machine: neither a version nor the byte order is stored.
 class Archive {
  public:
-  /// To be written.
+  /// Creates an archive that is written and kept in memory.
   Archive() = default;
-  /// To be handed on as it is written, some bytes at a time; finish() hands on the last ones.
+  /// Accepts what has been written, one block after another; finish() passes on the last block.
   using Sink = std::function<void(std::span<const char>)>;
   explicit Archive(Sink sink) : sink_(std::move(sink)) {}
-  /// To be read.
+  /// Creates an archive that is read from these bytes.
   explicit Archive(std::vector<char> bytes) : bytes_(std::move(bytes)), reads_(true) {}
 
   [[nodiscard]] bool reads() const { return reads_; }
@@ -83,7 +83,7 @@ class Archive {
     if (reads_) matrix.resize(static_cast<Index>(high), static_cast<Index>(wide));
     block(matrix.data(), static_cast<std::size_t>(matrix.size()));
   }
-  /// Written ones are compressed.
+  /// Compresses a matrix that is written.
   template <int order>
   void operator()(Eigen::SparseMatrix<double, order, int>& matrix) {
     if (!reads_) matrix.makeCompressed();

@@ -13,7 +13,7 @@
 
 extern "C" {
 void openblas_set_num_threads(int count);
-// What OpenBLAS itself calls at the begin and end of its functions.
+// The allocator that OpenBLAS itself calls at the beginning and end of its functions.
 void* blas_memory_alloc(int procedure);
 void blas_memory_free(void* buffer);
 }
@@ -22,7 +22,7 @@ namespace ricochet {
 
 namespace {
 
-/// Of a buffer of OpenBLAS (128 MB on processors of today), and what else is needed to begin.
+/// Size of an OpenBLAS buffer (128 MB on current processors), and memory needed besides to start.
 constexpr std::size_t buffer_size = std::size_t{128} << 20, beginning = std::size_t{32} << 20;
 
 bool is_limited(decltype(RLIMIT_AS) resource) {

@@ -1,21 +1,22 @@
 #pragma once
 
-/// @file OpenBLAS: its kernels, its threads and its memory.
+/// @file OpenBLAS: kernels, threads and memory.
 namespace ricochet {
 
-/// Has OpenBLAS take kernels that suit the processor (blas_kernels.hpp), on one thread: with two its bits change and
-/// nothing is gained. To be called before anything that calls OpenBLAS, libraries of others (CHOLMOD, Basix) included:
-/// the first bits count. Everything here calls it by itself, but a program that has threads of its own, or uses
-/// OpenBLAS itself, calls it before: kernels are changed only where no other thread may be using them. Takes effect
-/// once; cheap to call again. Throws Error(usage) as `instruction_set()` does.
+/// Selects OpenBLAS kernels that suit the processor (blas_kernels.hpp) and restricts OpenBLAS to one thread: two
+/// threads change the bits of its results and gain nothing. Must run before anything calls OpenBLAS, third-party
+/// libraries (CHOLMOD, Basix) included, since results computed earlier come from other kernels. The library calls it on
+/// its own; a program that has threads or uses OpenBLAS itself calls it before them, because kernels are replaced only
+/// while no other thread can be using them. Has an effect once, and is cheap to call again. Throws Error(usage) as
+/// `instruction_set()` does.
 void prepare_blas();
 
-/// OpenBLAS asks for some memory per thread that calls it, and asks for ever where it is refused: a limit (ulimit -v)
-/// would let the program hang. Under a limit this takes the memory for so many threads of ours. Throws
-/// Error(not_converged) where it is not to be had.
+/// Reserves the memory that OpenBLAS needs for so many of our threads, if the process has a limit (ulimit -v). OpenBLAS
+/// allocates a buffer per calling thread and repeats a refused request forever, so the program would hang. Throws
+/// Error(not_converged) if the limit is too low.
 void reserve_blas_memory(int threads);
 
-/// Is there a limit on the memory of this process?
+/// Returns whether the memory of this process is limited.
 [[nodiscard]] bool memory_is_limited();
 
 }  // namespace ricochet

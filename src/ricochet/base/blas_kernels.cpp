@@ -36,7 +36,7 @@ bool same_name(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
-/// What a core's kernels need, or more than anything for a core that is not known here: it is newer.
+/// Rank of the instruction sets that a core's kernels require. An unknown core is newer and ranks highest.
 int demands(std::string_view core) {
   constexpr std::array<std::string_view, 16> sse{
       "Katmai",     "Coppermine", "Northwood", "Prescott", "Banias", "Atom",         "Core2",     "Penryn",
@@ -50,12 +50,13 @@ int demands(std::string_view core) {
   return 3;
 }
 
-/// Other threads than those of OpenBLAS, which wait while we are here. Its OpenMP version has none until it needs them.
+/// Returns whether threads run besides those of OpenBLAS, which are idle here. The OpenMP version of OpenBLAS has none
+/// until it needs them.
 bool other_threads_run() {
   std::error_code failed;
   const std::filesystem::directory_iterator threads("/proc/self/task", failed);
   if (failed) return true;
-  constexpr int own_threads = 1;  // openblas_get_parallel: compiled with threads of its own
+  constexpr int own_threads = 1;  // value of openblas_get_parallel if compiled with threads of its own
   const int expected = openblas_get_parallel() == own_threads ? openblas_get_num_threads() : 1;
   return std::distance(begin(threads), end(threads)) > std::max(expected, 1);
 }
@@ -67,7 +68,7 @@ void take_core(const char* name) {
   unsetenv(core_variable);
 }
 
-/// y = M x by plain loops, of a matrix or of its transpose; only of the lower triangle if asked for.
+/// Returns y = M x or y = Mᵀ x by plain loops; with `lower`, M is restricted to its lower triangle.
 std::vector<double> times(const std::vector<double>& matrix, const std::vector<double>& x, bool transposed,
                           bool lower) {
   const std::size_t n = x.size();
@@ -81,8 +82,8 @@ std::vector<double> times(const std::vector<double>& matrix, const std::vector<d
   return y;
 }
 
-/// A product, a Cholesky factor and a triangular solve: B = A Aᵀ + n I, L Lᵀ = B, and L X = B gives X = Lᵀ. They are
-/// looked at through their products with one vector, which takes few operations.
+/// Checks a product B = A Aᵀ + n I, its Cholesky factor L and a triangular solve: L X = B must give X = Lᵀ. Results are
+/// compared through their products with one vector, which takes few operations.
 bool computes_rightly(int size) {
   constexpr double one = 1.0;
   const auto n = static_cast<std::size_t>(size);
@@ -90,7 +91,7 @@ bool computes_rightly(int size) {
   for (std::size_t k = 0; k < a.size(); ++k) a[k] = static_cast<double>(k * k % 199) / 99.0 - 1.0;
   for (std::size_t i = 0; i < n; ++i) x[i] = static_cast<double>(i * i % 17) / 8.0 - 1.0;
   for (std::size_t i = 0; i < n; ++i) b[i * n + i] = size;
-  // Entries of A and x are at most 1, those of B x then n³.
+  // Entries of A and x are at most 1, hence those of B x at most n³.
   const double tolerance = 4.0 * std::pow(size, 3) * std::numeric_limits<double>::epsilon();
   const auto differ = [&](const std::vector<double>& found, const std::vector<double>& expected) {
     for (std::size_t i = 0; i < n; ++i) {
@@ -112,17 +113,17 @@ bool computes_rightly(int size) {
   return !differ(times(b, x, false, false), times(factor, x, true, true));
 }
 
-/// On one thread, whose memory is there.
+/// Runs the checks on one thread, whose memory has been reserved.
 bool computes_rightly_alone() {
   const int threads = openblas_get_num_threads();
   openblas_set_num_threads(1);
-  // Small matrices have kernels of their own; neither size is a multiple of any block.
+  // Small matrices have kernels of their own; neither size is a multiple of any block size.
   const bool right = computes_rightly(37) && computes_rightly(301);
   openblas_set_num_threads(threads);
   return right;
 }
 
-/// For the calls of `computes_rightly`: OpenBLAS would ask for it for ever.
+/// Reserves memory for the calls of `computes_rightly`, since OpenBLAS would repeat a refused request forever.
 bool has_memory() {
   try {
     reserve_blas_memory(1);

@@ -2,12 +2,12 @@
 
 #include <csignal>
 
-/// @file Signals that must not come now.
+/// @file Signals that must not be delivered now.
 namespace ricochet {
 
-/// Signals from outside (not those of a thread's own errors) wait until the end of this object's life, on this thread
-/// and those that it starts meanwhile, which keep waiting. Where all other threads were started so, a signal to the
-/// process waits.
+/// Blocks external signals (not those caused by a thread's own errors) for the lifetime of this object, on this thread
+/// and on the threads that it starts meanwhile, which keep them blocked. If all other threads were started in this way,
+/// a signal to the process stays pending.
 class BlockedSignals {
  public:
   BlockedSignals();

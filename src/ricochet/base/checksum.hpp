@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <string>
 
-/// @file Checksums of numbers: do two things have the same bytes?
+/// @file Checksums of numbers, to find out whether two things have the same bytes.
 namespace ricochet {
 
-/// CRC-32 and length.
+/// CRC-32 and length of a sequence of bytes.
 class Checksum {
  public:
   Checksum& add_bytes(const void* bytes, std::size_t size);
@@ -16,7 +16,7 @@ class Checksum {
     return add_bytes(numbers, count * sizeof(Number));
   }
   [[nodiscard]] std::uint32_t value() const { return value_; }
-  /// "1a2b3c4d of 1234 bytes".
+  /// Returns "1a2b3c4d of 1234 bytes".
   [[nodiscard]] std::string text() const;
 
  private:

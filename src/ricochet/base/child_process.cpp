@@ -20,7 +20,7 @@ namespace ricochet {
 
 namespace {
 
-/// The variables of this process, but for those that are given anew.
+/// Returns the variables of this process, except those that are replaced.
 std::vector<std::string> environment(const std::vector<std::string>& replacements) {
   std::vector<std::string> variables = replacements;
   for (char** variable = environ; *variable != nullptr; ++variable) {
@@ -47,15 +47,15 @@ bool redirect(const char* path, int flags, int stream) {
   return true;
 }
 
-/// In the child, between fork and exec, where only the simplest functions may be called. The child is in a group of its
-/// own, so that it ends when its parent says so, with all that it has started; it ends by itself when the parent is
-/// killed; and it holds back none of the signals that the parent may hold back.
+/// Runs in the child between fork and exec, where only async-signal-safe functions may be called. The child leads a
+/// process group, so that its parent can end it with all processes that it has started; it is killed when the parent is
+/// killed; and it blocks none of the signals that the parent may block.
 [[noreturn]] void become(const ChildProcess& child, pid_t parent, char* const* arguments, char* const* variables,
                          int& error) {
   setpgid(0, 0);
-  // To be exact: when the thread ends that has started the child. It waits for the child.
+  // More precisely, when the thread ends that has started the child. That thread waits for the child.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(127);  // it was killed sooner
+  if (getppid() != parent) _exit(127);  // it was killed before prctl
   if (redirect(child.input.c_str(), O_RDONLY, STDIN_FILENO) &&
       redirect(child.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, STDOUT_FILENO) &&
       dup2(STDOUT_FILENO, STDERR_FILENO) >= 0) {
@@ -68,8 +68,8 @@ bool redirect(const char* path, int flags, int stream) {
   _exit(127);
 }
 
-/// Whether it has ended, with WNOHANG by now; its number stays its own until it is asked how. Throws nothing: where
-/// nobody knows, `problem` is errno.
+/// Returns whether the child has ended; with WNOHANG, without waiting. The child is not reaped, so its process id stays
+/// its own. Does not throw: if the state cannot be found out, returns true and sets `problem` to errno.
 bool look_for_end(pid_t process, int options, int& problem) {
   siginfo_t found{};
   while (waitid(P_PID, static_cast<id_t>(process), &found, WEXITED | WNOWAIT | options) != 0) {
@@ -100,7 +100,7 @@ std::string ChildOutcome::description() const {
   return fmt::format("ended with status {}", WEXITSTATUS(status));
 }
 
-/// Tells this process why its child could not become the other program: memory that both see.
+/// Passes to this process why its child could not execute the other program, through shared memory.
 class RunningChild::SharedErrno {
  public:
   SharedErrno() : number_(mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {}
@@ -126,10 +126,10 @@ RunningChild::RunningChild(ChildProcess child) : error_(std::make_unique<SharedE
   }
   const auto start = [&] {
     const pid_t parent = getpid();
-    process_ = _Fork();  // without what libraries do at a fork: they are not called in the child
+    process_ = _Fork();  // skips the fork handlers of libraries, which are not called in the child
     if (process_ == 0) become(child, parent, arguments.data(), all_variables.data(), error_->value());
     if (process_ < 0) outcome_.spawn_error = errno;
-    if (process_ > 0) setpgid(process_, process_);  // whoever is first
+    if (process_ > 0) setpgid(process_, process_);  // done in parent and child, whichever is first
   };
   kill_when_interrupted_.emplace(start, [this] {
     int ignored = 0;
@@ -161,7 +161,7 @@ void RunningChild::send(int signal) {
 }
 
 void RunningChild::collect() {
-  kill_when_interrupted_.reset();  // before its number may become another's
+  kill_when_interrupted_.reset();  // before its process id may be reused
   while (outcome_.spawn_error == 0 && waitpid(process_, &outcome_.status, 0) < 0) {
     if (errno != EINTR) outcome_.spawn_error = errno;
   }

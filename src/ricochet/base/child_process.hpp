@@ -10,51 +10,51 @@
 #include "ricochet/base/interruption.hpp"
 #include "ricochet/base/kept_children.hpp"
 
-/// @file Running another program. Its arguments go to it as they are: no shell is involved.
+/// @file Running another program. Its arguments are passed on unchanged: no shell is involved.
 namespace ricochet {
 
 struct ChildProcess {
-  std::vector<std::string> arguments;       ///< the first is the program, a path or a name to be found in PATH
-  std::vector<std::string> variables = {};  ///< "NAME=value", in place of those of this process
-  std::string input = "/dev/null";          ///< the file that it reads as standard input
-  std::string output;                       ///< the file that takes what it says, errors included
+  std::vector<std::string> arguments;       ///< the first is the program: a path, or a name that is found in PATH
+  std::vector<std::string> variables = {};  ///< "NAME=value", replacing those of this process
+  std::string input = "/dev/null";          ///< file that it reads as standard input
+  std::string output;                       ///< file that receives its standard output and standard error
 };
 
 struct ChildOutcome {
-  int spawn_error = 0;  ///< errno where it could not be started
-  int status = 0;       ///< as waitpid gives it
+  int spawn_error = 0;  ///< errno if it could not be started
+  int status = 0;       ///< as returned by waitpid
 
-  /// There is no such program.
+  /// Returns whether there is no such program.
   [[nodiscard]] bool is_absent() const;
   [[nodiscard]] bool succeeded() const;
-  /// The status it ended with by itself; −1: it did not.
+  /// Exit status; −1 if it did not exit by itself.
   [[nodiscard]] int exit_status() const;
-  /// "ended with status 1", "was killed by signal 9", "cannot be run: …".
+  /// Returns "ended with status 1", "was killed by signal 9", "cannot be run: …".
   [[nodiscard]] std::string description() const;
 };
 
-/// A child that runs beside this process. It ends with the thread that has made it, however that ends.
+/// A child process that runs beside this one. It is killed when the thread that started it ends, however that ends.
 class RunningChild {
  public:
-  /// Starts it. Where it cannot be started it has ended, and its outcome says why.
+  /// Starts the child. A child that cannot be started counts as ended, and its outcome gives the reason.
   explicit RunningChild(ChildProcess child);
-  /// Kills it, with all that it has started, unless it has ended.
+  /// Kills the child and all processes that it has started, unless it has ended.
   ~RunningChild();
   RunningChild(const RunningChild&) = delete;
   RunningChild& operator=(const RunningChild&) = delete;
 
-  /// Looks, and does not wait.
+  /// Checks without waiting.
   [[nodiscard]] bool has_ended();
-  /// Waits until it has ended.
+  /// Waits until the child has ended.
   void wait();
-  /// To it and all that it has started; nothing happens where it has ended.
+  /// Sends a signal to the child and to all processes that it has started; has no effect after its end.
   void send(int signal);
-  /// Of one that has ended.
+  /// Outcome of a child that has ended.
   [[nodiscard]] const ChildOutcome& outcome() const { return outcome_; }
 
  private:
   class SharedErrno;
-  /// Takes note of how it has ended.
+  /// Reaps the child and stores how it ended.
   void collect();
 
   KeptChildren kept_;
@@ -64,7 +64,7 @@ class RunningChild {
   std::optional<AtInterruption> kill_when_interrupted_;
 };
 
-/// Waits until it has ended.
+/// Runs the child and waits until it has ended.
 [[nodiscard]] ChildOutcome run_child(ChildProcess child);
 
 }  // namespace ricochet

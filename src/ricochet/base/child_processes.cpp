@@ -15,7 +15,7 @@ namespace ricochet {
 
 namespace {
 
-/// Seconds between two looks at the children, and between two calls of PoolWork::watch.
+/// Seconds between two polls of the children, and between two calls of PoolWork::watch.
 constexpr double look_interval = 0.005, watch_interval = 0.1;
 /// Seconds that children have to end by themselves: a run takes two.
 constexpr double longest_farewell = 5.0;

@@ -1,13 +1,13 @@
 #pragma once
 
-/// @file What a contact point does.
+/// @file State of a contact point.
 namespace ricochet {
 
 enum class ContactStatus : char {
   open = 0,    ///< no force
-  closed = 1,  ///< pressed, and without friction
-  stick = 2,   ///< pressed, and without slip
-  slip = 3,    ///< pressed, and slipping with the largest friction it can have
+  closed = 1,  ///< in contact, frictionless
+  stick = 2,   ///< in contact, without slip
+  slip = 3,    ///< in contact, slipping at the friction limit
 };
 
 }  // namespace ricochet

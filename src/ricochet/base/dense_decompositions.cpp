@@ -81,7 +81,7 @@ Vector symmetric_eigenvalues(const Matrix& matrix) {
   return Eigen::SelfAdjointEigenSolver<Matrix>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-// Not by Eigen's closed forms, which lose half of the digits where two eigenvalues coincide.
+// Eigen's closed forms are avoided: they lose half of the digits if two eigenvalues coincide.
 Eigen::Vector2d symmetric_eigenvalues(const Eigen::Matrix2d& matrix) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }

@@ -7,25 +7,25 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file Eigen's decompositions of small dense matrices, instantiated once: every file that uses one by itself costs
-/// the compiler two to ten seconds.
+/// @file Eigen's decompositions of small dense matrices, instantiated once: each file that instantiates one itself
+/// costs the compiler two to ten seconds.
 namespace ricochet {
 
-/// A = L Lᵀ. Reads the lower triangle.
+/// Cholesky factorization A = L Lᵀ. Reads the lower triangle.
 class SmallCholesky {
  public:
   explicit SmallCholesky(const Matrix& matrix);
   [[nodiscard]] bool positive_definite() const { return factor_.info() == Eigen::Success; }
   [[nodiscard]] Matrix lower() const;
   [[nodiscard]] Matrix solve(const Matrix& right) const;
-  /// L⁻¹ B.
+  /// Returns L⁻¹ B.
   [[nodiscard]] Matrix solve_lower(const Matrix& right) const;
 
  private:
   Eigen::LLT<Matrix> factor_;
 };
 
-/// P A = L U, A square. Of a singular matrix, what comes out is not finite or worth nothing.
+/// LU factorization P A = L U of a square matrix. For a singular matrix, results are not finite or meaningless.
 class PivotedLu {
  public:
   explicit PivotedLu(const Matrix& matrix);
@@ -36,28 +36,28 @@ class PivotedLu {
   Eigen::PartialPivLU<Matrix> factor_;
 };
 
-/// P A Pᵀ = L D Lᵀ, A symmetric and semi-definite. Reads the lower triangle.
+/// Factorization P A Pᵀ = L D Lᵀ, A symmetric and semi-definite. Reads the lower triangle.
 class PivotedCholesky {
  public:
   explicit PivotedCholesky(const Matrix& matrix);
   [[nodiscard]] Vector solve(const Vector& right) const;
   [[nodiscard]] Matrix solve(const Matrix& right) const;
-  /// D.
+  /// Returns the diagonal of D.
   [[nodiscard]] Vector pivots() const;
-  /// P v.
+  /// Returns P v.
   [[nodiscard]] Vector permuted(const Vector& values) const;
 
  private:
   Eigen::LDLT<Matrix> factor_;
 };
 
-/// A P = Q R with decreasing pivots. The rank counts those above `threshold` times the largest; zero: the size of
-/// rounding.
+/// QR factorization A P = Q R with decreasing pivots. The rank counts the pivots above `threshold` times the largest;
+/// zero selects a threshold of the size of rounding errors.
 class PivotedQr {
  public:
   explicit PivotedQr(const Matrix& matrix, double threshold = 0.0);
   [[nodiscard]] Index rank() const { return factor_.rank(); }
-  /// Of least squares.
+  /// Returns a least-squares solution.
   [[nodiscard]] Vector solve(const Vector& right) const;
   [[nodiscard]] Matrix solve(const Matrix& right) const;
 
@@ -65,7 +65,7 @@ class PivotedQr {
   Eigen::ColPivHouseholderQR<Matrix> factor_;
 };
 
-/// The solution of least squares that is shortest, A of any rank; `threshold` as above.
+/// Least-squares solution of minimum norm, A of any rank; `threshold` as in PivotedQr.
 class LeastNormSolver {
  public:
   explicit LeastNormSolver(const Matrix& matrix, double threshold = 0.0);
@@ -76,7 +76,7 @@ class LeastNormSolver {
   Eigen::CompleteOrthogonalDecomposition<Matrix> factor_;
 };
 
-/// R of A = Q R, square; A has at least as many rows as columns.
+/// Returns R of A = Q R, square; A has at least as many rows as columns.
 [[nodiscard]] Matrix upper_of_qr(const Matrix& matrix);
 
 /// Eigenvalues, ascending, and unit eigenvectors of a symmetric matrix, whose lower triangle is read.
@@ -85,11 +85,12 @@ struct SymmetricEigen {
   Matrix vectors;
 };
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Matrix& matrix);
-/// The eigenvalues alone.
+/// Returns the eigenvalues alone.
 [[nodiscard]] Vector symmetric_eigenvalues(const Matrix& matrix);
 [[nodiscard]] Eigen::Vector2d symmetric_eigenvalues(const Eigen::Matrix2d& matrix);
 [[nodiscard]] Eigen::Vector3d symmetric_eigenvalues(const Eigen::Matrix3d& matrix);
-/// Of a tridiagonal matrix; none where the iteration does not end (entries that are no finite numbers).
+/// Returns the eigenvalues of a tridiagonal matrix, or none if the iteration does not converge (entries that are not
+/// finite).
 [[nodiscard]] std::optional<Vector> tridiagonal_eigenvalues(const Vector& diagonal, const Vector& beside);
 
 }  // namespace ricochet

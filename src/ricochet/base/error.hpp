@@ -3,7 +3,8 @@
 #include <stdexcept>
 #include <string>
 
-/// @file Errors a user can meet. Each carries the exit status the program ends with (design: the outside contract).
+/// @file Errors that reach a user. Each carries the exit status with which the program ends (design: the outside
+/// contract).
 namespace ricochet {
 
 enum class ErrorKind : int {
@@ -14,7 +15,7 @@ enum class ErrorKind : int {
   expectation = 5,    ///< the run is complete but one of its [[expect]] entries does not hold
 };
 
-/// What went wrong, where (file:line:column or entity) and what to do about it, in one message.
+/// An error whose one message says what went wrong, where (file:line:column or entity) and what to do about it.
 class Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}

@@ -14,7 +14,7 @@ namespace ricochet {
 
 namespace {
 
-/// muParser would take "t=3" as an assignment.
+/// Refuses "=", since muParser would read "t=3" as an assignment.
 void refuse_assignment(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '=') continue;
@@ -29,13 +29,13 @@ void refuse_assignment(const std::string& text) {
 
 }  // namespace
 
-// The variables live beside the parser, which holds their addresses: so the parser is rebuilt on every copy.
+// The variables live beside the parser, which holds their addresses; therefore every copy builds its parser anew.
 struct Expression::Implementation {
   std::string text;
   std::map<std::string, double> parameters;
   double x = 0.0, y = 0.0, z = 0.0, t = 0.0;
   mu::Parser parser;
-  bool number = true;  ///< a plain constant: no parser is asked
+  bool number = true;  ///< a plain constant, evaluated without the parser
   double constant = 0.0;
   bool uses_time = false, uses_position = false, uses_z = false;
 

@@ -1,10 +1,10 @@
 #pragma once
 
-/// @file Numbers too small for their exponent.
+/// @file Denormal numbers, too small for the normal range of exponents.
 namespace ricochet {
 
-/// While it lives, arithmetic of this thread takes denormal numbers as zero, where the processor can: it is slow with
-/// them, and in single precision what decays across a body reaches them.
+/// Makes arithmetic of this thread treat denormal numbers as zero for its lifetime, if the processor supports it:
+/// operations on them are slow, and quantities that decay across a body reach them in single precision.
 class FlushDenormals {
  public:
 #if defined(__SSE__)

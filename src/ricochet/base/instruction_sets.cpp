@@ -55,7 +55,8 @@ std::string_view name(InstructionSet set) {
 
 InstructionSet best_instruction_set() {
 #if defined(__x86_64__) && defined(__clang__) && __clang_major__ < 18
-  // Does not know the levels by name. What it cannot ask for either (LZCNT, MOVBE, F16C) came with AVX2, or before.
+  // Older clang does not know the levels by name. Features that it cannot test either (LZCNT, MOVBE, F16C) came with
+  // AVX2 or before.
   const bool v3 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 &&
                   __builtin_cpu_supports("bmi") != 0 && __builtin_cpu_supports("bmi2") != 0;
   const bool v4 = v3 && __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&

@@ -13,7 +13,7 @@ namespace ricochet {
 
 namespace {
 
-/// Never destroyed: the process may be asked to end while it ends.
+/// Never destroyed, since the request may arrive while the process ends.
 struct Registry {
   std::mutex mutex;
   std::list<std::function<void()>> actions;
@@ -43,7 +43,7 @@ AtInterruption::~AtInterruption() {
 
 StoppingPoints::StoppingPoints() {
   const std::lock_guard lock(registry().mutex);
-  // What has stopped before was other work.
+  // A stopping point reached before belongs to other work.
   if (registry().stopping_points++ == 0) registry().at_stopping_point = false;
 }
 
@@ -70,10 +70,10 @@ bool take_actions() {
   for (auto action = registry().actions.rbegin(); action != registry().actions.rend(); ++action) {
     try {
       (*action)();
-    } catch (const std::exception&) {  // the next one is due all the same
+    } catch (const std::exception&) {  // the remaining actions run all the same
     }
   }
-  static_cast<void>(lock.release());  // nobody goes on any more
+  static_cast<void>(lock.release());  // no other thread may continue
   return true;
 }
 

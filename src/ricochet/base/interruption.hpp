@@ -3,20 +3,20 @@
 #include <functional>
 #include <list>
 
-/// @file A process that is asked to end in the middle of its work: what is to be put in order before it does.
+/// @file Cleaning up when the process is asked to end in the middle of its work.
 ///
-/// Who asks (the program's thread that waits for signals, apps/ricochet/stop_signal.cpp) ends the process while the
-/// main thread works on, wherever that is: in a library that knows nothing of signals it may be for minutes.
+/// The thread of the program that waits for signals (apps/ricochet/stop_signal.cpp) ends the process while the main
+/// thread works on, wherever that is: it may be for minutes in a library that does not handle signals.
 namespace ricochet {
 
-/// While such an object lives, its action is taken before the process is ended: a child process is killed, temporary
-/// files are removed. The actions run on another thread, the newest first; whoever makes or destroys such an object
-/// meanwhile waits for the end.
+/// Registers an action that runs before the process is ended, such as killing a child process or removing temporary
+/// files. The actions run on another thread, the newest first; a thread that creates or destroys such an object
+/// meanwhile blocks until the end of the process.
 class AtInterruption {
  public:
   explicit AtInterruption(std::function<void()> action);
-  /// Calls `begin` first, which makes what the action will remove: it never exists without the action being registered.
-  /// What `begin` throws is thrown, and there is no action then.
+  /// Calls `begin` first, which creates what the action removes: it never exists without the action being registered.
+  /// If `begin` throws, the exception propagates and no action is registered.
   AtInterruption(const std::function<void()>& begin, std::function<void()> action);
   ~AtInterruption();
   AtInterruption(const AtInterruption&) = delete;
@@ -26,7 +26,8 @@ class AtInterruption {
   std::list<std::function<void()>>::iterator entry_;
 };
 
-/// While such an object lives, somebody asks after every step whether to stop: there is a little time until then.
+/// Marks work that checks after every step whether to stop: after a stop signal the process waits a short time for
+/// that.
 class StoppingPoints {
  public:
   StoppingPoints();
@@ -37,16 +38,16 @@ class StoppingPoints {
 
 namespace interruption {
 
-/// The work has come to a point where it can stop and does so by itself: it may take the time it needs. That holds
-/// until other work begins to have stopping points.
+/// Reports that the work has reached a point where it stops by itself and may take the time it needs. This holds until
+/// other work that has stopping points begins.
 void reach_stopping_point();
 [[nodiscard]] bool has_stopping_points();
 
-/// Takes the actions. Returns false, and has done nothing, where a stopping point was reached. After true the process
-/// must be ended.
+/// Runs the actions. Returns false without running any if a stopping point was reached. After true the caller must end
+/// the process.
 [[nodiscard]] bool take_actions();
 
-/// A line on standard error, unless nobody takes it.
+/// Writes a line to standard error unless nobody reads it.
 void say(const char* line);
 
 }  // namespace interruption

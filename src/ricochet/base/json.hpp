@@ -19,20 +19,20 @@ template <class Type>
 inline constexpr bool is_json_array = false;
 template <class Element>
 inline constexpr bool is_json_array<std::vector<Element>> = true;
-/// What a document converts to.
+/// A type to which a document converts.
 template <class Type>
 concept JsonValue =
     std::same_as<Type, bool> || std::same_as<Type, int> || std::same_as<Type, long> || std::same_as<Type, double> ||
     std::same_as<Type, std::string> || std::same_as<Type, std::map<std::string, std::string>> || is_json_array<Type>;
 
-/// Objects keep the order in which their entries were made. A braced list makes an object where all of its elements are
-/// pairs that begin with a text, and an array otherwise, also of one document: Json{other} is an array.
+/// A JSON value. Objects keep the order of insertion. A braced list makes an object if all of its elements are pairs
+/// that begin with a text, and an array otherwise, also for a single document: Json{other} is an array.
 ///   Json{{"name", "disc"}, {"sizes", {1, 2}}}
 class Json {
  public:
   using Array = std::vector<Json>;
   using Object = std::vector<std::pair<std::string, Json>>;
-  /// Thrown for every error: a text that is no JSON, an entry that is missing or of another kind.
+  /// Thrown for every error: a text that is not JSON, an entry that is missing or of another type.
   struct Exception : std::runtime_error {
     using std::runtime_error::runtime_error;
   };
@@ -53,14 +53,14 @@ class Json {
   Json(std::initializer_list<Json> elements);
   [[nodiscard]] static Json array(std::initializer_list<Json> elements = {});
   [[nodiscard]] static Json object();
-  /// Infinities and NaN, which JSON does not have, are said in words; and back. What is neither a number nor a text is
-  /// NaN.
+  /// Represents infinities and NaN, which JSON lacks, by words; to_number() converts them back and returns NaN for
+  /// anything that is neither a number nor a text.
   [[nodiscard]] static Json number(double value);
   [[nodiscard]] double to_number() const;
 
   /// Throws Exception with line and column.
   [[nodiscard]] static Json parse(const std::string& text);
-  /// `indent` negative: on one line. What is no UTF-8 in a text is replaced.
+  /// Writes on one line if `indent` is negative. Invalid UTF-8 in a text is replaced.
   [[nodiscard]] std::string dump(int indent = -1) const;
 
   [[nodiscard]] bool is_object() const { return std::holds_alternative<Object>(value_); }
@@ -70,27 +70,28 @@ class Json {
     return std::holds_alternative<double>(value_) || std::holds_alternative<std::int64_t>(value_);
   }
 
-  /// Of an object or array, else 0.
+  /// Number of elements of an object or array, else 0.
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] bool empty() const { return size() == 0; }
   [[nodiscard]] bool contains(std::string_view name) const { return find(name) != nullptr; }
   [[nodiscard]] const Json& at(std::string_view name) const;
   [[nodiscard]] const Json& at(std::size_t index) const;
-  /// Made where it is not there.
+  /// Returns the entry and adds it if missing.
   Json& operator[](std::string_view name);
-  /// Without it compilers may take the text for the array, and a number that this converts to for the index.
+  /// Avoids an ambiguity: compilers may otherwise take the text for the array, and a number this converts to for the
+  /// index.
   Json& operator[](const char* name) { return (*this)[std::string_view(name)]; }
-  /// Of an array; throws Exception where there are fewer elements.
+  /// Returns an element of an array; throws Exception if there are fewer elements.
   Json& operator[](std::size_t index);
   void push_back(Json element);
-  /// Takes the entries of another object.
+  /// Adds or replaces the entries of another object.
   void update(const Json& other);
-  /// The elements of an array; the entries of an object.
+  /// Elements of an array, or values of the entries of an object.
   [[nodiscard]] Array::const_iterator begin() const { return elements().begin(); }
   [[nodiscard]] Array::const_iterator end() const { return elements().end(); }
   [[nodiscard]] const Object& items() const;
 
-  // Values by kind; numbers are converted among one another.
+  // Values by type; numeric types are converted to one another.
   void get(bool& result) const;
   void get(int& result) const;
   void get(long& result) const;
@@ -112,7 +113,7 @@ class Json {
   operator Type() const {
     return get<Type>();
   }
-  /// The entry, or the default where there is none.
+  /// Returns the entry, or the default if there is none.
   template <class Type>
   [[nodiscard]] Type value(std::string_view name, const Type& standard) const {
     const Json* const found = find(name);

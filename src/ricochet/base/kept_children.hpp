@@ -4,8 +4,8 @@
 
 namespace ricochet {
 
-/// For as long as it lives, children that end wait until they are asked how. Of a process that ignores SIGCHLD, as
-/// those that some daemons start do, they vanish before.
+/// Keeps children that have ended as zombies for its lifetime, until they are waited for. In a process that ignores
+/// SIGCHLD, as some daemons start theirs, they would vanish first.
 class KeptChildren {
  public:
   KeptChildren();
@@ -15,7 +15,7 @@ class KeptChildren {
 
  private:
   struct Before;
-  std::unique_ptr<Before> before_;  ///< null: they are kept anyway
+  std::unique_ptr<Before> before_;  ///< null if nothing had to be changed
 };
 
 }  // namespace ricochet

@@ -5,27 +5,27 @@
 #include <string>
 #include <vector>
 
-/// @file Keys of a case file: what a value may be. A type that has parameters (a scheme, an obstacle, a material law)
-/// declares its keys where it is defined; case/keys.hpp puts all keys into one table.
+/// @file Keys of a case file and their admissible values. A type that has parameters (a scheme, an obstacle, a material
+/// law) declares its keys where it is defined; case/keys.hpp collects all keys in one table.
 namespace ricochet {
 
 enum class KeyType {
-  text,            ///< any text; not empty when required
+  text,            ///< any text; not empty if required
   choice,          ///< one of `choices`
   number,          ///< finite, within `range`, or one of `choices`
   integer,         ///< within `range`, or one of `choices`
   flag,            ///< true or false
   vector,          ///< 2 or 3 numbers
   numbers,         ///< one or more, each within `range`
-  axial,           ///< of a rotation: a number in two dimensions, 3 numbers in three
+  axial,           ///< axial vector of a rotation: a number in two dimensions, 3 numbers in three
   formula,         ///< a number or an expression in `variables`
-  formulas,        ///< 2 or 3 of them, or one of `choices`
-  axial_formulas,  ///< of a rotation: a number or an expression in two dimensions, 3 of them in three
+  formulas,        ///< 2 or 3 formulas, or one of `choices`
+  axial_formulas,  ///< axial vector of a rotation: a formula in two dimensions, 3 formulas in three
   components,      ///< a list of distinct `choices`, which name the directions of space
   names,           ///< a list of distinct `choices`
   groups,          ///< the name of a group of the mesh, or a list of distinct ones: their union
   parameters,      ///< a table of numbers, for the expressions beside it
-  conditions,      ///< a table of key paths and the values they must have
+  conditions,      ///< a table of key paths and the values required of them
   table,           ///< a sub-table with `keys`
   tables,          ///< a sub-table with `keys`, or a list of them
 };
@@ -43,18 +43,18 @@ inline const Range nonnegative{.at_least = 0.0};
 struct Key {
   std::string name;
   KeyType type = KeyType::text;
-  std::string unit = {};  ///< the kind of unit ("length", "stress"; "1": a pure number); empty where there is none
+  std::string unit = {};  ///< the kind of unit ("length", "stress"; "1": dimensionless); empty if none
   bool required = false;
   std::optional<std::string> standard = {};  ///< the default, as text
   std::vector<std::string> choices = {};
   Range range = {};
-  std::string variables = {};  ///< of expressions: "t", "x, y and z" or "x, y, z and t"
-  std::vector<Key> keys = {};  ///< of a sub-table
-  bool decides = false;        ///< which other keys there are: where its value is refused, nothing else is looked at
-  /// The section whose entries take the place of this key: where there are some it is refused, else it may be required.
+  std::string variables = {};  ///< variables of expressions: "t", "x, y and z" or "x, y, z and t"
+  std::vector<Key> keys = {};  ///< keys of a sub-table
+  bool decides = false;        ///< its value decides which other keys exist: if it is refused, no other key is checked
+  /// Section whose entries replace this key: if it has any, the key is refused; otherwise it may be required.
   std::string gives_way_to = {};
   std::string doc;  ///< one line of documentation
-  /// Filled in by the table: the types that have this key; empty: it belongs to the section whatever the type.
+  /// Types that have this key, filled in by the table; empty: it belongs to the section whatever the type.
   std::vector<std::string> only_for = {};
 };
 
@@ -64,11 +64,11 @@ struct Key {
   for (const Key& key : keys) names.push_back(key.name);
   return names;
 }
-/// What a key wants: "a positive number", `one of "a" or "b"`, …
+/// Returns what the value of a key must be: "a positive number", `one of "a" or "b"`, …
 [[nodiscard]] std::string wanted(const Key& key);
 [[nodiscard]] bool is_within(const Range& range, double value);
 
-/// Sets of keys of which exactly one must be given, whole.
+/// Sets of keys of which exactly one must be given, complete.
 using KeySets = std::vector<std::vector<std::string>>;
 
 }  // namespace ricochet

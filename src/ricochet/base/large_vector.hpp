@@ -8,8 +8,8 @@
 /// @file Arrays that a step reads from one end to the other.
 namespace ricochet {
 
-/// Large arrays lie in huge pages where the system has them for those who ask: the processor looks up fewer addresses
-/// then, and a product with a matrix of three dofs per node takes a tenth less.
+/// Allocator that places large arrays in huge pages if the system provides them on request: address translation misses
+/// less often, and a product with a matrix of three dofs per node takes a tenth less.
 template <class Number>
 struct LargeAllocator {
   using value_type = Number;

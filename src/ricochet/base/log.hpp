@@ -20,13 +20,13 @@ void info(const std::string& message);
 void warning(const std::string& message);
 void error(const std::string& message);
 
-/// Takes messages in place of standard error, on the thread that says them; those below the level are not shown to it.
-/// An empty one: standard error again. It must not throw.
+/// Receives messages instead of standard error, on the thread that logs them; messages below the level are not passed
+/// to it. An empty function restores standard error. It must not throw.
 using Sink = std::function<void(Level, const std::string&)>;
 void set_sink(Sink sink);
 
-/// While it lives, warnings of the whole process are appended to a list besides being said; of several the last one
-/// made. Sessions that run on two threads at the same time mix theirs.
+/// Appends the warnings that this thread logs to a list, in addition to logging them, for its lifetime; if objects are
+/// nested, to the list of the innermost.
 class CollectWarnings {
  public:
   explicit CollectWarnings(std::vector<std::string>& list);
@@ -38,7 +38,7 @@ class CollectWarnings {
   std::vector<std::string>* before_;
 };
 
-/// While it lives, nothing is said; warnings are collected all the same.
+/// Suppresses all messages for its lifetime; warnings are collected nevertheless.
 class Silence {
  public:
   Silence();

@@ -23,7 +23,7 @@ constexpr std::size_t huge_page = std::size_t{2} << 20;
 
 double physical_memory() {
   double bytes = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  // "max" where there is no limit: not a number, and the stream fails.
+  // The file contains "max" if there is no limit: not a number, and extraction fails.
   for (const char* name : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
     std::ifstream file(name);
     double limit = 0.0;
@@ -46,12 +46,12 @@ void release_freed_memory() {
 
 void* allocate_large(std::size_t bytes) {
   const bool is_large = bytes >= 2 * huge_page;
-  // Whole pages: what is left of the last one is nobody else's.
+  // Whole pages, so that the rest of the last one belongs to no other allocation.
   const std::size_t size = is_large ? (bytes + huge_page - 1) / huge_page * huge_page : bytes;
   void* const memory = is_large ? std::aligned_alloc(huge_page, size) : std::malloc(std::max<std::size_t>(size, 1));
   if (memory == nullptr) throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
-  // A wish: without such pages all is the same but for the time.
+  // Only a hint: without such pages nothing changes but the time.
   if (is_large) madvise(memory, size, MADV_HUGEPAGE);
 #endif
   return memory;

@@ -7,8 +7,8 @@ namespace ricochet {
 
 namespace {
 
-/// Sorts the nodes [begin, end) so that those of the first half come before those of the second along the longest side
-/// of the box around them, and so on within the halves down to a few nodes.
+/// Sorts the nodes [begin, end) so that those of the first half precede those of the second along the longest side of
+/// their bounding box, and recursively within the halves, down to a few nodes.
 void bisect(const Points& nodes, int* begin, int* end) {
   constexpr Index few = 16;
   if (end - begin <= few) return;
@@ -29,7 +29,7 @@ void bisect(const Points& nodes, int* begin, int* end) {
   bisect(nodes, middle, end);
 }
 
-/// The places at which the first `levels` bisections cut.
+/// Appends the indices at which the first `levels` bisections cut.
 void cuts(Index begin, Index end, int levels, std::vector<Index>& begins) {
   if (levels == 0) {
     begins.push_back(begin);
@@ -50,7 +50,7 @@ std::vector<int> order_nodes(const Points& nodes) {
 }
 
 std::vector<Index> node_parts(Index count) {
-  // Parts this large read little of one another; no more than this are needed to keep threads busy.
+  // Parts of this size depend little on one another, and no more of them are needed to keep the threads busy.
   constexpr Index least_part = 1024;
   int levels = 0;
   while (Index{2} << levels <= most_node_parts && (count >> (levels + 1)) >= least_part) ++levels;

@@ -4,17 +4,17 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file An order of nodes in which near ones have near numbers, and its division among threads.
+/// @file Ordering of nodes that gives neighbours near numbers, and its partition among threads.
 namespace ricochet {
 
-/// The node at each place, in the order of a recursive bisection by their coordinates. Positions: d × count. Depends on
-/// them only relative to one another.
+/// Returns the nodes in the order of a recursive bisection by their coordinates (d × count). Depends on relative
+/// positions only.
 [[nodiscard]] std::vector<int> order_nodes(const Points& nodes);
 
 inline constexpr Index most_node_parts = 64;
 
-/// Where consecutive parts of so many nodes begin, and after them the count: the first cuts of that bisection. A power
-/// of two of parts: 1 for a thousand nodes, at most `most_node_parts`.
+/// Returns where consecutive parts of `count` nodes begin, followed by `count`: the first cuts of that bisection. The
+/// number of parts is a power of two: 1 for a thousand nodes, at most `most_node_parts`.
 [[nodiscard]] std::vector<Index> node_parts(Index count);
 
 }  // namespace ricochet

@@ -20,7 +20,7 @@ bool is_one_of(char c, std::string_view these) {
   return these.find(c) != std::string_view::npos;
 }
 
-/// Of ASCII, or a part of one of another alphabet.
+/// Returns whether c is an ASCII letter or a byte of a character outside ASCII.
 bool is_letter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80;
 }
@@ -97,7 +97,7 @@ bool NumberLines::next() {
   return true;
 }
 
-/// A separator may stand behind the last word, but not before the first one or behind another separator.
+/// Splits a line into words. A separator may follow the last word, but not precede the first or another separator.
 void NumberLines::split(std::string_view line) {
   words_.clear();
   line = line.substr(0, line.find('#'));
@@ -120,8 +120,8 @@ void NumberLines::split(std::string_view line) {
   }
 }
 
-/// Words of which the first begins with a letter, which may be quoted, and none is a number behind quotes, brackets or
-/// a minus of typography: that would be one that cannot be read.
+/// Returns whether the words form a header: the first begins with a letter and may be quoted, and none is a number
+/// behind quotes, brackets or a typographical minus, which would be a number that cannot be read.
 bool NumberLines::is_header() const {
   const auto bare = [](std::string_view text) {
     constexpr std::string_view minus = "\xE2\x88\x92";

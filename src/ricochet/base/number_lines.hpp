@@ -7,16 +7,16 @@
 /// @file Words and numbers of text files, each with its line and column: motions, polygons, ASCII STL.
 namespace ricochet {
 
-/// Words of a text between blanks.
+/// Words of a text, separated by blanks.
 class TextWords {
  public:
-  /// Keeps references to both; they must outlive it.
+  /// Keeps references to both arguments, which must outlive this object.
   TextWords(const std::string& file, std::string_view text);
 
-  /// The next word; empty at the end of the text.
+  /// Returns the next word; empty at the end of the text.
   [[nodiscard]] std::string_view next();
   void skip_line();
-  /// The finite number that the next word is. Throws Error(invalid_input) where it is none.
+  /// Returns the next word as a finite number. Throws Error(invalid_input) if it is not one.
   [[nodiscard]] double number();
   /// Throws Error(invalid_input) with file, line and column of the last word.
   [[noreturn]] void fail(const std::string& problem) const;
@@ -27,33 +27,32 @@ class TextWords {
   long line_ = 1;
 };
 
-/// A word as messages show it: the beginning of a long one, and "the end of the file" for none.
+/// Returns a word as messages show it: the beginning of a long one, and "the end of the file" for an empty one.
 [[nodiscard]] std::string shown_word(std::string_view word);
 
 /// Lines of finite numbers, separated by blanks, commas or semicolons; '#' begins a comment. The first line that has
-/// words may be a header: words, the first of which begins with a letter; quotes and brackets may
-/// be around them. A word that begins as a number does,
-/// or is "nan", is a number that is misspelt, and no name of a column.
+/// words may be a header: words, the first of which begins with a letter; quotes and brackets may surround them. A word
+/// that begins as a number does, or is "nan", is a misspelt number and not the name of a column.
 class NumberLines {
  public:
   enum class Header { allowed, refused };
-  /// Keeps references to both; they must outlive it. A byte order mark at the beginning is no part of the first word.
+  /// Keeps references to both arguments, which must outlive this object. Skips a byte order mark at the beginning.
   NumberLines(const std::string& file, std::string_view text, Header header);
 
-  /// Goes to the next line; false: there is none. Throws Error(invalid_input) with file, line and column where a word
-  /// is no finite number, where nothing stands between two separators, and where commas may be decimal ones.
+  /// Advances to the next line; returns false if there is none. Throws Error(invalid_input) with file, line and column
+  /// if a word is not a finite number, if nothing stands between two separators, and if commas may be decimal ones.
   [[nodiscard]] bool next();
-  /// Numbers of this line; none where it is blank, a comment or the header.
+  /// Numbers of this line; none if it is blank, a comment or the header.
   [[nodiscard]] const std::vector<double>& numbers() const { return numbers_; }
   /// Words of the header; none if there is no header.
   [[nodiscard]] const std::vector<std::string>& header() const { return header_; }
-  /// Throws Error(invalid_input) with file and line: of this line, or of another one.
+  /// Throws Error(invalid_input) with file and line: this line, or the given one.
   [[noreturn]] void fail(const std::string& problem) const { fail(problem, line_); }
   [[noreturn]] void fail(const std::string& problem, long line) const;
   [[nodiscard]] long header_line() const { return header_line_; }
 
  private:
-  /// Words of a line with their columns, from 1 on.
+  /// A word of a line with its column, counted from 1.
   struct Word {
     std::string_view text;
     std::size_t column;

@@ -10,15 +10,16 @@
 #include "ricochet/base/instruction_sets.hpp"
 #include "ricochet/base/types.hpp"
 
-/// @file A few numbers side by side, for loops that are compiled for several instruction sets. Included by source files
-/// only: how wide vectors are passed to functions depends on the instruction set, so all calls must be inlined.
+/// @file A few numbers side by side (SIMD), for loops that are compiled for several instruction sets. Included by
+/// source files only: how wide vectors are passed to functions depends on the instruction set, so all calls must be
+/// inlined.
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
 namespace ricochet {
 
-// H numbers side by side, aligned or anywhere in memory.
+// Types of H numbers side by side, aligned or at any address.
 template <int H>
 struct Lanes;
 #define RICOCHET_LANES(count)                                                       \
@@ -45,11 +46,11 @@ RICOCHET_PART_OF_CALLER void store(double* to, const Pack<H>& value) {
 
 // Functions of a double or of a pack, so that a formula is written once for both (`Number` is either).
 
-/// How many doubles it is.
+/// Number of doubles in a Number.
 template <class Number>
 inline constexpr int lane_count = static_cast<int>(sizeof(Number) / sizeof(double));
 
-/// Is it so for some of them? `mask` is what a comparison gives.
+/// Returns whether a comparison holds for some of them; `mask` is its result.
 template <class Mask>
 RICOCHET_PART_OF_CALLER bool any_of(const Mask& mask) {
   if constexpr (std::is_same_v<Mask, bool>) {
@@ -68,7 +69,7 @@ RICOCHET_PART_OF_CALLER Number square_root(const Number& of) {
   } else {
     Number result;
 #if defined(__SSE2__)
-    // Compilers look whether std::sqrt has to set errno, one number after another.
+    // Compilers check whether std::sqrt must set errno, and therefore compute one number after another.
     for (int i = 0; i < lane_count<Number>; i += 2) {
       const __m128d two = _mm_sqrt_pd(__m128d{of[i], of[i + 1]});
       result[i] = two[0];
@@ -81,8 +82,8 @@ RICOCHET_PART_OF_CALLER Number square_root(const Number& of) {
   }
 }
 
-/// Calls work.run<W>(), compiled for `instruction_set()`, with the number W of doubles that its registers have (four
-/// where they have fewer). All that run calls is RICOCHET_PART_OF_CALLER.
+/// Calls work.run<W>(), compiled for `instruction_set()`, with the number W of doubles in its registers (four if they
+/// hold fewer). All functions that run calls are RICOCHET_PART_OF_CALLER.
 #if defined(__x86_64__) && defined(__GNUC__)
 template <class Work>
 __attribute__((target("arch=x86-64-v4"))) void run_in_packs_avx512(const Work& work) {
@@ -102,14 +103,14 @@ void run_in_packs(const Work& work) {
 #endif
   work.template run<4>();
 }
-/// That W.
+/// Returns the W of run_in_packs.
 [[nodiscard]] inline int pack_width() {
   return instruction_set() == InstructionSet::avx512 ? 8 : 4;
 }
 inline constexpr int most_pack_width = 8;
 
-/// Calls work(count) with a constant from 1 to `most` ≤ 8 for a count that is known only now; does nothing for 0.
-/// `work` is a lambda marked RICOCHET_LAMBDA_OF_CALLER.
+/// Calls work(count) with a compile-time constant from 1 to `most` ≤ 8 for a run-time count; does nothing for 0. `work`
+/// is a lambda marked RICOCHET_LAMBDA_OF_CALLER.
 #if defined(__GNUC__)
 #define RICOCHET_LAMBDA_OF_CALLER __attribute__((always_inline))
 #else

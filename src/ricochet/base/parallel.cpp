@@ -20,17 +20,17 @@ namespace {
 
 int configured_thread_count = 1;
 
-/// True on a thread that is inside of some range's work.
+/// True on a thread that is executing the work of a range.
 thread_local bool inside_range = false;
 
-/// Tells the processor that a loop only waits.
+/// Hints to the processor that this is a spin loop.
 void pause() {
 #if defined(__x86_64__)
   __builtin_ia32_pause();
 #endif
 }
 
-/// Looks for `ready` again and again for a while; false when it did not come.
+/// Polls `ready` for a while; returns false if it did not become true.
 template <class Ready>
 bool spin_until(const Ready& ready) {
   using clock = std::chrono::steady_clock;
@@ -46,11 +46,11 @@ bool spin_until(const Ready& ready) {
   return false;
 }
 
-/// Threads that take the parts of one call after another. The caller takes part in the work, so a call never waits for
-/// a thread that has not woken up yet.
+/// Threads that process the parts of one call after another. The caller takes part in the work, so a call never waits
+/// for a thread that has not woken up yet.
 class Pool {
  public:
-  /// `count` threads, the caller's included.
+  /// Creates `count` threads, including the caller's.
   explicit Pool(int count) : count_(count) {
     threads_.reserve(static_cast<std::size_t>(count - 1));
     const BlockedSignals signals_are_for_the_caller;
@@ -85,13 +85,13 @@ class Pool {
   }
 
  private:
-  /// More than one, so that a thread which is late or disturbed does not hold up the others.
+  /// More than one, so that a thread that is late or disturbed does not hold up the others.
   static constexpr int parts_per_thread = 4;
-  /// The ticket below has room for twice as many.
+  /// The ticket below can hold twice as many.
   static constexpr Index most_parts = 1 << 15;
 
-  /// Takes the next part of the present call until none is left. The number of the call, its number of parts and the
-  /// next part are one atomic number: who gets a part that exists has the call alive until that part is done.
+  /// Processes parts of the current call until none is left. The number of the call, its number of parts and the next
+  /// part form one atomic number: a thread that draws an existing part keeps the call alive until that part is done.
   void take_parts() {
     while (true) {
       const std::uint64_t ticket = ticket_.fetch_add(1, std::memory_order_acq_rel);
@@ -126,7 +126,7 @@ class Pool {
 
   int count_;
   std::mutex problem_access_;
-  std::exception_ptr problem_;  ///< of the first part that has one
+  std::exception_ptr problem_;  ///< of the lowest part that has thrown
   Index part_of_problem_ = 0;
   std::vector<std::thread> threads_;
   Index size_ = 0;
@@ -141,7 +141,7 @@ class Pool {
 
 void set_thread_count(int count) {
   if (count < 1 || count > 1024) throw Error(ErrorKind::usage, "the number of threads must be from 1 to 1024");
-  if (count > 1) prepare_blas();  // it wants to be alone
+  if (count > 1) prepare_blas();  // it must run while there are no other threads
   configured_thread_count = count;
 }
 

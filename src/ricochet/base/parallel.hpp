@@ -5,30 +5,30 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file Threads. Whatever their number, results are the same bits: work is split so that each output entry is computed
-/// by one thread, in an order that does not depend on the split, and sums are split in the same way always.
+/// @file Threads. Results are the same bits for any number of threads: work is split so that each output entry is
+/// computed by one thread, in an order that does not depend on the split, and sums are always split in the same way.
 ///
-/// The threads are made once and wait between calls: first by looking again and again, for some tens of microseconds,
-/// then asleep. A call costs a few microseconds when they still look, some tens when they sleep; it allocates nothing.
+/// The threads are created once and wait between calls: first spinning, for some tens of microseconds, then asleep. A
+/// call costs a few microseconds while they spin and some tens while they sleep; it allocates nothing.
 namespace ricochet {
 
-/// Number of threads used by parallel_ranges (1 unless set). Throws Error(usage) unless 1 ≤ count ≤ 1024.
+/// Sets the number of threads used by parallel_ranges (1 unless set). Throws Error(usage) unless 1 ≤ count ≤ 1024.
 void set_thread_count(int count);
 [[nodiscard]] int thread_count();
 
 namespace detail {
-/// A function to be called with a range, without the allocation of std::function.
+/// A function of a range, without the allocation of std::function.
 struct RangeWork {
   const void* object = nullptr;
   void (*call)(const void* object, Index begin, Index end) = nullptr;
-  bool one_by_one = false;  ///< as many ranges as there are things, where their number allows it
+  bool one_by_one = false;  ///< one range per item, if their number permits it
 };
 void run_ranges(Index count, const RangeWork& work);
 }  // namespace detail
 
-/// Calls `work(begin, end)` on consecutive ranges that cover [0, count), several at once. An exception of any range is
-/// rethrown (that of the first range, so that messages do not depend on timing) when all have ended. Inside of `work`,
-/// and while another thread is in such a call, it runs on the calling thread alone.
+/// Calls `work(begin, end)` on consecutive ranges that cover [0, count), several at once. If ranges throw, the
+/// exception of the first one is rethrown when all have ended, so that messages do not depend on timing. Inside of
+/// `work`, and while another thread is in such a call, it runs on the calling thread alone.
 template <class Work>
 void parallel_ranges(Index count, const Work& work) {
   detail::run_ranges(count, {&work, [](const void* object, Index begin, Index end) {
@@ -36,8 +36,8 @@ void parallel_ranges(Index count, const Work& work) {
                              }});
 }
 
-/// Calls `work(i)` for all i in [0, count), several at once, each when a thread is free: for few things that take
-/// different times. For the rest as parallel_ranges.
+/// Calls `work(i)` for all i in [0, count), several at once, each as soon as a thread is free: for a few items of
+/// different cost. Otherwise like parallel_ranges.
 template <class Work>
 void parallel_items(Index count, const Work& work) {
   detail::run_ranges(count, {&work,

@@ -9,11 +9,11 @@
 
 #include "ricochet/base/keys.hpp"
 
-/// @file The values of a type's own keys, and how a type checks them while a case file is read.
+/// @file Values of the keys of a type, and how a type checks them while a case file is read.
 namespace ricochet {
 
-/// What a registered type is made from: values by the names of its keys. Numbers are doubles, also those of integers:
-/// {{"beta", 0.25}, {"stages", 2.0}}.
+/// Arguments from which a registered type is made: values by the names of its keys. Numbers are doubles, also those of
+/// integers: {{"beta", 0.25}, {"stages", 2.0}}.
 class Parameters {
  public:
   using Value = std::variant<double, std::string, std::vector<double>>;
@@ -24,7 +24,7 @@ class Parameters {
   void set(const std::string& name, Value value) { values_[name] = std::move(value); }
   void erase(const std::string& name) { values_.erase(name); }
   [[nodiscard]] bool has(const std::string& name) const { return values_.contains(name); }
-  /// Throw Error(invalid_input) where the value is absent or of another kind.
+  /// These throw Error(invalid_input) if the value is absent or of another type.
   [[nodiscard]] double number(const std::string& name) const;
   [[nodiscard]] const std::string& text(const std::string& name) const;
   [[nodiscard]] const std::vector<double>& vector(const std::string& name) const;
@@ -33,9 +33,9 @@ class Parameters {
   [[nodiscard]] const std::map<std::string, double>& constants() const { return constants_; }
   void set_constants(std::map<std::string, double> constants) { constants_ = std::move(constants); }
 
-  /// Adds the defaults of keys that have no value. Throws Error(invalid_input) that names `owner` where a required
-  /// value is missing, belongs to none of the keys, or is not what its key wants. (Checks that concern several keys are
-  /// made when a case file is read, see Registration::check.)
+  /// Adds the defaults of keys that have no value. Throws Error(invalid_input) that names `owner` if a required value
+  /// is missing, if a value belongs to none of the keys, or if it is not admissible. (Checks that involve several keys
+  /// are made when a case file is read, see Registration::check.)
   void complete(const std::vector<Key>& keys, const std::string& owner);
 
  private:
@@ -43,25 +43,26 @@ class Parameters {
   std::map<std::string, double> constants_;
 };
 
-/// As in a case file: texts without quotes, numbers in their shortest exact form, lists as "[1, 2]".
+/// Returns a value as written in a case file: texts without quotes, numbers in their shortest exact form, lists as "[1,
+/// 2]".
 [[nodiscard]] std::string as_text(const Parameters::Value& value);
 
-/// Where the values of a section stand in a case file, for checks that concern several keys. Problems are collected and
-/// told together, each with file, line and column.
+/// Access to the values of a section of a case file, for checks that involve several keys. Problems are collected and
+/// reported together, each with file, line and column.
 class ParameterCheck {
  public:
   virtual ~ParameterCheck() = default;
-  /// Written by the user, in the file or by --set; perhaps refused.
+  /// Returns whether the user has written the value, in the file or by --set; it may have been refused.
   [[nodiscard]] virtual bool is_given(const std::string& name) const = 0;
-  /// Written by the user on the command line.
+  /// Returns whether the user has written the value on the command line.
   [[nodiscard]] virtual bool is_override(const std::string& name) const = 0;
-  /// There is a value, default or not, and nothing is wrong with it.
+  /// Returns whether there is a value, default or not, and nothing is wrong with it.
   [[nodiscard]] virtual bool is_usable(const std::string& name) const = 0;
-  /// "file:line:column" of the value, or of the section when the key is absent.
+  /// Returns "file:line:column" of the value, or of the section if the key is absent.
   [[nodiscard]] virtual std::string place(const std::string& name) const = 0;
-  /// The case is refused.
+  /// Adds a problem, for which the case is refused.
   virtual void add_problem(const std::string& name, const std::string& message) const = 0;
-  /// The case runs; the user should know.
+  /// Adds a warning; the case runs.
   virtual void add_warning(const std::string& name, const std::string& message) const = 0;
   virtual void add_info(const std::string& name, const std::string& message) const = 0;
 };

@@ -11,7 +11,7 @@ namespace ricochet {
 
 namespace {
 
-/// Relative: points that are no farther outside of a ball are in it.
+/// Relative tolerance: points no farther outside a ball than this count as inside.
 constexpr double rounding = 1e-12;
 
 struct Ball {
@@ -20,8 +20,9 @@ struct Ball {
   [[nodiscard]] bool has(const Vector& point) const { return (point - centre).norm() <= (1.0 + rounding) * radius; }
 };
 
-/// The ball with these points on its boundary and its centre among their affine combinations: with a_i = x_i − x_0 and
-/// c = x_0 + Σ λ_i a_i, 2 a_i·a_j λ_j = a_i·a_i. None where they are not independent.
+/// Returns the ball with these points on its boundary and its centre among their affine combinations: with
+/// a_i = x_i − x_0 and c = x_0 + Σ λ_i a_i, Σ_j 2 a_i·a_j λ_j = a_i·a_i. None if the points are not affinely
+/// independent.
 std::optional<Ball> ball_through(const Points& nodes, const std::vector<Index>& points) {
   const Index count = static_cast<Index>(points.size()) - 1;
   const Vector first = nodes.col(points[0]);
@@ -38,7 +39,7 @@ std::optional<Ball> ball_through(const Points& nodes, const std::vector<Index>& 
   return middle.allFinite() ? std::optional(Ball{first + middle, middle.norm()}) : std::nullopt;
 }
 
-/// The smallest ball around at most d + 2 points, of those through some of them, and which these are.
+/// Returns the smallest ball enclosing at most d + 2 points among those through some of them, and which these are.
 std::pair<Ball, std::vector<Index>> smallest_ball(const Points& nodes, const std::vector<Index>& points) {
   std::pair<Ball, std::vector<Index>> best;
   bool found = false;
@@ -67,8 +68,8 @@ double largest_distance(const Points& points) {
   return largest;
 }
 
-/// The farthest point joins those that hold the ball, and some of them are let go, until none is outside. The radius
-/// grows each time, so that no set of points comes back; a few rounds do.
+/// Adds the farthest point to the points that support the ball and drops those no longer needed, until no point is
+/// outside. The radius grows each time, so no support set occurs twice; a few iterations suffice.
 double enclosing_diameter(const Points& points) {
   if (points.cols() == 0) return 0.0;
   std::pair<Ball, std::vector<Index>> ball{{points.col(0), 0.0}, {0}};

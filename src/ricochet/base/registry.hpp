@@ -10,38 +10,39 @@
 #include "ricochet/base/parameters.hpp"
 #include "ricochet/base/text.hpp"
 
-/// @file Types that are asked for by name: schemes, masses, obstacles, material laws, multiplier spaces, contact
-/// solvers. A type is one file and one registration.
+/// @file Types selected by name: schemes, masses, obstacles, material laws, multiplier spaces, contact solvers. A type
+/// is one file and one registration.
 namespace ricochet {
 
-/// A type by its name, with the keys that it alone has and what it does.
+/// A type with its name and the keys that it alone has.
 template <class Type>
 struct Registration {
   std::string name;
-  Type type;                   ///< its constructor, and what is known of the type as such
+  Type type;                   ///< its constructor and its static properties
   std::vector<Key> keys = {};  ///< of a case file, of this type alone
-  KeySets alternatives = {};   ///< of these keys
-  /// Checks that concern several keys, when a case file is read. May change the values to those that count.
+  KeySets alternatives = {};   ///< sets of these keys, of which one must be given
+  /// Checks that involve several keys, made when a case file is read. May replace values by those that take effect.
   std::function<void(const ParameterCheck& place, Parameters& values)> check = {};
 };
 
-/// Changes with every addition: tables made from registries are then made again.
+/// Changes with every addition, so that tables made from registries are made again.
 [[nodiscard]] long registry_revision();
 void raise_registry_revision();
-/// Throws Error(invalid_input) that names `owner` where a type's own keys are of a kind that Parameters do not hold:
-/// numbers, integers, vectors, texts and choices, of which vectors have no default.
+/// Throws Error(invalid_input) that names `owner` if a type's own keys are of a kind that Parameters do not hold: only
+/// numbers, integers, vectors, texts and choices are allowed, and vectors have no default.
 void check_parameter_keys(const std::vector<Key>& keys, const std::string& owner);
 
 template <class Type>
 class Registry {
  public:
-  /// `noun`: what a type is, for messages ("scheme").
+  /// `noun` names the kind of type in messages ("scheme").
   Registry(std::string noun, std::vector<Registration<Type>> known) : noun_(std::move(noun)), all_(std::move(known)) {
     for (const Registration<Type>& entry : all_) check_parameter_keys(entry.keys, quoted(entry.name));
   }
 
-  /// Of a program of one's own: case files that are read from then on may name the type. Throws Error(invalid_input)
-  /// where the name is taken or its keys are none that a type can have. What `find` gave before must not be used after.
+  /// Adds a type of the user's own program, which case files that are read from then on may name. Throws
+  /// Error(invalid_input) if the name is taken or a key is not admissible for a type. Invalidates references returned
+  /// by `find`.
   void add(Registration<Type> added) {
     check_parameter_keys(added.keys, quoted(added.name));
     for (const Registration<Type>& entry : all_) {
@@ -52,7 +53,7 @@ class Registry {
     raise_registry_revision();
   }
 
-  /// Takes back what was added. Throws as `find` does.
+  /// Removes a type that was added. Throws as `find` does.
   void remove(const std::string& name) {
     static_cast<void>(find(name));
     std::erase_if(all_, [&](const Registration<Type>& entry) { return entry.name == name; });
@@ -72,7 +73,7 @@ class Registry {
     if (found != all_.end()) return *found;
     throw Error(ErrorKind::invalid_input, "unknown " + quoted(name) + "; known: " + join_names(names()));
   }
-  /// The registration with its values: defaults added. Throws as Parameters::complete does.
+  /// Returns the registration and adds the defaults to its values. Throws as Parameters::complete does.
   [[nodiscard]] const Registration<Type>& find(const std::string& name, Parameters& values) const {
     const Registration<Type>& entry = find(name);
     values.complete(entry.keys, quoted(name));

@@ -2,11 +2,11 @@
 
 #include <string>
 
-/// @file Which run messages are about, where those of several runs may be in one place.
+/// @file Name of the run that messages are about, for output that several runs share.
 namespace ricochet::log {
 
-/// Put before every warning and error that is said and does not begin with it (not before those that are remembered);
-/// empty: nothing is.
+/// Sets the prefix of every warning and error that is logged and does not begin with it (collected warnings get none).
+/// Empty: no prefix.
 void set_run_name(std::string name);
 [[nodiscard]] std::string with_run_name(const std::string& message);
 

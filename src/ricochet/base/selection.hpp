@@ -5,7 +5,7 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file Some of many: lists of numbers, and what belongs to them.
+/// @file Subsets: lists of numbers and the values that belong to them.
 namespace ricochet {
 
 template <class Value>
@@ -23,12 +23,12 @@ template <class Value>
   return values(Eigen::all, taken);
 }
 
-/// The place of a number in an ascending list, or −1.
+/// Position of a number in an ascending list, or −1.
 [[nodiscard]] inline Index place_in(const std::vector<Index>& numbers, Index number) {
   const auto found = std::lower_bound(numbers.begin(), numbers.end(), number);
   return found != numbers.end() && *found == number ? found - numbers.begin() : Index{-1};
 }
-/// Of those that are in it, in their order.
+/// Positions of those members that are in the list, in the order of `members`.
 [[nodiscard]] inline std::vector<Index> places_in(const std::vector<Index>& members,
                                                   const std::vector<Index>& numbers) {
   std::vector<Index> result;
@@ -37,7 +37,7 @@ template <class Value>
   }
   return result;
 }
-/// For each number below `count` its place in a list, or −1.
+/// For each number below `count`, its position in a list, or −1.
 [[nodiscard]] inline std::vector<Index> places_of_all(const std::vector<Index>& numbers, Index count) {
   std::vector<Index> result(static_cast<std::size_t>(count), -1);
   for (std::size_t i = 0; i < numbers.size(); ++i) result[static_cast<std::size_t>(numbers[i])] = static_cast<Index>(i);

@@ -9,11 +9,11 @@
 #include "ricochet/base/contact_status.hpp"
 #include "ricochet/base/types.hpp"
 
-/// @file Named numbers and texts: what the parts of a run put together so that it can go on later with the same bits.
+/// @file Named numbers and texts: the state of a run, from which it can continue later with the same bits.
 ///
-/// Every part that keeps something from step to step has save(snapshot, name) and load(snapshot, name). Names are paths
+/// Every part that keeps state from step to step has save(snapshot, name) and load(snapshot, name). Names are paths
 /// ("solver.0.candidates"). A part loads what it has saved, all of it and nothing else; everything that is constant
-/// over a run is computed again from the case. See io/checkpoint.hpp for the file.
+/// during a run is computed again from the case. See io/checkpoint.hpp for the file.
 namespace ricochet {
 
 class Snapshot {
@@ -33,13 +33,13 @@ class Snapshot {
   void save(const std::string& name, const std::string& value) { values_[name] = Texts{value}; }
 
   [[nodiscard]] bool has(const std::string& name) const { return values_.contains(name); }
-  /// All of these throw Error(invalid_input) where the entry is missing or of another kind or size.
+  /// All of these throw Error(invalid_input) if the entry is missing or of another type or size.
   [[nodiscard]] const Vector& reals(const std::string& name) const;
-  /// Of one of these sizes.
+  /// Requires one of these two sizes.
   [[nodiscard]] const Vector& reals(const std::string& name, Index size, Index other_size = -1) const;
   [[nodiscard]] double real(const std::string& name) const { return reals(name, 1)[0]; }
   [[nodiscard]] const Integers& integers(const std::string& name) const;
-  /// Each from `least` to `most`.
+  /// Requires each value to be from `least` to `most`.
   [[nodiscard]] const Integers& integers(const std::string& name, std::int64_t least, std::int64_t most) const;
   [[nodiscard]] std::int64_t integer(const std::string& name) const;
   [[nodiscard]] bool flag(const std::string& name) const { return integer(name) != 0; }
@@ -47,11 +47,11 @@ class Snapshot {
   [[nodiscard]] const Texts& texts(const std::string& name) const;
   [[nodiscard]] const std::string& text(const std::string& name) const;
 
-  /// By name, in the order of names.
+  /// All values, in the order of their names.
   [[nodiscard]] const std::map<std::string, Value>& values() const { return values_; }
   void set(const std::string& name, Value value) { values_[name] = std::move(value); }
 
-  /// For parts that check more: throws Error(invalid_input), "the saved state does not fit: NAME WHY".
+  /// Throws Error(invalid_input), "the saved state does not fit: NAME WHY", for parts that check more.
   [[noreturn]] static void refuse(const std::string& name, const std::string& why);
 
  private:

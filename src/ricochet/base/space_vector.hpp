@@ -4,7 +4,7 @@
 
 namespace ricochet {
 
-/// A point or a displacement of space, of two or three components: making one allocates nothing.
+/// A point or a displacement in space, with two or three components; constructing one allocates nothing.
 using SpaceVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
 
 }  // namespace ricochet

@@ -6,12 +6,12 @@
 
 #include "ricochet/base/interruption.hpp"
 
-/// @file A folder that lives as long as its object, or until the process is interrupted.
+/// @file A folder that exists as long as its object, or until the process is interrupted.
 namespace ricochet {
 
 class TemporaryFolder {
  public:
-  /// In `parent`, with a name of its own that begins like `prefix`. Throws Error(file_access).
+  /// Creates a folder in `parent` with a unique name that begins with `prefix`. Throws Error(file_access).
   TemporaryFolder(const std::filesystem::path& parent, const std::string& prefix);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

@@ -26,8 +26,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return cost[a.size()][b.size()];
 }
 
-/// Edits to what a word may have been meant to be; none where it is too far away. Every one-letter word is one edit
-/// away from every other: to be near, something must be left of the word.
+/// Number of edits between a word and the one it may be meant to be; none if they are too far apart. Every one-letter
+/// word is one edit away from every other: to be near, some of the word must remain.
 std::optional<std::size_t> near_distance(std::string_view word, std::string_view candidate) {
   if (word == candidate) return 0;
   if (word.empty()) return std::nullopt;
@@ -36,7 +36,7 @@ std::optional<std::size_t> near_distance(std::string_view word, std::string_view
   return distance <= most ? std::optional(distance) : std::nullopt;
 }
 
-/// Part by part: what one part lacks, the length of another does not make good.
+/// Compares part by part: a part that is too far off is not compensated by the length of another.
 std::optional<std::size_t> dotted_distance(std::string_view word, std::string_view candidate) {
   if (std::count(word.begin(), word.end(), '.') != std::count(candidate.begin(), candidate.end(), '.'))
     return near_distance(word, candidate);
@@ -89,7 +89,7 @@ std::string form_of(std::string_view message) {
            (is_any_of(message[end], "0123456789.e") || (is_any_of(message[end], "+-") && message[end - 1] == 'e')))
       ++end;
     const bool is_number = is_any_of(c, digits) || end > i + 1;
-    // A full stop is the sentence's.
+    // A full stop belongs to the sentence.
     while (end > i + 1 && !is_any_of(message[end - 1], digits)) --end;
     form += is_number ? '0' : c;
     i = end - 1;
@@ -103,7 +103,7 @@ bool is_digits(std::string_view text, std::size_t least, std::size_t most) {
 }
 
 std::optional<double> number_in(std::string_view text) {
-  if (text.starts_with('+')) {  // which from_chars does not take
+  if (text.starts_with('+')) {  // from_chars does not accept it
     text.remove_prefix(1);
     if (text.starts_with('-')) return std::nullopt;
   }

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <ctime>
 
-/// @file Wall-clock time, and the time of processors.
+/// @file Wall-clock time and processor time.
 namespace ricochet {
 
 class Timer {
@@ -21,7 +21,7 @@ class Timer {
   clock::time_point start_ = clock::now();
 };
 
-/// Of all cores on which this process has worked, user and system.
+/// Processor time of all cores on which this process has run, user and system.
 class ProcessorTimer {
  public:
   /// Seconds since construction.

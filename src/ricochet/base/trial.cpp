@@ -19,11 +19,11 @@ namespace ricochet {
 
 namespace {
 
-/// Prepares the child. What ends the child is reported by waitpid alone. Handlers of this process, as that of Python's
-/// faulthandler, would speak for it; a signal that asks the process to end is for the parent.
+/// Prepares the child. Only waitpid reports how the child ended: handlers of this process, such as Python's
+/// faulthandler, must not speak for it, and a signal that asks the process to end is meant for the parent.
 void prepare_child(pid_t parent, double processor_seconds) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);  // it was killed sooner
+  if (getppid() != parent) _exit(1);  // it was killed before prctl
   for (const int number : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU}) signal(number, SIG_DFL);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_IGN);
   sigset_t none;
@@ -56,7 +56,7 @@ TrialOutcome try_in_child(const std::function<bool()>& work, double processor_se
     bool good = false;
     try {
       good = work();
-    } catch (...) {  // it has failed
+    } catch (...) {  // counts as failed
     }
     _exit(good ? 0 : 1);
   }

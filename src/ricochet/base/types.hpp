@@ -11,11 +11,12 @@ namespace ricochet {
 /// Counts and indices of nodes, cells and degrees of freedom. Signed, so that differences are safe.
 using Index = Eigen::Index;
 
-/// A dense column vector of dofs, multipliers, …
+/// Dense column vector of dofs, multipliers, …
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-/// Compressed sparse columns. All operators of the problem are symmetric and stored whole, so columns are rows.
+/// Matrix in compressed sparse columns. All operators of the problem are symmetric and stored whole, so columns are
+/// rows.
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 /// Operators that act row by row (traces on the contact boundary).
 using SparseRowMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;

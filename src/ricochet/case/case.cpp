@@ -22,7 +22,7 @@ SourceLocation Case::where(const std::string& key_path) const {
 }
 
 long step_count(const TimeSection& time) {
-  // An end that is a whole number of steps to rounding is that number of steps.
+  // An end that is a whole number of steps up to rounding is taken as that number.
   return std::max(1L, static_cast<long>(std::ceil(time.end / time.step * (1.0 - 1e-12))));
 }
 

@@ -10,11 +10,11 @@
 #include "ricochet/base/types.hpp"
 #include "ricochet/mesh/place_mesh.hpp"
 
-/// @file What a case file says, after parsing and every check that needs no mesh. Field names are the keys of the file.
-/// Units are the user's own and must be consistent; nothing here has a scale.
+/// @file Content of a case file, after parsing and every check that needs no mesh. Field names are the keys of the
+/// file. Units are the user's own and must be consistent; nothing here has a scale.
 namespace ricochet {
 
-/// Where a value stands. `line` is 0 for values given by --set (then `file` is "--set key.path=value") or by default.
+/// Position of a value. `line` is 0 for values given by --set (then `file` is "--set key.path=value") or by default.
 struct SourceLocation {
   std::string file;
   int line = 0;
@@ -23,19 +23,19 @@ struct SourceLocation {
   [[nodiscard]] std::string text() const;
 };
 
-/// A file with one body or several, and where they are put.
+/// Mesh file with one or several bodies, and its placement.
 struct BodyFile {
-  std::string file;  ///< as resolved: relative paths are relative to the case file's directory
+  std::string file;  ///< resolved: relative paths are relative to the case file's directory
   std::optional<double> size;
   double scale = 1.0;
   int refinements = 0;
-  Placement placement;       ///< turns and move
-  std::string rest_on;       ///< an obstacle; empty: none
-  double rest_gap = 0.0;     ///< of the lowest node above it
-  double drop_height = 0.0;  ///< that it has fallen through at the start; its motion has the velocity
+  Placement placement;       ///< rotations and translation
+  std::string rest_on;       ///< an obstacle; may be empty
+  double rest_gap = 0.0;     ///< distance of the lowest node from it
+  double drop_height = 0.0;  ///< height of the free fall before the start; the velocity is in its motion
 };
 
-/// Its file is empty where there are parts.
+/// `file` is empty if there are parts.
 struct MeshSection : BodyFile {
   int degree = 1;                ///< of the displacement
   std::string plane = "strain";  ///< "strain" or "stress"
@@ -62,47 +62,47 @@ struct MaterialSection {
   std::string law = "linear";
   Parameters parameters;  ///< of the law
   DampingSection damping;
-  RelaxationSection relaxation;  ///< of one length; empty: none
+  RelaxationSection relaxation;  ///< lists of equal length; may be empty
 };
 
 struct ObstacleSection {
   std::string name;
   std::string type;
   Parameters parameters;  ///< of the type
-  // Its motion:
-  std::vector<double> velocity;      ///< empty: none
+  // Prescribed motion:
+  std::vector<double> velocity;      ///< may be empty
   double rotation_rate = 0.0;        ///< about its own axis
-  std::vector<Expression> motion;    ///< of t: a displacement; empty: none
-  std::vector<Expression> rotation;  ///< of t, in rad: one number in 2D, a vector in 3D; empty: none
+  std::vector<Expression> motion;    ///< displacement as a function of t; may be empty
+  std::vector<Expression> rotation;  ///< of t, in rad: one number in 2D, a vector in 3D; may be empty
   std::vector<double> about;         ///< empty: its own centre
-  std::string table;                 ///< a file of displacements and rotations; empty: none
-  bool is_steered = false;           ///< a program changes its motion as the run goes on (Session)
-  // Of a rigid body that moves by the forces on it, whose `velocity` is that at the start:
+  std::string table;                 ///< file of displacements and rotations; may be empty
+  bool is_steered = false;           ///< a program changes its motion during the run (Session)
+  // Free rigid body, whose `velocity` is the initial one:
   std::optional<double> mass, density;
   std::vector<double> inertia, centre_of_mass;  ///< empty: those of its shape
-  std::vector<double> spin;                     ///< at the start; empty: none
-  std::vector<Expression> force, torque;        ///< of t; empty: none
-  std::vector<double> spring, damper;           ///< to where it starts, per direction; empty: none
+  std::vector<double> spin;                     ///< initial; may be empty
+  std::vector<Expression> force, torque;        ///< of t; may be empty
+  std::vector<double> spring, damper;           ///< to the initial position, per direction; may be empty
   double rotation_spring = 0.0, rotation_damper = 0.0;
   std::vector<std::string> hold;  ///< "x", "y", "z", "rotation"
   [[nodiscard]] bool is_free() const { return mass || density; }
 };
 
 struct ContactSection {
-  std::string group;      ///< without obstacle and against the surfaces of bodies, each of which may touch every other
-  std::string obstacle;   ///< empty: between bodies
-  std::string against;    ///< the other group; empty: an obstacle
-  double friction = 0.0;  ///< F of Coulomb's law
+  std::string group;            ///< without obstacle and `against`: surfaces of bodies that may all touch each other
+  std::string obstacle;         ///< empty: between bodies
+  std::string against;          ///< the other group; empty: an obstacle
+  double friction = 0.0;        ///< F of Coulomb's law
   double friction_bound = 0.0;  ///< largest friction traction, a stress; 0: no bound
   std::string multipliers = "nodal";
   std::string multipliers_on = "automatic";  ///< between bodies: "automatic", "group" or "against"
   bool slides_far = false;                   ///< sliding = "large"
   bool closed_gaps = false;                  ///< initial_gap = "closed"
   bool tied = false;
-  std::vector<double> pair_at;  ///< empty: where bodies start
+  std::vector<double> pair_at;  ///< empty: initial positions of the bodies
   bool allow_unstable_multipliers = false;
 
-  /// Stands for the contacts of every body with every other (ModelContact).
+  /// Returns whether the entry represents the contacts of every body with every other (ModelContact).
   [[nodiscard]] bool is_of_all_pairs() const { return obstacle.empty() && against.empty(); }
   [[nodiscard]] bool between_bodies() const { return obstacle.empty(); }
 };
@@ -120,12 +120,12 @@ struct TractionSection {
 
 struct PressureSection {
   std::string group;
-  Expression value;  ///< of x, y, z, t: positive where it presses
+  Expression value;  ///< of x, y, z, t: positive in compression
 };
 
 struct LoadSection {
-  std::vector<double> gravity;         ///< acceleration; empty: none
-  std::vector<Expression> body_force;  ///< of x, y, z, t: force per volume; empty: none
+  std::vector<double> gravity;         ///< acceleration; may be empty
+  std::vector<Expression> body_force;  ///< of x, y, z, t: force per volume; may be empty
 };
 
 struct InitialSection {
@@ -134,11 +134,11 @@ struct InitialSection {
   std::vector<Expression> velocity;      ///< of x, y, z; empty: zero
 };
 
-/// Cells that move like a rigid body at t = 0: a [[motion]], `velocity` and `spin` of a part, or what was dropped.
+/// Cells with a rigid-body motion at t = 0: from [[motion]], `velocity` and `spin` of a part, or drop_height.
 struct MotionSection {
-  std::string section;           ///< where it stands: "motion.0", "part.ball", "mesh"
-  std::string group;             ///< of cells; empty for those of a part, or of all of the mesh
-  std::string part;              ///< its name; empty for those of a group, or of all of the mesh
+  std::string section;           ///< its section: "motion.0", "part.ball", "mesh"
+  std::string group;             ///< group of cells; empty for a part or the whole mesh
+  std::string part;              ///< name of the part; empty for a group or the whole mesh
   std::vector<double> velocity;  ///< empty: zero
   std::vector<double> spin;      ///< rad per time; one number in two dimensions, three in three; empty: zero
   std::vector<double> about;     ///< empty: the centre of mass of the cells
@@ -152,45 +152,45 @@ struct MassSection {
 struct TimeSection {
   std::string scheme;
   Parameters parameters;  ///< of the scheme
-  double step = 0.0;      ///< the longest of adaptive ones
+  double step = 0.0;      ///< the longest one if adaptive
   double end = 0.0;
   bool adaptive = false;
   double tolerance = 0.0, smallest = 0.0;  ///< of adaptive steps
 };
 
-/// Number of steps to the end time; the last step ends at or after it. Of adaptive ones as if each were the longest.
+/// Number of steps to the end time; the last step ends at or after it. Adaptive steps count as if all were the longest.
 [[nodiscard]] long step_count(const TimeSection& time);
 
-/// One of: a point, a segment, a boundary, a group, a contact.
+/// Probe of one of: a point, a segment, a boundary, a group, a contact.
 struct ProbeSection {
   std::string name;
   std::vector<double> at;        ///< a point
   std::vector<double> from, to;  ///< a segment
-  std::optional<double> within;  ///< of the segment: distance of its nodes
+  std::optional<double> within;  ///< distance of its nodes from the segment
   std::string boundary;          ///< a group of facets: force and moment
   std::vector<double> about;     ///< of the moment; empty: the origin
   std::string group;             ///< of cells or facets: averages and extrema
   std::optional<long> contact;   ///< an index of [[contact]]
-  long every = 0;                ///< steps, into a file of their own; 0: with the rows of history.csv
+  long every = 0;                ///< steps, in a separate file; 0: with the rows of history.csv
 };
 
 struct OutputSection {
-  std::optional<long> fields_every;       ///< steps; absent: chosen so that about a hundred frames are written; 0: none
+  std::optional<long> fields_every;       ///< steps; null: chosen for about a hundred frames; 0: no frames
   std::optional<double> fields_interval;  ///< time, instead of fields_every
-  std::vector<std::string> fields;        ///< names, also "all"; empty: the usual ones
-  bool vtkhdf = false;                    ///< else XDMF
+  std::vector<std::string> fields;        ///< names, also "all"; empty: the default ones
+  bool vtkhdf = false;                    ///< otherwise XDMF
   bool single_precision = false;          ///< of fields
   int compression = 0;
-  std::optional<long> history_every;  ///< none: as the scheme says
+  std::optional<long> history_every;  ///< null: chosen by the scheme
   long checkpoint_every = 0;          ///< steps; 0: by time only
-  double checkpoint_seconds = 300.0;  ///< of the clock on the wall; 0: by steps only
+  double checkpoint_seconds = 300.0;  ///< wall-clock time; 0: by steps only
 };
 
 struct CheckSection {
   double energy_residual = 1e-8;   ///< relative to the largest energy; 0: not checked
   double momentum = 1e-8;          ///< relative to the momenta of all bodies and the sum of all impulses
   double angular_momentum = 1e-8;  ///< likewise, times the distance of the body from the origin
-  bool stops = false;              ///< the run ends where an account does not close, else it warns
+  bool stops = false;              ///< the run ends if a balance is violated, otherwise it warns
 };
 
 struct SolverSection {
@@ -204,20 +204,20 @@ struct SolverSection {
 struct ExpectSection {
   std::string name = {};  ///< the quantity in words; may be empty
   std::string quantity = {};
-  std::string over = {};  ///< a quantity by which it is divided; may be empty
+  std::string over = {};  ///< divisor, a quantity; may be empty
   double times = 1.0;     ///< factor of the quantity
   double value = 0.0;
   std::optional<double> relative = {}, absolute = {};  ///< tolerances; at least one
   std::optional<double> minimum = {}, maximum = {};    ///< instead of value: bounds
-  std::string published = {};                          ///< what others publish for it; may be empty
-  std::map<std::string, std::string> when = {};  ///< key path → value as text: only checked in runs where they hold
+  std::string published = {};                          ///< published value, in words; may be empty
+  std::map<std::string, std::string> when = {};  ///< key path → value as text: checked only in runs where they hold
 };
 
 struct Case {
   std::string path;  ///< of the case file
   std::string title;
   MeshSection mesh;
-  std::vector<PartSection> parts;  ///< in the order of the file; none: the mesh is that of [mesh]
+  std::vector<PartSection> parts;  ///< in the order of the file; if empty the mesh is that of [mesh]
   std::vector<MaterialSection> materials;
   std::vector<ObstacleSection> obstacles;
   std::vector<ContactSection> contacts;
@@ -234,10 +234,10 @@ struct Case {
   OutputSection output;
   CheckSection check;
   std::vector<ExpectSection> expectations;
-  /// Names in the lists of groups, by the text that stands in the sections' `group` (and `boundary`) for them.
+  /// Names in the lists of groups, by the text that represents the list in the sections' `group` (and `boundary`).
   std::map<std::string, std::vector<std::string>> group_lists;
   std::vector<std::string> overridden;              ///< key paths given by --set
-  std::map<std::string, SourceLocation> locations;  ///< key path ("contact.0.group") → where it stands
+  std::map<std::string, SourceLocation> locations;  ///< key path ("contact.0.group") → position
   std::map<std::string, std::string> values;        ///< key path → value as text, defaults included, for `when`
 
   /// Location of a key path, or of the nearest enclosing section, or of the file.

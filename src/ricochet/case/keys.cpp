@@ -33,7 +33,7 @@ std::string join_rest(const std::vector<std::string>& parts, std::size_t first) 
   throw Error(ErrorKind::invalid_input, message);
 }
 
-// Reads the part of a path that picks one entry of a list or one named section.
+// Reads the part of a path that selects one entry of a list or one named section.
 std::string entry_of(const Section& section, const std::vector<std::string>& parts) {
   if (section.kind == SectionKind::list) {
     const bool is_number = parts.size() > 1 && is_digits(parts[1], 1, 9);
@@ -41,7 +41,7 @@ std::string entry_of(const Section& section, const std::vector<std::string>& par
       refuse(fmt::format("{} is a list: say which entry, counted from 0, as in {}.0.{}", section_title(section),
                          section.name, section.keys.front().name));
     }
-    // One entry has one name: two keys of a study, or of `when`, could else be the same without anybody noticing.
+    // One entry has one name: otherwise two keys of a study, or of `when`, could be the same unnoticed.
     const std::string number = std::to_string(std::stol(parts[1]));
     if (number != parts[1]) {
       refuse(fmt::format("\"{}\" is no number of an entry of {}: write {}, as in {}.{}.{}", parts[1],
@@ -57,7 +57,7 @@ std::string entry_of(const Section& section, const std::vector<std::string>& par
   return parts[1];
 }
 
-// Follows a path on from the key at parts[at].
+// Follows a path from the key at parts[at].
 void enter_key(const std::vector<std::string>& parts, std::size_t at, KeyPath& path) {
   const Key& key = *path.key;
   if (at + 1 == parts.size()) return;

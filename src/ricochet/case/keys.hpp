@@ -7,9 +7,9 @@
 
 #include "ricochet/base/parameters.hpp"
 
-/// @file The table of everything a case file may say. Reading, checking, the JSON Schema and the documentation page are
-/// all driven by it. A key of a registered type (a scheme, an obstacle, a law) is declared where the type is; any other
-/// is one entry in keys_table*.cpp and one line in read_sections.cpp that puts it into the Case.
+/// @file Table of all sections and keys of a case file. It drives reading, checking, the JSON Schema and the
+/// documentation page. A key of a registered type (a scheme, an obstacle, a law) is declared with the type; every other
+/// key is one entry in keys_table*.cpp and one line in read_sections.cpp that stores it in the Case.
 namespace ricochet {
 
 struct TomlNode;
@@ -21,7 +21,7 @@ enum class SectionKind {
   named,  ///< [name.NAME], any number of them
 };
 
-/// A registered type's own keys.
+/// Keys of a registered type.
 struct TypeKeys {
   std::string name;
   std::vector<Key> keys;
@@ -33,56 +33,56 @@ struct Section {
   std::string name;
   SectionKind kind = SectionKind::table;
   bool required = false;
-  std::string gives_way_to = {};  ///< the section with whose entries this one is not required
+  std::string gives_way_to = {};  ///< not required if this section has entries
   KeySets alternatives = {};
-  /// Entries that need none of the alternatives, and what they are, for messages; null: there are none.
+  /// Tests for entries that need none of the alternatives, and their description for messages; null if there are none.
   bool (*stands_alone)(const TomlNode& entry) = nullptr;
   std::string alone = {};
   std::string doc;
-  std::vector<Key> keys;  ///< with those of all types
-  /// The key that names a registered type, and the types with the keys that are theirs; empty where there are none.
+  std::vector<Key> keys;  ///< including those of all types
+  /// Key that names a registered type, and the types with their own keys; empty if there are none.
   std::string type_key = {};
   std::vector<TypeKeys> types = {};
 };
 
 [[nodiscard]] const TypeKeys* find_type(const Section& section, std::string_view name);
 
-/// All sections, the top of the file first.
+/// All sections, beginning with the top of the file.
 [[nodiscard]] const std::vector<Section>& case_sections();
 
-/// The section or key of that name, or nullptr.
+/// Section or key of that name, or nullptr.
 [[nodiscard]] const Section* find_section(std::string_view name);
 [[nodiscard]] const Key* find_key(const std::vector<Key>& keys, std::string_view name);
 
-/// As it is written in a file: "[mesh]", "[[contact]]", "[obstacle.NAME]".
+/// Title as written in a file: "[mesh]", "[[contact]]", "[obstacle.NAME]".
 [[nodiscard]] std::string section_title(const Section& section);
 
-/// The same with its unit, where it has one.
+/// Description of a key's values, with the unit if it has one.
 [[nodiscard]] std::string wanted_with_unit(const Key& key);
 
-/// The key or section that an unknown name was probably meant to be, or "".
+/// Key or section that an unknown name was probably meant to be, or "".
 [[nodiscard]] std::string nearest_key(std::string_view name, const std::vector<Key>& keys);
 [[nodiscard]] std::string nearest_section(std::string_view name);
 
-/// `unknown key "densty" in [[material]]; did you mean "density"?`
+/// Message `unknown key "densty" in [[material]]; did you mean "density"?`.
 [[nodiscard]] std::string unknown_key_message(std::string_view name, const std::string& title,
                                               const std::vector<Key>& keys);
 [[nodiscard]] std::string unknown_section_message(std::string_view name);
 
-/// What a dotted path such as "contact.0.friction", "obstacle.floor.normal" or "material.0.damping.mass" stands for.
+/// Parsed dotted path such as "contact.0.friction", "obstacle.floor.normal" or "material.0.damping.mass".
 struct KeyPath {
   const Section* section = nullptr;
   std::string entry;         ///< number in a list, name of a named section; else empty
   const Key* key = nullptr;  ///< the sub-table's key for a path into a sub-table
-  std::string sub_table;     ///< name of the sub-table, parameters or conditions it goes into; else empty
+  std::string sub_table;     ///< name of the sub-table, parameters or conditions that contain the key; else empty
   std::string sub_entry;     ///< number of the sub-table in a list of them; else empty
   std::string member;        ///< name of the parameter or condition; else empty
 };
 
-/// Throws Error(invalid_input) that says which part of the path is not known.
+/// Throws Error(invalid_input), which names the unknown part of the path.
 [[nodiscard]] KeyPath parse_key_path(const std::string& path);
 
-/// Letters, digits, _ and -, at least one.
+/// Returns whether a name consists of letters, digits, _ and -, at least one.
 [[nodiscard]] bool is_plain_name(std::string_view name);
 
 }  // namespace ricochet

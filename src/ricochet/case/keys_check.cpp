@@ -12,7 +12,7 @@ namespace ricochet {
 
 namespace {
 
-/// The types that have a key: scheme "newmark", types "sphere" and "cylinder".
+/// Types that have a key: scheme "newmark", types "sphere" and "cylinder".
 std::string types_text(const Section& section, const Key& key) {
   return fmt::format("{}{} {}", section.type_key, key.only_for.size() > 1 ? "s" : "", join_names(key.only_for));
 }
@@ -43,19 +43,19 @@ bool is_key_of(const std::vector<Key>& keys, const TomlNode& member) {
   return find_key(keys, member.key) != nullptr;
 }
 
-// There is an unknown key that was probably meant to be this one: its absence is no second problem.
+// Tests for an unknown key that was probably meant to be this one, whose absence is then not reported separately.
 bool is_misspelt(const Key& key, const std::vector<Key>& keys, const TomlNode& table) {
   return std::any_of(table.children.begin(), table.children.end(), [&](const TomlNode& member) {
     return !is_key_of(keys, member) && nearest_key(member.key, keys) == key.name;
   });
 }
 
-// A table that cannot be filled in with defaults alone: it is absent where nobody gives it.
+// Tests for a table that cannot be filled in with defaults alone: it is absent unless it is specified.
 bool needs_a_user(const Key& table) {
   return std::any_of(table.keys.begin(), table.keys.end(), [](const Key& key) { return key.required; });
 }
 
-/// The table that [part.a.b] is to TOML; none where it may be a key that was misspelt.
+/// Table that [part.a.b] is in TOML; null if it may be a misspelt key.
 const TomlNode* find_dotted(const Section& section, const TomlNode& entry) {
   const auto found = std::find_if(entry.children.begin(), entry.children.end(), [&](const TomlNode& member) {
     return member.is_table() && !is_key_of(section.keys, member) && nearest_key(member.key, section.keys).empty();
@@ -63,7 +63,7 @@ const TomlNode* find_dotted(const Section& section, const TomlNode& entry) {
   return found != entry.children.end() ? &*found : nullptr;
 }
 
-// Goes through the document section by section, as the table of keys says.
+// Checks the document section by section, in the order of the table of keys.
 class TreeChecker {
  public:
   TreeChecker(TomlNode& root, Problems& problems) : root_(root), problems_(problems) {}
@@ -122,7 +122,7 @@ void TreeChecker::check_top_member(const TomlNode& member) {
     problems_.add(member.key_location, unknown_section_message(member.key));
     return;
   }
-  // A key above the first section header is easily meant for a section.
+  // A key above the first section header was probably meant for a section.
   for (const Section& section : case_sections()) {
     if (!is_key_of(section.keys, member)) continue;
     problems_.add(member.key_location, fmt::format("the key \"{}\" stands outside of any section; it belongs to {}",
@@ -137,7 +137,7 @@ void TreeChecker::check_section(const Section& section) {
   if (node == nullptr) {
     if (section.required && !gives_way(section.gives_way_to)) return report_missing_section(section);
     if (section.kind != SectionKind::table) return;
-    // An absent section has its defaults all the same.
+    // An absent section has its defaults nevertheless.
     node = &root_.children.emplace_back();
     node->key = section.name;
     node->is_default = true;
@@ -187,7 +187,7 @@ void TreeChecker::check_named(const Section& section, TomlNode& sections) {
       sections.is_refused = true;
       problems_.add(entry.key_location, fmt::format("\"{}\" stands in [{}], which needs a name: write [{}.NAME]",
                                                     entry.key, section.name, section.name));
-      return;  // the keys that follow have the same problem
+      return;  // the following keys have the same problem
 
     } else if (!is_plain_name(entry.key)) {
       entry.is_refused = true;
@@ -203,7 +203,7 @@ void TreeChecker::check_named(const Section& section, TomlNode& sections) {
   }
 }
 
-/// The type that an entry names or has by default; none where it names no known one, which is told.
+/// Type that an entry names or has by default; null, with a problem reported, if the name is unknown.
 const TypeKeys* TreeChecker::find_type_of(const Section& section, TomlNode& table) {
   const Key& key = *find_key(section.keys, section.type_key);
   TomlNode* const value = table.find(key.name);
@@ -241,8 +241,8 @@ void TreeChecker::check_entry(const Section& section, const std::string& title, 
   if (type != nullptr) check_alternatives(type->alternatives, type->keys, title, table);
 }
 
-/// A key that the entry's type does not have. In a file whose type was replaced by --set it means nothing; otherwise it
-/// is a mistake.
+/// Checks a key that the entry's type does not have. If the type in the file was replaced by --set, the key is ignored;
+/// otherwise it is an error.
 void TreeChecker::check_foreign_key(const Section& section, const Key& key, const std::string& title, TomlNode& table) {
   TomlNode* const value = table.find(key.name);
   const TomlNode* const type = table.find(section.type_key);
@@ -265,7 +265,7 @@ void TreeChecker::check_known(const std::vector<Key>& keys, const std::string& t
   }
 }
 
-/// Suggests no key that the entry's type does not take: it would be refused next.
+/// Suggests no key that the entry's type does not have: it would be refused next.
 void TreeChecker::check_known_of_type(const Section& section, const TypeKeys* type, const std::string& title,
                                       const TomlNode& table) {
   std::vector<Key> allowed;
@@ -284,13 +284,13 @@ void TreeChecker::check_known_of_type(const Section& section, const TypeKeys* ty
   }
 }
 
-/// Whether the case has entries of that section; refused ones count.
+/// Returns whether the case has entries of that section; refused ones count.
 bool TreeChecker::has_entries(const std::string& section) const {
   const TomlNode* const node = section.empty() ? nullptr : root_.find(section);
   return node != nullptr && !(node->is_table() && node->children.empty());
 }
 
-/// Whether a key or section need not be there, for that one; also where its name was misspelt, and reported as such.
+/// Returns whether that section replaces a key or section; also if its name is misspelt, which is reported separately.
 bool TreeChecker::gives_way(const std::string& section) const {
   if (section.empty()) return false;
   return has_entries(section) || std::any_of(root_.children.begin(), root_.children.end(), [&](const TomlNode& member) {

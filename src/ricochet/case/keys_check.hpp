@@ -8,20 +8,20 @@
 #include "ricochet/case/problems.hpp"
 #include "ricochet/case/toml_tree.hpp"
 
-/// @file Checking a document against the table of keys.
+/// @file Validation of a document against the table of keys.
 namespace ricochet {
 
-/// Checks everything that the table says: unknown, missing and misplaced keys, types, choices, bounds, vectors of one
-/// dimension. Fills in the defaults, turns integers into reals where numbers are wanted, and marks refused values.
+/// Checks all rules of the table: unknown, missing and misplaced keys, types, choices, bounds, vectors of one
+/// dimension. Fills in the defaults, converts integers to reals where numbers are required, and marks refused values.
 void check_tree(TomlNode& root, Problems& problems);
 
-/// Checks one value against its key, likewise. Marks it refused when there is a problem with it.
+/// Checks one value against its key, likewise. Marks it as refused if it has a problem.
 void check_value(const Key& key, TomlNode& value, Problems& problems);
 
-/// Holds the vectors of a document against one another: all are of one dimension, that of the mesh.
+/// Compares the vectors of a document: all must have the dimension of the mesh.
 class DimensionCheck {
  public:
-  /// Looks at a value that is not refused.
+  /// Records a value that is not refused.
   void note(const Key& key, const std::string& title, const TomlNode& value);
   void run(Problems& problems);
 
@@ -33,13 +33,13 @@ class DimensionCheck {
     std::string what;  ///< "has 3 entries"
   };
   std::vector<Found> vectors_;
-  std::vector<SourceLocation> third_components_;  ///< where "z" stands in a list of components
+  std::vector<SourceLocation> third_components_;  ///< positions of "z" in lists of components
 };
 
-/// Checks the key paths and values of `when` in [[expect]]; both spellings of a path become one.
+/// Checks the key paths and values of `when` in [[expect]]; unifies both spellings of a path.
 void check_conditions(TomlNode& root, Problems& problems);
 
-/// The node at a key path, or nullptr; `problem` then says why ("there is no [[contact]] number 7: …").
+/// Node at a key path, or nullptr; `problem` then states the reason ("there is no [[contact]] number 7: …").
 [[nodiscard]] const TomlNode* find_entry(const TomlNode& root, const KeyPath& path, std::string& problem);
 
 }  // namespace ricochet

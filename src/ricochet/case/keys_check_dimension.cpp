@@ -27,7 +27,7 @@ void DimensionCheck::note(const Key& key, const std::string& title, const TomlNo
 
 void DimensionCheck::run(Problems& problems) {
   if (vectors_.empty()) return;
-  // Values of --set come after those of the file, whatever they stand for.
+  // Values of --set come after those of the file, whatever they refer to.
   const auto before = [](const Found& a, const Found& b) {
     const bool a_is_override = a.location.line == 0, b_is_override = b.location.line == 0;
     return std::tie(a_is_override, a.location.line, a.location.column) <

@@ -21,7 +21,7 @@ void refuse_type(const Key& key, TomlNode& value, Problems& problems) {
   refuse(value, fmt::format("\"{}\" must be {}; found {}", key.name, wanted_with_unit(key), describe(value)), problems);
 }
 
-// Integers are fine where numbers are wanted; from here on they are numbers, so that 1 and 1.0 have one text.
+// Accepts integers as numbers and converts them, so that 1 and 1.0 have the same text.
 bool make_finite_number(TomlNode& value) {
   if (value.kind == Kind::integer) {
     value.real = static_cast<double>(value.integer);
@@ -34,7 +34,7 @@ bool is_choice(const std::string& word, const std::vector<std::string>& choices)
   return std::find(choices.begin(), choices.end(), word) != choices.end();
 }
 
-// `; did you mean "newmark"?` or nothing.
+// Returns `; did you mean "newmark"?` or nothing.
 std::string suggestion(const TomlNode& value, const std::vector<std::string>& choices) {
   const std::string near = value.kind == Kind::text ? nearest_name(value.text, choices) : "";
   return near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);
@@ -63,7 +63,7 @@ void check_integer(const Key& key, TomlNode& value, Problems& problems) {
   if (!is_good) refuse_type(key, value, problems);
 }
 
-// Entries of a vector. Expressions are compiled later, when their parameters are known.
+// Checks the entries of a vector. Expressions are compiled later, when their parameters are known.
 void check_vector(const Key& key, TomlNode& value, bool with_expressions, Problems& problems) {
   const bool is_vector = value.kind == Kind::list && !value.is_list_of_tables();
   if (!is_vector) {
@@ -199,7 +199,7 @@ void check_value(const Key& key, TomlNode& value, Problems& problems) {
     case KeyType::parameters:
       return check_parameters(key, value, problems);
     case KeyType::conditions:
-    case KeyType::table:  // what they hold is checked by check_tree, which knows the whole document
+    case KeyType::table:  // their content is checked by check_tree, which has the whole document
       if (!value.is_table()) refuse_type(key, value, problems);
       return;
     case KeyType::tables:

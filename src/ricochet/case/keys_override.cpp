@@ -16,7 +16,7 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// Refuses a list or a table that is none to TOML: as one word it would be a name that nothing has.
+/// Refuses a list or a table that is invalid in TOML: as a word it would be a name that nothing has.
 void refuse_unquoted(const std::string& text) {
   if (text.empty() || (text.front() != '[' && text.front() != '{') || parse_toml_value(text, {})) return;
   throw Error(ErrorKind::invalid_input,
@@ -34,7 +34,7 @@ TomlNode parse_value(const std::string& text, const SourceLocation& location) {
   return word;
 }
 
-// The table of that name, made when it is absent.
+// Returns the table of that name, created if absent.
 TomlNode& enter_table(TomlNode& parent, const std::string& name, const SourceLocation& location) {
   if (TomlNode* found = parent.find(name)) return *found;
   TomlNode& made = parent.children.emplace_back();
@@ -43,7 +43,7 @@ TomlNode& enter_table(TomlNode& parent, const std::string& name, const SourceLoc
   return made;
 }
 
-// A sub-table, or that of a list of them which the path names.
+// Returns a sub-table, or the one that the path names in a list of sub-tables.
 TomlNode* enter_sub_table(TomlNode& node, const KeyPath& path) {
   if (path.sub_entry.empty() && !node.is_list_of_tables()) return &node;
   const std::size_t count = node.is_list_of_tables() ? node.children.size() : 0;
@@ -55,7 +55,7 @@ TomlNode* enter_sub_table(TomlNode& node, const KeyPath& path) {
                                        path.sub_table, path.key->name, count - 1));
 }
 
-// The table that holds the key, or nullptr when the document has something else in its place, which check_tree reports.
+// Returns the table that holds the key, or nullptr if the document has another value there, which check_tree reports.
 TomlNode* enter_section(TomlNode& root, const KeyPath& path, const SourceLocation& location) {
   TomlNode* table = &root;
   if (path.section->kind == SectionKind::list) {
@@ -113,7 +113,7 @@ std::vector<std::string> apply_overrides(TomlNode& root, const std::vector<std::
 
 std::string override_value_text(const std::string& text) {
   const TomlNode value = parse_value(trimmed(text), {});
-  return value.kind == TomlNode::Kind::date ? trimmed(text) : value_text(value);  // which says no more than "date"
+  return value.kind == TomlNode::Kind::date ? trimmed(text) : value_text(value);  // whose value_text is just "date"
 }
 
 std::string normal_override(const std::string& text) {

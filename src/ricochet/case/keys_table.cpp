@@ -8,7 +8,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/keys_table.hpp"
 
-// The table itself: its sections in their order.
+// The table: its sections in their order.
 namespace ricochet {
 
 namespace {
@@ -67,7 +67,7 @@ void add_type_keys(Section& section, const std::string& type_key, std::vector<Ty
 }
 
 const std::vector<Section>& case_sections() {
-  // Types may be registered while a program runs; tables that somebody may still look at stay.
+  // Types may be registered while a program runs; earlier tables are kept, as they may still be in use.
   static std::list<std::vector<Section>> tables;
   static long revision = -1;
   static std::mutex in_use;

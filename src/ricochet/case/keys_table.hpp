@@ -3,11 +3,11 @@
 #include "ricochet/base/registry.hpp"
 #include "ricochet/case/keys.hpp"
 
-/// @file The parts of the table of keys, in keys_table*.cpp. Nothing else in the program lists the keys of a case file.
+/// @file Parts of the table of keys, in keys_table*.cpp. No other part of the program lists the keys of a case file.
 /// Not part of the public interface.
 namespace ricochet {
 
-/// Puts the keys of registered types into a section, behind the key that names the type.
+/// Inserts the keys of registered types into a section, behind the key that names the type.
 void add_type_keys(Section& section, const std::string& type_key, std::vector<TypeKeys> types);
 template <class Type>
 [[nodiscard]] Section with_types(Section section, const std::string& type_key, const Registry<Type>& registry) {
@@ -21,13 +21,13 @@ template <class Type>
 /// `kind` is "cells" or "boundary facets", `built_in` the name of all of them.
 [[nodiscard]] Key group_key(const char* kind, const char* built_in);
 
-// keys_table_bodies.cpp: what bodies there are, where, and how they move at the start.
+// keys_table_bodies.cpp: bodies, their positions and initial motion.
 [[nodiscard]] Section mesh_section();
 [[nodiscard]] Section part_section();
 [[nodiscard]] Section motion_section();
-/// Whether the `group` of a [[contact]] stands for bodies: "all", or a pattern, perhaps among others.
+/// Returns whether the `group` of a [[contact]] represents bodies: "all" or a pattern, possibly among others.
 [[nodiscard]] bool names_bodies(const TomlNode& contact);
-// keys_table_model.cpp: what else is simulated.
+// keys_table_model.cpp: other parts of the model.
 [[nodiscard]] Section material_section();
 [[nodiscard]] Section obstacle_section();
 [[nodiscard]] Section contact_section();
@@ -36,11 +36,11 @@ template <class Type>
 [[nodiscard]] Section pressure_section();
 [[nodiscard]] Section load_section();
 [[nodiscard]] Section initial_section();
-// keys_table_method.cpp: how.
+// keys_table_method.cpp: numerical method.
 [[nodiscard]] Section mass_section();
 [[nodiscard]] Section time_section();
 [[nodiscard]] Section solver_section();
-// keys_table_results.cpp: what is watched, written, kept and expected.
+// keys_table_results.cpp: recorded, written, checked and expected quantities.
 [[nodiscard]] Section probe_section();
 [[nodiscard]] Section output_section();
 [[nodiscard]] Section check_section();

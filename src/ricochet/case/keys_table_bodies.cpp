@@ -5,7 +5,7 @@
 #include "ricochet/case/toml_tree.hpp"
 #include "ricochet/mesh/derived_groups.hpp"
 
-// The part of the table that is about bodies: their files and places, and how they move at the start.
+// Keys on bodies: their files and positions, and their initial motion.
 namespace ricochet {
 
 namespace {
@@ -33,7 +33,7 @@ Key turn_key() {
           "expressions see where it is then."};
 }
 
-/// Which file, and where its mesh is put: of [mesh], and of every part.
+/// Mesh file and its placement: for [mesh] and every part.
 std::vector<Key> file_keys() {
   return {
       {.name = "file",

@@ -1,7 +1,7 @@
 #include "ricochet/case/keys_table.hpp"
 #include "ricochet/case/names.hpp"
 
-// The part of the table that is about how it is simulated: the mass, the time scheme, the solver of a step.
+// Keys on the numerical method: mass matrix, time scheme, solver of a step.
 namespace ricochet {
 
 Section mass_section() {

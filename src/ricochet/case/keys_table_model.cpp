@@ -3,7 +3,7 @@
 #include "ricochet/case/keys_table.hpp"
 #include "ricochet/case/names.hpp"
 
-// The part of the table that is about what is simulated: materials, contact, what acts on the body, where it starts.
+// Keys on the model: materials, contact, loads and supports, initial conditions.
 namespace ricochet {
 
 namespace {
@@ -108,7 +108,7 @@ Section material_section() {
   return with_types(std::move(section), "law", material_law_registry());
 }
 
-/// Of an obstacle that moves by the forces on it.
+/// Keys of a free rigid body.
 std::vector<Key> free_body_keys() {
   return {
       {.name = "mass",

@@ -1,7 +1,7 @@
 #include "ricochet/case/keys_table.hpp"
 #include "ricochet/case/names.hpp"
 
-// The part of the table that is about results: what is watched, written, kept and expected.
+// Keys on results: recorded, written, checked and expected quantities.
 namespace ricochet {
 
 namespace {

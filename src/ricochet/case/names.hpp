@@ -11,12 +11,12 @@
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/simulation/history/history.hpp"
 
-/// @file Names a case file may use that other parts of the program define: scheme_names(), mass_names(),
-/// multiplier_space_names() and field_names() come from their registries, so registering something is
-/// all it takes to be allowed in a case.
+/// @file Names in case files that are defined by other parts of the program: scheme_names(), mass_names(),
+/// multiplier_space_names() and field_names() come from their registries, so that registration suffices to make a name
+/// valid in a case.
 namespace ricochet {
 
-/// Columns of history.csv that every run may have, in 2D or 3D. No probe may be named like one of them.
+/// Columns of history.csv that any run may have, in 2D or 3D. Probes must not have these names.
 [[nodiscard]] inline std::vector<std::string> history_column_names() {
   std::vector<std::string> names = names_of(HistoryRecorder::standard_columns(2));
   for (std::string& name : names_of(HistoryRecorder::standard_columns(3))) names.push_back(std::move(name));
@@ -26,7 +26,7 @@ namespace ricochet {
   return names;
 }
 
-/// The value of time.step that leaves the lengths of steps to the program.
+/// Value of time.step that selects adaptive step lengths.
 inline constexpr const char* adaptive_steps = "adaptive";
 
 }  // namespace ricochet

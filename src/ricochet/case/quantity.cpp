@@ -66,7 +66,7 @@ std::string_view without_blanks(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(' ') - begin + 1);
 }
 
-// The parts between commas.
+// Splits at commas.
 std::vector<std::string_view> between_commas(std::string_view text) {
   std::vector<std::string_view> parts;
   while (true) {
@@ -77,7 +77,7 @@ std::vector<std::string_view> between_commas(std::string_view text) {
   }
 }
 
-// Plain names joined by single dots.
+// Tests for plain names joined by single dots.
 bool is_dotted_name(std::string_view name) {
   while (true) {
     const std::size_t dot = name.find('.');
@@ -122,7 +122,7 @@ TimeInterval read_interval(const std::string& text, const std::vector<std::strin
   return interval;
 }
 
-// COLUMN > X; takes the comparison off.
+// Reads COLUMN > X and removes the comparison from `condition`.
 Threshold read_threshold(const std::string& text, const std::string& function, std::string_view& condition) {
   const std::size_t sign = condition.find_first_of("<>");
   if (sign == std::string_view::npos)

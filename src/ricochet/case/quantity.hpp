@@ -4,16 +4,16 @@
 #include <span>
 #include <string>
 
-/// @file The quantities an [[expect]] may be about.
+/// @file Quantities that an [[expect]] may refer to.
 namespace ricochet {
 
-/// One way to write a quantity, for messages and the reference of the case file.
+/// Notation of a quantity, for messages and the reference of the case file.
 struct QuantityForm {
   std::string form;
   std::string meaning;
 };
 
-/// All of them:
+/// All notations:
 ///   history.COLUMN[i]            the value in row i of history.csv; negative i count from the last row, −1
 ///   history.COLUMN(t=T)          the value at a time, linear between the rows
 ///   FUNCTION(history.COLUMN)     over all rows: max, min, max_abs, total_variation, mean, integral
@@ -28,10 +28,10 @@ struct TimeInterval {
 
 struct Threshold {
   double level = 0.0;
-  bool above = true;  ///< or below
+  bool above = true;  ///< otherwise below
 };
 
-/// A number of the results, taken apart.
+/// Parsed number of the results.
 struct Quantity {
   enum class Kind {
     history_value,
@@ -47,14 +47,14 @@ struct Quantity {
     summary_value
   };
   Kind kind = Kind::history_value;
-  std::string name = {};                      ///< the column, or the dotted path
-  long row = 0;                               ///< of history_value
-  double time = 0.0;                          ///< of value_at_time
-  Threshold threshold = {};                   ///< of first_time and last_time
-  std::optional<TimeInterval> interval = {};  ///< of functions; none: the whole history
+  std::string name = {};                      ///< column or dotted path
+  long row = 0;                               ///< for history_value
+  double time = 0.0;                          ///< for value_at_time
+  Threshold threshold = {};                   ///< for first_time and last_time
+  std::optional<TimeInterval> interval = {};  ///< for functions; null: the whole history
 };
 
-/// Throws Error(invalid_input) that says what is wrong and lists the forms there are.
+/// Throws Error(invalid_input), which names the error and lists the notations.
 [[nodiscard]] Quantity parse_quantity(const std::string& text);
 
 }  // namespace ricochet

@@ -17,7 +17,7 @@ Turn read_turn(const SectionReader& reader) {
   return turn;
 }
 
-/// Turns and move.
+/// Reads rotations and translation.
 Placement read_placement(const SectionReader& reader) {
   Placement placement;
   for (const SectionReader& turn : reader.tables("turn")) placement.turns.push_back(read_turn(turn));
@@ -56,7 +56,7 @@ bool moves(const SectionReader& reader) {
   return reader.is_given("velocity") || reader.is_given("spin");
 }
 
-/// The velocity with what a body has gained that fell from rest through its drop_height.
+/// Adds to the velocity that of a free fall from rest through drop_height.
 std::vector<double> with_drop(std::vector<double> velocity, const SectionReader& reader, double height,
                               const std::vector<double>& gravity) {
   if (!reader.is_given("drop_height") || !reader.is_usable("drop_height")) return velocity;
@@ -69,7 +69,7 @@ std::vector<double> with_drop(std::vector<double> velocity, const SectionReader&
     return velocity;
   }
   velocity.resize(gravity.size(), 0.0);
-  // v = √(2gH) in units whose squares may be out of range.
+  // v = √(2gH), for units in which squares may be out of range.
   const double speed = std::sqrt(2.0 * size) * std::sqrt(height);
   for (std::size_t k = 0; k < gravity.size(); ++k) velocity[k] += speed * (gravity[k] / size);
   return velocity;

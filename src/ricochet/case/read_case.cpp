@@ -37,7 +37,7 @@ std::string read_text(const std::string& path) {
   return text;
 }
 
-// Locations and texts of everything below a node. Vectors and lists of names are one value, lists of tables are not.
+// Lists locations and texts below a node. Vectors and lists of names are one value, lists of tables are not.
 void list_values(const TomlNode& node, const std::string& path, Case& result) {
   if (node.is_ignored) return;
   if (!path.empty() && !node.is_default) result.locations[path] = node.location;
@@ -56,7 +56,7 @@ bool is_identifier(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-/// Is the name a word of a text below a node?
+/// Returns whether the name is a word of a text below a node.
 bool mentions(const TomlNode& node, const std::string& name) {
   for (std::size_t at = node.text.find(name); at != std::string::npos; at = node.text.find(name, at + 1)) {
     const std::size_t end = at + name.size();
@@ -67,7 +67,7 @@ bool mentions(const TomlNode& node, const std::string& name) {
                      [&](const TomlNode& child) { return child.key != "parameters" && mentions(child, name); });
 }
 
-/// A misspelled parameter of --set would be a run with the old value.
+/// Warns, as a misspelt parameter of --set would leave the old value in effect.
 void warn_of_unused_parameters(const TomlNode& node, Problems& problems) {
   for (const TomlNode& child : node.children) {
     if (child.key != "parameters" || !child.is_table()) {
@@ -82,7 +82,7 @@ void warn_of_unused_parameters(const TomlNode& node, Problems& problems) {
   }
 }
 
-// `when` compares with what is in effect, wherever it comes from.
+// `when` compares with the values in effect, wherever they come from.
 void list_effective_values(const std::string& path, const Section& section, const Parameters& parameters,
                            Case& result) {
   for (const TypeKeys& type : section.types) {

@@ -12,7 +12,7 @@ std::string beside(const std::string& case_path, const std::string& file) {
   return (std::filesystem::path(case_path).parent_path() / file).lexically_normal().string();
 }
 
-/// Of two keys that say the same thing.
+/// Refuses two keys with the same meaning.
 void refuse_both(const SectionReader& reader, const char* key, const char* other) {
   if (reader.is_given(key) && reader.is_given(other))
     reader.add_problem(key, fmt::format("the obstacle has \"{}\" already: leave \"{}\" out", other, key));

@@ -5,7 +5,7 @@
 
 namespace ricochet {
 
-/// Files are beside the case file, at `case_path`.
+/// Paths of files are relative to the case file, `case_path`.
 [[nodiscard]] ObstacleSection read_obstacle(const SectionReader& reader, const std::string& case_path);
 
 }  // namespace ricochet

@@ -21,7 +21,7 @@ using namespace std::string_view_literals;
 
 namespace {
 
-// Readers of all entries of a list of sections; one reader for a plain section; none for what was refused.
+// Readers of all entries of a list of sections; one reader for a plain section; none for refused entries.
 class Sections {
  public:
   Sections(const TomlNode& root, Problems& problems) : root_(root), problems_(problems) {}
@@ -129,7 +129,7 @@ void check_obstacle_name(const SectionReader& reader, const char* key, const std
                                                      : fmt::format("the obstacles are {}", join_names(obstacles))));
 }
 
-// The same text under the same key in two entries of a list; with `together`, only where that key agrees, too.
+// Refuses the same text under the same key in two entries of a list; with `together`, only if that key agrees as well.
 void check_distinct(const std::vector<SectionReader>& readers, const std::string& section, const std::string& name,
                     const std::string& together = "") {
   for (std::size_t i = 0; i < readers.size(); ++i) {
@@ -147,7 +147,7 @@ void check_distinct(const std::vector<SectionReader>& readers, const std::string
   }
 }
 
-/// The keys of adaptive steps belong to them alone.
+/// Refuses the keys of adaptive steps for other steps.
 void read_adaptive_steps(const SectionReader& reader, TimeSection& time) {
   time.adaptive = reader.is_usable("step") && reader.text("step") == adaptive_steps;
   if (!time.adaptive) {
@@ -174,13 +174,13 @@ void read_adaptive_steps(const SectionReader& reader, TimeSection& time) {
     reader.add_problem("smallest", fmt::format("\"smallest\" is {}, above \"largest\", {}", time.smallest, time.step));
 }
 
-/// Operators have 1/h² and h²: of both a double must have all digits.
+/// Operators contain 1/h² and h²: both must be normal double numbers.
 bool has_square(double step) {
-  constexpr double largest_factor = 16.0;  // of 1/h² in a scheme
+  constexpr double largest_factor = 16.0;  // largest factor of 1/h² in a scheme
   return std::isnormal(step * step) && std::isnormal(largest_factor / (step * step));
 }
 
-/// Time is a whole number of the shortest steps, exactly. Of usable entries.
+/// Time must be an exact whole number of shortest steps. Requires usable entries.
 void check_smallest(const SectionReader& reader, const TimeSection& time) {
   if (!reader.is_given("smallest") || !reader.is_usable("smallest") || time.smallest > time.step) return;
   const double levels =
@@ -315,7 +315,7 @@ ExpectSection read_expectation(const SectionReader& reader) {
 
 void read_obstacles_and_contacts(const TomlNode& root, const Sections& sections, Case& result) {
   const TomlNode* obstacles = root.find("obstacle");
-  std::vector<std::string> names;  // refused ones too: a contact that names one is no second problem
+  std::vector<std::string> names;  // including refused ones: a contact that names one is not a separate problem
   if (obstacles != nullptr) {
     for (const TomlNode& obstacle : obstacles->children) names.push_back(obstacle.key);
   }

@@ -12,7 +12,7 @@ namespace {
 
 Json number_schema(const char* type, const Range& range) {
   Json schema{{"type", type}};
-  // Bounds are written as integers where they are, as a reader expects of "minimum": 1.
+  // Integer bounds are written as integers, as usual in "minimum": 1.
   const auto bound = [](double value) { return Json::parse(fmt::format("{}", value)); };
   if (range.above) schema["exclusiveMinimum"] = bound(*range.above);
   if (range.at_least) schema["minimum"] = bound(*range.at_least);
@@ -127,7 +127,7 @@ Json keys_schema(const std::vector<Key>& keys) {
   return schema;
 }
 
-// Exactly one set of keys, whole: each set comes with the refusal of every key of the others.
+// Requires exactly one set of keys, completely: each set excludes every key of the others.
 void add_alternatives(const KeySets& alternatives, Json& schema, bool may_lack = false) {
   if (alternatives.empty()) return;
   Json options = Json::array();
@@ -147,7 +147,7 @@ void add_alternatives(const KeySets& alternatives, Json& schema, bool may_lack =
   schema["oneOf"] = options;
 }
 
-// What holds for the entries of one type: which of its keys must be there, and which of the others' must not.
+// Conditions for entries of one type: its required keys must be present, and keys of other types absent.
 Json type_conditions(const Section& section, const TypeKeys& type) {
   Json then = Json::object(), required = Json::array(), foreign = Json::array();
   for (const Key& key : section.keys) {
@@ -190,8 +190,8 @@ Json section_schema(const Section& section) {
   return schema;
 }
 
-// Either a section with its required keys, or entries of the section that it gives way to, and none of the keys that
-// do.
+// Requires either a section with its required keys, or entries of the section that replaces it and none of its
+// replaceable keys.
 Json one_of_two(const Section& section) {
   Json required = Json::array(), given = Json::array();
   for (const Key& key : section.keys) {

@@ -100,7 +100,7 @@ std::string SectionReader::groups(const std::string& name,
   const std::vector<std::string> names = chosen(name);
   if (names.size() == 1) return names.front();
   std::string list = value_text(*node);
-  // ["a, b", "c"] and ["a", "b, c"] look the same.
+  // ["a, b", "c"] and ["a", "b, c"] have the same text.
   for (auto other = lists.find(list); other != lists.end() && other->second != names; other = lists.find(list))
     list += "'";
   lists[list] = names;
@@ -117,7 +117,7 @@ std::map<std::string, double> SectionReader::constants() const {
 
 Expression SectionReader::expression(const Key& key, const TomlNode& node) const {
   if (node.is_number()) return Expression(node.real);
-  // Parameters that were refused make every expression with them fail: one message is enough.
+  // Refused parameters make every expression that uses them fail: one message is enough.
   if (const TomlNode* parameters = table_.find("parameters"); parameters != nullptr && parameters->is_refused)
     return {};
   try {

@@ -30,7 +30,7 @@ void convert_table(const toml::table& table, const std::string& file, TomlNode& 
     child.key = std::string(key.str());
     child.key_location = location_of(key.source(), file);
   }
-  // toml++ sorts the members by name; the order of the file is what a reader of messages and results expects.
+  // toml++ sorts members by name; users of messages and results expect the order of the file.
   std::stable_sort(node.children.begin(), node.children.end(), stands_before);
 }
 
@@ -73,7 +73,7 @@ void set_location(TomlNode& node, const SourceLocation& location) {
   for (TomlNode& child : node.children) set_location(child, location);
 }
 
-// With a point, so that 1.0 is not taken for the integer 1.
+// Writes a decimal point, so that 1.0 is not read as the integer 1.
 std::string real_text(double value) {
   const std::string text = fmt::format("{}", value);
   return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
@@ -117,7 +117,7 @@ TomlNode parse_toml(const std::string& document, const std::string& file) {
 std::optional<TomlNode> parse_toml_value(const std::string& text, const SourceLocation& location) {
   try {
     TomlNode document = convert(toml::parse("value = " + text), location.file);
-    // A line break in the text could bring in more keys than the one that was meant.
+    // A line break in the text could introduce more keys than the intended one.
     if (document.children.size() != 1) return std::nullopt;
     TomlNode value = document.children.front();
     set_location(value, location);

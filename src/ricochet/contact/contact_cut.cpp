@@ -9,7 +9,7 @@ namespace ricochet {
 
 namespace {
 
-/// Rows of a matrix, in this order, with its columns where they go: those with −1 are left out.
+/// Extracts rows of a matrix, in this order, with its columns renumbered: those with number −1 are omitted.
 SparseRowMatrix cut_matrix(const SparseRowMatrix& whole, const std::vector<Index>& rows, Index columns,
                            const std::function<Index(Index)>& place) {
   std::vector<Eigen::Triplet<double>> entries;
@@ -24,7 +24,7 @@ SparseRowMatrix cut_matrix(const SparseRowMatrix& whole, const std::vector<Index
   return result;
 }
 
-/// Each with `per` rows.
+/// Returns the `per` rows of each point.
 std::vector<Index> rows_of(const std::vector<Index>& points, Index per) {
   std::vector<Index> result;
   for (const Index point : points) {

@@ -2,23 +2,23 @@
 
 #include "ricochet/contact/contact_boundary.hpp"
 
-/// @file Some points and nodes of a contact boundary, as a boundary of their own.
+/// @file Restriction of a contact boundary to some points and nodes, as a boundary of its own.
 namespace ricochet {
 
 struct ContactCut {
   std::vector<Index> points;       ///< of the whole boundary, ascending
   std::vector<Index> entries;      ///< of ContactBoundary::nodes, ascending
-  std::vector<Index> place_of;     ///< per node of the whole space: its number here, or −1
-  std::vector<Index> facet_place;  ///< per facet of the whole mesh: its number here, or −1
-  Index nodes = 0;                 ///< of the space here
+  std::vector<Index> place_of;     ///< per node of the whole space: its number in the part, or −1
+  std::vector<Index> facet_place;  ///< per facet of the whole mesh: its number in the part, or −1
+  Index nodes = 0;                 ///< number of nodes in the space of the part
 };
 
-/// The rows of the points reach nodes that are here. Nodes of the boundary know the pressure of the points that are
-/// here; from parts that have all points, each once, it adds up. Throws Error(invalid_input) where the contact is one
-/// between bodies.
+/// Restricts a boundary. The rows of the points must involve nodes of the part only. The pressure recovery of nodes is
+/// restricted to the points of the part; it sums to the whole over parts that contain each point once. Throws
+/// Error(invalid_input) for contact between bodies.
 [[nodiscard]] ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part);
 
-/// The same of a trace, points × nodes.
+/// Restricts a trace, points × nodes.
 [[nodiscard]] SparseRowMatrix cut_trace(const SparseRowMatrix& whole, const ContactCut& part);
 
 }  // namespace ricochet

@@ -8,7 +8,7 @@ namespace ricochet {
 
 namespace {
 
-/// d × (d−1) orthonormal directions that complete the normal; in 2D (1, 0) for the normal (0, 1).
+/// Returns d × (d−1) orthonormal directions that complete the normal; in 2D (1, 0) for the normal (0, 1).
 Points tangents_of(const Vector& normal) {
   Points result(normal.size(), normal.size() - 1);
   if (normal.size() == 2) {
@@ -32,7 +32,7 @@ bool has_free_part(Index node, const Vector& normal, const FreeComponent& is_fre
   for (int k = 0; k < normal.size(); ++k) {
     if (is_free(node, k)) free_part = std::max(free_part, std::abs(normal[k]));
   }
-  // A unit vector: the bound has no unit. Below it the remaining part of the normal is rounding.
+  // The bound applies to a unit vector and has no unit. Below it the free part of the normal is rounding error.
   return free_part > 1e-10;
 }
 
@@ -50,7 +50,7 @@ ContactTangents tangents_at(Index node, const Vector& normal, const FreeComponen
   } else if (held == 1 && normal.size() == 3) {
     const Eigen::Vector3d n = normal;
     const Eigen::Vector3d slip = n.cross(Eigen::Vector3d::Unit(axis));
-    // A normal along the held axis belongs to a held node, which is no contact point.
+    // A normal along the constrained axis belongs to a constrained node, which is no contact point.
     if (slip.norm() == 0.0) return result;
     result.directions.col(0) = slip.normalized();
     result.directions.col(1) = n.cross(Eigen::Vector3d(result.directions.col(0)));

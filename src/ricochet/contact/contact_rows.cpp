@@ -16,7 +16,7 @@ SpaceVector ContactRows::force(Index point, const Vector& normal, const Vector& 
 }
 
 void ContactRows::add_force(const Vector& normal, const Vector& tangential, Vector& force) const {
-  // Row by row: few points carry a force, and nothing is allocated.
+  // Row by row: few points carry a force, and this avoids allocations.
   for (Index i = 0; i < normal.size(); ++i) {
     if (normal[i] != 0.0) visit_normal(i, [&](Index dof, double value) { force[dof] += value * normal[i]; });
   }

@@ -12,7 +12,7 @@ namespace ricochet {
 
 namespace {
 
-/// Of a block of cells: the rule of the stiffness, and the shape functions at the nodes of the displacement.
+/// For a block of cells: the rule of the stiffness, and the shape functions at the nodes of the displacement.
 struct BlockRules {
   BlockIntegration stiffness;
   Tabulation geometry, displacement;
@@ -25,13 +25,13 @@ struct BlockRules {
   }
 };
 
-/// A facet of the contact boundary: the cell behind it, and its area.
+/// Facet of the contact boundary: the cell behind it, and its area.
 struct FacetData {
   Index cell = 0;
   double area = 0.0;
 };
 
-/// What a point takes of the stress vector at a node of a facet: s_i = Σ share · (force of it).
+/// Contribution to a point of the stress vector at a node of a facet: s_i = Σ share · (row · u).
 struct Share {
   Index point = 0;
   double share = 0.0;
@@ -124,8 +124,8 @@ class StressRows {
     }
   }
 
-  /// The part of the hoop strain u_x/x at a node: `own` of its cell, where alone φ is not zero. On the axis the strain
-  /// is ∂u_x/∂x.
+  /// Adds the contribution of the hoop strain u_x/x at a node, whose number in its cell is `own`: only φ of this node
+  /// is not zero there. On the axis the strain is ∂u_x/∂x.
   void add_hoop(Index node, Index own, double factor, const Eigen::Matrix<double, Eigen::Dynamic, d>& gradients,
                 Vector& row) const {
     if (!is_on_axis(body_, node)) {
@@ -135,7 +135,7 @@ class StressRows {
     for (Index b = 0; b < gradients.rows(); ++b) row[b * d] += factor * gradients(b, 0);
   }
 
-  /// Of the shape functions of a cell, at one of its nodes.
+  /// Gradients of the shape functions of a cell, at one of its nodes.
   Eigen::Matrix<double, Eigen::Dynamic, d> gradients_at(const PlaceInBlocks& in, Index node) const {
     const BlockRules& rules = cells_[in.block];
     const auto at = static_cast<std::size_t>(node);
@@ -144,7 +144,7 @@ class StressRows {
            jacobian<d>(body_.mesh->nodes, nodes, rules.geometry.gradients[at]).inverse();
   }
 
-  /// Of the facet `at` of the cell `in`, out of the cell, at a node of the facet.
+  /// Normal of the facet `at` of the cell `in`, out of the cell, at a node of the facet.
   Space normal_at(const PlaceInBlocks& at, Index node, const PlaceInBlocks& in) const {
     const CellBlock& geometry = body_.mesh->facets[at.block];
     const auto along = jacobian<d, d - 1>(body_.mesh->nodes, geometry.cell(at.local),
@@ -166,7 +166,7 @@ class StressRows {
     return normal.dot(here - centre) < 0.0 ? Space(-normal) : normal;
   }
 
-  /// The largest Σ |share| s² of a displacement of the cell with uᵀK_cell u = 1.
+  /// Largest Σ |share| s² over displacements of the cell with uᵀK_cell u = 1.
   double largest_of_cell(const PlaceInBlocks& place, Index cell, const std::vector<Share>& all) const {
     if (all.empty()) return 0.0;
     const CellBlock& geometry = body_.mesh->cells[place.block];
@@ -187,7 +187,7 @@ class StressRows {
     Matrix rows(static_cast<Index>(all.size()), stiffness.cols());
     for (std::size_t k = 0; k < all.size(); ++k)
       rows.row(static_cast<Index>(k)) = std::sqrt(std::abs(all[k].share)) * all[k].row.transpose();
-    // In the eigenvectors of K_cell but for its rigid motions, which have no stress.
+    // Uses the eigenvectors of K_cell except its rigid motions, which cause no stress.
     const SymmetricEigen eigen = symmetric_eigen(stiffness);
     const Index rigid = is_axisymmetric(body_) ? 1 : d * (d + 1) / 2, rest = stiffness.cols() - rigid;
     const Matrix scaled =
@@ -202,7 +202,7 @@ class StressRows {
   std::vector<Tabulation> facet_maps_;  ///< per block of facets: the geometry at the nodes of the displacement
   std::vector<FacetData> facets_;
   std::map<Index, double> area_;                                   ///< of the contact facets around a node
-  std::map<Index, std::vector<std::pair<Index, double>>> points_;  ///< that see a node, with c
+  std::map<Index, std::vector<std::pair<Index, double>>> points_;  ///< whose trace contains a node, with c
 };
 
 }  // namespace

@@ -15,10 +15,10 @@ namespace ricochet {
 namespace {
 
 constexpr char node_open = 0, node_pressed = 1, node_unknown = 2;
-/// Most corners of the pressed part of a facet: all border nodes of degree 2, and as many crossings.
+/// Upper bound on the corners of the part of a facet in contact: all border nodes of degree 2, and as many crossings.
 constexpr std::size_t most_corners = 16;
 
-/// E/(1 − ν²) of a cell; in plane stress E.
+/// Plate modulus E/(1 − ν²) of a cell; in plane stress E.
 double plate_modulus(const Body& body, Index cell) {
   const Material& material = material_of(body, cell);
   const double poisson = is_plane_stress(body) ? 0.0 : material.poisson();
@@ -68,7 +68,7 @@ class ContactSurface::Builder {
   }
 
  private:
-  /// Pairs of one obstacle share their contact points.
+  /// Pairs with the same obstacle share their contact points.
   int patch_of(std::size_t pair) {
     for (std::size_t before = 0; before < pair; ++before) {
       if (pairs_[pair].obstacle != nullptr && pairs_[before].obstacle == pairs_[pair].obstacle)
@@ -89,7 +89,7 @@ class ContactSurface::Builder {
       const auto pair = static_cast<std::size_t>(boundary_.node_pair[entry]);
       const Index node = boundary_.nodes[entry];
       if (boundary_.is_opposite[entry] != 0 || surface_.patch_of_pair_[pair] != patch) continue;
-      if (!result.empty() && result.back().node == node) continue;  // of a further pair
+      if (!result.empty() && result.back().node == node) continue;  // from another pair
       const auto slot = slot_of_.find(node);
       result.push_back(
           {static_cast<Index>(entry), node, slot != slot_of_.end() ? static_cast<Index>(slot->second) : Index{-1}});
@@ -156,7 +156,7 @@ class ContactSurface::Builder {
   const ContactBoundary& boundary_;
   ContactSurface& surface_;
   int patches_ = 0;
-  std::map<Index, std::size_t> slot_of_;  ///< of the patch that is gathered
+  std::map<Index, std::size_t> slot_of_;  ///< of the current patch
   std::vector<Index> place_of_node_;      ///< nodes of the mesh
   std::vector<Eigen::Triplet<double>> of_points_;
 };
@@ -201,13 +201,13 @@ void ContactSurface::find_stretch(const Vector& displacement, Vector& area_of_sl
   }
 }
 
-/// Finds what the nodes of a pair's patch do. Each rank knows its own points.
+/// Determines the states of the nodes of a pair's patch. Each rank contributes its own points.
 void ContactSurface::find_states(int pair, const ContactView& view, Work& work) const {
   const ContactBoundary& boundary = view.boundary;
   const auto patch = static_cast<std::size_t>(patch_of_pair_[static_cast<std::size_t>(pair)]);
   const std::size_t first = first_slot_of_patch_[patch], last = first_slot_of_patch_[patch + 1];
-  constexpr Index numbers = 5;  // pressure, points that are open, all points, sum of the gaps, how many have one
-  // Ranks put their numbers together per node.
+  constexpr Index numbers = 5;  // pressure, number of open points, number of points, sum of the gaps, number of gaps
+  // Ranks sum their numbers per node.
   const bool several = view.ranks.are_several();
   const auto place = [&](std::size_t slot) {
     return numbers * (several ? slots_[slot].node : static_cast<Index>(slot - first));
@@ -219,8 +219,8 @@ void ContactSurface::find_states(int pair, const ContactView& view, Work& work) 
     sums[0] = view.nominal_pressure[entry];
     sums[3] = view.gap[entry];
     sums[4] = 1.0;
-    // A point that bears nothing may be closed all the same, as vertices where nodal forces of degree 2 are borne by
-    // the middles alone, and facets whose neighbours bear more: its gap says so.
+    // A point without a force may be closed nonetheless, e.g. a vertex with nodal forces of degree 2, where only
+    // mid-side nodes carry forces, or a facet whose neighbours carry more: its gap decides.
     const auto add = [&](Index point) {
       const bool closed = view.normal_reaction[point] > 0.0 || view.gap[entry] <= view.rows.gap_rounding[point];
       sums[1] += closed ? 0.0 : 1.0;
@@ -241,12 +241,12 @@ void ContactSurface::find_states(int pair, const ContactView& view, Work& work) 
     const double* const sums = work.exchanged.data() + place(slot);
     const auto at = static_cast<Index>(slot);
     work.pressure[at] = sums[0];
-    work.gap[at] = sums[3] / sums[4];  // NaN: none has it
+    work.gap[at] = sums[3] / sums[4];  // NaN if no rank has it
     work.state[slot] = sums[2] == 0.0 ? node_unknown : sums[0] > 0.0 && sums[1] == 0.0 ? node_pressed : node_open;
   }
 }
 
-/// Returns the part of the way from a pressed node to an open one that is pressed; both are numbers of slots.
+/// Returns the fraction in contact of the edge from a node in contact to an open one; both are numbers of slots.
 double ContactSurface::covered(const Facet& facet, std::size_t from, std::size_t to, const Work& work) const {
   const auto inner = static_cast<Index>(from), outer = static_cast<Index>(to);
   const double gap = work.gap[outer];
@@ -293,7 +293,7 @@ double ContactSurface::part_of_polygon(const Facet& facet, const Work& work, con
   return sum;
 }
 
-/// Nodes without a contact point, which supports hold, are pressed where all others of the facet are.
+/// Nodes without a contact point, being supported, count as in contact if all others of the facet are.
 void ContactSurface::add_part(const Facet& facet, const ContactView& view, const Work& work, Area& sum) const {
   bool any = false, all = true;
   for (std::size_t k = 0; k < shapes_[facet.shape].border.size(); ++k) {

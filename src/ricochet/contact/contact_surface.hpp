@@ -7,28 +7,29 @@
 #include "ricochet/contact/contact_boundary.hpp"
 #include "ricochet/fem/facet_area.hpp"
 
-/// @file Areas of the contact boundary, for reports: how much of it is pressed, and how much it has grown.
+/// @file Areas of the contact boundary, for output: the area in contact, and the growth of the surface.
 ///
-/// A facet counts with the part of it that is pressed. A node is pressed where its own contact point presses, or, as
-/// under "p0", all points do that its pressure comes from. A facet of pressed nodes counts whole. Between a pressed
-/// node, of pressure p, and an open one, of gap g, at a distance h, the contact ends at the part θ of the edge. Near
-/// the border of contact of smooth bodies, at a distance s from it, p = ½E* c √s inside and g = ⅔ c s^{3/2} outside
-/// (the limit of Hertz' solution, and of every one whose pressure fades there; K. L. Johnson, Contact Mechanics, 1985,
-/// §4.2), 1/E* the sum of (1 − ν²)/E of both bodies. With s = θh and (1 − θ)h the unknown c drops out:
+/// A facet contributes the part of it that is in contact. A node is in contact if its own contact point is, or, as
+/// under "p0", if all points are from which its pressure is recovered. A facet of nodes in contact counts as a
+/// whole. Between a node in contact, of pressure p, and an open one, of gap g, at a distance h, the contact ends at
+/// the part θ of the edge. Near the border of contact of smooth bodies, at a distance s from it, p = ½E* c √s
+/// inside and g = ⅔ c s^{3/2} outside (the limit of Hertz' solution, and of every one whose pressure vanishes
+/// there; K. L. Johnson, Contact Mechanics, 1985, §4.2), 1/E* the sum of (1 − ν²)/E of both bodies. With s = θh and
+/// (1 − θ)h the unknown c cancels:
 ///   ¾ √θ / (1 − θ)^{3/2} = p h / (E* g).
-/// The border is off by a part of one facet, so the error of the area falls at least with h.
+/// The border is inaccurate by a fraction of one facet, so that the error of the area decreases at least with h.
 ///
 /// With laws of finite strain areas are those of the deformed surface; r_i A_i/a_i, A_i and a_i the areas of the facets
-/// around a point before and after, then gives true (Cauchy) pressures in place of nominal ones.
+/// around a point before and after deformation, then yields true (Cauchy) instead of nominal pressures.
 namespace ricochet {
 
-/// The contact of an instant, as a sensor sees it.
+/// Contact at an instant, as input for a sensor.
 struct ContactView {
   const ContactBoundary& boundary;
   const ContactRows& rows;
   const Vector& normal_reaction;   ///< per contact point
   const Vector& gap;               ///< per entry of boundary.nodes
-  const Vector& nominal_pressure;  ///< likewise; of several ranks a part
+  const Vector& nominal_pressure;  ///< likewise; with several ranks the local contribution
   const Vector& displacement;      ///< d per node of the body
   const Ranks& ranks;
 };
@@ -36,46 +37,46 @@ struct ContactView {
 class ContactSurface {
  public:
   struct Area {
-    double now = 0.0;      ///< of the deformed surface; at small strain `nominal`
+    double now = 0.0;      ///< of the deformed surface; at small strain equal to `nominal`
     double nominal = 0.0;  ///< of the undeformed surface
   };
-  /// What pressed_area works in. Of the slots only those of the pair's patch are set.
+  /// Work space of pressed_area(). Only the slots of the pair's patch are set.
   struct Work {
-    Vector exchanged;         ///< five sums per slot of the patch; of several ranks per node of the body
-    Vector pressure, gap;     ///< per slot; a gap that no rank has is NaN
-    std::vector<char> state;  ///< per slot: open, pressed or unknown
+    Vector exchanged;         ///< five sums per slot of the patch; with several ranks per node of the body
+    Vector pressure, gap;     ///< per slot; NaN for a gap that no rank has
+    std::vector<char> state;  ///< per slot: open, in contact or unknown
   };
 
-  /// Keeps copies of all that it needs.
+  /// Copies all data that it needs.
   ContactSurface(const Body& body, const std::vector<ContactPair>& pairs, const ContactBoundary& boundary);
 
-  /// Returns whether laws are of finite strain, so that true and nominal pressures differ.
+  /// Whether laws are of finite strain, so that true and nominal pressures differ.
   [[nodiscard]] bool deforms() const { return deforms_; }
-  /// a_i/A_i per contact point. Allocates nothing after the first time.
+  /// Computes a_i/A_i per contact point. Does not allocate after the first call.
   void find_stretch(const Vector& displacement, Vector& area_of_slots, Vector& stretch) const;
-  /// Area of the pressed part of a pair's facets, on the side that carries the multipliers; of several ranks that of
-  /// the facets of this one. All ranks call it together. Allocates nothing after the first time.
+  /// Area in contact of a pair's facets, on the side that carries the multipliers; with several ranks that of the local
+  /// facets. Collective over the ranks. Does not allocate after the first call.
   [[nodiscard]] Area pressed_area(int pair, const ContactView& view, Work& work) const;
 
  private:
   struct Facet {
     std::size_t shape;
-    std::size_t first_slot, first_place;  ///< of its nodes in slots_, and of its geometry in places_
+    std::size_t first_slot, first_place;  ///< of its nodes in slots_of_facets_, and of its geometry in places_
     double area, modulus;                 ///< E*
   };
-  /// A node of a patch of facets whose pairs share their contact points.
+  /// Node of a patch of facets whose pairs share their contact points.
   struct Slot {
     Index node;
-    double area;  ///< share of the facets around it
+    double area;  ///< of the facets around it, the node's share
   };
-  /// A node of the boundary. Of several ranks one may know of its contact though the facets around it are others'.
+  /// Node of the boundary. With several ranks, a rank may have its contact data but none of the facets around it.
   struct Entry {
     Index entry, node;
-    Index slot;  ///< −1: in no facet of this rank
+    Index slot;  ///< −1 if in no local facet
   };
   class Builder;
 
-  /// `displacement` null: undeformed.
+  /// Integrator of the area of a facet; undeformed if `displacement` is null.
   [[nodiscard]] FacetArea measure(const Facet& facet, const Vector* displacement) const;
   void find_states(int pair, const ContactView& view, Work& work) const;
   [[nodiscard]] std::size_t border_slot(const Facet& facet, std::size_t k) const {
@@ -96,13 +97,13 @@ class ContactSurface {
   std::vector<Slot> slots_;
   std::vector<std::vector<Entry>> entries_of_patch_;
   std::vector<std::size_t> slots_of_facets_;
-  Points places_, node_places_;  ///< of the geometry, and per slot
+  Points places_, node_places_;  ///< positions of the nodes of the geometry, and per slot
   Index nodes_;
   /// Points × slots: c.
   SparseRowMatrix slots_of_points_;
 };
 
-/// θ of the equation above for ρ = p h / (E* g); 1 for infinity.
+/// Solves the equation above for θ, with `ratio` ρ = p h / (E* g); 1 for infinity.
 [[nodiscard]] double pressed_part_of_edge(double ratio);
 
 }  // namespace ricochet

@@ -12,10 +12,11 @@ namespace ricochet {
 
 namespace {
 
-/// Gaps up to so many times what they have changed by: points that may touch soon.
+/// Points with gaps up to this multiple of the last change of the gaps are updated, because
+/// they may soon come into contact.
 constexpr double ahead = 4.0;
 
-/// The obstacles where they are at an instant.
+/// Obstacles at their positions at an instant.
 class Placing {
  public:
   Placing(const std::vector<const Obstacle*>& obstacles, double time, const Vector& displacement) {
@@ -29,7 +30,7 @@ class Placing {
   }
 
  private:
-  std::array<std::optional<PlacedObstacle>, 8> few_;  ///< without allocation
+  std::array<std::optional<PlacedObstacle>, 8> few_;  ///< stored without allocation
   std::vector<PlacedObstacle> others_;
 };
 
@@ -87,7 +88,7 @@ class CurvedContact final : public ContactGeometry {
     }
   }
 
-  /// The torque on a rigid body is that of the force at the place of the point.
+  /// The torque on a rigid body is that of the force at the position of the point.
   void add_couples(const Vector& place, const ContactRows& rows, const Vector& normal, const Vector& tangential,
                    Vector& force) const override {
     const Index d = dimension();
@@ -109,7 +110,7 @@ class CurvedContact final : public ContactGeometry {
     }
   }
 
-  /// The entries of rigid bodies that move freely.
+  /// Number of row entries of free rigid bodies.
   [[nodiscard]] Index row_value_count() const override {
     Index count = 0;
     for (const CurvedContactData::Point& point : data_.points)
@@ -144,8 +145,7 @@ class CurvedContact final : public ContactGeometry {
 
  private:
   [[nodiscard]] Index dimension() const { return data_.node_positions.rows(); }
-  /// visit(the last 2d entries of a row) for the row of G and those of B_T of each point at a rigid body that moves
-  /// freely.
+  /// Calls visit(the last 2d entries of a row) for the row of G and those of B_T of each point at a free rigid body.
   template <class Rows, class Visit>
   void visit_body_entries(Rows& rows, const Visit& visit) const {
     const Index d = dimension();
@@ -156,7 +156,7 @@ class CurvedContact final : public ContactGeometry {
         visit(rows.tangential_trace.valuePtr() + rows.tangential_trace.outerIndexPtr()[row + 1] - 2 * d);
     }
   }
-  /// Null: none at a curved obstacle.
+  /// Returns null for a node that is not at a curved obstacle.
   [[nodiscard]] const CurvedContactData::Node* find_node(Index entry) const {
     const auto found = std::lower_bound(data_.nodes.begin(), data_.nodes.end(), entry,
                                         [](const CurvedContactData::Node& node, Index e) { return node.entry < e; });
@@ -173,7 +173,7 @@ class CurvedContact final : public ContactGeometry {
     return result;
   }
 
-  /// Tangents, and the values of the rows of G and B_T, whose pattern is that of the trace.
+  /// Writes the tangents, and the values of the rows of G and B_T, whose pattern is that of the trace.
   void write_rows(const CurvedContactData::Point& point, const SpaceVector& normal, ContactRows& rows) const {
     if (rows.normals.col(point.number) == normal) return;
     rows.revision[static_cast<std::size_t>(point.number)] = revision_;
@@ -184,7 +184,7 @@ class CurvedContact final : public ContactGeometry {
     }
   }
 
-  /// Of an obstacle that moves freely: less what its point there moves by. Its nodes are the last of a row.
+  /// Writes the entries for a free rigid body: minus the motion of its material point. Its nodes are the last of a row.
   void write_body(const CurvedContactData::Point& point, const FreeMotion& body, const SpaceVector& arm,
                   const Pose::Rotation& axes, ContactRows& rows) const {
     rows.revision[static_cast<std::size_t>(point.number)] = revision_;
@@ -204,8 +204,8 @@ class CurvedContact final : public ContactGeometry {
   }
 
   CurvedContactData data_;
-  mutable Vector gap_;         ///< at the look before
-  mutable long revision_ = 0;  ///< of the last update: no two rows that differ have the same
+  mutable Vector gap_;         ///< at the previous update
+  mutable long revision_ = 0;  ///< number of the last update; different rows never share it
 };
 
 std::unique_ptr<ContactGeometry> CurvedContact::cut(const ContactCut& part) const {

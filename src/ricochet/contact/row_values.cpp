@@ -9,7 +9,7 @@ namespace {
 
 using Values = Eigen::Map<const Eigen::VectorXd>;
 
-/// Of rows first … last − 1.
+/// Values of rows first … last − 1.
 Values values_between(const SparseRowMatrix& rows, Index first, Index last) {
   const Index begin = rows.outerIndexPtr()[first];
   return {rows.valuePtr() + begin, rows.outerIndexPtr()[last] - begin};
@@ -22,7 +22,7 @@ bool reach_the_same(const SparseRowMatrix& one, const SparseRowMatrix& other, In
   return std::equal(columns, columns + count, other.innerIndexPtr() + other.outerIndexPtr()[first]);
 }
 
-/// The largest value of a row, and the largest difference of one and another.
+/// Largest value of a row, and largest difference between two rows.
 struct RowSizes {
   double size = 0.0, difference = 0.0;
 };

@@ -5,16 +5,16 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file Rows of a sparse matrix that reach other columns than before.
+/// @file Replacement of rows of a sparse matrix with a change of pattern.
 namespace ricochet {
 
 class RowWriter {
  public:
   using Entries = std::vector<std::pair<Index, double>>;
 
-  /// Row `row` is to have these entries, ascending by columns.
+  /// Schedules the entries of a row, ascending by columns.
   void set(Index row, const Entries& entries);
-  /// Writes what has been set since the last time. Whether anything changed; `changed`: per row, is set to 1 where.
+  /// Writes all scheduled rows. Returns whether anything changed; sets `changed` to 1 for each changed row.
   bool write(SparseRowMatrix& matrix, std::vector<char>& changed);
 
  private:

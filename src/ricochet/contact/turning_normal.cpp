@@ -9,12 +9,12 @@ namespace ricochet {
 
 namespace {
 
-/// Cosine of the angle between a facet's normal and a direction below which the facet says nothing about it.
+/// Cosine of the angle between a facet's normal and a direction below which the facet is excluded.
 constexpr double least_cosine = 0.2;
-/// Volume of the unit vectors that N is made of, below which they are taken for dependent.
+/// Volume of the unit vectors that span N below which they count as linearly dependent.
 constexpr double least_independent = 0.05;
 
-/// Eigenvectors across `normal` of a symmetric matrix.
+/// Returns the eigenvectors, perpendicular to `normal`, of a symmetric matrix.
 std::pair<TurningNormal::Three, TurningNormal::Three> axes_across(const TurningNormal::Three& normal,
                                                                   const Eigen::Matrix3d& metric) {
   const TurningNormal::Three one = normal.unitOrthogonal(), other = normal.cross(one);
@@ -51,7 +51,7 @@ void TurningNormal::add_facet(const DisplacementSpace& space, Index facet, const
   } else if (block.shape == CellShape::triangle) {
     area = {{nodes[0], nodes[1]}, {nodes[0], nodes[2]}, 0.5};
   } else {
-    // The diagonals; vertices of quadrilaterals are numbered like a table (reference_cell.hpp).
+    // The diagonals; vertices of quadrilaterals are numbered row by row (reference_cell.hpp).
     area = {{nodes[0], nodes[3]}, {nodes[1], nodes[2]}, 0.5};
   }
   const Three value = area.factor * vector(area.one, space.nodes, {}).cross(vector(area.other, space.nodes, {}));
@@ -61,9 +61,10 @@ void TurningNormal::add_facet(const DisplacementSpace& space, Index facet, const
   crosses_.push_back(area);
 }
 
-/// s and c, by sums over all facets and all their edges: the order of facets and of their nodes does not matter.
+/// Computes s and c from sums over all facets and all their edges, so that the order of facets and
+/// of their nodes does not matter.
 void TurningNormal::fit(const DisplacementSpace& space, const Three& direction) {
-  std::vector<Three> weights;  // with which c gives the factors of lines
+  std::vector<Three> weights;  // whose products with c are the factors of the lines
   Eigen::Matrix3d metric = Eigen::Matrix3d::Zero();
   const auto add = [&](const Edge& edge, const Three& value, const Three& weight) {
     lines_.push_back({edge, 0.0});
@@ -72,19 +73,19 @@ void TurningNormal::fit(const DisplacementSpace& space, const Three& direction) 
   };
   for (const Cross& cross : crosses_) {
     const Three one = vector(cross.one, space.nodes, {}), other = vector(cross.other, space.nodes, {});
-    const bool is_triangle = cross.one.from == cross.other.from;  // whose third edge is the difference
+    const bool is_triangle = cross.one.from == cross.other.from;  // its third edge is the difference
     add(cross.one, one, is_triangle ? Three(2.0 * one - other) : one);
     if (cross.other.from >= 0) add(cross.other, other, is_triangle ? Three(2.0 * other - one) : other);
   }
   const Three sum = at(space.nodes, {}), normal = sum.normalized();
-  // In two dimensions one of the axes is that across the plane, along which nothing is asked for.
+  // In 2D one of the axes is normal to the plane; no component along it is required.
   if (space.dimension == 2) metric(2, 2) = metric.trace();
   const auto [one, other] = axes_across(normal, metric);
   Eigen::Matrix3d basis;
   basis << sum, metric * one, metric * other;
   const Eigen::Vector3d lengths = basis.colwise().norm();
   const Eigen::Matrix3d units = basis * lengths.cwiseInverse().asDiagonal();
-  // Where the facets around fold so that edges are along the sum of area vectors.
+  // The facets around the point fold so that edges are parallel to the sum of area vectors.
   if (!(std::abs(units.determinant()) > least_independent)) {
     crosses_.clear();
     lines_.clear();

@@ -5,41 +5,40 @@
 
 #include "ricochet/fem/assembly.hpp"
 
-/// @file A direction that turns with a surface.
+/// @file Direction that rotates with a surface.
 namespace ricochet {
 
-/// N(x) of the positions x = X + U of a few nodes, with the facets f of a surface around a point and their edges e_k
-/// (of quadrilaterals their diagonals):
+/// N(x) as a function of the positions x = X + U of a few nodes, with the facets f of a surface around a point and
+/// their edges e_k (of quadrilaterals their diagonals):
 ///   N(x) = s Σ_f ± a_f(x) + Σ_k β_k e_k(x),   β_k = c · e_k(X),
-/// a_f the area vector between the vertices of a facet (in two dimensions the edge turned by a right angle), which
-/// makes N linear in x in two dimensions and quadratic in three. The number s and the vector c, which is across
-/// Σ_f ± a_f(X), are those with which N(X) is a given unit vector. Whatever they are, N turns with a surface that
-/// turns, and no translation changes it; no order of facets or nodes matters. Everything has three coordinates; in two
-/// dimensions the third is 0.
+/// a_f the area vector between the vertices of a facet (in 2D the edge rotated by a right angle), so that N is linear
+/// in x in 2D and quadratic in 3D. The number s and the vector c, which is perpendicular to Σ_f ± a_f(X), are chosen so
+/// that N(X) is a given unit vector. For any s and c, N rotates with the surface, and no translation changes it; the
+/// order of facets or nodes does not matter. All vectors have three components; in 2D the third is 0.
 class TurningNormal {
  public:
   using Three = Eigen::Vector3d;
 
-  /// Always `direction` (d).
+  /// Constant `direction` (d).
   explicit TurningNormal(const Vector& direction);
-  /// `direction`: N at X, of length 1. Facets (numbered through all blocks) that are seen nearly edge-on along it have
-  /// no part; where all are, or where edges are along the sum of area vectors, N does not turn.
+  /// `direction`: N at X, of length 1. Facets (numbered through all blocks) seen nearly edge-on along it are excluded;
+  /// if all are, or if edges are parallel to the sum of area vectors, N does not rotate.
   TurningNormal(const DisplacementSpace& space, const std::vector<Index>& facets, const Vector& direction);
 
-  /// Half of each: N of two surfaces that face each other. One that does not turn has no part.
+  /// Mean of the N of two surfaces that face each other. One that does not rotate is excluded.
   [[nodiscard]] static TurningNormal mean(const TurningNormal& one, const TurningNormal& other);
 
   [[nodiscard]] bool turns() const { return !crosses_.empty(); }
-  /// The nodes that N depends on, each at least once.
+  /// Nodes on which N depends, each at least once.
   [[nodiscard]] std::vector<Index> nodes() const;
-  /// N at X + U; `nodes`: X, d × count; `displacement`: empty: none.
+  /// N at X + U; `nodes`: X, d × count; `displacement`: zero if empty.
   [[nodiscard]] Three at(const Points& nodes, const Vector& displacement) const;
-  /// Calls visit(node, (∂N/∂x_node)ᵀ w) at X + U for all nodes that N depends on, some of them more than once.
+  /// Calls visit(node, (∂N/∂x_node)ᵀ w) at X + U for all nodes on which N depends, some of them more than once.
   template <class Visit>
   void visit_derivative(const Points& nodes, const Vector& displacement, const Three& w, const Visit& visit) const;
 
  private:
-  /// x_to − x_from; without nodes the unit vector across the plane.
+  /// x_to − x_from; if from < 0 the unit vector normal to the plane.
   struct Edge {
     Index from = -1, to = -1;
   };

@@ -12,7 +12,8 @@ using Three = Eigen::Vector3d;
 using Point = TurningPairsData::Point;
 using Node = TurningPairsData::Node;
 
-/// Gaps up to so many times what they have changed by: points that may touch soon.
+/// Points with gaps up to this multiple of the last change of the gaps are updated, because
+/// they may soon come into contact.
 constexpr double ahead_of_pairs = 4.0;
 
 class TurningPairs final : public ContactGeometry {
@@ -109,7 +110,7 @@ class TurningPairs final : public ContactGeometry {
   }
 
  private:
-  /// Null: none that faces another body.
+  /// Returns null for a node that faces no other body.
   [[nodiscard]] const Node* find_node(Index entry) const {
     const auto found = std::lower_bound(data_.nodes.begin(), data_.nodes.end(), entry,
                                         [](const Node& node, Index e) { return node.entry < e; });
@@ -122,7 +123,7 @@ class TurningPairs final : public ContactGeometry {
     for (Index k = 0; k < d; ++k) result[k] = data_.node_positions(k, node) + displacement[node * d + k];
     return result;
   }
-  /// y.
+  /// Returns y.
   [[nodiscard]] Three across(const Point& point, const Vector& displacement) const {
     Three result = Three::Zero();
     for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry)
@@ -140,7 +141,7 @@ class TurningPairs final : public ContactGeometry {
     return rows.gap_operator.valuePtr() + rows.gap_operator.outerIndexPtr()[point.number];
   }
 
-  /// G of the step, and its direction in normal_; middle_ is the middle of the step.
+  /// Computes G of the step, and its direction in normal_; middle_ must be the middle of the step.
   const Vector& row_of_step(const Point& point, const Vector& before, const Vector& after) const {
     const Index d = dimension();
     row_.setZero(static_cast<Index>(point.nodes.size()) * d);
@@ -164,7 +165,7 @@ class TurningPairs final : public ContactGeometry {
     return row_;
   }
 
-  /// Tangents, and the values of the rows of G and B_T.
+  /// Writes the tangents, and the values of the rows of G and B_T.
   void write_rows(const Point& point, const SpaceVector& normal, const Vector& row, ContactRows& rows) const {
     Eigen::Map<Vector> gap_row(row_begin(point, rows), row.size());
     if (gap_row == row) return;
@@ -174,10 +175,10 @@ class TurningPairs final : public ContactGeometry {
   }
 
   TurningPairsData data_;
-  mutable Vector gap_;           ///< at the look before
-  mutable Vector middle_, row_;  ///< of the step that is looked at
+  mutable Vector gap_;           ///< at the previous update
+  mutable Vector middle_, row_;  ///< of the current step
   mutable Three normal_ = Three::Zero();
-  mutable long revision_ = 0;  ///< of the last update: no two rows that differ have the same
+  mutable long revision_ = 0;  ///< number of the last update; different rows never share it
 };
 
 }  // namespace

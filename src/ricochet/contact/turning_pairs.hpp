@@ -7,23 +7,23 @@
 #include "ricochet/contact/contact_boundary.hpp"
 #include "ricochet/contact/turning_normal.hpp"
 
-/// @file Contact between bodies that turn. The pairing of the start is kept (body_contact.hpp), and directions turn
-/// with both surfaces: with y = Σ_j t_ij (X + U)_j, the mean vector across the gap, and N of turning_normal.hpp,
+/// @file Contact between bodies with large rotations. The initial pairing is kept (body_contact.hpp), and directions
+/// rotate with both surfaces: with y = Σ_j t_ij (X + U)_j, the mean vector across the gap, and N of turning_normal.hpp,
 ///   n(U) = N/|N|,   g(U) = n·y + (g₀ − n₀·y₀),
-/// the constant being zero but for gaps that the input says to be others. No rigid motion of both bodies changes g, so
-/// rows G = ∂g/∂U have neither resultant nor moment about the current positions, where facets have slid and where they
-/// have not: beside t ⊗ n they have a part on the nodes of N that takes back the moment y × n r_N.
+/// where the constant is zero unless the input modifies gaps. No rigid motion of both bodies changes g, so that rows G
+/// = ∂g/∂U have no resultant and no moment about the current positions, whether or not facets have slid: in addition to
+/// t ⊗ n they have terms on the nodes of N that cancel the moment y × n r_N.
 ///
-/// Rows of a step from U₀ to U₁ = U₀ + Δ, with ȳ and n̄ the means of both ends, ℓ̄ that of |N|, x the middle of the
-/// step and N̄ that of N,
+/// Rows of a step from U₀ to U₁ = U₀ + Δ, with ȳ and n̄ the means over both ends, ℓ̄ that of |N|, x the middle of the
+/// step and N̄ the mean of N,
 ///   G = n̄ ⊗ t + ∂N(x)ᵀ w,   w = (ȳ − N̄ (n̄·ȳ)/ℓ̄)/ℓ̄,
-/// are such that G Δ = g₁ − g₀, exactly: ∂N(x) Δ = N₁ − N₀, as N is quadratic. Normal forces then work nothing but
-/// −r_N g₀ over a step at whose end they act on a closed gap, which is what no creation of energy rests on. They have
-/// no resultant.
+/// satisfy G Δ = g₁ − g₀ exactly: ∂N(x) Δ = N₁ − N₀, since N is quadratic. The work of normal forces over
+/// a step that ends with a closed gap is then only −r_N g₀, the basis of the proof that no energy is
+/// created. They have no resultant.
 ///
-/// Where contact nodes have another middle of the step than ½(U₀ + U₁), forces r = r_N n(x) − τ r_T at that place x are
-/// those of t ⊗ r with a couple ∂N(x)ᵀ w on the nodes of N instead, N × w = −y × r: no moment about x is left but the
-/// part of y × r along N, that of friction across what has slid, which in two dimensions there is none of.
+/// If contact nodes have another middle of the step than ½(U₀ + U₁), the forces r = r_N n(x) − τ r_T at those positions
+/// x are instead those of t ⊗ r with a couple ∂N(x)ᵀ w on the nodes of N, N × w = −y × r: the only remaining moment
+/// about x is the component of y × r along N, that of friction over the distance slid, which vanishes in 2D.
 namespace ricochet {
 
 struct TurningPairsData {
@@ -31,18 +31,18 @@ struct TurningPairsData {
     Index number = 0;  ///< among all contact points
     TurningNormal normal;
     double offset = 0.0;            ///< g₀ − n₀·y₀
-    std::array<bool, 3> is_free{};  ///< components that no support holds
-    std::vector<Index> nodes = {};  ///< those of its row of G, ascending
+    std::array<bool, 3> is_free{};  ///< components without support
+    std::vector<Index> nodes = {};  ///< of its row of G, ascending
   };
   struct Node {
-    Index entry = 0;  ///< of the contact boundary's nodes
+    Index entry = 0;  ///< in the contact boundary's nodes
     Index node = 0;
     TurningNormal normal;
     double offset = 0.0;
   };
   std::vector<Point> points;
-  std::vector<Node> nodes;         ///< by ascending entry; those that face the other body
-  Points node_positions;           ///< of all nodes, reference
+  std::vector<Node> nodes;         ///< ascending by entry; only those that face the other body
+  Points node_positions;           ///< reference positions of all nodes
   Points node_normals;             ///< of the contact boundary's nodes, at the start
   SparseRowMatrix trace;           ///< t
   SparseRowMatrix opposite_place;  ///< contact nodes × nodes

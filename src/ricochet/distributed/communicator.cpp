@@ -11,11 +11,11 @@ namespace ricochet {
 
 namespace {
 
-constexpr int message_tag = 26, exchange_tag = 27;           ///< and the one after it
+constexpr int message_tag = 26, exchange_tag = 27;           ///< and the next tag
 constexpr std::size_t largest_piece = std::size_t{1} << 30;  ///< in bytes: MPI counts up to 2³¹
-/// By all groups: a rank may be in the next exchange already, and never in the one after it.
+/// Number of exchanges of all groups: a rank may already be in the next exchange, but never in the one after it.
 int exchanges = 0;
-/// Where errors meet: others may be in any barrier of the run.
+/// Communicator for errors, apart from the run's own: other ranks may be in any barrier of the run.
 MPI_Comm ends = MPI_COMM_NULL;
 
 }  // namespace
@@ -98,9 +98,9 @@ std::vector<char> Communicator::receive(int rank) const {
   }
 }
 
-/// Nobody asks who has something for whom: messages go where there is something to say, and a barrier that all enter
-/// once theirs have been taken tells when no more come (Hoefler, Siebert, Lumsdaine 2010). A call to every rank would
-/// make each exchange as long as there are ranks.
+/// Exchanges data without knowing the senders: ranks send messages only if they have data, and enter a barrier when
+/// theirs have been received; its completion shows that no more messages arrive (NBX: Hoefler, Siebert, Lumsdaine
+/// 2010). Addressing every rank would make the cost of each exchange proportional to the number of ranks.
 template <class Number>
 std::vector<std::vector<Number>> Communicator::exchange_any(const std::vector<std::vector<Number>>& to_each) const {
   const MPI_Datatype type = std::is_same_v<Number, double> ? MPI_DOUBLE : MPI_INT64_T;

@@ -25,7 +25,7 @@ namespace ricochet {
 
 namespace {
 
-/// What a rank's model lives with.
+/// Data that must live as long as a rank's model.
 struct OwnRanks {
   OwnRanks(const Communicator& ranks, const std::vector<std::int64_t>& numbers, Index count)
       : nodes(ranks, numbers, count), as_ranks(ranks, nodes) {}
@@ -33,7 +33,7 @@ struct OwnRanks {
   MpiRanks as_ranks;
 };
 
-/// Facets of cells, with their numbers in the blocks of the piece.
+/// Returns facets of cells with their numbers in the blocks of the piece.
 std::vector<CellFacet> cut_facets(const std::vector<CellFacet>& facets, const std::vector<CellBlock>& whole,
                                   const std::vector<CellBlock>& own, const std::vector<Index>& cell_number) {
   std::vector<Index> first_of_whole(1, 0), first_of_own(1, 0);
@@ -63,7 +63,7 @@ void cut_watched(const std::vector<WatchedPlaces>& whole, const Piece& piece, co
       const Index node = probe.node, entry = probe.contact_node;
       probe.node = place_in(piece.node_number, node);
       if (probe.node < 0 || entry < 0) continue;
-      // Entries keep their order: of those of the node, the same.
+      // Entries keep their order, so that the offset among the entries of the node is unchanged.
       const auto first = std::find(contact.nodes.begin(), contact.nodes.end(), node) - contact.nodes.begin();
       probe.contact_node =
           std::find(own.nodes.begin(), own.nodes.end(), probe.node) - own.nodes.begin() + (entry - first);
@@ -71,7 +71,7 @@ void cut_watched(const std::vector<WatchedPlaces>& whole, const Piece& piece, co
   }
 }
 
-/// Keeps, on the first rank, what is needed to write the mesh.
+/// Keeps the data that are needed to write the mesh; the whole body on the first rank only.
 std::unique_ptr<const Model::Written> what_is_written(Model& whole, const Piece& piece, int rank) {
   auto result = std::make_unique<Model::Written>();
   result->node_rows = piece.space.number;
@@ -88,7 +88,7 @@ std::unique_ptr<const Model::Written> what_is_written(Model& whole, const Piece&
   return result;
 }
 
-/// The part of a rank; the first takes what nobody needs after it.
+/// Cuts the part of a rank. The first rank is cut last and takes over data of the whole.
 ModelPart cut_model(Model& whole, const Division& division, int rank) {
   Piece piece = cut_piece(whole.mesh, whole.space, division.rank_of_cell(), rank, division.more_nodes(rank));
   ModelPart part;
@@ -125,7 +125,7 @@ ModelPart cut_model(Model& whole, const Division& division, int rank) {
   model.body.cell_material = chosen(whole.body.cell_material, piece.cell_number);
   model.written = what_is_written(whole, piece, rank);
   if (rank == 0) model.obstacles = std::move(whole.obstacles);
-  // Here its own nodes are all that there are.
+  // The part numbers its own nodes only.
   std::iota(piece.space.number.begin(), piece.space.number.end(), Index{0});
   model.mesh = std::move(piece.mesh);
   model.space = std::move(piece.space);
@@ -134,7 +134,7 @@ ModelPart cut_model(Model& whole, const Division& division, int rank) {
   return part;
 }
 
-/// By this process alone, before the body is divided: with all the memory that this takes.
+/// Finds the equilibrium on this process alone, before the body is divided, which takes the memory of the whole body.
 void find_equilibrium(const Case& input, Model& whole) {
   const std::shared_ptr<const InternalForce> none = whole.problem.internal_force;
   const Damping by_mass = whole.problem.damping;
@@ -155,7 +155,7 @@ void tell_of_small_parts(const Model& whole, int processes) {
                   each));
 }
 
-/// The first rank has the whole, and gives each its part.
+/// Sends each rank its part of the whole, which the first rank has.
 ModelPart hand_out(const Case& input, std::unique_ptr<Model> whole, std::optional<Division> division,
                    const Communicator& ranks) {
   if (ranks.rank() > 0) return unpack(input, ranks.receive(0));
@@ -173,7 +173,7 @@ ModelPart hand_out(const Case& input, std::unique_ptr<Model> whole, std::optiona
 
 std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator& ranks, const DivisionOptions& options,
                                            BuildTimes* times) {
-  // All begin PETSc together, which then divides the mesh on the first.
+  // All ranks initialize PETSc together; the first then divides the mesh with it.
   const std::shared_ptr<const PreconditionerMaker> preconditioners = make_petsc_preconditioners();
   if (ranks.size() == 1) {
     std::unique_ptr<Model> model = build_model(input, times);
@@ -204,7 +204,7 @@ std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator
   release_freed_memory();
   if (times != nullptr) times->assembly += timer.restart();
   add_loads(input, *model);
-  // Of its own facets: that of the whole was not sent.
+  // For its own facets, as the surface of the whole was not sent.
   ContactBoundary& contact = model->problem.contact;
   contact.surface = std::make_shared<const ContactSurface>(model->body, model->contact_pairs, contact);
   add_sensors(input, *model);

@@ -11,12 +11,12 @@ namespace ricochet {
 
 struct DivisionOptions {
   PartitionMethod method = PartitionMethod::graph;
-  std::uint64_t seed = 0;  ///< of random ones
+  std::uint64_t seed = 0;  ///< for random partitions
 };
 
-/// As build_model, with the same errors and remarks; each rank gets its part, with the numbers of the whole where
-/// somebody asks for these. All ranks call it together. What cannot be divided is refused by name, at its place in the
-/// case.
+/// Builds the model like build_model, with the same errors and remarks; each rank gets its part, with the numbering of
+/// the whole where needed. Collective over all ranks. Cases that cannot be divided are refused with the reason, at the
+/// location in the case.
 [[nodiscard]] std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator& ranks,
                                                          const DivisionOptions& options = {},
                                                          BuildTimes* times = nullptr);

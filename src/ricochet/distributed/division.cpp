@@ -6,7 +6,7 @@ namespace ricochet {
 
 namespace {
 
-/// Lists of ranks per node from pairs of both, in one array.
+/// Converts pairs of node and rank to lists of ranks per node, in one array.
 void put_together(std::vector<std::pair<Index, int>>& pairs, Index nodes, std::vector<std::size_t>& begin,
                   std::vector<int>& ranks) {
   std::sort(pairs.begin(), pairs.end());
@@ -44,7 +44,7 @@ Division::Division(const DisplacementSpace& space, const SemidiscreteProblem& pr
       if (!has(rank, node)) more[static_cast<std::size_t>(rank)].push_back(node);
     });
   }
-  // The pressure at a node is made of points around it: each adds its part where it is.
+  // Recovered nodal pressures sum over the points around a node: each rank adds the part of its own points.
   for (std::size_t entry = 0; entry < problem.contact.nodes.size(); ++entry) {
     const Index node = problem.contact.nodes[entry];
     problem.contact.visit_recovery(static_cast<Index>(entry), [&](Index point, double) {

@@ -6,30 +6,30 @@
 #include "ricochet/fem/displacement_space.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 
-/// @file Which ranks have which nodes of a body, by the cells that they have.
+/// @file Distribution of the nodes of a body over ranks, according to their cells.
 namespace ricochet {
 
 class Division {
  public:
-  /// `rank_of_cell`: of partition_cells. A contact point goes where its first node belongs by the cells; the other
-  /// nodes that it sees, and those whose pressure it has a part in, go there, too. So does a node where the mass
-  /// couples it to one that no other rank has with it.
+  /// `rank_of_cell` as returned by partition_cells. A contact point belongs to the rank that owns its first node by the
+  /// cells; its other nodes, and those to whose pressure it contributes, are added to that rank. A node is also added
+  /// to a rank if the mass couples it to a node with which it shares no rank.
   Division(const DisplacementSpace& space, const SemidiscreteProblem& problem, std::vector<int> rank_of_cell);
 
   [[nodiscard]] const std::vector<int>& rank_of_cell() const { return rank_of_cell_; }
-  /// The ranks that have a node, ascending. A node belongs to the first.
+  /// Returns the ranks that have a node, ascending. The first of them owns the node.
   [[nodiscard]] std::span<const int> ranks_of(Index node) const {
     const auto at = static_cast<std::size_t>(node);
     return {ranks_.data() + begin_[at], ranks_.data() + begin_[at + 1]};
   }
   [[nodiscard]] int owner(Index node) const { return ranks_of(node).front(); }
   [[nodiscard]] bool has(int rank, Index node) const;
-  /// The rank that an entry of a matrix belongs to: the first one that has both nodes.
+  /// Returns the rank to which an entry of a matrix belongs: the first that has both nodes; −1 if none.
   [[nodiscard]] int rank_of_pair(Index one, Index other) const;
   [[nodiscard]] int rank_of_point(Index point) const { return rank_of_point_[static_cast<std::size_t>(point)]; }
-  /// Ascending.
+  /// Returns the points of a rank, ascending.
   [[nodiscard]] std::vector<Index> points_of(int rank) const;
-  /// Nodes of a rank that are none of its cells.
+  /// Returns the nodes of a rank that are not on its cells.
   [[nodiscard]] const std::vector<Index>& more_nodes(int rank) const {
     return more_nodes_[static_cast<std::size_t>(rank)];
   }

@@ -67,7 +67,7 @@ void transfer(Archive& archive, NodeMatrix& matrix) {
 
 namespace {
 
-/// Obstacles go by their places in the case.
+/// Transfers the geometry; obstacles are represented by their indices in the case.
 void transfer_geometry(Archive& archive, const std::vector<const Obstacle*>& of_case, Model& model) {
   ContactBoundary& contact = model.problem.contact;
   bool is_curved = contact.follows_motion();
@@ -95,7 +95,8 @@ void transfer_rows(Archive& archive, ContactBoundary& contact) {
   if (archive.reads()) contact.rows = std::make_shared<const ContactRows>(std::move(rows));
 }
 
-/// Values go by the sections that prescribe them; those of no section hold nodes on an axis.
+/// Transfers supports; values are represented by the sections that prescribe them, and dofs without a section are those
+/// of nodes on the axis.
 void transfer_supports(Archive& archive, const Case& input, Supports& supports) {
   std::vector<Index> dofs, sections;
   if (!archive.reads()) {
@@ -133,7 +134,7 @@ void transfer_problem(Archive& archive, const Case& input, Model& model) {
   transfer_damping(archive, problem);
 }
 
-/// What is made of the case alone, once the mesh is there.
+/// Rebuilds the data that follow from the case alone, given the mesh.
 void make_of_case(const Case& input, Model& model, std::vector<int> cell_material) {
   assign_materials(input, model);
   model.body.cell_material = std::move(cell_material);

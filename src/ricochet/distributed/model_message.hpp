@@ -7,10 +7,10 @@
 
 #include "ricochet/model/model.hpp"
 
-/// @file Parts of a model on their way from the process that has cut them to those that have them.
+/// @file Serialization of parts of a model that the first rank sends to the others.
 namespace ricochet {
 
-/// The part of a model that one rank has, still without forces, and where its nodes are in the whole body.
+/// The part of a model that one rank has, before forces are assembled, and the numbers of its nodes in the whole body.
 struct ModelPart {
   std::unique_ptr<Model> model;
   std::vector<std::int64_t> node_number;
@@ -18,9 +18,9 @@ struct ModelPart {
   std::vector<const Obstacle*> obstacles;  ///< of the whole, in the order of the case
 };
 
-/// What the case does not tell of a part, which stays as it is, some bytes at a time.
+/// Packs the data of a part that do not follow from the case, some bytes at a time. The part is unchanged.
 void pack(const Case& input, ModelPart& part, const std::function<void(std::span<const char>)>& send);
-/// With what the case tells: obstacles, materials and their laws, contact pairs.
+/// Unpacks a part, and adds the data that follow from the case: obstacles, materials and their laws, contact pairs.
 [[nodiscard]] ModelPart unpack(const Case& input, std::vector<char> bytes);
 
 }  // namespace ricochet

@@ -2,8 +2,8 @@
 
 namespace ricochet {
 
-/// Numbers of all ranks come to each, which takes them in the order of the ranks: the same bits everywhere, whatever
-/// way messages went. A NaN of any rank is one of all.
+/// Gathers the values of all ranks on each, which reduces them in the order of the ranks: the result has the same bits
+/// everywhere, independent of the order of messages. A NaN on any rank makes the result NaN.
 void WorldRanks::reduce(std::span<double> values, std::span<const Reduction> by) const {
   if (ranks_.size() == 1) return;
   ++traffic_.reductions;

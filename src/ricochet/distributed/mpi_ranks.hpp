@@ -3,10 +3,10 @@
 #include "ricochet/base/ranks.hpp"
 #include "ricochet/distributed/node_exchange.hpp"
 
-/// @file The ranks of a run, as the rest of the library sees them.
+/// @file Ranks of a run, implementing the interface of the library.
 namespace ricochet {
 
-/// Without a body.
+/// Ranks without a body.
 class WorldRanks : public Ranks {
  public:
   explicit WorldRanks(const Communicator& ranks) : ranks_(ranks) {}
@@ -42,7 +42,7 @@ class WorldRanks : public Ranks {
 
 class MpiRanks final : public WorldRanks {
  public:
-  /// Keeps a reference to the exchange. Its nodes are those of the vectors of forces.
+  /// Keeps a reference to the exchange, whose nodes are those of the vectors of forces.
   MpiRanks(const Communicator& ranks, const NodeExchange& nodes) : WorldRanks(ranks), nodes_(nodes) {}
 
   void accumulate(Vector& force) const override { nodes_.accumulate(force); }

@@ -9,8 +9,8 @@ namespace ricochet {
 
 namespace {
 
-/// Who else has these nodes, and their ranks in ascending order. A rank keeps the list of a range of numbers, and
-/// answers for it.
+/// Returns, per rank in ascending order, the nodes that it shares with this one. Each rank collects the sharers of a
+/// range of numbers and answers queries for it.
 std::map<int, std::vector<std::int64_t>> find_sharers(const Communicator& ranks,
                                                       const std::vector<std::int64_t>& numbers, std::int64_t count) {
   const auto size = static_cast<std::size_t>(ranks.size());
@@ -22,7 +22,7 @@ std::map<int, std::vector<std::int64_t>> find_sharers(const Communicator& ranks,
   for (std::size_t rank = 0; rank < size; ++rank) {
     for (const std::int64_t number : known[rank]) sharers[number].push_back(static_cast<int>(rank));
   }
-  // To each rank the numbers that others have, each followed by one of these.
+  // Answers to each rank: pairs of a number and another rank that has it.
   std::vector<std::vector<std::int64_t>> answers(size);
   for (std::size_t rank = 0; rank < size; ++rank) {
     for (const std::int64_t number : known[rank]) {
@@ -71,7 +71,7 @@ NodeExchange::NodeExchange(const Communicator& ranks, const std::vector<std::int
   }
 }
 
-/// Fills the messages with what this rank and its neighbours have at the nodes that they share.
+/// Fills the messages with the values at shared nodes, and exchanges them with the neighbours.
 template <class Values>
 void NodeExchange::send_all(const Values& values, Index per_node) const {
   if (values.size() != per_node * nodes_) throw std::logic_error("values are not those of the nodes");

@@ -7,27 +7,28 @@
 #include "ricochet/base/ranks.hpp"
 #include "ricochet/distributed/communicator.hpp"
 
-/// @file Nodes that several ranks have.
+/// @file Nodes that several ranks share.
 namespace ricochet {
 
-/// The sharers of each node of this rank, and what they send each other. A shared node belongs to the first of the
-/// ranks that have it.
+/// The ranks that share each node of this rank, and their exchange of values. The first of the ranks that have a node
+/// owns it.
 class NodeExchange {
  public:
-  /// `numbers`: of this rank's nodes in the whole body, each once, from 0 to `count` − 1.
+  /// `numbers` of this rank's nodes in the whole body, each once, from 0 to `count` − 1.
   NodeExchange(const Communicator& ranks, const std::vector<std::int64_t>& numbers, std::int64_t count);
 
-  /// From a part of each sharer their sum, the same bits for all of them: parts are added in the order of the ranks.
-  /// So many values per node, node after node. One message to each neighbour.
+  /// Replaces the contributions of all sharers of a node by their sum, with the same bits on all of them: contributions
+  /// are added in the order of the ranks. Any number of values per node, node after node. One message to each
+  /// neighbour.
   void accumulate(Vector& values) const { accumulate_any(values); }
   void accumulate(Eigen::VectorXf& values) const { accumulate_any(values); }
-  /// The values of a node's owner, for all that share it.
+  /// Copies the values of a node's owner to all ranks that share it.
   void spread(Vector& values) const;
 
   [[nodiscard]] bool is_owned(Index node) const {
     return !std::binary_search(not_owned_.begin(), not_owned_.end(), node);
   }
-  /// In the whole body, per node.
+  /// Returns the number of each node in the whole body.
   [[nodiscard]] const std::vector<std::int64_t>& numbers() const { return numbers_; }
   [[nodiscard]] Index owned_count() const { return nodes_ - static_cast<Index>(not_owned_.size()); }
   [[nodiscard]] const std::vector<Index>& not_owned() const { return not_owned_; }
@@ -37,8 +38,8 @@ class NodeExchange {
 
  private:
   struct Neighbour {
-    std::vector<Index> nodes;  ///< that both have, by their numbers in the whole body
-    std::vector<char> gives;   ///< per node: it belongs to the neighbour
+    std::vector<Index> nodes;  ///< shared nodes, ordered by their numbers in the whole body
+    std::vector<char> gives;   ///< per node: owned by the neighbour
   };
   template <class Values>
   void accumulate_any(Values& values) const;
@@ -48,7 +49,7 @@ class NodeExchange {
   Communicator ranks_;
   std::vector<std::int64_t> numbers_;
   std::vector<Neighbour> neighbours_;      ///< by rank
-  mutable std::vector<Message> messages_;  ///< with each
+  mutable std::vector<Message> messages_;  ///< one per neighbour
   std::vector<Index> shared_;              ///< nodes that some neighbour has, each once
   std::vector<Index> not_owned_;           ///< ascending
   Index nodes_ = 0;

@@ -17,7 +17,7 @@ namespace ricochet {
 
 namespace {
 
-/// Nodes that share a cell, row after row, without the node itself.
+/// Nodes that share a cell with each node, row after row, without the node itself.
 struct Adjacency {
   std::vector<PetscInt> begin{0}, neighbour;
 };
@@ -66,7 +66,7 @@ std::vector<int> divide_nodes(const Mesh& mesh, int parts) {
   std::vector<int> result(static_cast<std::size_t>(nodes), 0);
   const auto divide = [&]() -> PetscErrorCode {
     PetscFunctionBeginUser;
-    // PETSc frees what it is given.
+    // PETSc frees the arrays passed to it.
     PetscInt *begin = nullptr, *neighbour = nullptr;
     PetscCall(PetscMalloc1(adjacency.begin.size(), &begin));
     PetscCall(PetscMalloc1(adjacency.neighbour.size(), &neighbour));
@@ -87,7 +87,7 @@ std::vector<int> divide_nodes(const Mesh& mesh, int parts) {
     PetscCall(MatDestroy(&graph));
     PetscFunctionReturn(0);
   };
-  // The same division in every run: threads of Scotch find another one each time.
+  // One thread, for the same division in every run: several threads of Scotch find a different one each time.
   setenv("SCOTCH_PTHREAD_NUMBER", "1", 1);
   SCOTCH_randomReset();
   if (divide() != 0) throw Error(ErrorKind::invalid_input, "PT-Scotch could not divide the mesh among ranks");
@@ -103,7 +103,7 @@ std::vector<int> partition_cells(const Mesh& mesh, int ranks, PartitionMethod me
   if (method == PartitionMethod::random) {
     std::mt19937_64 generator(seed);
     for (std::size_t i = 0; i < result.size(); ++i) {
-      // Of the first cells one for each: nobody is left without.
+      // The first cells are dealt out one by one, so that every rank has a cell.
       const auto any = static_cast<int>(generator() % static_cast<std::uint64_t>(ranks));
       result[i] = i < static_cast<std::size_t>(ranks) ? static_cast<int>(i) : any;
     }
@@ -126,7 +126,7 @@ std::vector<int> partition_cells(const Mesh& mesh, int ranks, PartitionMethod me
     result[static_cast<std::size_t>(cell)] = best;
     ++count[static_cast<std::size_t>(best)];
   });
-  // A part of few nodes may win no cell: it takes one of the largest part.
+  // A part of few nodes may win no cell and then gets one of the largest part.
   for (std::size_t empty = 0; empty < count.size(); ++empty) {
     if (count[empty] > 0) continue;
     const auto largest = static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());

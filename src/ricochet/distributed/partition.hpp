@@ -10,12 +10,12 @@
 namespace ricochet {
 
 enum class PartitionMethod : char {
-  graph,   ///< PT-Scotch on the graph of nodes: parts of one size with short boundaries
-  random,  ///< each cell anywhere, by a seed: for tests, as no rank then has a boundary that it could be lucky with
+  graph,   ///< PT-Scotch on the graph of nodes: parts of equal size with short boundaries
+  random,  ///< each cell on a random rank: tests with the worst possible boundaries
 };
 
-/// The rank of each cell, numbered through all blocks. By graph: nodes are divided, and a cell goes where most of its
-/// nodes are, of equals to the first. There are at least as many cells as ranks.
+/// Returns the rank of each cell, numbered through all blocks. By graph, nodes are divided, and a cell goes to the rank
+/// with most of its nodes, the lowest of equals. There must be at least as many cells as ranks.
 [[nodiscard]] std::vector<int> partition_cells(const Mesh& mesh, int ranks, PartitionMethod method,
                                                std::uint64_t seed = 0);
 

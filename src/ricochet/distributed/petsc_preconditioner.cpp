@@ -12,9 +12,9 @@ namespace ricochet {
 
 namespace {
 
-/// Numbers of PETSc: a rank's own nodes follow one another, rank after rank.
+/// Numbering of PETSc: the nodes of a rank follow one another, rank after rank.
 struct Numbering {
-  std::vector<Index> own;         ///< nodes for which this rank speaks
+  std::vector<Index> own;         ///< nodes that this rank owns
   std::vector<PetscInt> of_node;  ///< per node of this rank
 };
 
@@ -27,7 +27,7 @@ Numbering number_nodes(Index count, int d, const Ranks& ranks) {
   const Ranks::ForEach<double> counts = ranks.of_all({own});
   double next = 0.0;
   for (int rank = 0; rank < ranks.rank(); ++rank) next += counts[static_cast<std::size_t>(rank)].front();
-  // Who speaks for a node tells the others.
+  // The owner of a node sends its number to the other ranks.
   Vector numbers = Vector::Zero(count * d);
   for (const Index node : result.own) numbers[node * d] = next++;
   ranks.accumulate(numbers);
@@ -35,9 +35,9 @@ Numbering number_nodes(Index count, int d, const Ranks& ranks) {
   return result;
 }
 
-/// Entries of this rank's part, for MatSetPreallocationCOO: rows and columns of dofs that are solved for, and a
-/// small part of the largest diagonal entry of all on the diagonals of the others: coarse motions see these, and should
-/// hardly feel them, in any units.
+/// Entries of this rank's part, for MatSetPreallocationCOO: rows and columns of the dofs that are solved for, and on
+/// the diagonals of the others a small fraction of the largest diagonal entry of all. The coarse spaces include these
+/// dofs, which should hardly affect them, in any units.
 struct Entries {
   std::vector<PetscInt> row, column;
   std::vector<PetscScalar> value;
@@ -71,7 +71,7 @@ class PetscPreconditioner final : public Preconditioner {
     z.setZero(r.size());
     check(apply_to_own(r, z), "preconditioner");
     ranks_.accumulate(z);
-    // Coarse motions reach dofs that are not solved for, too. What is left without these is as symmetric.
+    // Coarse corrections also change dofs that are not solved for. Overwriting these keeps the operator symmetric.
     for (const Index dof : unsolved_) z[dof] = r[dof];
   }
 
@@ -137,7 +137,8 @@ class PetscPreconditioner final : public Preconditioner {
     PetscFunctionReturn(failed == PC_NOERROR ? 0 : PETSC_ERR_MAT_CH_ZRPVT);
   }
 
-  /// Its defaults for three dimensions take four times as long on elastic bodies. What the user says goes before.
+  /// Sets options of BoomerAMG, whose defaults for three dimensions take four times as long on elastic bodies. Options
+  /// of the user take precedence.
   static PetscErrorCode set_lean_coarsening() {
     PetscFunctionBeginUser;
     constexpr std::array<std::pair<const char*, const char*>, 4> options{
@@ -195,7 +196,7 @@ class PetscPreconditioner final : public Preconditioner {
   std::vector<Index> unsolved_;  ///< dofs
   Mat matrix_ = nullptr;
   PC preconditioner_ = nullptr;
-  Vec given_ = nullptr, found_ = nullptr;  ///< of own dofs
+  Vec given_ = nullptr, found_ = nullptr;  ///< on own dofs
 };
 
 class PetscPreconditioners final : public PreconditionerMaker {

@@ -8,7 +8,7 @@ PetscSession::PetscSession() {
   PetscBool is_begun = PETSC_FALSE;
   PetscInitialized(&is_begun);
   if (is_begun != PETSC_FALSE) return;
-  // Signals are the program's, and so are messages.
+  // The program itself handles signals and messages.
   PetscOptionsSetValue(nullptr, "-no_signal_handler", "");
   began_ = PetscInitializeNoArguments() == 0;
   if (began_) PetscPushErrorHandler(PetscIgnoreErrorHandler, nullptr);

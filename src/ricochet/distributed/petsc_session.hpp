@@ -2,10 +2,10 @@
 
 #include <string>
 
-/// @file PETSc, where nobody has begun it.
+/// @file Initialization of PETSc, unless it is already initialized.
 namespace ricochet {
 
-/// Begins PETSc for as long as it lives. MPI is there.
+/// Initializes PETSc for its own lifetime. MPI must be initialized.
 class PetscSession {
  public:
   PetscSession();
@@ -17,7 +17,7 @@ class PetscSession {
   bool began_ = false;
 };
 
-/// What PETSc calls an error of this number.
+/// Returns PETSc's message for an error code.
 [[nodiscard]] std::string petsc_message(int code);
 
 }  // namespace ricochet

@@ -10,7 +10,7 @@ namespace ricochet {
 
 namespace {
 
-/// The elements that are wanted, by their numbers through all blocks, with the nodes that they have there.
+/// Selected elements: their numbers through all blocks, and their blocks with the original node numbers.
 struct Cut {
   std::vector<CellBlock> blocks;
   std::vector<Index> numbers;
@@ -20,7 +20,7 @@ Cut cut_blocks(const std::vector<CellBlock>& blocks, const std::vector<char>& wa
   Cut result;
   Index number = 0;
   for (const CellBlock& block : blocks) {
-    // Blocks without elements stay: those of mesh and space go together, and with what is numbered through them.
+    // Empty blocks are kept: blocks of mesh and space correspond to each other, and elements are numbered through them.
     CellBlock& taken = result.blocks.emplace_back();
     taken.shape = block.shape;
     taken.nodes_per_cell = block.nodes_per_cell;
@@ -34,7 +34,7 @@ Cut cut_blocks(const std::vector<CellBlock>& blocks, const std::vector<char>& wa
   return result;
 }
 
-/// Places of nodes in an ascending list.
+/// Indices of nodes in an ascending list.
 class Renumbering {
  public:
   explicit Renumbering(Index count) : place_(static_cast<std::size_t>(count), -1) {}
@@ -45,7 +45,7 @@ class Renumbering {
     }
   }
   void want(Index node) { place_[static_cast<std::size_t>(node)] = 0; }
-  /// The nodes that are wanted, ascending.
+  /// Returns the selected nodes, ascending.
   std::vector<Index> finish() {
     std::vector<Index> nodes;
     for (std::size_t node = 0; node < place_.size(); ++node) {

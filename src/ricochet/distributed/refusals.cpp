@@ -31,7 +31,7 @@ void refuse_undividable_case(const Case& input) {
     if (obstacle.is_free())
       refuse_several(input, "obstacle." + obstacle.name, "an obstacle that moves by the forces on it");
   }
-  // They take cells of other processes.
+  // These fields need cells of other processes.
   for (const std::string& name : input.output.fields) {
     if (name.starts_with("nodal_") || name == "all")
       refuse_several(input, "output.fields",

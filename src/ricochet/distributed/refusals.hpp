@@ -2,10 +2,10 @@
 
 #include "ricochet/model/model.hpp"
 
-/// @file What cases on several processes cannot have yet.
+/// @file Features that cases on several processes do not support yet.
 namespace ricochet {
 
-/// Throw Error(invalid_input) at the place in the case, and say what runs it.
+/// Throws Error(invalid_input) at the location in the case, and states a remedy.
 void refuse_undividable_case(const Case& input);
 void refuse_undividable_model(const Case& input, const Model& whole, int processes);
 

@@ -11,10 +11,10 @@ namespace ricochet {
 
 namespace {
 
-/// What put_solution says in math_info begins so, and takes the place of what was said before.
+/// Prefix of put_solution's line in math_info, by which an earlier one is replaced.
 constexpr const char* verdict = "Ricochet: ";
 
-/// Powers of two d for which d_i |R_ii| d_i is near one (the largest entry of the row, where there is no diagonal).
+/// Powers of two d for which d_i |R_ii| d_i is near one (without a diagonal: the largest entry of the row).
 Vector equilibration(const Matrix& r) {
   Vector result(r.rows());
   for (Index i = 0; i < r.rows(); ++i) {
@@ -24,7 +24,7 @@ Vector equilibration(const Matrix& r) {
   return result;
 }
 
-/// R⁻¹ [Vᵀ, s].
+/// Computes R⁻¹ [Vᵀ, s].
 Matrix solve_constraints(const FclibProblem& problem) {
   const Matrix r(problem.r);
   const Vector scale = equilibration(r);
@@ -51,11 +51,11 @@ std::shared_ptr<const ContactOperator> make_operator(SparseMatrix w) {
   return dense ? make_dense_operator(Matrix(w)) : make_sparse_operator(std::move(w));
 }
 
-/// The rows of a problem's eligible points, and where they come to lie with `dimension` rows each.
+/// Rows of a problem's eligible points, and their new rows with `dimension` rows each.
 struct Selection {
   std::vector<Index> points;   ///< their numbers in the problem
   std::vector<Index> new_row;  ///< per row of the problem: its row in the file, or −1
-  std::vector<Index> old_row;  ///< per row of the file: its row in the problem, or −1 where there is none
+  std::vector<Index> old_row;  ///< per row of the file: its row in the problem, or −1
 };
 
 Selection select_eligible(const ContactProblem& problem, Index dimension) {
@@ -84,7 +84,7 @@ Selection select_eligible(const ContactProblem& problem, Index dimension) {
   return result;
 }
 
-/// Columns of W by products with unit vectors, where W is known by nothing else.
+/// Columns of W by products with unit vectors, if W is known by nothing else.
 Matrix columns_of(const ContactOperator& w) {
   Matrix result(w.rows(), w.rows());
   Vector unit = Vector::Zero(w.rows()), column;
@@ -134,7 +134,7 @@ Vector select_rows(const Vector& values, const Selection& selection) {
   return result;
 }
 
-/// `text` without the lines that put_solution wrote.
+/// Removes the lines that put_solution wrote.
 std::string without_verdict(const std::string& text) {
   std::string result;
   for (std::size_t begin = 0; begin < text.size();) {

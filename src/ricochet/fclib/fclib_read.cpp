@@ -14,10 +14,10 @@ namespace {
 
 using Integers = std::vector<std::int64_t>;
 
-/// W_ij and W_ji may differ by so much of √(W_ii W_jj).
+/// Largest difference of W_ij and W_ji relative to √(W_ii W_jj).
 constexpr double asymmetry_limit = 1e-8;
 
-/// A size or count: not negative, and small enough for the index of a sparse matrix.
+/// Reads a size or count: not negative, and small enough for the index of a sparse matrix.
 std::int64_t read_count(const Hdf5Reader& file, const std::string& name) {
   const std::int64_t value = file.integer(name);
   if (value < 0) file.fail(name, fmt::format("is {}, but counts something", value));
@@ -34,7 +34,7 @@ void check_indices(const Hdf5Reader& file, const std::string& name, const Intege
   }
 }
 
-/// Starts of compressed columns or rows: from 0, never falling, at most nzmax.
+/// Checks starts of compressed columns or rows: from 0, never falling, at most nzmax.
 void check_starts(const Hdf5Reader& file, const std::string& name, const Integers& starts, std::int64_t limit) {
   if (starts.front() != 0) file.fail(name, fmt::format("starts with {} where 0 is expected", starts.front()));
   for (std::size_t k = 1; k < starts.size(); ++k) {
@@ -52,9 +52,9 @@ SparseMatrix assemble(const Triplets& entries, std::int64_t rows, std::int64_t c
   return result;
 }
 
-/// The length of one of a matrix's data sets: as many entries as count, or room for nzmax of them, of which the first
-/// count. FCLib writes triplets of nz entries and compressed forms of nzmax; its older versions wrote nzmax everywhere.
-/// It reads both.
+/// Returns the length of one of a matrix's data sets: count entries, or space for nzmax of them, of which the first
+/// count are used. FCLib writes triplets of nz entries and compressed forms of nzmax; its older versions wrote nzmax
+/// everywhere. It reads both.
 std::int64_t stored_length(const Hdf5Reader& file, const std::string& name, std::int64_t count, std::int64_t limit) {
   const std::int64_t found = file.size(name);
   if (found != count && found != limit) {
@@ -81,7 +81,7 @@ SparseMatrix read_triplets(const Hdf5Reader& file, const std::string& group, std
   return assemble(entries, rows, columns);
 }
 
-/// Does every column (row) have its entries in order, and each once?
+/// Returns whether the entries of every column (row) are in order, each once.
 bool is_sorted(const std::vector<int>& starts, const std::vector<int>& indices) {
   for (std::size_t k = 0; k + 1 < starts.size(); ++k) {
     const auto begin = indices.begin() + starts[k], end = indices.begin() + starts[k + 1];
@@ -131,13 +131,13 @@ SparseMatrix read_matrix(const Hdf5Reader& file, const std::string& group) {
   SparseMatrix result = form >= 0 ? read_triplets(file, group, form, limit, rows, columns)
                                   : read_compressed(file, group, form == -1, limit, rows, columns);
   for (Index k = 0; k < result.nonZeros(); ++k) {
-    // Finite entries, each at one place several times, may add up to infinity.
+    // Finite entries at the same position may add up to infinity.
     if (!std::isfinite(result.valuePtr()[k])) file.fail(group + "/x", "has entries whose sum is not finite");
   }
   return result;
 }
 
-/// The symmetric part; more than rounding beside it is an error.
+/// Returns the symmetric part; throws if the rest is more than rounding.
 SparseMatrix symmetric_part(const Hdf5Reader& file, const std::string& group, const SparseMatrix& matrix) {
   const SparseMatrix transposed = matrix.transpose();
   const auto same = [&](const auto* a, const auto* b, Index count) { return std::equal(a, a + count, b); };
@@ -156,7 +156,7 @@ SparseMatrix symmetric_part(const Hdf5Reader& file, const std::string& group, co
       const double size = std::abs(entry.value()) / diagonal[entry.row()] / diagonal[j];
       if (entry.value() == 0.0 || size <= worst) continue;
       worst = size;
-      row = std::min(entry.row(), j);  // the same of the two, whatever their order in the file
+      row = std::min(entry.row(), j);  // the same of the two, independent of their order in the file
       column = std::max(entry.row(), j);
     }
   }

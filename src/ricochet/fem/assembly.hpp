@@ -11,33 +11,34 @@
 /// @file Assembly of the matrices and vectors of eq. (2) of the source, by quadrature over cells and facets.
 namespace ricochet {
 
-/// What assembly needs to know of a body: its mesh, its space, and the material of every cell.
+/// Input of the assembly: the mesh and the space of a body, and the material of every cell.
 struct Body {
   const Mesh* mesh = nullptr;
   const DisplacementSpace* space = nullptr;
-  PlaneState plane = PlaneState::strain;  ///< of two-dimensional bodies
+  PlaneState plane = PlaneState::strain;  ///< of 2D bodies
   std::vector<Material> materials;
   std::vector<int> cell_material;  ///< per cell, numbered through all blocks: index into materials
-  /// Nodes that follow others; null: none. Assembly knows nothing of them: matrices and loads are condensed afterwards.
+  /// Tied nodes; null if none. Assembly ignores them: matrices and loads are condensed afterwards.
   const TiedNodes* tied = nullptr;
 };
 
 [[nodiscard]] inline bool is_plane_stress(const Body& body) {
   return body.mesh->dimension == 2 && body.plane == PlaneState::stress;
 }
-/// A section through a body that is the same all round the y axis: integrals are those over the whole ring.
+/// Whether the mesh is the meridian section of a body of revolution about the y axis:
+/// integrals are over the whole ring.
 [[nodiscard]] inline bool is_axisymmetric(const Body& body) {
   return body.mesh->dimension == 2 && body.plane == PlaneState::axisymmetric;
 }
 
-/// Of a node of the displacement: axisymmetric bodies have those at exactly x = 0 there.
+/// Whether a node of the displacement is on the axis: in axisymmetric bodies at exactly x = 0.
 [[nodiscard]] inline bool is_on_axis(const Body& body, Index node) {
   return is_axisymmetric(body) && body.space->nodes(0, node) == 0.0;
 }
 
-/// Some material has a law of finite strain; then all have.
+/// Whether some material has a law of finite strain; then all have.
 [[nodiscard]] bool has_finite_strain(const Body& body);
-/// The law of a material of which the tangent is constant; throws Error(invalid_input) for one that is not linear.
+/// Law of a material, which has a constant tangent; throws Error(invalid_input) if the law is not linear.
 [[nodiscard]] IsotropicElasticity linear_law(const Body& body, const Material& material);
 [[nodiscard]] inline const Material& material_of(const Body& body, Index cell) {
   return body.materials[static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(cell)])];
@@ -48,15 +49,15 @@ struct Body {
 [[nodiscard]] SparseMatrix assemble_scalar_mass(const Body& body, const NodeGraph& graph,
                                                 const std::vector<double>& weight = {});
 
-/// K: ∫ A ε(u) : ε(v), dof × dof, in axisymmetric bodies with the hoop strain u_x/x. `weight` is per material (empty:
-/// 1). Exactly symmetric.
+/// K: ∫ A ε(u) : ε(v), dof × dof, in axisymmetric bodies with the hoop strain u_x/x. `weight` is per material
+/// (empty: 1). Exactly symmetric.
 [[nodiscard]] SparseMatrix assemble_stiffness(const Body& body, const NodeGraph& graph,
                                               const std::vector<double>& weight = {});
 
-/// A scalar matrix on nodes as a matrix on dofs: m ⊗ I.
+/// Expands a scalar matrix on nodes to dofs: m ⊗ I.
 [[nodiscard]] SparseMatrix expand_to_components(const SparseMatrix& scalar, int dimension);
 
-/// A force density at a point: writes `dimension` components.
+/// Force density at a point: writes `dimension` components.
 using ForceDensity = std::function<void(const Vector& position, Vector& force)>;
 
 /// Adds ∫ f·v over the cells of the body to `load`.

@@ -13,11 +13,11 @@ namespace ricochet {
 
 namespace {
 
-/// One facet's share of a ridge.
+/// Contribution of one facet to a ridge.
 struct RidgeSide {
   std::array<Index, 2> nodes;  ///< ascending
   std::size_t facet;
-  bool ascends;  ///< the facet's border goes from the first node to the second; in the plane it ends here
+  bool ascends;  ///< whether the facet's border goes from the first node to the second; in 2D whether it ends here
   Eigen::Vector3d normal, along;
 };
 
@@ -69,7 +69,7 @@ class RidgeSides {
     for (int axis = 0; axis + 1 < body_.mesh->dimension; ++axis) result[axis] = vertex_coordinate(own, local, axis);
     return result;
   }
-  /// Outward: as the facet's corners turn.
+  /// Outward normal, oriented by the order of the facet's corners.
   [[nodiscard]] Eigen::Vector3d normal(const CellFacet& facet, const PolynomialMap<3>::Place& at) const {
     const std::vector<int>& corners = outward_facet_vertices(body_.space->cells[facet.block].shape)[facet.local];
     const Eigen::Vector3d side = position(facet, corners[1]) - position(facet, corners[0]);

@@ -7,7 +7,7 @@ namespace ricochet {
 
 namespace {
 
-/// What branches of a pack of points see: deviators of strains.
+/// Deviators of the strains at a pack of points.
 template <class T>
 struct BranchStrains {
   T middle, start, end, at;
@@ -28,14 +28,14 @@ struct BranchPack {
   RICOCHET_PART_OF_CALLER BranchStrains<Strain> strains() const {
     return {deviator_at(points.middle), deviator_at(points.start), deviator_at(points.end), deviator_at(points.at)};
   }
-  /// In the internal strains of a cell.
+  /// Index of a branch of this point in the internal strains of a cell.
   [[nodiscard]] RICOCHET_PART_OF_CALLER std::size_t place(std::size_t branch) const {
     return (static_cast<std::size_t>(point) * points.branches.size() + branch) * internal_components;
   }
   RICOCHET_PART_OF_CALLER Strain internal(std::size_t branch) const {
     const double* const* lanes = points.internal + pack * W;
     const std::size_t from = place(branch);
-    Pack<4> parts[2][8];  // of four cells each: six components, and nothing
+    Pack<4> parts[2][8];  // of four cells each: six components and padding
     for (int k = 0; k < W / 4; ++k, lanes += 4) {
       Pack<4>* const own = parts[k];
       transpose(load<4>(lanes[0] + from), load<4>(lanes[1] + from), load<4>(lanes[2] + from), load<4>(lanes[3] + from),
@@ -75,7 +75,7 @@ struct BranchPack {
   }
 };
 
-/// Calls work(pack of points) for all.
+/// Calls work(pack of points) for all points.
 template <int W, int d, class Work>
 RICOCHET_PART_OF_CALLER void for_each_pack(const BranchPoints<d>& points, const Work& work) {
   for (Index pack = 0; pack < points.packs; ++pack) {

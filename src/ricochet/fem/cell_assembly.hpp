@@ -7,10 +7,10 @@
 #include "ricochet/fem/assembly.hpp"
 #include "ricochet/fem/element_matrices.hpp"
 
-/// @file Sums over cells that give the same bits for any number of threads. Not part of the public interface.
+/// @file Sums over cells with results that do not depend on the number of threads. Not part of the public interface.
 namespace ricochet {
 
-/// An empty matrix with `components` × `components` values per pair of neighbouring nodes.
+/// Zero matrix with `components` × `components` entries per pair of neighbouring nodes.
 inline SparseMatrix matrix_on_graph(const NodeGraph& graph, int components) {
   const Index nodes = graph.node_count();
   SparseMatrix matrix(nodes * components, nodes * components);
@@ -37,8 +37,8 @@ inline SparseMatrix matrix_on_graph(const NodeGraph& graph, int components) {
   return matrix;
 }
 
-/// Adds the rows of a cell's matrix that belong to the nodes of a part: blocks of `components`² for pairs of nodes i ≤
-/// j, see element_matrices.hpp.
+/// Adds the rows of a cell's matrix that belong to the nodes of a part: blocks of `components`² for pairs of nodes i
+/// ≤ j, see element_matrices.hpp.
 template <int components>
 void add_rows(const NodeGraph& graph, Index part_begin, Index part_end, const Index* nodes, int count,
               const double* blocks, double* values) {
@@ -60,8 +60,9 @@ void add_rows(const NodeGraph& graph, Index part_begin, Index part_end, const In
   }
 }
 
-/// Adds the matrices of all cells. Every row is summed by one thread in the order of the cells: the same bits for any
-/// number of threads. `element(block number, cell, cell number through all blocks, blocks)` computes a cell's matrix.
+/// Assembles the matrices of all cells. Each row is summed by one thread in the order of the cells, so that the result
+/// is bitwise the same for any number of threads. `element(block number, cell, cell number through all blocks, blocks)`
+/// computes the matrix of a cell.
 template <int components, class ElementMatrix>
 SparseMatrix assemble(const Body& body, const NodeGraph& graph, const ElementMatrix& element) {
   SparseMatrix result = matrix_on_graph(graph, components);
@@ -83,8 +84,8 @@ SparseMatrix assemble(const Body& body, const NodeGraph& graph, const ElementMat
   return result;
 }
 
-/// Adds the vectors of all cells, `count` of them with `components` per node, in the same way. `element(walk, part,
-/// cell number through all blocks, vectors)` computes those of the cell the walk is at.
+/// Assembles `count` vectors with `components` per node in the same way. `element(walk, part, cell number through all
+/// blocks, vectors)` computes those of the current cell of the walk.
 template <int components, std::size_t count, class ElementVectors>
 void assemble_vectors(const Body& body, const NodeGraph& graph, const ElementVectors& element,
                       const std::array<Vector*, count>& results) {
@@ -112,7 +113,7 @@ void assemble_vectors(const Body& body, const NodeGraph& graph, const ElementVec
   });
 }
 
-/// One of them.
+/// Assembles a single vector.
 template <int components, class ElementVector>
 void assemble_vector(const Body& body, const NodeGraph& graph, const ElementVector& element, Vector& result) {
   const auto first = [&](const CellWalk& walk, std::size_t part, Index cell, auto& values) {

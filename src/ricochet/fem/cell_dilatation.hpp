@@ -5,22 +5,22 @@
 
 #include "ricochet/base/packs.hpp"
 
-/// @file Mean dilatation of a cell, or of the cells of a pack. Included by source files only (packs.hpp). Not part of
-/// the public interface.
+/// @file Mean dilatation of a cell, or of the cells of a pack. Included by source files only (packs.hpp). Not
+/// part of the public interface.
 namespace ricochet {
 
 inline constexpr int most_cell_points = 125;
 
-/// The projection of functions given at the quadrature points of a cell on φ_0 = 1 and, where wanted, on linear
-/// functions of the reference coordinates, by the weights of the undeformed cell. `Number` is a double, or a pack with
-/// one of each cell.
+/// Projection of functions given at the quadrature points of a cell onto φ_0 = 1 and optionally onto linear
+/// functions of the reference coordinates, with the weights of the undeformed cell. `Number` is a double, or a
+/// pack with one number per cell.
 template <class Number>
 class CellDilatation {
  public:
   static constexpr int most_functions = 4;
 
-  /// `functions`: points × 1, or × (d + 1). `weights`: per point, positive. By Gram and Schmidt's method, twice for the
-  /// digits.
+  /// Orthonormalizes `functions`, points × 1 or points × (d + 1), in the product of the positive `weights` per point.
+  /// By Gram–Schmidt, applied twice for accuracy.
   RICOCHET_PART_OF_CALLER void start(const Matrix& functions, const Number* weights, int points) {
     points_ = static_cast<std::size_t>(points);
     weights_ = weights;
@@ -41,7 +41,7 @@ class CellDilatation {
     }
   }
   [[nodiscard]] int functions() const { return count_; }
-  /// P f at the points; symmetric in the product Σ w f g.
+  /// Computes P f at the points; symmetric in the product Σ w f g.
   RICOCHET_PART_OF_CALLER void project(const Number* values, Number* result) const {
     for (std::size_t q = 0; q < points_; ++q) result[q] = Number{};
     for (int m = 0; m < count_; ++m) {

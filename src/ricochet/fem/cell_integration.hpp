@@ -8,21 +8,20 @@
 
 #include "ricochet/fem/reference_element.hpp"
 
-/// @file Integration over the cells and facets of one block: shape functions tabulated once, the map evaluated per
-/// cell.
+/// @file Integration over the cells and facets of a block: shape functions tabulated once, the map evaluated per cell.
 namespace ricochet {
 
-/// Length of the circle on which a point of an axisymmetric body lies, at this distance from the axis.
+/// Circumference of the circle of a point of an axisymmetric body at the given distance from the axis.
 [[nodiscard]] inline double ring_length(double radius) {
   return 2.0 * std::numbers::pi * radius;
 }
 
-/// A quadrature rule with the geometry's and the displacement's shape functions at its points.
+/// Quadrature rule with the shape functions of geometry and displacement at its points.
 struct BlockIntegration {
   QuadratureRule rule;
   Tabulation geometry;
   Tabulation displacement;
-  /// Measures in the plane stand for those of the rings that they sweep.
+  /// Whether measures in the plane represent those of the rings that they sweep.
   bool axisymmetric = false;
 
   BlockIntegration(CellShape shape, int geometry_degree, int displacement_degree, int quadrature_degree,
@@ -32,21 +31,21 @@ struct BlockIntegration {
         displacement(ReferenceElement::get(shape, displacement_degree).tabulate(rule.points)),
         axisymmetric(is_of_rings) {}
 
-  /// Distance of a point of the rule from the axis. `nodes` are the geometry's.
+  /// Distance of a point of the rule from the axis. `nodes` are those of the geometry.
   [[nodiscard]] double radius(const Points& coordinates, const Index* nodes, Index q) const {
     double result = 0.0;
     for (Index k = 0; k < geometry.values.rows(); ++k) result += geometry.values(k, q) * coordinates(0, nodes[k]);
     return result;
   }
-  /// What every measure at a point of the rule has as a factor: the length of its ring, or 1.
+  /// Factor of every measure at a point of the rule: the circumference of its ring, or 1.
   [[nodiscard]] double ring(const Points& coordinates, const Index* nodes, Index q) const {
     return axisymmetric ? ring_length(radius(coordinates, nodes, q)) : 1.0;
   }
 };
 
-/// Degree that integrates products of two shape functions exactly, the determinant of the map included, and the
-/// distance from the axis in axisymmetric bodies. The stiffness of a map that is not affine is a rational function; the
-/// same degree serves it well.
+/// Degree that integrates products of two shape functions exactly, including the determinant of the map and, in
+/// axisymmetric bodies, the distance from the axis. If the map is not affine the stiffness is a rational function, for
+/// which the same degree is adequate.
 [[nodiscard]] inline int product_quadrature_degree(CellShape shape, int geometry_degree, int displacement_degree,
                                                    bool axisymmetric = false) {
   const bool simplex = shape == CellShape::triangle || shape == CellShape::tetrahedron || shape == CellShape::interval;
@@ -55,7 +54,7 @@ struct BlockIntegration {
 }
 
 /// Degree for the stiffness: on straight simplices the integrand is of degree 2(k−1). Hoop strains φ/r are rational
-/// functions, of which only those of affine displacements are polynomials: they get the degree of the mass.
+/// functions, polynomials only for affine displacements: they are integrated with the degree of the mass.
 [[nodiscard]] inline int stiffness_quadrature_degree(CellShape shape, int geometry_degree, int displacement_degree,
                                                      bool axisymmetric = false) {
   if (axisymmetric) return product_quadrature_degree(shape, geometry_degree, displacement_degree, true);
@@ -64,15 +63,15 @@ struct BlockIntegration {
   return product_quadrature_degree(shape, geometry_degree, displacement_degree);
 }
 
-/// What the stiffness is integrated with.
+/// Integration of the stiffness.
 [[nodiscard]] inline BlockIntegration stiffness_integration(CellShape shape, int geometry_degree,
                                                             int displacement_degree, bool axisymmetric = false) {
   return {shape, geometry_degree, displacement_degree,
           stiffness_quadrature_degree(shape, geometry_degree, displacement_degree, axisymmetric), axisymmetric};
 }
 
-/// Jacobian ∂x/∂ξ of the map of a cell: rows are components of x, columns reference directions. `nodes` are its node
-/// numbers.
+/// Jacobian ∂x/∂ξ of the map of a cell: rows are components of x, columns reference directions.
+/// `nodes` are the nodes of the cell.
 template <int space_dimension, int cell_dimension = space_dimension>
 Eigen::Matrix<double, space_dimension, cell_dimension> jacobian(const Points& coordinates, const Index* nodes,
                                                                 const Matrix& gradients) {

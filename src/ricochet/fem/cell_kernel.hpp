@@ -9,11 +9,11 @@
 #include "ricochet/fem/kernel_block.hpp"
 #include "ricochet/fem/point_law.hpp"
 
-/// @file One cell: tangents, with those of branches, and stress for output. Energy and forces of all cells are those of
-/// pack_kernels.hpp. Not part of the public interface.
+/// @file Kernel of a single cell: tangents, including those of viscoelastic branches, and stress for output.
+/// pack_kernels.hpp has energy and forces of all cells. Not part of the public interface.
 namespace ricochet {
 
-/// One cell at a displacement. A local vector has d components per node of the cell.
+/// Cell at a displacement. A local vector has d components per node of the cell.
 template <int d>
 class CellKernel {
  public:
@@ -38,7 +38,7 @@ class CellKernel {
     }
   }
 
-  /// Gradients of the shape functions at a point.
+  /// Computes the gradients of the shape functions at a point.
   void go_to(int q) {
     const double* from = block_.inverse_of_pack(pack_, q) + lane_;
     std::array<double, d * d> inverse;
@@ -87,7 +87,7 @@ class CellKernel {
     }
   }
 
-  /// A point's displacement gradient, which F is made of, and the strain that its stress is of.
+  /// Displacement gradient at a point, from which F is formed, and the strain of its stress.
   struct PointMotion {
     Tensor gradient, strain;
   };
@@ -96,8 +96,8 @@ class CellKernel {
     return {motion, law_.strain(motion)};
   }
 
-  /// Calls visit(q, F, E, S) at all points, F with the stretch across the plane; the gradients are those of q. What is
-  /// visited where det F is not positive means nothing. (The linear law has F = I.)
+  /// Calls visit(q, F, E, S) at all points, with the stretch normal to the plane in F; the current gradients are those
+  /// of q. The values are meaningless if det F is not positive. (For the linear law F = I.)
   template <class Visit>
   void visit_stress(const LocalVector& u, const Visit& visit) {
     const auto motion = [&] { return motion_of(u); };
@@ -114,7 +114,7 @@ class CellKernel {
     }
   }
 
-  /// Of a point, within visit_stress().
+  /// Energy density at a point, within visit_stress().
   [[nodiscard]] double energy_at(int q, const Tensor& strain) const {
     double density = law_.energy(strain);
     if (has_dilatation()) {
@@ -124,7 +124,7 @@ class CellKernel {
     return density;
   }
 
-  /// Adds the tangent, blocks of d × d for pairs of nodes as of element_matrices.hpp.
+  /// Adds the tangent in d × d blocks for pairs of nodes, in the order of element_matrices.hpp.
   void add_tangent(const LocalVector& u, double* blocks) {
     if (has_dilatation()) find_dilatation([&] { return motion_of(u); });
     Tensor stress;
@@ -145,7 +145,7 @@ class CellKernel {
     make_symmetric(blocks);
   }
 
-  /// Adds that of a stress of `modulus` times the strain's deviator, at no stress.
+  /// Adds the tangent, at zero stress, of the stress `modulus` times the deviator of the strain.
   void add_deviatoric_tangent(const LocalVector& u, double modulus, double* blocks) {
     StressTangent tangent = StressTangent::Zero();
     add_symmetric_product(Tensor::Identity(), modulus, tangent);
@@ -165,7 +165,7 @@ class CellKernel {
  private:
   using PointValues = std::array<double, most_cell_points>;
 
-  /// F. Its stretch across a plane under plane stress is that of the strain there.
+  /// F. Under plane stress the stretch normal to the plane follows from the strain.
   [[nodiscard]] Tensor deformation_of(const Tensor& motion, const Tensor& strain) const {
     if (law_.is_linear()) return Tensor::Identity();
     Tensor result = Tensor::Identity() + motion;
@@ -173,7 +173,7 @@ class CellKernel {
     return result;
   }
 
-  /// Θ − 1 and the pressure p of all points.
+  /// Computes Θ − 1 and the pressure p at all points.
   template <class Motion>
   void find_dilatation(const Motion& motion) {
     PointValues change;
@@ -193,13 +193,14 @@ class CellKernel {
     return 0.5 * volume_.modulus * (1.0 + 1.0 / (volume * volume));
   }
 
-  /// S += (p − U′(J)) J C⁻¹.
+  /// Adds the correction S += (p − U′(J)) J C⁻¹.
   void add_mean_pressure(int q, const Tensor& strain, Tensor& stress) const {
     const double s = determinant_change(2.0 * strain), volume = std::sqrt(1.0 + s);
     const Tensor inverse = inverse_metric(strain);
     stress += (pressure_[static_cast<std::size_t>(q)] * volume - volume_.stress_factor(s)) * inverse;
   }
-  /// ∂/∂E of it with p constant: p J (C⁻¹ ⊗ C⁻¹ − 2 C⁻¹ ⊙ C⁻¹) in place of the tangent of U(J).
+  /// Adds the derivative ∂/∂E of the correction with p constant: p J (C⁻¹ ⊗ C⁻¹ − 2 C⁻¹ ⊙ C⁻¹)
+  /// replaces the tangent of U(J).
   void add_mean_tangent(int q, const Tensor& strain, StressTangent& tangent) const {
     const double s = determinant_change(2.0 * strain), volume = std::sqrt(1.0 + s);
     const Tensor inverse = inverse_metric(strain);
@@ -209,7 +210,7 @@ class CellKernel {
     add_symmetric_product(inverse, -2.0 * p, tangent);
   }
 
-  /// Rows of B of a node: derivatives of the strain's components (shear twice) by its displacements, at F.
+  /// Computes the rows of B of a node: derivatives of the strain components (shear doubled) by its displacements, at F.
   void strain_rows(int node, const Tensor& f, Eigen::Matrix<double, 6, d>& rows) const {
     std::array<double, 3> g{};
     for (int a = 0; a < d; ++a) g[static_cast<std::size_t>(a)] = gradients_[static_cast<std::size_t>(node * d + a)];
@@ -251,7 +252,7 @@ class CellKernel {
     }
   }
 
-  /// To the bit: the blocks of a node with itself are so but for rounding.
+  /// Makes the result exactly symmetric: the diagonal blocks are symmetric only up to rounding.
   void make_symmetric(double* blocks) const {
     for (int j = 0; j < block_.nodes; ++j) {
       double* const own = blocks + pair_number(j, j) * d * d;
@@ -261,7 +262,7 @@ class CellKernel {
     }
   }
 
-  /// Of U(Θ): Σ_mn b_m b_nᵀ ∫ ψ_m ψ_n U″(Θ), b_m = ∫ ψ_m ∂J/∂u.
+  /// Adds the tangent of U(Θ): Σ_mn b_m b_nᵀ ∫ ψ_m ψ_n U″(Θ), b_m = ∫ ψ_m ∂J/∂u.
   void add_volume_tangent(const LocalVector& u, double* blocks) {
     const int count = dilatation_.functions();
     std::array<LocalVector, CellDilatation<double>::most_functions> slopes{};
@@ -298,12 +299,12 @@ class CellKernel {
   const KernelBlock<d>& block_;
   PointLaw law_;
   Index pack_, lane_;
-  VolumetricEnergy volume_;  ///< modulus 0: no mean dilatation
+  VolumetricEnergy volume_;  ///< modulus 0 if there is no mean dilatation
   CellDilatation<double> dilatation_;
-  PointValues weights_;          // as many as there are points
-  PointValues mean_, pressure_;  // set by find_dilatation() alone: a kernel is made for every cell of every pass
+  PointValues weights_;          // only the first block_.points are set
+  PointValues mean_, pressure_;  // set only by find_dilatation(): a kernel is constructed for every cell in every pass
   std::array<double, most_cell_nodes * d> gradients_;
-  std::array<double, most_cell_nodes> hoop_;  ///< φ/r, of an axisymmetric body
+  std::array<double, most_cell_nodes> hoop_;  ///< φ/r in axisymmetric bodies
 };
 
 }  // namespace ricochet

@@ -66,7 +66,7 @@ bool CellMasses::has_tied(const std::vector<Index>& nodes) const {
          std::any_of(nodes.begin(), nodes.end(), [this](Index node) { return body_.tied->is_tied(node); });
 }
 
-/// The nodes that the values at those of a cell come from.
+/// Nodes that determine the values at the nodes of a cell.
 std::vector<Index> CellMasses::nodes_followed(const std::vector<Index>& nodes) const {
   std::vector<Index> result;
   for (const Index node : nodes) {
@@ -77,7 +77,7 @@ std::vector<Index> CellMasses::nodes_followed(const std::vector<Index>& nodes) c
   return result;
 }
 
-/// T on a cell: its nodes × those followed.
+/// T on a cell: its nodes × the nodes that determine them.
 Matrix CellMasses::spreading_of(const std::vector<Index>& nodes, const std::vector<Index>& followed) const {
   Matrix result = Matrix::Zero(static_cast<Index>(nodes.size()), static_cast<Index>(followed.size()));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -97,7 +97,7 @@ void CellMasses::for_each_cell(const std::function<void(const std::vector<Index>
   }
 }
 
-/// Of a simplex: d on degree 1, d (d + 1) / 2 on degree 2.
+/// For a simplex: d with degree 1, d (d + 1) / 2 with degree 2.
 int CellMasses::least_facet_nodes() const {
   const int d = body_.mesh->dimension;
   return body_.space->degree == 1 ? d : d * (d + 1) / 2;

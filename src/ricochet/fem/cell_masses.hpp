@@ -5,12 +5,12 @@
 
 #include "ricochet/fem/assembly.hpp"
 
-/// @file The mass of single cells, for what needs more than their sum.
+/// @file Mass matrices of single cells, for algorithms that need more than their sum.
 namespace ricochet {
 
-/// ∫ wρ φ_i φ_j over one cell at a time, with w per material (empty: 1), as assemble_scalar_mass adds them. A cell with
-/// tied nodes has those that they follow in their place, and TᵀmT. Keeps a
-/// reference to the body. Not for two threads at once.
+/// Computes ∫ wρ φ_i φ_j over one cell at a time, with w per material (empty: 1), as summed in
+/// assemble_scalar_mass. Tied nodes of a cell are replaced by the nodes to which they are tied, with the matrix
+/// TᵀmT. Keeps a reference to the body. Not thread-safe.
 class CellMasses {
  public:
   explicit CellMasses(const Body& body, std::vector<double> weight = {});
@@ -21,12 +21,12 @@ class CellMasses {
   /// Calls visit(nodes of the cell, its matrix) for all cells, in the order of their numbers.
   using Visit = std::function<void(const std::vector<Index>& nodes, const Matrix& mass)>;
   void for_each(const Visit& visit) const;
-  /// The same with ∫ρ φ_i φ_j and w.
+  /// Calls visit(nodes, ∫ρ φ_i φ_j, w) for all cells.
   using VisitInertia = std::function<void(const std::vector<Index>& nodes, const Matrix& inertia, double weight)>;
   void for_each_inertia(const VisitInertia& visit) const;
-  /// The nodes alone.
+  /// Calls visit(nodes) for all cells.
   void for_each_cell(const std::function<void(const std::vector<Index>& nodes)>& visit) const;
-  /// Nodes that two cells have in common when they share a facet, at least.
+  /// Least number of common nodes of two cells that share a facet.
   [[nodiscard]] int least_facet_nodes() const;
 
  private:

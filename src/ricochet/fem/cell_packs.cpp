@@ -12,7 +12,7 @@ namespace ricochet {
 
 namespace {
 
-/// A cell with what it is sorted by: near nodes have near numbers.
+/// Cell with its sort key: nearby nodes have nearby numbers.
 struct SharedCell {
   int part, material;
   std::size_t block;
@@ -26,7 +26,7 @@ int part_of_node(const NodeGraph& graph, Index node) {
   return static_cast<int>(std::upper_bound(begins.begin(), begins.end(), node) - begins.begin()) - 1;
 }
 
-/// That of most of its nodes; of several the first.
+/// Returns the part of most of the cell's nodes, the first in case of a tie.
 int part_of_cell(const NodeGraph& graph, const CellWalk& walk) {
   std::array<int, most_node_parts> nodes{};
   for (int i = 0; i < walk.node_count(); ++i) ++nodes[static_cast<std::size_t>(part_of_node(graph, walk.nodes()[i]))];
@@ -64,7 +64,7 @@ void CellPacks::share_out(const Body& body, const NodeGraph* graph, const std::v
     auto& lanes = lanes_[cell.block];
     auto& runs = runs_[static_cast<std::size_t>(cell.part)];
     if (last == nullptr || last->part != cell.part || last->block != cell.block || last->material != cell.material) {
-      // A pack has cells of one run.
+      // A pack contains cells of a single run.
       for (auto& each : lanes_) each.resize((each.size() + width - 1) / width * width, -1);
       runs.push_back({cell.block, cell.material, static_cast<Index>(lanes.size() / width), 0});
     }
@@ -75,7 +75,7 @@ void CellPacks::share_out(const Body& body, const NodeGraph* graph, const std::v
   for (auto& each : lanes_) each.resize((each.size() + width - 1) / width * width, -1);
 }
 
-/// The part's own nodes first, then those of others, each ascending, then the one of no cell.
+/// Orders the part's own nodes first, then those of others, each ascending, then the dummy node.
 void CellPacks::number_nodes(const Body& body, const NodeGraph* graph) {
   const auto width = static_cast<std::size_t>(pack_width());
   const auto parts = runs_.size();
@@ -128,7 +128,7 @@ void CellPacks::number_nodes(const Body& body, const NodeGraph* graph) {
 
 template <int d>
 void CellPacks::read(Index part, const Vector& from, std::vector<double>& room) const {
-  const auto end = begins_[static_cast<std::size_t>(part) + 1] - 1;  // that of no cell stays zero
+  const auto end = begins_[static_cast<std::size_t>(part) + 1] - 1;  // the dummy node remains zero
   for (Index k = begins_[static_cast<std::size_t>(part)]; k < end; ++k) {
     const double* const node = from.data() + static_cast<Index>(nodes_[static_cast<std::size_t>(k)]) * d;
     double* const to = room.data() + k * node_stride<d>;

@@ -4,20 +4,20 @@
 
 #include "ricochet/fem/assembly.hpp"
 
-/// @file Cells in packs, whose loops take one number of each cell at once, and where the forces of their nodes go. Not
+/// @file Packs of cells, processed in SIMD loops with one lane per cell, and the assembly of their nodal forces. Not
 /// part of the public interface.
 ///
-/// The parts are those of the graph: a cell is of the part that most of its nodes are of. (Without a graph they are
-/// runs of cells.) A part works on numbers of its own, one after another for all nodes of its cells; what belongs to
-/// nodes of another part is added there when all parts are done, in the order of the parts. So every cell is computed
-/// once, and the bits are the same for any number of threads.
+/// The parts are those of the graph: a cell belongs to the part of most of its nodes. (Without a graph, parts are runs
+/// of cells.) Each part works on its own numbers, stored contiguously for all nodes of its cells; contributions to
+/// nodes of another part are added when all parts are complete, in the order of the parts. Every cell is thus computed
+/// once, and the result is bitwise the same for any number of threads.
 namespace ricochet {
 
-/// Numbers of a node side by side in memory: the components of a vector, and a zero in space, for packs of two or four.
+/// Numbers per node in memory: the components of a vector, padded with a zero in 3D, for packs of two or four.
 template <int d>
 inline constexpr int node_stride = d == 2 ? 2 : 4;
 
-/// Packs one after another, of one part, block and material.
+/// Consecutive packs of one part, block and material.
 struct PackRun {
   std::size_t block = 0;
   int material = 0;
@@ -26,23 +26,23 @@ struct PackRun {
 
 class CellPacks {
  public:
-  /// Of these cells, ascending; empty: of all. Keeps nothing of what it is made from.
+  /// Packs the given cells, ascending; all if empty. Keeps no references.
   CellPacks(const Body& body, const NodeGraph* graph, const std::vector<int>& cells);
 
   [[nodiscard]] Index parts() const { return static_cast<Index>(runs_.size()); }
   [[nodiscard]] const std::vector<PackRun>& runs(Index part) const { return runs_[static_cast<std::size_t>(part)]; }
-  /// Of a block: the cells (within the block) of all lanes, pack after pack; −1 where a pack is not full.
+  /// Cells of a block (numbered within it) in all lanes, pack by pack; −1 for unused lanes.
   [[nodiscard]] const std::vector<int>& lanes(std::size_t block) const { return lanes_[block]; }
-  /// Where, among the part's own, the numbers of a node of a lane are: per pack and node of the cell one per lane. All
-  /// nodes of a lane that is not used are one that is of no cell.
+  /// Index, among the numbers of the part, of a node of a lane: for each pack and node of the cell, one per lane. For
+  /// an unused lane all its nodes are a dummy node, which belongs to no cell.
   [[nodiscard]] const std::vector<int>& slots(std::size_t block) const { return slots_[block]; }
 
-  /// Room for the numbers of all parts, zero.
+  /// Storage for the numbers of all parts, zero.
   template <int d>
   [[nodiscard]] std::vector<double> room() const {
     return std::vector<double>(nodes_.size() * node_stride<d>, 0.0);
   }
-  /// Where those of a part begin in it.
+  /// Index of the first number of a part in that storage.
   template <int d>
   [[nodiscard]] Index begin(Index part) const {
     return begins_[static_cast<std::size_t>(part)] * node_stride<d>;
@@ -50,10 +50,10 @@ class CellPacks {
   /// Copies a vector per dof to the numbers of a part.
   template <int d>
   void read(Index part, const Vector& from, std::vector<double>& room) const;
-  /// Sets those of a part to zero.
+  /// Sets the numbers of a part to zero.
   template <int d>
   void clear(Index part, std::vector<double>& room) const;
-  /// A vector per dof of the sums of all parts.
+  /// Sums the numbers of all parts into a vector per dof.
   template <int d>
   void add_up(const std::vector<double>& room, Vector& result) const;
 
@@ -69,8 +69,8 @@ class CellPacks {
   std::vector<std::vector<PackRun>> runs_;       ///< per part
   std::vector<std::vector<int>> lanes_, slots_;  ///< per block
   std::vector<Index> begins_;                    ///< per part, and the end
-  std::vector<int> nodes_;                       ///< per place the node; −1: the one that is of no cell
-  std::vector<Index> own_;                       ///< per part how many of its places are of nodes of its own
+  std::vector<int> nodes_;                       ///< node per index; −1: the dummy node of a part
+  std::vector<Index> own_;                       ///< per part: number of its nodes that belong to the part itself
   std::vector<std::vector<Import>> imports_;     ///< per part
 };
 

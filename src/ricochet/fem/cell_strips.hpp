@@ -5,20 +5,20 @@
 #include "ricochet/fem/elastic_blocks.hpp"
 #include "ricochet/fem/pack_kernels.hpp"
 
-/// @file A few packs of cells at a time. Not part of the public interface.
+/// @file Strips: a few packs of cells at a time. Not part of the public interface.
 namespace ricochet {
 
-/// Numbers of the points of a strip, in memory that stays in the nearest cache where cells have few points.
+/// Numbers at the points of a strip, small enough for the first-level cache if cells have few points.
 template <int components>
 using StripNumbers = std::array<double, static_cast<std::size_t>(components* most_cell_points* most_pack_width)>;
 
-/// The strips of a part, one after another, with what their cells have in common.
+/// Iterates over the strips of a part, with the data common to their cells.
 template <int d>
 class ElasticCells::CellStrips {
  public:
   CellStrips(const Body& body, const Blocks<d>& blocks) : body_(body), blocks_(blocks) {}
 
-  /// Calls work(strip) for those of the runs that are wanted(material).
+  /// Calls work(strip) for the strips of all runs with wanted(material).
   template <class Wanted, class Work>
   void for_each_strip(Index part, const Wanted& wanted, const Work& work) {
     for (const PackRun& run : blocks_.packs.runs(part)) {
@@ -32,14 +32,14 @@ class ElasticCells::CellStrips {
   }
 
  protected:
-  /// At least what one pack has.
+  /// Least number of points per strip, unless one pack already has more.
   static constexpr int points_at_once = 16;
 
   [[nodiscard]] const Body& body() const { return body_; }
-  /// Of the run of the strip.
+  /// Material of the current run.
   [[nodiscard]] const Material& material() const { return body_.materials[material_number()]; }
   [[nodiscard]] std::size_t material_number() const { return static_cast<std::size_t>(run_->material); }
-  /// Calls work(pack, lane, number of its first point in the strip, cell of the block) for the lanes that are used.
+  /// Calls work(pack, lane, number of its first point in the strip, cell of the block) for the lanes in use.
   template <class Work>
   void for_each_lane(const PackStrip<d>& strip, const Work& work) const {
     const auto& lanes = blocks_.packs.lanes(run_->block);
@@ -51,7 +51,7 @@ class ElasticCells::CellStrips {
       }
     }
   }
-  /// Σ of weight times value, one value per point and lane.
+  /// Integral over a strip: Σ weight × value, with one value per point and lane.
   [[nodiscard]] double integral(const PackStrip<d>& strip, const double* values) const {
     const KernelBlock<d>& block = strip.block;
     double sum = 0.0;
@@ -62,7 +62,7 @@ class ElasticCells::CellStrips {
     });
     return sum;
   }
-  /// Number of the first cell of the block through all blocks.
+  /// Number, through all blocks, of the first cell of the block.
   [[nodiscard]] Index first_cell() const {
     Index sum = 0;
     for (std::size_t block = 0; block < run_->block; ++block) sum += body_.mesh->cells[block].size();
@@ -75,8 +75,8 @@ class ElasticCells::CellStrips {
   const PackRun* run_ = nullptr;
 };
 
-/// Calls work(part, its first number of a node, strips) for the parts, several at once; Strips is made of the body and
-/// its blocks.
+/// Calls work(part, index of its first number, strips) for all parts, several at once; Strips is constructed
+/// from the body and its blocks.
 template <int d, template <int> class Strips, class Work>
 void ElasticCells::for_each_part(const Work& work) const {
   const Blocks<d>& all = blocks<d>();

@@ -39,8 +39,8 @@ std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies
   };
   std::vector<std::size_t> cells(count, 0);
   for (const int body : bodies.of_cell) ++cells[static_cast<std::size_t>(body)];
-  std::vector<std::string> whole(count);               // a group that is all of the body and nothing else
-  std::vector<std::vector<std::string>> parts(count);  // groups that are in this body alone
+  std::vector<std::string> whole(count);               // a group that is exactly this body
+  std::vector<std::vector<std::string>> parts(count);  // groups that lie entirely within this body
   const auto look_at = [&](const std::string& name, const std::vector<Index>& members) {
     if (members.empty()) return;
     const std::size_t body = body_of(members.front());
@@ -49,7 +49,7 @@ std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies
     if (whole[body].empty() && members.size() == cells[body]) whole[body] = name;
   };
   std::vector<std::size_t> in_parts(count, 0);
-  for (const MeshPart& part : mesh.parts) {  // a body of a file of its own is called so, one of several files after all
+  for (const MeshPart& part : mesh.parts) {  // a body from one or several mesh files of its own is named after them
     look_at(part.name, part.cells);
     if (!part.cells.empty()) in_parts[body_of(part.cells.front())] += part.cells.size();
   }

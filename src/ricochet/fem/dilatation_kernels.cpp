@@ -10,7 +10,7 @@ namespace {
 template <int d, int W>
 using StrainPack = std::conditional_t<d == 2, PlaneTensor<Pack<W>>, SpaceTensor<Pack<W>>>;
 
-/// J − 1 of s = J² − 1.
+/// J − 1 as a function of s = J² − 1.
 template <class Number>
 RICOCHET_PART_OF_CALLER Number volume_change_of(const Number& s) {
   return s / (1.0 + square_root(1.0 + s));

@@ -52,8 +52,8 @@ DisplacementSpace vertices_of(const Mesh& mesh) {
   return space;
 }
 
-/// Adds the nodes of degree 2 to a straight mesh. A node on an edge, face or cell is known by that entity's vertices,
-/// and its position is their mean: the (multi)linear map sends the middle of the entity there.
+/// Adds the nodes of degree 2 to a straight mesh. A node on an edge, face or cell is identified by the vertices of that
+/// entity, and its position is their mean: the (multi)linear map sends the centre of the entity there.
 class SecondOrderNodes {
  public:
   explicit SecondOrderNodes(const Mesh& mesh) : mesh_(mesh), count_(mesh.node_count()) {}
@@ -113,7 +113,7 @@ DisplacementSpace in_order_of_mesh(const Mesh& mesh, int degree) {
   return space;
 }
 
-/// Gives near nodes near numbers, and keeps the ones they had.
+/// Renumbers the nodes by proximity and stores their previous numbers.
 void renumber(DisplacementSpace& space) {
   const std::vector<int> order = order_nodes(space.nodes);
   space.number.assign(order.begin(), order.end());

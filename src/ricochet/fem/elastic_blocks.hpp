@@ -6,7 +6,7 @@
 #include "ricochet/fem/cell_packs.hpp"
 #include "ricochet/fem/elastic_cells.hpp"
 
-/// @file What stays the same of the cells of a body with elastic energy. Not part of the public interface.
+/// @file Constant data of the cells of an elastic body. Not part of the public interface.
 namespace ricochet {
 
 template <int d>
@@ -14,20 +14,20 @@ struct ElasticCells::Blocks {
   const Body& body;
   CellPacks packs;
   std::vector<KernelBlock<d>> all;
-  /// Numbers of all parts: what goes in, and what comes out.
+  /// Numbers of all parts: input and output.
   mutable std::vector<double> displacement, increment, force, strain_force;
-  mutable std::vector<double> end, at;                       ///< of branches alone
+  mutable std::vector<double> end, at;                       ///< for viscoelastic branches only
   mutable std::vector<std::vector<BranchNumbers>> branches;  ///< per material, over a step
 
   Blocks(const Body& of, const NodeGraph* graph, const std::vector<int>& cells) : body(of), packs(of, graph, cells) {
     for (std::size_t b = 0; b < body.mesh->cells.size(); ++b) all.push_back(make(body.mesh->cells[b], packs.lanes(b)));
     displacement = packs.template room<d>();
-    if (graph == nullptr) return;  // neither forces nor branches
+    if (graph == nullptr) return;  // energies only, neither forces nor branches
     increment = force = strain_force = displacement;
     const auto relaxes = [](const Material& each) { return !each.relaxation.empty(); };
     if (std::any_of(body.materials.begin(), body.materials.end(), relaxes)) end = at = displacement;
   }
-  /// Of a step of this length; 0: of an instant.
+  /// Sets up the branches for a step of this length; 0: for an instant.
   void take_branches(double step) const {
     branches.resize(body.materials.size());
     for (std::size_t m = 0; m < branches.size(); ++m) {
@@ -68,7 +68,7 @@ struct ElasticCells::Blocks {
     for (std::size_t pack = 0; pack < packs_of_block; ++pack) {
       for (int k = 0; k < block.width; ++k) {
         const std::size_t place = pack * static_cast<std::size_t>(block.width) + static_cast<std::size_t>(k);
-        // A lane that is not used has the geometry of the first one's cell.
+        // An unused lane has the geometry of the first lane's cell.
         const Index cell = lanes[lanes[place] < 0 ? pack * static_cast<std::size_t>(block.width) : place];
         if (lanes[place] >= 0) block.lane[static_cast<std::size_t>(cell)] = static_cast<int>(place);
         measure(cells.cell(cell), static_cast<Index>(pack), k, block);
@@ -77,7 +77,7 @@ struct ElasticCells::Blocks {
     if (!simplex || body.space->degree > 1) block.dilatation_functions = dilatation_functions(cells.shape, block);
     return block;
   }
-  /// Jacobians, weights and radii of one cell.
+  /// Computes Jacobians, weights and radii of one cell.
   void measure(const Index* nodes, Index pack, int lane, KernelBlock<d>& block) const {
     for (int q = 0; q < block.points; ++q) {
       const auto map =
@@ -94,8 +94,8 @@ struct ElasticCells::Blocks {
       }
     }
   }
-  /// Linear on quadrilaterals and hexahedra of degree 2, else constant. (Triangles of degree 2 are not stable with
-  /// linear ones.)
+  /// Linear on quadrilaterals and hexahedra of degree 2, else constant. (Linear ones are
+  /// unstable on triangles of degree 2.)
   [[nodiscard]] Matrix dilatation_functions(CellShape shape, const KernelBlock<d>& block) const {
     const bool linear = !is_simplex(shape) && body.space->degree == 2;
     Matrix result = Matrix::Ones(block.points, linear ? d + 1 : 1);
@@ -115,7 +115,7 @@ inline const ElasticCells::Blocks<3>& ElasticCells::blocks<3>() const {
   return *solid_;
 }
 
-/// Of an internal strain of a branch.
+/// Reads an internal strain of a branch.
 inline Tensor read_tensor(const double* from) {
   Tensor result;
   for (std::size_t k = 0; k < tangent_components.size(); ++k) {

@@ -38,14 +38,14 @@ SparseMatrix ElasticCells::tangent(const Vector& displacement, double step) cons
 
 namespace {
 
-/// In the order of XDMF.
+/// Writes a tensor in the order of XDMF.
 void write_for_files(const Tensor& tensor, double* to) {
   for (int i = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j) *to++ = tensor(i, j);
   }
 }
 
-/// Adds the stress of the branches of a point; returns their energy. Goes on to the next point.
+/// Adds the stress of the branches at a point; returns their energy and advances `internal` to the next point.
 double take_branches(const Material& material, const Tensor& strain, const double*& internal, Tensor& stress) {
   const Tensor deviator = deviator_of(strain);
   double energy = 0.0;

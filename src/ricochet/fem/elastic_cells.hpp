@@ -7,29 +7,29 @@
 #include "ricochet/fem/node_graph.hpp"
 #include "ricochet/fem/stress.hpp"
 
-/// @file The elastic energy of a body, W(U) = Σ over cells ∫ W(E) over the undeformed cell, with its derivatives, for
-/// every material law:
-///   force     F_a = ∫ F S ∇φ_a          (F = I + H, H the displacement's gradient; of the linear law F = I)
+/// @file Elastic energy of a body, W(U) = Σ over cells ∫ W(E) over the undeformed cell, and its derivatives, for every
+/// material law:
+///   force     F_a = ∫ F S ∇φ_a          (F = I + H, H the displacement gradient; for the linear law F = I)
 ///   tangent   K_ab = ∫ B_aᵀ (∂S/∂E) B_b + (∇φ_a · S ∇φ_b) I,   B_a the derivative of E by the displacement of node a.
-/// In cells with mean dilatation the part U(J) of the energy is taken of a projection Θ of J on the functions that are
-/// constant over the cell (for quadrilaterals and hexahedra of degree 2: linear), which does not lock as the material
-/// becomes incompressible (J. C. Simo, R. L. Taylor, K. S. Pister, Comput. Methods Appl. Mech. Engrg. 51 (1985)
-/// 177–208): in all formulas U′(J) gives way to the projection of U′(Θ). The force is still the derivative of the
-/// energy.
+/// In cells with mean dilatation, the part U(J) of the energy is evaluated at a projection Θ of J onto the
+/// functions that are constant over the cell (for quadrilaterals and hexahedra of degree 2: linear), which does
+/// not lock as the material becomes incompressible (J. C. Simo, R. L. Taylor, K. S. Pister, Comput. Methods
+/// Appl. Mech. Engrg. 51 (1985) 177–208): in all formulas the projection of U′(Θ) replaces U′(J). The force
+/// remains the derivative of the energy.
 ///
-/// Quadrature is that of the stiffness, so that small displacements have the linear body's forces.
+/// The quadrature is that of the stiffness, so that small displacements produce the forces of the linear body.
 namespace ricochet {
 
-/// A cell whose volume is not positive somewhere, or whose thickness has no value.
+/// Cell whose volume is not positive at some point, or whose thickness is undefined.
 struct InvertedCell {
-  Index cell = -1;  ///< numbered through all blocks; −1: there is none
+  Index cell = -1;  ///< numbered through all blocks; −1 if none
   double volume_ratio = 1.0;
 };
 
-/// A step as the branches of a material see it (relaxation.hpp). Displacements are per dof.
+/// Input of the viscoelastic branches for a step (relaxation.hpp). Displacements are per dof.
 struct BranchStep {
-  const Vector& middle;     ///< where forces act over the step
-  const Vector& increment;  ///< u₁ − u₀, which makes Ē of it as for mean_force()
+  const Vector& middle;     ///< at which forces act over the step
+  const Vector& increment;  ///< u₁ − u₀, from which Ē follows as in mean_force()
   const Vector& end;        ///< u₁
   const Vector& internal;   ///< A at the start
   double step;              ///< h
@@ -37,57 +37,57 @@ struct BranchStep {
 
 class ElasticCells {
  public:
-  /// Keeps references. Without a graph there are energies of the laws alone: no force, no tangent, no branch.
+  /// Keeps references. Without a graph only energies of the laws are available: no force, no tangent, no branch.
   explicit ElasticCells(const Body& body, const NodeGraph* graph = nullptr);
-  /// Of some cells alone, ascending, that those of the graph are.
+  /// Restricts the sums to some cells, ascending, which must be those of the graph.
   ElasticCells(const Body& body, const NodeGraph* graph, std::vector<int> cells);
   ~ElasticCells();
   ElasticCells(const ElasticCells&) = delete;
   ElasticCells& operator=(const ElasticCells&) = delete;
 
-  /// Per dof. Where a cell is inverted the force means nothing, and it is told which one.
+  /// Computes the force per dof. If a cell is inverted the force is meaningless; that cell is returned.
   [[nodiscard]] InvertedCell force(const Vector& displacement, Vector& result) const;
-  /// The forces at a displacement `middle` of the stress of E + ⅛ (∇Δ)ᵀ∇Δ, Δ = `increment`: half way from u₀ to u₁,
-  /// with Δ their difference, that is the strain ½(E₀+E₁), and a rigid motion has none (J. C. Simo, N. Tarnow, Z.
-  /// Angew. Math. Phys. 43 (1992) 757–792).
+  /// Computes the forces at a displacement `middle` of the stress of E + ⅛ (∇Δ)ᵀ∇Δ, Δ = `increment`: half way from u₀
+  /// to u₁, with Δ their difference, this is the strain ½(E₀+E₁), and a rigid motion has none (J. C. Simo, N. Tarnow,
+  /// Z. Angew. Math. Phys. 43 (1992) 757–792).
   [[nodiscard]] InvertedCell mean_force(const Vector& middle, const Vector& increment, Vector& result) const;
-  /// The same with strain_force() at `middle`, in one pass.
+  /// Computes mean_force() and strain_force() at `middle` in one pass.
   [[nodiscard]] InvertedCell mean_forces(const Vector& middle, const Vector& increment, Vector& result,
                                          Vector& strain_result) const;
   [[nodiscard]] double energy(const Vector& displacement) const;
-  /// Symmetric to the bit, on the pattern of the graph. An empty displacement is zero. With a `step` that of the
-  /// branches over a step of this length is in it, at no stress of theirs.
+  /// Tangent, exactly symmetric, on the pattern of the graph. An empty displacement is zero. With a `step` it includes
+  /// the tangent of the branches over a step of this length, at zero stress of theirs.
   [[nodiscard]] SparseMatrix tangent(const Vector& displacement, double step = 0.0) const;
-  /// Forces, at a displacement, of the stress 𝔻₀ : (the derivative of E along `increment`), 𝔻₀ the tangent at zero
-  /// strain. From half way, that is the change of E over the increment, and the work on the increment is
-  /// Σ ∫ ΔE : 𝔻₀ : ΔE ≥ 0. No law of a linear material has such forces here.
+  /// Computes the forces, at a displacement, of the stress 𝔻₀ : (the derivative of E along `increment`), 𝔻₀ the tangent
+  /// at zero strain. Half way, that derivative is the change of E over the increment, and the work on the increment is
+  /// Σ ∫ ΔE : 𝔻₀ : ΔE ≥ 0. Materials with a linear law contribute nothing here.
   void strain_force(const Vector& displacement, const Vector& increment, Vector& result) const;
 
-  /// Means over one cell of the Cauchy stress (weighted by the undeformed volume) and of the energy per undeformed
-  /// volume, those of branches included. `stress`: 6, in the order of XDMF. `internal`: empty where no branch has
-  /// stress.
+  /// Computes means over one cell of the Cauchy stress (weighted by the undeformed volume) and of the energy
+  /// per undeformed volume, including those of branches. `stress`: 6, in the order of XDMF. `internal`:
+  /// empty if no branch has stress.
   void cell_stress(std::size_t block, Index local, Index cell, const Vector& displacement, const Vector& internal,
                    double* stress, double& energy_density) const;
-  /// Mean over one cell of Green's strain, weighted by the undeformed volume, with the strain across the plane of plane
-  /// stress and the hoop strain of axisymmetric bodies. `strain`: 6, in the order of XDMF.
+  /// Computes the mean over one cell of Green's strain, weighted by the undeformed volume, with the strain normal to
+  /// the plane under plane stress and the hoop strain of axisymmetric bodies. `strain`: 6, in the order of XDMF.
   void cell_strain(std::size_t block, Index local, Index cell, const Vector& displacement, double* strain) const;
 
-  // Branches of the materials, relaxation.hpp (elastic_cells_branches.cpp): what they add to energy and forces. Their
-  // internal strains are one vector for all of the body, also where these are some cells of it: six numbers, xx, yy,
-  // zz, xy, yz, zx, per branch of each quadrature point.
+  // Viscoelastic branches of the materials, relaxation.hpp (elastic_cells_branches.cpp): their contribution to energy
+  // and forces. The internal strains are one vector for the whole body, even if these are only some of its cells: six
+  // numbers, xx, yy, zz, xy, yz, zx, per branch of each quadrature point.
   [[nodiscard]] Index internal_size() const { return internal_begin_.empty() ? 0 : internal_begin_.back(); }
-  /// A = dev E: no branch has stress.
+  /// Sets A = dev E: no branch has stress.
   void relax(const Vector& displacement, Vector& internal) const;
-  /// Of an instant.
+  /// Energy of the branches at an instant.
   [[nodiscard]] double branch_energy(const Vector& displacement, const Vector& internal) const;
-  /// Of q̄, at the middle.
+  /// Computes the force of q̄, at the middle.
   void mean_branch_force(const BranchStep& step, Vector& result) const;
-  /// Of q₁, at the end.
+  /// Computes the force of q₁, at the end.
   void end_branch_force(const BranchStep& step, Vector& result) const;
-  /// ∫ of the potential of RelaxationRule::start_energy() at a displacement, and its forces.
+  /// Integral of the potential RelaxationRule::start_energy() at a displacement, and its forces.
   [[nodiscard]] double start_branch_energy(const BranchStep& step, const Vector& displacement) const;
   void start_branch_force(const BranchStep& step, const Vector& displacement, Vector& result) const;
-  /// A₁, and the energy that the step dissipates, ≥ 0.
+  /// Computes A₁; returns the energy that the step dissipates, ≥ 0.
   [[nodiscard]] double advance_internal(const BranchStep& step, Vector& internal) const;
 
  private:
@@ -118,7 +118,7 @@ class ElasticCells {
   const Body& body_;
   const NodeGraph* graph_;
   std::vector<int> cells_;             ///< empty: all
-  std::vector<Index> internal_begin_;  ///< per cell, and the end; empty: no branch
+  std::vector<Index> internal_begin_;  ///< per cell, and the end; empty if there are no branches
   std::unique_ptr<Blocks<2>> plane_;
   std::unique_ptr<Blocks<3>> solid_;
 };

@@ -1,6 +1,6 @@
 #include "ricochet/fem/cell_strips.hpp"
 
-/// @file Branches of the materials beside their laws, of the cells of a body.
+/// @file Viscoelastic branches of the materials in the cells of a body.
 namespace ricochet {
 
 void ElasticCells::find_internal_places() {
@@ -21,20 +21,20 @@ void ElasticCells::find_internal_places() {
   if (sum > 0) internal_begin_ = std::move(begin);
 }
 
-/// Where the strains of branches are.
+/// Vectors from which the strains of branches are computed.
 struct ElasticCells::BranchPlaces {
-  const BranchStep* step = nullptr;      ///< null: no step, but an instant
-  const Vector* displacement = nullptr;  ///< null: only the places of the step
+  const BranchStep* step = nullptr;      ///< null for an instant instead of a step
+  const Vector* displacement = nullptr;  ///< null if only displacements of the step are needed
   const Vector& internal;
 };
 
-/// What is computed of branches.
+/// Computations of viscoelastic branches on strips.
 template <int d>
 class ElasticCells::BranchStrips : public CellStrips<d> {
  public:
   BranchStrips(const Body& body, const Blocks<d>& blocks) : CellStrips<d>(body, blocks), blocks_(blocks) {}
 
-  /// Calls work(strip) for the strips of a part whose cells have branches, with their strains.
+  /// Calls work(strip) for the strips of a part whose cells have branches, after computing their strains.
   template <class Work>
   void for_each_strip(Index part, Index begin, const BranchPlaces& places, const std::vector<Index>& internal_begin,
                       const Work& work) {
@@ -60,7 +60,7 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
     find_branch_works(of, points(strip), nullptr, result_.data());
     return this->integral(strip, result_.data());
   }
-  /// Writes A₁ to a vector of the same order as A, and returns the dissipation.
+  /// Writes A₁ to a vector in the order of A; returns the dissipation.
   [[nodiscard]] double advance(const PackStrip<d>& strip, const BranchPlaces& places, Vector& next) {
     find_next(strip, places, next);
     find_branch_works(BranchWork::dissipation, points(strip), next_.data(), result_.data());
@@ -91,7 +91,7 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
     }
     if (places.displacement != nullptr) blocks_.packs.template read<d>(part, *places.displacement, blocks_.at);
   }
-  /// E₀ of the gradient of u₁ less that of the increment; or E at the displacement, where no E₀ is needed.
+  /// Computes E₀ from the gradient of u₁ minus that of the increment; or E at the displacement if no E₀ is needed.
   void find_all_strains(const PackStrip<d>& strip, Index begin, const BranchPlaces& places) {
     const Index count = strip.points();
     has_step_ = places.step != nullptr;
@@ -131,7 +131,7 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
   alignas(64) StripNumbers<strain_components<d>> middle_, end_, other_, result_;
 };
 
-/// find(strips, strip, forces) adds those of a strip.
+/// Sums forces over the branches: find(strips, strip, forces) adds those of a strip.
 template <int d, class Find>
 void ElasticCells::add_up_branches(const BranchPlaces& places, const Find& find, Vector& result) const {
   const Blocks<d>& all = blocks<d>();
@@ -144,7 +144,7 @@ void ElasticCells::add_up_branches(const BranchPlaces& places, const Find& find,
   all.packs.template add_up<d>(all.force, result);
 }
 
-/// find(strips, strip) gives the part of a strip.
+/// Sums find(strips, strip), the contribution of a strip.
 template <int d, class Find>
 double ElasticCells::sum_branches(const BranchPlaces& places, const Find& find) const {
   const Blocks<d>& all = blocks<d>();

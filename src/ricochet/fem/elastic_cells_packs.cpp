@@ -8,14 +8,14 @@ namespace ricochet {
 
 namespace {
 
-/// The worst of the cells of one part; parts are compared in their order.
+/// Updates the worst cell of a part; parts are compared in their order.
 void worse(InvertedCell& worst, Index cell, double ratio) {
   if (ratio < worst.volume_ratio) worst = {cell, ratio};
 }
 
 using PartCells = std::array<InvertedCell, most_node_parts>;
 
-/// Of the parts, in their order.
+/// Worst cell of all parts, compared in their order.
 InvertedCell worst_of(const PartCells& parts) {
   InvertedCell all;
   for (const InvertedCell& each : parts) {
@@ -26,7 +26,7 @@ InvertedCell worst_of(const PartCells& parts) {
 
 }  // namespace
 
-/// What is computed of laws.
+/// Computations of the material laws on strips.
 template <int d>
 class ElasticCells::StripWork : public CellStrips<d> {
  public:
@@ -45,8 +45,8 @@ class ElasticCells::StripWork : public CellStrips<d> {
         });
   }
 
-  /// H, E and S from the numbers of a part; those of an increment (null: none) make E that of the mean of both ends.
-  /// Where a cell is inverted `worst` is told.
+  /// Computes H, E and S from the numbers of a part; with those of an increment (or null) E is the mean over both ends.
+  /// Updates `worst` if a cell is inverted.
   void find_strains(const PackStrip<d>& strip, const double* numbers, const double* increments, InvertedCell& worst) {
     find_gradients(strip, numbers, gradients_.data());
     if (increments != nullptr) find_gradients(strip, increments, increments_.data());
@@ -54,7 +54,7 @@ class ElasticCells::StripWork : public CellStrips<d> {
                                              increments != nullptr ? increments_.data() : nullptr, strains_.data());
     if (law_->is_plane_stress()) complete(strip);
     if (law_->is_linear()) return;
-    if (law_->is_plane_stress()) upright = false;  // whether there is a thickness is not known yet
+    if (law_->is_plane_stress()) upright = false;  // whether the thickness is defined is not known yet
     if (!upright) find_worst(strip, worst);
   }
   void add_forces(const PackStrip<d>& strip, double* forces) {
@@ -62,14 +62,14 @@ class ElasticCells::StripWork : public CellStrips<d> {
     if (mean_modulus_ > 0.0) add_mean_pressures(strip, mean_modulus_, strains_.data(), stresses_.data());
     ricochet::add_forces(strip, law_->is_linear(), gradients_.data(), stresses_.data(), forces);
   }
-  /// Of 𝔻₀ : (the derivative of E along the increment).
+  /// Adds the forces of 𝔻₀ : (the derivative of E along the increment).
   void add_rate_forces(const PackStrip<d>& strip, double* forces) {
     if (law_->is_linear()) return;
     const auto law = IsotropicElasticity::of(material().lambda(), material().mu(), law_->is_plane_stress());
     find_rate_stresses<d>(strip.points(), law, gradients_.data(), increments_.data(), stresses_.data());
     ricochet::add_forces(strip, false, gradients_.data(), stresses_.data(), forces);
   }
-  /// The same where nothing else is wanted there.
+  /// Computes the gradients as well, if no other forces are needed at these numbers.
   void add_rate_forces(const PackStrip<d>& strip, const double* numbers, const double* increments, double* forces) {
     find_gradients(strip, numbers, gradients_.data());
     find_gradients(strip, increments, increments_.data());
@@ -91,7 +91,7 @@ class ElasticCells::StripWork : public CellStrips<d> {
                                       const PackStrip<d>& strip, int lane) {
     return of[static_cast<std::size_t>((point * strain_components<d> + component) * strip.block.width + lane)];
   }
-  /// Plane stress: the strain across the plane, one point after another.
+  /// Plane stress: computes the strain normal to the plane, point by point.
   void complete(const PackStrip<d>& strip) {
     this->for_each_lane(strip, [&](Index, int lane, Index first, int) {
       for (Index point = first; point < first + strip.block.points; ++point) {
@@ -122,24 +122,24 @@ class ElasticCells::StripWork : public CellStrips<d> {
   }
   std::optional<PointLaw> law_;
   double mean_modulus_ = 0.0;
-  // Filled strip by strip.
+  // Overwritten strip by strip.
   alignas(64) StripNumbers<gradient_components<d>> gradients_, increments_;
   alignas(64) StripNumbers<strain_components<d>> strains_, stresses_;
 };
 
-/// A vector per dof that is read, and the numbers of all parts that it becomes.
+/// Input vector per dof, and the numbers of all parts to which it is copied.
 struct ElasticCells::PackInput {
   const Vector& values;
   std::vector<double>& numbers;
 };
 
-/// Numbers of all parts that are summed up, and the vector per dof that they become.
+/// Numbers of all parts to be summed, and the vector per dof of the sums.
 struct ElasticCells::PackSum {
   std::vector<double>& numbers;
   Vector& result;
 };
 
-/// Calls work(strips, strip, part, its first number of a node, the part's worst cell) for all strips, several parts at
+/// Calls work(strips, strip, part, index of its first number, the part's worst cell) for all strips, several parts at
 /// once; returns the worst cell.
 template <int d, class Work>
 InvertedCell ElasticCells::visit_strips(std::initializer_list<PackInput> inputs, std::initializer_list<PackSum> sums,
@@ -211,7 +211,7 @@ void ElasticCells::strain_force(const Vector& displacement, const Vector& increm
   });
 }
 
-/// Infinite where a cell is turned inside out, which no strain tells.
+/// Infinite if a cell is inverted, which cannot be recognized from its strain.
 double ElasticCells::energy(const Vector& displacement) const {
   std::array<double, most_node_parts> sums{};
   with_dimension(body_.mesh->dimension, [&](auto dimension) {

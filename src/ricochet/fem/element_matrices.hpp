@@ -8,22 +8,22 @@
 
 /// @file Mass and stiffness of one cell. Not part of the public interface.
 ///
-/// A cell's matrix is symmetric: only its blocks for pairs of nodes i ≤ j are computed, in the order (0,0), (0,1),
-/// (1,1), (0,2), …, each row by row. Loops over the nodes of common cells have a length known to the compiler.
+/// The matrix of a cell is symmetric: only its blocks for pairs of nodes i ≤ j are computed, in the order (0,0), (0,1),
+/// (1,1), (0,2), …, each row by row. For common cells the loops over nodes have a length known at compile time.
 namespace ricochet {
 
-/// Place of the pair i ≤ j; pair_number(0, n) is the number of pairs of n nodes.
+/// Index of the pair i ≤ j; pair_number(0, n) is the number of pairs of n nodes.
 constexpr int pair_number(int i, int j) {
   return j * (j + 1) / 2 + i;
 }
 
-/// Of a hexahedron of degree 2.
+/// Nodes of a hexahedron of degree 2.
 inline constexpr int most_cell_nodes = 27;
 
-/// What the mass needs of a block of cells.
+/// Integration of the mass on a block of cells.
 struct MassIntegration {
   BlockIntegration block;
-  /// The map is affine, with one Jacobian per cell, and nothing else varies over it.
+  /// Whether the map is affine, with one Jacobian per cell, and no other factor varies over the cell.
   bool affine = false;
   /// ∫ φ_i φ_j over the reference cell, per pair.
   std::vector<double> reference;
@@ -44,7 +44,7 @@ struct MassIntegration {
   }
 };
 
-/// ∫ ρ φ_i φ_j over a cell: one number per pair of nodes. `nodes` are the geometry's.
+/// Computes ∫ ρ φ_i φ_j over a cell: one number per pair of nodes. `nodes` are those of the geometry.
 template <int d>
 void element_mass(const MassIntegration& integration, const Points& coordinates, const Index* nodes, double density,
                   double* result) {
@@ -80,7 +80,7 @@ void add_elastic_pairs(const double* gradients, int count, const IsotropicElasti
   }
 }
 
-/// Adds for all pairs what the hoop strains φ/r of axisymmetric bodies add to the tangent.
+/// Adds the contribution of the hoop strains φ/r of axisymmetric bodies to the tangent for all pairs of nodes.
 inline void add_hoop_pairs(const BlockIntegration& integration, double radius, Index q, const double* gradients,
                            const IsotropicElasticity& law, double* result) {
   const Matrix& values = integration.displacement.values;
@@ -90,7 +90,8 @@ inline void add_hoop_pairs(const BlockIntegration& integration, double radius, I
   }
 }
 
-/// ∫ A ε(φ_i e_a) : ε(φ_j e_b) over a cell, d × d numbers per pair of nodes. `nodes` are the geometry's.
+/// Computes ∫ A ε(φ_i e_a) : ε(φ_j e_b) over a cell, d × d numbers per pair of nodes.
+/// `nodes` are those of the geometry.
 template <int d>
 void element_stiffness(const BlockIntegration& integration, const Points& coordinates, const Index* nodes,
                        const IsotropicElasticity& law, double* result) {

@@ -9,7 +9,7 @@ namespace ricochet {
 
 namespace {
 
-/// Of a facet numbered through all blocks.
+/// Vertices of a facet numbered through all blocks.
 std::span<const Index> vertices_of(const Mesh& mesh, Index facet) {
   const PlaceInBlocks at = place_in_blocks(mesh.facets, facet);
   const CellBlock& block = mesh.facets[at.block];
@@ -19,7 +19,7 @@ std::span<const Index> vertices_of(const Mesh& mesh, Index facet) {
 }  // namespace
 
 std::vector<std::vector<Index>> cells_of_facets(const Mesh& mesh, const std::vector<Index>& facets) {
-  // Those around all of its vertices.
+  // Cells that contain all vertices of a facet.
   std::vector<std::vector<Index>> cells_of_vertex(static_cast<std::size_t>(mesh.node_count()));
   std::vector<char> wanted(static_cast<std::size_t>(mesh.node_count()), 0);
   for (const Index facet : facets) {

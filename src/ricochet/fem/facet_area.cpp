@@ -9,7 +9,7 @@ namespace ricochet {
 
 namespace {
 
-/// The nodes of a facet of the displacement, as one passes them going round it, or along a segment.
+/// Displacement nodes of a facet in the order of its border, or along a segment.
 std::vector<int> border_of(CellShape shape, int degree) {
   const std::vector<int> corners = shape == CellShape::interval   ? std::vector<int>{0, 1}
                                    : shape == CellShape::triangle ? std::vector<int>{0, 1, 2}

@@ -8,24 +8,24 @@
 /// @file Integration over boundary facets, one facet at a time, on their curved geometry.
 namespace ricochet {
 
-/// One facet at the quadrature points of its block.
+/// Facet at the quadrature points of its block.
 struct FacetQuadrature {
   Index facet = 0;  ///< numbered through all blocks
   CellShape shape = CellShape::interval;
-  const Index* nodes = nullptr;  ///< of the displacement's space, vertices first
+  const Index* nodes = nullptr;  ///< of the displacement space, vertices first
   Points positions;              ///< d × points, on the curved facet
   Vector measure;                ///< per point: quadrature weight × area per reference area; sum: the area (of rings)
   const Matrix* displacement = nullptr;  ///< φ, nodes × points
-  const Matrix* hats = nullptr;          ///< (multi)linear functions of the vertices, vertices × points
-  bool whole = true;                     ///< the points are those of all of the facet, not of a part of it
+  const Matrix* hats = nullptr;          ///< (multi)linear hat functions of the vertices, vertices × points
+  bool whole = true;                     ///< whether the points cover the whole facet, not a part of it
 
   [[nodiscard]] Index node_count() const { return displacement->rows(); }
   [[nodiscard]] Index vertex_count() const { return hats->rows(); }
 };
 
 /// Integrates over the facets of a body. The rule is exact for products of two shape functions of the displacement on
-/// straight facets; on curved ones of 3D bodies, where the area's density is a root, it is the same for every use, so
-/// that identities between integrals (partition of unity, biorthogonality) hold to rounding there, too.
+/// straight facets; on curved facets of 3D bodies, where the area density is a square root, the same rule is used
+/// everywhere, so that identities between integrals (partition of unity, biorthogonality) hold to rounding there, too.
 class FacetIntegration {
  public:
   explicit FacetIntegration(const Body& body) : body_(&body) {
@@ -39,7 +39,7 @@ class FacetIntegration {
     }
   }
 
-  /// `facet` is numbered through all blocks. What `result` points to lives as long as this object.
+  /// Evaluates a facet numbered through all blocks. Pointers in `result` are valid for the lifetime of this object.
   void evaluate(Index facet, FacetQuadrature& result) const {
     const PlaceInBlocks place = locate_facet(*body_->space, facet);
     const std::size_t b = place.block;

@@ -8,21 +8,22 @@ namespace ricochet {
 namespace {
 
 constexpr int most_iterations = 30;
-/// In reference coordinates: Newton's method squares the error, and what a step of this size leaves is below rounding.
+/// Step size in reference coordinates below which Newton's method has converged: it squares the error, so that the
+/// error after such a step is below rounding.
 constexpr double settled = 1e-9;
-/// The same where two steps in a row tell that it has.
+/// Step size below which it has converged if two successive steps confirm the quadratic rate.
 constexpr double nearly_settled = 1e-7;
-/// Points that are farther outside of a facet than this, in reference coordinates, do not belong to it.
+/// Distance outside of a facet, in reference coordinates, beyond which points do not belong to it.
 constexpr double far_outside = 3.0;
 
-/// The reference coordinates of places on a facet that is seen in a plane, one after the other: Newton's method from
-/// where the derivative at the last place leads, or else from the centre.
+/// Finds the reference coordinates of successive points on a facet projected onto a plane: Newton's method starts from
+/// an extrapolation of the last point by its derivative, or else from the centre.
 class PlaceFinder {
  public:
   PlaceFinder(const PolynomialMap<2>& seen, bool is_segment, const Eigen::Vector2d& centre)
       : seen_(seen), is_segment_(is_segment), centre_(centre) {}
 
-  /// False where there are none.
+  /// Returns false if there is no such point.
   [[nodiscard]] bool find(const Eigen::Vector2d& wanted) {
     if (is_known_ && settle(at_ + solve(wanted - wanted_), wanted)) return true;
     return settle(centre_, wanted);
@@ -30,7 +31,7 @@ class PlaceFinder {
   [[nodiscard]] const Eigen::Vector2d& at() const { return at_; }
 
  private:
-  /// The derivative's inverse on a vector of the plane.
+  /// Applies the inverse of the derivative to a vector in the plane.
   [[nodiscard]] Eigen::Vector2d solve(const Eigen::Vector2d& apart) const {
     const auto& [along, across] = here_.slopes;
     if (is_segment_) return {apart[0] / along[0], 0.0};
@@ -48,7 +49,7 @@ class PlaceFinder {
       const Eigen::Vector2d step = solve(here_.at - wanted);
       at_ -= step;
       if (!(at_.lpNorm<Eigen::Infinity>() <= far_outside)) return false;
-      // Steps go like their squares, s₂ = c s₁²; so after the second one c s₂² is left.
+      // Steps decrease quadratically, s₂ = c s₁²; the error after the second one is therefore c s₂².
       const double size = step.lpNorm<Eigen::Infinity>();
       is_known_ = size <= settled || (size <= nearly_settled &&
                                       size * size * size <= std::numeric_limits<double>::epsilon() * last * last);
@@ -61,7 +62,7 @@ class PlaceFinder {
   bool is_segment_;
   Eigen::Vector2d centre_, at_, wanted_;
   PolynomialMap<2>::Place here_;
-  bool is_known_ = false;  ///< `at_` is where `wanted_` is
+  bool is_known_ = false;  ///< whether `at_` is the solution for `wanted_`
 };
 
 void tabulate(const PolynomialShape& shape, const Points& local, Matrix& values) {
@@ -69,7 +70,7 @@ void tabulate(const PolynomialShape& shape, const Points& local, Matrix& values)
   for (Index q = 0; q < local.cols(); ++q) shape.values(local.col(q).data(), values.col(q).data());
 }
 
-/// Of a facet over that of its projection: axes in the columns, the second zero in two dimensions.
+/// Ratio of the area of a facet to that of its projection: axes in the columns, the second zero in 2D.
 double area_ratio(const PolynomialMap<3>::Place& at, const Eigen::Matrix<double, 3, 2>& axes, bool is_segment) {
   const auto& [along, across] = at.slopes;
   if (is_segment) return along.norm() / std::abs(axes.col(0).dot(along));

@@ -5,11 +5,11 @@
 
 #include "ricochet/fem/material_law.hpp"
 
-/// @file What laws of finite strain are written with. Not part of the public interface.
+/// @file Tensor functions for laws of finite strain. Not part of the public interface.
 namespace ricochet {
 
-// Products and inverses of 3 × 3 matrices, written out: compilers leave those of Eigen as calls, which take most of the
-// time of a cell.
+// Products and inverses of 3 × 3 matrices are written out: compilers keep those of Eigen as calls, which
+// take most of the time of a cell.
 
 /// A B.
 inline Tensor product(const Tensor& a, const Tensor& b) {
@@ -66,19 +66,19 @@ inline Tensor deviator_of(const Tensor& a) {
   return result;
 }
 
-/// det(I + A) − 1 − tr A, to the digits of its terms: they are of the second order.
+/// det(I + A) − 1 − tr A, of second order, to the precision of its terms.
 inline double determinant_remainder(const Tensor& a) {
   const double second = a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0) + a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1) +
                         a(2, 2) * a(0, 0) - a(2, 0) * a(0, 2);
   return second + determinant(a);
 }
 
-/// det(I + A) − 1, to the digits of A.
+/// det(I + A) − 1, to the precision of A.
 inline double determinant_change(const Tensor& a) {
   return a.trace() + determinant_remainder(a);
 }
 
-/// x − ln(1 + x), to the digits of x: with t = x/(2+x), ln(1+x) = 2(t + t³/3 + t⁵/5 + …).
+/// x − ln(1 + x), to the precision of x: with t = x/(2+x), ln(1+x) = 2(t + t³/3 + t⁵/5 + …).
 inline double logarithm_remainder(double x) {
   if (!(std::abs(x) < 0.1)) return x - std::log1p(x);
   const double t = x / (2.0 + x), square = t * t;
@@ -87,12 +87,12 @@ inline double logarithm_remainder(double x) {
   return x * t - 2.0 * t * square * sum;
 }
 
-/// J − 1 of J² − 1.
+/// J − 1 as a function of s = J² − 1.
 inline double volume_change(double s) {
   return s / (1.0 + std::sqrt(1.0 + s));
 }
 
-/// (i, j) of the components of a StressTangent.
+/// Indices (i, j) of the components of a StressTangent.
 inline constexpr std::array<std::array<int, 2>, 6> tangent_components{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}}};
 
 /// Adds factor · A ⊗ B, A and B symmetric.
@@ -106,7 +106,7 @@ inline void add_dyad(const Tensor& a, const Tensor& b, double factor, StressTang
   }
 }
 
-/// Adds factor · A ⊙ A, (A ⊙ A)_ijkl = ½(A_ik A_jl + A_il A_jk): with A = I the identity on symmetric tensors.
+/// Adds factor · A ⊙ A, (A ⊙ A)_ijkl = ½(A_ik A_jl + A_il A_jk): for A = I the identity on symmetric tensors.
 inline void add_symmetric_product(const Tensor& a, double factor, StressTangent& result) {
   for (int p = 0; p < 6; ++p) {
     const auto [i, j] = tangent_components[static_cast<std::size_t>(p)];
@@ -117,12 +117,12 @@ inline void add_symmetric_product(const Tensor& a, double factor, StressTangent&
   }
 }
 
-/// What the part (K/4)(J² − 1 − 2 ln J) of an energy is made of, from s = J² − 1.
+/// Volumetric energy (K/4)(J² − 1 − 2 ln J) and its derivatives, as functions of s = J² − 1.
 struct VolumetricEnergy {
   double modulus = 0.0;
 
   [[nodiscard]] double energy(double s) const { return 0.25 * modulus * logarithm_remainder(s); }
-  /// S = this · C⁻¹.
+  /// Factor of C⁻¹ in S.
   [[nodiscard]] double stress_factor(double s) const { return 0.5 * modulus * s; }
   void add_tangent(double s, const Tensor& inverse, StressTangent& result) const {
     add_dyad(inverse, inverse, modulus * (1.0 + s), result);

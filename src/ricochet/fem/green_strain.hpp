@@ -2,11 +2,11 @@
 
 #include "ricochet/fem/assembly.hpp"
 
-/// @file Strain that rotations do not change.
+/// @file Strain that is invariant under rotations.
 namespace ricochet {
 
-/// The largest principal value, in size, of Green's strain ½ (∇u + ∇uᵀ + ∇uᵀ∇u) at the centres of all cells. It is zero
-/// for every rigid motion, where small strain ½ (∇u + ∇uᵀ) is cos θ − 1 in the plane of a rotation by θ.
+/// Largest magnitude of the principal values of Green's strain ½ (∇u + ∇uᵀ + ∇uᵀ∇u) at the centres of all cells. It is
+/// zero for every rigid motion, whereas small strain ½ (∇u + ∇uᵀ) is cos θ − 1 in the plane of a rotation by θ.
 [[nodiscard]] double largest_green_strain(const Body& body, const Vector& displacement);
 
 }  // namespace ricochet

@@ -6,39 +6,40 @@
 
 #include "ricochet/fem/material_law.hpp"
 
-/// @file What a body is made of.
+/// @file Materials of a body.
 namespace ricochet {
 
-/// What a two-dimensional body is a section of: of a long one, of a thin one, or of one that is the same all round the
-/// y axis, from which x is the distance.
+/// Section represented by a 2D body: of a long body, of a thin one, or of a body of revolution about the y
+/// axis, with x the distance from it.
 enum class PlaneState { strain, stress, axisymmetric };
 
-/// A branch beside the law whose stress relaxes, see relaxation.hpp.
+/// Viscoelastic branch of a material, see relaxation.hpp.
 struct RelaxationBranch {
   double modulus = 0.0;  ///< g, relative to the shear modulus of the law
   double time = 0.0;     ///< τ
 };
 
 struct Material {
-  std::string name;      ///< of its group, for messages
+  std::string name;      ///< of its group, in messages
   double density = 0.0;  ///< mass per volume
   std::shared_ptr<const MaterialLaw> law;
   double mass_damping = 0.0;       ///< Rayleigh, 1/time
   double stiffness_damping = 0.0;  ///< Rayleigh, time
-  /// The dilatation's part of the energy is that of a mean over each cell (elastic_cells.hpp), where the law has such a
-  /// part and the cell has more than one quadrature point.
+  /// Whether the dilatational part of the energy is evaluated at a mean over each cell (elastic_cells.hpp), if the law
+  /// has such a part and the cell has more than one quadrature point.
   bool mean_dilatation = false;
-  /// Beside the law, which is what is left of them in the end. Of laws of finite strain, not in plane stress.
+  /// Viscoelastic branches, in addition to the law, which is the long-term response. For laws of
+  /// finite strain, not in plane stress.
   std::vector<RelaxationBranch> relaxation = {};
 
-  /// Σ gμ: what the branches add to the shear modulus at an instant.
+  /// Σ gμ: the contribution of the branches to the instantaneous shear modulus.
   [[nodiscard]] double branch_mu() const {
     double sum = 0.0;
     for (const RelaxationBranch& branch : relaxation) sum += branch.modulus * mu();
     return sum;
   }
 
-  // Of the law at zero strain, in three dimensions:
+  // Constants of the law at zero strain, in 3D:
   [[nodiscard]] double lambda() const { return law->lambda(); }  ///< Lamé's first parameter
   [[nodiscard]] double mu() const { return law->mu(); }          ///< shear modulus
   [[nodiscard]] double poisson() const { return lambda() / (2.0 * (lambda() + mu())); }

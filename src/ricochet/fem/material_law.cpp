@@ -4,7 +4,7 @@
 
 namespace ricochet {
 
-// The laws, each by the function of its own file that registers it. One line each, in the order of the documentation.
+// The laws, each by the registration function of its own file. One line each, in the order of the documentation.
 // clang-format off
 #define RICOCHET_MATERIAL_LAWS(law) \
   law(linear_elasticity_law) \
@@ -17,7 +17,7 @@ RICOCHET_DEFINE_REGISTRY(material_law_registry, MaterialLawConstructor, "materia
 
 namespace {
 
-/// (i, j) of the components of StrainPacks.
+/// Indices (i, j) of the components of StrainPacks.
 constexpr std::array<std::array<int, 2>, 6> pack_components{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}}};
 
 /// Calls work(number of the pack, lane, strain) for all points.

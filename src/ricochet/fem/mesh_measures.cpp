@@ -18,14 +18,14 @@ Eigen::Vector3d position(const Mesh& mesh, Index node) {
   return result;
 }
 
-/// Mean of the first `count` nodes: of the vertices.
+/// Mean of the first `count` nodes, the vertices.
 Eigen::Vector3d mean(const Mesh& mesh, const Index* nodes, int count) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int k = 0; k < count; ++k) sum += position(mesh, nodes[k]);
   return sum / static_cast<double>(count);
 }
 
-/// Size, first moment and ∫n of one cell or facet: n on whichever side its numbering says.
+/// Size, first moment and ∫n of one cell or facet; the sign of n follows from its numbering.
 struct Integral {
   double size = 0.0;
   Eigen::Vector3d moment = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
@@ -58,7 +58,7 @@ Integral integrate(const Mesh& mesh, const BlockIntegration& rule, const CellBlo
   return result;
 }
 
-/// The cells around the vertices of some facets.
+/// Cells at the vertices of facets.
 class CellsOfFacets {
  public:
   explicit CellsOfFacets(const Mesh& mesh) : mesh_(mesh), around_(static_cast<std::size_t>(mesh.node_count())) {
@@ -77,7 +77,7 @@ class CellsOfFacets {
     }
   }
 
-  /// How many cells have this facet, and the centre of the first of them.
+  /// Returns the number of cells with this facet, and the centre of the first of them.
   [[nodiscard]] std::pair<int, Eigen::Vector3d> find(const CellBlock& facets, Index facet) const {
     const Index* const nodes = facets.cell(facet);
     std::pair<int, Eigen::Vector3d> result{0, Eigen::Vector3d::Zero()};
@@ -152,8 +152,8 @@ MeshMeasure measure_group(const Mesh& mesh, const Group& group, bool axisymmetri
 
 namespace {
 
-/// Size of a straight facet, by its vertices. A quadrilateral that is no plane one is cut along either diagonal, and
-/// the mean of both does not depend on where its numbering begins.
+/// Size of a straight facet from its vertices. A non-planar quadrilateral is cut along either diagonal; the mean of
+/// both does not depend on its first vertex.
 double facet_size(const Mesh& mesh, CellShape shape, const Index* cell, const std::vector<int>& vertices) {
   const auto at = [&](std::size_t k) { return position(mesh, cell[vertices[k]]); };
   if (shape == CellShape::interval) return (at(1) - at(0)).norm();
@@ -164,7 +164,7 @@ double facet_size(const Mesh& mesh, CellShape shape, const Index* cell, const st
   return 0.5 * (half(0, 1, 2) + half(3, 1, 2) + half(1, 0, 3) + half(2, 0, 3));
 }
 
-/// One cell after the other, with the rules of all blocks made once.
+/// Computes the heights of cells one by one, with the rules of all blocks set up once.
 class CellHeights {
  public:
   explicit CellHeights(const Mesh& mesh) : mesh_(mesh) {

@@ -13,8 +13,8 @@ namespace ricochet {
 
 namespace {
 
-/// Where means over the cells of axisymmetric bodies are the values of linear functions: their centres of gravity as
-/// rings, with the rule of the stress.
+/// Locations at which linear functions have their means over the cells of axisymmetric bodies: the centres of gravity
+/// of the cells as rings, with the rule of the stress.
 Points centres_of_rings(const Body& body) {
   Points result(2, body.mesh->cell_count());
   Index number = 0;
@@ -38,12 +38,12 @@ Points centres_of_rings(const Body& body) {
   return result;
 }
 
-/// A node takes in the cells around its cells so often, at most.
+/// Largest patch: the cells at a node, extended by their neighbours up to widest_patch − 1 times.
 constexpr int widest_patch = 3;
-/// Of the columns of the fit: what is less dependent than this determines nothing.
+/// Relative tolerance for the rank of the fit's columns.
 constexpr double dependence = 1e-3;
-/// Σ |weights| up to which a fit is taken: it says how much the value at the node may exceed those of the cells. Few
-/// cells on one side of a node determine a linear function, but extrapolate whatever else they hold by far.
+/// Largest Σ |weights| of an acceptable fit, which bounds how far the value at the node may exceed those of the cells.
+/// A few cells on one side of a node determine a linear function, but extrapolate any other variation too far.
 constexpr double most_amplification = 2.5;
 
 class Recovery {
@@ -75,7 +75,7 @@ class Recovery {
     }
   }
 
-  /// Cells and their weights for a node, for each material around it.
+  /// Returns cells and their weights for a node, for each adjacent material.
   std::vector<std::vector<std::pair<Index, double>>> weights(Index node) const {
     std::vector<int> materials;
     visit_cells(node, [&](Index cell) { materials.push_back(material(cell)); });
@@ -110,7 +110,8 @@ class Recovery {
 
   using Weights = std::vector<std::pair<Index, double>>;
 
-  /// The value at the node of the fit Σ_c (a + b·(x_c − x))² → min is a sum of the cells' values with these weights.
+  /// The value at the node of the fit Σ_c (a + b·(x_c − x) − v_c)² → min is the sum of the cells' values v_c with these
+  /// weights.
   Weights fit(Index node, int of_material) const {
     std::vector<Index> patch;
     visit_cells(node, [&](Index cell) {
@@ -134,7 +135,7 @@ class Recovery {
     return best;
   }
 
-  /// None where the cells of the patch do not determine a linear function.
+  /// Returns no weights if the cells of the patch do not determine a linear function.
   Weights fit(Index node, const std::vector<Index>& patch) const {
     const auto count = static_cast<Index>(patch.size());
     if (count <= dimension_) return {};
@@ -158,7 +159,7 @@ class Recovery {
   int dimension_;
   Points centres_;
   std::vector<std::pair<const Index*, int>> cell_nodes_;
-  std::vector<Index> first_, cells_;  ///< the cells of each node
+  std::vector<Index> first_, cells_;  ///< cells of each node
 };
 
 }  // namespace
@@ -203,7 +204,7 @@ void NodalStress::fit(const std::vector<double>& cells, std::vector<double>& nod
   }
 }
 
-/// Finds the cells that the fit is below; each claims the node at which its fit is largest.
+/// Finds the cells whose value exceeds the fit; each claims its node with the largest fit.
 void NodalStress::claim(const std::vector<double>& cells) {
   claim_.assign(von_mises_.size(), -1);
   claimed_value_.assign(von_mises_.size(), 0.0);

@@ -10,7 +10,7 @@ namespace ricochet {
 
 namespace {
 
-/// Calls `work` for the bits that are set, ascending.
+/// Calls work(part) for the bits that are set, ascending.
 template <class Work>
 void each_part(std::uint64_t set, const Work& work) {
   for (; set != 0; set &= set - 1) work(static_cast<std::size_t>(std::countr_zero(set)));
@@ -46,19 +46,19 @@ void list_cells_of_parts(const DisplacementSpace& space, NodeGraph& graph) {
   }
 }
 
-/// The rows of one part, one after another.
+/// Rows of one part, contiguous.
 struct PartRows {
   std::vector<int> lengths;  ///< per node of the part
   std::vector<int> neighbours;
 };
 
-/// `seen` is work space, −1 for every node: the node from whose row a node was last seen.
+/// Computes the rows of a part. `seen` is work space, −1 for every node: the row in which a node last occurred.
 PartRows rows_of_part(const DisplacementSpace& space, const NodeGraph& graph, Index part, std::vector<int>& seen) {
   const Index begin = graph.part_begins[static_cast<std::size_t>(part)];
   const Index end = graph.part_begins[static_cast<std::size_t>(part) + 1];
   const auto first_cell = graph.cells.begin() + graph.cell_begins[static_cast<std::size_t>(part)];
   const auto last_cell = graph.cells.begin() + graph.cell_begins[static_cast<std::size_t>(part) + 1];
-  // The nodes of the cells around each node of the part (numbered from its begin), with repetitions.
+  // Visits the cells at each node of the part (numbered from its begin), with repetitions.
   const auto each_incidence = [&](const auto& enter) {
     CellWalk cell(space.cells);
     for (auto number = first_cell; number != last_cell; ++number) {

@@ -5,18 +5,19 @@
 #include "ricochet/base/node_order.hpp"
 #include "ricochet/fem/displacement_space.hpp"
 
-/// @file Which nodes share a cell: the pattern of assembled matrices, and a division of the work of assembling them.
+/// @file Graph of nodes that share a cell: the sparsity pattern of assembled matrices, and the
+/// partition of the assembly work.
 namespace ricochet {
 
 struct NodeGraph {
-  /// Neighbours of each node, itself among them: row by row, ascending.
+  /// Neighbours of each node, including itself: row by row, ascending.
   std::vector<Index> offsets;
   std::vector<int> neighbours;
 
-  /// Parts of near nodes (node_parts). One thread at a time works on the rows of a part.
+  /// Parts of nearby nodes (node_parts). The rows of a part are processed by one thread at a time.
   std::vector<Index> part_begins;
-  /// The cells (numbered through all blocks) that touch the nodes of each part, ascending. Those between two parts are
-  /// listed in both.
+  /// Cells (numbered through all blocks) at the nodes of each part, ascending. Cells between
+  /// two parts are listed in both.
   std::vector<Index> cell_begins;
   std::vector<int> cells;
 
@@ -24,15 +25,15 @@ struct NodeGraph {
   [[nodiscard]] Index parts() const { return static_cast<Index>(part_begins.size()) - 1; }
 };
 [[nodiscard]] NodeGraph node_graph(const DisplacementSpace& space);
-/// The same with those cells alone that touch a wanted node.
+/// Restricts the graph to the cells with at least one wanted node.
 [[nodiscard]] NodeGraph cells_at_nodes(const NodeGraph& graph, const DisplacementSpace& space,
                                        const std::vector<char>& wanted);
 
-/// Walks through cells in ascending order of their number through all blocks.
+/// Iterator over cells in ascending order of their number through all blocks.
 class CellWalk {
  public:
   explicit CellWalk(const std::vector<CellBlock>& blocks) : blocks_(blocks) {}
-  /// Goes to a cell whose number is not less than the last one.
+  /// Advances to a cell whose number is not less than the current one.
   void go_to(Index number) {
     while (number - first_ >= blocks_[block_].size()) first_ += blocks_[block_++].size();
     local_ = number - first_;

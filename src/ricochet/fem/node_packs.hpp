@@ -3,11 +3,11 @@
 #include "ricochet/base/packs.hpp"
 #include "ricochet/fem/cell_packs.hpp"
 
-/// @file Numbers of nodes, side by side in memory, turned into packs with one of each cell, and back. Included by
-/// source files only. Not part of the public interface.
+/// @file Conversion between contiguous numbers per node and packs with one number per cell. Included by source files
+/// only. Not part of the public interface.
 namespace ricochet {
 
-/// Rows a, b, c, e become columns.
+/// Transposes the rows a, b, c, e into columns.
 RICOCHET_PART_OF_CALLER void transpose(const Pack<4>& a, const Pack<4>& b, const Pack<4>& c, const Pack<4>& e,
                                        Pack<4>& first, Pack<4>& second, Pack<4>& third, Pack<4>& fourth) {
   const Pack<4> odd = __builtin_shufflevector(a, b, 0, 4, 2, 6), even = __builtin_shufflevector(a, b, 1, 5, 3, 7);
@@ -19,7 +19,7 @@ RICOCHET_PART_OF_CALLER void transpose(const Pack<4>& a, const Pack<4>& b, const
   fourth = __builtin_shufflevector(even, next_even, 2, 3, 6, 7);
 }
 
-/// Lanes 4k to 4k + 3.
+/// Returns lanes 4k to 4k + 3.
 template <int W>
 RICOCHET_PART_OF_CALLER Pack<4> quarter(const Pack<W>& of, int k) {
   if constexpr (W == 4) {
@@ -28,7 +28,7 @@ RICOCHET_PART_OF_CALLER Pack<4> quarter(const Pack<W>& of, int k) {
     return k == 0 ? __builtin_shufflevector(of, of, 0, 1, 2, 3) : __builtin_shufflevector(of, of, 4, 5, 6, 7);
   }
 }
-/// Of fours of lanes.
+/// Joins groups of four lanes.
 template <int W>
 RICOCHET_PART_OF_CALLER Pack<W> joined(const Pack<4>* parts, int stride) {
   if constexpr (W == 4) {
@@ -38,7 +38,7 @@ RICOCHET_PART_OF_CALLER Pack<W> joined(const Pack<4>* parts, int stride) {
   }
 }
 
-/// Four cells: components of their nodes at `slots`.
+/// Reads the components of the nodes of four cells at `slots`.
 template <int d>
 RICOCHET_PART_OF_CALLER void read_four(const double* numbers, const int* slots, Pack<4>* components) {
   if constexpr (d == 2) {
@@ -55,7 +55,7 @@ RICOCHET_PART_OF_CALLER void read_four(const double* numbers, const int* slots, 
   }
 }
 
-/// Adds them there, one cell after another.
+/// Adds components to the nodes of four cells at `slots`, one cell after another.
 template <int d>
 RICOCHET_PART_OF_CALLER void add_four(const Pack<4>* components, const int* slots, double* numbers) {
   const Pack<4> even = __builtin_shufflevector(components[0], components[1], 0, 4, 2, 6),
@@ -84,7 +84,7 @@ RICOCHET_PART_OF_CALLER void add_four(const Pack<4>* components, const int* slot
   }
 }
 
-/// d packs per node of W cells. `slots`: per node one per cell.
+/// Reads d packs per node of W cells. `slots`: per node one per cell.
 template <int d, int W>
 RICOCHET_PART_OF_CALLER void read_nodes(const double* numbers, const int* slots, int nodes, Pack<W>* result) {
   for (int i = 0; i < nodes; ++i, slots += W) {

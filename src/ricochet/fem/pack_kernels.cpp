@@ -8,7 +8,7 @@ namespace ricochet {
 
 namespace {
 
-/// Numbers of a point, row by row.
+/// Matrix at a point, row by row.
 template <int d, int W>
 struct PackMatrix {
   Pack<W> entry[d][d];
@@ -47,7 +47,7 @@ RICOCHET_PART_OF_CALLER PackMatrix<d, W> product_transposed(const PackMatrix<d, 
   return result;
 }
 
-/// ∇u by reference coordinates at a point; `reference` are gradients of the shape functions.
+/// Gradient of u in reference coordinates at a point; `reference`: gradients of the shape functions.
 template <int d, int W>
 RICOCHET_PART_OF_CALLER PackMatrix<d, W> reference_gradient(const Pack<W>* u, int nodes, const double* reference) {
   PackMatrix<d, W> result;
@@ -107,7 +107,7 @@ struct Gradients {
   }
 };
 
-/// A displacement gradient at a point of a pack, with its component zz in the plane.
+/// Displacement gradient at a point of a pack, with its component zz in 2D.
 template <int d, int W>
 struct PointGradient {
   PackMatrix<d, W> matrix;
@@ -118,7 +118,7 @@ struct PointGradient {
 template <int d, int W>
 using PackTensor = std::conditional_t<d == 2, PlaneTensor<Pack<W>>, SpaceTensor<Pack<W>>>;
 
-/// Calls entry(i, j) for the components within d dimensions.
+/// Builds a symmetric tensor from entry(i, j) for the components within d dimensions.
 template <int d, int W, class Entry>
 RICOCHET_PART_OF_CALLER PackTensor<d, W> symmetric(const Entry& entry, const Pack<W>& zz) {
   if constexpr (d == 2) {
@@ -216,7 +216,7 @@ struct RateStresses {
   }
 };
 
-/// S as a matrix.
+/// Converts S to a matrix.
 template <int W>
 RICOCHET_PART_OF_CALLER PackMatrix<2, W> matrix_of(const PlaneTensor<Pack<W>>& s) {
   return {{{s.xx, s.xy}, {s.xy, s.yy}}};
@@ -233,7 +233,7 @@ struct Forces {
   const double *gradients, *stresses;
   double* numbers;
 
-  /// w F S, and its component zz.
+  /// Returns w F S, and its component zz.
   template <int W>
   RICOCHET_PART_OF_CALLER PackMatrix<d, W> first_stress(Index point, const Pack<W>& weight, Pack<W>& zz) const {
     const auto stress = load_tensor<PackTensor<d, W>>(stresses + point * strain_components<d> * W);

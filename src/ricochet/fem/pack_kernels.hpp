@@ -5,12 +5,12 @@
 #include "ricochet/fem/kernel_block.hpp"
 #include "ricochet/fem/material_law.hpp"
 
-/// @file What is computed of packs of cells, each for the best instruction set: gradients of a vector at the quadrature
+/// @file Kernels for packs of cells, compiled for the best instruction set: gradients of a vector at the quadrature
 /// points, strains, and the forces of stresses. Not part of the public interface.
 ///
-/// Of every point of a pack there are so many numbers, each once per lane side by side: the displacement's gradient H
-/// row by row, in the plane with H_zz after it (the hoop strain u_r/r of axisymmetric bodies, else 0); strains and
-/// stresses as StrainPacks has them.
+/// Data per point of a pack, with contiguous lanes for each number: the displacement gradient H row by
+/// row, in 2D followed by H_zz (the hoop strain u_r/r of axisymmetric bodies, else 0); strains and
+/// stresses in the order of StrainPacks.
 namespace ricochet {
 
 template <int d>
@@ -18,7 +18,7 @@ inline constexpr int gradient_components = d == 2 ? 5 : 9;
 template <int d>
 inline constexpr int strain_components = d == 2 ? 4 : 6;
 
-/// A few packs, one after another.
+/// A few consecutive packs.
 template <int d>
 struct PackStrip {
   const KernelBlock<d>& block;
@@ -28,31 +28,31 @@ struct PackStrip {
   [[nodiscard]] Index points() const { return (end - begin) * block.points; }
 };
 
-/// H at all points, of the numbers of a part (CellPacks).
+/// Computes H at all points from the numbers of a part (CellPacks).
 template <int d>
 void find_gradients(const PackStrip<d>& strip, const double* numbers, double* gradients);
 
-/// Green's strain of H (of the linear law ½(H + Hᵀ)); with the gradients of an increment Δ that of the mean of both
-/// ends, E + ⅛ (∇Δ)ᵀ∇Δ. Returns whether det F > 0 everywhere (that of the linear law, and of the plane alone under
-/// plane stress).
+/// Computes Green's strain of H (for the linear law ½(H + Hᵀ)); with the gradients of an increment Δ, the mean of
+/// those at both ends, E + ⅛ (∇Δ)ᵀ∇Δ. Returns whether det F > 0 everywhere (always for the linear law; of the in-plane
+/// part alone under plane stress).
 template <int d>
 [[nodiscard]] bool find_strains(Index points, bool is_linear, const double* gradients, const double* increments,
                                 double* strains);
 
-/// The stress of a linear law of the derivative of E along an increment, ½(Fᵀ∇Δ + (∇Δ)ᵀF).
+/// Computes the stress, by a linear law, of the derivative of E along an increment, ½(Fᵀ∇Δ + (∇Δ)ᵀF).
 template <int d>
 void find_rate_stresses(Index points, const IsotropicElasticity& law, const double* gradients, const double* increments,
                         double* stresses);
 
-/// Adds ∫ F S ∇φ_a to the numbers of a part; of the linear law F = I.
+/// Adds ∫ F S ∇φ_a to the numbers of a part; for the linear law F = I.
 template <int d>
 void add_forces(const PackStrip<d>& strip, bool is_linear, const double* gradients, const double* stresses,
                 double* numbers);
 
-/// Of mean dilatation: S += (p − U′(J)) J C⁻¹.
+/// Adds the correction for mean dilatation: S += (p − U′(J)) J C⁻¹.
 template <int d>
 void add_mean_pressures(const PackStrip<d>& strip, double modulus, const double* strains, double* stresses);
-/// W += U(Θ) − U(J), one number per point and lane.
+/// Adds the correction W += U(Θ) − U(J), one number per point and lane.
 template <int d>
 void add_mean_energies(const PackStrip<d>& strip, double modulus, const double* strains, double* energies);
 

@@ -3,13 +3,14 @@
 #include "ricochet/fem/finite_strain.hpp"
 #include "ricochet/fem/symmetric_tensor.hpp"
 
-/// @file What a law is derived from that is written once for one point and for packs of points: it has
+/// @file Base of laws that are written once for a single point and for packs of points. Such a law has
 ///   template <class T> typename T::Number density(const T& strain) const   and
 ///   template <class T> T stress_at(const T& strain) const,
-/// both RICOCHET_PART_OF_CALLER, for T a SpaceTensor or a PlaneTensor. Included by source files only.
+/// both RICOCHET_PART_OF_CALLER, with T a SpaceTensor or a PlaneTensor. Included by source files only.
 namespace ricochet {
 
-/// What formulas of finite strain have in common, of A = 2E (C = I + A): s = J² − 1 = tr A + r, r of the second order.
+/// Invariants common to formulas of finite strain, in terms of A = 2E (C = I + A): s = J² − 1 = tr
+/// A + r, with r of second order.
 template <class T>
 struct StrainMeasures {
   using Number = typename T::Number;
@@ -35,13 +36,14 @@ RICOCHET_PART_OF_CALLER StrainMeasures<T> measures_of(const T& strain) {
   return result;
 }
 
-/// x − ln(1 + x), to the digits of x. With j = √(1+x) − 1 it is j² + 2 (j − ln(1+j)), which brings x near to zero.
+/// x − ln(1 + x), to the precision of x. With j = √(1+x) − 1 it is j² + 2 (j − ln(1+j)), which reduces x to values near
+/// zero.
 template <class Number>
 RICOCHET_PART_OF_CALLER Number logarithm_rest(const Number& of) {
   if constexpr (std::is_same_v<Number, double>) {
     return logarithm_remainder(of);
   } else {
-    constexpr int most_roots = 5;  // of 1 + x between 1/20 and 20
+    constexpr int most_roots = 5;  // for 1 + x between 1/20 and 20
     constexpr double near = 0.1;
     Number x = of, sum{};
     double factor = 1.0;
@@ -64,7 +66,7 @@ RICOCHET_PART_OF_CALLER Number logarithm_rest(const Number& of) {
   }
 }
 
-/// (1 + x)^(−1/3). Of packs by Newton's method, r ← r + r (1 − (1+x) r³)/3.
+/// (1 + x)^(−1/3). For packs by Newton's method, r ← r + r (1 − (1+x) r³)/3.
 template <class Number>
 RICOCHET_PART_OF_CALLER Number inverse_cube_root(const Number& x) {
   if constexpr (std::is_same_v<Number, double>) {

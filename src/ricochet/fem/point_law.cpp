@@ -18,8 +18,8 @@ Tensor PointLaw::strain(const Tensor& gradient) const {
   return strain;
 }
 
-/// Newton's method for S_zz(E_zz) = 0, from the strain of linear elasticity. The stress rises with the strain; where a
-/// step would turn the body inside out (E_zz ≤ −½) half of the way there is taken.
+/// Newton's method for S_zz(E_zz) = 0, from the strain of linear elasticity. The stress increases with the strain; if a
+/// step would invert the volume (E_zz ≤ −½), it is replaced by half of the distance to that bound.
 void PointLaw::thin_out(Tensor& strain) const {
   constexpr int most_steps = 60;
   const double lambda = law_->lambda(), mu = law_->mu();
@@ -37,12 +37,13 @@ void PointLaw::thin_out(Tensor& strain) const {
     if (!std::isfinite(change)) break;
     const double next = across + change;
     across = next > -0.5 ? next : 0.5 * (across - 0.5);
-    // Newton's method has the digits that there are once it comes no nearer, or a change is rounding of the strains.
+    // Newton's method has reached full precision once the changes no longer decrease, or a change is at the
+    // rounding level of the strains.
     const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * strain.cwiseAbs().maxCoeff();
     if (std::abs(change) <= rounding || (std::abs(change) < 1e-8 && std::abs(change) >= last)) return;
     last = std::abs(change);
   }
-  // Changes that shrink below all digits, as those of a body at rest do.
+  // Changes below all digits, as for a body at rest.
   if (last < std::numeric_limits<double>::epsilon()) return;
   across = std::numeric_limits<double>::quiet_NaN();
 }

@@ -2,7 +2,7 @@
 
 #include "ricochet/fem/material.hpp"
 
-/// @file A material law at a point of a body in space, in plane strain or in plane stress.
+/// @file Material law at a point of a body in 3D, in plane strain or in plane stress.
 namespace ricochet {
 
 class PointLaw {
@@ -12,18 +12,18 @@ class PointLaw {
 
   [[nodiscard]] bool is_linear() const { return is_linear_; }
   [[nodiscard]] bool is_plane_stress() const { return plane_stress_; }
-  /// The strain that the law has at a displacement gradient; of plane stress with the strain across the plane at which
-  /// there is no stress across it (NaN where there is none).
+  /// Strain of the law at a displacement gradient; under plane stress including the strain normal to the plane at which
+  /// the stress normal to the plane vanishes (NaN if there is none).
   [[nodiscard]] Tensor strain(const Tensor& gradient) const;
-  /// The same from its components in the plane, where that is needed.
+  /// Completes a strain given by its components in the plane, under plane stress.
   void complete(Tensor& strain) const {
     if (plane_stress_) thin_out(strain);
   }
 
-  // At that strain:
+  // Evaluated at that strain:
   [[nodiscard]] double energy(const Tensor& strain) const { return law_->energy(strain); }
   void stress(const Tensor& strain, Tensor& result) const { law_->stress(strain, result); }
-  /// Of plane stress that of the section: no stress across the plane comes up.
+  /// Under plane stress the tangent is that of the section, which keeps the stress normal to the plane zero.
   void tangent(const Tensor& strain, StressTangent& result) const;
 
  private:

@@ -12,7 +12,7 @@ double power(double x, int exponent) {
 
 }  // namespace
 
-/// The monomials of the space of the shape functions, and what each shape function has of them: it is 1 at its node.
+/// Computes the coefficients of each shape function, which is 1 at its node, in the monomials of their space.
 PolynomialShape::PolynomialShape(CellShape shape, int degree) : dimension_(dimension(shape)) {
   const bool simplex = shape != CellShape::quadrilateral;
   for (int j = 0; j <= (dimension_ == 2 ? degree : 0); ++j) {
@@ -32,7 +32,7 @@ void PolynomialShape::monomials(const double* point, double* terms) const {
     terms[t] = power(point[0], powers_[t][0]) * (dimension_ == 2 ? power(point[1], powers_[t][1]) : 1.0);
 }
 
-/// The product has few entries and is written out: Eigen's is made for larger ones.
+/// The product has few entries and is written out, since Eigen's is optimized for larger ones.
 void PolynomialShape::values(const double* point, double* values) const {
   double terms[most_nodes];
   monomials(point, terms);

@@ -42,7 +42,7 @@ const basix::FiniteElement& basix_element(CellShape shape, int degree) {
   const auto key = std::make_pair(shape, degree);
   const auto found = elements.find(key);
   if (found != elements.end()) return found->second;
-  prepare_blas();  // Basix solves for the coefficients of its shape functions
+  prepare_blas();  // Basix solves a linear system for the coefficients of its shape functions
   return elements
       .emplace(key, basix::create_element(basix::element::family::P, basix_cell(shape), degree,
                                           basix::element::lagrange_variant::gll_warped, false))
@@ -55,7 +55,7 @@ Tabulation ReferenceElement::tabulate(const Points& points) const {
   const basix::FiniteElement& element = basix_element(shape_, degree_);
   const auto count = static_cast<std::size_t>(points.cols());
   const auto dimension = static_cast<std::size_t>(points.rows());
-  // Basix wants the points one after another, which is what a column per point is.
+  // Basix expects contiguous points, which the columns are.
   const auto [data, extents] =
       element.tabulate(1, std::span<const double>(points.data(), count * dimension), {count, dimension});
   const auto nodes = static_cast<std::size_t>(node_count());

@@ -5,7 +5,7 @@
 #include "ricochet/base/types.hpp"
 #include "ricochet/mesh/cell_type.hpp"
 
-/// @file Lagrange elements on reference cells and quadrature, from Basix (kept inside one source file).
+/// @file Lagrange elements on reference cells and quadrature, from Basix (which only one source file includes).
 namespace ricochet {
 
 /// Shape functions and their gradients at a set of points.
@@ -16,13 +16,13 @@ struct Tabulation {
 
 struct QuadratureRule {
   Points points;   ///< dimension × count, reference coordinates
-  Vector weights;  ///< sum: the reference cell's measure
+  Vector weights;  ///< their sum is the measure of the reference cell
 };
 
-/// The Lagrange element of degree 1 or 2 on a reference cell ([0,1]ⁿ or the unit simplex).
+/// Lagrange element of degree 1 or 2 on a reference cell ([0,1]ⁿ or the unit simplex).
 class ReferenceElement {
  public:
-  /// The one instance per shape and degree.
+  /// Returns the single instance for a shape and degree.
   static const ReferenceElement& get(CellShape shape, int degree);
 
   [[nodiscard]] CellShape shape() const { return shape_; }
@@ -40,10 +40,10 @@ class ReferenceElement {
   Points nodes_;
 };
 
-/// Exact for polynomials of the given degree (on tensor-product cells: of that degree in each variable).
+/// Quadrature rule, exact for polynomials of the given degree (on tensor-product cells: of that degree per variable).
 [[nodiscard]] QuadratureRule quadrature(CellShape shape, int degree);
 
-/// The centre of gravity of the reference cell.
+/// Centre of gravity of the reference cell.
 [[nodiscard]] Vector reference_centre(CellShape shape);
 
 }  // namespace ricochet

@@ -13,13 +13,13 @@ namespace ricochet {
 
 namespace {
 
-/// The largest rotation among some cells. Below a right angle the tangent tells which is larger: one arc tangent serves
-/// all cells. Sums of them are maxima.
+/// Largest rotation among some cells. Below a right angle the tangents can be compared, so that a single arc tangent
+/// serves all cells. The sum of two is their maximum.
 struct LargestRotation {
   double tangent = 0.0;
   double beyond_right_angle = 0.0;
 
-  /// `axial` and `trace` may have a common positive factor.
+  /// Includes a rotation; `axial` and `trace` may have a common positive factor.
   void enter(double axial, double trace) {
     if (trace > 0.0) {
       tangent = std::max(tangent, axial / trace);
@@ -46,7 +46,7 @@ Eigen::Matrix<double, d, d> displacement_gradient(const Index* nodes, int count,
   return result;
 }
 
-/// From stored gradients.
+/// Computes the largest rotation from stored gradients.
 LargestRotation largest_of(const CellBlock& cells, const std::vector<double>& gradients, int d, Index first, Index last,
                            const Vector& displacement) {
   LargestRotation result;
@@ -65,16 +65,16 @@ LargestRotation largest_of(const CellBlock& cells, const std::vector<double>& gr
   return result;
 }
 
-/// Some simplices side by side, so that one instruction works on several of them: component k of edge e of cell i is
-/// edge[e][k][i], the edges being those from the first vertex, in the reference and as differences of displacement.
+/// Batch of simplices for SIMD: component k of edge e of cell i is edge[e][k][i], where edges are those from the first
+/// vertex, as reference positions and as differences of displacement.
 template <int d>
 struct SimplexBatch {
   static constexpr int size = 64;
   double edge[d][d][size], difference[d][d][size];
-  double axial[size], trace[size];  ///< both times the determinant of the edges; in 3D the square of the former
-  /// Of tangents, in 3D of their squares; 0 beyond a right angle.
+  double axial[size], trace[size];  ///< both times the determinant of the edges; in 3D `axial` is squared
+  /// Largest tangent, in 3D its square; 0 beyond a right angle.
   double largest_tangent;
-  bool beyond_right_angle;  ///< some are
+  bool beyond_right_angle;  ///< whether some rotation is
 
   [[nodiscard]] LargestRotation largest() const {
     LargestRotation result;
@@ -87,12 +87,12 @@ struct SimplexBatch {
   }
 };
 
-/// The d numbers of a node; in 3D a fourth one that means nothing, which the last node, at dof `last`, has not.
+/// Loads the d numbers of a node; in 3D the fourth is meaningless, and is missing for the last node, at dof `last`.
 RICOCHET_PART_OF_CALLER Pack<4> numbers_of_node(const double* values, int dof, int last) {
   return dof != last ? load<4>(values + dof) : Pack<4>{values[dof], values[dof + 1], values[dof + 2], 0.0};
 }
 
-/// Rows become columns.
+/// Transposes rows into columns.
 RICOCHET_PART_OF_CALLER void transpose(Pack<4> (&rows)[4]) {
   const Pack<4> a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6),
                 b = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7),
@@ -104,7 +104,7 @@ RICOCHET_PART_OF_CALLER void transpose(Pack<4> (&rows)[4]) {
   rows[3] = __builtin_shufflevector(b, e, 2, 3, 6, 7);
 }
 
-/// `vertices`: the first dofs of d + 1 nodes per cell. The last cell stands for those that are missing.
+/// Gathers a batch. `vertices`: the first dofs of d + 1 nodes per cell. The last cell is repeated in unused lanes.
 RICOCHET_PART_OF_CALLER void gather(const int* vertices, int count, const double* positions, const double* displacement,
                                     int, SimplexBatch<2>& batch) {
   for (int i = 0; i < SimplexBatch<2>::size; i += 4) {
@@ -149,8 +149,8 @@ RICOCHET_PART_OF_CALLER void gather(const int* vertices, int count, const double
   }
 }
 
-/// The first `half` numbers become the larger, or smaller, ones of themselves and those that follow. Compilers take
-/// several at once here, but not in a sum over all.
+/// Replaces the first `half` numbers by the larger, or smaller, of each and its counterpart in the second half.
+/// Compilers vectorize this, but not a reduction over all.
 template <int half>
 RICOCHET_PART_OF_CALLER void keep_larger(double* values) {
   for (int i = 0; i < half; ++i) values[i] = values[i + half] > values[i] ? values[i + half] : values[i];
@@ -160,7 +160,7 @@ RICOCHET_PART_OF_CALLER void keep_smaller(double* values) {
   for (int i = 0; i < half; ++i) values[i] = values[i + half] < values[i] ? values[i + half] : values[i];
 }
 
-/// From `axial` and `trace` what the batch says of them all.
+/// Computes the batch results from `axial` and `trace`.
 template <int d>
 RICOCHET_PART_OF_CALLER void compare(SimplexBatch<d>& batch) {
   constexpr int size = SimplexBatch<d>::size;
@@ -200,7 +200,7 @@ RICOCHET_EACH_INSTRUCTION_SET(void, evaluate,
   compare(batch);
 }
 
-/// Written out: inner loops over edges would keep compilers from taking several cells at once.
+/// Written out: inner loops over edges would prevent compilers from vectorizing over cells.
 RICOCHET_EACH_INSTRUCTION_SET(void, evaluate,
                               (const int* vertices, int count, const double* positions, const double* displacement,
                                int last, SimplexBatch<3>& batch),
@@ -228,7 +228,7 @@ RICOCHET_EACH_INSTRUCTION_SET(void, evaluate,
   compare(batch);
 }
 
-/// From the positions of the vertices of straight simplices.
+/// Computes the largest rotation of straight simplices from the positions of their vertices.
 template <int d>
 LargestRotation largest_of_simplices(const std::vector<int>& vertices, const Points& positions, Index first, Index last,
                                      const Vector& displacement) {
@@ -243,8 +243,8 @@ LargestRotation largest_of_simplices(const std::vector<int>& vertices, const Poi
   return result;
 }
 
-/// The vertices of all cells by their first dofs, cells near one another together: nodes are numbered so, cells are
-/// not.
+/// First dofs of the vertices of all cells, sorted so that nearby cells are adjacent: nodes are numbered by proximity,
+/// cells are not.
 std::vector<int> sorted_vertices(const CellBlock& cells, int d) {
   const int count = cells.nodes_per_cell;
   const auto lowest = [&](Index cell) { return *std::min_element(cells.cell(cell), cells.cell(cell) + count); };

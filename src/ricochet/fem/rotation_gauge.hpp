@@ -4,11 +4,11 @@
 
 #include "ricochet/fem/assembly.hpp"
 
-/// @file How far a displacement turns the cells of a body.
+/// @file Largest rotation of the cells of a body by a displacement.
 namespace ricochet {
 
-/// Above this rotation of a cell, in rad, small strain no longer holds: it takes the rotation for a strain of half a
-/// per cent.
+/// Rotation of a cell, in rad, above which small strain is invalid: it mistakes the rotation for a strain of half a per
+/// cent.
 inline constexpr double rotation_limit = 0.1;
 
 /// Largest rotation of any cell, in rad, from the displacement gradient at its centre: the angle of the rotation
@@ -22,10 +22,10 @@ class RotationGauge {
  private:
   struct Block {
     const CellBlock* cells = nullptr;
-    /// Cells × nodes × dimension, physical gradients at the centre. Empty for straight simplices of degree 1: those are
-    /// computed from the positions of the vertices, which takes no longer than reading them.
+    /// Physical gradients at the centre, cells × nodes × dimension. Empty for straight simplices of degree 1: they are
+    /// computed from the positions of the vertices, which is as fast as reading them.
     std::vector<double> gradients;
-    /// Of those: the first dofs of the nodes of one cell after another.
+    /// For those simplices: the first dofs of the nodes, cell by cell.
     std::vector<int> vertices;
   };
   int dimension_;

@@ -11,7 +11,7 @@ namespace ricochet {
 
 namespace {
 
-/// Calls visit(block, number of its first cell).
+/// Calls visit(block, number of its first cell) for all blocks.
 template <class Visit>
 void for_each_block(const Body& body, const Visit& visit) {
   Index first = 0;
@@ -42,7 +42,7 @@ void block_volumes(const Body& body, std::size_t block, Index first_cell, Vector
 
 namespace {
 
-/// The law of one material in a body of this dimension.
+/// Law of one material in a body of this dimension.
 template <int d>
 class StressLaw {
  public:
@@ -79,7 +79,7 @@ Eigen::Matrix<double, d, d> symmetric(const Eigen::Matrix<double, d, d>& gradien
   return 0.5 * (gradient + gradient.transpose());
 }
 
-/// Of a straight simplex of degree 1, from its edges: one strain.
+/// Strain of a straight simplex of degree 1, from its edges; it is constant.
 template <int d>
 Eigen::Matrix<double, d, d> simplex_strain(const Points& positions, const Index* nodes, const Vector& displacement) {
   Eigen::Matrix<double, d, d> edges, differences;
@@ -90,7 +90,7 @@ Eigen::Matrix<double, d, d> simplex_strain(const Points& positions, const Index*
   return symmetric<d>(differences * edges.inverse());
 }
 
-/// With one strain in all of the cell.
+/// Whether the strain is constant over each cell.
 bool has_straight_simplices(const Body& body, CellShape shape) {
   if (is_axisymmetric(body)) return false;
   const bool simplex = shape == CellShape::triangle || shape == CellShape::tetrahedron;

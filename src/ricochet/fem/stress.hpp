@@ -12,10 +12,10 @@ namespace ricochet {
 struct BlockIntegration;
 class ElasticCells;
 
-/// Symmetric 3 × 3 tensors, also in the plane, by xx, xy, xz, yy, yz, zz: the order of XDMF.
+/// Number of components of symmetric 3 × 3 tensors, in 2D as well: xx, xy, xz, yy, yz, zz, the order of XDMF.
 inline constexpr int tensor_components = 6;
 
-/// The largest of some values, and which one it is; the first of those that are equal.
+/// Largest of some values, and its cell; of equal values the first.
 struct LargestOfCells {
   double value = -1.0;
   Index cell = -1;
@@ -26,10 +26,9 @@ struct LargestOfCells {
 };
 
 /// Means over each cell of the stress σ = λ tr ε I + 2μ ε and of ½ σ : ε, by the quadrature of the stiffness: the sum
-/// of the energy densities times the volumes of the cells is ½UᵀKU. In the plane σ_zz is that of plane strain, or zero;
-/// in axisymmetric bodies it is the hoop stress.
-/// Of laws of finite strain the Cauchy stress, and the energy per undeformed volume; with the internal strains of a
-/// state those of branches that relax are in both (elastic_cells.hpp).
+/// of the energy densities times the volumes of the cells is ½UᵀKU. In 2D σ_zz is that of plane strain, or zero; in
+/// axisymmetric bodies it is the hoop stress. For laws of finite strain the Cauchy stress, and the energy per
+/// undeformed volume; with the internal strains of a state both include the viscoelastic branches (elastic_cells.hpp).
 class CellStress {
  public:
   /// Keeps a reference.
@@ -37,10 +36,10 @@ class CellStress {
   ~CellStress();
   CellStress(CellStress&&) noexcept;
 
-  /// Cells are numbered through all blocks. `stress`: 6 per cell; `energy_density`: one.
+  /// Evaluates all cells, numbered through all blocks. `stress`: 6 per cell; `energy_density`: one.
   void evaluate(const Vector& displacement, std::vector<double>& stress, std::vector<double>& energy_density,
                 const Vector& internal = {}) const;
-  /// The largest von Mises stress of these means. Allocates nothing.
+  /// Largest von Mises stress of these means. Does not allocate.
   [[nodiscard]] LargestOfCells largest_von_mises(const Vector& displacement, const Vector& internal = {}) const;
 
  private:
@@ -53,9 +52,9 @@ class CellStress {
                                                 const Vector& internal) const;
 
   const Body& body_;
-  /// Per block; none for straight simplices of degree 1.
+  /// Per block; null for straight simplices of degree 1.
   std::vector<std::unique_ptr<const BlockIntegration>> integrations_;
-  std::unique_ptr<const ElasticCells> finite_;  ///< null: all laws are linear
+  std::unique_ptr<const ElasticCells> finite_;  ///< null if all laws are linear
 };
 
 /// √(3/2 s : s) with the deviator s.
@@ -63,7 +62,7 @@ class CellStress {
 /// Eigenvalues, largest first.
 [[nodiscard]] std::array<double, 3> principal_stresses(const double* stress);
 
-/// Volume of every cell (area in the plane, volume of the ring in axisymmetric bodies), numbered through all blocks.
+/// Volume of every cell (area in 2D, volume of the ring in axisymmetric bodies), numbered through all blocks.
 [[nodiscard]] Vector cell_volumes(const Body& body);
 
 }  // namespace ricochet

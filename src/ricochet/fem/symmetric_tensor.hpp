@@ -3,18 +3,18 @@
 #include "ricochet/base/packs.hpp"
 #include "ricochet/fem/isotropic_elasticity.hpp"
 
-/// @file Symmetric tensors whose components are doubles, or packs of them, one per point. Laws are written with these.
+/// @file Symmetric tensors whose components are doubles, or packs of them with one per point; used to write laws.
 /// Included by source files only (packs.hpp). Not part of the public interface.
 namespace ricochet {
 
-/// Of a point in space.
+/// Symmetric tensor in 3D.
 template <class N>
 struct SpaceTensor {
   using Number = N;
   static constexpr int components = 6;
   Number xx, yy, zz, xy, yz, zx;
 };
-/// Of a point of a section: no shear across the plane.
+/// Symmetric tensor in 2D sections: no shear across the plane.
 template <class N>
 struct PlaneTensor {
   using Number = N;
@@ -22,7 +22,7 @@ struct PlaneTensor {
   Number xx, yy, zz, xy;
 };
 
-/// Calls work(place, component) for the components, in the order above.
+/// Calls work(index, component) for the components, in the order above.
 template <class N, class Work>
 RICOCHET_PART_OF_CALLER void for_each_component(SpaceTensor<N>& a, const Work& work) {
   work(0, a.xx), work(1, a.yy), work(2, a.zz), work(3, a.xy), work(4, a.yz), work(5, a.zx);
@@ -32,7 +32,7 @@ RICOCHET_PART_OF_CALLER void for_each_component(PlaneTensor<N>& a, const Work& w
   work(0, a.xx), work(1, a.yy), work(2, a.zz), work(3, a.xy);
 }
 
-/// From components of packs of W numbers side by side.
+/// Loads a tensor from components stored as packs of W contiguous numbers.
 template <class T>
 RICOCHET_PART_OF_CALLER T load_tensor(const double* from) {
   constexpr int width = lane_count<typename T::Number>;
@@ -88,7 +88,7 @@ RICOCHET_PART_OF_CALLER N double_dot(const PlaneTensor<N>& a, const PlaneTensor<
   return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2.0 * (a.xy * b.xy);
 }
 
-/// adj A: A adj A = det A I.
+/// adj A, with A adj A = det A I.
 template <class N>
 RICOCHET_PART_OF_CALLER SpaceTensor<N> adjugate(const SpaceTensor<N>& a) {
   return {a.yy * a.zz - a.yz * a.yz, a.zz * a.xx - a.zx * a.zx, a.xx * a.yy - a.xy * a.xy,
@@ -99,7 +99,7 @@ RICOCHET_PART_OF_CALLER PlaneTensor<N> adjugate(const PlaneTensor<N>& a) {
   return {a.yy * a.zz, a.zz * a.xx, a.xx * a.yy - a.xy * a.xy, -(a.xy * a.zz)};
 }
 
-/// det A, of A and its adjugate.
+/// det A, from A and its adjugate.
 template <class N>
 RICOCHET_PART_OF_CALLER N determinant(const SpaceTensor<N>& a, const SpaceTensor<N>& of_a) {
   return a.xx * of_a.xx + a.xy * of_a.xy + a.zx * of_a.zx;

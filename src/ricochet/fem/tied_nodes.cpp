@@ -12,7 +12,7 @@ TiedNodes::TiedNodes(std::vector<Tie> ties, Index node_count)
   std::sort(ties_.begin(), ties_.end(), [](const Tie& a, const Tie& b) { return a.node < b.node; });
   for (std::size_t i = 0; i < ties_.size(); ++i)
     tie_of_node_[static_cast<std::size_t>(ties_[i].node)] = static_cast<int>(i);
-  // Each round replaces what is tied itself; a chain is at most as long as there are contacts.
+  // Each pass replaces nodes that are themselves tied; a chain is at most as long as there are contacts.
   constexpr int longest_chain = 16;
   for (int round = 0;; ++round) {
     bool changed = false;

@@ -5,12 +5,12 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file Nodes that follow others: surfaces that are glued together on meshes that do not match.
+/// @file Tied nodes: surfaces glued together on non-matching meshes.
 namespace ricochet {
 
-/// u_s = Σ_m P_sm u_m at the tied nodes s, with Σ_m P_sm = 1. With T, which gives all nodes' values from those of the
-/// others, matrices and loads become TᵀAT and TᵀL: rows and columns of tied nodes are then zero, and their values are
-/// filled in (complete) where somebody looks at them. Virtual work and energy are those of the motion u = T u_m, so
+/// Ties u_s = Σ_m P_sm u_m at the tied nodes s, with Σ_m P_sm = 1. With T, which maps the values of the other nodes to
+/// those of all nodes, matrices and loads become TᵀAT and TᵀL: rows and columns of tied nodes are then zero, and their
+/// values are filled in (complete) when needed. Virtual work and energy are those of the motion u = T u_m, so that
 /// nothing is lost between the surfaces.
 class TiedNodes {
  public:
@@ -21,29 +21,29 @@ class TiedNodes {
   };
 
   TiedNodes() = default;
-  /// Ties of one node each, in any order; nodes that are followed may be tied themselves. Throws Error(invalid_input)
-  /// where nodes follow each other in a circle.
+  /// Constructs from ties of one node each, in any order; the nodes of a tie may be tied themselves. Throws
+  /// Error(invalid_input) if ties form a cycle.
   TiedNodes(std::vector<Tie> ties, Index node_count);
 
   [[nodiscard]] bool empty() const { return ties_.empty(); }
   [[nodiscard]] bool is_tied(Index node) const {
     return !ties_.empty() && tie_of_node_[static_cast<std::size_t>(node)] >= 0;
   }
-  /// By ascending node; what they follow is not tied.
+  /// Ties by ascending node; their weights refer to untied nodes only.
   [[nodiscard]] const std::vector<Tie>& ties() const { return ties_; }
 
-  /// The same functional on nodes that are not tied.
+  /// Expresses a linear functional in terms of untied nodes.
   [[nodiscard]] Weights spread(const Weights& weights) const;
-  /// TᵀAT with A on nodes (components 1) or dofs, symmetric to the bit.
+  /// TᵀAT with A on nodes (components = 1) or dofs, exactly symmetric.
   [[nodiscard]] SparseMatrix condense(const SparseMatrix& matrix, int components) const;
   /// TᵀL, d components per node.
   void condense_load(Vector& load, int d) const;
-  /// Gives tied nodes the values that they follow.
+  /// Fills in the values of the tied nodes.
   void complete(Vector& values, int d) const;
 
  private:
   std::vector<Tie> ties_;
-  std::vector<int> tie_of_node_;  ///< −1: not tied
+  std::vector<int> tie_of_node_;  ///< −1 if not tied
 };
 
 }  // namespace ricochet

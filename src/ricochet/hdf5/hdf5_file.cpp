@@ -75,7 +75,7 @@ struct Hdf5Reader::Dataset {
     if (!reader.has_dataset(which)) reader.fail(which, "there is no such data set");
     check(reader);
   }
-  /// In a group that is open.
+  /// Opens a data set in a group that is open.
   Dataset(const Hdf5Reader& reader, std::int64_t group, const std::string& which, std::string full_name)
       : name(std::move(full_name)),
         set(H5Lexists(group, which.c_str(), H5P_DEFAULT) > 0 ? H5Dopen2(group, which.c_str(), H5P_DEFAULT) : -1,
@@ -121,7 +121,7 @@ void Hdf5Reader::fail(const std::string& name, const std::string& message) const
 }
 
 bool Hdf5Reader::has(const std::string& name, bool group) const {
-  // Every group on the way must be there: HDF5 takes a missing one for an error.
+  // Every group on the way must exist: HDF5 treats a missing one as an error.
   for (std::size_t end = name.find('/', 1);; end = name.find('/', end + 1)) {
     const std::string part = name.substr(0, end);
     const htri_t exists = H5Lexists(file_, part.c_str(), H5P_DEFAULT);
@@ -185,7 +185,7 @@ std::uint64_t Hdf5Reader::file_size() const {
 }
 
 void Hdf5Reader::check_stored(const Dataset& set, std::int64_t entries, std::size_t bytes_per_entry) const {
-  // A damaged header may claim more than there is: say so before memory is asked for it.
+  // A damaged header may claim more than the file holds; this is reported before memory is allocated for it.
   const Hdf5Handle properties(H5Dget_create_plist(set.set), H5Pclose);
   const bool filtered = properties < 0 || H5Pget_nfilters(properties) > 0;
   const auto stored = static_cast<std::uint64_t>(H5Dget_storage_size(set.set));

@@ -10,59 +10,58 @@
 /// @file Small data sets of an HDF5 file, with errors that name file and data set. HDF5's own header stays in the .cpp.
 namespace ricochet {
 
-/// Is there a file that starts like HDF5?
+/// Returns whether there is a file that begins with the HDF5 signature.
 [[nodiscard]] bool is_hdf5_file(const std::string& path);
 
-/// What a group holds, and where it is in the file.
+/// A member of a group, and its address in the file.
 struct Hdf5Member {
   std::string name;  ///< with its group: "/frames/000012"
   std::uint64_t address = 0;
 };
 
-/// Reads from a file that may be damaged or made by others: sizes are compared before anything is allocated, numbers of
-/// any integer or floating type are converted. Every error says what of the file is wrong.
+/// Reads from a file that may be damaged or written by other programs: sizes are compared before anything is allocated,
+/// and numbers of any integer or floating type are converted. Every error says what is wrong in the file.
 class Hdf5Reader {
  public:
-  /// Throws Error(file_access) where there is no such file or it cannot be opened, Error(invalid_input) where it is not
-  /// HDF5, is cut off, or is damaged so that the library crashes: a child tries it first (hdf5_trial.hpp).
+  /// Throws Error(file_access) if there is no such file or it cannot be opened, Error(invalid_input) if it is not HDF5,
+  /// is truncated, or is damaged so that the library crashes: a child process tries it first (hdf5_trial.hpp).
   explicit Hdf5Reader(std::string path);
   ~Hdf5Reader();
   Hdf5Reader(const Hdf5Reader&) = delete;
   Hdf5Reader& operator=(const Hdf5Reader&) = delete;
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// Something that is there but cannot be opened is an error, here too.
+  /// An object that exists but cannot be opened is an error here, too.
   [[nodiscard]] bool has_group(const std::string& name) const;
   [[nodiscard]] bool has_dataset(const std::string& name) const;
-  /// All of these throw Error(invalid_input) where there is no such data set or it is of another kind. HDF5 allots no
-  /// room for a data set that was never written: vectors and texts of that sort are read as their fill value, with a
+  /// All of these throw Error(invalid_input) if there is no such data set or it is of another type. HDF5 allocates no
+  /// space for a data set that was never written: vectors and texts of this kind are read as their fill value, with a
   /// warning.
   [[nodiscard]] std::int64_t integer(const std::string& name) const;
-  /// Of an attribute of a group.
+  /// Value of an attribute of a group.
   [[nodiscard]] std::int64_t attribute(const std::string& group, const std::string& name) const;
-  /// Number of entries of a data set of one dimension (or of a scalar: 1).
+  /// Number of entries of a data set of one dimension (1 for a scalar).
   [[nodiscard]] std::int64_t size(const std::string& name) const;
   [[nodiscard]] std::vector<std::int64_t> integers(const std::string& name, std::int64_t expected_size) const;
-  /// Also throws where a number is not finite.
+  /// Also throws if a number is not finite.
   [[nodiscard]] Vector reals(const std::string& name, std::int64_t expected_size) const;
-  /// The first `used` of them: the others are room, and may be anything.
+  /// Returns the first `used` numbers; the others are reserved space and may be anything.
   [[nodiscard]] Vector leading_reals(const std::string& name, std::int64_t used, std::int64_t expected_size) const;
   /// Rows and columns (0: one dimension) of a data set of one or two dimensions.
   [[nodiscard]] std::pair<Index, Index> extents(const std::string& name) const;
-  /// Numbers row by row, of exactly so many rows and columns (0: one dimension): in single precision, where NaN and
-  /// infinities are left as they are, of a data set of a group that members() has found; finite ones in double
-  /// precision; whole ones. For the first nothing is looked up from the root on: it also works while another process
-  /// adds to the groups above.
+  /// Reads a data set of a group returned by members(), row by row in single precision, with exactly so many rows and
+  /// columns (0: one dimension). NaN and infinities are accepted. The group is accessed by its address instead of from
+  /// the root, so this also works while another process adds to the groups above.
   void table(const Hdf5Member& group, const std::string& name, Index rows, Index columns,
              std::vector<float>& values) const;
-  /// The same in double precision.
+  /// Version in double precision.
   void table(const Hdf5Member& group, const std::string& name, Index rows, Index columns,
              std::vector<double>& values) const;
-  /// What is in a group, by name.
+  /// Members of a group, in the order of their names.
   [[nodiscard]] std::vector<Hdf5Member> members(const std::string& group) const;
   [[nodiscard]] Matrix real_table(const std::string& name, Index rows, Index columns) const;
   [[nodiscard]] std::vector<std::int64_t> whole_table(const std::string& name, Index rows, Index columns) const;
-  /// Several entries come as lines; of none, the text is empty.
+  /// Several entries are joined as lines; the text is empty if there are none.
   [[nodiscard]] std::string text(const std::string& name) const;
   /// Throws Error(invalid_input): "PATH: NAME: message".
   [[noreturn]] void fail(const std::string& name, const std::string& message) const;
@@ -88,9 +87,9 @@ class Hdf5Reader {
   std::int64_t file_ = -1;
 };
 
-/// Writes a file under a temporary name and moves it into place when it is complete. Data sets have the types and
-/// shapes that HDF5's H5LTmake_dataset_int, _double and _string give them. They carry checksums (HDF5 1.10 or later
-/// reads them), so that a damaged file is noticed. Throws Error(file_access).
+/// Writes a file under a temporary name and renames it when it is complete. Data sets have the types and shapes of
+/// HDF5's H5LTmake_dataset_int, _double and _string. They carry checksums (HDF5 1.10 or later reads them), so that a
+/// damaged file is noticed. Throws Error(file_access).
 class Hdf5Writer {
  public:
   explicit Hdf5Writer(std::string path);
@@ -103,7 +102,7 @@ class Hdf5Writer {
   void integers(const std::string& name, const int* values, Index size);
   void reals(const std::string& name, const double* values, Index size);
   void text(const std::string& name, const std::string& value);
-  /// Without it nothing is left behind.
+  /// Completes the file. Without this call no file is left behind.
   void close();
 
  private:

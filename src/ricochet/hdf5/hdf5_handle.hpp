@@ -2,10 +2,10 @@
 
 #include <cstdint>
 
-/// @file What all HDF5 files of the program have in common. HDF5's own header stays in the .cpp files.
+/// @file Functions that all HDF5 files of the program share. HDF5's own header stays in the .cpp files.
 namespace ricochet {
 
-/// An identifier (HDF5's hid_t), closed at the end of its scope. Negative: there is nothing to close.
+/// An identifier (HDF5's hid_t), closed at the end of its scope; a negative one needs no closing.
 class Hdf5Handle {
  public:
   Hdf5Handle(std::int64_t id, int (*close)(std::int64_t)) : id_(id), close_(close) {}
@@ -14,22 +14,22 @@ class Hdf5Handle {
   }
   Hdf5Handle(const Hdf5Handle&) = delete;
   Hdf5Handle& operator=(const Hdf5Handle&) = delete;
-  operator std::int64_t() const { return id_; }  // NOLINT: used wherever HDF5 wants an identifier
+  operator std::int64_t() const { return id_; }  // NOLINT: used wherever HDF5 expects an identifier
 
  private:
   std::int64_t id_;
   int (*close_)(std::int64_t);
 };
 
-/// Errors are reported by us, not printed by HDF5, which also must not tidy up at the program's end: after a disk has
-/// run full it crashes then, and our files are closed.
+/// Stops HDF5 from printing errors, which we report ourselves, and from cleaning up at the program's exit, where it
+/// crashes after a disk has run full; our files are closed by then.
 void quiet_hdf5();
 
-/// Properties of a file, group or data set to be made (`of_class`: H5P_FILE_CREATE, …) that does not carry the time at
-/// which it was made: the same data give the same file.
+/// Returns creation properties of a file, group or data set (`of_class`: H5P_FILE_CREATE, …) without its time of
+/// creation: the same data give the same file.
 [[nodiscard]] Hdf5Handle timeless_hdf5_properties(std::int64_t of_class);
 
-/// False: it could not be made.
+/// Returns false if the group could not be created.
 [[nodiscard]] bool make_hdf5_group(std::int64_t file, const char* name);
 
 }  // namespace ricochet

@@ -17,7 +17,7 @@ Hdf5Rows::Hdf5Rows(const Hdf5Reader& file, const std::string& name)
   if (type < 0 || properties < 0) file_.fail(name_, "this data set cannot be opened: the file is damaged");
   const H5T_class_t kind = H5Tget_class(type);
   if (kind != H5T_INTEGER && kind != H5T_FLOAT) file_.fail(name_, "holds no numbers");
-  // Counting the chunks brings all of their index into memory.
+  // Counting the chunks loads their whole index into memory.
   const Hdf5Handle space(H5Dget_space(set_), H5Sclose);
   hsize_t chunks = 0;
   if (H5Pget_layout(properties) == H5D_CHUNKED && H5Dget_num_chunks(set_, space, &chunks) < 0)

@@ -10,14 +10,14 @@
 /// @file A data set of an HDF5 file that is read some rows at a time.
 namespace ricochet {
 
-/// Numbers of any type, of one or two dimensions. It is opened once, with its index: the rows that are there then can
-/// be read while another process adds further ones.
+/// A data set of numbers of any type, with one or two dimensions. It is opened once, with its index: its present rows
+/// can then be read while another process appends further ones.
 class Hdf5Rows {
  public:
-  /// Keeps a reference to the file. Throws Error(invalid_input) where there is no such data set.
+  /// Keeps a reference to the file. Throws Error(invalid_input) if there is no such data set.
   Hdf5Rows(const Hdf5Reader& file, const std::string& name);
 
-  /// Row by row; NaN and infinities are left as they are. Throws Error(invalid_input) where they are not there.
+  /// Reads row by row; NaN and infinities are accepted. Throws Error(invalid_input) if the rows do not exist.
   void read(Index first, Index count, std::vector<float>& values) const;
   void read(Index first, Index count, std::vector<double>& values) const;
 

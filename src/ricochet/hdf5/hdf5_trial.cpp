@@ -19,9 +19,9 @@ namespace ricochet {
 
 namespace {
 
-/// Bytes of numbers that are read: of the others readers compare sizes first.
+/// Number of bytes of values that are read; for the others, readers compare sizes first.
 constexpr std::int64_t most_bytes = 16 << 20;
-/// Opening a data set takes some 20 µs: these are several times what a file of the smallest ones needs.
+/// Opening a data set takes some 20 µs; these limits are several times what a file of the smallest ones needs.
 constexpr double least_seconds = 10.0, seconds_per_byte = 2e-7;
 
 /// State of a visit of all objects.
@@ -36,7 +36,7 @@ herr_t open_attribute(hid_t object, const char* name, const H5A_info_t* /*info*/
   return 0;
 }
 
-/// Texts of variable length lie elsewhere in the file than their data set.
+/// Reads texts of variable length, which are stored apart from their data set.
 void read_texts(hid_t set, hid_t type, std::size_t count) {
   std::vector<char*> values(count, nullptr);
   if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) return;
@@ -78,7 +78,7 @@ bool open_all(const std::string& path) {
   return file >= 0 && H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, open_object, &visit, H5O_INFO_BASIC) >= 0;
 }
 
-/// Identity of a file and the time of its last change.
+/// Identity of a file and time of its last change.
 struct Stamp {
   dev_t device = 0;
   ino_t number = 0;
@@ -87,7 +87,8 @@ struct Stamp {
   long changed_part = 0;  ///< nanoseconds
   bool operator==(const Stamp&) const = default;
 
-  /// A change that came right after would leave the same stamp: clocks of file systems tick every few milliseconds.
+  /// Returns whether the stamp is old enough: a change right after it would leave the same stamp, since clocks of file
+  /// systems tick every few milliseconds.
   [[nodiscard]] bool is_settled() const {
     constexpr double longest_tick = 0.1;
     struct timespec now {};

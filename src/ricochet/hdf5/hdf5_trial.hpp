@@ -2,12 +2,12 @@
 
 #include <string>
 
-/// @file Damaged HDF5 files: the library (1.10) crashes on some of them, so that they are read by a child first.
+/// @file Damaged HDF5 files. The library (1.10) crashes on some of them, so a child process reads them first.
 namespace ricochet {
 
-/// Opens, in a child, all that a file holds, and reads the first megabytes of it, as readers do. Throws
-/// Error(invalid_input) where that crashes, does not come to an end, or the file or a group cannot be opened; what is
-/// wrong with a single data set is left to whoever reads it. A file that has not changed since is not looked at again.
+/// Opens everything that a file contains in a child process and reads its first megabytes, as readers do. Throws
+/// Error(invalid_input) if that crashes or does not end, or if the file or a group cannot be opened; errors of a single
+/// data set are left to its reader. A file that has not changed since the last trial is not tried again.
 void try_hdf5_file(const std::string& path);
 
 }  // namespace ricochet

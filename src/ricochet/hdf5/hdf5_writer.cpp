@@ -24,7 +24,7 @@ constexpr hsize_t chunk_entries = 1 << 17;
 
 Hdf5Writer::Hdf5Writer(std::string path) : path_(std::move(path)), temporary_(path_ + ".part") {
   quiet_hdf5();
-  // The format that puts a checksum on everything but the data themselves.
+  // This format puts a checksum on everything but the data themselves.
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
   const Hdf5Handle properties = timeless_hdf5_properties(H5P_FILE_CREATE);

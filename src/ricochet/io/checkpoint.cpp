@@ -48,7 +48,7 @@ void put_numbers(std::string& text, const Number* values, std::size_t count) {
   text.append(reinterpret_cast<const char*>(values), count * sizeof(Number));
 }
 
-/// Reads on from where it is; whatever is asked for must be there.
+/// Reads consecutive entries; throws if the text ends before a requested one.
 class Cursor {
  public:
   explicit Cursor(std::string_view text) : text_(text) {}
@@ -67,7 +67,7 @@ class Cursor {
     return result;
   }
   [[nodiscard]] std::string text() { return std::string(bytes(number<std::uint32_t>())); }
-  /// Of entries that take at least so many bytes each.
+  /// Reads a number of entries of at least so many bytes each.
   [[nodiscard]] std::size_t count(std::size_t entry_size) {
     const auto result = number<std::uint64_t>();
     if (result > text_.size() / entry_size) throw Error(ErrorKind::invalid_input, "a value is longer than the file");
@@ -179,14 +179,14 @@ void write_checkpoint(const std::string& directory, long step, const Snapshot& s
 
 Snapshot read_checkpoint(const std::string& path) {
   {
-    // Of a pipe the reading would wait for somebody who writes, for ever.
+    // Reading a pipe would wait for a writer forever.
     std::error_code problem;
     const fs::file_status status = fs::status(path, problem);
     if (fs::exists(status) && !fs::is_regular_file(status))
       throw Error(ErrorKind::invalid_input, fmt::format("{}: it is no regular file", path));
     char head[magic.size()] = {};
     std::ifstream file(path, std::ios::binary);
-    // Nothing that is no checkpoint is read to its end.
+    // Files that are not checkpoints are not read completely.
     if (why_no_input(path).empty() && file.read(head, sizeof(head)) && std::string_view(head, sizeof(head)) != magic)
       throw Error(ErrorKind::invalid_input, fmt::format("{}: it is no checkpoint", path));
   }

@@ -35,7 +35,7 @@ long parse_step(const std::string& text, const std::string& part, const std::str
   return value;
 }
 
-/// r and W in the units of the case. Powers of two: no bit is lost.
+/// Converts r and W to the units of the case. The scales are powers of two, so no bits are lost.
 void take_out_scale(FclibProblem& problem, double scale) {
   problem.w *= scale;
   if (problem.solution) problem.solution->reaction /= scale;

@@ -20,11 +20,11 @@ namespace ricochet {
 
 namespace {
 
-/// Closed at the end of its scope.
+/// File descriptor that is closed at the end of its scope.
 class OpenFile {
  public:
   OpenFile(const std::string& path, int flags) : OpenFile(path, flags, path) {}
-  /// A file that the user knows by another name.
+  /// `known_as`: the name by which the user knows the file.
   OpenFile(const std::string& path, int flags, const std::string& known_as)
       : path_(known_as), descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
     if (descriptor_ < 0) throw_file_error(path_, "open", errno);
@@ -37,7 +37,7 @@ class OpenFile {
 
   [[nodiscard]] int descriptor() const { return descriptor_; }
   void sync() const {
-    // File systems that cannot sync a directory say EINVAL: there is nothing to wait for then.
+    // File systems that cannot sync a directory report EINVAL: then there is nothing to wait for.
     if (fsync(descriptor_) != 0 && errno != EINVAL) throw_file_error(path_, "write to the disk", errno);
   }
   void close() {
@@ -56,7 +56,7 @@ std::string parent_of(const std::string& path) {
   return parent.empty() ? "." : parent;
 }
 
-/// What else may be wrong with it is told when the file is opened.
+/// Other problems are reported when the file is opened.
 void require_parent_directory(const std::string& path) {
   const std::string parent = parent_of(path);
   std::error_code ignored;
@@ -138,14 +138,14 @@ void reserve_space(const std::string& path, std::int64_t bytes) {
   const OpenFile file(path, O_WRONLY);
   struct stat about {};
   if (fstat(file.descriptor(), &about) != 0) throw_file_error(path, "look at", errno);
-  // A limit of the process (ulimit -f) is not looked at when space is reserved.
+  // Reservation ignores the process limit (ulimit -f), so it is checked here.
   struct rlimit limit {};
   if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
       static_cast<rlim_t>(about.st_size + bytes) > limit.rlim_cur)
     throw_file_error(path, "write", EFBIG);
   if (fallocate(file.descriptor(), FALLOC_FL_KEEP_SIZE, about.st_size, bytes) == 0) return;
   const int problem = errno;
-  // Others say only that this file system cannot reserve anything.
+  // Other errors only mean that this file system does not support reservation.
   if (problem == ENOSPC || problem == EDQUOT || problem == EFBIG) throw_file_error(path, "write", problem);
 }
 

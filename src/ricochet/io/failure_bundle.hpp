@@ -6,21 +6,21 @@
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/io/contact_export.hpp"
 
-/// @file What is left of a step that failed, so that it can be looked at: failure-SSSSSSSSS.ckpt, the last state with
-/// the message (a file like a checkpoint), and failure-SSSSSSSSS.hdf5, the contact problem that was not solved (an
-/// FCLib file), if it was that.
+/// @file Files for the analysis of a failed step: failure-SSSSSSSSS.ckpt, the last state with the message (a file like
+/// a checkpoint), and failure-SSSSSSSSS.hdf5, the unsolved contact problem (an FCLib file), if that is the cause.
 namespace ricochet {
 
 class FailureBundle {
  public:
   FailureBundle(std::string directory, ContactProvenance provenance);
 
-  /// Writes the contact problem of a step that was not solved, with the best that was found. FCLib's format may not be
-  /// able to state it, and the disk may be full: that is told by write().
+  /// Writes the unsolved contact problem of a step with its best approximate solution. If FCLib's format cannot
+  /// represent it or the disk is full, write() reports that.
   void take_problem(const ContactProblem& problem, const ContactSolution& solution, long step);
-  /// Removes what take_problem wrote, after a step that was solved in the end, in another way or with another length.
+  /// Removes the file of take_problem, after a step that was solved in the end, by another method or with another
+  /// length.
   void forget_problem();
-  /// Adds the message to the snapshot and writes it. Returns where everything is, in a sentence. Throws
+  /// Adds the message to the snapshot and writes it. Returns a sentence that names the files. Throws
   /// Error(file_access).
   [[nodiscard]] std::string write(long step, Snapshot& snapshot, const std::string& message) const;
 

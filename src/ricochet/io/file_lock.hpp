@@ -2,22 +2,22 @@
 
 #include <string>
 
-/// @file A file that says who may look: a run writes a frame while nobody opens the results, and the other way round.
-/// Advisory (flock): readers that know nothing of it are as they were. HDF5's own locks are not used: their holders
-/// keep them for as long as they have a file open, which would stop a run.
+/// @file Lock file: a run writes a frame while no reader has the results open, and vice versa. The lock is advisory
+/// (flock): readers that ignore it behave as without it. HDF5's own locks are not used, as their holders keep them
+/// while a file is open, which would block a run.
 namespace ricochet {
 
 class FileLock {
  public:
   enum class Kind { shared, exclusive };
 
-  /// Of a file that is there; where it cannot be opened, the lock is none.
+  /// Opens an existing file; if it cannot be opened, nothing is locked.
   explicit FileLock(const std::string& path);
   ~FileLock();
   FileLock(const FileLock&) = delete;
   FileLock& operator=(const FileLock&) = delete;
 
-  /// Waits for so many seconds at most; false: others still hold it, or files cannot be locked here.
+  /// Waits for at most so many seconds; returns false if others still hold the lock or files cannot be locked here.
   bool acquire(Kind kind, double seconds);
   void release();
 

@@ -13,7 +13,7 @@ namespace ricochet {
 
 namespace {
 
-/// Bytes of a data set from which on it is compressed.
+/// Size in bytes from which a dataset is compressed.
 constexpr Index least_compressed = 16384;
 
 }  // namespace

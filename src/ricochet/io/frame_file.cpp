@@ -19,17 +19,17 @@ namespace ricochet {
 
 namespace {
 
-/// What a frame takes besides its numbers: names, extents, index; in all, and for each data set.
+/// Bytes of a frame in addition to its values, for names, extents and indices: in total, and per dataset.
 constexpr std::int64_t administration = 65536, administration_of_a_set = 8192;
 
 Hdf5Handle file_access(const FrameFileOptions& options) {
   const std::int64_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V110);
-  // Someone who looks at the frames that are there must not stop the run.
+  // Readers of existing frames must not stop the run.
   H5Pset_file_locking(access, false, true);
-  // Where a frame is flushed before its end HDF5 says how long the file is with the room that it keeps for more. That
-  // it gives back when the file is closed, by cutting the file before it says so: killed in between, a run would leave
-  // a file that is shorter than it should be, and cannot be opened. So it keeps no room.
+  // If a frame is flushed before its end, HDF5 records the length of the file including the space it reserves. It
+  // releases this space when the file is closed, by truncating the file before it records the new length: if killed in
+  // between, a run would leave a file that is shorter than recorded and cannot be opened. So no space is reserved.
   if (options.vtkhdf) {
     H5Pset_meta_block_size(access, 0);
     H5Pset_small_data_block_size(access, 0);
@@ -37,8 +37,8 @@ Hdf5Handle file_access(const FrameFileOptions& options) {
   return {access, H5Pclose};
 }
 
-/// Copies what lies between extents, which are in order, and before the first. This may be interrupted: the number of
-/// frames comes first, so that none of those that are given up counts.
+/// Copies the gaps between extents, which are in order, and the part before the first. Interruption is safe: the number
+/// of frames comes first, so that discarded frames no longer count.
 void copy_gaps(const std::string& from_path, const std::string& to_path, const std::vector<FrameExtent>& extents,
                const FrameExtent& count) {
   std::ifstream from(from_path, std::ios::binary);
@@ -62,7 +62,7 @@ void copy_gaps(const std::string& from_path, const std::string& to_path, const s
   check_written(to_path, from && to, "the file");
 }
 
-/// The groups above a name ("/mesh" of "/mesh/nodes").
+/// Creates the groups above a name ("/mesh" of "/mesh/nodes").
 void make_parent(std::int64_t file, const std::string& path, const std::string& name) {
   const std::string parent = name.substr(0, name.rfind('/'));
   if (parent.empty() || H5Lexists(file, parent.c_str(), H5P_DEFAULT) > 0) return;
@@ -154,9 +154,9 @@ void FrameFile::create(const std::string& path, const std::vector<FixedDataset>&
   check_written(path, file >= 0, "the file");
   try {
     for (const FixedDataset& set : fixed) write_fixed(file, path, set);
-    // The indices of HDF5 1.10 grow without a change of what is there. Older ones split their nodes in place: killed in
-    // between, a run would leave a file whose steps cannot be found. (The file itself stays one of 1.8, as those
-    // of 1.10 say that they are open for writing, and cannot be opened when that was never taken back.)
+    // The indices of HDF5 1.10 grow without a change of existing data. Older ones split their nodes in place: if killed
+    // in between, a run would leave a file whose steps cannot be found. (The file itself keeps the format of 1.8, since
+    // files of 1.10 record that they are open for writing, and cannot be opened if this mark is never removed.)
     if (options_.vtkhdf) H5Fset_libver_bounds(file, H5F_LIBVER_V110, H5F_LIBVER_V110);
     arrangement_->begin(file, path);
   } catch (const Error&) {
@@ -168,7 +168,7 @@ void FrameFile::create(const std::string& path, const std::vector<FixedDataset>&
 
 std::int64_t FrameFile::frame_bytes() const {
   std::int64_t bytes = administration;
-  // What does not compress grows by some bytes in a thousand.
+  // Incompressible data grow by some bytes in a thousand.
   for (const DatasetLayout& set : layout_) bytes += 8 * entries_of(set) * 101 / 100 + administration_of_a_set;
   return bytes;
 }
@@ -186,8 +186,7 @@ void FrameFile::append(const std::vector<const void*>& values, double time) {
   ++frames_;
 }
 
-/// Of the numbers of a frame as they are in the file. Those that are there as they are in memory, `values`, are not
-/// read again.
+/// Checksum of a frame's values as stored in the file. Those with the same form in memory, `values`, are not read back.
 std::uint32_t FrameFile::checksum(const std::vector<FrameExtent>& extents,
                                   const std::vector<const void*>* values) const {
   Checksum sum;
@@ -208,7 +207,7 @@ std::uint32_t FrameFile::checksum(const std::vector<FrameExtent>& extents,
   return sum.value();
 }
 
-/// Extents of all frames, one after the other.
+/// `extents`: those of all frames, one after the other.
 void FrameFile::require_same(const std::vector<FrameExtent>& extents) const {
   for (long frame = 0; frame < frames_; ++frame) {
     const auto first = extents.begin() + frame * static_cast<long>(layout_.size());
@@ -245,7 +244,8 @@ FrameExtent FrameFile::count_extent(const std::string& path) const {
   return arrangement_->count_extent(file);
 }
 
-/// See the file's comment: all bytes but the numbers of the frames that are to stay come from a file of empty frames.
+/// See the comment of frame_file.hpp: all bytes except the values of the frames that are kept come from a file of empty
+/// frames.
 void FrameFile::repair(const std::vector<FixedDataset>& fixed, Repair repair) const {
   const std::string pattern = path_ + ".pattern";
   const auto remove_pattern = [&] {
@@ -273,7 +273,8 @@ void FrameFile::repair(const std::vector<FixedDataset>& fixed, Repair repair) co
               [](const FrameExtent& a, const FrameExtent& b) { return a.address < b.address; });
     kept.push_back({size, 0});
     copy_gaps(pattern, path_, kept, count_extent(pattern));
-    // Last: HDF5 opens a file that is longer than it says, and none that is shorter, should this be interrupted, too.
+    // Truncation is last: if it is interrupted, the file is longer than recorded, which HDF5 can open, unlike a shorter
+    // one.
     cut_back(path_, size);
   } catch (const Error&) {
     remove_pattern();

@@ -10,32 +10,32 @@
 #include "ricochet/io/frame_arrangement.hpp"
 #include "ricochet/io/sole_writer.hpp"
 
-/// @file An HDF5 file of frames that survives interruptions: fixed data sets, then a frame again and again.
+/// @file HDF5 file of frames that survives interruptions: fixed datasets, followed by any number of frames.
 ///
-/// The file is closed between frames: it is complete after each of them, whoever reads it then, and its bytes after k
-/// frames depend on the data alone. So a file that was left in any state after its first k frames can be given back the
-/// bytes it had: the numbers of these frames are never written over, and where everything else lies is found by writing
-/// k empty frames into a file beside it.
+/// The file is closed between frames: it is complete after each of them for every reader, and its bytes after k frames
+/// depend on the data alone. A file that was left in any state after its first k frames can thus be restored to its
+/// earlier bytes: the values of these frames are never overwritten, and the rest is reproduced by writing k empty
+/// frames to an auxiliary file.
 namespace ricochet {
 
 class FrameFile {
  public:
-  /// A new file with the groups and data sets that all frames share. Throws Error(file_access).
+  /// Creates a file with the groups and datasets that all frames share. Throws Error(file_access).
   FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
             const FrameFileOptions& options = {});
-  /// Goes on with a file that held so many frames when save() was called, and may have been changed by an interrupted
-  /// run since. Throws Error(file_access) where it is not that file, or where numbers of these frames are others now:
-  /// then nothing has happened to it.
+  /// Continues a file that held so many frames when save() was called, and may have been changed by an interrupted run
+  /// since. Throws Error(file_access), with the file unchanged, if it is not that file or the values of these frames
+  /// differ.
   FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
             const FrameFileOptions& options, const Snapshot& snapshot, const std::string& name);
   void save(Snapshot& snapshot, const std::string& name) const;
-  /// Throws what going on would throw, and changes nothing: where there are several files, before the first is changed.
+  /// Throws what continuing would throw, and changes nothing: for several files, before the first is changed.
   static void check(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
                     const FrameFileOptions& options, const Snapshot& snapshot, const std::string& name);
 
-  /// One frame: the values of its data sets, in the order of the layout (const double*, const int*), and its time (only
-  /// VTKHDF keeps it). On a full disk, and where another program has changed the file, throws Error(file_access) before
-  /// the file is touched.
+  /// Appends a frame: the values of its datasets, in the order of the layout (const double*, const int*), and its time
+  /// (stored by VTKHDF only). If the disk is full or another program has changed the file, throws Error(file_access)
+  /// before the file is modified.
   void append(const std::vector<const void*>& values, double time);
   [[nodiscard]] long frames() const { return frames_; }
   void require_untouched() const { sole_->require_untouched(); }
@@ -60,9 +60,9 @@ class FrameFile {
   std::unique_ptr<const FrameArrangement> arrangement_;
   std::optional<SoleWriter> sole_;
   long frames_ = 0;
-  std::vector<double> times_;               ///< of the frames, where the arrangement keeps them
-  std::vector<std::int64_t> checksums_;     ///< of the numbers of every frame as they are in the file
-  std::vector<std::int64_t> stored_sizes_;  ///< of the data sets of all frames, when compressed
+  std::vector<double> times_;               ///< of the frames, if the arrangement stores them
+  std::vector<std::int64_t> checksums_;     ///< of each frame's values, as stored in the file
+  std::vector<std::int64_t> stored_sizes_;  ///< of the datasets of all frames, if compressed
 };
 
 }  // namespace ricochet

@@ -37,7 +37,7 @@ class FrameGroups : public FrameArrangement {
   [[nodiscard]] bool keeps_times() const override { return false; }
 
  private:
-  /// What HDF5 wants to know of a data set of a frame, made once: that takes as long as to write a small one.
+  /// HDF5 objects of a dataset, created once: creating them takes as long as writing a small dataset.
   struct Prepared {
     Hdf5Handle space, properties;
     Prepared(const DatasetLayout& layout, const FrameFileOptions& options)

@@ -2,7 +2,7 @@
 
 #include "ricochet/io/frame_arrangement.hpp"
 
-/// @file Each frame in a group of its own, /frames/NNNNNN, with a data set for each of its fields (results.h5).
+/// @file Frames in groups of their own, /frames/NNNNNN, with a dataset for each field (results.h5).
 namespace ricochet {
 
 /// "/frames/000012".

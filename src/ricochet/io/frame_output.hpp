@@ -8,30 +8,30 @@
 #include "ricochet/io/fields/field_source.hpp"
 #include "ricochet/io/frame_file.hpp"
 
-/// @file The files that frames go into, in one of the formats. CONTRIBUTING.md says what else a further format needs:
-/// reading it (results_storage.hpp) most of all.
+/// @file Files of frames in one of the formats. docs/developers/add-a-format-of-fields.md describes what else a further
+/// format requires, above all its reader (results_storage.hpp).
 namespace ricochet {
 
 struct FrameOutputContext {
   const std::string& directory;
   const Body& body;
   const SemidiscreteProblem& problem;
-  const std::vector<Field>& fields;  ///< their values are looked at when a frame is written
+  const std::vector<Field>& fields;  ///< their values are read when a frame is written
   const FrameFileOptions& options;
-  const Snapshot* snapshot;  ///< of the run that goes on; nullptr: new files
-  const std::string& name;   ///< of what is saved in it
+  const Snapshot* snapshot;  ///< of the resumed run; nullptr: new files
+  const std::string& name;   ///< name of the output in the snapshot
 };
 
 class FrameOutput {
  public:
   virtual ~FrameOutput() = default;
-  /// All files are complete afterwards, and hold no frame that is not whole if the run is killed meanwhile.
+  /// Writes a frame. All files are complete afterwards, and contain no partial frame if the run is killed meanwhile.
   virtual void write(const State& state) = 0;
   [[nodiscard]] virtual long frames() const = 0;
   virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
-  /// Throws Error(file_access) where another program has changed a file since it was written.
+  /// Throws Error(file_access) if another program has changed a file since it was written.
   virtual void require_untouched() const = 0;
-  /// Of all files.
+  /// Paths of all files.
   [[nodiscard]] virtual std::vector<std::string> paths() const = 0;
 };
 

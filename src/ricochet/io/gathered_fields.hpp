@@ -6,25 +6,25 @@
 #include "ricochet/base/ranks.hpp"
 #include "ricochet/io/fields/field_source.hpp"
 
-/// @file The fields of a body that is divided among ranks, put together on the first.
+/// @file Fields of a body that is divided among ranks, assembled on the first rank.
 namespace ricochet {
 
 class GatheredFields {
  public:
-  /// `own`: of this rank; of a shared node the values of its owner are taken. `node_rows`, `cell_rows`: where those of
-  /// this rank are in the whole.
+  /// `own`: fields of this rank; at a shared node the values of its owner count. `node_rows`, `cell_rows`: rows of this
+  /// rank in the whole.
   GatheredFields(const Ranks& ranks, std::vector<Field> own, const std::vector<Index>& node_rows,
                  const std::vector<Index>& cell_rows, Index nodes, Index cells);
 
-  /// On the first rank, of the whole; elsewhere none.
+  /// Fields of the whole body on the first rank; empty elsewhere.
   [[nodiscard]] const std::vector<Field>& fields() const { return fields_; }
-  /// Takes the values that there are now. All ranks together.
+  /// Gathers the current values. All ranks call it together.
   void gather();
 
  private:
   struct Rows {
-    std::vector<Index> own;               ///< that this rank tells
-    std::vector<std::vector<Index>> all;  ///< on the first: where those of each rank go
+    std::vector<Index> own;               ///< that this rank contributes
+    std::vector<std::vector<Index>> all;  ///< on the first rank: target rows of each rank
   };
   [[nodiscard]] Rows rows_of(const std::vector<Index>& own, const std::vector<Index>& places) const;
   [[nodiscard]] const Rows& rows_of(const Field& field) const {

@@ -16,7 +16,7 @@ namespace ricochet {
 
 namespace {
 
-/// Bytes that are handed over at once.
+/// Bytes that are written at once.
 constexpr std::size_t piece = 8192;
 
 }  // namespace
@@ -37,11 +37,11 @@ HistoryWriter::HistoryWriter(const std::string& path, const Snapshot& snapshot, 
 HistoryWriter::~HistoryWriter() {
   try {
     flush();
-  } catch (const Error&) {  // a run that has ended has told it
+  } catch (const Error&) {  // the run that has ended has reported it
   }
 }
 
-/// Opens the file to append: where it is cut between a look and a write it gets no hole.
+/// Opens the file in append mode: if it is truncated between check and write, no hole is left.
 void HistoryWriter::open() {
   errno = 0;
   file_.open(path_, std::ios::binary | std::ios::app);
@@ -89,7 +89,7 @@ long last_history_step(const std::string& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   const auto size = static_cast<std::int64_t>(file.tellg());
   std::string tail;
-  // More and more of its end, until a whole row is in it.
+  // Reads increasing parts of the end until they contain a whole row.
   for (std::int64_t length = 0; length < size;) {
     length = std::min<std::int64_t>(std::max<std::int64_t>(8 * length, 4096), size);
     tail.resize(static_cast<std::size_t>(length));
@@ -116,7 +116,7 @@ HistoryTable read_history(const std::string& path, bool may_grow) {
     table.names.push_back(line.substr(begin, end - begin));
     begin = end + 1;
   }
-  // The row of names may be lost: a row of numbers is none.
+  // The row of names may be missing: a row of numbers is not accepted as one.
   if (std::any_of(table.names.begin(), table.names.end(), [](const auto& name) { return number_in(name); }))
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}:1: the first row has the names of the columns, and begins with \"{}\": the file is "

@@ -15,21 +15,20 @@ namespace ricochet {
 
 class HistoryWriter {
  public:
-  /// Throws Error(file_access) when the file cannot be opened or written (then or later), or another program has
-  /// changed it before a piece is written.
+  /// Throws Error(file_access) if the file cannot be opened or written (now or later), or if another program has
+  /// changed it before a write.
   HistoryWriter(const std::string& path, const std::vector<std::string>& columns);
-  /// Goes on after the rows that were there when save() was called. Throws Error(file_access) where it is not that
-  /// file.
+  /// Continues after the rows that existed when save() was called. Throws Error(file_access) if it is not that file.
   HistoryWriter(const std::string& path, const Snapshot& snapshot, const std::string& name);
-  /// Hands over what is left, where that is possible.
+  /// Writes the buffered rest, if possible.
   ~HistoryWriter();
   HistoryWriter(const HistoryWriter&) = delete;
   HistoryWriter& operator=(const HistoryWriter&) = delete;
-  /// Of what has been flushed.
+  /// Saves the state after the last flush.
   void save(Snapshot& snapshot, const std::string& name) const;
   void write(const std::vector<double>& row);
-  /// Hands everything to the operating system, so that others can read along. Where nothing is left to be handed over
-  /// the file is looked at all the same.
+  /// Writes everything to the operating system, so that others can read it. Checks the file even if nothing is
+  /// buffered.
   void flush();
   /// Flushes, and waits until everything is on the disk.
   void sync();
@@ -41,20 +40,20 @@ class HistoryWriter {
   std::string path_;
   std::ofstream file_;
   std::optional<SoleWriter> sole_;
-  std::string line_, waiting_;  ///< waiting: lines that have not been handed over
+  std::string line_, waiting_;  ///< `waiting_`: buffered lines
   LineChecksums checksums_;
 };
 
-/// A history read back, column by column.
+/// History that was read back, by columns.
 struct HistoryTable {
   std::vector<std::string> names;
   std::map<std::string, std::vector<double>> columns;
 };
 
-/// Step of the last row that is complete, of a file that may still be written to; 0 without rows.
+/// Step of the last complete row of a file that may still be written to; 0 without rows.
 [[nodiscard]] long last_history_step(const std::string& path);
 
-/// `may_grow`: of a run that goes on or was stopped, whose last row may not be complete and is left out then. Throws
+/// `may_grow`: for a run in progress or stopped, whose last row is ignored if it is incomplete. Throws
 /// Error(file_access) or Error(invalid_input) with the line.
 [[nodiscard]] HistoryTable read_history(const std::string& path, bool may_grow = false);
 

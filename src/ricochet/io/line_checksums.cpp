@@ -73,7 +73,7 @@ void LineChecksums::add(std::string_view piece) {
   ++pieces_;
 }
 
-/// Two and two, when all of them are full.
+/// Merges pairs of blocks once all are full.
 void LineChecksums::merge_blocks() {
   for (std::size_t i = 0; i < most_blocks / 2; ++i) {
     const Block first = blocks_[2 * i], second = blocks_[2 * i + 1];

@@ -8,22 +8,22 @@
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/snapshot.hpp"
 
-/// @file Checksums of a file of text, taken as it is written: is what a run has written still there when it goes on?
+/// @file Checksums of a text file, computed as it is written, to verify its content when a run is resumed.
 namespace ricochet {
 
-/// Of blocks of pieces (lines, mostly). A file of a few hundred pieces has one checksum per piece; where there are more
-/// the blocks grow, so that nothing is allocated.
+/// Checksums of blocks of pieces (mostly lines). A file of a few hundred pieces has one checksum per piece; with more
+/// pieces the blocks grow, so that nothing is allocated.
 class LineChecksums {
  public:
   LineChecksums();
-  /// As saved.
+  /// Loads saved checksums.
   LineChecksums(const Snapshot& snapshot, const std::string& name);
   void save(Snapshot& snapshot, const std::string& name, const std::string& file_name) const;
 
-  /// A piece that has been written behind the others.
+  /// Adds a piece that has been appended to the file.
   void add(std::string_view piece);
   [[nodiscard]] std::int64_t length() const { return length_; }
-  /// Throws Error(file_access) where the file does not begin with what was added.
+  /// Throws Error(file_access) if the file does not begin with the added pieces.
   void require_same(const std::string& path) const;
 
  private:
@@ -33,12 +33,12 @@ class LineChecksums {
     std::uint32_t sum = 0;
     std::int64_t length = 0;
   };
-  std::vector<Block> blocks_;  ///< the last may not have all its pieces
+  std::vector<Block> blocks_;  ///< the last one may be incomplete
   std::int64_t pieces_ = 0, pieces_per_block_ = 1, length_ = 0;
 };
 
-/// Compares the files of a directory with all checksums in a snapshot; what has been written after it does not count.
-/// Throws Error(file_access) that names the first file that is missing, shorter or different, and the lines.
+/// Compares the files of a directory with all checksums in a snapshot; later additions to the files are ignored. Throws
+/// Error(file_access), which names the first file that is missing, shorter or different, and the lines.
 void require_same_files(const std::string& directory, const Snapshot& snapshot);
 
 }  // namespace ricochet

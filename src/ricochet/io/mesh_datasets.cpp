@@ -25,7 +25,7 @@ struct Part {
   std::vector<Index> members;
 };
 
-/// One row for each cell; cells of several shapes are one list, in which each begins with XDMF's number of its shape.
+/// One row per cell; cells of several shapes form one list, in which each begins with XDMF's number of its shape.
 FixedDataset connectivity(const DisplacementSpace& space, const std::string& name, const std::vector<Part>& parts) {
   FixedDataset set{name, 0, 0, {}, {}};
   const bool mixed = parts.size() > 1;
@@ -51,7 +51,7 @@ FixedDataset cells_of(const DisplacementSpace& space) {
   return connectivity(space, "/mesh/cells", parts);
 }
 
-/// The number of each cell in the mesh file.
+/// Number of each cell in the mesh file.
 FixedDataset element_numbers(const DisplacementSpace& space) {
   FixedDataset set{"/mesh/element", 0, 0, {}, {}};
   for (const CellBlock& block : space.cells)
@@ -71,12 +71,12 @@ FixedDataset contact_facets_of(const DisplacementSpace& space, const ContactBoun
   return connectivity(space, "/mesh/contact_facets", parts);
 }
 
-/// Cells one after the other, as VTKHDF has them.
+/// Consecutive cells in the form of VTKHDF.
 struct VtkHdfCells {
   FixedDataset connectivity{"/VTKHDF/Connectivity", 0, 0, {}, {}}, offsets{"/VTKHDF/Offsets", 0, 0, {}, {0}},
       types{.name = "/VTKHDF/Types", .bytes = true};
 
-  /// Its nodes are added to `connectivity` before.
+  /// Ends a cell whose nodes have been added to `connectivity`.
   void end_cell(int type) {
     offsets.integers.push_back(static_cast<std::int64_t>(connectivity.integers.size()));
     types.integers.push_back(type);

@@ -8,7 +8,7 @@ namespace ricochet {
 
 namespace {
 
-/// The part that is shown reaches so many sizes of the body to each side.
+/// Extent of the displayed part to each side, in sizes of the body.
 constexpr double reach = 1.0;
 
 }  // namespace
@@ -54,7 +54,7 @@ std::vector<double> ObstacleSurfaces::positions(double time, const Vector& displ
 std::string ObstacleSurfaces::grid(double time, const Vector& displacement) const {
   const std::vector<double> all = positions(time, displacement);
   std::string text;
-  // Digits for a picture, in each frame again.
+  // Reduced precision for display, as positions are repeated in each frame.
   for (std::size_t i = 0; i < all.size(); i += 3)
     text += fmt::format("{:.9g} {:.9g} {:.9g}\n", all[i], all[i + 1], all[i + 2]);
   return fmt::format(

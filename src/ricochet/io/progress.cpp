@@ -10,11 +10,11 @@ namespace ricochet {
 
 namespace {
 
-/// Seconds between lines of a run that is not watched at a terminal; it says something at each tenth anyway. The first
-/// line tells what the first steps make of the estimate before the run.
+/// Seconds between lines of a run without a terminal, which reports at each tenth in any case. The first line shows the
+/// estimate that follows from the first steps.
 constexpr double longest_silence = 60.0, first_silence = 5.0;
 
-/// Nobody's run should end because what is merely shown cannot be written.
+/// Ignores write errors: a run must not end because its progress cannot be displayed.
 void show(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);

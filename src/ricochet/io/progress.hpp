@@ -4,24 +4,24 @@
 
 #include "ricochet/base/timer.hpp"
 
-/// @file Progress of a run on standard error: a bar with the time left on a terminal, a line per tenth elsewhere.
+/// @file Progress of a run on standard error: a bar with the remaining time on a terminal, otherwise a line per tenth.
 namespace ricochet {
 
 class Progress {
  public:
-  /// Of a run that begins (or goes on) after this step and time. `steps`: 0 where nobody knows how many there will be.
+  /// Progress of a run that begins (or resumes) after this step and time. `steps`: 0 if unknown.
   Progress(long steps, double end, bool quiet, long first_step, double first_time);
   /// Ends the bar's line if one is open.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Cheap: looks at the clock only now and then.
+  /// Cheap: reads the clock only occasionally.
   void update(long step, double time);
 
  private:
   void draw(long step, double time);
-  /// 0 to 1.
+  /// Completed fraction, 0 to 1.
   [[nodiscard]] double done(long step, double time) const;
 
   long steps_;

@@ -25,7 +25,7 @@ constexpr std::size_t kept_manifests = 2;
 struct Manifest {
   std::string path;
   long step = 0;
-  std::vector<std::string> checksums;  ///< by rank; empty: it cannot be read
+  std::vector<std::string> checksums;  ///< by rank; empty if unreadable
 };
 
 std::string folder_of(const std::string& directory) {
@@ -44,7 +44,7 @@ std::string checkpoint_path(const std::string& directory, int rank, long step) {
   return (fs::path(folder_of_rank(directory, rank)) / fmt::format("checkpoint-{:09}.ckpt", step)).string();
 }
 
-/// The last four bytes of a checkpoint are the CRC-32 of all before.
+/// Returns the last four bytes of a checkpoint, the CRC-32 of everything before.
 std::string checksum_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   unsigned char bytes[4] = {};
@@ -65,7 +65,7 @@ Manifest read_manifest(const std::string& path, long step) {
   std::ifstream file(path);
   std::string line;
   std::vector<std::string> lines;
-  // No manifest has more lines than there can be ranks.
+  // A manifest has at most as many lines as there can be ranks.
   while (lines.size() < 1'000'000 && std::getline(file, line)) lines.push_back(line);
   if (lines.size() < 4) return manifest;
   for (std::size_t i = 3; i < lines.size(); ++i)
@@ -76,7 +76,7 @@ Manifest read_manifest(const std::string& path, long step) {
   return manifest;
 }
 
-/// Newest first.
+/// Returns the manifests, newest first.
 std::vector<Manifest> manifests(const std::string& directory) {
   std::vector<Manifest> result;
   std::error_code problem;
@@ -119,7 +119,7 @@ void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, lon
 }
 
 std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::string& directory) {
-  // As the first sees the folder: others may see one on a shared disk as it was before.
+  // The first rank's view of the folder counts: on a shared disk others may see an outdated one.
   Ranks::ForEach<std::int64_t> steps(static_cast<std::size_t>(ranks.size()));
   for (const Manifest& manifest : ranks.is_first() ? manifests(directory) : std::vector<Manifest>{}) {
     for (std::vector<std::int64_t>& to : steps) to.push_back(manifest.step);

@@ -12,10 +12,10 @@ namespace ricochet {
 
 namespace {
 
-/// Who looks at the frames does that for a moment; who does not let go does not stop the run.
+/// Readers usually hold the lock for a moment; one that does not release it does not stop the run.
 constexpr double longest_wait_of_the_writer = 2.0;
 
-/// Nobody opens the files while they change.
+/// Excludes readers while the files change.
 class LockedFrames {
  public:
   explicit LockedFrames(FileLock& lock) : lock_(lock) {
@@ -39,7 +39,7 @@ struct ResultsWriter::Implementation {
 
   const Ranks& ranks;
   std::vector<std::unique_ptr<FieldSource>> sources;
-  std::unique_ptr<GatheredFields> gathered;  ///< of several ranks
+  std::unique_ptr<GatheredFields> gathered;  ///< on several ranks
   long frame_count = 0;
   std::vector<Field> fields;
   std::string lock_path;
@@ -100,7 +100,7 @@ void ResultsWriter::write(const State& state) {
   ++own.frame_count;
   own.ranks.together([&] {
     if (!own.output) return;
-    if (!own.lock) own.lock.emplace(own.lock_path);  // the file is there by now
+    if (!own.lock) own.lock.emplace(own.lock_path);  // the file exists by now
     const LockedFrames locked(*own.lock);
     own.output->write(state);
   });

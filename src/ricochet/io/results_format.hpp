@@ -1,6 +1,6 @@
 #pragma once
 
-/// @file The formats that fields are written in (`output.format`).
+/// @file Formats of fields (`output.format`).
 namespace ricochet {
 
 enum class ResultsFormat {
@@ -8,7 +8,7 @@ enum class ResultsFormat {
   vtkhdf  ///< results.vtkhdf and obstacles.vtkhdf
 };
 
-/// The file of a run that is locked while its frames change or are looked at: not one of HDF5, which locks its files
+/// File of a run that is locked while its frames are written or read. It is not an HDF5 file, as HDF5 locks its files
 /// itself.
 [[nodiscard]] constexpr const char* lock_of_results(ResultsFormat format) {
   return format == ResultsFormat::xdmf ? "results.xdmf" : "history.csv";

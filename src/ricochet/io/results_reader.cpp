@@ -25,7 +25,7 @@ std::vector<CellShape> shapes_of(int dimension) {
   return {CellShape::tetrahedron, CellShape::hexahedron};
 }
 
-/// Reads connectivity as mesh_datasets.cpp writes it: a table of cells of one shape, or XDMF's mixed list.
+/// Reads connectivity as written by mesh_datasets.cpp: a table of cells of one shape, or XDMF's mixed list.
 class Connectivity {
  public:
   Connectivity(const Hdf5Reader& file, std::string name, int dimension, int degree, Index nodes)
@@ -115,7 +115,7 @@ std::vector<ObstacleFrame> read_obstacle_frames(const std::string& directory, Re
 
 ResultsReader::ResultsReader(const std::string& directory, int dimension, int degree)
     : format_(find_results(directory).value_or(ResultsFormat::xdmf)), dimension_(dimension), degree_(degree) {
-  // What is known now does not change any more when the run goes on.
+  // Data read under this lock remain valid when the run continues.
   FileLock lock(directory + "/" + lock_of_results(format_));
   lock.acquire(FileLock::Kind::shared, longest_wait_of_a_reader);
   storage_ = open_results(directory, format_);

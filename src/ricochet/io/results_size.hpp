@@ -2,10 +2,10 @@
 
 #include "ricochet/io/results_file.hpp"
 
-/// @file Size of the file of fields, before there is one.
+/// @file Estimated size of the files of fields.
 namespace ricochet {
 
-/// Bytes of a file of fields without compression.
+/// Bytes of the fields without compression.
 struct ResultsSize {
   double mesh = 0.0, frame = 0.0;
   [[nodiscard]] double of(long frames) const { return mesh + static_cast<double>(frames) * frame; }

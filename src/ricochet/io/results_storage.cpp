@@ -51,7 +51,7 @@ void ResultsStorage::close() {
 
 namespace {
 
-/// results.h5, a group for each frame; results.xdmf says what is in them. Groups stay where they are.
+/// results.h5, one group per frame; results.xdmf describes their content. Groups do not move in the file.
 class GroupsStorage : public ResultsStorage {
  public:
   explicit GroupsStorage(const std::string& directory) : ResultsStorage(directory, "results.h5", ResultsFormat::xdmf) {
@@ -81,7 +81,7 @@ class GroupsStorage : public ResultsStorage {
   std::vector<Hdf5Member> groups_;
 };
 
-/// results.vtkhdf, a data set for each field with the rows of one frame after those of the other.
+/// results.vtkhdf, one dataset per field with the rows of all frames in sequence.
 class RowsStorage : public ResultsStorage {
  public:
   explicit RowsStorage(const std::string& directory)

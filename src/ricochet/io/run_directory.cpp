@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a run leaves in its directory, checkpoints aside.
+/// Files that a run leaves in its directory, except checkpoints.
 constexpr const char* result_files[] = {"history.csv",    "summary.json",   "results.h5",      "results.xdmf",
                                         "obstacles.xdmf", "results.vtkhdf", "obstacles.vtkhdf"};
 
@@ -44,7 +44,7 @@ void RunDirectory::take() {
   std::error_code problem;
   at_interruption_.emplace([&] { is_new_ = fs::create_directories(path_, problem); },
                            [this] {
-                             if (is_new_) rmdir(path_.c_str());  // where it is empty
+                             if (is_new_) rmdir(path_.c_str());  // fails unless it is empty
                            });
   if (problem || !fs::is_directory(path_, problem)) {
     throw Error(ErrorKind::file_access, fmt::format("{}: cannot make this directory: {}", path_,
@@ -53,7 +53,7 @@ void RunDirectory::take() {
   if (access(path_.c_str(), W_OK | X_OK) != 0) throw_file_error(path_, "write into this directory", errno);
   lock_ = open_directory(path_);
   if (lock_ < 0) throw_file_error(path_, "read this directory", errno);
-  // Someone who only asks whether a run is here has the lock for a moment.
+  // A process that only tests whether a run is in progress holds the lock for a moment.
   for (int attempt = 0; attempt < 20; ++attempt) {
     if (flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
     if (errno != EWOULDBLOCK) {

@@ -7,29 +7,29 @@
 #include "ricochet/base/interruption.hpp"
 #include "ricochet/base/ranks.hpp"
 
-/// @file The directory that a run writes into, for one run at a time.
+/// @file Output directory of a run, reserved for one run at a time.
 namespace ricochet {
 
 class RunDirectory {
  public:
-  /// Makes the directory where it is missing, and keeps other runs out of it until this object or the process ends,
-  /// however it ends. Throws Error(file_access): it cannot be made or written to, or another run is in it.
-  /// All ranks make one together; the first has the directory for all.
+  /// Creates the directory if it is missing, and excludes other runs from it until this object is destroyed or the
+  /// process ends, however it ends. Throws Error(file_access) if it cannot be created or written to, or another run
+  /// uses it.
+  /// All ranks construct one together; the first reserves the directory for all.
   explicit RunDirectory(std::string path, const Ranks& ranks = one_rank());
-  /// Removes the directory again where this object has made it and nothing has been written into it.
+  /// Removes the directory if this object has created it and it is empty.
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;
   RunDirectory& operator=(const RunDirectory&) = delete;
 
   [[nodiscard]] std::string file(const std::string& name) const;
-  /// Results that a run has left here, and its summary.
+  /// Existing result files of a run, including its summary.
   [[nodiscard]] std::vector<std::string> results() const;
-  /// Files that an interrupted run has left here and that a run which goes on after this step has no use for:
-  /// unfinished ones, what is left of a step that failed, and checkpoints of later steps, which are damaged. All that
-  /// are no results: of step −1.
+  /// Files of an interrupted run that are of no use to a run resumed after this step: unfinished files, those of a
+  /// failed step, and checkpoints of later steps, which are damaged. For step −1 all files that are not results.
   [[nodiscard]] std::vector<std::string> left_behind(long step) const;
 
-  /// Is a run writing into this directory now?
+  /// Returns whether a run is writing into this directory.
   [[nodiscard]] static bool is_in_use(const std::string& path);
 
  private:
@@ -41,7 +41,7 @@ class RunDirectory {
   std::optional<AtInterruption> at_interruption_;
 };
 
-/// Whether a run has left a summary or a checkpoint there.
+/// Returns whether the directory contains a summary or a checkpoint.
 [[nodiscard]] bool holds_run(const std::string& directory);
 
 /// Removes files. Throws Error(file_access).

@@ -32,7 +32,7 @@ void SoleWriter::expect_present_size() {
   knows_end_ = !ends_with_zeros();
 }
 
-/// Looks at the last bytes of the file as it was when it had the expected size.
+/// Inspects the last bytes of the file as it was when it had the expected size.
 bool SoleWriter::ends_with_zeros() const {
   std::array<char, 512> end{};
   std::ifstream file(path_, std::ios::binary);

@@ -3,21 +3,21 @@
 #include <cstdint>
 #include <string>
 
-/// @file Files that a run writes piece by piece, and that nobody else may change meanwhile: what another program cuts
-/// off, replaces or removes would be lost without a word.
+/// @file Files that a run writes piece by piece and that must not be changed meanwhile: data that another program
+/// truncates, replaces or removes would be lost silently.
 namespace ricochet {
 
-/// Remembers the device, the number and the size of a file, and throws where the file no longer has them.
+/// Remembers device, inode number and size of a file, and throws if they change.
 class SoleWriter {
  public:
-  /// Takes a file that is open for writing as it is now. Throws Error(file_access).
+  /// Registers the present state of a file that is open for writing. Throws Error(file_access).
   explicit SoleWriter(std::string path);
-  /// Sets the size that the file has from now on, by what has been written.
+  /// Sets the expected size after a write.
   void expect_size(std::int64_t size) { size_ = size; }
-  /// Takes the present size, after another library has written, which keeps positions of its own: where the file was
-  /// cut meanwhile, it has filled with zeros what was there. Throws Error(file_access) where that can be seen.
+  /// Adopts the present size, after a write by another library, which tracks positions itself: if the file was
+  /// truncated meanwhile, the gap has been filled with zeros. Throws Error(file_access) if that is detectable.
   void expect_present_size();
-  /// Compares, before each piece and at the end. Throws Error(file_access) where the file is not there, is another one,
+  /// Checks the file, before each piece and at the end. Throws Error(file_access) if it is missing, has been replaced
   /// or has another size.
   void require_untouched() const;
 

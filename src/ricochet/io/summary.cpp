@@ -121,7 +121,7 @@ double largest_size(const RunSummary& summary, const Columns& columns) {
   return largest;
 }
 
-/// From "t +0.5 time_step".
+/// Parses "t +0.5 time_step".
 double instant_from(const std::string& text, const std::string& path) {
   double steps = 0.0;
   if (std::sscanf(text.c_str(), "t %lf time_step", &steps) != 1)
@@ -138,7 +138,7 @@ double RunSummary::part_done() const {
 }
 
 double RunSummary::delay_of(const std::string& column) const {
-  if (adaptive) return 0.0;  // fractions of steps of many lengths
+  if (adaptive) return 0.0;  // values are offset by fractions of steps of different lengths
   if (column.ends_with("_energy") || column == "load_potential" || column.starts_with("momentum"))
     return energy_instant * step;
   const bool is_force = column.starts_with("contact_force") || column.starts_with("pair_force.") ||
@@ -347,7 +347,7 @@ RunSummary summary_from_json(const std::string& text, const std::string& path) {
 
 namespace {
 
-/// An entry of this name, or of this number from 0.
+/// Returns whether there is an entry of this name, or of this number from 0.
 bool contains(const Json& json, const std::string& key) {
   if (json.is_object()) return json.contains(key);
   return json.is_array() && is_digits(key, 1, 9) && std::stoul(key) < json.size();
@@ -357,7 +357,7 @@ bool contains(const Json& json, const std::string& key) {
 
 double summary_value(const std::string& json_text, const std::string& path) {
   Json json = Json::parse(json_text);
-  // Column names contain dots ("lowest.gap"), so the longest key that fits is taken at each level.
+  // Column names contain dots ("lowest.gap"), so the longest matching key is used at each level.
   const Json* at = &json;
   std::string rest = path;
   while (!rest.empty()) {

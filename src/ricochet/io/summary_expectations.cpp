@@ -8,7 +8,7 @@ namespace ricochet {
 
 namespace {
 
-/// Entries that are there only where the case gives them.
+/// Entries that exist only if the case specifies them.
 const std::array<std::pair<std::string, std::optional<double> ExpectationResult::*>, 4> optional_numbers{
     {{"wanted_value", &ExpectationResult::wanted_value},
      {"tolerance", &ExpectationResult::tolerance},

@@ -5,11 +5,11 @@
 #include "ricochet/base/json.hpp"
 #include "ricochet/io/summary.hpp"
 
-/// @file The outcome of the [[expect]] entries, as an entry of summary.json. Not part of the public interface.
+/// @file Results of the [[expect]] entries in summary.json. Not part of the public interface.
 namespace ricochet {
 
 [[nodiscard]] Json expectations_to_json(const std::vector<ExpectationResult>& expectations);
-/// Of a whole summary. Throws Json::Exception.
+/// Reads them from a whole summary. Throws Json::Exception.
 [[nodiscard]] std::vector<ExpectationResult> read_expectations(const Json& summary);
 
 }  // namespace ricochet

@@ -8,7 +8,7 @@ namespace ricochet {
 
 namespace {
 
-/// What else changes the energy, and the column that says how much.
+/// Other changes of the energy, with their columns.
 constexpr std::array<std::pair<const char*, const char*>, 5> others{{{"friction", "friction_work"},
                                                                      {"damping", "damping_work"},
                                                                      {"supports", "support_work"},

@@ -3,24 +3,24 @@
 #include "ricochet/base/json.hpp"
 #include "ricochet/io/summary.hpp"
 
-/// @file What the method did, as entries of summary.json: the budget of energy, the reactions that acted, and what
-/// steps took. Not part of the public interface.
+/// @file Numerical method in summary.json: energy budget, acting reactions, and the cost of steps. Not part of the
+/// public interface.
 namespace ricochet {
 
-/// What there was, what the method has lost and created, and what each has come to at the end; null in results of a
-/// version that did not tell.
+/// Total energy, losses and gains due to the method, and the contributions of all works at the end; null in older
+/// results without it.
 [[nodiscard]] Json energy_budget_to_json(const RunSummary& summary);
-/// Null where the scheme has no choice.
+/// Null if the scheme has no choice.
 [[nodiscard]] Json reactions_to_json(const RunSummary& summary);
-/// Null where all steps are of one length.
+/// Null if all steps have the same length.
 [[nodiscard]] Json adaptive_steps_to_json(const RunSummary& summary);
-/// Contacts that slide far, of which held steps have left points at a gap; an empty list if there is none.
+/// Contacts with large sliding in which held steps have left points at a gap; an empty list if there are none.
 [[nodiscard]] Json unsettled_contacts_to_json(const RunSummary& summary);
-/// Null where there is one.
+/// Null on a single process.
 [[nodiscard]] Json processes_to_json(const RunSummary& summary);
-/// Null where steps are solved directly.
+/// Null if steps are solved directly.
 [[nodiscard]] Json iterations_to_json(const RunSummary& summary);
-/// Reads those that the summary has. Throws Json::Exception.
+/// Reads the entries that the summary contains. Throws Json::Exception.
 void read_method(const Json& json, RunSummary& summary);
 
 }  // namespace ricochet

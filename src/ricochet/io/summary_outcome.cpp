@@ -26,14 +26,14 @@ std::vector<double> to_numbers(const Json& values) {
   return result;
 }
 
-/// In the plane two components.
+/// Two components in the plane.
 Json components(const Eigen::Vector3d& values, int dimension) {
   Json result = Json::array();
   for (int k = 0; k < dimension; ++k) result.push_back(Json::number(values[k]));
   return result;
 }
 
-/// An angular velocity: in the plane that about z.
+/// Angular velocity; in the plane its component about z.
 Json turning(const Eigen::Vector3d& values, int dimension) {
   return dimension == 2 ? Json::number(values[2]) : components(values, 3);
 }
@@ -56,7 +56,7 @@ Json bodies_to_json(const RunSummary& summary) {
   return result;
 }
 
-/// The other body of an impact of two.
+/// Other body of an impact of two bodies.
 Json other_to_json(const Impact& impact, int dimension) {
   const OtherBody& other = *impact.other;
   const auto if_ended = [&](const Json& value) { return impact.ended ? value : Json(); };
@@ -72,7 +72,7 @@ Json other_to_json(const Impact& impact, int dimension) {
           {"rigid_kinetic_energy_after", if_ended(Json::number(other.after.rigid_kinetic_energy))}};
 }
 
-/// After / before, of both bodies where there are two.
+/// Ratio after / before, for both bodies if there are two.
 Json kinetic_energy_ratio(const Impact& impact) {
   const double before = impact.before.kinetic_energy + (impact.other ? impact.other->before.kinetic_energy : 0.0);
   const double after = impact.after.kinetic_energy + (impact.other ? impact.other->after.kinetic_energy : 0.0);
@@ -80,7 +80,7 @@ Json kinetic_energy_ratio(const Impact& impact) {
 }
 
 Json impact_to_json(const Impact& impact, int dimension) {
-  // What is not known yet, or does not exist, is null.
+  // Unknown or non-existent values are null.
   const auto if_ended = [&](const Json& value) { return impact.ended ? value : Json(); };
   const auto of_obstacle = [&](const Json& value) { return impact.other ? Json() : value; };
   const std::optional<double> restitution = impact.restitution();
@@ -150,7 +150,7 @@ Json found_to_json(const UnwatchedPenetration& p) {
           {"through_groups", p.through_groups}};
 }
 
-/// The deepest first, by itself, so that it can be named by its path (summary.unwatched_penetration.depth); then all.
+/// Writes the deepest penetration separately, so that it has a path (summary.unwatched_penetration.depth), then all.
 Json penetration_to_json(const PenetrationReport& report) {
   Json found = Json::array(), rims = Json::array();
   for (const UnwatchedPenetration& p : report.found) found.push_back(found_to_json(p));

@@ -3,7 +3,7 @@
 #include "ricochet/io/summary.hpp"
 #include "ricochet/simulation/impact/turn_growth.hpp"
 
-/// @file Whether small strain holds in a run's impacts, as far as rotations go.
+/// @file Validity of small strain in a run's impacts, as far as rotations are concerned.
 namespace ricochet {
 
 double RunSummary::largest_rotation() const {

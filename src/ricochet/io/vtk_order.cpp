@@ -10,7 +10,7 @@ namespace {
 
 using VertexSets = std::vector<std::vector<int>>;
 
-/// The nodes after the vertices, each by the (VTK) vertices of the entity it sits on.
+/// Nodes after the vertices, each given by the (VTK) vertices of its entity.
 VertexSets vtk_middles(CellShape shape) {
   switch (shape) {
     case CellShape::interval:

@@ -11,16 +11,16 @@ namespace {
 
 constexpr const char* root_name = "/VTKHDF";
 constexpr const char* steps_name = "/VTKHDF/Steps";
-/// Entries of a chunk of a table of steps.
+/// Chunk length of the tables of steps.
 constexpr hsize_t steps_per_chunk = 64;
 
-/// A table of whole numbers with an entry for each step: those go up by as much from each step to the next.
+/// Table of integers with one entry per step, which increases by a constant from step to step.
 struct StepTable {
   std::string name;
   std::int64_t first, increment;
 };
 
-/// The table that says where the steps of a data set begin.
+/// Name of the table with the first rows of the steps of a dataset.
 std::string offsets_name(const std::string& dataset) {
   const std::size_t slash = dataset.find('/');
   if (slash == std::string::npos) return "PointOffsets";
@@ -35,7 +35,7 @@ bool write_attribute(std::int64_t object, const char* name, std::int64_t type_in
   return attribute >= 0 && H5Awrite(attribute, type, values.data()) >= 0;
 }
 
-/// Text of fixed length without a zero at its end, as VTK's reader wants it.
+/// Writes text of fixed length without a terminating zero, as VTK's reader requires.
 bool write_text_attribute(std::int64_t object, const char* name, const std::string& text) {
   const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, text.size());
@@ -45,7 +45,7 @@ bool write_text_attribute(std::int64_t object, const char* name, const std::stri
   return attribute >= 0 && H5Awrite(attribute, type, text.c_str()) >= 0;
 }
 
-/// A data set that has no rows yet and may have any number of them.
+/// Creates a dataset without rows and without a limit on their number.
 bool make_growing(std::int64_t group, const std::string& name, std::int64_t type, Index columns,
                   std::int64_t properties) {
   const hsize_t extents[2] = {0, static_cast<hsize_t>(columns)};
@@ -55,7 +55,7 @@ bool make_growing(std::int64_t group, const std::string& name, std::int64_t type
   return set >= 0;
 }
 
-/// Rows of a data set, which grows to hold them: written if there are values.
+/// Extends a dataset by rows, and writes them if there are values.
 bool write_rows(std::int64_t set, Index first, Index rows, Index columns, std::int64_t type, const void* values) {
   const hsize_t extents[2] = {static_cast<hsize_t>(first + rows), static_cast<hsize_t>(columns)};
   if (H5Dset_extent(set, extents) < 0) return false;
@@ -80,7 +80,7 @@ class VtkHdfFrames : public FrameArrangement {
       points_move = points_move || each.name == "Points";
     }
     if (!points_move) tables_.push_back({"PointOffsets", 0, 0});
-    // Fields that are the same in all steps.
+    // Fields that are constant over all steps have a constant offset.
     for (const FixedDataset& each : fixed) {
       for (const std::string group : {"/VTKHDF/PointData/", "/VTKHDF/CellData/"}) {
         if (each.name.starts_with(group))
@@ -131,8 +131,8 @@ class VtkHdfFrames : public FrameArrangement {
       write_entry(steps, path, table.name, frame.number, H5T_NATIVE_INT64, &value);
     }
     const auto write_time = [&] { write_entry(steps, path, "Values", frame.number, H5T_NATIVE_DOUBLE, &frame.time); };
-    // The step counts when all that it holds is in the file, even if the run is killed in between. What comes after
-    // this is written in place: a chunk for more times is made before.
+    // The step is counted once all its data are in the file, even if the run is killed in between. The following writes
+    // are in place: a chunk for further times is allocated before.
     const bool needs_chunk = frame.number % static_cast<long>(steps_per_chunk) == 0;
     if (needs_chunk) write_time();
     check_written(path, H5Fflush(file, H5F_SCOPE_LOCAL) >= 0, name(frame.number));
@@ -143,7 +143,7 @@ class VtkHdfFrames : public FrameArrangement {
     return extents;
   }
 
-  /// The header of the group of steps, which has the attribute NSteps.
+  /// Extent of the header of the group of steps, which has the attribute NSteps.
   [[nodiscard]] FrameExtent count_extent(std::int64_t file) const override {
     H5O_info_t info{};
     if (H5Oget_info_by_name2(file, steps_name, &info, H5O_INFO_BASIC | H5O_INFO_HDR, H5P_DEFAULT) < 0) return {};
@@ -166,7 +166,7 @@ class VtkHdfFrames : public FrameArrangement {
       const hsize_t origin[2] = {static_cast<hsize_t>(first), 0};
       good = H5Dwrite_chunk(set, H5P_DEFAULT, 0, origin, nothing.size(), nothing.data()) >= 0;
     }
-    // HDF5 looks through all chunks for one: not where it need not be known.
+    // HDF5 searches all chunks for one, so the address is determined only if required.
     FrameExtent extent{0, entries_of(layout) * (layout.whole || options_.single ? 4 : 8)};
     const bool is_wanted = frame.values == nullptr || !is_as_in_memory(layout, options_);
     if (layout.rows > 0 && is_wanted) extent = hdf5_chunk_extent(set, first, good);

@@ -9,7 +9,7 @@ namespace ricochet {
 
 namespace {
 
-/// A field as VTK wants it: symmetric tensors have another order there.
+/// Values of a field in VTK's form, where symmetric tensors have another order.
 class VtkValues {
  public:
   explicit VtkValues(const Field& field) : field_(field) {
@@ -42,7 +42,7 @@ std::vector<DatasetLayout> vtkhdf_datasets_of(const std::vector<Field>& fields) 
   return result;
 }
 
-/// results.vtkhdf, and obstacles.vtkhdf where there are obstacles.
+/// Writes results.vtkhdf, and obstacles.vtkhdf if there are obstacles.
 class VtkHdfOutput : public FrameOutput {
  public:
   explicit VtkHdfOutput(const FrameOutputContext& context)
@@ -66,7 +66,7 @@ class VtkHdfOutput : public FrameOutput {
   }
 
   void write(const State& state) override {
-    // Whoever finds a frame of the body finds its obstacles, even if the run is killed in between.
+    // The obstacles come first, so that a frame of the body always has them, even if the run is killed in between.
     if (obstacle_file_) {
       const std::vector<double> positions = obstacles_.positions(state.time, state.displacement);
       obstacle_file_->append({positions.data()}, state.time);
@@ -127,7 +127,7 @@ class VtkHdfOutput : public FrameOutput {
 
   std::string directory_;
   std::optional<FrameFile> file_;
-  std::vector<VtkValues> values_;  ///< of its fields
+  std::vector<VtkValues> values_;  ///< of the fields in file_
   ObstacleSurfaces obstacles_;
   std::optional<FrameFile> obstacle_file_;
 };

@@ -9,7 +9,7 @@ namespace ricochet {
 
 namespace {
 
-/// A run that was killed may have written one and not the other.
+/// Tolerates a number of steps that differs from that of times, as after a killed run.
 std::vector<double> times_of(const Hdf5Reader& file) {
   const std::string name = "/VTKHDF/Steps/Values";
   const std::int64_t size = file.size(name);
@@ -27,7 +27,7 @@ std::string vtkhdf_name(const ResultField& field) {
 ResultFrames read_vtkhdf_frames(const Hdf5Reader& file) {
   ResultFrames result;
   result.times = times_of(file);
-  // In the order of the registry, and nothing but fields.
+  // In the order of the registry, and fields only.
   for (const std::string& name : field_names()) {
     for (const bool on_nodes : {true, false}) {
       ResultField field{name, on_nodes, 1};

@@ -21,7 +21,7 @@ XdmfFile::XdmfFile(std::string path, const std::string& collection, const std::s
   sole_.emplace(path_);
   std::string head =
       "<?xml version=\"1.0\"?>\n<Xdmf xmlns:xi=\"http://www.w3.org/2001/XInclude\" Version=\"3.0\">\n  <Domain>\n";
-  // First: readers that know one collection only take the last.
+  // The include comes first: readers that support only one collection use the last.
   if (!included.empty())
     head += fmt::format("    <xi:include href=\"{}\" xpointer=\"xpointer(/Xdmf/Domain/Grid)\"/>\n", included);
   head += fmt::format("    <Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", collection);
@@ -41,7 +41,7 @@ void XdmfFile::save(Snapshot& snapshot, const std::string& name) const {
   checksums_.save(snapshot, name, std::filesystem::path(path_).filename().string());
 }
 
-/// The closing tags are overwritten by the next grid, in one piece with what follows, once there is room for both.
+/// Overwrites the closing tags by the grid and new closing tags in one write, once there is space for both.
 void XdmfFile::append(const std::string& grid) {
   sole_->require_untouched();
   const std::string text = grid + tail;

@@ -8,20 +8,19 @@
 #include "ricochet/io/line_checksums.hpp"
 #include "ricochet/io/sole_writer.hpp"
 
-/// @file The XDMF 3.0 side-file: a temporal collection of grids, a complete document after every one of them.
+/// @file XDMF 3.0 side-file: a temporal collection of grids, a complete document after each of them.
 namespace ricochet {
 
 class XdmfFile {
  public:
-  /// A new file of a collection of this name. `included`: another such file, beside it, whose collection is shown with
-  /// this one; empty: none. Throws Error(file_access).
+  /// Creates a file with a collection of this name. `included`: another such file, in the same directory, whose
+  /// collection is displayed with this one; may be empty. Throws Error(file_access).
   XdmfFile(std::string path, const std::string& collection, const std::string& included = "");
-  /// Goes on after the grids that were there when save() was called. Throws Error(file_access) where it is not that
-  /// file.
+  /// Continues after the grids that existed when save() was called. Throws Error(file_access) if it is not that file.
   XdmfFile(std::string path, const Snapshot& snapshot, const std::string& name);
   void save(Snapshot& snapshot, const std::string& name) const;
 
-  /// Appends a <Grid> element. Throws Error(file_access), also where another program has changed the file.
+  /// Appends a <Grid> element. Throws Error(file_access), also if another program has changed the file.
   void append(const std::string& grid);
   void require_untouched() const { sole_->require_untouched(); }
 

@@ -13,7 +13,7 @@ namespace ricochet {
 
 namespace {
 
-/// XDMF of the cells.
+/// XDMF topology of the cells.
 std::string topology_of(const DisplacementSpace& space, const FixedDataset& cells) {
   Index count = 0;
   for (const CellBlock& block : space.cells) count += block.size();
@@ -43,7 +43,7 @@ const char* xdmf_type(int components) {
   return components == 1 ? "Scalar" : components == 3 ? "Vector" : "Tensor6";
 }
 
-/// results.h5 with results.xdmf, which includes obstacles.xdmf where there are obstacles.
+/// Writes results.h5 with results.xdmf, which includes obstacles.xdmf if there are obstacles.
 class XdmfOutput : public FrameOutput {
  public:
   explicit XdmfOutput(const FrameOutputContext& context)
@@ -72,7 +72,7 @@ class XdmfOutput : public FrameOutput {
   void write(const State& state) override {
     const long frame = file_->frames();
     file_->append(values_, state.time);
-    // What the side-file names is in the file by now, even if the run is killed before the next frame.
+    // The data named by the side-file are in the file by now, even if the run is killed before the next frame.
     if (obstacle_side_) obstacle_side_->append(obstacles_.grid(state.time, state.displacement));
     side_->append(grid(state.time, frame));
   }

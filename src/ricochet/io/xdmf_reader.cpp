@@ -15,12 +15,12 @@ namespace ricochet {
 
 namespace {
 
-/// A document of ours, read from front to back.
+/// Sequential scanner for documents written by XdmfFile.
 class Scanner {
  public:
   explicit Scanner(const std::string& path) : path_(path), text_(read_file(path)) {}
 
-  /// Goes behind the next occurrence; false (and stays) where there is none before `end`.
+  /// Moves behind the next occurrence; returns false (and does not move) if there is none before `end`.
   bool find(std::string_view what, std::size_t end = std::string::npos) {
     const std::size_t found = text_.find(what, at_);
     if (found == std::string::npos || found >= end) return false;
@@ -28,9 +28,9 @@ class Scanner {
     return true;
   }
   [[nodiscard]] bool has_next(std::string_view what) const { return text_.find(what, at_) != std::string::npos; }
-  /// Where `what` is found next; the end of the text where it is not.
+  /// Position of the next occurrence; the end of the text if there is none.
   [[nodiscard]] std::size_t next(std::string_view what) const { return std::min(text_.find(what, at_), text_.size()); }
-  /// What comes before the next occurrence of `end`, which must be there.
+  /// Text before the next occurrence of `end`, which must exist.
   std::string_view until(std::string_view end) {
     const std::size_t found = text_.find(end, at_);
     if (found == std::string::npos) fail(fmt::format("'{}' is missing", end));

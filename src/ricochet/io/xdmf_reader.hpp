@@ -5,8 +5,8 @@
 
 #include "ricochet/io/result_frames.hpp"
 
-/// @file Reads results.xdmf and obstacles.xdmf back: what is in each frame, and the surfaces of the obstacles. Only the
-/// documents that XdmfFile writes are understood.
+/// @file Reader for results.xdmf and obstacles.xdmf: the content of each frame, and the surfaces of the obstacles.
+/// Supports only the documents that XdmfFile writes.
 namespace ricochet {
 
 /// Throws Error(file_access) or Error(invalid_input).

@@ -43,8 +43,8 @@ void AndersonAcceleration::keep_changes(const Vector& image) {
   residual_changes_.col(newest_) = residual_ - last_residual_;
 }
 
-/// Least squares by the modified method of Gram and Schmidt, each direction twice. Changes become smaller by orders of
-/// magnitude: each counts by its direction, and one that newer ones nearly contain not at all.
+/// Solves the least-squares problem by modified Gram–Schmidt, orthogonalizing each direction twice. Changes shrink by
+/// orders of magnitude, so each is normalized, and one that newer ones nearly span is left out.
 void AndersonAcceleration::combine(Vector& next) {
   constexpr double same_direction = 1e-10;
   left_ = residual_;

@@ -2,21 +2,21 @@
 
 #include "ricochet/base/ranks.hpp"
 
-/// @file Fixed points x = F(x) of maps that do not contract, or slowly.
+/// @file Fixed points x = F(x) of maps that contract slowly or not at all.
 namespace ricochet {
 
-/// Anderson's acceleration (J. ACM 12, 1965): of the last points x_j and residuals f_j = F(x_j) − x_j it takes the
-/// affine combination whose residual is least, Σ θ_j f_j, and goes on from Σ θ_j F(x_j), Σ θ_j = 1. For linear F these
-/// are the iterates of GMRES. Storage is kept from one use to the next.
+/// Anderson acceleration (J. ACM 12, 1965): computes the affine combination of the last points x_j whose residual Σ θ_j
+/// f_j is smallest, with f_j = F(x_j) − x_j and Σ θ_j = 1, and continues from Σ θ_j F(x_j). For linear F these are the
+/// iterates of GMRES. Storage is reused from one fixed point to the next.
 class AndersonAcceleration {
  public:
-  /// `depth`: earlier points that take part, at least 1.
+  /// `depth`: number of earlier points in the combination, at least 1.
   explicit AndersonAcceleration(int depth) : depth_(depth) {}
-  /// Of several ranks each has some entries of the vectors; `is_counted`: of each entry, 1 on one of the ranks that
-  /// have it and 0 on the others. All ranks then go on together.
+  /// Distributes the vectors over several ranks, each of which has some of the entries. `is_counted` is 1 for an entry
+  /// on one of the ranks that have it and 0 on the others. All ranks then call advance() together.
   void divide(const Ranks& ranks, Vector is_counted);
   void restart() { kept_ = -1; }
-  /// `next` becomes the next point, after a restart F(x). It may be `image`, F(x).
+  /// Sets `next` to the next point; after a restart this is F(x). `next` may be `image`, F(x).
   void advance(const Vector& point, const Vector& image, Vector& next);
 
  private:
@@ -30,11 +30,12 @@ class AndersonAcceleration {
   const Ranks* ranks_ = &one_rank();
   Vector is_counted_;  ///< empty: all are
   Index depth_;
-  Index kept_ = -1, newest_ = 0;             ///< changes, and the column of the last one; −1: no point yet
+  Index kept_ = -1, newest_ = 0;             ///< number of stored changes, and column of the newest; −1: no point yet
   Vector image_, residual_, last_residual_;  ///< of the last point
-  Matrix image_changes_, residual_changes_;  ///< columns in turn
-  Matrix directions_, moves_;  ///< orthonormal combinations of residual changes, newest first, and those of images
-  Vector left_;                ///< of the residual
+  Matrix image_changes_, residual_changes_;  ///< columns used cyclically
+  Matrix directions_, moves_;  ///< orthonormal combinations of residual changes, newest first, and the same
+                               ///< combinations of image changes
+  Vector left_;                ///< remainder of the residual
 };
 
 }  // namespace ricochet

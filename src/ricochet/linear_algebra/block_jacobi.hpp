@@ -4,13 +4,13 @@
 
 #include "ricochet/linear_algebra/conjugate_gradients.hpp"
 
-/// @file The inverses of diagonal blocks as a preconditioner.
+/// @file Block Jacobi preconditioner.
 namespace ricochet {
 
-/// P = the d × d diagonal blocks of a matrix with d dofs per node, d² numbers per node (of all ranks, where there are
-/// several). Of what was measured for one step of elastodynamics (docs/performance.md) this is as fast as incomplete
-/// Cholesky factors and polynomials in A on one thread and faster on more: inertia bounds the condition of A, so that
-/// an iteration must be cheap before it is clever. `solved` per dof: the others are left alone (z = r there).
+/// P = the d × d diagonal blocks of a matrix with d dofs per node, d² numbers per node (sums over all ranks, if there
+/// are several). For one step of elastodynamics (measured in docs/performance.md) it is as fast on one thread as
+/// incomplete Cholesky factors and polynomials in A, and faster on more: inertia bounds the condition number of A, so
+/// that cheap iterations pay more than fewer ones. `solved` per dof: other dofs are left unchanged (z = r there).
 [[nodiscard]] std::unique_ptr<Preconditioner> make_block_jacobi(const Vector& blocks, int d,
                                                                 const std::vector<char>& solved);
 

@@ -8,23 +8,23 @@
 /// @file Preconditioned conjugate gradients.
 namespace ricochet {
 
-/// A symmetric positive definite P with P ≈ A.
+/// A preconditioner P ≈ A, symmetric positive definite.
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
-  /// z = P⁻¹ r. The same bits for any number of threads.
+  /// Computes z = P⁻¹ r, with the same bits for any number of threads.
   virtual void apply(const Vector& r, Vector& z) const = 0;
 };
 
-/// aᵀb in a fixed order of sums, by all threads.
+/// Returns aᵀb, summed in a fixed order on all threads.
 [[nodiscard]] double dot_product(const Vector& a, const Vector& b);
-/// The same of vectors that are consistent on the ranks (d numbers per node), each node once.
+/// Returns aᵀb for vectors that are consistent on the ranks (d numbers per node), counting each node once.
 [[nodiscard]] double dot_product(const Vector& a, const Vector& b, const Ranks& ranks, int d);
 
-/// Work space is kept from solve to solve.
+/// Conjugate gradient solver. Work space is reused from solve to solve.
 class ConjugateGradients {
  public:
-  /// Vectors are consistent on the ranks, with d numbers per node; so is what a product gives.
+  /// Vectors and products are consistent on the ranks, with d numbers per node.
   explicit ConjugateGradients(int d = 1, const Ranks& ranks = one_rank()) : d_(d), ranks_(&ranks) {}
 
   using Product = std::function<void(const Vector& x, Vector& y)>;
@@ -34,10 +34,10 @@ class ConjugateGradients {
     bool converged = false;
   };
 
-  /// √(rᵀP⁻¹r): the energy norm of the error A⁻¹r as P sees it.
+  /// Returns √(rᵀP⁻¹r): the energy norm of the error A⁻¹r, with P in place of A.
   double norm(const Preconditioner& preconditioner, const Vector& residual);
-  /// Adds to x what takes `residual` = b − A x to √(rᵀP⁻¹r) ≤ target, and follows the residual. Stops short of it after
-  /// `iteration_limit` iterations, or where A turns out not to be positive definite or numbers not finite.
+  /// Updates x until `residual` = b − A x satisfies √(rᵀP⁻¹r) ≤ target, and updates the residual with it. Stops earlier
+  /// after `iteration_limit` iterations, if A turns out not to be positive definite, or if numbers are not finite.
   Result solve(const Product& product, const Preconditioner& preconditioner, double target, int iteration_limit,
                Vector& residual, Vector& x);
 

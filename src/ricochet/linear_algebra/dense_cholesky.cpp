@@ -2,7 +2,7 @@
 
 #include "ricochet/base/blas.hpp"
 
-// Fortran interfaces of LAPACK, in OpenBLAS; matrices by columns.
+// Fortran interfaces of LAPACK, part of OpenBLAS; matrices in column-major order.
 extern "C" {
 void dpotrf_(const char* part, const int* size, double* a, const int* a_stride, int* info);
 void dpotrs_(const char* part, const int* size, const int* columns, const double* a, const int* a_stride, double* b,

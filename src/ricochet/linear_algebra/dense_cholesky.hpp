@@ -5,12 +5,12 @@
 /// @file Dense Cholesky factorization (LAPACK, on one thread, so that the bits are always the same).
 namespace ricochet {
 
-/// A = L Lᵀ.
+/// Cholesky factorization A = L Lᵀ.
 class DenseCholesky {
  public:
-  /// Reads the lower triangle. Keeps its storage from call to call. False: A is not positive definite.
+  /// Reads the lower triangle and reuses its storage. Returns false if A is not positive definite.
   bool compute(const Matrix& matrix);
-  /// x = A⁻¹ b.
+  /// Computes x = A⁻¹ b.
   void solve(const Vector& right, Vector& x) const;
 
  private:

@@ -8,7 +8,7 @@
 #include <xmmintrin.h>
 #endif
 
-// Fortran interfaces of BLAS and LAPACK, both in OpenBLAS; matrices by columns.
+// Fortran interfaces of BLAS and LAPACK, both in OpenBLAS; matrices in column-major order.
 extern "C" {
 void dgemm_(const char* a_transposed, const char* b_transposed, const int* rows, const int* columns, const int* depth,
             const double* factor, const double* a, const int* a_stride, const double* b, const int* b_stride,
@@ -30,8 +30,8 @@ namespace {
 constexpr double one = 1.0;
 constexpr double zero = 0.0;
 
-/// Entries that decay with distance fall below the normal range of single precision, where arithmetic is a hundred
-/// times slower. They are zero to what is asked of that precision.
+/// Flushes denormal numbers to zero: entries that decay with distance fall below the normal range of single precision,
+/// where arithmetic is a hundred times slower. At the accuracy required of that precision they are zero.
 class TinyIsZero {
  public:
   TinyIsZero(const TinyIsZero&) = delete;

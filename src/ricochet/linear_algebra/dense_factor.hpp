@@ -4,26 +4,26 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file Dense operations that OpenBLAS does several times as fast as Eigen's generic code. On one thread, so that the
-/// bits are always the same.
+/// @file Dense operations that OpenBLAS performs several times as fast as Eigen's generic code, on one thread, so that
+/// the bits are always the same.
 namespace ricochet {
 
-/// C += AᵀB on parts of larger matrices: `rows` × `left_columns`, `rows` × `right_columns`, each with the distance
-/// from one column to the next.
+/// Computes C += AᵀB for parts of larger matrices, `rows` × `left_columns` and `rows` × `right_columns`, each with its
+/// column stride.
 void add_transposed_product(Index rows, Index left_columns, Index right_columns, const double* left, Index left_stride,
                             const double* right, Index right_stride, double* result, Index result_stride);
 
-/// y = Aᵀ x.
+/// Computes y = Aᵀ x.
 void multiply_transposed(const Matrix& matrix, const Vector& x, double* y);
 
-/// P A = L U with partial pivoting.
+/// LU factorization P A = L U with partial pivoting.
 class DenseLu {
  public:
-  /// Keeps its storage from call to call.
+  /// Factorizes A; reuses its storage.
   void compute(const Matrix& matrix);
-  /// x = A⁻¹ b; not finite where A is singular.
+  /// Computes x = A⁻¹ b; not finite if A is singular.
   void solve(const Vector& right, Vector& x) const;
-  /// The least |pivot|; zero where A is exactly singular.
+  /// Smallest |pivot|; zero if A is exactly singular.
   [[nodiscard]] double smallest_pivot() const;
 
  private:
@@ -31,12 +31,12 @@ class DenseLu {
   std::vector<int> permutation_;
 };
 
-/// The same in single precision: twice as fast, and good for the first six digits. A preconditioner.
+/// LU factorization in single precision: twice as fast, and accurate to six digits. Serves as a preconditioner.
 class SingleLu {
  public:
-  /// Rounds A and factorizes it. False: not finite, or singular in single precision.
+  /// Rounds A and factorizes it. Returns false if it is not finite, or singular in single precision.
   bool compute(const Matrix& matrix);
-  /// x ≈ A⁻¹ b.
+  /// Computes x ≈ A⁻¹ b.
   void solve(const Vector& right, Vector& x) const;
   [[nodiscard]] Index size() const { return factors_.rows(); }
 
@@ -46,7 +46,7 @@ class SingleLu {
   mutable Eigen::VectorXf solution_;
 };
 
-/// y = A x.
+/// Computes y = A x.
 void multiply_dense(const Matrix& matrix, const Vector& x, Vector& y);
 
 }  // namespace ricochet

@@ -5,12 +5,12 @@
 /// @file Loops over columns of a dense matrix that memory bandwidth limits, compiled for several instruction sets.
 namespace ricochet {
 
-/// y += Σ_k factor_k · column_k with up to three neighbouring columns of length `size`, `stride` apart. Each entry of y
-/// is the same whatever the size: no sum is split.
+/// Computes y += Σ_k factor_k · column_k for up to three neighbouring columns of length `size`, `stride` apart. Each
+/// entry of y has the same bits for any size: no sum is split.
 void add_columns(Index size, Index count, const double* columns, Index stride, const double* factors, double* y);
-/// The same with columns in single precision: half the memory to read.
+/// Version for columns in single precision, which halves the memory traffic.
 void add_columns(Index size, Index count, const float* columns, Index stride, const double* factors, double* y);
-/// The same and, into `sizes`, the sum of the absolute values of the terms.
+/// Version that also adds the absolute values of the terms to `sizes`.
 void add_columns(Index size, Index count, const double* columns, Index stride, const double* factors, double* y,
                  double* sizes);
 

@@ -6,7 +6,7 @@
 
 namespace ricochet {
 
-/// With these numbers on the diagonal; zeros have no entry.
+/// Returns a diagonal matrix; zeros are not stored.
 [[nodiscard]] inline SparseMatrix diagonal_matrix(const Vector& diagonal) {
   std::vector<Eigen::Triplet<double>> entries;
   for (Index i = 0; i < diagonal.size(); ++i) {

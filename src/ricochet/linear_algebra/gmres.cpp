@@ -5,7 +5,7 @@ namespace ricochet {
 double Gmres::extend(Index k) {
   auto column = hessenberg_.col(k);
   const auto basis = basis_.leftCols(k + 1);
-  // Classical Gram–Schmidt twice: as orthogonal as the modified one, in products of matrices.
+  // Classical Gram–Schmidt applied twice: as orthogonal as the modified one, but in products of matrices.
   projections_.noalias() = basis.transpose() * direction_;
   direction_.noalias() -= basis * projections_;
   column.head(k + 1) = projections_;

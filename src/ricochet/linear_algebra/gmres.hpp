@@ -4,15 +4,15 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file GMRES for systems of which a good preconditioner is known, so that a few iterations are enough.
+/// @file GMRES for systems with a good preconditioner, so that a few iterations suffice.
 namespace ricochet {
 
-/// Y. Saad, M. H. Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856–869; preconditioned from the right, so that the
-/// residual is that of the system itself. No restart. Keeps its storage.
+/// GMRES without restart (Y. Saad, M. H. Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856–869), preconditioned from the
+/// right, so that the residual is that of the system itself. Reuses its storage.
 class Gmres {
  public:
-  /// Solves A z = r for a correction: multiply(x, y) is y = A x, precondition(x, y) is y ≈ A⁻¹ x. Stops when the
-  /// residual is `reduction` of |r| or after `limit` iterations. Returns the reduction reached.
+  /// Solves A z = r for a correction z: multiply(x, y) computes y = A x, precondition(x, y) computes y ≈ A⁻¹ x. Stops
+  /// when the residual is at most `reduction` · |r|, or after `limit` iterations. Returns the reduction reached.
   template <typename Multiply, typename Precondition>
   double solve(const Multiply& multiply, const Precondition& precondition, const Vector& right, double reduction,
                Index limit, Vector& correction) {
@@ -52,7 +52,8 @@ class Gmres {
   [[nodiscard]] Index iterations() const { return iterations_; }
 
  private:
-  /// One more column: orthogonal to the others, the triangle by rotations. Returns the norm of the residual.
+  /// Adds a column to the orthonormal basis and reduces the Hessenberg matrix to triangular form by rotations. Returns
+  /// the norm of the residual.
   double extend(Index k);
 
   Matrix basis_, hessenberg_;

@@ -22,7 +22,7 @@ HugePageBuffer::HugePageBuffer(std::size_t size) : size_(size) {
   values_.reset(static_cast<double*>(std::aligned_alloc(alignment, bytes)));
   if (!values_) throw std::bad_alloc();
 #if defined(__linux__)
-  // Advice: where it is not taken, the solves are a little slower.
+  // Only a hint: without such pages the solves are a little slower.
   if (alignment == huge_page) static_cast<void>(madvise(values_.get(), bytes, MADV_HUGEPAGE));
 #endif
 }

@@ -6,8 +6,8 @@
 /// @file Memory for arrays that are read from end to end in every time step.
 namespace ricochet {
 
-/// An array of doubles at a 64-byte boundary, on huge pages where the system has them (a factor of 200 MB has 50,000
-/// ordinary pages, more than a processor keeps addresses of). Not initialized. Throws std::bad_alloc.
+/// An array of doubles aligned to 64 bytes, on huge pages if the system has them (a factor of 200 MB has 50,000
+/// ordinary pages, more than a processor holds address translations for). Not initialized. Throws std::bad_alloc.
 class HugePageBuffer {
  public:
   HugePageBuffer() = default;

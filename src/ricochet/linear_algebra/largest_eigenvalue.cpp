@@ -16,7 +16,7 @@ namespace {
 
 constexpr double failure_probability = 1e-9;
 
-/// Uniformly distributed on the sphere.
+/// Returns a vector distributed uniformly on the unit sphere.
 Vector start_vector(Index size, const Ranks& ranks, int d) {
   std::mt19937_64 generator(20110901 + static_cast<std::uint64_t>(ranks.rank()));
   std::normal_distribution<double> normal;
@@ -46,7 +46,7 @@ EigenvalueBounds bound_largest_eigenvalue(Index size, const std::function<void(c
   Vector current = start_vector(size, ranks, d);
   Vector next(size);
   std::vector<double> diagonal, beside;  // of the tridiagonal projection
-  // Without reorthogonalization: rounding repeats Ritz values that have converged, it makes none beyond the spectrum.
+  // No reorthogonalization: rounding repeats Ritz values that have converged but creates none outside the spectrum.
   while (true) {
     multiply(current, next);
     ++bounds.products;
@@ -55,14 +55,14 @@ EigenvalueBounds bound_largest_eigenvalue(Index size, const std::function<void(c
     next -= diagonal.back() * current;
     const double length = std::sqrt(dot(next, next));
     const double largest = *std::max_element(diagonal.begin(), diagonal.end());
-    // An invariant space is exhausted: it holds a part of every eigenvector.
+    // An invariant subspace is exhausted: it contains a part of every eigenvector.
     const bool exhausted = !(length > 64.0 * std::numeric_limits<double>::epsilon() * largest);
     if (bounds.products == enough || exhausted) break;
     beside.push_back(length);
     std::swap(previous, current);
     current = next / length;
   }
-  // Eigen's iteration ends on matrices near 1 only. A power of two changes no bit.
+  // Eigen's iteration converges only for matrices scaled near 1. A power of two changes no bit.
   int exponent = 0;
   std::frexp(*std::max_element(diagonal.begin(), diagonal.end()), &exponent);
   for (double& entry : diagonal) entry = std::ldexp(entry, -exponent);
@@ -99,7 +99,7 @@ double improve_largest_eigenvalue(const std::function<void(const Vector&, Vector
     if (count == products || !(length > 64.0 * std::numeric_limits<double>::epsilon() * before)) break;
     current = next / length;
   }
-  int exponent = 0;  // see above
+  int exponent = 0;  // scaling as in bound_largest_eigenvalue
   std::frexp(projected.diagonal().cwiseAbs().maxCoeff(), &exponent);
   projected = (projected.topLeftCorner(count, count) * std::ldexp(1.0, -exponent)).eval();
   const SymmetricEigen eigen = symmetric_eigen(projected);

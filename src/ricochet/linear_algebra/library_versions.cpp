@@ -21,7 +21,7 @@ constexpr const char* compiler = __VERSION__;
 constexpr const char* compiler = "GCC " __VERSION__;
 #endif
 
-/// "0.3.21" of "OpenBLAS 0.3.21 NO_LAPACKE DYNAMIC_ARCH …".
+/// Returns "0.3.21" from "OpenBLAS 0.3.21 NO_LAPACKE DYNAMIC_ARCH …".
 std::string blas_version() {
   const std::string_view config = openblas_get_config();
   const std::size_t begin = config.find(' ') + 1;

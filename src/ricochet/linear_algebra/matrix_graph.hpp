@@ -6,18 +6,19 @@
 #include "ricochet/base/types.hpp"
 #include "ricochet/linear_algebra/node_pattern.hpp"
 
-/// @file Nodes and their neighbours, as a matrix sees them.
+/// @file Adjacency graph of the nodes of a matrix.
 namespace ricochet {
 
 class MatrixGraph {
  public:
   MatrixGraph() = default;
-  /// Of a matrix with a symmetric pattern and d rows per node: nodes that share an entry are neighbours.
+  /// Makes the graph of a matrix with a symmetric pattern and d rows per node: nodes that share an entry are
+  /// neighbours.
   MatrixGraph(const SparseMatrix& matrix, int d);
   explicit MatrixGraph(const NodePattern& pattern);
 
   [[nodiscard]] Index size() const { return static_cast<Index>(begin_.size()) - 1; }
-  /// Ascending; the node itself is among them.
+  /// Neighbours of a node, ascending, including the node itself.
   [[nodiscard]] std::span<const int> neighbours(Index node) const {
     const auto at = static_cast<std::size_t>(node);
     return {neighbour_.data() + begin_[at], neighbour_.data() + begin_[at + 1]};
@@ -28,13 +29,13 @@ class MatrixGraph {
   std::vector<int> neighbour_;
 };
 
-/// Nodes around others, with the number of steps to the nearest of these.
+/// Nodes in the neighbourhood of given ones, with the number of steps to the nearest of these.
 struct NodeLayers {
-  std::vector<Index> nodes;  ///< the first ones come first, then layer after layer
+  std::vector<Index> nodes;  ///< the given ones first, then layer after layer
   std::vector<int> layer;    ///< of each of them
   [[nodiscard]] std::vector<Index> ascending() const;
 };
-/// The first nodes may be given more than once.
+/// Returns the nodes within `layers` steps of `first`, which may contain nodes more than once.
 [[nodiscard]] NodeLayers layers_around(const MatrixGraph& graph, const std::vector<Index>& first, int layers);
 
 }  // namespace ricochet

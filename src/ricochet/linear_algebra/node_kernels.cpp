@@ -8,15 +8,15 @@ namespace ricochet {
 
 namespace {
 
-/// How far ahead of the blocks to fetch, in numbers: from memory a product is a quarter to a third quicker for it.
+/// Prefetch distance in the stream of blocks, in numbers: it makes a product from memory a quarter to a third faster.
 constexpr Index fetch_blocks_ahead = 640;
 
-/// A block acts on the d numbers of a node. `Sums` collects A x of a row so that additions need not wait for one
-/// another, `Own` holds the numbers of the row's node for the products with transposed blocks.
+/// A block acts on the d numbers of a node. `Sums` accumulates A x of a row in several sums, so that additions need not
+/// wait for one another; `Own` holds the numbers of the row's node for the products with transposed blocks.
 template <int d, bool scalar>
 struct Block;
 
-/// m ⊗ I: one number.
+/// Block m ⊗ I: one number.
 template <int d>
 struct Block<d, true> {
   static constexpr Index numbers = 1;
@@ -42,7 +42,7 @@ struct Block<d, true> {
   }
 };
 
-/// 2 × 2, column by column: one pack.
+/// Block of 2 × 2 in column-major order: one pack.
 template <>
 struct Block<2, false> {
   static constexpr Index numbers = 4;
@@ -65,7 +65,8 @@ struct Block<2, false> {
   }
 };
 
-/// 3 × 3, column by column: a pack for each, whose last number is of what follows and counts nothing.
+/// Block of 3 × 3 in column-major order: one pack per column, whose last number belongs to the following data and is
+/// ignored.
 template <>
 struct Block<3, false> {
   static constexpr Index numbers = 9;
@@ -79,7 +80,7 @@ struct Block<3, false> {
   }
   RICOCHET_PART_OF_CALLER static void add_transposed(const double* block, const Own& own, double* y) {
     const Pack<4> a = load<4>(block) * own, b = load<4>(block + 3) * own, c = load<4>(block + 6) * own;
-    // Sums of pairs: first and second numbers of a and b, third ones of a and b; then the same of c.
+    // Pairwise sums: first and second numbers of a and b, third ones of a and b; then those of c.
     const Pack<4> ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
     const Pack<4> cc = c + __builtin_shufflevector(c, c, 1, 0, 3, 2);
     const Pack<2> lower = __builtin_shufflevector(ab, ab, 0, 1) + __builtin_shufflevector(ab, ab, 2, 3);
@@ -91,7 +92,7 @@ struct Block<3, false> {
   }
 };
 
-/// Rows take the numbers of a part in no order that the processor could foresee.
+/// Prefetches the numbers of a part, since rows access them in an order that the processor cannot predict.
 RICOCHET_PART_OF_CALLER void fetch(const double* begin, const double* end) {
   constexpr Index per_line = 8;
   for (const double* at = begin; at < end; at += per_line) __builtin_prefetch(at);
@@ -126,8 +127,8 @@ RICOCHET_PART_OF_CALLER void multiply_in(const NodeRows& rows, const double* __r
   }
 }
 
-/// Rows of m ⊗ I with one number each, as a diagonal matrix has. Four sums, so that additions need not wait for one
-/// another.
+/// Quadratic form of rows of m ⊗ I with one number each, as in a diagonal matrix. Four sums are used, so that additions
+/// need not wait for one another.
 template <int d>
 RICOCHET_PART_OF_CALLER double form_of_single_numbers(const NodeRows& rows, const RowGroup& group, const double* x) {
   double sums[4] = {};

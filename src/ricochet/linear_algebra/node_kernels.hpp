@@ -5,7 +5,7 @@
 #include "ricochet/base/types.hpp"
 #include "ricochet/linear_algebra/node_pattern.hpp"
 
-/// @file The loops of NodeMatrix over the rows of one part. Not part of the public interface.
+/// @file Loops of NodeMatrix over the rows of one part. Not part of the public interface.
 namespace ricochet {
 
 /// Rows of one part of a NodeMatrix, see there.
@@ -13,13 +13,13 @@ template <class Number>
 struct NodeRowsOf {
   Index begin = 0, end = 0;  ///< nodes of the part
   std::span<const RowGroup> groups;
-  const int* node = nullptr;  ///< of the rows, of all parts
+  const int* node = nullptr;  ///< node of each row, over all parts
   const int* column = nullptr;
-  const Number* values = nullptr;  ///< and one number after the last block
+  const Number* values = nullptr;  ///< followed by one more number after the last block
 };
 using NodeRows = NodeRowsOf<double>;
 
-/// `values`: the blocks of all parts.
+/// Returns the rows of a part; `values` holds the blocks of all parts.
 template <class Number>
 [[nodiscard]] NodeRowsOf<Number> part_rows(const NodePattern& pattern, Index part, const Number* values) {
   const auto at = static_cast<std::size_t>(part);
@@ -31,12 +31,13 @@ template <class Number>
           values};
 }
 
-/// y = A x on these rows, and what their two-sided blocks add to other rows of the range. `scalar`: A = m ⊗ I.
+/// Computes y = A x on these rows and adds the products of their two-sided blocks to other rows of the range. `scalar`:
+/// A = m ⊗ I.
 void multiply_rows(const NodeRows& rows, int d, bool scalar, const double* x, double* y);
-/// Σ over these rows i of x_iᵀ (2 Σ two-sided A_ij x_j + Σ one-sided A_ij x_j).
+/// Returns Σ over these rows i of x_iᵀ (2 Σ two-sided A_ij x_j + Σ one-sided A_ij x_j).
 [[nodiscard]] double form_rows(const NodeRows& rows, int d, bool scalar, const double* x);
 
-/// y = A x on these rows as above, in single precision; returns xᵀ y over the nodes of the part.
+/// Computes y = A x on these rows as above, in single precision; returns xᵀ y over the nodes of the part.
 [[nodiscard]] double multiply_single_rows(const NodeRowsOf<float>& rows, int d, const float* x, float* y);
 
 }  // namespace ricochet

@@ -13,7 +13,8 @@ namespace ricochet {
 
 namespace {
 
-/// True for m ⊗ I: the columns of a node's components have their own component's rows only, and the same values.
+/// Returns whether the matrix is m ⊗ I: the columns of a node's components have entries in rows of the same component
+/// only, with the same values.
 bool acts_on_components_alike(const SparseMatrix& matrix, int d) {
   const int* outer = matrix.outerIndexPtr();
   const int* inner = matrix.innerIndexPtr();
@@ -57,7 +58,7 @@ void NodeMatrix::read_values(const SparseMatrix& matrix) {
       for (int a = 0; a < (is_scalar() ? 1 : d); ++a) {
         int last_seen = -1;
         const int* at = end;
-        // Columns are rows: the matrix is symmetric.
+        // Columns equal rows, since the matrix is symmetric.
         for (SparseMatrix::InnerIterator entry(matrix, Index{node} * d + a); entry; ++entry) {
           const int other = static_cast<int>(entry.row()) / d;
           if (other != last_seen) {
@@ -86,7 +87,7 @@ NodeMatrix::NodeMatrix(const std::vector<Term>& terms) : dimension_(terms.front(
   pattern_ = joined_pattern(patterns);
   values_.assign(pattern_.column.size() * static_cast<std::size_t>(stride_) + 1, 0.0);
   const auto add = [&](const Term& term, const PatternRow& row, Index first_block, Index count) {
-    // Columns ascend in both, and those of a term are among those of the sum.
+    // Columns ascend in both, and those of a term are a subset of those of the sum.
     Index block = first_block;
     for (Index own = row.first_block; own < row.first_block + count; ++own, ++block) {
       const int column = term.matrix->pattern_.column[static_cast<std::size_t>(own)];
@@ -106,7 +107,7 @@ NodeMatrix::NodeMatrix(const std::vector<Term>& terms) : dimension_(terms.front(
   });
 }
 
-/// Adds one block times a factor to one of so many numbers.
+/// Adds a block times a factor to a block of `stride` numbers.
 void NodeMatrix::add_block(Index block, double factor, Index stride, double* sum) const {
   const double* own = values_.data() + block * stride_;
   if (stride == stride_) {
@@ -142,7 +143,7 @@ double NodeMatrix::form(const Vector& x) const {
   return total;
 }
 
-/// Calls enter(node of the row, node of the column, its numbers) for every block that is stored.
+/// Calls enter(node of the row, node of the column, its numbers) for every stored block.
 template <class Enter>
 void NodeMatrix::visit_blocks(const Enter& enter) const {
   pattern_.visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
@@ -213,7 +214,7 @@ SparseMatrix NodeMatrix::whole() const {
 
 namespace {
 
-/// The place of each node among those that are taken; −1: it is not.
+/// Position of each node in `taken`; −1 if it is not in it.
 std::vector<int> places_of(const std::vector<Index>& taken, std::size_t nodes) {
   std::vector<int> place(nodes, -1);
   for (std::size_t i = 0; i < taken.size(); ++i) place[static_cast<std::size_t>(taken[i])] = static_cast<int>(i);
@@ -234,7 +235,7 @@ SparseMatrix NodeMatrix::columns(const std::vector<Index>& taken) const {
   return extract(all, static_cast<Index>(all.size()), places_of(taken, all.size()), static_cast<Index>(taken.size()));
 }
 
-/// Block rows and columns, numbered by `row_of` and `column_of` per node; −1: it is not taken.
+/// Extracts block rows and columns, numbered by `row_of` and `column_of` per node; −1 omits a node.
 SparseMatrix NodeMatrix::extract(const std::vector<int>& row_of, Index rows, const std::vector<int>& column_of,
                                  Index columns) const {
   const int d = dimension_;
@@ -249,7 +250,7 @@ SparseMatrix NodeMatrix::extract(const std::vector<int>& row_of, Index rows, con
         enter(column_of[static_cast<std::size_t>(column)],
               Place{row_of[static_cast<std::size_t>(row)], block, transposed});
     };
-    // What is stored of a row is, transposed, of its column; a two-sided block is of another column, too.
+    // A block stored in a row belongs, transposed, to its column; a two-sided block also belongs to the other column.
     pattern_.visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
       if (row_of[static_cast<std::size_t>(node)] < 0 && column_of[static_cast<std::size_t>(node)] < 0) return;
       for (Index k = 0; k < group.blocks_per_row(); ++k) {

@@ -6,60 +6,60 @@
 #include "ricochet/base/types.hpp"
 #include "ricochet/linear_algebra/node_pattern.hpp"
 
-/// @file Products with a symmetric matrix on the dofs of nodes, at the price of reading about half of it once.
+/// @file Products with a symmetric matrix on the dofs of nodes that read about half of it, once.
 namespace ricochet {
 
 /// A symmetric matrix A with d dofs per node (dof of component k at node i: i·d + k), stored in blocks of d × d with
-/// one index each, or, where A = m ⊗ I, in single numbers m that act on d components at once.
+/// one index each or, if A = m ⊗ I, as single numbers m that act on d components at once.
 ///
-/// Nodes are taken in consecutive parts (node_parts); the product is quick where near nodes have near numbers. Within a
-/// part only the diagonal and what is right of it are stored: an entry that is read serves its row and its column.
-/// Entries between two parts are stored in both, so no part writes into another, and all parts can work at once. Sums
-/// have an order that depends on the pattern only: products are the same bits for any number of threads.
+/// Nodes are divided into consecutive parts (node_parts); products are fast if neighbouring nodes have near numbers.
+/// Within a part only the diagonal and the entries right of it are stored: an entry that is read serves its row and its
+/// column. Entries between two parts are stored in both, so no part writes into another, and all parts can be processed
+/// in parallel. The order of sums depends on the pattern only: products have the same bits for any number of threads.
 ///
-/// Memory is 8 d² + 4 bytes per block (12 for m ⊗ I), of about n (b + 1)/2 blocks for n nodes with b blocks per row:
+/// Memory is 8 d² + 4 bytes per block (12 for m ⊗ I), with about n (b + 1)/2 blocks for n nodes with b blocks per row:
 /// 45 % of the compressed columns of the whole matrix in two and 40 % in three dimensions.
 class NodeMatrix {
  public:
-  /// A matrix times a factor, of a sum.
+  /// A term of a linear combination of matrices.
   struct Term {
     double factor = 1.0;
     const NodeMatrix* matrix = nullptr;
   };
 
   NodeMatrix() = default;
-  /// From a symmetric matrix stored whole, with d dofs per node. Only what is on one side of the diagonal is read of
-  /// some entries, so it must be symmetric to the bit.
+  /// Converts a symmetric matrix stored whole, with d dofs per node. For some pairs of entries only one is read, so the
+  /// matrix must be symmetric to the last bit.
   NodeMatrix(const SparseMatrix& matrix, int d);
-  /// Σ factor · matrix, in the order of the terms, at least one, all of the same nodes.
+  /// Computes Σ factor · matrix in the order of the terms, of which there is at least one, all with the same nodes.
   explicit NodeMatrix(const std::vector<Term>& terms);
 
   [[nodiscard]] Index size() const { return static_cast<Index>(pattern_.node.size()) * dimension_; }
   [[nodiscard]] int dimension() const { return dimension_; }
-  /// True where the matrix is m ⊗ I.
+  /// Returns whether the matrix is m ⊗ I.
   [[nodiscard]] bool is_scalar() const { return stride_ == 1; }
-  /// What is stored: the blocks, column by column, in the order of the pattern, and one number more.
+  /// Storage: the pattern, and the blocks in its order, each in column-major order, followed by one more number.
   [[nodiscard]] const NodePattern& pattern() const { return pattern_; }
   [[nodiscard]] const LargeVector<double>& values() const { return values_; }
   [[nodiscard]] std::size_t bytes() const;
 
-  /// y = A x. `y` is another vector; it is made of the right size.
+  /// Computes y = A x. `y` must be another vector; it is resized.
   void multiply(const Vector& x, Vector& y) const;
-  /// xᵀ A x, without A x: faster than the product.
+  /// Returns xᵀ A x without computing A x, which is faster.
   [[nodiscard]] double form(const Vector& x) const;
 
-  /// |x|ᵀ |A| |x|.
+  /// Returns |x|ᵀ |A| |x|.
   [[nodiscard]] double magnitude_form(const Vector& x) const;
   [[nodiscard]] Vector diagonal() const;
-  /// The blocks on the diagonal, d² numbers per node.
+  /// Diagonal blocks, d² numbers per node.
   [[nodiscard]] Vector diagonal_blocks() const;
-  /// True when no entry off the diagonal is other than zero.
+  /// Returns whether all entries off the diagonal are zero.
   [[nodiscard]] bool is_diagonal() const;
-  /// The matrix as it was given: whole, in compressed columns.
+  /// Returns the matrix as it was given: whole, in compressed columns.
   [[nodiscard]] SparseMatrix whole() const;
-  /// Its rows and columns of these nodes, ascending, in compressed columns.
+  /// Returns the principal submatrix of these nodes, ascending, in compressed columns.
   [[nodiscard]] SparseMatrix principal(const std::vector<Index>& nodes) const;
-  /// Its columns of these nodes, with all rows, in compressed columns.
+  /// Returns the columns of these nodes, with all rows, in compressed columns.
   [[nodiscard]] SparseMatrix columns(const std::vector<Index>& nodes) const;
 
  private:
@@ -73,7 +73,7 @@ class NodeMatrix {
   int dimension_ = 2;
   Index stride_ = 1;  ///< numbers per block: d², or 1
   NodePattern pattern_;
-  LargeVector<double> values_;  ///< per block: column by column
+  LargeVector<double> values_;  ///< per block, in column-major order
 };
 
 }  // namespace ricochet

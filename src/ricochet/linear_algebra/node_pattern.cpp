@@ -10,17 +10,17 @@ namespace ricochet {
 
 namespace {
 
-/// The blocks that are stored for one row of a matrix after another.
+/// Reader of the blocks to be stored for a row of a matrix.
 class RowOfMatrix {
  public:
-  /// Looks at `columns` columns of the matrix per node: its d components, or 1 where they are alike.
+  /// Reads `columns` columns of the matrix per node: its d components, or 1 if they are alike.
   RowOfMatrix(const SparseMatrix& matrix, int columns, int d) : matrix_(matrix), columns_(columns), d_(d) {}
 
-  /// Of a node of the part [begin, end).
+  /// Reads the row of a node of the part [begin, end).
   void read(Index node, Index begin, Index end) {
     nodes_.clear();
     for (int a = 0; a < columns_; ++a) {
-      // The columns of a node mostly have the same rows, ascending: then nothing is added by the second.
+      // The columns of a node mostly have the same rows, ascending; the second one then adds nothing.
       std::size_t known = 0;
       int last = -1;
       for (SparseMatrix::InnerIterator entry(matrix_, node * d_ + a); entry; ++entry) {
@@ -55,7 +55,7 @@ class RowOfMatrix {
   std::vector<int> nodes_, two_sided_, one_sided_;
 };
 
-/// Those of one row of any of some patterns of the same nodes.
+/// Reader of the union of the blocks that several patterns of the same nodes have in a row.
 class RowOfPatterns {
  public:
   RowOfPatterns(const std::vector<const NodePattern*>& patterns, const std::vector<PatternRows>& rows)
@@ -87,13 +87,14 @@ class RowOfPatterns {
   std::vector<int> two_sided_, one_sided_, joined_;
 };
 
-/// Of one row.
+/// Numbers of blocks of one row.
 struct Counts {
   Index two_sided = 0, one_sided = 0;
   auto operator<=>(const Counts&) const = default;
 };
 
-/// Fills groups and part_groups from the rows and the numbers of blocks of each node; returns that of all blocks.
+/// Fills groups and part_groups from the rows and the numbers of blocks of each node; returns the total number of
+/// blocks.
 Index group_rows(const std::vector<Counts>& counts, NodePattern& pattern) {
   Index blocks = 0;
   for (std::size_t part = 0; part + 1 < pattern.part_begins.size(); ++part) {
@@ -110,7 +111,7 @@ Index group_rows(const std::vector<Counts>& counts, NodePattern& pattern) {
   return blocks;
 }
 
-/// `first_reader`: of rows; each thread has a copy.
+/// `first_reader` reads rows; each thread works on a copy of it.
 template <class Reader>
 NodePattern pattern_of_rows(Index node_count, const Reader& first_reader) {
   NodePattern pattern;

@@ -5,12 +5,12 @@
 #include "ricochet/base/large_vector.hpp"
 #include "ricochet/base/types.hpp"
 
-/// @file Which blocks of a symmetric matrix a NodeMatrix stores, and in what order. Not part of the public interface.
+/// @file Blocks of a symmetric matrix that a NodeMatrix stores, and their order. Not part of the public interface.
 namespace ricochet {
 
-/// Rows of one part with the same numbers of blocks. The blocks of a row are consecutive, those of consecutive rows
-/// too: first the two-sided ones, with columns right of the row in its part, then the one-sided ones, of the diagonal
-/// and of other parts. Columns ascend in each.
+/// Rows of one part with equal numbers of blocks. The blocks of a row are consecutive, as are those of consecutive
+/// rows: first the two-sided ones, with columns right of the row in its part, then the one-sided ones, which are on the
+/// diagonal or belong to other parts. Columns ascend in each.
 struct RowGroup {
   Index first_row = 0, rows = 0;  ///< in NodePattern::node
   Index first_block = 0;
@@ -19,21 +19,21 @@ struct RowGroup {
   [[nodiscard]] Index end_row() const { return first_row + rows; }
 };
 
-/// The blocks of one row.
+/// Blocks of one row.
 struct PatternRow {
   Index first_block = 0, two_sided = 0, one_sided = 0;
 };
 using PatternRows = std::vector<PatternRow>;  ///< per node
 
-/// The rows of a part are sorted by their numbers of blocks: a loop whose length changes from row to row makes the
-/// processor guess wrongly at the end of each, which costs as much as the products. A part is small enough for its
-/// vectors to stay in the near caches in any order of its rows.
+/// Pattern of a NodeMatrix. The rows of a part are sorted by their numbers of blocks: if the length of the inner loop
+/// changed from row to row, the processor would mispredict the end of each, which costs as much as the products. A part
+/// is small enough for its vectors to stay in the near caches in any order of its rows.
 struct NodePattern {
   std::vector<Index> part_begins{0};  ///< node_parts
   std::vector<int> node;              ///< of each row, part after part
   LargeVector<int> column;            ///< per block: node of the column
   std::vector<RowGroup> groups;       ///< part after part
-  std::vector<Index> part_groups{0};  ///< first group of each part, and after them the number of groups
+  std::vector<Index> part_groups{0};  ///< first group of each part, followed by the number of groups
 
   [[nodiscard]] Index parts() const { return static_cast<Index>(part_begins.size()) - 1; }
   [[nodiscard]] std::size_t bytes() const;
@@ -51,11 +51,11 @@ struct NodePattern {
   }
 };
 
-/// Of a symmetric matrix with d dofs per node, stored whole and compressed. Where `alike`, it is m ⊗ I and only the
-/// columns of the first components are read.
+/// Returns the pattern of a symmetric matrix with d dofs per node, stored whole and compressed. If `alike`, the matrix
+/// is m ⊗ I and only the columns of the first components are read.
 [[nodiscard]] NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike);
 
-/// The blocks that any of some patterns of the same nodes has.
+/// Returns the union of some patterns of the same nodes.
 [[nodiscard]] NodePattern joined_pattern(const std::vector<const NodePattern*>& patterns);
 
 }  // namespace ricochet

@@ -11,16 +11,16 @@ namespace ricochet {
 
 namespace {
 
-/// Subtrees hold at most this part of the operations.
+/// Subtrees hold at most this fraction of the operations.
 constexpr double parts_per_factorization = 32.0;
-/// Factorizations of fewer operations are not divided.
+/// Factorizations with fewer operations are not divided.
 constexpr double fewest_operations = 2e7;
-/// Rows of a panel that one thread takes.
+/// Rows of a panel that one thread assembles at a time.
 constexpr Index rows_per_tile = 192;
-/// Seconds after which a user hears how far it is.
+/// Seconds between two messages about the progress.
 constexpr double silence = 5.0;
 
-/// Of some columns.
+/// Operations of a range of columns.
 double operations(const SupernodalFactor::Supernode& node, int begin, int end) {
   double sum = 0.0;
   for (int j = begin; j < end; ++j) {
@@ -106,7 +106,7 @@ void NumericFactorization::plan_tasks() {
   failed_.resize(subtrees_.size());
 }
 
-/// One for the calling thread besides those that work on parts of its panel.
+/// Provides one workspace for the calling thread besides those of the threads that work on parts of its panel.
 void NumericFactorization::prepare_workspaces() {
   while (workspaces_.size() < static_cast<std::size_t>(thread_count()) + 1) {
     workspaces_.push_back(std::make_unique<PanelWorkspace>());
@@ -134,7 +134,7 @@ void NumericFactorization::has_factorized(const FactorPanel& panel) {
   since_told_.restart();
 }
 
-/// One panel after the other. `divided`: on all threads.
+/// Factorizes one panel after the other; with `divided`, on all threads.
 Index NumericFactorization::factorize(int supernode, const LowerColumns& matrix, double scale,
                                       PanelWorkspace& workspace, bool divided) {
   const auto s = static_cast<std::size_t>(supernode);
@@ -185,7 +185,7 @@ Index NumericFactorization::run(const LowerColumns& matrix, double scale) {
   Index first_failed = factor_.size();
   for (const Index column : failed_) first_failed = std::min(first_failed, column);
   auto workspace = take_workspace();
-  // Panels before a column that has failed may fail as well: the first of all is where one thread would have stopped.
+  // Panels before a failed column may fail as well: the first failure of all is where one thread would have stopped.
   for (std::size_t k = 0; k < top_.size() && factor_.supernode(top_[k]).first < first_failed; ++k) {
     const Index failed = factorize(top_[k], matrix, scale, *workspace, true);
     if (failed >= 0) first_failed = failed;

@@ -9,23 +9,23 @@
 
 /// @file Supernodal Cholesky factorization, left-looking, written straight into the layout that the solves read.
 ///
-/// Wide supernodes are cut into panels of columns. A panel takes A's entries, then what all supernodes before it
-/// contribute, in their order, and is factorized. There are no update matrices to keep, as a multifrontal method has:
-/// beside the factor a thread needs one panel. Subtrees of the elimination tree are tasks of their own; the panels
-/// above are divided by rows. Each entry's sum is taken in the order of the columns: bits depend neither on the number
-/// of threads nor on the division.
+/// Wide supernodes are cut into panels of columns. A panel receives A's entries, then the contributions of all earlier
+/// supernodes, in their order, and is factorized. Unlike in a multifrontal method there are no update matrices to keep:
+/// besides the factor a thread needs one panel. Subtrees of the elimination tree are independent tasks; the panels
+/// above them are divided by rows. Each entry's sum is computed in the order of the columns, so that bits depend
+/// neither on the number of threads nor on the division.
 ///
-/// That the factor is L Lᵀ, and not L D Lᵀ, is relied on in factorize_triangle (pivots are positive), in the products
-/// of a panel with itself (no D between), in the solves, and in CondensedContact (W = YᵀY).
+/// The form L Lᵀ, instead of L D Lᵀ, is relied on in factorize_triangle (pivots are positive), in the products of a
+/// panel with itself (no D between), in the solves, and in CondensedContact (W = YᵀY).
 namespace ricochet {
 
 class NumericFactorization {
  public:
-  /// Makes the plan of a factorization. Keeps a reference to the factor, whose numbers it will write.
+  /// Plans a factorization. Keeps a reference to the factor, whose numbers it will write.
   explicit NumericFactorization(SupernodalFactor& factor);
 
-  /// L Lᵀ = scale · A. Returns the first column whose pivot is not positive, or −1. From the second call on nothing is
-  /// allocated. Says how far it is from time to time.
+  /// Factorizes L Lᵀ = scale · A. Returns the first column whose pivot is not positive, or −1. Allocates nothing from
+  /// the second call on. Logs its progress from time to time.
   Index run(const LowerColumns& matrix, double scale);
 
  private:
@@ -55,7 +55,7 @@ class NumericFactorization {
   std::vector<Index> failed_;  ///< per subtree: the first column whose pivot is not positive, or the number of columns
   std::vector<int> top_;       ///< supernodes that are in no subtree, ascending
 
-  std::mutex access_;  ///< to what follows
+  std::mutex access_;  ///< guards the members below
   std::vector<std::unique_ptr<PanelWorkspace>> workspaces_;
   double done_ = 0.0;  ///< operations
   Timer since_told_;

@@ -8,20 +8,20 @@ namespace ricochet {
 
 namespace {
 
-/// Blocks of eight columns that a product takes at once: two operands of so many columns fit into the cache.
+/// Number of blocks of eight columns that a product processes at once: two operands of that width fit into the cache.
 constexpr Index blocks_at_once = 32;
-/// Panels of eight rows that are multiplied with one panel after the other while they are in the cache.
+/// Number of panels of eight rows that are multiplied by one panel after the other while they are in the cache.
 constexpr Index panels_at_once = 24;
 constexpr Index most_columns_at_once = 8 * blocks_at_once + 8;
-/// Places before and behind a range may be pointed to, and are not read.
+/// Entries before and behind a range may be pointed to, but are not read.
 constexpr Index margin = 8;
 
 /// The last rows of a supernode, fewer than eight, as a panel of eight.
 class Remainder {
  public:
-  /// Of a range of columns with so many of the head.
+  /// `head`: number of columns of the head in the range.
   explicit Remainder(Index head = 0) : head_(8 * head) {}
-  /// Columns: those of the head if `head` is true, then blocks [begin, end).
+  /// Reads columns: those of the head if `head` is true, then blocks [begin, end).
   void read(const SupernodeLayout& layout, const double* base, bool head, Index begin, Index end) {
     if (layout.remainder() == 0) return;
     double* to = values_.data();
@@ -68,7 +68,7 @@ class Remainder {
 }  // namespace
 
 void PanelWorkspace::allocate(Index size, Index most_rows) {
-  // Not written here: a thread that takes parts of other threads' panels never touches these pages.
+  // Not initialized here: a thread that processes parts of other threads' panels never touches these pages.
   values = std::make_unique_for_overwrite<double[]>(
       static_cast<std::size_t>((most_rows + 2 * margin) * (most_panel_columns + 8)));
   local.resize(static_cast<std::size_t>(size));
@@ -100,7 +100,7 @@ void PanelFactorization::assemble(const LowerColumns& matrix, double scale, cons
     const int at = node_.first + static_cast<int>(panel_.begin + j);
     for (int k = matrix.begin[at]; k < matrix.begin[at + 1]; ++k) {
       const int row = local_[matrix.rows[k]];
-      // Rows that are not in this panel have places of an earlier one.
+      // Rows that are not in this panel still have indices of an earlier one.
       if (row >= rows_ || factor_.row(node_, panel_.begin + row) != matrix.rows[k])
         throw std::logic_error("a matrix is factorized again, and has an entry where the first one had none");
       if (row >= begin && row < end) column[row] = scale * matrix.values[k];
@@ -186,8 +186,8 @@ void PanelFactorization::subtract(const Source& source, Index row_begin, Index r
   }
 }
 
-/// The rows of some panels, of which the first is `panel`, in the head and in the blocks before `end_block`; of the
-/// remainder into `block_result`, one block after the other.
+/// Solves for the rows of `count` panels from `panel` on, in the head and in the blocks before `end_block`; for the
+/// remainder, results go to `block_result`, one block after the other.
 void PanelFactorization::solve(Index panel, Index count, const PanelRows& rows, Index end_block, double* head_result,
                                double* block_result) {
   const Index head = layout_.head;

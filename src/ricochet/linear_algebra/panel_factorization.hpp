@@ -9,61 +9,62 @@
 /// @file A panel of a supernode's columns while it is factorized.
 namespace ricochet {
 
-/// The lower triangle of a symmetric matrix by columns.
+/// Lower triangle of a symmetric matrix by columns.
 struct LowerColumns {
   const int* begin = nullptr;  ///< per column, and the end
   const int* rows = nullptr;
   const double* values = nullptr;
 };
 
-/// Columns of a panel, at most. Products of a panel with itself have few columns, so it must not be wide.
+/// Largest number of columns of a panel. Products of a panel with itself have few columns, so it must not be wide.
 constexpr Index most_panel_columns = 128;
 
-/// Columns [begin, end) of a supernode, with its rows from `begin` on. The first panel of a supernode has its head, and
-/// the others begin where a block begins (linear_algebra/supernode_layout.hpp).
+/// Columns [begin, end) of a supernode, with its rows from `begin` on. The first panel of a supernode contains its
+/// head, and the others begin where a block begins (linear_algebra/supernode_layout.hpp).
 struct FactorPanel {
   int supernode = 0;
   int begin = 0, end = 0;
 };
 
-/// The rows [begin, end) of an earlier supernode are columns of a panel.
+/// Contribution of an earlier supernode, whose rows [begin, end) are columns of the panel.
 struct PanelUpdate {
   int source = 0;
   int begin = 0, end = 0;
 };
 
-/// What a thread needs besides the factor. To be used for one panel after the other.
+/// Memory that a thread needs besides the factor, reused from panel to panel.
 struct PanelWorkspace {
   std::unique_ptr<double[]> values;  ///< of the panel, column by column
-  std::vector<int> local;            ///< per row of the factor: its place in the panel
+  std::vector<int> local;            ///< per row of the factor: its index in the panel
   std::vector<int> row_places;       ///< of an update
-  /// For factors of so many rows, whose supernodes have at most `most_rows`.
+  /// Allocates for factors with `size` rows, whose supernodes have at most `most_rows`.
   void allocate(Index size, Index most_rows);
 };
 
 class PanelFactorization {
  public:
-  /// Keeps references. All supernodes of `updates` are to be complete, and the panels before this one in its own.
+  /// Keeps references. All supernodes of `updates` must be complete, and so must the earlier panels of its own
+  /// supernode.
   PanelFactorization(SupernodalFactor& factor, const FactorPanel& panel, PanelWorkspace& workspace);
 
   [[nodiscard]] Index rows() const { return rows_; }
-  /// Rows [begin, end), before they are divided by the triangle: A's entries less what earlier columns contribute, in
-  /// the order of `updates` [first, last). Parts of the rows may be assembled at the same time, each with `places` of
-  /// its own. Throws std::logic_error at an entry of A outside the rows of the factor.
+  /// Assembles rows [begin, end), before they are divided by the triangle: A's entries minus the contributions of
+  /// earlier columns, in the order of `updates` [first, last). Parts of the rows may be assembled in parallel, each
+  /// with its own `places`. Throws std::logic_error if A has an entry outside the rows of the factor.
   void assemble(const LowerColumns& matrix, double scale, const PanelUpdate* first, const PanelUpdate* last,
                 Index begin, Index end, std::vector<int>& places);
-  /// The triangle of the panel's own columns. Returns the first whose pivot is not positive, or −1.
+  /// Factorizes the triangle of the panel's own columns. Returns the first whose pivot is not positive, or −1.
   Index factorize_triangle();
-  /// The rows below come in groups.
+  /// Number of groups of the rows below.
   [[nodiscard]] Index groups() const {
     return (layout_.panels() - end_block_ + panels_per_group - 1) / panels_per_group +
            (layout_.remainder() > 0 ? 1 : 0);
   }
-  /// Some of them; several ranges may be solved at the same time.
+  /// Solves groups [begin, end); several ranges may be solved in parallel.
   void solve_groups(Index begin, Index end);
 
  private:
-  /// Columns of a supernode: of its head and of the blocks before `end_block`.
+  /// Columns of a supernode: those of its head and of the blocks before `end_block`.
   struct Source {
     SupernodeLayout layout;
     const double* base;

@@ -9,9 +9,9 @@ namespace ricochet {
 
 namespace {
 
-/// The 8 × C numbers of each of P panels, in registers of H: pack i of all is rows [H i, H i + H) of the 8 P.
-/// They are written out by the indices of a template, column by column, because a compiler keeps in memory what a loop
-/// goes through.
+/// The 8 × C numbers of each of P panels, in registers of H: pack i of all is rows [H i, H i + H) of the 8 P. They are
+/// unrolled by the indices of a template, column by column, because a compiler keeps in memory the elements that a loop
+/// iterates over.
 template <int H, int P, int C, typename = std::make_integer_sequence<int, P * 8 / H * C>>
 struct Sums;
 template <int H, int P, int C, int... all>
@@ -31,7 +31,7 @@ struct Sums<H, P, C, std::integer_sequence<int, all...>> {
   Pack<H> values[sizeof...(all)] = {(static_cast<void>(all), Pack<H>{})...};
 };
 
-/// Columns `first` … `first` + C − 1 of the product of P panels.
+/// Computes columns `first` … `first` + C − 1 of the product of P panels.
 template <int H, int P, int C>
 RICOCHET_PART_OF_CALLER void multiply(const PanelRows& a, const PanelRows& b, PanelColumns columns, Index first,
                                       double* c) {
@@ -49,7 +49,7 @@ RICOCHET_PART_OF_CALLER void multiply(const PanelRows& a, const PanelRows& b, Pa
   sums.write(c + 8 * first);
 }
 
-/// One panel after the other, C columns at a time: for processors with sixteen registers.
+/// Multiplies one panel after the other, C columns at a time: for processors with sixteen registers.
 template <int H, int C>
 RICOCHET_PART_OF_CALLER void multiply_one_by_one(Index count, PanelRows a, const PanelRows& b, PanelColumns columns,
                                                  double* c) {
@@ -71,7 +71,7 @@ RICOCHET_PART_OF_CALLER void solve_columns(const double* c, const double* invers
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
-/// As many numbers in as many registers as the processor has.
+/// Uses as many numbers as the registers of the processor hold.
 __attribute__((target("arch=x86-64-v4"))) void multiply_avx512(Index count, const PanelRows& a, const PanelRows& b,
                                                                PanelColumns columns, double* c) {
   switch (count) {

@@ -6,10 +6,10 @@
 namespace ricochet {
 
 namespace {
-/// A change of this part of the base set, or less, borders the factor; a larger one makes a new factor.
+/// Changes of up to 1/8 of the base set border the factor; larger ones lead to a new factor.
 constexpr std::size_t part = 8;
 
-/// Numbers that are in one of the two only, both ascending.
+/// Number of indices that are in only one of the two sets, both ascending.
 std::size_t count_differences(const std::vector<Index>& a, const std::vector<Index>& b) {
   std::size_t common = 0;
   for (auto left = a.begin(), right = b.begin(); left != a.end() && right != b.end();) {
@@ -44,7 +44,7 @@ bool PrincipalFactor::set_base(const Matrix& w, const std::vector<Index>& indice
     const double* column = w.data() + indices[static_cast<std::size_t>(j)] * w.rows();
     for (Index i = 0; i < count; ++i) block(i, j) = column[indices[static_cast<std::size_t>(i)]];
   }
-  // The square roots, and so the bits, do not depend on the unit system.
+  // Scaling makes the square roots, and hence the bits, independent of the unit system.
   const double largest = block.diagonal().maxCoeff();
   scale_ = std::isnormal(largest) ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
   block *= scale_;

@@ -6,30 +6,31 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file Cholesky factor of a principal submatrix that follows small changes of its indices.
+/// @file Cholesky factor of a principal submatrix that follows small changes of its index set.
 namespace ricochet {
 
-/// Solves W_AA x = b for index sets A that change from call to call. The factor of a base set B is kept; with the
-/// indices D that came (A∖B) and R that went (B∖A), x follows from the bordered system
+/// Solves W_AA x = b for index sets A that change from call to call. The factor of a base set B is kept; with the added
+/// indices D = A∖B and the removed indices R = B∖A, x follows from the bordered system
 ///   ⎡W_BB W_BD E_R⎤ ⎡x_B⎤   ⎡b_B⎤
 ///   ⎢W_DB W_DD  0 ⎥ ⎢x_D⎥ = ⎢b_D⎥,   b_R = 0,
 ///   ⎣E_Rᵀ  0    0 ⎦ ⎣ λ ⎦   ⎣ 0 ⎦
-/// by its small Schur complement on (x_D, λ): one solve with the base factor per index that came or went. Where many
-/// have, A becomes the base.
+/// by its small Schur complement on (x_D, λ): one solve with the base factor per added or removed index. After many
+/// changes A becomes the base.
 class PrincipalFactor {
  public:
-  /// Takes the set A (ascending). False: W_AA is not positive definite.
+  /// Sets the index set A (ascending). Returns false if W_AA is not positive definite.
   bool set_indices(const Matrix& w, const std::vector<Index>& indices);
-  /// b and x per index of A.
+  /// Solves for x; b and x have one entry per index of A.
   void solve(const Vector& right, Vector& x) const;
   void reset();
 
-  /// B, from which a factor with the same bits can be made again; of `w` it must be the same matrix.
+  /// Base set B, from which a factor with the same bits can be made again if `w` is the same matrix.
   [[nodiscard]] const std::vector<Index>& base() const { return base_; }
   bool set_base(const Matrix& w, const std::vector<Index>& indices);
-  /// The same rows of W are now numbered so, in the same order; W's other rows may be others.
+  /// Renumbers the base set: the same rows of W, in the same order, have these indices now; other rows of W may have
+  /// changed.
   void renumber_base(const std::vector<Index>& indices);
-  /// The last set_indices made a new factor.
+  /// Returns whether the last set_indices computed a new factor.
   [[nodiscard]] bool has_factored() const { return has_factored_; }
 
  private:
@@ -38,7 +39,7 @@ class PrincipalFactor {
   std::vector<Index> base_, indices_;
   Eigen::LLT<Matrix> factor_;
   double scale_ = 1.0;                  ///< power of two that brings the base's largest diagonal entry near one
-  std::vector<Index> came_, went_;      ///< positions: in A, in B
+  std::vector<Index> came_, went_;      ///< positions of added indices in A, of removed ones in B
   std::vector<Index> kept_a_, kept_b_;  ///< positions of A∩B in A and in B
   Matrix border_, solved_;              ///< (W_BD E_R) and its solve with W_BB
   Eigen::PartialPivLU<Matrix> schur_;

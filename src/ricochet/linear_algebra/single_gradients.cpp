@@ -18,7 +18,7 @@ using Square = Eigen::Matrix<double, d, d>;
 template <int d>
 using SingleSquare = Eigen::Matrix<float, d, d>;
 
-/// Zero in the rows and columns of dofs that are not solved for.
+/// Returns a block with zeros in the rows and columns of dofs that are not solved for.
 template <int d>
 Square<d> masked(const double* values, const std::vector<char>& solved, Index row, Index column) {
   Square<d> block = Eigen::Map<const Square<d>>(values);
@@ -29,7 +29,8 @@ Square<d> masked(const double* values, const std::vector<char>& solved, Index ro
   return block;
 }
 
-/// L⁻¹ per node; a block that is not positive definite is taken for one: conjugate gradients will say so.
+/// Computes L⁻¹ per node. A block that is not positive definite is treated as if it were: conjugate gradients detect
+/// it.
 template <int d>
 void invert_factors(const Vector& blocks, const std::vector<char>& solved, std::vector<float>& result) {
   result.assign(static_cast<std::size_t>(blocks.size()) + 1, 0.0F);
@@ -73,7 +74,7 @@ Square<d> block_of(const std::vector<float>& blocks, Index node) {
   return Eigen::Map<const SingleSquare<d>>(blocks.data() + node * d * d).template cast<double>();
 }
 
-/// Calls work with d as a constant.
+/// Calls work with d as a compile-time constant.
 template <class Work>
 auto with_dimension(int d, const Work& work) {
   return d == 2 ? work(std::integral_constant<int, 2>{}) : work(std::integral_constant<int, 3>{});
@@ -94,7 +95,7 @@ SingleGradients::SingleGradients(const NodeMatrix& matrix, const Vector& diagona
   for (Numbers* numbers : {&x_, &residual_, &direction_, &image_}) numbers->setZero(matrix.size());
 }
 
-/// q = Â p; pᵀ q.
+/// Computes q = Â p; returns pᵀ q.
 double SingleGradients::multiply() {
   const NodePattern& pattern = matrix_.pattern();
   std::array<double, most_node_parts> sums{};
@@ -107,13 +108,13 @@ double SingleGradients::multiply() {
   });
   double total = 0.0;
   for (const double sum : sums) total += sum;
-  // Of the image each rank has a part, which is what pᵀ q takes of it.
+  // Each rank has its contribution to the image, which is the one that pᵀ q needs.
   total = ranks_.sum(total);
   ranks_.accumulate(image_);
   return total;
 }
 
-/// |r̂|² from what this rank's nodes have in it, those of others among them.
+/// Returns |r̂|² from the sum over this rank's nodes, which includes nodes owned by others.
 double SingleGradients::squared_norm(double of_all_nodes) const {
   const int d = matrix_.dimension();
   for (const Index node : ranks_.not_owned())
@@ -121,7 +122,7 @@ double SingleGradients::squared_norm(double of_all_nodes) const {
   return ranks_.sum(of_all_nodes);
 }
 
-/// r̂ = L⁻¹ r / |L⁻¹ r|; returns the norm.
+/// Computes r̂ = L⁻¹ r / |L⁻¹ r|; returns the norm.
 double SingleGradients::scale(const Vector& residual) {
   return with_dimension(matrix_.dimension(), [&](auto dimension) {
     constexpr int d = dimension;
@@ -146,7 +147,7 @@ double SingleGradients::scale(const Vector& residual) {
   });
 }
 
-/// x += factor · L⁻ᵀ x̂.
+/// Computes x += factor · L⁻ᵀ x̂.
 void SingleGradients::add_to(Vector& x, double factor) const {
   with_dimension(matrix_.dimension(), [&](auto dimension) {
     constexpr int d = dimension;

@@ -8,19 +8,20 @@
 /// @file Conjugate gradients in single precision, for the inner iterations of a solve in double precision.
 namespace ricochet {
 
-/// On Â = L⁻¹ A L⁻ᵀ with D = L Lᵀ, the d × d diagonal blocks of A: conjugate gradients with D as preconditioner, which
-/// has gone into the matrix. An iteration reads two fifths of what one in double precision does. What is found is good
-/// to a few digits; a caller that takes its residual in double precision and asks again gets the others.
+/// Conjugate gradients on Â = L⁻¹ A L⁻ᵀ with D = L Lᵀ, the d × d diagonal blocks of A: D is the preconditioner, applied
+/// to the matrix in advance. An iteration reads two fifths of the memory of one in double precision. The solution is
+/// accurate to a few digits; a caller that computes its residual in double precision and solves again obtains the
+/// others.
 class SingleGradients {
  public:
-  /// Of a matrix in blocks, which is referred to, and its blocks on the diagonal, d² numbers per node; `solved` per
-  /// dof: rows and columns of the others are left out. Of several ranks each has a part of the matrix, and the whole of
-  /// the vectors and of the diagonal at its nodes.
+  /// Scales a matrix in blocks, of which a reference is kept, by its diagonal blocks, d² numbers per node. `solved` per
+  /// dof: rows and columns of other dofs are left out. Each of several ranks has a part of the matrix, and the full
+  /// values of the vectors and of the diagonal at its nodes.
   SingleGradients(const NodeMatrix& matrix, const Vector& diagonal_blocks, const std::vector<char>& solved,
                   const Ranks& ranks = one_rank());
 
-  /// Adds to x an approximation of A⁻¹ r, after iterations that take √(rᵀD⁻¹r) down to this part of it, as they see it
-  /// themselves.
+  /// Adds to x an approximation of A⁻¹ r, iterating until √(rᵀD⁻¹r) has been reduced by this factor, as estimated in
+  /// single precision.
   ConjugateGradients::Result solve(const Vector& residual, double reduction, int iteration_limit, Vector& x);
 
  private:
@@ -34,7 +35,7 @@ class SingleGradients {
   const NodeMatrix& matrix_;
   const Ranks& ranks_;
   LargeVector<float> values_;          ///< Â, in the pattern of the matrix
-  std::vector<float> inverse_factor_;  ///< L⁻¹ per node, column by column
+  std::vector<float> inverse_factor_;  ///< L⁻¹ per node, in column-major order
   Numbers x_, residual_, direction_, image_;
 };
 

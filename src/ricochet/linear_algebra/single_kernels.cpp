@@ -7,7 +7,7 @@ namespace ricochet {
 
 namespace {
 
-/// How far ahead of the blocks to fetch, in numbers.
+/// Prefetch distance in the stream of blocks, in numbers.
 constexpr Index fetch_ahead = 1280;
 
 typedef float Floats __attribute__((vector_size(16)));
@@ -21,7 +21,7 @@ RICOCHET_PART_OF_CALLER void add_two(float* to, const Floats& value) {
   *reinterpret_cast<TwoFloats*>(to) += __builtin_shufflevector(value, value, 0, 1);
 }
 
-/// As of node_kernels.cpp, which says why. 2 × 2:
+/// Block of 2 × 2; see node_kernels.cpp for the reasons.
 template <int d>
 struct SingleBlock {
   struct Sums {
@@ -63,7 +63,8 @@ struct SingleBlock<3> {
   }
 };
 
-/// xᵀ y in a fixed order: eight sums of a stretch in single precision, and sums of stretches in double.
+/// Returns xᵀ y in a fixed order: eight sums per stretch in single precision, and sums of stretches in double
+/// precision.
 RICOCHET_PART_OF_CALLER double single_dot(const float* x, const float* y, Index count) {
   constexpr Index stretch = 512;
   double total = 0.0;

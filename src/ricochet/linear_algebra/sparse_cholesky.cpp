@@ -18,7 +18,7 @@ namespace ricochet {
 
 namespace {
 
-/// A view without a copy, for functions that do not write.
+/// Returns a view without copying, for functions that do not write.
 cholmod_sparse view(int size, const int* begin, const int* rows, const double* values, int triangle) {
   cholmod_sparse result{};
   result.nrow = result.ncol = static_cast<std::size_t>(size);
@@ -37,7 +37,7 @@ cholmod_sparse view(int size, const int* begin, const int* rows, const double* v
 }  // namespace
 
 struct SparseCholesky::Implementation {
-  /// The lower triangle of a symmetric matrix by columns, whose rows are in any order.
+  /// Lower triangle of a symmetric matrix by columns, with the rows of a column in any order.
   struct LowerTriangle {
     std::vector<int> begin;  ///< per column, and the end
     std::vector<int> rows;
@@ -46,8 +46,8 @@ struct SparseCholesky::Implementation {
   cholmod_common common{};
   cholmod_factor* factor = nullptr;
   LowerTriangle ordered;         ///< of P A Pᵀ, from the analysis to the factorization
-  std::vector<int> permutation;  ///< place in the factor → unknown
-  std::vector<int> places;       ///< unknown → place in the factor
+  std::vector<int> permutation;  ///< index in the factor → unknown
+  std::vector<int> places;       ///< unknown → index in the factor
   double scale = 1.0;
   Arithmetic arithmetic = Arithmetic::own;
   SupernodalFactor supernodal;
@@ -92,7 +92,7 @@ struct SparseCholesky::Implementation {
 
 namespace {
 
-/// METIS puts back the handlers that it finds, but so that they serve for one signal only.
+/// Restores the signal handlers: METIS puts back those it finds, but for one signal only.
 class KeptHandlers {
  public:
   KeptHandlers() {
@@ -116,7 +116,7 @@ void SparseCholesky::Implementation::order(const SparseMatrix& matrix) {
   cholmod_sparse upper =
       view(static_cast<int>(matrix.cols()), matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), 1);
   upper.sorted = 1;
-  // METIS catches SIGTERM while it works, and jumps out of that with its own work half done.
+  // METIS catches SIGTERM while it works, and jumps out of its own work half done.
   const BlockedSignals until_ordered;
   const KeptHandlers kept;
   if (cholmod_metis(&upper, nullptr, 0, 1, permutation.data(), &common) == 0)
@@ -127,7 +127,7 @@ void SparseCholesky::Implementation::order(const SparseMatrix& matrix) {
   take_ordered(matrix);
 }
 
-/// Takes the lower triangle of P A Pᵀ. What it is kept in grows once.
+/// Stores the lower triangle of P A Pᵀ. Its storage grows only once.
 void SparseCholesky::Implementation::take_ordered(const SparseMatrix& matrix) {
   const int size = static_cast<int>(matrix.cols());
   const auto visit = [&](const auto& take) {
@@ -192,7 +192,7 @@ void SparseCholesky::Implementation::find_scale() {
   scale = largest > 0.0 ? std::ldexp(1.0, -exponent) : 1.0;
 }
 
-/// The shape of the factor is all that is taken from CHOLMOD.
+/// Copies the structure of the factor, which is all that is used of CHOLMOD's result.
 void SparseCholesky::Implementation::take_shape() {
   numeric.reset();
   supernodal = SupernodalFactor({static_cast<Index>(factor->nsuper), static_cast<const int*>(factor->super),
@@ -204,7 +204,7 @@ void SparseCholesky::Implementation::factorize() {
   require_possible();
   find_scale();
   if (factor != nullptr) {
-    release_freed_memory();  // the most that a run takes is taken here
+    release_freed_memory();  // memory peaks here
     take_shape();
   }
   if (!numeric) numeric = std::make_unique<NumericFactorization>(supernodal);
@@ -217,7 +217,7 @@ void SparseCholesky::Implementation::factorize_by_library() {
   find_scale();
   for (double& value : ordered.values) value *= scale;
   cholmod_sparse lower = ordered_view();
-  const BlockedSignals on_threads_of_cholmod;  // made by the first call, they are there when METIS works again
+  const BlockedSignals on_threads_of_cholmod;  // created by the first call, they still exist when METIS runs again
   cholmod_factorize(&lower, factor, &common);
   ordered = {};
   if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();

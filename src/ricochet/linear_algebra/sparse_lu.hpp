@@ -7,8 +7,8 @@
 /// @file Sparse LU factorization.
 namespace ricochet {
 
-/// P_r A P_c = L U, supernodal with partial pivoting, columns ordered by COLAMD (Eigen's SparseLU). The order is kept
-/// from one matrix to the next of the same pattern.
+/// Factorization P_r A P_c = L U, supernodal with partial pivoting, columns ordered by COLAMD (Eigen's SparseLU). The
+/// ordering is reused for matrices of the same pattern.
 class SparseLu {
  public:
   SparseLu();
@@ -16,11 +16,12 @@ class SparseLu {
   SparseLu& operator=(SparseLu&&) noexcept;
   ~SparseLu();
 
-  /// Entries that are zero now and may not be later must be stored. False: A is exactly singular.
+  /// Factorizes A. Entries that are zero now but may not be later must be stored. Returns false if A is exactly
+  /// singular.
   bool compute(const SparseMatrix& matrix);
-  /// The next matrix has another pattern.
+  /// Discards the ordering, since the next matrix has another pattern.
   void reset();
-  /// x = A⁻¹ b.
+  /// Computes x = A⁻¹ b.
   void solve(const Vector& right, Vector& x) const;
 
  private:

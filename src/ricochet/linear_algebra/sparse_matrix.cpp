@@ -9,7 +9,7 @@ namespace ricochet {
 SparseMatrix extract(const SparseMatrix& matrix, const std::vector<int>& row_number, Index rows,
                      const std::vector<int>& column_number, Index columns) {
   SparseMatrix result(rows, columns);
-  if (columns == 0) return result;  // Eigen's makeCompressed reads and writes a first column without asking
+  if (columns == 0) return result;  // Eigen's makeCompressed accesses a first column without checking that it exists
   std::vector<int> counts(static_cast<std::size_t>(columns), 0);
   for (Index j = 0; j < matrix.cols(); ++j) {
     const int column = column_number[static_cast<std::size_t>(j)];

@@ -4,22 +4,22 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file Compressed columns: parts and sums.
+/// @file Parts and sums of matrices in compressed columns.
 namespace ricochet {
 
-/// The rows and columns of a matrix whose number is not negative, renumbered by it.
+/// Returns the rows and columns with a number that is not negative, renumbered by it.
 [[nodiscard]] SparseMatrix extract(const SparseMatrix& matrix, const std::vector<int>& row_number, Index rows,
                                    const std::vector<int>& column_number, Index columns);
 
-/// a + b, of matrices of the same size. Memory for the sum is all that it takes, and its entries are those of either
-/// (Eigen's operator takes three times as much).
+/// Returns a + b for matrices of the same size, with the union of their patterns. Needs no memory beyond the sum
+/// (Eigen's operator needs three times as much).
 [[nodiscard]] SparseMatrix add_sparse(const SparseMatrix& a, const SparseMatrix& b);
 
-/// Zeros in the pattern of a square matrix, less the rows and columns that are left out. Takes the memory of the
+/// Returns zeros in the pattern of a square matrix without the rows and columns `left_out`. Needs no memory beyond the
 /// result.
 [[nodiscard]] SparseMatrix zeros_without(const SparseMatrix& pattern, const std::vector<char>& left_out);
 
-/// Where an entry is stored; null where it is not. Searches the column.
+/// Returns a pointer to a stored entry; null if it is not stored. Searches the column.
 [[nodiscard]] double* stored_entry(SparseMatrix& matrix, Index row, Index column);
 
 }  // namespace ricochet

@@ -13,9 +13,9 @@ namespace ricochet {
 
 namespace {
 
-/// Factors of fewer numbers are not divided: handing over to another thread would take longer than the solve.
+/// Factors with fewer numbers are not divided: handing work to another thread would take longer than the solve.
 constexpr double least_divided_size = 1 << 18;
-/// Subtrees hold at most this part of the factor.
+/// Subtrees hold at most this fraction of the factor.
 constexpr double parts_per_factor = 16.0;
 }  // namespace
 
@@ -70,7 +70,8 @@ std::vector<int> SupernodalFactor::subtrees(std::vector<double> weights, double 
   return root;
 }
 
-/// The division depends on the factor alone. It is the order of sums, and so must not depend on the number of threads.
+/// Divides the supernodes into parts. The division fixes the order of sums; it depends on the factor alone, and must
+/// not depend on the number of threads.
 void SupernodalFactor::divide() {
   const std::size_t count = supernodes_.size();
   std::vector<double> sizes(count);
@@ -121,7 +122,7 @@ void SupernodalFactor::place_numbers(const SupernodalShape& shape) {
     sums_.resize(static_cast<std::size_t>(WideSupernode::sums_size()));
 }
 
-/// Rows beyond a part's own columns become places in the work space of y.
+/// Replaces rows beyond a part's own columns by indices in the work space of y.
 void SupernodalFactor::number_boundary(Part& part) {
   Index most_rows = 0;
   for (std::size_t k = part.begin; k < part.end; ++k)
@@ -147,7 +148,7 @@ std::size_t SupernodalFactor::bytes() const {
   return stream_.size() * sizeof(double) + rows_.size() * sizeof(int) + supernodes_.size() * sizeof(Supernode);
 }
 
-/// w ← the entries of y at a supernode's columns and rows below, and the place behind them, which kernels may read.
+/// Sets w to the entries of y at a supernode's columns and rows below, followed by a zero, which kernels may read.
 void SupernodalFactor::gather(const Supernode& node, const double* y, double* w) const {
   const int* rows = rows_.data() + node.rows;
   std::copy_n(y + node.first, node.columns, w);
@@ -156,7 +157,7 @@ void SupernodalFactor::gather(const Supernode& node, const double* y, double* w)
   below[node.below] = 0.0;
 }
 
-/// All threads are there only for what remains when the subtrees are done.
+/// Only the last part, processed when the subtrees are done, has all threads available.
 bool SupernodalFactor::is_shared(const Part& part, const Supernode& node) const {
   return &part == &parts_.back() && WideSupernode::is_wide(node.columns, node.columns + node.below);
 }

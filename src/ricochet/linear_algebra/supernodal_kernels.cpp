@@ -9,14 +9,14 @@ namespace ricochet {
 
 namespace {
 
-/// How far ahead of the stream to fetch, in numbers.
+/// Prefetch distance in the stream, in numbers.
 constexpr Index fetch_stream_ahead = 512;
-/// The places in which tall blocks are read at once.
+/// Number of positions at which tall blocks are read concurrently.
 constexpr Index streams = 4;
-/// Panels in each place from which on that is worth it.
+/// Number of panels per position from which on that is worth it.
 constexpr Index fewest_panels = 4;
 
-/// Panels in each of four places; 0 where there is one.
+/// Number of panels per position; 0 if there is only one position.
 template <ReadingPlaces P>
 RICOCHET_PART_OF_CALLER constexpr Index panels_apart(Index rows) {
   const Index panels = P == ReadingPlaces::four ? rows / 8 / streams : 0;
@@ -40,7 +40,8 @@ RICOCHET_PART_OF_CALLER double sum(const Pack<8>& a) {
   return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
 }
 
-/// Rows below a triangle with the zeros that fill its last panels: remainders of 1 to 7 take 2, 2, 4, 4, 6, 6, 8.
+/// Number of rows below a triangle, including the zeros that fill its last panels: remainders of 1 to 7 become 2, 2, 4,
+/// 4, 6, 6, 8.
 RICOCHET_PART_OF_CALLER constexpr Index filled(Index rows) {
   return (rows + 1) / 2 * 2;
 }
@@ -94,7 +95,7 @@ RICOCHET_PART_OF_CALLER const double* backward_panel(const double* stream, const
   return stream;
 }
 
-/// Line by line downwards, and the compiler must leave it so: in any other order AMD's processors do not fetch ahead,
+/// Adds line by line downwards, and the compiler must keep this order: in any other, AMD's processors do not prefetch,
 /// which takes twice the time.
 template <int C>
 RICOCHET_PART_OF_CALLER void add_panel(const double* panel, const double* rows, Pack<8> (&products)[C]) {
@@ -176,7 +177,7 @@ RICOCHET_PART_OF_CALLER const double* forward_block_eight(const double* stream, 
 }  // namespace
 
 ReadingPlaces reading_places() {
-  // Who names an instruction set has the same bits on every processor.
+  // A named instruction set gives the same bits on every processor.
 #if defined(__x86_64__) && defined(__GNUC__)
   static const bool one = !instruction_set_is_given() && __builtin_cpu_is("amd") != 0;
   return one ? ReadingPlaces::one : ReadingPlaces::four;

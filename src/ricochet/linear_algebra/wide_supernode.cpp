@@ -9,14 +9,14 @@ namespace ricochet {
 
 namespace {
 
-/// Blocks of eight columns in a strip: its triangle should take little of the time that its rows take.
+/// Blocks of eight columns in a strip: its triangle should take little time compared with its rows.
 constexpr Index strip_blocks = 16;
 constexpr Index strip_columns = 8 * strip_blocks + 8;
-/// Below a strip.
+/// Bounds for the parts below a strip.
 constexpr Index most_parts = 16, least_part_panels = 8;
-/// In so many parts a thread reads at the same time where that is quicker, so many panels here and there.
+/// Number of parts that a thread reads concurrently if that is faster, and number of panels read from each in turn.
 constexpr Index most_places = 4, panels_in_turn = 8;
-/// Numbers of a supernode from which on it is wide: half a megabyte takes longer to read than threads to meet.
+/// A supernode with at least so many numbers is wide: half a megabyte takes longer to read than threads to synchronize.
 constexpr Index least_size = Index{1} << 16;
 
 /// Calls visit(part, panel, count) for the panels of parts [first, last), so that a few parts take turns.

@@ -7,12 +7,12 @@ namespace ricochet {
 
 namespace {
 
-/// A pivot is what is left of a row's square without the rows before: of a row that depends on them, rounding.
+/// A pivot is the square of a row after elimination of the preceding rows: for a dependent row it is rounding error.
 constexpr double smallest_pivot = 1e-14;
 constexpr double smallest_size = 1e-12;
 constexpr double rounding = 1e-14;
 
-/// A = L Lᵀ; false where A is singular to rounding.
+/// Cholesky factorization A = L Lᵀ; returns false if A is singular to rounding.
 bool factorize(int dimension, const double (&a)[3][3], double (&lower)[3][3]) {
   for (int j = 0; j < dimension; ++j) {
     double pivot = a[j][j];
@@ -28,7 +28,7 @@ bool factorize(int dimension, const double (&a)[3][3], double (&lower)[3][3]) {
   return true;
 }
 
-/// axes ξ = x. What is left over is rounding of x, which that of a product with the inverse would not be.
+/// Solves axes ξ = x. The residual is at the rounding level of x, unlike that of a product with the inverse.
 void solve(const AffineFrame& frame, int dimension, const double* x, double* xi) {
   for (int i = 0; i < dimension; ++i) {
     double sum = x[i];
@@ -37,7 +37,7 @@ void solve(const AffineFrame& frame, int dimension, const double* x, double* xi)
   }
 }
 
-/// Moves the origin of the frame into the centre of gravity and makes the second moments one.
+/// Moves the origin of the frame to the centre of gravity and normalizes the second moments to the identity.
 bool normalize(const Points& nodes, const int* of, int count, const Vector& trust, AffineFrame& frame) {
   const int d = static_cast<int>(nodes.rows());
   double mean[3] = {}, second[3][3] = {}, xi[3];
@@ -64,7 +64,7 @@ bool normalize(const Points& nodes, const int* of, int count, const Vector& trus
   return true;
 }
 
-/// 2 − G, the inverse of a G that is the identity but for rounding.
+/// Computes 2 − G, the inverse of a G that is the identity up to rounding.
 void invert_gram(const Points& nodes, const int* of, int count, const Vector& trust, AffineFrame& frame) {
   const int d = static_cast<int>(nodes.rows());
   for (int a = 0; a <= d; ++a) frame.inverse_gram[a][a] = 2.0;
@@ -123,11 +123,11 @@ bool make_affine_frame(const Points& nodes, const int* of, int count, const Vect
   }
   const double longest = std::max({size[0], size[1], size[2]});
   for (int k = 0; k < d; ++k) {
-    // What rounding leaves of a plane that is one of the axes'.
+    // Detects planes normal to a coordinate axis, whose extent is rounding error.
     if (!(size[k] > smallest_size * longest && size[k] > rounding * largest[k])) return false;
     frame.axes[k][k] = size[k];
   }
-  // The second round takes away what rounding left of the first in flat cells: squares lose twice the digits.
+  // The second pass removes the rounding error of the first in flat cells: squares lose twice as many digits.
   for (int round = 0; round < 2; ++round) {
     if (!normalize(nodes, of, count, trust, frame)) return false;
   }

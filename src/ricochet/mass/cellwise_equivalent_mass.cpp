@@ -17,7 +17,8 @@ namespace ricochet {
 
 namespace {
 
-/// PᵀRP with P = (1, ξ): the inertia of affine velocities, in a frame. The dimension + 1 first rows and columns count.
+/// PᵀRP with P = (1, ξ): the inertia of affine velocities in a frame. Only the first dimension + 1 rows and columns are
+/// used.
 using AffineInertia = std::array<std::array<double, 4>, 4>;
 
 void add_inertia(AffineInertia& to, double factor, const AffineInertia& added) {
@@ -26,10 +27,10 @@ void add_inertia(AffineInertia& to, double factor, const AffineInertia& added) {
   }
 }
 
-/// A cell with contact nodes: PᵀRP of the inertia R that it cannot keep, in the frame of its nodes.
+/// Cell with contact nodes: PᵀRP of the inertia R that it cannot keep, in the frame of its nodes.
 struct Giver {
   int cell = 0;
-  double weight = 1.0;  ///< of the mass that is built, by the inertia
+  double weight = 1.0;  ///< ratio of the mass to be built to the inertia
   AffineFrame frame;
   AffineInertia inertia{};
   std::size_t first_share = 0;
@@ -40,10 +41,10 @@ struct Donor {
   int cell = 0;
   AffineFrame frame;  ///< of its free nodes
   AffineInertia received{};
-  AffineInertia cost{};  ///< of inertia that it receives: Σ_i L_i²/D_i (m)_ii, m what is added to its free nodes
+  AffineInertia cost{};  ///< of received inertia: Σ_i L_i²/D_i (m)_ii, with m the matrix added to its free nodes
 };
 
-/// θ_Tq, and what is shared in the frame of the donor.
+/// θ_Tq, and the inertia to be shared in the frame of the donor.
 struct Share {
   int donor = 0;
   double part = 0.0;
@@ -51,8 +52,8 @@ struct Share {
   AffineInertia inertia;
 };
 
-/// M₀ = Σ_free m_T + Σ_contact [S_T + Σ_q θ_Tq W_Tqᵀ R_T W_Tq], see docs/equivalent-mass.md. As W_Tq makes affine
-/// functions of what it gets, R_T is known by its moments PᵀRP alone, and a donor by their sum.
+/// Builds M₀ = Σ_free m_T + Σ_contact [S_T + Σ_q θ_Tq W_Tqᵀ R_T W_Tq], see docs/equivalent-mass.md. Since W_Tq maps to
+/// affine functions, only the moments PᵀRP of R_T are needed, and only their sum for each donor.
 class CellwiseBuilder {
  public:
   explicit CellwiseBuilder(const MassInput& input);
@@ -79,26 +80,27 @@ class CellwiseBuilder {
   const int d_;
   std::vector<char> is_contact_;
   Vector trust_;         ///< D
-  Vector kept_;          ///< the diagonal of what cells keep of their inertia
+  Vector kept_;          ///< diagonal of the inertia that cells keep
   SparseMatrix result_;  ///< on the pattern of M
-  Matrix remains_;       ///< work space: S_T, with rows of contact nodes that are zero
+  Matrix remains_;       ///< work space: S_T, with zero rows for contact nodes
   CellRings rings_;
   std::vector<Giver> givers_;
   std::vector<Donor> donors_;
-  std::vector<int> donor_number_;  ///< per cell; −1: it is none, −2: not looked for yet
+  std::vector<int> donor_number_;  ///< per cell; −1: not a donor, −2: not yet determined
   std::vector<Share> shares_;
 };
 
-/// Two free nodes of a cell: the consistent mass couples them.
+/// Entry of two free nodes of a cell, which the consistent mass couples.
 double& entry_of(SparseMatrix& matrix, Index row, Index column) {
   double* const entry = stored_entry(matrix, row, column);
   if (entry == nullptr) throw std::logic_error("a mass does not couple two nodes of a cell");
   return *entry;
 }
 
-/// Cells that share what one gives: whole rings of them, so that the order of cells does not matter.
+/// Number of donors that share the inertia of a cell: always whole rings of them, so that the order of cells does not
+/// matter.
 constexpr std::size_t wanted_donors = 3;
-/// Times that θ is found anew with the diagonal of the mass that it makes.
+/// Number of updates of θ with the diagonal of the resulting mass.
 constexpr int sweeps = 3;
 
 CellwiseBuilder::CellwiseBuilder(const MassInput& input)
@@ -124,7 +126,7 @@ SparseMatrix CellwiseBuilder::build() {
 }
 
 /// Adds m_T, of a contact cell S_T = m_FF − m_FC m_CC⁻¹ m_CF: contact nodes are eliminated one after the other, and
-/// what each elimination takes away, r rᵀ/m_cc with the column r of the contact node, is a part of R_T.
+/// each elimination adds the removed matrix r rᵀ/m_cc, with the column r of the contact node, to R_T.
 void CellwiseBuilder::add_cell(int cell, const std::vector<Index>& nodes, const Matrix& inertia, double weight) {
   const auto count = static_cast<Index>(nodes.size());
   if (std::none_of(nodes.begin(), nodes.end(), [this](Index node) { return is_contact(node); }))
@@ -157,7 +159,7 @@ void CellwiseBuilder::add_cell(int cell, const std::vector<Index>& nodes, const 
   givers_.push_back(giver);
 }
 
-/// Adds what a cell keeps. The lower triangle counts for both.
+/// Adds the inertia that a cell keeps. Only the lower triangle of `inertia` is used.
 void CellwiseBuilder::keep_inertia(const std::vector<Index>& nodes, const Matrix& inertia, double weight) {
   const auto count = static_cast<Index>(nodes.size());
   for (Index j = 0; j < count; ++j) {
@@ -188,9 +190,9 @@ int CellwiseBuilder::donor_of(int cell) {
   return number = static_cast<int>(donors_.size()) - 1;
 }
 
-/// Ring by ring, until there are enough. Where they are rare, rings that are twice as far as the first that has one are
-/// not asked any more, nor those beyond many cells: from so far away inertia is heaped up more than any user would
-/// want, and to look for donors in the whole of a body, cell after cell, would take minutes.
+/// Searches ring by ring until there are enough donors. If donors are rare, the search ends at twice the distance of
+/// the first ring with one, and beyond `many_cells`: from so far away inertia is amplified more than any user would
+/// accept, and searching a whole body for donors, cell after cell, would take minutes.
 void CellwiseBuilder::find_donors() {
   for (Giver& giver : givers_) {
     giver.first_share = shares_.size();
@@ -211,8 +213,8 @@ void CellwiseBuilder::find_donors() {
   }
 }
 
-/// PᵀRP with P = (1, ξ) in the frame of the donor. False where the donor's free nodes hardly span space: the nodes of
-/// the giver are further away, root mean square, than a hundred times their spread in some direction.
+/// Computes PᵀRP with P = (1, ξ) in the frame of the donor. Returns false if the donor's free nodes barely span space:
+/// if the root mean square distance of the contact cell's nodes exceeds a hundred times their spread in some direction.
 bool CellwiseBuilder::see(const Donor& donor, const Giver& giver, AffineInertia& inertia) const {
   constexpr double largest_distance = 100.0;
   double change[4][4] = {{1.0}}, shift[3], turn[3][3], square = 0.0;
@@ -243,7 +245,7 @@ bool CellwiseBuilder::see(const Donor& donor, const Giver& giver, AffineInertia&
   return true;
 }
 
-/// visit(node, w): Σ_i w_i v_i are the value in the centre of the donor and the gradient in its ξ of the affine fit.
+/// Calls visit(node, w): Σ_i w_i v_i are the value of the affine fit at the centre of the donor and its gradient in ξ.
 template <class Visit>
 void CellwiseBuilder::for_each_weight(const Donor& donor, const Visit& visit) const {
   for (int k = 0; k < rings_.node_count(donor.cell); ++k) {
@@ -275,7 +277,8 @@ void CellwiseBuilder::update_costs(const Vector& lengths) {
   }
 }
 
-/// θ_Tq in proportion to 1/c², c_Tq the trace of what q would get, relative to D, with the weights L².
+/// Sets θ_Tq in proportion to 1/c², with c_Tq the trace of the inertia that q would receive relative to D, with the
+/// weights L².
 void CellwiseBuilder::update_parts(const Giver& giver, std::size_t end, bool first) {
   double sum = 0.0, least = 0.0;
   for (std::size_t s = giver.first_share; s < end; ++s) {
@@ -302,7 +305,7 @@ void CellwiseBuilder::receive(const Giver& giver, std::size_t end, double weight
   }
 }
 
-/// Of the mass that the shares make of the inertia.
+/// Diagonal of the inertia after redistribution.
 Vector CellwiseBuilder::diagonal() const {
   Vector result = kept_;
   for (const Donor& donor : donors_) {
@@ -312,8 +315,8 @@ Vector CellwiseBuilder::diagonal() const {
   return result;
 }
 
-/// L = 1 at first, then M₀_ii/D_i. Shares are those of the inertia, also where the mass that is built is damping, so
-/// that damping of one rate is that rate times the mass.
+/// Iterates on the shares with L = 1 at first, then M₀_ii/D_i. The shares are those of the inertia even if the mass
+/// being built is damping, so that damping with a uniform rate equals that rate times the mass.
 void CellwiseBuilder::share_out() {
   Vector lengths = Vector::Ones(trust_.size());
   for (int sweep = 0; sweep <= sweeps; ++sweep) {
@@ -341,7 +344,7 @@ void CellwiseBuilder::hand_over() {
   }
 }
 
-/// Names what the body of a cell has.
+/// Throws an error that describes the free nodes of the cell's body.
 void CellwiseBuilder::refuse(const Giver& giver) {
   rings_.start(giver.cell);
   while (rings_.grow()) continue;

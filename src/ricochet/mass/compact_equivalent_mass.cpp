@@ -16,14 +16,14 @@ namespace ricochet {
 
 namespace {
 
-/// Σ|w| of a contact node for which more donors are not looked for. Weights that extrapolate have both signs; on
-/// straight simplices of degree 2 that have a facet on the contact boundary they are 2, −1 or 1, 1, −1.
+/// Σ|w| of a contact node up to which no further donors are sought. Weights that extrapolate have both signs; on
+/// straight simplices of degree 2 with a facet on the contact boundary they are 2, −1 or 1, 1, −1.
 constexpr double small_weights = 4.0;
-/// After so many rings of cells these are good enough.
+/// Number of rings of cells after which `fair_weights` suffice.
 constexpr std::size_t many_rings = 4;
 constexpr double fair_weights = 10.0;
 
-/// The extension of a cell: its contact nodes follow free nodes of its own, or of it and its neighbours.
+/// Extension of a cell: its contact nodes are extrapolated from free nodes of its own, or of it and its neighbours.
 struct CellExtension {
   std::vector<Index> donors;                                 ///< ascending
   Matrix rows;                                               ///< E_e, nodes of the cell × donors
@@ -36,7 +36,7 @@ class CompactEquivalentMass final : public MassConstruction {
   [[nodiscard]] SparseMatrix build(const MassInput& input) const override;
 };
 
-/// Builds one mass.
+/// Builds one mass matrix.
 class Builder {
  public:
   explicit Builder(const MassInput& input);
@@ -59,11 +59,11 @@ class Builder {
   std::vector<char> is_contact_;
   Vector trust_;  ///< m_jj
   std::unique_ptr<CellRings> rings_;
-  std::vector<char> is_checked_;                ///< per cell: the free nodes of its body span space
-  std::vector<int> seen_from_;                  ///< per node: the cell that has it for a donor
+  std::vector<char> is_checked_;                ///< per cell: whether the free nodes of its body have been checked
+  std::vector<int> seen_from_;                  ///< per node: the last cell that used it as a donor
   SparseMatrix result_;                         ///< on the pattern of M
-  std::vector<Eigen::Triplet<double>> beyond_;  ///< what is not in it
-  int number_ = 0;                              ///< of the cell
+  std::vector<Eigen::Triplet<double>> beyond_;  ///< entries outside that pattern
+  int number_ = 0;                              ///< of the current cell, from 1
 };
 
 Builder::Builder(const MassInput& input)
@@ -88,7 +88,7 @@ SparseMatrix Builder::build() {
   return std::move(result_);
 }
 
-/// E_eᵀ m_e E_e.
+/// Adds E_eᵀ m_e E_e.
 void Builder::add_cell(const std::vector<Index>& nodes, const Matrix& mass) {
   ++number_;
   const auto count = static_cast<Index>(nodes.size());
@@ -110,7 +110,7 @@ void Builder::add_cell(const std::vector<Index>& nodes, const Matrix& mass) {
   }
 }
 
-/// From the cell's own free nodes if they are enough, else from more and more rings of cells.
+/// Extrapolates from the cell's own free nodes if they suffice, else from more and more rings of cells.
 CellExtension Builder::extend(const std::vector<Index>& nodes) {
   std::vector<Index> donors = free_nodes_of(nodes);
   CellExtension best = extend_from(nodes, donors);
@@ -121,7 +121,7 @@ CellExtension Builder::extend(const std::vector<Index>& nodes) {
   for (const Index donor : donors) seen_from_[static_cast<std::size_t>(donor)] = number_;
   for (std::size_t ring = 1, seen = 1, tried = donors.size(); rings_->grow(); ++ring) {
     for (; seen < rings_->cells().size(); ++seen) add_free_nodes(rings_->cells()[seen], donors);
-    // Far away a few more make no difference.
+    // Far away, a few additional donors make no difference.
     if (donors.size() > (ring <= many_rings ? tried : tried + tried / 4)) {
       tried = donors.size();
       std::sort(donors.begin(), donors.end());
@@ -132,7 +132,7 @@ CellExtension Builder::extend(const std::vector<Index>& nodes) {
     if (rings_->cells().size() > CellRings::many_cells && std::isfinite(best.weights)) return best;
   }
   if (!std::isfinite(best.weights)) refuse(nodes, rings_->nodes());
-  return best;  // all free nodes of the body
+  return best;  // extrapolated from all free nodes of the body
 }
 
 void Builder::start_rings() {
@@ -150,7 +150,7 @@ void Builder::add_free_nodes(int cell, std::vector<Index>& donors) {
   }
 }
 
-/// Refuses, once per body, what no number of rings would mend: they would grow to the whole body, cell after cell.
+/// Rejects, once per body, a body that no number of rings would remedy: the search would extend over it for every cell.
 void Builder::require_free_nodes_of_body(const std::vector<Index>& nodes) {
   if (is_checked_[static_cast<std::size_t>(number_ - 1)] != 0) return;
   rings_->start(number_ - 1);
@@ -177,9 +177,9 @@ std::vector<Index> Builder::free_nodes_of(const std::vector<Index>& nodes) const
   return result;
 }
 
-/// With the columns a_j = (1, x_j − x̄) of A and T = diag(m_jj), the w with A w = (1, x_c − x̄) that are least in
-/// Σ w_j²/m_jj: w = T^½ v with the least v of A T^½ v = (1, x_c − x̄). Leaves Σ|w| infinite where the donors do not
-/// span space.
+/// With the columns a_j = (1, x_j − x̄) of A and T = diag(m_jj), computes the w with A w = (1, x_c − x̄) and
+/// the least Σ w_j²/m_jj: w = T^½ v with the least-norm v of A T^½ v = (1, x_c − x̄). Leaves Σ|w| infinite if
+/// the donors do not span space.
 void Builder::extrapolate(const std::vector<Index>& nodes, CellExtension& extension) const {
   const Index dimension = input_.nodes->rows();
   const auto count = static_cast<Index>(extension.donors.size());
@@ -212,7 +212,7 @@ void Builder::extrapolate(const std::vector<Index>& nodes, CellExtension& extens
     }
     wanted.tail(dimension) = (input_.nodes->col(nodes[i]) - centre) / size;
     Vector weights = scale.cwiseProduct(solver.solve(wanted));
-    // In flat cells rounding leaves something to do.
+    // One step of iterative refinement, for flat cells.
     weights += scale.cwiseProduct(solver.solve(wanted - conditions * weights));
     largest = std::max(largest, weights.lpNorm<1>());
     extension.rows.row(static_cast<Index>(i)) = weights.transpose();

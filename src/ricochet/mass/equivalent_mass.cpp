@@ -8,12 +8,12 @@ namespace ricochet {
 
 namespace {
 
-/// One of the three positive semi-definite constructions, for each problem by what it is (docs/equivalent-mass.md has
-/// the measurements). In space cell by cell, whose pattern is that of the consistent mass: the factor of a step is half
-/// as large, and with degree 1 frequencies are as near to the exact ones but on coarse balls. Where bodies are too
-/// coarse for that node by node, which needs no whole cell and heaps up less, or within cells where there are many
-/// contact nodes and more free ones; and node by node in the plane, where factors differ little. Where that is refused,
-/// cells that heap up more are better than nothing.
+/// Selects one of the three positive semi-definite constructions according to the problem (docs/equivalent-mass.md has
+/// the measurements). In 3D it is the cellwise one, whose pattern is that of the consistent mass: the factor of a step
+/// is half as large, and with degree 1 the frequencies are equally accurate except on coarse balls. For bodies too
+/// coarse for it, it is the nodewise one, which needs no whole cell and amplifies inertia less, or the compact one if
+/// there are many contact nodes and even more free ones; in 2D, where the factors differ little, it is the nodewise
+/// one. If that is refused, a cellwise mass of higher amplification is better than none.
 class EquivalentMass final : public MassConstruction {
  public:
   [[nodiscard]] bool removes_contact_inertia() const override { return true; }
@@ -32,10 +32,10 @@ class EquivalentMass final : public MassConstruction {
     const std::string reason =
         by_cells ? fmt::format("on so coarse a body cells would heap up {:.3g} times the inertia that was there", top)
                  : "cells with enough free nodes to take the inertia of others are rare or missing";
-    // Where no free cell is near, `compact` looks far for each cell, and the factor of `nodewise` is small.
+    // If no free cell is near, `compact` searches far away for each cell, and the factor of `nodewise` is small.
     const char* const name = is_large && by_cells ? compact : nodewise;
     if (std::optional<SparseMatrix> mass = built(name, inertia)) return MassChoice{name, reason, std::move(mass)};
-    if (!by_cells) return MassChoice{name, reason, {}};  // building it says what stands in the way
+    if (!by_cells) return MassChoice{name, reason, {}};  // building it throws an error with the reason
     return MassChoice{cellwise, fmt::format("{}, but \"{}\" refuses it", reason, name), by_cells};
   }
 
@@ -58,8 +58,8 @@ class EquivalentMass final : public MassConstruction {
   static constexpr const char* nodewise = "equivalent-nodewise";
   static constexpr const char* cellwise = "equivalent-cellwise";
   static constexpr const char* compact = "equivalent-compact";
-  /// Of D⁻¹M₀, the top eigenvalue from which on the other mass is better for the small and coarse, whose factors are
-  /// small anyway; and for the large, whose factor node by node would be several times as large.
+  /// Top eigenvalue of D⁻¹M₀ above which another mass is preferred: for small problems, whose factors are small anyway,
+  /// and for large ones, whose nodewise factor would be several times as large.
   static constexpr double most_of_small = 20.0, most_of_large = 60.0;
   static constexpr std::size_t many_contact_nodes = 2000;
 };

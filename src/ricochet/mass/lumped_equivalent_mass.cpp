@@ -14,7 +14,7 @@ namespace ricochet {
 
 namespace {
 
-/// How a body is told from others in messages.
+/// Identifies a body in messages.
 std::string name_of(const MassInput& input, const MassBody& body) {
   return "the body with the node at " + text_of_point(*input.nodes, body.nodes.front());
 }
@@ -27,16 +27,17 @@ std::string name_of(const MassInput& input, const MassBody& body) {
                           name_of(input, body), reason));
 }
 
-/// Of ξη in the list of second moments: its norm is then that of the symmetric matrix, and the same in all directions.
+/// Factor of ξη in the list of second moments: with it the norm of the list is that of the symmetric
+/// matrix and independent of the axes.
 double factor_of(Index a, Index b) {
   return a == b ? 1.0 : std::numbers::sqrt2;
 }
 
-/// What the masses of one body must sum to, in the frame of the body.
+/// Moments that the masses of one body must reproduce, in the frame of the body.
 struct Moments {
   Matrix functions;  ///< 1, ξ, η[, ζ], ξ², √2 ξη, η² and so on at the body's nodes, nodes × (6 or 10)
   Vector wanted;     ///< PᵃᵀMPᵇ in the same order
-  Index affine = 0;  ///< number of the first ones, 1, ξ, η[, ζ]
+  Index affine = 0;  ///< number of the affine functions 1, ξ, η[, ζ], which come first
 };
 
 Moments moments_of(const MassInput& input, const MassFrames& frames, const MassBody& body) {
@@ -60,12 +61,12 @@ Moments moments_of(const MassInput& input, const MassFrames& frames, const MassB
   return result;
 }
 
-/// What Σ_i m_i f(x_i) lacks of what is wanted, relative to the total.
+/// Defect of the moments Σ_i m_i f(x_i), relative to the total mass.
 Vector defect(const Moments& moments, const Vector& mass) {
   return (moments.wanted - moments.functions.transpose() * mass) / mass.sum();
 }
 
-/// m ← m (1 + θ p). Returns θ: the most, up to 1, that leaves every node half of its mass.
+/// Applies m ← m (1 + θ p). Returns θ, the largest value up to 1 with which every node keeps half of its mass.
 double apply(const Vector& change, Vector& mass) {
   double lowest = 0.0;
   for (Index i = 0; i < mass.size(); ++i) {
@@ -76,39 +77,39 @@ double apply(const Vector& change, Vector& mass) {
   return theta;
 }
 
-/// Total mass and centre of gravity by the affine p of the least Σ (Δm)²/m.
+/// Corrects total mass and centre of gravity with the affine p of the least Σ (Δm)²/m.
 double correct_centre(const Moments& moments, Vector& mass) {
   const auto affine = moments.functions.leftCols(moments.affine);
   const Matrix gram = affine.transpose() * (mass / mass.sum()).asDiagonal() * affine;
   return apply(affine * PivotedCholesky(gram).solve(Vector(defect(moments, mass).head(moments.affine))), mass);
 }
 
-/// Moments of inertia likewise, total mass and centre being right already, by a p in the span of the quadratic
-/// functions' parts that are orthogonal to the affine ones in the weights m: whatever θ, those two are not changed.
+/// Corrects the moments of inertia, total mass and centre being correct already, with a p in the span of the components
+/// of the quadratic functions orthogonal to the affine ones in the weights m: for any θ, mass and centre do not change.
 double correct_inertia(const Moments& moments, Vector& mass) {
   const auto affine = moments.functions.leftCols(moments.affine);
   const Vector weight = mass / mass.sum();
   const PivotedCholesky gram(affine.transpose() * weight.asDiagonal() * affine);
   Matrix part = moments.functions.rightCols(moments.wanted.size() - moments.affine);
   const Vector lacking = defect(moments, mass).tail(part.cols());
-  // Twice, for rounding.
+  // Twice because of rounding.
   for (int round = 0; round < 2; ++round)
     part -= affine * gram.solve(Matrix(affine.transpose() * weight.asDiagonal() * part));
-  // Rank-revealing: where all nodes are at two values of x, x² is an affine function on them and cannot be corrected.
+  // Rank-revealing: if all nodes lie at two values of x, x² is an affine function on them and cannot be corrected.
   const LeastNormSolver factor(part.transpose() * weight.asDiagonal() * part, 1e-10);
   return apply(part * factor.solve(lacking), mass);
 }
 
-/// The tensor of inertia tr(S) I − S that belongs to second moments S; in the plane the one moment tr(S).
+/// Tensor of inertia tr(S) I − S of the second moments S; in 2D the single moment tr(S).
 Matrix inertia_tensor(const Matrix& second) {
   const Index d = second.rows();
   if (d == 2) return Matrix::Constant(1, 1, second.trace());
   return second.trace() * Matrix::Identity(d, d) - second;
 }
 
-/// What the masses of a body make of its moments of inertia.
+/// Accuracy of the moments of inertia that the masses of a body yield.
 struct InertiaCheck {
-  double least = 1.0;    ///< the least moment of inertia about an axis through the centre, relative to the true one
+  double least = 1.0;    ///< the least moment of inertia about an axis through the centre, relative to the exact one
   double lacking = 0.0;  ///< the largest relative error of these and, relative to the largest, of the second moments
 };
 
@@ -132,8 +133,8 @@ InertiaCheck check_inertia(const MassBody& body, const Moments& moments, const V
           std::max(ratios.cwiseAbs().maxCoeff(), (own - wanted).cwiseAbs().maxCoeff() / wanted.cwiseAbs().maxCoeff())};
 }
 
-/// l with the mass of each contact node shared among the free nodes nearest to it in the graph, in proportion to the
-/// masses that these have.
+/// Returns l with the mass of each contact node distributed among the free nodes nearest to it in the graph, in
+/// proportion to their own masses.
 Vector share_contact_mass(const MassInput& input, const Vector& lumped) {
   const SparseMatrix& graph = *input.consistent;
   const std::vector<char> is_contact = input.marked_contact_nodes();
@@ -173,23 +174,22 @@ Vector share_contact_mass(const MassInput& input, const Vector& lumped) {
   return result;
 }
 
-/// A diagonal mass without inertia on the contact nodes, for explicit schemes. Three steps, the last two body by body:
-/// 1. d: the lumped mass, that of contact nodes shared among the nearest free nodes. Total mass is kept, and no node
-/// has
-///    less than it had.
+/// Diagonal mass without inertia on the contact nodes, for explicit schemes. Three steps, the last two body by body:
+/// 1. d: the lumped mass, with that of contact nodes distributed among the nearest free nodes. Total mass is preserved,
+///    and no free node loses mass.
 /// 2. m = d (1 + a(x)) with the affine a that restores the centre of gravity.
 /// 3. m ← m (1 + p(x)) with the quadratic p that restores the moments of inertia. All conditions of an equivalent mass
 ///    then hold: 6 in 2D, 10 in 3D.
-/// a and p are those of the least Σ (Δm)²/m, from one small system each, and of the order of h² on a mesh of size h:
-/// masses of the order of h are moved by h. Where step 3 would take more than half of some node's mass, p is scaled
-/// down: total mass and centre still hold, the moments of inertia as far as that goes, which is said in the log.
+/// a and p minimize Σ (Δm)²/m, are found from one small system each, and are of the order of h² on a mesh of size h:
+/// masses of the order of h are moved by h. If step 3 would remove more than half of some node's mass, p is scaled
+/// down: total mass and centre remain exact, the moments of inertia are as close as possible, and a warning is logged.
 class LumpedEquivalentMass final : public MassConstruction {
  public:
   [[nodiscard]] bool removes_contact_inertia() const override { return true; }
 
-  /// Damping keeps the rate of each node: c_i = m_i (∫aρ φ_i²)/(∫ρ φ_i²).
+  /// Preserves the damping rate of each node: c_i = m_i (∫aρ φ_i²)/(∫ρ φ_i²).
   [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
-    const bool warns = input.consistent == &input.inertia_matrix();  // once, not for damping again
+    const bool warns = input.consistent == &input.inertia_matrix();  // only once, not again for damping
     const Vector mass = build_diagonal({&input.inertia_matrix(), input.nodes, input.contact_nodes}, warns);
     if (input.consistent == &input.inertia_matrix()) {
       return to_matrix(mass);
@@ -223,12 +223,12 @@ class LumpedEquivalentMass final : public MassConstruction {
         name_of(input, body), 100.0 * lacking));
   }
 
-  /// Less than this part of a moment of inertia is no approximation of it any more.
+  /// Fraction of a moment of inertia below which the mass is no longer an approximation.
   static constexpr double least_inertia = 0.1;
-  /// Of the nodes that have mass in their worst direction, relative to the body's own.
+  /// Least spread of the nodes with mass, in their worst direction, relative to that of the body.
   static constexpr double least_spread = 0.01;
 
-  /// Masses at points in one plane (on one line in 2D) cannot turn like a body, whatever their sizes.
+  /// Point masses in one plane (on one line in 2D) cannot rotate like a body, whatever their sizes.
   static void require_span(const MassInput& input, const MassBody& body, const Moments& moments, const Vector& mass) {
     const Index d = moments.affine - 1;
     const auto positions = moments.functions.middleCols(1, d);
@@ -245,14 +245,14 @@ class LumpedEquivalentMass final : public MassConstruction {
     refuse(input, body, describe_free_nodes(*input.nodes, body.nodes, free));
   }
 
-  /// Steps 2 and 3 on one body. Returns what its moments of inertia lack, see InertiaCheck.
+  /// Performs steps 2 and 3 on one body. Returns the error of its moments of inertia, see InertiaCheck.
   static double balance(const MassInput& input, const MassFrames& frames, const MassBody& body, Vector& diagonal) {
     const char* const too_few = "too few nodes off the contact boundary to carry its mass about its centre of gravity";
     const Moments moments = moments_of(input, frames, body);
     Vector mass(static_cast<Index>(body.nodes.size()));
     for (Index i = 0; i < mass.size(); ++i) mass[i] = diagonal[body.nodes[static_cast<std::size_t>(i)]];
     require_span(input, body, moments, mass);
-    // Second rounds take away what rounding left of the first.
+    // The second corrections remove the rounding error of the first.
     if (correct_centre(moments, mass) < 1.0) refuse(input, body, too_few);
     correct_centre(moments, mass);
     if (correct_inertia(moments, mass) == 1.0) correct_inertia(moments, mass);
@@ -268,7 +268,7 @@ class LumpedEquivalentMass final : public MassConstruction {
     return inertia.lacking;
   }
 
-  /// Contact nodes have no entry.
+  /// Diagonal matrix without entries for contact nodes.
   static SparseMatrix to_matrix(const Vector& diagonal) {
     SparseMatrix result(diagonal.size(), diagonal.size());
     result.reserve(Eigen::VectorXi::Constant(diagonal.size(), 1));

@@ -2,12 +2,13 @@
 
 namespace ricochet {
 
-/// Where row sums are not all positive (degree 2, whose vertices have zero or negative ones): E. Hinton, T. Rock,
-/// O. C. Zienkiewicz, Earthquake Engng. Struct. Dyn. 4 (1976) 245–249.
+/// If not all row sums are positive (degree 2, where those of vertices are zero or negative), the diagonal is scaled:
+/// E. Hinton, T. Rock, O. C. Zienkiewicz, Earthquake Engng. Struct. Dyn. 4 (1976) 245–249.
 Vector lumped_diagonal(const SparseMatrix& consistent) {
   Vector diagonal = consistent * Vector::Ones(consistent.cols());
   const Vector own = consistent.diagonal();
-  // A row sum that is zero in exact arithmetic is rounding here; both quantities are masses, so the ratio has no unit.
+  // A row sum that is zero in exact arithmetic is rounding error here; both quantities are
+  // masses, so their ratio has no unit.
   if (((diagonal.array() / own.array()) < 1e-6).any()) diagonal = own * (diagonal.sum() / own.sum());
   return diagonal;
 }

@@ -8,7 +8,7 @@
 
 namespace ricochet {
 
-// The masses, each by the function of its own file that registers it. One line each, in the order of the documentation.
+// The masses, each by the registration function of its own file. One line each, in the order of the documentation.
 // clang-format off
 #define RICOCHET_MASSES(mass)   \
   mass(consistent_mass)         \
@@ -61,8 +61,7 @@ bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& ex
   int count = 0;
   for (int& n : number) n = n < 0 ? -1 : count++;
   SparseMatrix block = extract(mass, number, count, number, count);
-  // With a diagonal scaling, "positive to rounding" has a meaning that does not depend on units or on the mesh's
-  // grading.
+  // With a diagonal scaling, "positive to rounding" is independent of units and of the grading of the mesh.
   const Vector diagonal = block.diagonal();
   if (count > 0 && !(diagonal.minCoeff() > 0.0)) return false;
   const Vector scale = diagonal.cwiseSqrt().cwiseInverse();

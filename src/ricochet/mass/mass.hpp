@@ -15,63 +15,64 @@ namespace ricochet {
 
 class CellMasses;
 
-/// The mass that is built for one that chooses.
+/// Mass selected by an automatic mass type.
 struct MassChoice {
   std::string name;
-  std::string reason;                ///< empty where it goes by the dimension alone, or nothing was to choose
-  std::optional<SparseMatrix> mass;  ///< where it had to be built for the choice
-  Parameters parameters = {};        ///< the values of its keys
+  std::string reason;                ///< empty if the dimension alone decides, or if there was no choice
+  std::optional<SparseMatrix> mass;  ///< if building it was part of the choice
+  Parameters parameters = {};        ///< values of its keys
 };
 
-/// What a mass is built from.
+/// Input of a mass construction.
 struct MassInput {
   const SparseMatrix* consistent = nullptr;  ///< ∫ρ φ_i φ_j, nodes × nodes; or ∫aρ φ_i φ_j, damping with rates a ≥ 0
   const Points* nodes = nullptr;             ///< positions, d × nodes
-  std::vector<Index> contact_nodes;  ///< ascending, each once
-  /// ∫ρ φ_i φ_j when `consistent` is damping, which may vanish somewhere; null: the same.
+  std::vector<Index> contact_nodes;  ///< ascending, unique
+  /// ∫ρ φ_i φ_j if `consistent` is damping, which may vanish in places; null: `consistent` itself.
   const SparseMatrix* inertia = nullptr;
-  /// The cells that `consistent` is the sum of; null where nobody works cell by cell.
+  /// Cells whose matrices sum to `consistent`; null if no construction works cell by cell.
   const CellMasses* cells = nullptr;
 
   [[nodiscard]] const SparseMatrix& inertia_matrix() const { return inertia != nullptr ? *inertia : *consistent; }
   /// Per node: 1 for contact nodes, 0 for free ones.
   [[nodiscard]] std::vector<char> marked_contact_nodes() const;
-  /// Throws Error(invalid_input) without `cells`, on behalf of the mass of this name.
+  /// Throws Error(invalid_input) in the name of a mass type if `cells` is null.
   void require_cells(const std::string& name) const;
 };
 
-/// A way to distribute the mass of a body over its nodes.
+/// Method of distributing the mass of a body over its nodes.
 class MassConstruction {
  public:
   virtual ~MassConstruction() = default;
-  /// The scalar mass matrix, nodes × nodes, exactly symmetric. With removes_contact_inertia() the rows and columns of
-  /// the contact nodes are zero (not stored). Throws Error(invalid_input) which says what stands in the way, where, and
-  /// what to use instead.
+  /// Returns the scalar mass matrix, nodes × nodes, exactly symmetric. With removes_contact_inertia() the rows
+  /// and columns of the contact nodes are zero (not stored). Throws Error(invalid_input) with the obstacle,
+  /// its location and an alternative.
   [[nodiscard]] virtual SparseMatrix build(const MassInput& input) const = 0;
-  /// True when contact nodes get no inertia: the equivalent masses of the source's section 5.
+  /// Whether contact nodes have no inertia: the equivalent masses of section 5 of the source.
   [[nodiscard]] virtual bool removes_contact_inertia() const { return false; }
-  /// The mass that this one is built as, if it is one that chooses: by the inertia, so that damping has the same.
+  /// Mass type that this one selects, if it is automatic: based on the inertia, so that damping uses the same.
   [[nodiscard]] virtual std::optional<MassChoice> choose(const MassInput&) const { return {}; }
 };
 
 using MassConstructor = std::function<std::unique_ptr<MassConstruction>(const Parameters& parameters)>;
 using MassRegistration = Registration<MassConstructor>;
 
-/// All masses. A program of one's own may add to them.
+/// Registry of all masses. A program may add its own.
 [[nodiscard]] Registry<MassConstructor>& mass_registry();
 [[nodiscard]] inline std::vector<std::string> mass_names() {
   return mass_registry().names();
 }
-/// By the name used in a case file, with the values of its keys; throws Error(invalid_input) that lists the names.
+/// Creates a mass by its name in case files, with the values of its keys; throws
+/// Error(invalid_input) that lists the names.
 [[nodiscard]] std::unique_ptr<MassConstruction> make_mass(const std::string& name, Parameters parameters = {});
-/// The mass that is built for the one asked for, with the values of its keys.
+/// Mass to be built for the requested type, with the values of its keys.
 [[nodiscard]] MassChoice mass_to_build(const std::string& asked, const Parameters& parameters, const MassInput& input);
 
-/// A diagonal mass: row sums where they are all positive (degree 1: total mass and centre of gravity are kept), else
-/// the diagonal of the consistent mass, scaled to keep the total.
+/// Diagonal mass: the row sums if all are positive (degree 1: total mass and centre of gravity are preserved), else the
+/// diagonal of the consistent mass scaled to the same total.
 [[nodiscard]] Vector lumped_diagonal(const SparseMatrix& consistent);
 
-/// Proof by factorization that the block of the given nodes (all when empty) is positive definite.
+/// Returns whether the block without the given nodes is positive definite, as proved by a factorization.
 [[nodiscard]] bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes);
 
 }  // namespace ricochet

@@ -15,7 +15,7 @@ namespace ricochet {
 
 namespace {
 
-/// Size of the body in each direction, for numbers near one.
+/// Scales the frame by the extent of the body in each direction, for coordinates of order one.
 void start_frame(const Points& nodes, MassFrames& frames, MassBody& body) {
   const Index d = nodes.rows();
   Vector low = nodes.col(body.nodes.front()), high = low;
@@ -32,7 +32,7 @@ void start_frame(const Points& nodes, MassFrames& frames, MassBody& body) {
   }
 }
 
-/// How far rounding moves the nodes of a body, in its frame, at most.
+/// Largest rounding error of the nodes of a body, in its frame.
 double position_rounding(const Points& nodes, const MassBody& body) {
   const Index d = nodes.rows();
   const Matrix inverse = body.axes.triangularView<Eigen::Lower>().solve(Matrix::Identity(d, d)).cwiseAbs();
@@ -41,7 +41,7 @@ double position_rounding(const Points& nodes, const MassBody& body) {
   return std::numeric_limits<double>::epsilon() * (inverse * largest).maxCoeff();
 }
 
-/// Moves the origin into the centre of gravity and makes the second moments one.
+/// Moves the origin to the centre of gravity and normalizes the second moments to the identity.
 void normalize(const SparseMatrix& mass, MassFrames& frames, MassBody& body) {
   const Index d = body.centre.size();
   const Matrix moments = mass_moments(mass, frames, body);
@@ -63,13 +63,13 @@ MassFrames mass_frames(const SparseMatrix& mass, const Points& nodes) {
   MassFrames frames;
   frames.monomials.setZero(nodes.rows() + 1, nodes.cols());
   for (std::vector<Index>& members : graph_components(MatrixGraph(mass, 1))) {
-    // Tied nodes: those that they follow have their mass.
+    // Tied nodes have none: their mass is on the nodes to which they are tied.
     const bool has_mass = members.size() > 1 || mass.col(members.front()).nonZeros() > 0;
     if (!has_mass) continue;
     MassBody body;
     body.nodes = std::move(members);
     start_frame(nodes, frames, body);
-    // The second round takes away what rounding left of the first in flat bodies.
+    // The second pass removes the rounding error of the first in flat bodies.
     for (int round = 0; round < 2; ++round) normalize(mass, frames, body);
     frames.bodies.push_back(std::move(body));
   }
@@ -107,7 +107,7 @@ void check_moments(const MassInput& input, const SparseMatrix& mass, const std::
   const MassFrames frames = mass_frames(input.inertia_matrix(), *input.nodes);
   for (const MassBody& body : frames.bodies) {
     const double defect = moment_defect(mass, *input.consistent, frames, body);
-    // Σ|w| of the weights is ten or so where they extrapolate by a few cells.
+    // Σ|w| is about ten if the weights extrapolate by a few cells.
     if (defect <= 1e-10 + 100.0 * position_rounding(*input.nodes, body)) continue;
     throw Error(ErrorKind::invalid_input,
                 fmt::format("mass type \"{}\": the moments of inertia of the body with the node at {} would be off by "
@@ -150,16 +150,16 @@ Matrix relative_positions(const Points& nodes, const Vector& centre, const std::
   return result;
 }
 
-/// The dimension of what points of a body span affinely, in the frame in which the body is round: 0 at one point.
+/// Dimension of the affine span of points of a body, in the frame in which the body is equally wide: 0 for one point.
 int span_dimension(const Points& nodes, const std::vector<Index>& body, const std::vector<Index>& points) {
   Vector centre = Vector::Zero(nodes.rows());
   for (const Index node : body) centre += nodes.col(node) / static_cast<double>(body.size());
-  // X Xᵀ = Rᵀ R: R⁻ᵀ makes the body round, without the squares that lose half of the digits of flat bodies.
+  // X Xᵀ = Rᵀ R: R⁻ᵀ makes the body equally wide without forming squares, which lose half of the digits of flat bodies.
   const Matrix axes = upper_of_qr(relative_positions(nodes, centre, body).transpose());
   Matrix relative = relative_positions(nodes, nodes.col(points.front()), points);
-  if (axes.diagonal().cwiseAbs().minCoeff() > 0.0)  // else the body lies in a plane itself
+  if (axes.diagonal().cwiseAbs().minCoeff() > 0.0)  // else the body itself lies in a plane
     relative = axes.transpose().triangularView<Eigen::Lower>().solve(relative);
-  // Coordinates of single precision are told from positions that matter.
+  // The tolerance exceeds the rounding of single-precision coordinates.
   return static_cast<int>(PivotedQr(relative, 1e-6).rank());
 }
 

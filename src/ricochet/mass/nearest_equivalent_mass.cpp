@@ -12,10 +12,10 @@ namespace ricochet {
 
 namespace {
 
-/// The source's authors' construction: on the pattern of M without contact rows and columns, the matrix nearest to M in
-/// the Frobenius norm under PᵃᵀM₀Pᵇ = PᵃᵀMPᵇ. Stationarity gives M₀ = M + Σ_ab μ_ab ½(PᵃPᵇᵀ + PᵇPᵃᵀ) on the pattern,
-/// with the multipliers from a small Gram system. The condition rows are symmetric from the start: symmetrizing
-/// afterwards loses inertia.
+/// Construction of the source's authors: on the pattern of M without contact rows and columns, the matrix nearest to
+/// M in the Frobenius norm subject to PᵃᵀM₀Pᵇ = PᵃᵀMPᵇ. Stationarity gives M₀ = M + Σ_ab μ_ab ½(PᵃPᵇᵀ + PᵇPᵃᵀ) on
+/// the pattern, with the multipliers from a small Gram system. The conditions are symmetric from the start:
+/// symmetrizing afterwards loses inertia.
 class NearestEquivalentMass final : public MassConstruction {
  public:
   [[nodiscard]] bool removes_contact_inertia() const override { return true; }
@@ -23,7 +23,7 @@ class NearestEquivalentMass final : public MassConstruction {
   [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
     const MassFrames frames = mass_frames(input.inertia_matrix(), *input.nodes);
     SparseMatrix result = free_pattern(input);
-    // Body by body: none gives mass to another.
+    // Separately for each body: no mass passes between bodies.
     for (const MassBody& body : frames.bodies) correct(result, frames, body, *input.consistent);
     check_conditions(input, frames, result);
     if (!is_positive_definite(result, input.contact_nodes)) {
@@ -46,7 +46,7 @@ class NearestEquivalentMass final : public MassConstruction {
     return result;
   }
 
-  /// Too few free nodes cannot keep mass, centre and inertia: the Gram system is then singular and has no solution.
+  /// Too few free nodes cannot preserve mass, centre and inertia: the Gram system is then singular and has no solution.
   static void check_conditions(const MassInput& input, const MassFrames& frames, const SparseMatrix& mass) {
     for (const MassBody& body : frames.bodies) {
       if (moment_defect(mass, *input.consistent, frames, body) <= 1e-10) continue;
@@ -65,7 +65,7 @@ class NearestEquivalentMass final : public MassConstruction {
     }
   }
 
-  /// The conditions of one body, (P^a, P^b) in pairs.
+  /// Conditions of one body, as pairs (P^a, P^b).
   static std::vector<std::pair<Index, Index>> conditions(Index monomials) {
     std::vector<std::pair<Index, Index>> result;
     for (Index a = 0; a < monomials; ++a) {
@@ -92,7 +92,7 @@ class NearestEquivalentMass final : public MassConstruction {
       }
     }
     const PivotedCholesky factor(gram);
-    // The second round takes away what rounding left of the first.
+    // The second pass removes the rounding error of the first.
     for (int round = 0; round < 2; ++round) {
       const Matrix missing = mass_moments(consistent, frames, body) - mass_moments(mass, frames, body);
       Vector defect(count);

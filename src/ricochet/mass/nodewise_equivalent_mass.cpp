@@ -18,7 +18,7 @@ struct Extrapolation {
   Vector weights;
 };
 
-/// The rows of E that differ from the identity, and the columns.
+/// Rows of E that differ from the identity, and their columns.
 class ExtensionRows {
  public:
   explicit ExtensionRows(Index count) : row_(static_cast<std::size_t>(count), -1), column_(row_.size()) {}
@@ -34,9 +34,9 @@ class ExtensionRows {
     Index node;
     double weight;
   };
-  /// The contact nodes that give some of their mass to a free node.
+  /// Contact nodes that contribute mass to a free node.
   [[nodiscard]] const std::vector<Entry>& column(Index node) const { return column_[static_cast<std::size_t>(node)]; }
-  /// Of a contact node.
+  /// Row of a contact node.
   [[nodiscard]] const Extrapolation& row(Index node) const {
     return rows_[static_cast<std::size_t>(row_[static_cast<std::size_t>(node)])];
   }
@@ -47,16 +47,16 @@ class ExtensionRows {
   std::vector<std::vector<Entry>> column_;
 };
 
-/// A sparse row.
+/// Sparse row.
 struct SparseRow {
   std::vector<int> columns;
   std::vector<double> values;
 };
 
-/// One row of EᵀME at a time.
+/// Computes one row of EᵀME at a time.
 class CongruenceRow {
  public:
-  /// `products`: rows of ME of the contact nodes, by node; those of other nodes are empty.
+  /// `products`: rows of ME for the contact nodes, by node; empty for other nodes.
   CongruenceRow(const SparseMatrix& mass, const std::vector<char>& is_contact, const ExtensionRows& extension,
                 const std::vector<SparseRow>& products)
       : mass_(mass),
@@ -66,7 +66,7 @@ class CongruenceRow {
         values_(Vector::Zero(mass.cols())),
         present_(is_contact.size(), 0) {}
 
-  /// Columns of the row, ascending; `value` gives its entries until the next call.
+  /// Returns the columns of the row, ascending; `value` returns its entries until the next call.
   const std::vector<int>& compute(Index node) {
     clear();
     if (is_contact_[static_cast<std::size_t>(node)] != 0) return columns_;
@@ -80,7 +80,7 @@ class CongruenceRow {
   }
   [[nodiscard]] double value(int column) const { return values_[column]; }
 
-  /// (ME)(node, ·).
+  /// Returns (ME)(node, ·).
   SparseRow product(Index node) {
     clear();
     add_product(node);
@@ -125,7 +125,7 @@ class CongruenceRow {
   std::vector<int> columns_;
 };
 
-/// (A + Aᵀ)/2 of a matrix whose pattern is symmetric.
+/// Replaces A by (A + Aᵀ)/2; its pattern must be symmetric.
 void symmetrize(SparseMatrix& matrix) {
   const int* outer = matrix.outerIndexPtr();
   const int* inner = matrix.innerIndexPtr();
@@ -133,7 +133,7 @@ void symmetrize(SparseMatrix& matrix) {
   parallel_ranges(matrix.cols(), [&](Index first, Index last) {
     for (Index column = first; column < last; ++column) {
       for (int k = outer[column]; k < outer[column + 1] && inner[k] < column; ++k) {
-        // Each pair is met once, from its larger index.
+        // Each pair is visited once, from its larger index.
         const int* other =
             std::lower_bound(inner + outer[inner[k]], inner + outer[inner[k] + 1], static_cast<int>(column));
         double& transposed = values[other - inner];
@@ -143,7 +143,7 @@ void symmetrize(SparseMatrix& matrix) {
   });
 }
 
-/// EᵀME, exactly symmetric.
+/// Returns EᵀME, exactly symmetric.
 SparseMatrix congruence(const SparseMatrix& mass, const std::vector<char>& is_contact, const ExtensionRows& extension) {
   const Index count = mass.cols();
   SparseMatrix result(count, count);
@@ -171,17 +171,18 @@ SparseMatrix congruence(const SparseMatrix& mass, const std::vector<char>& is_co
       }
     }
   });
-  // Entries (i, j) and (j, i) are sums in different orders; what follows relies on exact symmetry.
+  // Entries (i, j) and (j, i) are summed in different orders; later code relies on exact symmetry.
   symmetrize(result);
   return result;
 }
 
-/// Weights of nodes that extrapolate to a point. False where they do not span space affinely, or barely so.
+/// Computes the weights that extrapolate from nodes to a point. Returns false if the nodes do not span
+/// space affinely, or barely so.
 ///
-/// The test must not depend on how flat the cells are. An affine map of the mesh changes neither w nor
+/// The criterion must not depend on how flat the cells are. An affine map of the mesh changes neither w nor
 ///   Σ t_j Σ w_j²/t_j = 1 + |ξ|²,  t_j = m_jj,
-/// where |ξ| is the distance of the point from the nodes' centre of gravity, in units of their own root mean square
-/// spread in that direction: it is this that says how far the weights extrapolate.
+/// where |ξ| is the distance of the point from the centre of gravity of the nodes, in units of their root mean square
+/// spread in that direction, and measures how far the weights extrapolate.
 bool extrapolation_weights(const Points& nodes, const Vector& trust, const std::vector<int>& of, Index point,
                            Vector& weights) {
   constexpr double largest_distance = 100.0;
@@ -199,11 +200,11 @@ bool extrapolation_weights(const Points& nodes, const Vector& trust, const std::
   return square <= largest_distance * largest_distance;
 }
 
-/// M₀ = EᵀME. E is the identity on free nodes; the row of a contact node holds the weights on nearby free nodes which
-/// reproduce affine functions and are least in the norm Σ w_j²/m_jj. So PᵃᵀM₀Pᵇ = PᵃᵀMPᵇ exactly, M₀ is positive
-/// semi-definite with the contact dofs as its null space by construction, and wᵀ(m_cc)w measures what is added to the
-/// free nodes relative to the mass they have: the choice of norm and of many neighbours keeps the top eigenvalue low.
-/// See docs/equivalent-mass.md for the measurements behind `wanted_neighbours`.
+/// M₀ = EᵀME. E is the identity on free nodes; the row of a contact node holds the weights on nearby free nodes that
+/// reproduce affine functions with the least norm Σ w_j²/m_jj. Hence PᵃᵀM₀Pᵇ = PᵃᵀMPᵇ exactly, M₀ is by construction
+/// positive semi-definite with the contact dofs as its null space, and wᵀ(m_cc)w measures the mass added to the free
+/// nodes relative to their own: the choice of the norm and of many neighbours keeps the top eigenvalue low.
+/// docs/equivalent-mass.md has the measurements behind `wanted_neighbours`.
 class NodewiseEquivalentMass final : public MassConstruction {
  public:
   [[nodiscard]] bool removes_contact_inertia() const override { return true; }
@@ -224,8 +225,9 @@ class NodewiseEquivalentMass final : public MassConstruction {
   }
 
  private:
-  /// Weights on the rings of free nodes around a contact node: enough rings to have the wanted number of neighbours and
-  /// to span space affinely. `seen_from` is work space: the contact node from which a node was last reached.
+  /// Computes weights on the rings of free nodes around a contact node: enough rings for the wanted
+  /// number of neighbours and to span space affinely. `seen_from` is work space: the contact node from
+  /// which a node was last reached.
   static Extrapolation extrapolate(const MassInput& input, const std::vector<char>& is_contact, const Vector& diagonal,
                                    Index node, std::vector<Index>& seen_from) {
     const Index dimension = input.nodes->rows();

@@ -11,7 +11,7 @@ namespace ricochet {
 
 namespace {
 
-/// The vertices of a facet, ascending; the first of four is −1 where there are fewer.
+/// Vertices of a facet, ascending; leading entries are −1 if there are fewer than four.
 using Key = std::array<Index, 4>;
 
 Key key_of(const Index* cell, CellShape shape, const std::vector<int>& local) {
@@ -43,14 +43,14 @@ void for_each_facet(const std::vector<CellBlock>& cells, const Visit& visit) {
   }
 }
 
-/// Calls visit(facets) for each facet of the set, with all those of cells that have its vertices.
+/// Calls visit(facets) for each distinct facet, with all facets of cells that have its vertices.
 template <class Visit>
 void for_each_distinct_facet(const std::vector<CellBlock>& cells, const Visit& visit) {
   Index nodes = 0;
   for (const CellBlock& block : cells) {
     for (const Index node : block.nodes) nodes = std::max(nodes, node + 1);
   }
-  // In buckets by their smallest vertex: a table of all keys would take several times the memory.
+  // Buckets by the smallest vertex: a table of all keys would need several times the memory.
   std::vector<std::size_t> start(static_cast<std::size_t>(nodes) + 1, 0);
   for_each_facet(
       cells, [&](const CellFacet&, const Key& key) { ++start[static_cast<std::size_t>(smallest_vertex(key)) + 1]; });
@@ -84,7 +84,7 @@ void for_each_distinct_facet(const std::vector<CellBlock>& cells, const Visit& v
   }
 }
 
-/// Whether two cells lie on opposite sides of the facet they share: they go round it in opposite directions.
+/// Returns whether two cells lie on opposite sides of the facet they share: they traverse it in opposite directions.
 bool are_opposite(const std::vector<CellBlock>& cells, const CellFacet& one, const CellFacet& other) {
   const auto round = [&](const CellFacet& facet) {
     const CellBlock& block = cells[facet.block];

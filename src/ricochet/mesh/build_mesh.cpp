@@ -27,12 +27,12 @@ void check_coordinates(const RawMesh& raw, const std::string& source) {
     fail_mesh(source, fmt::format("{} with a coordinate that is not finite", not_finite.text("node")));
 }
 
-/// Groups for a file that has none: see BuildOptions.
+/// Names groups for a file that has none: see BuildOptions.
 class EntityNamer {
  public:
   EntityNamer(int dimension, RawMesh& raw) : dimension_(dimension), raw_(raw) {}
 
-  /// Returns the note about it.
+  /// Makes the groups and returns a note about them.
   std::string name_all() {
     number_entities();
     raw_.physical_names[{dimension_, body_tag}] = "body";
@@ -51,7 +51,7 @@ class EntityNamer {
  private:
   static constexpr int body_tag = 1;
 
-  /// Groups of one body's cells would only repeat "body"; 0 is no entity.
+  /// Numbers the groups. Groups of the cells of a single body would only repeat "body"; 0 is not an entity.
   void number_entities() {
     for (const RawElements& elements : raw_.elements) {
       const int dimension = find_element_type(elements.type)->dimension;
@@ -71,7 +71,7 @@ class EntityNamer {
     }
   }
 
-  /// 0: no group of its own.
+  /// Returns the tag of the group of an entity; 0 if it has none.
   [[nodiscard]] int tag_of(int dimension, int entity) const {
     const bool cells = dimension == dimension_ && cell_entities_.size() > 1;
     if (!cells && dimension != dimension_ - 1) return 0;
@@ -98,7 +98,7 @@ bool has_groups(const RawMesh& raw) {
          std::any_of(raw.elements.begin(), raw.elements.end(), [](const RawElements& e) { return !e.groups.empty(); });
 }
 
-/// A mesh of dimension 2 lies in a plane z = constant.
+/// Checks that a mesh of dimension 2 lies in a plane z = constant.
 void check_plane(const RawMesh& raw, const std::vector<Index>& used, const std::string& source) {
   Eigen::Map<const Eigen::Matrix3Xd> all(raw.coordinates.data(), 3, static_cast<Index>(raw.node_tags.size()));
   const Eigen::Matrix3Xd positions = all(Eigen::all, used);

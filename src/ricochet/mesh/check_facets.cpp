@@ -13,7 +13,7 @@ namespace {
 
 enum class Match : char { none, vertices, all_nodes };
 
-/// Looks for the facets of one block among the facets of the cells.
+/// Searches for the facets of one block among the facets of the cells.
 class FacetFinder {
  public:
   FacetFinder(const Mesh& mesh, const CellBlock& facets, std::size_t node_count)
@@ -44,7 +44,8 @@ class FacetFinder {
   const std::vector<Match>& matches() const { return matches_; }
 
  private:
-  // Few facets of a cell have all their vertices on the facets looked for; this spares the others the hash table.
+  // Few facets of a cell have all their vertices on the facets searched for; this check spares the others the hash
+  // table.
   bool candidate(const Index* cell, const std::vector<int>& local) const {
     for (int k = 0; k < vertex_count_; ++k) {
       if (marked_[static_cast<std::size_t>(cell[local[static_cast<std::size_t>(k)]])] == 0) return false;

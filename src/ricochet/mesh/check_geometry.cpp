@@ -18,11 +18,11 @@ namespace ricochet::gmsh {
 
 namespace {
 
-// Relative: to the lengths of the Jacobian's columns, and to the size of the mesh.
+// Relative to the lengths of the Jacobian's columns, and to the size of the mesh.
 constexpr double flatness_tolerance = 1e-12;
 constexpr double coincidence_tolerance = 1e-10;  // Gmsh places nodes on curves to about 1e-12
 
-/// Gradients of the shape functions of the geometry at a point of the reference simplex, one column per node.
+/// Gradients of the geometry's shape functions at a point of the reference simplex, one column per node.
 Matrix simplex_gradients(CellShape shape, int degree, const Vector& point) {
   const int dimensions = dimension(shape);
   Vector barycentric(dimensions + 1);
@@ -71,7 +71,7 @@ Matrix tensor_gradients(CellShape shape, int degree, const Vector& point) {
   return gradients;
 }
 
-/// Gradients at each point where the Jacobian is looked at: all nodes, of which one will do on a straight simplex.
+/// Gradients at each point where the Jacobian is evaluated: all nodes, or only one on a straight simplex.
 std::vector<Matrix> gradients_at_nodes(CellShape shape, int degree) {
   const bool simplex = shape == CellShape::triangle || shape == CellShape::tetrahedron;
   std::vector<Matrix> result;
@@ -90,15 +90,15 @@ struct Orientation {
   bool flat = false;
 };
 
-/// Signs of the Jacobian determinant, scaled by the lengths of its columns so that a thin cell is not taken for a flat
-/// one.
+/// Signs of the Jacobian determinant, scaled by the lengths of its columns, so that a thin cell is not mistaken for a
+/// flat one.
 template <int Dimension>
 Orientation orientation(const Points& points, const Index* cell, const std::vector<Matrix>& gradients) {
   Orientation result;
   for (const Matrix& gradient : gradients) {
     Eigen::Matrix<double, Dimension, Dimension> jacobian = Eigen::Matrix<double, Dimension, Dimension>::Zero();
     for (Index node = 0; node < gradient.cols(); ++node) {
-      // Relative to the first node, so that the distance to the origin does not eat digits.
+      // Relative to the first node, so that a large distance to the origin does not cost digits.
       const Eigen::Matrix<double, Dimension, 1> position =
           points.col(cell[node]).template head<Dimension>() - points.col(cell[0]).template head<Dimension>();
       jacobian += position * gradient.col(node).template head<Dimension>().transpose();
@@ -122,7 +122,7 @@ void turn_round(Index* cell, const std::vector<int>& mirrored, std::vector<Index
     cell[node] = nodes[static_cast<std::size_t>(mirrored[node])];
 }
 
-/// The middle of a facet's vertices.
+/// Centre of a facet's vertices, as text.
 std::string place_of(const Mesh& mesh, const CellFacet& facet) {
   const CellBlock& block = mesh.cells[facet.block];
   const std::vector<int>& vertices = outward_facet_vertices(block.shape)[facet.local];
@@ -132,8 +132,8 @@ std::string place_of(const Mesh& mesh, const CellFacet& facet) {
   return fmt::format("({:.6g})", fmt::join(middle.begin(), middle.end(), ", "));
 }
 
-/// Of a straight simplex that is turned inside out the Jacobian is negative throughout, as if its nodes were only
-/// numbered the other way round. Its neighbours tell the two from each other: they are on the wrong side of it.
+/// Refuses folded meshes. An inverted straight simplex has a negative Jacobian throughout, as if its nodes were only
+/// numbered in reverse. Its neighbours distinguish the two cases: they are on the wrong side of it.
 void check_folds(const Mesh& mesh) {
   const std::vector<SharedFacet> found = folds(mesh.cells);
   if (found.empty()) return;
@@ -209,8 +209,7 @@ Offenders cells_not_positive(const Mesh& mesh) {
   return result;
 }
 
-/// A hash of boxes a few tolerances wide. Only distances decide, so boxes that share a bucket cost time and nothing
-/// else.
+/// A hash of boxes a few tolerances wide. Distances alone decide, so boxes that share a bucket only cost time.
 class NodeGrid {
  public:
   explicit NodeGrid(const Points& nodes)
@@ -220,7 +219,7 @@ class NodeGrid {
         heads_(std::bit_ceil(static_cast<std::size_t>(nodes.cols()) + 1), -1),
         next_(static_cast<std::size_t>(nodes.cols()), -1) {}
 
-  /// A node entered before that is at the same place, or −1; then enters the node.
+  /// Returns a previously entered node at the same position, or −1; then enters the node.
   Index find_and_enter(Index node) {
     Box low{};
     Box high{};
@@ -271,7 +270,7 @@ class NodeGrid {
   std::vector<Index> next_;
 };
 
-/// Nodes that hang together by cells.
+/// Sets of nodes connected by cells.
 DisjointSets bodies_of(const Mesh& mesh) {
   DisjointSets bodies(mesh.node_count());
   for (const CellBlock& block : mesh.cells) {

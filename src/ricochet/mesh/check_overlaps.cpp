@@ -16,10 +16,10 @@ namespace ricochet::gmsh {
 
 namespace {
 
-/// Relative to the whole angle: far above the rounding of sums, far below the angle of a cell.
+/// Relative to the full angle: far above the rounding of sums, far below the angle of a cell.
 constexpr double tolerance = 1e-6;
 
-/// An edge of a cell by its ends and, with degree 2, its middle.
+/// An edge of a cell by its ends and, for degree 2, its middle.
 struct Edge {
   int begin, end, middle;
 };
@@ -39,7 +39,8 @@ std::vector<std::vector<Edge>> edges_at_vertices(CellShape shape, int degree) {
   return result;
 }
 
-/// Of the edge where it begins: cells that share it share this, and faces of cells are plane to first order there.
+/// Unit tangent of the edge at its beginning: cells that share the edge share the tangent, and faces of cells are plane
+/// to first order there.
 Eigen::Vector3d direction(const Mesh& mesh, const Index* cell, const Edge& edge) {
   Eigen::Vector3d tangent = Eigen::Vector3d::Zero();
   for (int k = 0; k < mesh.dimension; ++k) {
@@ -54,12 +55,12 @@ double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125–126, for unit vectors.
+/// Solid angle between unit vectors (A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125–126).
 double solid_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   return 2.0 * std::atan2(std::abs(a.dot(b.cross(c))), 1.0 + a.dot(b) + b.dot(c) + c.dot(a));
 }
 
-/// Per node, of the cells that have it as a vertex.
+/// Per node, the sum of the angles of the cells that have it as a vertex.
 std::vector<double> sums_of_angles(const Mesh& mesh) {
   std::vector<double> sums(static_cast<std::size_t>(mesh.node_count()), 0.0);
   for (const CellBlock& block : mesh.cells) {

@@ -2,12 +2,12 @@
 
 #include "ricochet/mesh/mesh.hpp"
 
-/// @file Cells that lie on one another though no cell is inside out.
+/// @file Cells that overlap although none is inverted.
 namespace ricochet::gmsh {
 
-/// Warns where the cells around a node take up more than the whole angle there (2π; in space the solid angle 4π), with
-/// the worst node and its place. `mesh`: cells with positive Jacobians. Cells that overlap without a common vertex at
-/// which they do are not found.
+/// Warns if the cells around a node fill more than the full angle there (2π; in space the solid angle 4π), naming the
+/// worst node and its position. `mesh`: cells with positive Jacobians. Overlaps that do not show at a common vertex of
+/// the cells are not found.
 void warn_of_overlaps(const Mesh& mesh);
 
 }  // namespace ricochet::gmsh

@@ -28,7 +28,7 @@ class BlockCollector {
     in_group_.reserve(capacity);
   }
 
-  /// Adds the elements; `members` of each group they are in gets their numbers, counted from `first`.
+  /// Adds the elements and appends their numbers, counted from `first`, to the members of each group they are in.
   void add(const RawElements& elements, std::span<std::vector<Index>* const> groups, Index first) {
     std::vector<Index> nodes(order_.size());
     for (std::size_t i = 0; i < elements.tags.size(); ++i) {
@@ -76,7 +76,8 @@ class BlockCollector {
       in_group_.push_back(in_group);
       return block_.size() - 1;
     }
-    // Gmsh's format 2.2 repeats an element for each group it is in. Anything else is two cells at the same place.
+    // Gmsh's format 2.2 repeats an element for each group it is in. Any other repetition means two cells at one
+    // position.
     const bool once_per_group = in_group && in_group_[static_cast<std::size_t>(known)];
     if (!once_per_group || !same_nodes(block_.cell(known), nodes.data(), block_.nodes_per_cell)) repeated_.add(tag);
     return known;
@@ -88,7 +89,7 @@ class BlockCollector {
   CellBlock block_;
   std::vector<bool> in_group_;
   Offenders elements_at_fault_;
-  Offenders unknown_nodes_;  // which elements_at_fault_ refer to
+  Offenders unknown_nodes_;  // to which elements_at_fault_ refer
   Offenders repeated_;
 };
 

@@ -53,7 +53,7 @@ Answer run(const std::vector<std::string>& arguments, const fs::path& workspace)
   throw Error(ErrorKind::invalid_input, message);
 }
 
-/// The statuses of convert_mesh.py.
+/// Exit statuses of convert_mesh.py.
 constexpr int refused = 2, package_missing = 3;
 
 void check(const Answer& answer, const std::string& source) {

@@ -27,7 +27,8 @@ std::vector<Index> numbers_up_to(Index count) {
   return numbers;
 }
 
-/// The block of that shape, made when there is none; blocks stay in the order of the shapes, as the reader leaves them.
+/// Index of the block of a shape, created if missing; blocks stay in the order of the shapes, as the reader leaves
+/// them.
 std::size_t block_of(Mesh& mesh, CellShape shape) {
   const auto found = std::find_if(mesh.facets.begin(), mesh.facets.end(),
                                   [shape](const CellBlock& block) { return block.shape >= shape; });
@@ -43,7 +44,7 @@ std::vector<Index> first_numbers(const std::vector<CellBlock>& blocks) {
   return first;
 }
 
-/// Adds facets to a block and returns their numbers in it, whether new or there before.
+/// Adds facets to a block and returns their numbers in it, both of new and of existing ones.
 std::vector<Index> add_facets(const Mesh& mesh, const std::vector<CellFacet>& facets, CellBlock& block) {
   VertexSetTable table(vertex_count(block.shape), facets.size() + block.tags.size());
   for (Index i = 0; i < block.size(); ++i) table.find_or_add(block.cell(i));
@@ -65,7 +66,7 @@ std::vector<Index> add_facets(const Mesh& mesh, const std::vector<CellFacet>& fa
   return members;
 }
 
-/// Facets are numbered through all blocks: those behind a block that has grown have other numbers.
+/// Renumbers facets, which are numbered through all blocks: those behind a block that has grown have new numbers.
 void renumber(const std::vector<Index>& before, const std::vector<Index>& after, int dimension, Mesh& mesh) {
   for (Group& group : mesh.groups) {
     if (group.dimension != dimension) continue;
@@ -77,7 +78,7 @@ void renumber(const std::vector<Index>& before, const std::vector<Index>& after,
   }
 }
 
-/// The facets of the boundary that `takes(facet)` lets through.
+/// Adds a group of the boundary facets that satisfy `takes(facet)`.
 template <class Takes>
 void add_boundary(Mesh& mesh, const std::string& name, const Takes& takes) {
   std::map<CellShape, std::vector<CellFacet>> by_shape;
@@ -97,10 +98,10 @@ void add_boundary(Mesh& mesh, const std::string& name, const Takes& takes) {
   mesh.groups.push_back(std::move(boundary));
 }
 
-/// What a built-in name stands for.
+/// The group that a built-in name denotes.
 struct BuiltIn {
   bool exists = false;
-  const MeshPart* part = nullptr;  ///< none: the whole mesh
+  const MeshPart* part = nullptr;  ///< null: the whole mesh
 };
 
 BuiltIn find_built_in(const Mesh& mesh, const std::string& name, int dimension) {

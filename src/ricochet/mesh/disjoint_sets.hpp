@@ -6,17 +6,17 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file Things that hang together.
+/// @file Connected sets of numbered things.
 namespace ricochet {
 
-/// Sets of the numbers 0, 1, …, each alone at first, which are joined two by two. The least number of a set stands for
-/// it.
+/// Disjoint sets of the numbers 0, 1, …, each alone at first, joined two by two. The smallest number of a set
+/// represents it.
 class DisjointSets {
  public:
   explicit DisjointSets(Index count) : parent_(static_cast<std::size_t>(count)) {
     std::iota(parent_.begin(), parent_.end(), Index{0});
   }
-  /// What stands for the set of a number; paths are halved on the way.
+  /// Returns the representative of a number's set, halving paths on the way.
   [[nodiscard]] Index root(Index number) {
     const auto parent = [this](Index i) -> Index& { return parent_[static_cast<std::size_t>(i)]; };
     while (parent(number) != number) number = parent(number) = parent(parent(number));

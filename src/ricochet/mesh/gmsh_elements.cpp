@@ -14,7 +14,7 @@ namespace {
 
 using VertexSets = std::vector<std::vector<int>>;
 
-// Degrees 3 and up and the other shapes are here only to be refused by name; their node counts let the binary formats
+// Degrees above 2 and the other shapes are listed only to be refused by name; their node counts let the binary formats
 // be read past them, so that the message can count them.
 const std::vector<ElementType>& element_types() {
   static const std::vector<ElementType> types{
@@ -65,7 +65,7 @@ const std::vector<ElementType>& element_types() {
   return types;
 }
 
-/// As node_vertices, but in Gmsh's numbering of vertices and nodes (Gmsh's reference manual, "Node ordering").
+/// Like node_vertices, but in Gmsh's numbering of vertices and nodes (Gmsh's reference manual, "Node ordering").
 VertexSets gmsh_node_vertices(CellShape shape, int degree) {
   VertexSets nodes;
   for (int vertex = 0; vertex < vertex_count(shape); ++vertex) nodes.push_back({vertex});
@@ -110,7 +110,7 @@ VertexSets gmsh_node_vertices(CellShape shape, int degree) {
   return nodes;
 }
 
-/// Basix's number of a vertex that Gmsh calls `vertex`: Gmsh goes around quadrilaterals, Basix counts
+/// Basix's number of the vertex that Gmsh numbers `vertex`: Gmsh numbers quadrilaterals around their boundary, Basix
 /// lexicographically.
 int basix_vertex(CellShape shape, int vertex) {
   constexpr std::array<int, 8> around{0, 1, 3, 2, 4, 5, 7, 6};

@@ -6,7 +6,7 @@
 
 #include "ricochet/mesh/cell_type.hpp"
 
-/// @file Gmsh's element types and how Gmsh numbers their nodes. Private to mesh/.
+/// @file Gmsh's element types and their node numbering. Private to mesh/.
 namespace ricochet::gmsh {
 
 struct ElementType {
@@ -14,14 +14,14 @@ struct ElementType {
   const char* name = "";
   int dimension = 0;
   int degree = 0;
-  int node_count = 0;              ///< 0 when it varies from element to element
-  std::optional<CellShape> shape;  ///< of the types that can be used as cells or facets
+  int node_count = 0;              ///< 0 if it varies from element to element
+  std::optional<CellShape> shape;  ///< for the types that can be cells or facets
 };
 
-/// The type with that number, or nullptr when it is not known here.
+/// Returns the type with that number, or null if it is unknown here.
 [[nodiscard]] const ElementType* find_element_type(int number);
 
-/// "type 17 (20-node hexahedron)"
+/// Returns "type 17 (20-node hexahedron)".
 [[nodiscard]] std::string describe_type(int number);
 
 /// For a usable shape: node i in Basix's order is node node_order(…)[i] in Gmsh's.

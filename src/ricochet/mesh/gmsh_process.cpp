@@ -21,7 +21,7 @@ namespace {
                   source));
 }
 
-/// Runs gmsh with what it says going to `log`, without the user's own options, on which the mesh should not depend.
+/// Runs gmsh with its output in `log`, without the user's own options, on which the mesh should not depend.
 ChildOutcome run(std::vector<std::string> arguments, const std::filesystem::path& workspace,
                  const std::filesystem::path& log) {
   arguments.insert(arguments.begin(), "gmsh");
@@ -32,7 +32,7 @@ ChildOutcome run(std::vector<std::string> arguments, const std::filesystem::path
   return run_child(std::move(gmsh));
 }
 
-/// The last lines of what gmsh said, errors first in mind: warnings are dropped when there are errors.
+/// Returns the last lines of gmsh's output; if there are errors, warnings are dropped.
 std::string last_lines(const std::filesystem::path& log) {
   constexpr std::size_t limit = 6;
   std::deque<std::string> all;
@@ -74,7 +74,7 @@ std::string program_version(const std::string& source) {
 
 void run_program(const std::string& input, const std::string& options, const std::filesystem::path& workspace,
                  const std::filesystem::path& output) {
-  // Merged after the input, so that these options overrule what the input sets; -3 meshes what there is, of any
+  // Merged after the input, so that these options override what the input sets; -3 meshes all entities, of any
   // dimension.
   const std::filesystem::path options_file = workspace / "options.geo";
   std::ofstream(options_file) << options;

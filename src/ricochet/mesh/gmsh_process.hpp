@@ -7,12 +7,12 @@
 /// @file Running the gmsh program. Private to mesh/.
 namespace ricochet::gmsh {
 
-/// The version of the gmsh program. Throws Error(invalid_input) that says what to do when it is not installed; `source`
-/// is the file that needs it.
+/// Returns the version of the gmsh program. Throws Error(invalid_input) that says what to do if it is not installed;
+/// `source` is the file that needs it.
 [[nodiscard]] std::string program_version(const std::string& source);
 
-/// Meshes a .geo or CAD file into `output`, in the directory `workspace` which is there and empty. Throws
-/// Error(invalid_input) with the end of what gmsh said when it fails.
+/// Meshes a .geo or CAD file into `output`, in the existing empty directory `workspace`. If gmsh fails, throws
+/// Error(invalid_input) with the end of its output.
 void run_program(const std::string& input, const std::string& options, const std::filesystem::path& workspace,
                  const std::filesystem::path& output);
 

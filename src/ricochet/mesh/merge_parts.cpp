@@ -15,7 +15,7 @@ namespace ricochet {
 
 namespace {
 
-/// "parts "ball" and "ring"", so that messages about a whole of many files stay short.
+/// Returns "parts "ball" and "ring"", so that messages about a mesh of many files stay short.
 std::string source_of(const std::vector<NamedMesh>& parts) {
   constexpr std::size_t shown = 6;
   if (parts.size() > shown) return fmt::format("the {} parts", parts.size());
@@ -35,8 +35,7 @@ std::int64_t largest_tag(const Mesh& mesh) {
   return largest;
 }
 
-/// What the numbers of each part are raised by, per part before it: a user finds the number of the file in the last
-/// digits.
+/// Offset of the tags per preceding part, chosen so that the number in the file is visible in the last digits.
 std::int64_t tag_step(const std::vector<NamedMesh>& parts) {
   std::int64_t largest = 0;
   for (const NamedMesh& part : parts) largest = std::max(largest, largest_tag(part.mesh));
@@ -52,7 +51,7 @@ std::int64_t tag_step(const std::vector<NamedMesh>& parts) {
   return step;
 }
 
-/// Puts blocks of all parts together, shape by shape; remembers where each part's blocks begin.
+/// Joins the blocks of all parts shape by shape, and stores where each part's blocks begin.
 class BlockMerger {
  public:
   BlockMerger(const std::vector<NamedMesh>& parts, std::vector<CellBlock> Mesh::*blocks) : parts_(parts), of_(blocks) {
@@ -70,12 +69,12 @@ class BlockMerger {
       CellBlock& whole = merged_[place_of(block.shape)];
       whole.nodes_per_cell = block.nodes_per_cell;
       for (const Index node : block.nodes) whole.nodes.push_back(node + first_node);
-      // Facets that the file does not have are called 0.
+      // Facets that the file does not contain have the tag 0.
       for (const std::int64_t tag : block.tags) whole.tags.push_back(tag == 0 ? 0 : tag + more);
     }
   }
 
-  /// The number through all blocks of a cell or facet that has this number in its part.
+  /// Number, through all blocks, of a cell or facet given by its number in its part.
   [[nodiscard]] Index number(std::size_t part, Index in_part) const {
     const std::vector<CellBlock>& blocks = parts_[part].mesh.*of_;
     const PlaceInBlocks place = place_in_blocks(blocks, in_part);
@@ -109,7 +108,7 @@ class BlockMerger {
   std::vector<std::vector<Index>> first_;  ///< per part and merged block: the number of the part's first one there
 };
 
-/// Tags of groups are numbers within a dimension: groups of different parts must not have the same ones.
+/// Adds the groups of a part with new tags, since tags must be unique within a dimension.
 void add_groups(const NamedMesh& part, const BlockMerger& cells, const BlockMerger& facets, std::size_t number,
                 Mesh& mesh) {
   for (const Group& group : part.mesh.groups) {

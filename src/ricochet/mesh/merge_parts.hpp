@@ -5,7 +5,7 @@
 
 #include "ricochet/mesh/mesh.hpp"
 
-/// @file One mesh of the meshes of several files.
+/// @file Merging the meshes of several files into one.
 namespace ricochet {
 
 struct NamedMesh {
@@ -13,13 +13,13 @@ struct NamedMesh {
   Mesh mesh;
 };
 
-/// Why the meshes of two files cannot be one, and what to do; empty: they can.
+/// Returns why the meshes of two files cannot be merged, and what to do; empty if they can.
 [[nodiscard]] std::string mismatch_of_parts(const NamedMesh& first, const NamedMesh& other);
 
-/// The parts side by side, in their order; none shares a node with another, also where they are at one place. A group
-/// is called "NAME.group", NAME being its part's. Numbers for messages are those of the file, and 1,000,000 more (or
-/// the power of ten that is above all of them) for every part before; a note says so. Throws Error(invalid_input) where
-/// mismatch_of_parts has something to say.
+/// Merges the parts side by side, in their order; they share no nodes, even where nodes coincide. A group is called
+/// "NAME.group", with the name of its part. Numbers in messages are those of the file plus 1,000,000 (or the power of
+/// ten above all of them) for every preceding part; a note says so. Throws Error(invalid_input) if mismatch_of_parts
+/// finds a reason.
 [[nodiscard]] Mesh merge_parts(const std::vector<NamedMesh>& parts);
 
 }  // namespace ricochet

@@ -22,7 +22,7 @@ std::string entity_name(int dimension, int mesh_dimension) {
   return dimension == 0 ? "points" : "curves";
 }
 
-/// Of a mesh of several files: "ball.skin", where "skin" was asked for.
+/// For a mesh of several files: returns "ball.skin" if "skin" was requested.
 std::vector<std::string> names_in_parts(const Mesh& mesh, const std::string& name, int dimension) {
   std::vector<std::string> names;
   for (const MeshPart& part : mesh.parts) {

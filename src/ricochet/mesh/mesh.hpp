@@ -7,8 +7,7 @@
 #include "ricochet/base/types.hpp"
 #include "ricochet/mesh/cell_type.hpp"
 
-/// @file The mesh: nodes, cells, boundary facets, named groups. It is complete and checked once read_mesh has returned
-/// it.
+/// @file The mesh: nodes, cells, boundary facets, named groups. A mesh returned by read_mesh is complete and checked.
 namespace ricochet {
 
 /// Cells (or facets) of one shape. All blocks of a mesh have the same geometric degree.
@@ -22,7 +21,7 @@ struct CellBlock {
   [[nodiscard]] const Index* cell(Index i) const { return nodes.data() + i * nodes_per_cell; }
 };
 
-/// Where a cell or facet that is numbered through all blocks is kept.
+/// Block and local index of a cell or facet that is numbered through all blocks.
 struct PlaceInBlocks {
   std::size_t block = 0;
   Index local = 0;
@@ -43,7 +42,7 @@ void each_cell(const std::vector<CellBlock>& blocks, const Visit& visit) {
   }
 }
 
-/// A named physical group. An unnamed physical group is called by its number.
+/// A named physical group. The name of an unnamed physical group is its number.
 struct Group {
   std::string name;
   int tag = 0;
@@ -53,36 +52,36 @@ struct Group {
   std::vector<Index> members;
 };
 
-/// What one of several files gave, see merge_parts. Parts share no nodes.
+/// Part of a mesh that comes from one of several files, see merge_parts. Parts share no nodes.
 struct MeshPart {
   std::string name;
-  Index first_node = 0, node_count = 0;  ///< its nodes follow one another
+  Index first_node = 0, node_count = 0;  ///< its nodes are consecutive
   std::vector<Index> cells;              ///< numbered through all blocks, ascending
 
   [[nodiscard]] bool has_node(Index node) const { return node >= first_node && node < first_node + node_count; }
-  /// Of one of its groups, in the whole mesh: "ball.skin".
+  /// Name of one of its groups in the whole mesh: "ball.skin".
   [[nodiscard]] std::string group_name(const std::string& group) const { return name + "." + group; }
 };
 
 struct Mesh {
-  std::string source;                   ///< the file, for messages; of several, the parts
-  int dimension = 2;                    ///< 2 or 3: of the cells and of the space
+  std::string source;                   ///< the file, for messages; for several files, the parts
+  int dimension = 2;                    ///< of the cells and of the space, 2 or 3
   int degree = 1;                       ///< of the geometry: 1 straight, 2 second-order
   Points nodes;                         ///< dimension × count; every node belongs to a cell
   std::vector<std::int64_t> node_tags;  ///< the node's number in the file, for messages
   std::vector<CellBlock> cells;         ///< one block per shape present
   std::vector<CellBlock> facets;  ///< facets that belong to a group, one block per shape; each is a facet of a cell
   std::vector<Group> groups;      ///< of every dimension
-  std::vector<MeshPart> parts;    ///< of a mesh of several files, in their order; else none
-  bool is_piece = false;          ///< of a mesh that is divided: groups may have nothing here
+  std::vector<MeshPart> parts;    ///< of a mesh of several files, in their order; else empty
+  bool is_piece = false;          ///< of a partitioned mesh: groups may be empty here
 
   [[nodiscard]] Index node_count() const { return nodes.cols(); }
   [[nodiscard]] Index cell_count() const;
   [[nodiscard]] Index facet_count() const;
-  /// Group of the dimension asked for, or nullptr.
+  /// Returns the group of the given dimension, or null.
   [[nodiscard]] const Group* find_group(const std::string& name, int dimension) const;
-  /// As find_group, but throws Error(invalid_input) which says what was asked for, lists the groups of that dimension,
-  /// suggests the nearest name, and says so when the name exists in another dimension.
+  /// Like find_group, but throws Error(invalid_input), which says what was requested, lists the groups of that
+  /// dimension, suggests the nearest name, and says so if the name exists in another dimension.
   [[nodiscard]] const Group& group(const std::string& name, int dimension) const;
 };
 
@@ -90,7 +89,7 @@ struct CellPlace {
   Vector centre;         ///< mean of the cell's vertices, in the reference configuration
   std::int64_t tag = 0;  ///< the cell's number in the mesh file
 };
-/// Of a cell, numbered through all blocks.
+/// Returns position and tag of a cell, numbered through all blocks.
 [[nodiscard]] CellPlace place_of_cell(const Mesh& mesh, Index cell);
 
 }  // namespace ricochet

@@ -25,15 +25,15 @@ namespace {
 
 __extension__ using Unsigned128 = unsigned __int128;  // not ISO C++, but GCC and Clang have it on 64-bit machines
 
-/// The files that a mesh of another program's format refers to: what an .inp file includes, the .h5 file of an .xdmf,
-/// the other half of TetGen's pair.
+/// Returns the files to which a mesh of another program's format refers: those that an .inp file includes, the .h5 file
+/// of an .xdmf, the other half of TetGen's pair.
 std::vector<fs::path> companions(const fs::path& path, const std::string& content) {
   std::vector<fs::path> found;
   const std::string extension = extension_of(path.string());
   if (extension == ".ele" || extension == ".node") {
     for (const char* other : {".ele", ".node"}) found.push_back(fs::path(path).replace_extension(other));
   }
-  // Whatever has the look of the name of a file: those that are none are not there, and cost nothing.
+  // Everything that looks like a file name: those that are none do not exist, and cost nothing.
   const bool is_inp = extension == ".inp";
   if (!is_inp && extension != ".xdmf" && extension != ".xmf") return found;
   std::istringstream lines(content);
@@ -66,14 +66,14 @@ bool is_script(const std::string& path) {
   return extension_of(path) == ".geo";
 }
 
-/// That gmsh reads with a file.
+/// Options file that gmsh reads along with a file.
 fs::path options_file(const fs::path& path) {
   return path.string() + ".opt";
 }
 
-/// Appends the contents the mesh depends on: the file, the options Gmsh reads beside it, and every file whose name a
-/// .geo file has in quotes, as those it merges are. A name that a .geo file computes escapes this, as does what its
-/// SystemCall does.
+/// Appends the contents on which the mesh depends: the file, the options that Gmsh reads beside it, and every file that
+/// a .geo file names in quotes, such as those it merges. Names that a .geo file computes and effects of its SystemCall
+/// are not covered.
 void append_sources(const fs::path& path, std::set<fs::path>& seen, std::string& key) {
   std::error_code error;
   const fs::path canonical = fs::weakly_canonical(path, error);
@@ -91,11 +91,11 @@ void append_sources(const fs::path& path, std::set<fs::path>& seen, std::string&
     if (!name.empty() && name.find('\n') == std::string::npos) {
       append_sources(path.parent_path() / name, seen, key);
     }
-    quote = next;  // also the text between two strings is tried: so a stray quote in a comment does no harm
+    quote = next;  // also the text between two strings is tried, so that a stray quote in a comment does no harm
   }
 }
 
-/// The directory of the cache, made if need be; the first of the candidates that can be written to.
+/// Returns the cache directory, created if missing; the first of the candidates that is writable.
 fs::path cache_directory() {
   std::vector<fs::path> candidates;
   const auto variable = [](const char* name) {
@@ -126,7 +126,7 @@ std::string gmsh_options(const MeshFile& file) {
       "Mesh.MshFileVersion = 4.1;\nMesh.Binary = 1;\nMesh.ElementOrder = {};\nMesh.SecondOrderIncomplete = 0;\n"
       "Mesh.SaveParametric = 0;\nMesh.SaveTopology = 0;\nMesh.ScalingFactor = 1;\n",
       file.geometry_degree);
-  // Both bounds: whatever the file says about sizes is clamped to the one asked for.
+  // Both bounds: sizes given in the file are clamped to the requested one.
   if (file.size) {
     options += fmt::format("Mesh.MeshSizeFactor = 1;\nMesh.MeshSizeMin = {0:.17g};\nMesh.MeshSizeMax = {0:.17g};\n",
                            *file.size);
@@ -134,12 +134,12 @@ std::string gmsh_options(const MeshFile& file) {
   return options;
 }
 
-/// Where a file that is made from a source with such a key is kept.
+/// Path in the cache of a file that is made from a source with this key.
 fs::path place_of(const std::string& source, const std::string& key) {
   return cache_directory() / fmt::format("{}-{}.msh", fs::path(source).stem().string(), fnv1a_128(key));
 }
 
-/// The file that `make` writes, or wrote before with the same key.
+/// Returns the file that `make` writes, or wrote earlier with the same key.
 fs::path kept(const std::string& source, const std::string& key, const char* doing,
               const std::function<void(const fs::path& workspace, const fs::path& output)>& make) {
   const fs::path result = place_of(source, key);
@@ -152,12 +152,12 @@ fs::path kept(const std::string& source, const std::string& key, const char* doi
   const fs::path output = workspace.path() / "mesh.msh";
   make(workspace.path(), output);
   std::error_code error;
-  fs::rename(output, result, error);  // in one step, so that a cached mesh is always a whole one
+  fs::rename(output, result, error);  // in one step, so that a cached mesh is always a complete one
   if (error) throw Error(ErrorKind::file_access, fmt::format("cannot write {}: {}", result.string(), error.message()));
   return result;
 }
 
-/// What decides on a mesh.
+/// Returns the key of a mesh: everything that determines it.
 std::string key_of(const MeshFile& file, const std::string& options) {
   std::string key = "gmsh " + program_version(file.path) + "\n" + options;
   std::set<fs::path> seen;

@@ -15,7 +15,7 @@ bool is_space(char c) {
   return c == ' ' || c == '\n' || c == '\r' || c == '\t';
 }
 
-/// A token as it can be shown in a message.
+/// Returns a token in printable form for messages.
 std::string printable(std::string_view token) {
   std::string text;
   for (const char c : token.substr(0, 30)) text += (c >= ' ' && c <= '~') ? c : '?';
@@ -65,14 +65,14 @@ void TextReader::end_record() {
 double TextReader::number(const char* what) {
   skip_blanks();
   const char* start = cursor_.position();
-  if (start != cursor_.end() && *start == '+') {  // which from_chars does not take
+  if (start != cursor_.end() && *start == '+') {  // from_chars does not accept it
     ++start;
     if (start != cursor_.end() && *start == '-') fail_token(what, "a number");
   }
   double value = 0.0;
   const auto [next, error] = std::from_chars(start, cursor_.end(), value);
   if (error == std::errc::result_out_of_range) {
-    value = std::strtod(std::string(start, next).c_str(), nullptr);  // ±infinity, or what is nearest to a tiny number
+    value = std::strtod(std::string(start, next).c_str(), nullptr);  // ±infinity, or the number nearest to a tiny one
   } else if (error != std::errc{}) {
     fail_token(what, "a number");
   }

@@ -11,11 +11,11 @@
 #include <system_error>
 #include <type_traits>
 
-/// @file Reading numbers from the content of a .msh file. TextReader and BinaryReader have the same members, so that a
-/// format whose two encodings hold the same sequence of numbers is parsed by one template. Private to mesh/.
+/// @file Reading numbers from the content of a .msh file. TextReader and BinaryReader have the same interface, so that
+/// one template parses a format whose two encodings hold the same sequence of numbers. Private to mesh/.
 namespace ricochet::gmsh {
 
-/// The content and how far it has been read.
+/// The content and the reading position.
 class Cursor {
  public:
   Cursor(std::string_view content, std::string source)
@@ -30,9 +30,9 @@ class Cursor {
   void set_binary() { binary_ = true; }
   const std::string& source() const { return source_; }
 
-  /// Skips blanks and ends of lines.
+  /// Skips blanks and line ends.
   void skip_space();
-  /// The rest of the line, without its end; moves behind it.
+  /// Returns the rest of the line without its end, and moves behind it.
   std::string_view line();
   /// Throws Error(invalid_input) that names the file and the line (ASCII) or the byte (binary) of the position.
   [[noreturn]] void fail(const std::string& message) const;
@@ -54,11 +54,11 @@ class TextReader {
   void end_record();
   int integer(const char* what) { return narrow(integer64(what), what); }
   std::int64_t integer64(const char* what);
-  /// The tag of a node or an element.
+  /// Reads the tag of a node or an element.
   std::int64_t tag(const char* what) { return integer64(what); }
   double number(const char* what);
-  /// A count of things that take at least so many bytes each: refused when the rest of the file cannot hold them, so
-  /// that nothing absurd is ever allocated.
+  /// Reads a number of items of at least so many bytes each. Refuses it if the rest of the file cannot hold them, so
+  /// that no absurd size is ever allocated.
   std::size_t count(const char* what, std::size_t text_bytes_each, std::size_t binary_bytes_each);
   Cursor& cursor() { return cursor_; }
 
@@ -98,7 +98,7 @@ class BinaryReader {
   Cursor& cursor_;
 };
 
-/// Refuses `count` things of at least `bytes_each` bytes that the rest of the file cannot hold.
+/// Refuses `count` items of at least `bytes_each` bytes if the rest of the file cannot hold them.
 void check_room(const Cursor& cursor, std::uint64_t count, std::size_t bytes_each, const char* what);
 
 // The functions below are called for every number of the file, hence inline.
@@ -125,7 +125,7 @@ inline std::int64_t TextReader::integer64(const char* what) {
 inline std::int64_t BinaryReader::tag(const char* what) {
   const auto value = read<std::uint64_t>(what);
   constexpr auto largest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
-  // Out of range is nonsense; −1 is refused, with a message that names the tag, by whoever numbers nodes and elements.
+  // Out of range is invalid; −1 is refused, with a message that names the tag, when nodes and elements are numbered.
   return value > largest ? -1 : static_cast<std::int64_t>(value);
 }
 

@@ -3,8 +3,8 @@
 #include "ricochet/mesh/msh_cursor.hpp"
 #include "ricochet/mesh/raw_mesh.hpp"
 
-/// @file The sections whose layout depends on the version of the format. Each is called behind the line that opens the
-/// section and leaves the cursor before the one that closes it. Private to mesh/.
+/// @file Sections whose layout depends on the version of the format. Each function is called behind the line that opens
+/// the section and leaves the cursor before the one that closes it. Private to mesh/.
 namespace ricochet::gmsh {
 
 void read_nodes_22(Cursor& cursor, RawMesh& mesh);

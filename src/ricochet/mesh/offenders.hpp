@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-/// @file Naming in a message the entities at fault. Private to mesh/.
+/// @file Naming the entities at fault in a message. Private to mesh/.
 namespace ricochet {
 
-/// Remembers the first few numbers of entities and how many there are.
+/// Stores the first few numbers of entities and counts all of them.
 class Offenders {
  public:
   void add(std::int64_t number) {
@@ -16,7 +16,7 @@ class Offenders {
   }
   [[nodiscard]] bool any() const { return count_ > 0; }
   [[nodiscard]] std::int64_t count() const { return count_; }
-  /// "element 12" or "9 elements (12, 13, 14, 15, 16, …)"
+  /// Returns "element 12" or "9 elements (12, 13, 14, 15, 16, …)".
   [[nodiscard]] std::string text(const std::string& singular) const;
 
  private:

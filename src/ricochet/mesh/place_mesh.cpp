@@ -14,7 +14,7 @@ struct CosineAndSine {
   double cosine, sine;
 };
 
-/// Of an angle in degrees. It is brought to [−45°, 45°] first, so that quarter turns are exact.
+/// Cosine and sine of an angle in degrees, reduced to [−45°, 45°] first, so that quarter turns are exact.
 CosineAndSine of_degrees(double degrees) {
   const double rest = std::remainder(degrees, 90.0);
   const double c = std::cos(rest * std::numbers::pi / 180.0), s = std::sin(rest * std::numbers::pi / 180.0);

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-/// @file What a .msh file says, before it is checked and renumbered. Private to mesh/.
+/// @file Content of a .msh file before it is checked and renumbered. Private to mesh/.
 namespace ricochet::gmsh {
 
 /// Elements of one Gmsh type, on one geometric entity, in the same physical groups.

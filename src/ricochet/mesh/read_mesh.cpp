@@ -31,7 +31,7 @@ std::string read_whole_file(const std::filesystem::path& path) {
   std::string content;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error) content.resize(size);
-  // The size may change: what counts is what is read until the end.
+  // The size may change meanwhile: only the data read before the end count.
   std::size_t done = 0;
   for (;;) {
     if (done == content.size()) content.resize(content.size() + (1u << 16));
@@ -69,7 +69,7 @@ void check_request(const MeshFile& file, bool by_program) {
 
 bool is_meshed(const MeshFile& file) {
   check_request(file, true);
-  (void)gmsh::read_whole_file(file.path);  // for the message of a file that cannot be read
+  (void)gmsh::read_whole_file(file.path);  // reports a file that cannot be read
   return gmsh::meshed_before(file).has_value();
 }
 
@@ -80,7 +80,7 @@ Mesh read_mesh(const MeshFile& file) {
   const bool converted = is_foreign_mesh(file.path);
   std::filesystem::path path = file.path;
   if (by_program || converted) {
-    (void)gmsh::read_whole_file(path);  // for the message of a file that cannot be read
+    (void)gmsh::read_whole_file(path);  // reports a file that cannot be read
     path = by_program ? gmsh::meshed_file(file) : gmsh::converted_file(file.path);
   }
   const std::string content = gmsh::read_whole_file(path);

@@ -5,7 +5,7 @@
 
 #include "ricochet/mesh/msh_sections.hpp"
 
-/// The sections of a .msh file, whatever its version.
+/// Sections of a .msh file common to all versions.
 namespace ricochet::gmsh {
 
 namespace {
@@ -65,7 +65,7 @@ void read_physical_names(Cursor& cursor, RawMesh& mesh) {
   }
 }
 
-/// Reads one section at a time and remembers which there were.
+/// Reads one section at a time and records which ones were present.
 class Reader {
  public:
   Reader(std::string_view content, const std::string& source) : cursor_(content, source) {}
@@ -152,7 +152,7 @@ class Reader {
     cursor_.fail(fmt::format("{} should be here; the section does not hold what its counts say", wanted));
   }
 
-  /// Sections of results, comments, periodicity and others say nothing about the mesh itself.
+  /// Skips sections (results, comments, periodicity and others) that do not describe the mesh itself.
   void skip_section(const std::string& name, const char* start) {
     const std::string wanted = "$End" + name;
     const std::size_t found = cursor_.rest().find(wanted);

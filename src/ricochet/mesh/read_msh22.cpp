@@ -7,7 +7,7 @@
 #include "ricochet/mesh/gmsh_elements.hpp"
 #include "ricochet/mesh/msh_sections.hpp"
 
-/// Format 2.2. The counts at the head of $Nodes and $Elements are text in binary files too.
+/// Format 2.2. The counts at the head of $Nodes and $Elements are text in binary files, too.
 namespace ricochet::gmsh {
 
 namespace {
@@ -21,8 +21,8 @@ std::size_t read_count(Cursor& cursor, const char* what, std::size_t text_bytes_
   return count;
 }
 
-/// Finds the block an element goes to. Files need not be sorted, and a block for each run of equal elements could be as
-/// many as elements.
+/// Finds the block to which an element belongs. Files need not be sorted, and a block for each run of equal elements
+/// could give as many blocks as elements.
 class Blocks {
  public:
   explicit Blocks(std::vector<RawElements>& elements) : elements_(elements) {}
@@ -43,7 +43,7 @@ class Blocks {
     RawElements& block = elements_.emplace_back();
     block.type = type;
     block.entity = entity;
-    // A negative tag orients the entity within its group; Gmsh has turned the elements already.
+    // A negative tag orients the entity within its group; Gmsh has reversed the elements already.
     if (group != 0) block.groups.push_back(std::abs(group));
   }
 
@@ -62,8 +62,8 @@ const ElementType& fixed_type(const Cursor& cursor, int number) {
   return *type;
 }
 
-/// The numbers of an element after its type; `read` gives the next one. Of its tags the first is the physical group and
-/// the second the geometric entity; the others are about partitions.
+/// Adds an element from the numbers after its type; `read` returns the next one. The first of its tags is the physical
+/// group and the second the geometric entity; the others concern partitions.
 template <class Read>
 void add_element(const Cursor& cursor, Blocks& blocks, const ElementType& type, std::int64_t tag, int tag_count,
                  Read read) {

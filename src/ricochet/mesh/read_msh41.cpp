@@ -13,7 +13,7 @@ namespace ricochet::gmsh {
 
 namespace {
 
-/// The physical groups of an entity. The sign of a group's tag only orients the entity within the group.
+/// Physical groups of an entity. The sign of a group's tag only orients the entity within the group.
 template <class Reader>
 std::vector<int> read_physical_tags(Reader& reader) {
   const std::size_t count = reader.count("the number of an entity's physical groups", 2, sizeof(std::int32_t));
@@ -57,7 +57,7 @@ void read_entities(Reader reader, Entities& entities) {
   }
 }
 
-/// The line at the head of $Nodes and $Elements: blocks, total and the range of tags, which nothing here relies on.
+/// Line at the head of $Nodes and $Elements: blocks, total and the range of tags, on which nothing here relies.
 struct Head {
   std::size_t blocks = 0;
   std::size_t total = 0;
@@ -111,7 +111,7 @@ void read_nodes(Reader reader, RawMesh& mesh) {
   check_total(reader.cursor(), "nodes", mesh.node_tags.size(), head.total);
 }
 
-/// The physical groups of a block of elements.
+/// Physical groups of a block of elements.
 std::vector<int> block_groups(const Cursor& cursor, const Entities& entities, int dimension, int entity) {
   if (!entities.present) return {};
   const auto found = entities.groups.find({dimension, entity});

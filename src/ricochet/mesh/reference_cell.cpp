@@ -13,7 +13,7 @@ using VertexSets = std::vector<std::vector<int>>;
 
 constexpr std::size_t shape_count = 5;
 
-// Basix numbers the edges of simplices by the vertex they are opposite to, and those of tensor cells lexicographically.
+// Basix numbers the edges of simplices by the opposite vertex, and those of tensor cells lexicographically.
 VertexSets edges(CellShape shape) {
   switch (shape) {
     case CellShape::interval:
@@ -88,7 +88,7 @@ VertexSets make_outward_facet_vertices(CellShape shape) {
   for (int vertex = 0; vertex < vertex_count(shape); ++vertex) centre += vertex_position(shape, vertex);
   centre /= vertex_count(shape);
   for (std::vector<int>& facet : result) {
-    if (facet.size() == 4) std::swap(facet[2], facet[3]);  // Basix numbers rows, here one goes round
+    if (facet.size() == 4) std::swap(facet[2], facet[3]);  // from Basix's row-wise order to one around the facet
     const Eigen::Vector3d first = vertex_position(shape, facet[0]);
     const Eigen::Vector3d along = vertex_position(shape, facet[1]) - first;
     const Eigen::Vector3d across =
@@ -112,7 +112,7 @@ std::vector<int> make_mirrored_nodes(CellShape shape, int degree) {
   return result;
 }
 
-/// One entry for each shape and degree, made at first use: these are looked up once per block of cells.
+/// Table with one entry per shape and degree, made at first use: entries are looked up once per block of cells.
 template <class Make>
 auto make_table(Make make) {
   std::array<decltype(make(CellShape::triangle, 1)), 2 * shape_count> table;

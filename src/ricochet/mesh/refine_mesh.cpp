@@ -18,7 +18,7 @@ namespace ricochet {
 
 namespace {
 
-using VertexSet = std::vector<int>;    ///< of the cell that is cut: a point at their mean
+using VertexSet = std::vector<int>;    ///< of the parent cell: a point at their mean
 using Child = std::vector<VertexSet>;  ///< its vertices
 using Children = std::vector<Child>;
 
@@ -26,7 +26,7 @@ bool is_tensor(CellShape shape) {
   return shape == CellShape::quadrilateral || shape == CellShape::hexahedron || shape == CellShape::interval;
 }
 
-/// Lexicographically, as cells of this kind number everything.
+/// Children in lexicographic order, the order of all numberings on these cells.
 Children children_of_tensor(CellShape shape) {
   const int d = dimension(shape), corners = 1 << d;
   Children result;
@@ -52,7 +52,7 @@ VertexSet pair_of(int one, int other) {
   return {std::min(one, other), std::max(one, other)};
 }
 
-/// Those that keep a vertex are the parent at half its size.
+/// Children at the corners: copies of the parent at half its size.
 Children corners_of_simplex(int d) {
   Children result;
   for (int corner = 0; corner <= d; ++corner) {
@@ -72,8 +72,8 @@ Eigen::Vector3d reference_place(CellShape shape, const VertexSet& mean) {
 
 constexpr std::array<std::array<int, 4>, 3> diagonals{{{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}}};
 
-/// What the corners leave of a tetrahedron is an octahedron: four tetrahedra around the diagonal from the middle of ab
-/// to that of cd.
+/// Cuts the octahedron that remains between the corners of a tetrahedron into four tetrahedra around the diagonal from
+/// the midpoint of ab to that of cd.
 Children around_diagonal(const std::array<int, 4>& abcd) {
   const auto [a, b, c, d] = abcd;
   const std::array<VertexSet, 4> ring{pair_of(a, c), pair_of(b, c), pair_of(b, d), pair_of(a, d)};
@@ -90,7 +90,7 @@ Children around_diagonal(const std::array<int, 4>& abcd) {
   return result;
 }
 
-/// With each diagonal, of shapes that have several.
+/// Alternative subdivisions of a shape, one per diagonal if there are several.
 std::vector<Children> ways_to_cut(CellShape shape) {
   if (is_tensor(shape)) return {children_of_tensor(shape)};
   Children corners = corners_of_simplex(dimension(shape));
@@ -106,7 +106,7 @@ std::vector<Children> ways_to_cut(CellShape shape) {
   return result;
 }
 
-/// The function of the Lagrange element of degree 2 whose node is at the mean of some vertices, at a reference point.
+/// Lagrange function of degree 2, at a reference point, of the node at the mean of some vertices.
 double quadratic_function(CellShape shape, const VertexSet& node, const Eigen::Vector3d& at) {
   double result = 1.0;
   if (is_tensor(shape)) {
@@ -123,18 +123,18 @@ double quadratic_function(CellShape shape, const VertexSet& node, const Eigen::V
   return node.size() == 1 ? result : 4.0 * result;
 }
 
-/// At most so many new nodes lie on edges, in quadrilaterals and in hexahedra.
+/// Upper bounds of the numbers of new nodes on edges, in quadrilaterals and in hexahedra.
 struct Bounds {
   std::size_t edges = 0, faces = 0, middles = 0;
 };
 
-/// New nodes, each once, whichever cells ask for it.
+/// New nodes, each created once for all cells that need it.
 class NewNodes {
  public:
   NewNodes(Mesh& mesh, const Bounds& most)
       : mesh_(mesh), known_{table(2, most.edges), table(4, most.faces), table(8, most.middles)} {}
 
-  /// The node at the mean of some vertices of the mesh, which is there or is put at a place.
+  /// Returns the node at the mean of some vertices of the mesh; if missing, creates it at the position place().
   template <class Place>
   Index at_mean(const std::vector<Index>& vertices, const Place& place) {
     if (vertices.size() == 1) return vertices.front();
@@ -146,14 +146,14 @@ class NewNodes {
     known.nodes.push_back(mesh_.node_count() + static_cast<Index>(places_.size()) - 1);
     return known.nodes.back();
   }
-  /// Of a node of the mesh or a new one.
+  /// Position of a node of the mesh or of a new one.
   [[nodiscard]] Eigen::Vector3d place_of(Index node) const {
     Eigen::Vector3d result = Eigen::Vector3d::Zero();
     if (node >= mesh_.node_count()) return places_[static_cast<std::size_t>(node - mesh_.node_count())];
     result.head(mesh_.dimension) = mesh_.nodes.col(node);
     return result;
   }
-  /// The cut mesh's nodes.
+  /// Adds the new nodes to the mesh.
   void add() {
     const Index before = mesh_.node_count();
     mesh_.nodes.conservativeResize(Eigen::NoChange, before + static_cast<Index>(places_.size()));
@@ -174,7 +174,7 @@ class NewNodes {
   std::vector<Eigen::Vector3d> places_;
 };
 
-/// Cuts the elements of a mesh into parts, of one shape after another.
+/// Cuts the elements of a mesh into parts, one shape after another.
 class Cutter {
  public:
   Cutter(const Mesh& mesh, NewNodes& nodes) : mesh_(mesh), nodes_(nodes) {}
@@ -200,7 +200,7 @@ class Cutter {
     for (std::size_t i = 0; i < diagonals.size(); ++i) {
       const auto [a, b, c, d] = diagonals[i];
       const double length = (nodes_.place_of(node_at(pair_of(a, b))) - nodes_.place_of(node_at(pair_of(c, d)))).norm();
-      // Of equal ones the first, whatever rounding says.
+      // Of equal diagonals the first is chosen, independently of rounding.
       if (length < least * (1.0 - 1e-12)) {
         least = length;
         best = i;
@@ -220,7 +220,7 @@ class Cutter {
     });
   }
 
-  /// The place that the geometry of second order gives a reference point.
+  /// Position of a reference point on the second-order geometry.
   [[nodiscard]] Eigen::Vector3d place_in_cell(const Eigen::Vector3d& at) const {
     Eigen::Vector3d result = Eigen::Vector3d::Zero();
     const std::vector<std::vector<int>>& nodes = node_vertices(shape_, 2);
@@ -253,7 +253,7 @@ Index parts_of(CellShape shape) {
   return Index{1} << dimension(shape);
 }
 
-/// The numbers, through all blocks, of the parts of some elements.
+/// Numbers, through all blocks, of the parts of some elements.
 std::vector<Index> numbers_of_parts(const std::vector<CellBlock>& blocks, const std::vector<Index>& members) {
   std::vector<Index> result;
   for (const Index member : members) {
@@ -267,7 +267,7 @@ std::vector<Index> numbers_of_parts(const std::vector<CellBlock>& blocks, const 
   return result;
 }
 
-/// Edges of all cells, each once.
+/// Number of distinct edges of all cells.
 std::size_t count_edges(const Mesh& mesh) {
   std::vector<std::pair<Index, Index>> edges;
   for (const CellBlock& block : mesh.cells) {
@@ -283,7 +283,7 @@ std::size_t count_edges(const Mesh& mesh) {
   return static_cast<std::size_t>(std::unique(edges.begin(), edges.end()) - edges.begin());
 }
 
-/// Long before memory is full.
+/// Refuses a refinement long before memory is full.
 void require_room(const Mesh& mesh, int times) {
   double cells = 0.0, bytes = 0.0;
   for (const CellBlock& block : mesh.cells) {
@@ -311,7 +311,7 @@ Bounds bounds_of(const Mesh& mesh) {
   }
   const auto faces = static_cast<std::size_t>(of_faces), middles = faces / 6;
   if (mesh.degree == 1) return {count_edges(mesh), faces, middles};
-  // Of the parts, without what they share: 25 edges of those of a tetrahedron, 54 of those of a hexahedron.
+  // Distinct edges of the parts of one cell: 25 for a tetrahedron, 54 for a hexahedron; cells share some of them.
   return {54 * static_cast<std::size_t>(mesh.cell_count()), 36 * faces, 8 * middles};
 }
 

@@ -14,7 +14,7 @@ namespace ricochet::gmsh {
 
 namespace {
 
-/// What to do about elements that cannot be used.
+/// Returns what to do about elements that cannot be used.
 std::string advice(int number, int degree) {
   if (number == 16 || number == 17)
     return "set Mesh.SecondOrderIncomplete = 0 in Gmsh to get the full second-order element";

@@ -12,7 +12,7 @@
 /// @file Finding cells and facets by their vertices. Private to mesh/.
 namespace ricochet {
 
-/// An open hash table of cells of one shape, equal when they have the same vertices in whatever order.
+/// An open-addressing hash table of cells of one shape, equal if they have the same vertices in any order.
 class VertexSetTable {
  public:
   VertexSetTable(int vertex_count, std::size_t capacity)
@@ -20,13 +20,13 @@ class VertexSetTable {
     keys_.reserve(capacity * vertex_count_);
   }
 
-  /// The number of the equal cell, or −1.
+  /// Returns the number of the equal cell, or −1.
   [[nodiscard]] Index find(const Index* vertices) const {
     const Key key = sorted(vertices);
     return slots_[slot_of(key)].number;
   }
-  /// The number of the equal cell, or −1 and the cell is added with the next number from 0 on. At most `capacity`
-  /// cells.
+  /// Returns the number of the equal cell; if there is none, adds the cell with the next number, from 0 on, and returns
+  /// −1. Holds at most `capacity` cells.
   Index find_or_add(const Index* vertices) {
     const Key key = sorted(vertices);
     Slot& slot = slots_[slot_of(key)];
@@ -45,7 +45,7 @@ class VertexSetTable {
 
   Key sorted(const Index* vertices) const {
     Key key{};
-    for (std::size_t i = 0; i < vertex_count_; ++i) {  // insertion: there are at most eight
+    for (std::size_t i = 0; i < vertex_count_; ++i) {  // insertion sort: there are at most eight
       std::size_t place = i;
       for (; place > 0 && key[place - 1] > vertices[i]; --place) key[place] = key[place - 1];
       key[place] = vertices[i];

@@ -11,17 +11,17 @@
 #include "ricochet/base/rounded.hpp"
 #include "ricochet/model/model_parts.hpp"
 
-/// @file What comes and goes within an adaptive step.
+/// @file Detection of load and motion changes that fit inside one adaptive step.
 namespace ricochet {
 
 namespace {
 
 struct Brief {
-  double start = 0.0, duration = 0.0;  ///< of what an interval's ends do not show
+  double start = 0.0, duration = 0.0;  ///< the part that the values at the ends of an interval do not show
 };
 
-/// Looks at intervals of the longest step: whether a function of time leaves the line between its ends by far more than
-/// the ends differ, which shows a step of that length nothing of it.
+/// Searches intervals of the longest step for one within which a function of time departs from the line between its end
+/// values by far more than the end values differ. A step of that length sees nothing of such a change.
 template <class Function>
 std::optional<Brief> find_brief_change(const Function& value, double longest, double end) {
   constexpr int parts = 32;
@@ -40,7 +40,7 @@ std::optional<Brief> find_brief_change(const Function& value, double longest, do
     double most = 0.0;
     for (int k = 1; k < parts; ++k) most = std::max(most, beside(k));
     if (most <= felt * scale) continue;
-    // Ends of the intervals before and behind would tell a step of it, too.
+    // The ends of the neighbouring intervals would reveal the change to a step as well.
     double least_end = at[0], most_end = at[0];
     for (int k = std::max(i - 1, 0); k <= std::min(i + 2, intervals); ++k) {
       least_end = std::min(least_end, values[static_cast<std::size_t>(k * parts)]);
@@ -55,7 +55,7 @@ std::optional<Brief> find_brief_change(const Function& value, double longest, do
   return std::nullopt;
 }
 
-/// All that is given as a function of time, with its keys.
+/// Returns all functions of time of the case with their keys.
 std::vector<std::pair<std::string, const Expression*>> functions_of_time(const Case& input) {
   std::vector<std::pair<std::string, const Expression*>> result;
   const auto add = [&](const std::string& key, const std::vector<Expression>& values) {

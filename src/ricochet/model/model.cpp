@@ -35,14 +35,14 @@ void check_length(const Case& input, const std::string& key_path, std::size_t le
 
 namespace {
 
-/// In two dimensions "z" would silently be 0.
+/// Refuses an expression of z in two dimensions, where z would silently be 0.
 void check_expression(const Case& input, const std::string& key_path, const Expression& value, int dimension) {
   if (dimension != 2 || !value.depends_on_z()) return;
   refuse(input, key_path,
          fmt::format("the expression \"{}\" depends on z, but the mesh has dimension 2", value.text()));
 }
 
-/// As check_length, too.
+/// Also checks the number of components.
 void check_expressions(const Case& input, const std::string& key_path, const std::vector<Expression>& value,
                        int dimension) {
   check_length(input, key_path, value.size(), dimension);
@@ -139,7 +139,8 @@ std::vector<Index> boundary_at(const Case& input, const std::string& key_path, c
   return facets_off_axis(input, key_path, mesh, group);
 }
 
-/// Supports at tied nodes are left out: these follow the other surface, which is supported there, too, or is not.
+/// Reports supports at tied nodes. These supports are left out, because a tied node follows the other surface, which
+/// may or may not be supported there as well.
 void tell_of_supports_at_ties(const Model& model, const std::map<Index, Expression>& dofs) {
   const int d = model.mesh.dimension;
   std::set<Index> follow, lost;
@@ -173,7 +174,7 @@ void tell_of_supports_at_ties(const Model& model, const std::map<Index, Expressi
 void add_supports(const Case& input, Model& model) {
   constexpr std::array<const char*, 3> axes{"x", "y", "z"};
   Supports& supports = model.problem.supports;
-  std::map<Index, Expression> tied;  // dofs, and what their supports prescribe
+  std::map<Index, Expression> tied;  // dofs of tied nodes, with the values that their supports prescribe
   const int d = model.mesh.dimension;
   for (std::size_t i = 0; i < input.supports.size(); ++i) {
     const SupportSection& section = input.supports[i];
@@ -224,7 +225,7 @@ void add_initial_conditions(const Case& input, Model& model) {
 
 namespace {
 
-/// True when a second-order node lies off the mean of its vertices by more than rounding.
+/// Returns true if a second-order node deviates from the mean of its vertices by more than rounding.
 bool is_curved(const Mesh& mesh) {
   if (mesh.degree == 1) return false;
   for (const CellBlock& block : mesh.cells) {

@@ -7,16 +7,16 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/model/model_parts.hpp"
 
-/// @file What a case with mesh.plane = "axisymmetric" may ask for, and what its axis, x = 0, does.
+/// @file Checks of cases with mesh.plane = "axisymmetric", and the conditions on the axis x = 0.
 namespace ricochet {
 
 namespace {
 
-/// Of the size of the mesh: nodes that are no farther from the axis are on it. Programs write coordinates with so many
-/// digits, and a cosine of a right angle is not zero.
+/// Distance from the axis, relative to the size of the mesh, within which nodes count as lying on it. Mesh files round
+/// coordinates, and the cosine of a right angle is not exactly zero.
 constexpr double on_axis = 1e-9;
 
-/// A translation across the axis would carry every point of the ring away from it.
+/// Refuses a translation across the axis, which would carry every point of the ring away from it.
 void refuse_radial(const Case& input, const std::string& key_path, double radial, const std::string& what) {
   if (radial == 0.0) return;
   refuse(input, key_path,

@@ -16,8 +16,8 @@ namespace ricochet {
 
 namespace {
 
-/// Length of the mean normal around a multiplier below which its direction is that of none of its facets: facets that
-/// meet at an angle of more than 50 degrees.
+/// Length of the mean normal around a multiplier below which its direction is close to the normal of none of its
+/// facets: facets that meet at an angle of more than 50 degrees.
 constexpr double sharp_edge = 0.9;
 
 std::string place_text(const Vector& place) {
@@ -28,11 +28,12 @@ std::string names_of_pair(const ContactPair& pair) {
   return fmt::format("contact groups \"{}\" and \"{}\"", pair.group, pair.opposite_group);
 }
 
-/// Of the mesh: what facets that stand for curved surfaces may put bodies into obstacles by.
+/// Overlap with an obstacle, relative to the mesh diameter, that straight facets in place of a curved surface may
+/// cause.
 constexpr double off_by_facets = 1e-3;
 
-/// Bodies that pair_at has moved into each other have gone past where they meet: what faces what there is not what will
-/// when they touch.
+/// Warns of bodies that overlap at the displacement pair_at: they have moved past the position where they meet, so that
+/// the facets that face each other there are not those that will touch.
 void warn_of_overlap_where_paired(const Case& input, std::size_t number, const Model& model) {
   const ContactPair& pair = model.contact_pairs[number];
   if (pair.pair_at.size() == 0 || pair.closed_gaps) return;
@@ -49,7 +50,7 @@ void warn_of_overlap_where_paired(const Case& input, std::size_t number, const M
       counted(overlap.count, "contact point is", "contact points are"), overlap.deepest, place_text(overlap.place)));
 }
 
-/// What a point sees that slides far is told by its body.
+/// Refuses a side that spans several bodies: large sliding distinguishes surfaces by their bodies.
 void check_sliding_bodies(const Case& input, const std::string& key, const Model& model, const ContactPair& pair) {
   const std::vector<int> body_of_node = find_connected_bodies(model.space).of_node;
   const auto check = [&](const std::vector<Index>& facets, const char* name, const std::string& group) {
@@ -67,8 +68,8 @@ void check_sliding_bodies(const Case& input, const std::string& key, const Model
   check(pair.opposite_facets, "against", pair.opposite_group);
 }
 
-/// Warns of facets that normals turn much within: forces depend on the side then. The advice is tried by
-/// multiplier_side_test.py.
+/// Warns of facets within which normals turn considerably: forces then depend on the side that carries the multipliers.
+/// multiplier_side_test.py tests the advice.
 void warn_of_side(const ContactPair& pair, const SideDoubt& doubt, bool is_chosen) {
   std::string advice;
   if (doubt.other_is_better && !is_chosen) {
@@ -88,7 +89,8 @@ void warn_of_side(const ContactPair& pair, const SideDoubt& doubt, bool is_chose
                   pair.first_group(), pair.second_group(), doubt.turn, pair.group, advice));
 }
 
-/// Contact ends within facets there, and what is known of them is known of nodes beyond its end, too.
+/// Reports facets that are covered in part. Contact ends within such a facet, but its nodal values extend beyond that
+/// end.
 void tell_of_partly_covered(const ContactPair& pair, const PairFacing& facing) {
   constexpr double felt = 0.02;
   if (pair.tied || pair.slides_far || facing.partly_covered <= felt * facing.covered) return;
@@ -154,7 +156,7 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
     log::info(fmt::format("{} do not face each other at the start: contact begins where they do", names_of_pair(pair)));
   }
   if (facing.points == 0 && facing.held == 0) {
-    if (pair.is_one_of_many) return;  // others do
+    if (pair.is_one_of_many) return;  // other pairs do
     refuse(input, fmt::format("contact.{}.against", model.contacts[number].entry),
            fmt::format("{} do not face each other: seen along the normals of \"{}\" there is no facet of \"{}\"; check "
                        "which groups they are and where the bodies lie, {} by how much the body of "
@@ -178,7 +180,8 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
                     "at the rim of the contact",
                     names_of_pair(pair), counted(facing.lost, "piece of a facet is", "pieces of facets are")));
   }
-  // Surfaces that overlap or are taken to touch fit each other, and gaps are differences of places that facets are off.
+  // Surfaces that overlap or are set to touch fit each other; their gaps are differences of positions that are wrong by
+  // the distance of the facets from the curved surfaces.
   const double interference = std::max(-facing.smallest_gap, 0.0);
   constexpr double felt = 0.05;
   if (interference > facing.gap_rounding && (input.initial.static_equilibrium || facing.closed > 0)) {
@@ -218,7 +221,7 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
 }
 
 void check_body_overlaps(const Case& input, const Model& model) {
-  if (model.initial.static_equilibrium) return;  // a press fit: the static start pushes the bodies apart
+  if (model.initial.static_equilibrium) return;  // press fit: the static start pushes the bodies apart
   Vector gap;
   model.problem.gaps(model.initial.displacement, 0.0, gap);
   for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {

@@ -8,12 +8,12 @@
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/model/model_parts.hpp"
 
-/// @file Every body against every other: a [[contact]] without an obstacle and without another group.
+/// @file Contact of every body with every other: a [[contact]] with neither an obstacle nor another group.
 namespace ricochet {
 
 namespace {
 
-/// The name of a body without what messages put before it: "ball" of "body "ball"", "0" of "body 0".
+/// Returns the name of a body without the prefix of messages: "ball" for "body "ball"", "0" for "body 0".
 std::string short_name(const std::string& name) {
   std::string result = name.starts_with("body ") ? name.substr(5) : name;
   std::erase(result, '"');
@@ -28,7 +28,8 @@ class PairFinder {
         bodies_(find_connected_bodies(model.space)),
         names_(names_of_bodies(model.mesh, bodies_)) {}
 
-  /// Pairs of bodies that have a contact of their own, and facets that are tied, have no part in those of all.
+  /// Excludes pairs of bodies that have a contact of their own, and facets that are tied, from the contacts of all
+  /// pairs.
   void leave_out(const ModelContact& contact) {
     for (const int one : bodies_on(contact.facets)) {
       for (const int other : bodies_on(contact.opposite_facets)) known_.insert(std::minmax(one, other));

@@ -11,7 +11,7 @@
 #include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "ricochet/model/model_parts.hpp"
 
-/// @file What [[contact]] asks for.
+/// @file Obstacles and contacts of the case.
 namespace ricochet {
 
 namespace {
@@ -23,8 +23,8 @@ std::vector<Index> common_facets(const std::vector<Index>& one, const std::vecto
   return common;
 }
 
-/// Facets may belong to one contact only: to be pressed by the same obstacle twice has no meaning, and two conditions
-/// between the same surfaces depend on each other.
+/// Refuses facets that belong to two contacts: pressing them twice against the same obstacle is meaningless, and two
+/// conditions between the same surfaces are linearly dependent.
 void check_overlap(const Case& input, const Model& model) {
   const std::vector<ContactPair>& pairs = model.contact_pairs;
   const auto refuse_pair = [&](std::size_t i, std::size_t k, std::size_t facets, const std::string& against) {
@@ -51,7 +51,8 @@ void check_overlap(const Case& input, const Model& model) {
   }
 }
 
-/// Nodal forces have no share of the area at the vertices of flat six-node triangles, and so no friction under a bound.
+/// Warns of contact points without an area: nodal multipliers have none at the vertices of flat six-node triangles, so
+/// that friction with a bound vanishes there.
 void warn_of_bounds_without_area(const Model& model) {
   const ContactBoundary& contact = model.problem.contact;
   for (std::size_t k = 0; k < model.contacts.size(); ++k) {
@@ -73,8 +74,7 @@ void warn_of_bounds_without_area(const Model& model) {
   }
 }
 
-/// Multipliers that do not go together with the displacement's degree on the facets of a group are refused, or warned
-/// of.
+/// Refuses, or warns of, multipliers that are unstable with the displacement's degree on the facets of a group.
 void check_stability(const Case& input, const ModelContact& section, const Model& model) {
   for (const Index facet : model.contact_pairs.back().facets) {
     const CellShape shape = model.space.facets[locate_facet(model.space, facet).block].shape;

@@ -8,12 +8,12 @@
 #include "ricochet/model/model_parts.hpp"
 #include "ricochet/problem/ground_springs.hpp"
 
-/// @file Obstacles that move by the forces on them.
+/// @file Rigid obstacles that move freely under the forces on them.
 namespace ricochet {
 
 namespace {
 
-/// Calls visit(section, motion, key of the section) for each of them, in the order of the case.
+/// Calls visit(section, motion, key of the section) for each freely moving obstacle, in the order of the case.
 template <class Visit>
 void for_each_free_body(const Case& input, const Model& model, const Visit& visit) {
   for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
@@ -22,7 +22,7 @@ void for_each_free_body(const Case& input, const Model& model, const Visit& visi
   }
 }
 
-/// A static start has one equilibrium: contact alone holds no rigid body there.
+/// Refuses a rigid body that nothing but contact holds in a static start: its equilibrium would not be unique.
 void require_ground(const Case& input, const ObstacleSection& section, const std::string& key, Index dimension) {
   const std::vector<std::string> motions{"x", "y", "z", "rotation"};
   for (std::size_t k = 0; k < motions.size(); ++k) {
@@ -41,7 +41,7 @@ void require_ground(const Case& input, const ObstacleSection& section, const std
   }
 }
 
-/// Mass, centre and principal moments, given or of the shape.
+/// Returns mass, centre and principal moments, as given or computed from the shape.
 FreeMotion::Inertia inertia_of(const Case& input, const ObstacleSection& section, const ObstacleShape& shape,
                                int dimension) {
   const std::string key = "obstacle." + section.name;
@@ -64,7 +64,7 @@ FreeMotion::Inertia inertia_of(const Case& input, const ObstacleSection& section
     need_solid("a moment of inertia");
     const double density = result.mass / solid->volume;
     Matrix tensor = density * solid->inertia;
-    // Steiner, where the centre of mass is given.
+    // Parallel-axis theorem (Steiner) if the centre of mass is given.
     const SpaceVector away = result.centre - solid->centre;
     if (dimension == 2) {
       result.moments = SpaceVector::Constant(1, tensor(0, 0) + result.mass * away.squaredNorm());
@@ -124,7 +124,7 @@ void hold_free_bodies(const Case& input, Model& model) {
       if (axis < 3) model.problem.supports.add(body.centre_node() * d + axis, still);
       for (Index k = 0; axis == 3 && k < d; ++k) model.problem.supports.add(body.rotation_node() * d + k, still);
     }
-    if (d == 2) model.problem.supports.add(body.rotation_node() * d + 1, still);  // of a rotation there is but one
+    if (d == 2) model.problem.supports.add(body.rotation_node() * d + 1, still);  // plane rotations have one component
     if (input.initial.static_equilibrium) require_ground(input, section, key, d);
   });
 }
@@ -179,7 +179,7 @@ void add_forces_on_free_bodies(const Case& input, Model& model) {
     for (std::size_t k = 0; k < section.force.size(); ++k)
       add(body.centre_node() * d + static_cast<Index>(k), section.force[k]);
     if (section.torque.empty()) return;
-    // Its work is that on the rotation θ in space of a step: about the principal axes as they are when it begins.
+    // The torque does work on the spatial rotation θ of a step, about the principal axes at the start of the step.
     loads.add_general([&body, torque = section.torque](double time, Vector& load) {
       SpaceVector value(static_cast<Index>(torque.size()));
       for (Index k = 0; k < value.size(); ++k) value[k] = torque[static_cast<std::size_t>(k)](0.0, 0.0, 0.0, time);

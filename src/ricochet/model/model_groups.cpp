@@ -7,12 +7,12 @@
 #include "ricochet/mesh/derived_groups.hpp"
 #include "ricochet/model/model_parts.hpp"
 
-/// @file The groups that a case names, in its mesh.
+/// @file Completion of the mesh by the groups that a case names.
 namespace ricochet {
 
 namespace {
 
-/// Whether a name is what a pattern says, in which each * stands for any characters.
+/// Returns true if a name matches a pattern, in which each * stands for any characters.
 bool fits_pattern(std::string_view name, std::string_view pattern) {
   if (pattern.find('*') == std::string_view::npos) return name == pattern;
   std::size_t at = 0, in = 0, star = std::string_view::npos, resume = 0;
@@ -53,7 +53,7 @@ class GroupCompleter {
     if (all_there && names.size() > 1) add_union(key_path, group, names, dimension);
   }
 
-  /// Groups of cells, or else of facets.
+  /// Requires a group of cells or, failing that, of facets.
   void require_any(const std::string& key_path, const std::string& group) {
     const std::vector<std::string> names = names_in(group);
     const auto are_groups = [&](int dimension) {
@@ -65,7 +65,8 @@ class GroupCompleter {
     require(key_path, group, of_facets ? mesh_.dimension - 1 : mesh_.dimension);
   }
 
-  /// Surfaces of bodies: groups of facets; or what "all" and patterns stand for, under that name.
+  /// Requires surfaces of bodies: groups of facets, or the surfaces that "all" and patterns stand for, added under that
+  /// name.
   void require_surfaces(const std::string& key_path, const std::string& group) {
     for (const std::string& name : names_in(group)) add_surfaces(name);
     require(key_path, group, mesh_.dimension - 1);
@@ -79,8 +80,8 @@ class GroupCompleter {
     return list != input_.group_lists.end() ? list->second : std::vector<std::string>{group};
   }
 
-  /// The boundary of all cells or, of a pattern, the groups of facets that it fits, else the boundaries of the parts
-  /// and groups of cells that it fits. Nothing where there is none, or a group of facets of that name.
+  /// Adds the boundary of all cells or, for a pattern, the union of the facet groups that match, else the boundary of
+  /// the parts and cell groups that match. Does nothing if none match or a group of facets has that name.
   void add_surfaces(const std::string& name) {
     const int facets = mesh_.dimension - 1;
     if (mesh_.find_group(name, facets) != nullptr || is_built_in_group(mesh_, name, facets)) return;

@@ -17,11 +17,12 @@ PlaneState plane_state(const Case& input) {
   return input.mesh.plane == "stress" ? PlaneState::stress : PlaneState::strain;
 }
 
-/// Poisson's ratio from which on a mean dilatation is taken, and from which on cells without one lock. (Got back from λ
-/// and μ, 0.45 itself is a little more or less.)
+/// Poisson's ratio from which the mean dilatation is used, and the one from which cells without it lock. (The ratio is
+/// recomputed from λ and μ, so that 0.45 itself may come out slightly smaller or larger.)
 constexpr double mean_from = 0.4, locks_from = 0.45 * (1.0 - 1e-9);
 
-/// Cells whose dilatation has a mean that is not its value: not those with one quadrature point.
+/// Returns true if some cells have a mean dilatation that differs from its point values, which cells with one
+/// quadrature point do not.
 bool has_cells_with_mean(const Case& input, const Mesh& mesh) {
   const auto is_simplex = [](const CellBlock& block) {
     return block.shape == CellShape::triangle || block.shape == CellShape::tetrahedron;
@@ -51,7 +52,7 @@ void choose_dilatation(const Case& input, std::size_t i, Model& model) {
                   material.law->is_linear() ? "" : ", or quadrilaterals or hexahedra, whose mean dilatation does not"));
 }
 
-/// Of the branches whose stress relaxes.
+/// Adds the viscoelastic branches.
 void add_relaxation(const Case& input, std::size_t i, Model& model) {
   const RelaxationSection& section = input.materials[i].relaxation;
   if (section.time.empty()) return;
@@ -75,7 +76,7 @@ void add_relaxation(const Case& input, std::size_t i, Model& model) {
   }
 }
 
-/// Where in the case the user gave one of these numbers, the first that there is.
+/// Returns the key of the first of these parameters that the case gives.
 std::string key_of(const MaterialSection& section, std::size_t i, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (section.parameters.has(name)) return fmt::format("material.{}.{}", i, name);
@@ -83,8 +84,8 @@ std::string key_of(const MaterialSection& section, std::size_t i, const std::vec
   return fmt::format("material.{}.law", i);
 }
 
-/// Stiffnesses of one material are added up in one operator, so that of the 16 digits of the softest only those are
-/// left that the stiffest does not need. (What a body is made of beside others may be as stiff as it likes.)
+/// Refuses moduli of one material that differ too much: they are summed in one operator, so that of the 16 digits of
+/// the softest only those remain that the stiffest leaves. (Different materials may differ arbitrarily.)
 void require_digits(const Case& input, std::size_t i, const Model& model) {
   constexpr double most = 1e13;  // three digits
   const MaterialSection& section = input.materials[i];
@@ -111,9 +112,9 @@ void require_digits(const Case& input, std::size_t i, const Model& model) {
   }
 }
 
-/// Where no support holds a body, its motion as a whole has no other resistance than its inertia, which is added to its
-/// stiffness: that is (h ω)² times as much, ω the highest frequency of the mesh, which is above that of a wave that
-/// crosses all of it.
+/// Refuses a step so long that a body without supports keeps no digit of its inertia. Only inertia resists its rigid
+/// motion, and it is added to a stiffness (h ω)² times as large, where ω, the highest frequency of the mesh, exceeds
+/// that of a wave that crosses the whole mesh.
 void require_inertia(const Case& input, std::size_t i, const Model& model) {
   constexpr double most = 1e15;
   if (!input.supports.empty()) return;
@@ -129,7 +130,7 @@ void require_inertia(const Case& input, std::size_t i, const Model& model) {
              input.materials[i].group, speed, crossings, input.time.step, material.young(), material.density));
 }
 
-/// Where λ is thousands of times μ, its changes along an iteration hide those of μ.
+/// Warns if λ is thousands of times μ: its changes during the iterations then hide those of μ.
 void warn_of_iterations(const Case& input, std::size_t i, const Model& model) {
   constexpr double many = 5000.0;
   const Material& material = model.body.materials[i];
@@ -143,7 +144,8 @@ void warn_of_iterations(const Case& input, std::size_t i, const Model& model) {
                   input.materials[i].group, ratio, material.poisson()));
 }
 
-/// A body with a linear law does not see how far it turns, and the watch of rotations would have to know which it is.
+/// Refuses a linear law beside laws of finite strain: a body with a linear law does not recognize its rotation, and the
+/// watch of rotations would have to distinguish the bodies.
 void require_one_kind_of_law(const Case& input, const Model& model) {
   if (!has_finite_strain(model.body)) return;
   for (std::size_t i = 0; i < model.body.materials.size(); ++i) {

@@ -7,7 +7,7 @@
 #include "ricochet/mesh/refine_mesh.hpp"
 #include "ricochet/model/model_parts.hpp"
 
-/// @file The mesh of a case, from one file or from those of its parts.
+/// @file The mesh of a case, from one file or from the files of its parts.
 namespace ricochet {
 
 std::vector<CaseMeshFile> mesh_files(const Case& input) {

@@ -13,7 +13,7 @@ namespace ricochet {
 
 namespace {
 
-/// "part "ball"", "group "left"" or "the mesh".
+/// Returns "part "ball"", "group "left"" or "the mesh".
 std::string text_of(const MotionSection& motion) {
   if (motion.part.empty() && motion.group.empty()) return "the mesh";
   return motion.part.empty() ? fmt::format("group \"{}\"", motion.group) : fmt::format("part \"{}\"", motion.part);
@@ -35,7 +35,7 @@ std::vector<Index> cells_of(const Case& input, const MotionSection& motion, cons
   return group_at(input, key_of_cells(motion), mesh, motion.group, mesh.dimension).members;
 }
 
-/// Of two motions of one node: refused at the second one.
+/// Refuses two motions of one node, at the second one.
 [[noreturn]] void refuse_both(const Case& input, int a, int b, const std::string& shared) {
   const MotionSection& first = input.motions[static_cast<std::size_t>(std::min(a, b))];
   const MotionSection& second = input.motions[static_cast<std::size_t>(std::max(a, b))];
@@ -45,7 +45,7 @@ std::vector<Index> cells_of(const Case& input, const MotionSection& motion, cons
                   text_of(second), shared, text_of(first), input.where(key_of_cells(first)).text()));
 }
 
-/// Per node: the motion that it has; −1: none.
+/// Returns per node the index of its motion; −1 if none.
 std::vector<int> motions_of_nodes(const Case& input, const Model& model, const std::vector<int>& of_cell) {
   std::vector<int> of_node(static_cast<std::size_t>(model.space.node_count()), -1);
   std::size_t number = 0;
@@ -62,7 +62,7 @@ std::vector<int> motions_of_nodes(const Case& input, const Model& model, const s
   return of_node;
 }
 
-/// Per cell: the motion that it has; −1: none.
+/// Returns per cell the index of its motion; −1 if none.
 std::vector<int> motions_of_cells(const Case& input, const Model& model) {
   std::vector<int> of_cell(static_cast<std::size_t>(model.mesh.cell_count()), -1);
   for (std::size_t i = 0; i < input.motions.size(); ++i) {
@@ -75,13 +75,13 @@ std::vector<int> motions_of_cells(const Case& input, const Model& model) {
   return of_cell;
 }
 
-/// Those of the nodes with the masses ∫ρ φ_i over the cells of a motion: so a spin has no momentum, to rounding, also
-/// where cells are curved and the displacement is of degree 1.
+/// Returns the centres of mass of the nodes with the masses ∫ρ φ_i over the cells of each motion. With them a spin has
+/// no linear momentum, up to rounding, even where cells are curved and the displacement is of degree 1.
 Points centres_of_mass(const Model& model, const std::vector<int>& of_cell, std::size_t motions) {
   const Points& nodes = model.space.nodes;
   Points moments = Points::Zero(nodes.rows(), static_cast<Index>(motions));
   std::vector<double> masses(motions, 0.0);
-  // From a point of the motion's own cells: far from the origin nothing is lost.
+  // Moments are taken about a node of the motion's own cells, to lose no digits far from the origin.
   std::vector<Index> origins(motions, -1);
   std::size_t cell = 0;
   CellMasses(model.body).for_each([&](const std::vector<Index>& of_nodes, const Matrix& mass) {
@@ -101,7 +101,7 @@ Points centres_of_mass(const Model& model, const std::vector<int>& of_cell, std:
   return moments;
 }
 
-/// spin × arm; in two dimensions the spin is about the third axis.
+/// Returns spin × arm; in two dimensions the spin is about the third axis.
 Vector cross(const std::vector<double>& spin, const Vector& arm) {
   if (arm.size() == 2) return Eigen::Vector2d(-spin[0] * arm[1], spin[0] * arm[0]);
   return Eigen::Vector3d(spin[0], spin[1], spin[2]).cross(Eigen::Vector3d(arm));

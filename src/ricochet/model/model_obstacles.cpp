@@ -19,7 +19,7 @@ std::unique_ptr<const ObstaclePath> make_path(const Case& input, const ObstacleS
       throw Error(problem.kind(), fmt::format("{}: {}", input.where(key + ".table").text(), problem.what()));
     }
   }
-  if (section.is_free()) return nullptr;  // its velocity is that at the start
+  if (section.is_free()) return nullptr;  // its velocity is an initial condition
   std::vector<Expression> motion = section.motion;
   if (section.rotation.empty() && motion.empty()) return make_uniform_path(as_vector(section.velocity));
   for (std::size_t k = 0; k < section.velocity.size(); ++k)
@@ -64,7 +64,7 @@ std::unique_ptr<Obstacle> make_obstacle(const Case& input, const ObstacleSection
 }
 
 void fit_obstacles(const Case& input, Model& model) {
-  const bool are_known = !model.contact_scales.empty();  // of the whole, where this is a part of it
+  const bool are_known = !model.contact_scales.empty();  // scales of the whole body if this rank holds a part of it
   for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
     ContactScale scale{extent(model.mesh.nodes), 0.0};
     for (const ContactPair& pair : model.contact_pairs) {

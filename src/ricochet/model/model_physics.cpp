@@ -46,8 +46,9 @@ void warn_of_long_steps(const Case& input, const Scheme& scheme, const Model& mo
       limit.trouble, rounded_down(limit.crossings * median, 2)));
 }
 
-/// With degree 1 a body whose skin is nearly all of its nodes has little left to carry the inertia of the skin: the
-/// spin of a ball that friction turns was wrong by 19 % with 405 contact nodes of 858, by 2.5 % with 1,250 of 3,525.
+/// Warns of a body of degree 1 most of whose nodes are on its contact boundary: few are left inside to carry the
+/// inertia of those. The spin that friction gives a ball was wrong by 19 % with 405 contact nodes of 858, by 2.5 % with
+/// 1,250 of 3,525.
 void warn_of_thin_inside(const Model& model, std::size_t contact_nodes) {
   constexpr double most = 0.4;
   const Index nodes = model.space.node_count();
@@ -61,8 +62,8 @@ void warn_of_thin_inside(const Model& model, std::size_t contact_nodes) {
                   contact_nodes, nodes, model.mass_built));
 }
 
-/// Where free nodes are few, inertia is heaped up on some of them: a thin tube with contact on both of its faces left
-/// its obstacle with e = 0.78 instead of 0.98 where 8·10⁴ times the inertia was heaped up.
+/// Warns if few free nodes carry the inertia of many contact nodes: a thin tube with contact on both of its faces left
+/// its obstacle with e = 0.78 instead of 0.98 when 8·10⁴ times the inertia accumulated on some nodes.
 void warn_of_heaped_inertia(const Case& input, const std::string& built, const SparseMatrix& mass,
                             const Vector& diagonal) {
   constexpr double most = 100.0;
@@ -77,12 +78,12 @@ void warn_of_heaped_inertia(const Case& input, const std::string& built, const S
       built, top, built == input.mass.type ? "see whether mass \"equivalent\" chooses one that does not, " : ""));
 }
 
-/// The step at which the velocity of a prescribed displacement jumps; none where it is smooth. A second difference
-/// stands out there from those two steps before and after it. (A corner between two steps shares itself out to both.)
+/// Returns the step at which the velocity of a prescribed displacement jumps; none if it is smooth. A jump is a second
+/// difference that exceeds those two steps before and after it. (A corner between two steps contributes to both.)
 std::optional<long> find_jump(const std::function<double(long)>& value, long steps) {
-  constexpr double sharp = 0.25;      // of the largest velocity
-  constexpr double prominence = 4.0;  // a sine has less from ten steps in a period on
-  std::array<double, 5> bend{};       // second differences, the middle one that of the step looked at
+  constexpr double sharp = 0.25;      // relative to the largest velocity
+  constexpr double prominence = 4.0;  // a sine stays below this from ten steps per period on
+  std::array<double, 5> bend{};       // second differences; the middle one belongs to the step in question
   double fastest = 0.0, jump = 0.0, earlier = value(1) - value(0);
   long jumps_at = 0;
   for (long step = 1; step < steps + 2; ++step) {
@@ -99,8 +100,8 @@ std::optional<long> find_jump(const std::function<double(long)>& value, long ste
   return jump > sharp * fastest ? std::optional(jumps_at) : std::nullopt;
 }
 
-/// A prescribed displacement whose velocity jumps leaves a node with ±(half of the jump) from step to step where a
-/// scheme damps nothing.
+/// Warns of a prescribed displacement whose velocity jumps: without numerical damping, the velocity of its nodes then
+/// alternates by ±(half of the jump) from step to step.
 void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
   const TimeSection& time = input.time;
   const Scheme::JumpResponse response = scheme.jump_response();
@@ -128,7 +129,7 @@ bool is_any_positive(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
 }
 
-/// Forces of Cη U̇ are not those of a turned body.
+/// Refuses stiffness damping at finite strain: the forces Cη U̇ do not vanish for a rotating body.
 void refuse_stiffness_damping(const Case& input, const Model& model) {
   for (std::size_t i = 0; i < model.body.materials.size(); ++i) {
     if (model.body.materials[i].stiffness_damping == 0.0) continue;
@@ -164,7 +165,7 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
   const auto condensed = [&](SparseMatrix matrix, int components) {
     return model.tied.empty() ? matrix : model.tied.condense(matrix, components);
   };
-  // Rigid bodies have no cells: masses are built without their nodes.
+  // Rigid bodies have no cells, so that masses are built without their nodes.
   const Index own_nodes = model.problem.cell_node_count();
   const auto scalar_mass = [&](const std::vector<double>& weight) {
     SparseMatrix result = condensed(assemble_scalar_mass(model.body, graph, weight), 1);
@@ -245,7 +246,8 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
 
 namespace {
 
-/// A force per area or volume whose components depend on time alone: one pattern per component, times its amplitude.
+/// Adds a force per area or volume whose components depend on time alone: one pattern per component, times its
+/// amplitude.
 void add_uniform(const std::vector<Expression>& value,
                  const std::function<void(const ForceDensity&, Vector&)>& integrate, Loads& loads, Index dofs) {
   for (std::size_t k = 0; k < value.size(); ++k) {
@@ -284,7 +286,7 @@ void add_force(const std::vector<Expression>& value, const std::function<void(co
   loads.add_constant(load);
 }
 
-/// Where the tangent is constant a pressure is the dead load that it is at the start.
+/// Adds a pressure as the dead load of the initial configuration, as the tangent is constant.
 void add_dead_pressure(const FollowerPressure& pressure, const Expression& value, Loads& loads, Index dofs) {
   if (value.depends_on_time()) {
     loads.add_general([pressure](double time, Vector& load) { pressure.add_force(Vector(), time, load); });
@@ -305,7 +307,7 @@ void add_pressures(const Case& input, Model& model) {
     FollowerPressure own(model.body);
     own.add(facets, section.value);
     try {
-      // A value that is none is told with its place.
+      // An invalid value is reported with its location.
       Vector load = Vector::Zero(model.space.dof_count());
       own.add_force(Vector(), 0.0, load);
       if (!follows) add_dead_pressure(own, section.value, model.problem.loads, model.space.dof_count());
@@ -324,8 +326,8 @@ void add_loads(const Case& input, Model& model) {
   const Index dofs = model.space.dof_count();
   Loads& loads = model.problem.loads = Loads(dofs);
   if (!input.load.gravity.empty()) {
-    // Gravity acts on the mass as it is distributed: M₀ times the uniform acceleration. So a body in free fall stays
-    // undeformed with every mass, and weight and its moments are those of the body.
+    // Gravity acts on the mass as it is distributed: the load is M₀ times the uniform acceleration. A body in free fall
+    // therefore stays undeformed with every mass construction, and weight and its moments are those of the body.
     Vector acceleration(dofs);
     for (Index i = 0; i < dofs; ++i) {
       const bool turns = model.problem.is_rotation_node(i / d);

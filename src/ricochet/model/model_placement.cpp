@@ -7,20 +7,22 @@
 #include "ricochet/mesh/boundary_facets.hpp"
 #include "ricochet/model/model_parts.hpp"
 
-/// @file Bodies that rest on an obstacle where the run starts.
+/// @file Bodies that rest on an obstacle at the start of the run.
 ///
-/// The body moves along a direction e, by s, until f(s) = min_i g(x_i + s e) is the gap δ that is wanted, g being the
-/// obstacle's distance at t = 0 and x_i the nodes of the boundary. A distance changes by no more than the way, so that
+/// The body moves by s along a direction e until f(s) = min_i g(x_i + s e) equals the requested gap δ, where g is the
+/// distance from the obstacle at t = 0 and x_i are the nodes of the boundary. A distance changes by no more than the
+/// path, so that
 ///   s ← s − (f(s) − δ)
-/// never goes past the first place with the gap δ, whether the body falls (f > δ) or is lifted out of the obstacle. Its
-/// error shrinks by 1 − cos θ, θ between e and the obstacle's normal where they meet: at once on a plane.
+/// never passes the first position with the gap δ, whether the body falls (f > δ) or is lifted out of the obstacle. The
+/// error shrinks by the factor 1 − cos θ, where θ is the angle between e and the normal of the obstacle at the point of
+/// contact: one iteration suffices on a plane.
 namespace ricochet {
 
 namespace {
 
-/// A body that slides past an obstacle comes no nearer: s then doubles with each step.
+/// A body that passes an obstacle comes no nearer: s then doubles with each iteration.
 constexpr int most_rounds = 10'000;
-/// In body sizes plus the initial gap: farther away the body has missed the obstacle.
+/// In body sizes plus the initial gap: beyond this distance the body has missed the obstacle.
 constexpr double out_of_reach = 1e3;
 
 struct Nearest {
@@ -51,8 +53,8 @@ Points boundary_nodes(const Mesh& mesh) {
   return nodes;
 }
 
-/// Away from the obstacle, of length 1: the normal of a plane, else against gravity, or, without gravity, the normal at
-/// the nearest node. Axisymmetric bodies stay on their axis.
+/// Returns the unit direction away from the obstacle: the normal of a plane, else against gravity or, without gravity,
+/// the normal at the nearest node. Axisymmetric bodies stay on their axis.
 SpaceVector direction_of(const Case& input, const std::string& key, const Obstacle& obstacle, const Nearest& nearest) {
   const std::vector<double>& gravity = input.load.gravity;
   const bool falls = std::any_of(gravity.begin(), gravity.end(), [](double g) { return g != 0.0; });

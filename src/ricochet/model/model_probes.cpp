@@ -11,19 +11,19 @@
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/model/model_parts.hpp"
 
-/// @file What [[probe]] asks for.
+/// @file Probes of the case: nodes, boundaries, groups and contacts that are watched, and their sensors.
 namespace ricochet {
 
 namespace {
 
-/// Part of the body's size up to which a node lies on a segment, and up to which two nodes lie in one place.
+/// Distances, relative to the size of the body, within which a node lies on a segment and two nodes coincide.
 constexpr double on_segment = 1e-6, in_one_place = 1e-9;
-/// Of more bodies than these momenta have no columns: rows would be about nothing else.
+/// Number of bodies above which their momenta have no columns: history.csv would consist of little else.
 constexpr int most_bodies = 20;
-/// Nor have the forces of the pairs of one [[contact]] if there are more.
+/// Number of pairs of one [[contact]] above which their forces have no columns.
 constexpr std::size_t most_pairs = 20;
 
-/// Places of the mesh that probes are about.
+/// Finds the parts of the mesh that probes refer to.
 class ProbeFinder {
  public:
   ProbeFinder(const Case& input, Model& model) : input_(input), model_(model) {}
@@ -61,14 +61,14 @@ class ProbeFinder {
     places_.positions.emplace_back(model_.space.nodes.col(node));
   }
 
-  /// The entry of a node in ContactBoundary::nodes; of several that with the least gap at the start, the first of
-  /// equals.
+  /// Returns the entry of a node in ContactBoundary::nodes; among several, the one with the smallest initial gap, the
+  /// first of equals.
   [[nodiscard]] Index nearest_contact(Index node) const {
     const ContactBoundary& contact = model_.problem.contact;
     Index nearest = -1;
     for (Index entry = 0; entry < static_cast<Index>(contact.nodes.size()); ++entry) {
       if (contact.nodes[static_cast<std::size_t>(entry)] != node) continue;
-      // Also true where the one before faces nothing, and has no gap.
+      // NaN marks an entry that faces nothing; any entry with a gap replaces it.
       if (nearest < 0 || (!std::isnan(contact.node_initial_gap[entry]) &&
                           !(contact.node_initial_gap[entry] >= contact.node_initial_gap[nearest])))
         nearest = entry;
@@ -76,8 +76,8 @@ class ProbeFinder {
     return nearest;
   }
 
-  /// Returns, of nodes of two bodies in contact that lie in one place, one of the side that carries the multipliers,
-  /// which has a gap, a pressure and a reaction.
+  /// Returns, among coincident nodes of two bodies in contact, one of the side that carries the multipliers, which has
+  /// a gap, a pressure and a reaction.
   [[nodiscard]] Index with_multipliers(Index nearest) const {
     const ContactBoundary& contact = model_.problem.contact;
     const Points& positions = model_.space.nodes;
@@ -114,13 +114,13 @@ class ProbeFinder {
     }
   }
 
-  /// Name of the node's body in messages.
+  /// Returns the name of the node's body in messages.
   [[nodiscard]] std::string body_of(Index node) const {
     const auto body = static_cast<std::size_t>(model_.bodies.connected.of_node[static_cast<std::size_t>(node)]);
     return model_.bodies.names[body];
   }
 
-  /// Nodes from one end to the other.
+  /// Adds the nodes along a segment, from its first end to its second.
   void add_segment(const ProbeSection& section, const std::string& key) {
     const Vector from = vector_of(section.from), to = vector_of(section.to);
     const double length = (to - from).norm();
@@ -170,7 +170,8 @@ class ProbeFinder {
     log::info(fmt::format("probe \"{}\": {}", section.name, places_.sums));
   }
 
-  /// Which forces act at its nodes: where a contact shares some with a support, the sum of both is neither's.
+  /// Describes which forces act at these nodes. At nodes that contact and a support share, only the sum of both is
+  /// known.
   [[nodiscard]] std::string sums_of_boundary(const std::vector<Index>& nodes) const {
     const SemidiscreteProblem& problem = model_.problem;
     const auto among = [&nodes](Index node) { return std::binary_search(nodes.begin(), nodes.end(), node); };
@@ -253,7 +254,7 @@ class SensorMaker {
     sensors.push_back(std::move(sensor));
   }
 
-  /// Pairs of a [[contact]].
+  /// Returns the pairs of a [[contact]].
   [[nodiscard]] std::vector<SensedPair> pairs_of(long entry) const {
     std::vector<SensedPair> result;
     for (std::size_t i = 0; i < model_.contacts.size(); ++i) {
@@ -279,8 +280,8 @@ class SensorMaker {
   Model& model_;
 };
 
-/// What stands in names of columns: the body's name where it has one that can, else its number. Tied parts are called
-/// after the first one.
+/// Returns the label of a body in names of columns: its name if it is a plain one, else its number. Tied parts are
+/// named after the first one.
 std::string label_of(const std::string& name, int number) {
   const std::optional<std::string_view> inner = between(name, "body \"", "\"");
   return inner && is_plain_name(*inner) ? std::string(*inner) : std::to_string(number);
@@ -295,7 +296,7 @@ HistoryBodies bodies_of_history(const Model& model) {
   for (const MeshPart& part : model.mesh.parts) taken.insert(part.name);
   for (int body = 0; body < bodies.count; ++body) {
     std::string label = label_of(names[static_cast<std::size_t>(body)], body);
-    // A part may be called by a number, which is then not that of another body.
+    // The name of a part may be a number; no other body may then use it.
     if (label == std::to_string(body) && taken.contains(label)) label = "body_" + label;
     while (std::find(result.labels.begin(), result.labels.end(), label) != result.labels.end()) label += "_";
     result.labels.push_back(std::move(label));
@@ -304,7 +305,7 @@ HistoryBodies bodies_of_history(const Model& model) {
   return result;
 }
 
-/// Pairs of the same [[contact]].
+/// Returns the number of pairs of the same [[contact]].
 std::size_t count_of_entry(const Model& model, std::size_t number) {
   return static_cast<std::size_t>(
       std::count_if(model.contacts.begin(), model.contacts.end(),

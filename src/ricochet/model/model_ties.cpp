@@ -17,11 +17,11 @@ namespace ricochet {
 
 namespace {
 
-/// Of the height of the cells: surfaces that are farther apart are not meant to be one.
+/// Distance of the surfaces, in heights of a cell, beyond which they are not meant to be tied.
 constexpr double farthest_apart = 0.5;
-/// The same from which a user hears that nodes have moved.
+/// Displacement of nodes, in heights of a cell, from which it is reported.
 constexpr double moved = 1e-6;
-/// The same from which the user is warned.
+/// Displacement of nodes, in heights of a cell, from which it is warned of.
 constexpr double moved_far = 0.1;
 
 void check_tie(const Case& input, std::size_t number, const ContactPair& pair, const TiedSurface& surface) {
@@ -57,8 +57,9 @@ void check_tie(const Case& input, std::size_t number, const ContactPair& pair, c
   }
 }
 
-/// Ties of all contacts. Where several surfaces meet, at the rim of each, a node may face more than one of them, or be
-/// followed itself by the node that it faces: it follows the first, and what the second asks of it is met already.
+/// Collects the ties of all contacts. At the rims of several surfaces that meet, a node may face more than one of them,
+/// or face a node that itself follows it: it follows the first surface, which already satisfies the condition of the
+/// second.
 class TieCollection {
  public:
   TieCollection(const Case& input, const Model& model)
@@ -90,7 +91,7 @@ class TieCollection {
 
  private:
   [[nodiscard]] bool is_tied(Index node) const { return tied_by_[static_cast<std::size_t>(node)] >= 0; }
-  /// Whether one of these nodes is the node, or follows it.
+  /// Returns true if one of these nodes is the node itself or follows it.
   [[nodiscard]] bool leads_to(const TiedNodes::Weights& weights, Index node) const {
     return std::any_of(weights.begin(), weights.end(), [&](const auto& entry) {
       const auto at = place_.find(entry.first);

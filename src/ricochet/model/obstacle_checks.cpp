@@ -13,7 +13,7 @@ namespace ricochet {
 
 namespace {
 
-/// Gaps that are known to no more than this, relative to the body, are no gaps of a computation.
+/// Rounding of gaps, relative to the size of the body, above which they are useless.
 constexpr double least_precision = 1e-6;
 
 }  // namespace
@@ -33,7 +33,7 @@ double node_spacing(const DisplacementSpace& space, const std::vector<Index>& fa
 
 namespace {
 
-/// Contact is looked at in points: what is sharper than their distance passes between them.
+/// Warns of obstacles that may pass between contact points: gaps are evaluated at these points only.
 void warn_of_sharp_obstacle(const ContactPair& pair, const DisplacementSpace& space) {
   const double radius = pair.obstacle->least_radius();
   const double distance = node_spacing(space, pair.facets);
@@ -45,7 +45,7 @@ void warn_of_sharp_obstacle(const ContactPair& pair, const DisplacementSpace& sp
                   pair.group, pair.obstacle_name, radius, distance));
 }
 
-/// A body that is on the other side after a step has not touched.
+/// Warns of a step so long that a body may pass the obstacle without touching it.
 void warn_of_long_step(const Case& input, const ContactPair& pair, const Model& model) {
   const double radius = pair.obstacle->least_radius();
   if (!std::isfinite(radius) || radius <= 0.0) return;
@@ -65,8 +65,8 @@ void warn_of_long_step(const Case& input, const ContactPair& pair, const Model& 
       pair.group, longest, pair.obstacle_name, radius, rounded_down(0.1 * radius / longest * input.time.step, 1)));
 }
 
-/// The largest turn in a step, in rad, from a few hundred instants. Parts of a step are added up: a whole turn is no
-/// rest.
+/// Returns the largest rotation within a step, in rad, from a few hundred samples. It is summed over parts of a step,
+/// as a full turn would otherwise count as rest.
 double largest_turn(const Obstacle& obstacle, Index dimension, const Case& input) {
   constexpr int most_steps = 500, parts = 16;
   const double h = input.time.step, steps = std::min(std::ceil(input.time.end / h), static_cast<double>(most_steps));
@@ -82,8 +82,8 @@ double largest_turn(const Obstacle& obstacle, Index dimension, const Case& input
   return largest;
 }
 
-/// Friction sees the motion of the material where a step ends, relative to the chord of the step (motion_at): its speed
-/// is tan(θ/2)/(θ/2) times the true one.
+/// Warns of fast rotation. Friction uses the motion of the material at the end of a step relative to the chord of the
+/// step (motion_at), and its speed is tan(θ/2)/(θ/2) times the true one.
 void warn_of_fast_turn(const Case& input, const ContactPair& pair, Index dimension) {
   if (!pair.obstacle->turns() || pair.obstacle->free_motion() != nullptr) return;
   constexpr double most = 0.3, advised = 0.25;
@@ -101,7 +101,7 @@ void warn_of_fast_turn(const Case& input, const ContactPair& pair, Index dimensi
           : ""));
 }
 
-/// Distances to what is far away, or has a centre far away, are differences of large numbers.
+/// Refuses obstacles that are far away or have a distant centre: distances to them are differences of large numbers.
 void refuse_lost_digits(const Case& input, const ContactPair& pair, const Model& model) {
   const double body = extent(model.space.nodes);
   const SpaceVector path = pair.obstacle->translation(input.time.end);

@@ -50,7 +50,7 @@ Tensor BodyRotations::fit_body(const Body& body, const Vector& displacement) con
   }
   Tensor rotation = Tensor::Identity();
   if (d == 2 || body.axis >= 0) {
-    // About z of the plane, or about an axis in space: the angle of the two components across it.
+    // About z in 2D, or about an axis in 3D: the angle follows from the two components normal to it.
     const int i = d == 2 ? 0 : (body.axis + 1) % 3, j = d == 2 ? 1 : (body.axis + 2) % 3;
     const double cosine = sum(i, i) + sum(j, j), sine = sum(j, i) - sum(i, j), size = std::hypot(cosine, sine);
     if (!(size > 0.0)) return rotation;
@@ -78,7 +78,7 @@ void BodyRotations::fit(const Vector& displacement, std::vector<Tensor>& rotatio
 }
 
 double rotation_angle(const Tensor& rotation) {
-  // Half of the antisymmetric part has the sine of the angle, the trace its cosine.
+  // Half of the antisymmetric part gives the sine of the angle, the trace gives its cosine.
   const Eigen::Vector3d axis(rotation(2, 1) - rotation(1, 2), rotation(0, 2) - rotation(2, 0),
                              rotation(1, 0) - rotation(0, 1));
   return std::atan2(0.5 * axis.norm(), 0.5 * (rotation.trace() - 1.0));

@@ -8,8 +8,8 @@ namespace ricochet {
 
 namespace {
 
-/// Rows of the stage that may be written: nobody else looks at them. A step that is done keeps those that it was solved
-/// with, so there are as many as steps and stages in use, and nothing is allocated after the first ones.
+/// Rows of the stage that may be overwritten because no one else refers to them. A completed step keeps the rows with
+/// which it was solved, so there are as many as there are steps and stages in use, and only the first ones allocate.
 ContactRows& own_rows(const SemidiscreteProblem& problem, Stage& stage) {
   for (std::shared_ptr<ContactRows>& rows : stage.rows_in_store) {
     if (rows.use_count() > 1 && stage.rows != rows) continue;
@@ -26,7 +26,7 @@ ContactRows& own_rows(const SemidiscreteProblem& problem, Stage& stage) {
   return *stage.rows_in_store.back();
 }
 
-/// Rows at a displacement and a time, or of the step that ends there.
+/// Updates the rows to a displacement and a time, or to the step that ends there.
 void take_rows(const SemidiscreteProblem& problem, const Vector& displacement, double time, const StepStart* start,
                Stage& stage) {
   if (!problem.contact.follows_motion()) {
@@ -36,19 +36,19 @@ void take_rows(const SemidiscreteProblem& problem, const Vector& displacement, d
   problem.contact.geometry->update(displacement, time, start, own_rows(problem, stage));
 }
 
-/// Every point, but for those whose place others stand for.
+/// Makes every point eligible except those whose condition another point enforces.
 void take_eligible(const SemidiscreteProblem& problem, Stage& stage) {
   stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 1);
   if (problem.contact.follows_motion()) problem.contact.geometry->leave_out(stage.eligible);
 }
 
-/// Gaps where a step ends, or at an instant.
+/// Computes the gaps at the end of a step, or at an instant.
 void take_gaps(const SemidiscreteProblem& problem, const Vector& displacement, double time, bool of_step, Vector& gap) {
   problem.gaps(displacement, time, gap);
   if (of_step && problem.contact.follows_motion()) problem.contact.geometry->allow_overlap(gap);
 }
 
-/// The slip rate at δ = 0, and its rounding.
+/// Computes the slip rate at δ = 0 and its rounding error.
 void take_slip(const SemidiscreteProblem& problem, const Vector& velocity, const Vector& obstacle, Stage& stage) {
   stage.rows->tangential_motion(velocity, stage.slip_offset);
   problem.trace_rounding(velocity, stage.slip_offset_rounding);
@@ -61,20 +61,19 @@ void take_slip(const SemidiscreteProblem& problem, const Vector& velocity, const
   }
 }
 
-/// Velocities of obstacles that differ by less, relative to themselves, are the same: what is left of the iterations
-/// that find the position would be rounding where a stage is solved exactly, and is not where it is solved by
-/// iterations.
+/// Relative tolerance below which obstacle velocities count as equal. The remaining error of the iterations for the
+/// position is at rounding level if the stage is solved exactly, but not if it is solved iteratively.
 constexpr double same_velocity = 1e-10;
 
-/// Velocities of the obstacles where an increment takes the contact points.
+/// Computes the obstacle velocities at the contact points displaced by an increment.
 void take_obstacle_velocity(const SemidiscreteProblem& problem, const Vector& increment, ContactMotion& motion,
                             ObstacleMotion& velocity) {
   motion.solution = motion.observed + motion.instant.factor * increment;
   problem.obstacle_velocity(motion.solution, motion.instant.time, motion.instant.span, velocity);
 }
 
-/// The largest difference, as a motion over the step, between the velocities of obstacles at the solution and those
-/// that its conditions were relative to, at points that carry a force. Negative if they are the same.
+/// Largest difference, as a motion over the step, between the obstacle velocities at the solution and those used in its
+/// conditions, at points that carry a force. Negative if they agree.
 double obstacle_error(const SemidiscreteProblem& problem, const StageSolution& solution, const Vector& increment,
                       const Stage& stage, ContactMotion& motion) {
   take_obstacle_velocity(problem, increment, motion, motion.obstacle);
@@ -132,8 +131,8 @@ void require_no_approach(const SemidiscreteProblem& problem, const Vector& displ
   take_rows(problem, displacement, time, nullptr, stage);
   stage.motion.reset();
   problem.gaps(displacement, time, stage.gap_offset);
-  // A displacement is the sum of its increments, and this condition on velocities takes back nothing of their rounding:
-  // a point that slides or rests drifts by a unit of it per step.
+  // A displacement is the sum of its increments, and this condition on velocities corrects none of their rounding
+  // errors: a point that slides or rests drifts by one unit of rounding per step.
   problem.trace_rounding(displacement, stage.gap_offset_rounding);
   take_eligible(problem, stage);
   for (Index i = 0; i < problem.contact.size(); ++i) {
@@ -183,12 +182,12 @@ LinearizationError linearization_error(const SemidiscreteProblem& problem, const
   LinearizationError error{none, none};
   for (Index i = 0; i < gap.size(); ++i) {
     if (stage.eligible[static_cast<std::size_t>(i)] == 0) continue;
-    // What the solver leaves of the linear condition, it leaves whatever the rows are.
+    // The residual of the linear condition is the solver's and is there for any rows; it is not a linearization error.
     const double beside = std::abs(gap[i] - (stage.gap_offset[i] + stage.gap_factor * motion.gap_change[i]));
     const double wrong = solution.normal_reaction[i] > 0.0 ? beside : std::min(-gap[i], beside);
     const double rounding = stage.gap_offset_rounding[i];
     error.beyond_rounding = std::max(error.beyond_rounding, wrong - rounding);
-    // Both gaps are rounded, and the increment's part is taken off and added again.
+    // Both gaps are rounded, and the contribution of the increment is subtracted and added again.
     error.beyond_all_rounding = std::max(error.beyond_all_rounding,
                                          wrong - 2.0 * (rounding + stage.gap_factor * motion.gap_change_rounding[i]));
   }

@@ -14,7 +14,7 @@ FiniteElasticity::FiniteElasticity(const Body& body, NodeGraph graph)
 FiniteElasticity::FiniteElasticity(const Body& body, NodeGraph graph, std::vector<int> cells)
     : body_(body), graph_(std::move(graph)), cells_(body, &graph_, std::move(cells)) {}
 
-/// Nodes that follow a wanted one are wanted, too.
+/// Includes the nodes that are tied to the requested ones.
 std::shared_ptr<const InternalForce> FiniteElasticity::near(const std::vector<char>& nodes) const {
   std::vector<char> wanted = nodes;
   if (body_.tied != nullptr) {

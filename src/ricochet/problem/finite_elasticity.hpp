@@ -2,15 +2,15 @@
 
 #include "ricochet/problem/viscous_force.hpp"
 
-/// @file The internal force of bodies of which some material has a law of finite strain.
+/// @file Internal force of bodies with at least one material of finite strain.
 namespace ricochet {
 
 class FiniteElasticity final : public InternalForce, public ViscousForce {
  public:
-  /// Keeps a reference to the body, and to its ties.
+  /// Keeps a reference to the body and to its ties.
   FiniteElasticity(const Body& body, NodeGraph graph);
 
-  /// Of some cells alone.
+  /// Restricts the force to some cells.
   FiniteElasticity(const Body& body, NodeGraph graph, std::vector<int> cells);
 
   void evaluate(const Vector& displacement, Vector& force) const override;
@@ -36,7 +36,7 @@ class FiniteElasticity final : public InternalForce, public ViscousForce {
   [[nodiscard]] SparseMatrix step_tangent(const Vector& displacement, double step) const override;
 
  private:
-  /// With the values of tied nodes.
+  /// Fills in the values of the tied nodes.
   const Vector& complete(const Vector& values, Vector& memory) const;
   void condense(Vector& force) const;
   void require_upright(const InvertedCell& inverted) const;

@@ -29,7 +29,7 @@ bool FlightPrediction::has_inertia(Index node) const {
   return true;
 }
 
-/// visit(node, flight) for all nodes of bodies that turn.
+/// Calls visit(node, flight) for all nodes of bodies that rotate.
 template <class Visit>
 void FlightPrediction::visit_nodes(const Visit& visit) const {
   for (Index node = 0; node < problem_.nodes.cols(); ++node) {

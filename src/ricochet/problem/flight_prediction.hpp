@@ -4,25 +4,26 @@
 
 #include "ricochet/problem/body_rotations.hpp"
 
-/// @file Where bodies will be after a step, for a first guess of places that hardly strains those that spin: going
-/// straight on strains a body by half of the square of the angle.
+/// @file Prediction of the positions after a step, an initial guess that hardly strains spinning bodies: a straight
+/// extrapolation strains a body by half the square of the angle of rotation.
 namespace ricochet {
 
-/// Each body goes on as it moves now: with the centre c of its mass, the velocity v̄ of that, the spin ω that has its
-/// angular momentum, r = x − c and v = v̄ + ω × r + w, it is at c + h v̄ + R (r + h w), with R about ω by the angle
-/// 2 arctan(h|ω|/2) by which the midpoint rule turns. Bodies that do not turn (body_rotations.hpp) go straight on.
-/// Contact nodes without inertia have w = 0: their velocity is the mean of a step. A body that spins rigidly about a
-/// principal axis is where the midpoint rule takes it.
+/// Each body continues its present motion: with its centre of mass c, the velocity v̄ of c, the spin ω that has the
+/// angular momentum of the body, r = x − c and v = v̄ + ω × r + w, a node moves to c + h v̄ + R (r + h w), with R
+/// the rotation about ω by 2 arctan(h|ω|/2), the angle of the midpoint rule. Bodies that do not rotate
+/// (body_rotations.hpp) are extrapolated along straight lines. Contact nodes without inertia have w = 0, since
+/// their velocity is the mean over a step. For a body in rigid spin about a principal axis the prediction is
+/// exactly the result of the midpoint rule.
 class FlightPrediction {
  public:
-  /// After a mass and supports are known. Keeps a reference.
+  /// Requires a problem with mass and supports. Keeps a reference.
   explicit FlightPrediction(const SemidiscreteProblem& problem);
-  /// Displacements after a step; `end` keeps its storage.
+  /// Predicts the displacement after a step; `end` keeps its storage.
   void predict(const Vector& displacement, const Vector& velocity, double step, Vector& end);
   [[nodiscard]] const BodyRotations& bodies() const { return bodies_; }
 
  private:
-  /// Of a body as a whole, three coordinates each.
+  /// Motion of a body as a whole; vectors have three components.
   struct Flight {
     double mass = 0.0;
     Eigen::Vector3d centre = Eigen::Vector3d::Zero(), velocity = Eigen::Vector3d::Zero();

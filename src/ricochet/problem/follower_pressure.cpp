@@ -15,7 +15,7 @@ FollowerPressure::FollowerPressure(const Body& body) : body_(body) {
   }
 }
 
-/// Whether the normal that the facet's vertices make points away from those of its cell.
+/// Returns 1 if the normal defined by the facet's vertices points away from the vertices of its cell, else −1.
 double FollowerPressure::outward_side(const Facet& facet, Index cell) const {
   const CellBlock& block = body_.mesh->facets[facet.block];
   const Index* const nodes = block.cell(facet.local);
@@ -45,21 +45,21 @@ void FollowerPressure::add(const std::vector<Index>& facets, Expression pressure
   surfaces_.push_back(std::move(surface));
 }
 
-/// A facet at one point of its rule.
+/// Facet at one point of its quadrature rule.
 struct FollowerPressure::Point {
   const Surface& surface;
-  const Index* nodes;    ///< of the displacement's space
+  const Index* nodes;    ///< in the displacement space
   const Matrix& shape;   ///< gradients of φ, nodes × (d−1)
   const Matrix& values;  ///< φ, nodes × points
   Index q;
-  double weight;                          ///< of the reference facet, with the sign of the outward side
+  double weight;                          ///< of the reference facet; its sign makes the normal point outward
   Eigen::Vector3d undeformed;             ///< position
-  std::array<Eigen::Vector3d, 2> slopes;  ///< y,₁ and y,₂; in the plane the second is e_z
+  std::array<Eigen::Vector3d, 2> slopes;  ///< y,₁ and y,₂; in 2D the second is e_z
   double ring = 1.0;                      ///< 2π y₁
   [[nodiscard]] Eigen::Vector3d normal() const { return slopes[0].cross(slopes[1]); }
 };
 
-/// Calls visit(point) for all points of all facets.
+/// Calls visit(point) for all quadrature points of all facets.
 template <int d, class Visit>
 void FollowerPressure::visit_points(const Vector& displacement, const Visit& visit) const {
   for (const Surface& surface : surfaces_) {

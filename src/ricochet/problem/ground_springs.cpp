@@ -34,7 +34,7 @@ double GroundSprings::energy(const Vector& displacement, const Vector& force) co
   return bodies_->energy(displacement, force) + own_energy(displacement);
 }
 
-/// Springs are no strain of a body; where all is linear this is the tangent.
+/// Springs do not strain a body; if everything is linear, this force is the tangent times the increment.
 void GroundSprings::strain_force(const Vector& displacement, const Vector& increment, Vector& force) const {
   bodies_->strain_force(displacement, increment, force);
   if (is_linear()) add(increment, force);

@@ -7,10 +7,10 @@
 /// @file Springs between dofs and the ground.
 namespace ricochet {
 
-/// Another internal force and k_i u_i at some dofs that have no part in it (those of rigid bodies).
+/// Sum of another internal force and of k_i u_i at some dofs on which the other does not act (those of rigid bodies).
 class GroundSprings final : public InternalForce {
  public:
-  /// k per dof.
+  /// Adds springs to `bodies`; `stiffness`: k per dof.
   GroundSprings(std::shared_ptr<const InternalForce> bodies, const Vector& stiffness);
   void evaluate(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double energy(const Vector& displacement) const override;

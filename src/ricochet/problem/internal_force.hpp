@@ -9,8 +9,8 @@
 #include "ricochet/linear_algebra/node_matrix.hpp"
 #include "ricochet/problem/rigid_motion.hpp"
 
-/// @file The body's elastic response: internal force, tangent and energy behind one small interface. Linear elasticity
-/// has a constant tangent; laws of finite strain have not (finite_elasticity.hpp).
+/// @file Elastic response of the body: interface for internal force, tangent and energy. Linear elasticity has a
+/// constant tangent; laws of finite strain do not (finite_elasticity.hpp).
 namespace ricochet {
 
 class ViscousForce;
@@ -18,52 +18,56 @@ class ViscousForce;
 class InternalForce {
  public:
   virtual ~InternalForce() = default;
-  /// Nodal forces of the stress at displacement U (for linear elasticity K U). Throws Error(not_converged) that names
-  /// the cell where the displacement turns one inside out.
+  /// Computes the nodal forces of the stress at displacement U (for linear elasticity K U). Throws
+  /// Error(not_converged), with the cell in its message, if the displacement inverts a cell.
   virtual void evaluate(const Vector& displacement, Vector& force) const = 0;
-  /// Strain energy (½UᵀKU).
+  /// Strain energy (½UᵀKU for linear elasticity).
   [[nodiscard]] virtual double energy(const Vector& displacement) const = 0;
-  /// Forces at a displacement of the stress 𝔻₀ : (the derivative of the strain along `increment`), with the tangent 𝔻₀
-  /// at zero strain (for linear elasticity K times the increment): forces that no rotation changes, without resultant
-  /// or moment about the current positions.
+  /// Computes the forces at a displacement of the stress 𝔻₀ : (the derivative of the strain along `increment`), with
+  /// the tangent 𝔻₀ at zero strain (for linear elasticity K times the increment). These forces are unaffected by
+  /// rotations and have no resultant and no moment about the current positions.
   virtual void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const = 0;
-  /// The same where the force that evaluate() gives for this displacement is known.
+  /// Strain energy if the force that evaluate() returns at this displacement is known.
   [[nodiscard]] virtual double energy(const Vector& displacement, const Vector& force) const;
-  /// Forces of a step from u₀ to u₁ = u₀ + increment at a displacement in its middle: of the stress of ½(E₀+E₁) where
-  /// that is ½(u₀+u₁), so that a rigid motion has none. Only where the force is not linear; throws as evaluate() does.
+  /// Computes the forces of a step from u₀ to u₁ = u₀ + increment, at a displacement in its middle: those of the
+  /// stress of ½(E₀+E₁) if that displacement is ½(u₀+u₁), so that a rigid motion has none. Only for nonlinear
+  /// forces; throws as evaluate() does.
   virtual void mean_force(const Vector& middle, const Vector& increment, Vector& force) const;
-  /// That with strain_force() at the same place, for less than both take alone.
+  /// Computes mean_force() and strain_force() at the same displacement, at less cost than two separate calls.
   virtual void mean_forces(const Vector& middle, const Vector& increment, Vector& force, Vector& of_strain) const;
-  /// The part of it that is of the cells at some nodes (per node, 1: wanted): their forces, and the energy of these
-  /// cells alone. Only where the force is not linear.
+  /// Returns the contribution of the cells at some nodes (per node, 1: included): their forces and the energy of these
+  /// cells alone. Only for nonlinear forces.
   [[nodiscard]] virtual std::shared_ptr<const InternalForce> near(const std::vector<char>& nodes) const;
-  /// Adds what of it acts from the ground, no stress: the force of springs at a displacement, as evaluate() has it.
+  /// Adds the contribution that acts from the ground and is no stress: the force of springs at a displacement, as in
+  /// evaluate().
   virtual void add_ground_force(const Vector& /*displacement*/, Vector& /*force*/) const {}
-  /// What relaxes beside it (viscous_force.hpp), which is in nothing here; null where nothing does.
+  /// Viscoelastic branches (viscous_force.hpp), excluded from every other function here; null if none.
   [[nodiscard]] virtual const ViscousForce* viscous() const { return nullptr; }
-  /// The force is a linear function of U: the tangent is the same everywhere. Who relies on that asks (require_linear).
+  /// Whether the force is a linear function of U, so that the tangent is constant. Code that relies on it checks it
+  /// (require_linear).
   [[nodiscard]] virtual bool is_linear() const = 0;
-  /// ∂force/∂U at a displacement (empty: the undeformed body), symmetric, of one pattern. Made anew by every call,
-  /// which takes the time of some tens of evaluations: ask once, and do not keep it longer than needed.
+  /// Returns ∂force/∂U at a displacement (empty: the undeformed body), symmetric, with a fixed sparsity
+  /// pattern. Assembled anew in every call at the cost of some tens of evaluations: call it once, and do not
+  /// keep the result longer than needed.
   [[nodiscard]] virtual SparseMatrix tangent(const Vector& displacement) const = 0;
   [[nodiscard]] SparseMatrix tangent() const { return tangent(Vector()); }
-  /// The tangent, where it is the same everywhere and kept; else null.
+  /// Tangent if it is constant and stored; else null.
   [[nodiscard]] virtual const NodeMatrix* constant_tangent() const { return nullptr; }
-  /// Of the undeformed body: the diagonal of K, and the nodes that its entries join, d dofs each.
+  /// Diagonal of K of the undeformed body, and the graph of the nodes that its entries couple, with d dofs each.
   [[nodiscard]] Vector stiffness_diagonal() const;
   [[nodiscard]] MatrixGraph graph(int d) const;
-  /// Σ |u_i| |K_ij| |u_j| over the part of U that is no rigid motion: energies round as it does. Only where the force
-  /// is linear.
+  /// Σ |u_i| |K_ij| |u_j| over U minus its rigid part, the magnitude that determines the rounding error of
+  /// energies. Only for linear forces.
   [[nodiscard]] virtual double energy_terms(const Vector& displacement) const;
 };
 
-/// Throws Error(invalid_input) that names who needs it, unless the force is linear.
+/// Throws Error(invalid_input) that names `who` unless the force is linear.
 void require_linear(const InternalForce& internal_force, const std::string& who);
 
-/// K U, computed from U less its rigid motion, which has no part in it.
+/// K U, computed from U minus its rigid part, which K maps to zero.
 class LinearElasticity final : public InternalForce {
  public:
-  /// K symmetric to the bit, dofs × dofs; `nodes`: reference positions, d × count.
+  /// Requires K to be exactly symmetric, dofs × dofs; `nodes`: reference positions, d × count.
   LinearElasticity(const SparseMatrix& stiffness, const Points& nodes);
   void evaluate(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double energy(const Vector& displacement) const override;

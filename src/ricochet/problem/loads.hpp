@@ -11,7 +11,8 @@
 /// @file External loads and prescribed displacements as functions of time.
 namespace ricochet {
 
-/// L(t) = constant part + varying part. The constant part has a potential −LᵀU; the varying part does work.
+/// Load L(t) = constant part + varying part. The constant part has the potential −LᵀU; the
+/// varying part does external work.
 class Loads {
  public:
   explicit Loads(Index dofs = 0) : constant_(Vector::Zero(dofs)) {}
@@ -20,13 +21,13 @@ class Loads {
   void add_constant(const Vector& load) { constant_ += load; }
   /// Adds amplitude(t) · pattern.
   void add_separable(Vector pattern, Expression amplitude);
-  /// Adds a load that must be integrated anew at every instant: `add` adds it to its argument.
+  /// Adds a load that is integrated anew at every instant: `add` adds it to its argument.
   void add_general(std::function<void(double time, Vector& load)> add);
 
   [[nodiscard]] bool varies() const { return !separable_.empty() || !general_.empty(); }
-  /// The varying part at an instant (zero where none is given).
+  /// Computes the varying part at an instant (zero if there is none).
   void varying(double time, Vector& load) const;
-  /// Constant and varying part together.
+  /// Computes the sum of the constant and the varying part.
   void total(double time, Vector& load) const;
 
  private:
@@ -42,27 +43,27 @@ class Loads {
 /// Dofs whose displacement is prescribed.
 class Supports {
  public:
-  /// Prescribes one dof. Returns false, and changes nothing, when it is prescribed already.
+  /// Prescribes one dof. Returns false and changes nothing if it is already prescribed.
   bool add(Index dof, const Expression& value);
-  /// Sorts; call once after the last add.
+  /// Sorts the dofs; must be called once after the last add().
   void finish();
 
   [[nodiscard]] Index size() const { return static_cast<Index>(dofs_.size()); }
   [[nodiscard]] const std::vector<Index>& dofs() const { return dofs_; }
   [[nodiscard]] bool contains(Index dof) const;
-  /// The expression of a prescribed dof.
+  /// Expression of a prescribed dof.
   [[nodiscard]] const Expression& expression(Index dof) const;
-  /// Prescribed displacements at an instant, in the order of dofs().
+  /// Computes the prescribed displacements at an instant, in the order of dofs().
   void values(double time, Vector& values) const;
-  /// Velocity and acceleration at an instant t ≥ 0 by second-order one-sided differences with spacing h (only times ≥ t
-  /// are asked for, so that formulas may start at t = 0).
+  /// Computes velocity and acceleration at an instant t ≥ 0 by second-order one-sided differences with spacing h
+  /// (evaluated only at times ≥ t, so that formulas may start at t = 0).
   void derivatives(double time, double spacing, Vector& velocity, Vector& acceleration) const;
-  /// Σ of reactions, in the order of dofs(), on an increment of all dofs.
+  /// Work Σ of the reactions, in the order of dofs(), on an increment of all dofs.
   [[nodiscard]] double work(const Vector& reaction, const Vector& increment) const;
 
  private:
   std::vector<Index> dofs_;
-  std::vector<std::size_t> expression_;  ///< per dof
+  std::vector<std::size_t> expression_;  ///< index, per dof
   std::unordered_map<Index, std::size_t> expression_of_dof_;
   std::vector<Expression> expressions_;
 };

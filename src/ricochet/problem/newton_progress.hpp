@@ -7,30 +7,30 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/types.hpp"
 
-/// @file Whether iterations with a factor that is kept come near, and near enough.
+/// @file Convergence monitor of Newton iterations with a factorization that is reused.
 namespace ricochet {
 
-/// Corrections d₁, d₂, … that shrink by a rate θ leave an error of about |d_k| θ/(1−θ). Iterations end where that is
-/// less than a part of the increment sought, or where a correction is the rounding of the positions; they ask for a
-/// new factor where θ says that many more would be needed.
+/// Corrections d₁, d₂, … that decrease at a rate θ leave an error of about |d_k| θ/(1−θ). The iterations end when this
+/// is below a fraction of the increment sought, or when a correction is at the rounding level of the positions; they
+/// request a new factorization when θ implies that many more iterations would be needed.
 class NewtonProgress {
  public:
   enum class Advice { go_on, done, renew, failed };
 
-  /// `rounding`: of positions, the least correction that means something.
+  /// Begins a solution; `rounding`: rounding error of the positions, the smallest meaningful correction.
   void start(double rounding) {
     rounding_ = rounding;
     renewals_ = all_rounds_ = 0;
     accelerates_ = false;
     restart();
   }
-  /// After a new factor.
+  /// Resets the rates after a new factorization.
   void restart() {
     rounds_ = 0;
     last_ = least_ = std::numeric_limits<double>::infinity();
     slow_ = growing_ = 0;
   }
-  /// With the largest entry of a correction and that of the increment so far.
+  /// Assesses an iteration by the largest entries of its correction and of the increment so far.
   Advice judge(double correction, double increment) {
     ++rounds_;
     ++all_rounds_;
@@ -43,7 +43,7 @@ class NewtonProgress {
     const double rate = correction / last_;
     const double left = rate < 1.0 ? correction * rate / (1.0 - rate) : correction;
     if (rate < 1.0 && left <= tolerance * increment) return Advice::done;
-    // Rounding that accumulates in forces may be larger than that of positions: nothing is gained any more.
+    // The accumulated rounding of the forces may exceed that of the positions: further iterations gain nothing.
     if (rate >= stalled && correction <= std::max(loose_tolerance * increment, most_rounding * rounding_))
       return Advice::done;
     last_ = correction;
@@ -52,22 +52,24 @@ class NewtonProgress {
     least_ = std::min(least_, correction);
     const bool diverges = correction > divergence * least_;
     accelerates_ = accelerates_ || growing_ >= most_growing || (slow_ >= patience && renewals_ > 0);
-    // New factors that brought nothing before bring nothing now, and what comes nearer may go on.
+    // If earlier factorizations did not help, another one does not either, and iterations
+    // that still converge may continue.
     const bool is_worth_one = slow_ >= (accelerates_ ? long_patience : patience) && renewals_ < helpful_renewals;
     if (is_worth_one || diverges || rounds_ >= most_rounds) return renew_or_fail();
     return Advice::go_on;
   }
   void count_renewal() { ++renewals_; }
-  /// Corrections grow, or shrink slowly with a new factor, as some forces are in none (those of contact turn with what
-  /// they press on): iterations may be accelerated (linear_algebra/anderson_acceleration.hpp).
+  /// Whether the corrections grow, or decrease slowly even with a new factorization, because some forces are missing
+  /// from it (those of contact rotate with the surface they act on): iterations may then be accelerated
+  /// (linear_algebra/anderson_acceleration.hpp).
   [[nodiscard]] bool wants_acceleration() const { return accelerates_; }
   [[nodiscard]] Error failure(double correction) const;
   [[nodiscard]] int rounds() const { return all_rounds_; }
 
  private:
-  static constexpr double tolerance = 1e-13;       ///< of the increment
-  static constexpr double loose_tolerance = 1e-9;  ///< where rounding lets corrections shrink no more
-  static constexpr double most_rounding = 100.0;   ///< times that of positions, likewise
+  static constexpr double tolerance = 1e-13;       ///< relative to the increment
+  static constexpr double loose_tolerance = 1e-9;  ///< if rounding keeps the corrections from decreasing further
+  static constexpr double most_rounding = 100.0;   ///< relative to that of the positions, in the same situation
   static constexpr double stalled = 0.7;
   static constexpr double slow_rate = 0.5;
   static constexpr double divergence = 1e3;

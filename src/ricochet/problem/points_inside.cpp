@@ -7,8 +7,8 @@ namespace ricochet {
 
 namespace {
 
-/// In the whole body, of the first node of a point: of points that are as deep the one with the lowest number is named,
-/// whatever rank has it.
+/// Number, in the whole body, of the first node of a point. It breaks ties between equally deep points in favour of the
+/// lowest number, independent of the partition.
 double number_of(const SemidiscreteProblem& problem, Index point) {
   Index lowest = std::numeric_limits<Index>::max();
   problem.contact.visit_own_nodes(point, [&](Index node, double) {
@@ -17,7 +17,7 @@ double number_of(const SemidiscreteProblem& problem, Index point) {
   return static_cast<double>(lowest);
 }
 
-/// What a rank tells the others: how many there are, then depth, number, pair and place of the deepest.
+/// Message of a rank to the others: number of points, then depth, number, pair and position of the deepest.
 std::vector<double> told_of(const SemidiscreteProblem& problem, const Vector& gap, const std::vector<Index>& points) {
   if (points.empty()) return {0.0};
   const Index deepest = *std::min_element(points.begin(), points.end(), [&](Index a, Index b) {

@@ -5,24 +5,24 @@
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
 
-/// @file Contact points that are inside of what they may touch.
+/// @file Contact points that penetrate their counterpart.
 namespace ricochet {
 
-/// Of the whole body, but for `points`.
+/// Penetrating points of the whole body; `points` is local to the rank.
 struct PointsInside {
   std::vector<Index> points;  ///< of this rank, ascending
   Index count = 0;
   double deepest = 0.0;  ///< length, positive
-  int pair = -1;         ///< of the deepest, as in ContactBoundary::pair
-  Vector place;          ///< of the deepest, in the mesh; empty: there is none
+  int pair = -1;         ///< of the deepest point, as in ContactBoundary::pair
+  Vector place;          ///< undeformed position of the deepest point; empty if there is none
 };
 
-/// The contact points with a gap below zero by more than rounding and by more than `depth` (≥ 0), of one pair or of
-/// all. `gap`: of every contact point. All ranks call it.
+/// Returns the contact points with a gap below −`depth` (≥ 0) and below zero by more than rounding, of one pair or of
+/// all. `gap`: gaps of all contact points. Collective over the ranks.
 [[nodiscard]] PointsInside points_inside(const SemidiscreteProblem& problem, const Vector& gap,
                                          std::optional<int> pair = {}, double depth = 0.0);
 
-/// Those that a displacement puts inside at t = 0.
+/// Returns the points that penetrate at t = 0 with a displacement.
 [[nodiscard]] PointsInside points_inside_at_start(const SemidiscreteProblem& problem, const Vector& displacement);
 
 }  // namespace ricochet

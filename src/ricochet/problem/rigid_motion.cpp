@@ -13,7 +13,7 @@ namespace ricochet {
 
 namespace {
 
-/// x × u: one number in 2D, three in 3D.
+/// Type of x × u: one number in 2D, three in 3D.
 template <int d>
 using Axial = Eigen::Matrix<double, d == 2 ? 1 : 3, 1>;
 
@@ -26,13 +26,14 @@ Axial<d> cross(const Position& x, const Displacement& u) {
   }
 }
 
-/// The k-th of `count` things, without a pattern that a structured mesh could share: multiples of the golden ratio.
+/// Returns the k-th of `count` indices, scattered by multiples of the golden ratio, so that the sample shares no
+/// pattern with a structured mesh.
 std::size_t scattered(std::uint64_t k, std::size_t count) {
   const std::uint64_t fraction = (k * 2654435769u) & 0xffffffffu;
   return static_cast<std::size_t>((fraction * count) >> 32);
 }
 
-/// The displacement of a rotation about an axis: by 1, of all positions.
+/// Displacement of an infinitesimal rotation of all positions about an axis by the angle 1.
 Vector rotation_about(Index axis, const Points& positions) {
   const Index d = positions.rows();
   Vector result(positions.size());
@@ -114,7 +115,7 @@ std::vector<char> RigidMotion::strained_by(const Vector& motion, const SparseMat
   return strained;
 }
 
-/// Linear functions on curved cells do not contain rotations: K R is not zero there, and K U would not be that of U.
+/// Linear functions on curved cells do not contain rotations: K R is not zero for them, and removing R would alter K U.
 void RigidMotion::keep_rotations_that_strain(const SparseMatrix& stiffness) {
   for (Index axis = dimension_ == 2 ? 2 : 0; axis < 3; ++axis) {
     const std::vector<char> strained = strained_by(rotation_about(axis, positions_), stiffness);
@@ -124,7 +125,7 @@ void RigidMotion::keep_rotations_that_strain(const SparseMatrix& stiffness) {
   }
 }
 
-/// Of an axisymmetric body, away from its axis.
+/// An axisymmetric body is strained by a translation away from its axis.
 void RigidMotion::keep_translations_that_strain(const SparseMatrix& stiffness) {
   Vector across = Vector::Zero(positions_.size());
   for (Index node = 0; node < positions_.cols(); ++node) across[node * dimension_] = 1.0;
@@ -161,7 +162,7 @@ void RigidMotion::fit_bodies(const Vector& displacement) const {
   }
 }
 
-/// Of the displacement that bodies were fitted to last.
+/// Rigid part of the displacement of the last fit.
 template <int d>
 Eigen::Matrix<double, d, 1> RigidMotion::rigid_part(Index node) const {
   const Motion& motion = motions_[body_of(static_cast<std::size_t>(node))];

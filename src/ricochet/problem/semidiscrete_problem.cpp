@@ -7,12 +7,12 @@ namespace ricochet {
 
 namespace {
 
-/// Subtracts n·s(t) from gaps. `pair` and `normals` are of the points or of the nodes.
+/// Subtracts n·s(t) from gaps. `pair` and `normals` are per contact point or per node.
 void subtract_translation(const std::vector<const Obstacle*>& obstacles, const std::vector<int>& pair,
                           const Points& normals, double time, Vector& gap) {
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     if (obstacles[k] == nullptr || !obstacles[k]->moves()) continue;
-    if (!obstacles[k]->has_constant_normals()) continue;  // the geometry has its gaps
+    if (!obstacles[k]->has_constant_normals()) continue;  // the geometry computes its gaps
     const SpaceVector translation = obstacles[k]->translation(time);
     for (Index i = 0; i < gap.size(); ++i) {
       if (pair[static_cast<std::size_t>(i)] == static_cast<int>(k)) gap[i] -= normals.col(i).dot(translation);
@@ -60,7 +60,7 @@ SpaceVector SemidiscreteProblem::node_normal(Index entry, const Vector& displace
   return contact.node_normals.col(entry);
 }
 
-/// Where a contact point is.
+/// Current position of a contact point at an obstacle, where t = c.
 SpaceVector SemidiscreteProblem::position(Index point, const Vector& displacement) const {
   SpaceVector result = SpaceVector::Zero(dimension);
   contact.visit_nodes(point, [&](Index node, double weight) {

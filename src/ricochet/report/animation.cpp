@@ -16,7 +16,7 @@ namespace ricochet {
 
 namespace {
 
-/// Triangles of a picture, and of all pictures of an animation together: more take minutes to draw.
+/// Limits of the triangles of a picture, and of all pictures of an animation together: more take minutes to draw.
 constexpr Index drawn_triangles = 20'000;
 constexpr double drawn_in_all = 1e6;
 constexpr std::size_t drawn_frames = 200;
@@ -28,7 +28,7 @@ constexpr std::size_t drawn_frames = 200;
 std::string number_text(int value) {
   return std::to_string(value);
 }
-/// Nine digits, which are enough for pictures; null in place of what is no number.
+/// Returns a number with nine digits, which suffice for pictures; "null" if it is not finite.
 std::string number_text(double value) {
   return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null";
 }
@@ -72,7 +72,7 @@ std::vector<std::size_t> frames_of(const RunData& run, const AnimationOptions& o
   const std::size_t every = (frames.size() + drawn_frames - 1) / drawn_frames;
   std::vector<std::size_t> shown;
   for (std::size_t k = 0; k < frames.size(); k += every) shown.push_back(frames[k]);
-  // What the motion has led to is seen whatever is left out on the way.
+  // The final state is always shown.
   if (shown.back() != frames.back()) shown.push_back(frames.back());
   return shown;
 }
@@ -86,7 +86,7 @@ const ResultField& field_of(const RunData& run, const std::string& name) {
                                near.empty() ? "" : fmt::format(" (is \"{}\" meant?)", near), join_names(names)));
 }
 
-/// One number for each node or cell: that of a scalar, the length of a vector.
+/// Returns one number for each node or cell: the value of a scalar, the length of a vector.
 std::vector<float> sizes_of(const std::vector<float>& values, int components) {
   std::vector<float> sizes;
   for (std::size_t i = 0; i < values.size(); i += static_cast<std::size_t>(components)) {
@@ -152,7 +152,7 @@ class SceneWriter {
   }
 
  private:
-  /// Positions of the surface's nodes, displaced by values with as many components as the field has.
+  /// Returns the positions of the surface's nodes, displaced by values with as many components as the field has.
   [[nodiscard]] std::vector<double> positions_of(const std::vector<float>& displacement) const {
     std::vector<double> result;
     const auto width = static_cast<std::size_t>(displacement_.components);
@@ -166,7 +166,7 @@ class SceneWriter {
     return result;
   }
 
-  /// Numbers of the surface's nodes that are pressed.
+  /// Returns the indices of the surface's nodes that are pressed.
   std::vector<int> touching_in(std::size_t frame) {
     run_.results->read(static_cast<Index>(frame), *pressure_, values_);
     std::vector<int> result;

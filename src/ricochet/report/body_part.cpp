@@ -10,10 +10,10 @@ namespace ricochet {
 
 namespace {
 
-/// Numbers of all frames together that are held in memory at most.
+/// Largest number of values, over all frames, that are held in memory.
 constexpr double most_numbers = 2.5e8;
 
-/// On nodes of the contact boundary; elsewhere they say nothing.
+/// Fields on nodes of the contact boundary; they have no meaning elsewhere.
 constexpr std::array contact_names{"contact_pressure", "friction_traction",        "gap",
                                    "contact_status",   "nominal_contact_pressure", "nominal_friction_traction"};
 
@@ -21,15 +21,15 @@ bool is_contact(const std::string& name) {
   return std::find(contact_names.begin(), contact_names.end(), name) != contact_names.end();
 }
 
-/// Tensors are not in a page, and contact has a part of its own.
+/// Excludes tensors, which a page does not show, and contact fields, which have a part of their own.
 bool is_shown(const ResultField& field) {
   return field.name != "displacement" && field.components <= 3 && !is_contact(field.name);
 }
 
-/// With fewer than the first an inside would not look like one; more than the second are not cut at once in a browser.
+/// Below the first number an inside is not recognizable; above the second a browser does not cut it at once.
 constexpr Index least_tetrahedra = 1000, most_tetrahedra = 100'000;
 
-/// Value i of a scalar field, or the length of vector i.
+/// Returns value i of a scalar field, or the length of vector i.
 float magnitude(const std::vector<float>& values, int components, Index i) {
   if (components == 1) return values[static_cast<std::size_t>(i)];
   const float* v = values.data() + 3 * i;
@@ -59,7 +59,7 @@ BodyFrames::BodyFrames(const ResultsReader& results, Index most_triangles, std::
   read_frames();
 }
 
-/// A number takes somewhat more than a byte in the page, and five tetrahedra share a node.
+/// Estimates the size: a number takes somewhat more than a byte in the page, and five tetrahedra share a node.
 void BodyFrames::make_inside(std::size_t bytes) {
   double on_nodes = 3.0, on_cells = 0.0;
   for (const ResultField& field : results_.fields()) {
@@ -263,7 +263,7 @@ BodyPart BodyFrames::pack_body(std::size_t most_bytes, PackedArrays& arrays) con
   part.edges =
       arrays.add_small_numbers(std::vector<float>(surface_.edges.begin(), surface_.edges.end()), 1, part.triangles);
   const std::size_t fixed = arrays.page_bytes() - before;
-  // Of a solid two fifths are left to its inside.
+  // Two fifths are reserved for the inside of a solid.
   const std::size_t share = volume_.count() > 0 ? most_bytes / 5 * 3 : most_bytes;
   const std::size_t left = share > fixed ? share - fixed : 0;
 
@@ -283,7 +283,7 @@ BodyPart BodyFrames::pack_body(std::size_t most_bytes, PackedArrays& arrays) con
   for (const Quality& quality : qualities) {
     const std::vector<std::size_t> rows = kept(quality.stride);
     const bool is_last = quality.stride == qualities.back().stride;
-    // A few frames from the middle tell about what all will take.
+    // A few frames from the middle show approximately how much all will take.
     if (!is_last && rows.size() > 24) {
       PackedArrays sample;
       BodyPart ignored;

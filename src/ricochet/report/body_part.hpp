@@ -21,9 +21,9 @@ struct ContactQuantity {
 
 struct ContactPart {
   ContactLine line;
-  std::vector<int> frames;  ///< numbers of the frames that are there
+  std::vector<int> frames;  ///< numbers of the frames included
   PackedArray position;     ///< in the plane
-  PackedArray nodes;        ///< numbers of the nodes in the body's surface; −1: it does not show the node
+  PackedArray nodes;        ///< numbers of the nodes in the body's surface; −1: not a node of the surface
   std::vector<ContactQuantity> quantities;
 };
 
@@ -34,12 +34,12 @@ struct BodyField {
   PackedArray values;
 };
 
-/// The inside of a solid at the frames of its BodyPart, with displacements less the same mean.
+/// The inside of a solid at the frames of its BodyPart; displacements are relative to the same mean.
 struct VolumePart {
   Index nodes = 0, tetrahedra = 0;
   PackedArray positions;  ///< 3 × nodes, reference configuration
   PackedArray corners;    ///< tetrahedra × 4
-  PackedArray cells;      ///< of each tetrahedron: its cell's number among those that are there
+  PackedArray cells;      ///< per tetrahedron, index of its cell among those included
   PackedArray faces;      ///< see Volume
   std::vector<PackedArray> deviations;
   std::vector<BodyField> fields;
@@ -50,30 +50,30 @@ struct BodyPart {
   Index nodes = 0, triangles = 0;
   PackedArray positions;                ///< dimension × nodes, reference configuration
   PackedArray corners;                  ///< triangles × 3
-  PackedArray triangle_cells;           ///< of each triangle: its cell's number among those that can be seen
+  PackedArray triangle_cells;           ///< per triangle, index of its cell among the visible ones
   PackedArray edges;                    ///< see Surface
-  std::vector<int> frames;              ///< numbers of the frames that are there
+  std::vector<int> frames;              ///< numbers of the frames included
   PackedArray mean;                     ///< frames × 3: mean displacement of the nodes
   std::vector<PackedArray> deviations;  ///< per dimension, frames × nodes: displacement less its mean
   std::vector<BodyField> fields;
   int displacement_bits = 0, field_bits = 0;  ///< of the levels
-  bool is_coarse = false;                     ///< these are fewer than they are where there is room
+  bool is_coarse = false;                     ///< fewer bits than at the best quality
   std::vector<std::string> left_out;          ///< fields that are not in the page
   bool is_thinned = false;                    ///< triangles were merged
-  std::optional<VolumePart> volume;           ///< of solids, where there is room
+  std::optional<VolumePart> volume;           ///< inside of solids, if the size allows it
 };
 
-/// What bodies are made from, read once: the body as it is seen, all its frames (or so many as memory allows).
+/// Data of a body for pages, read once: its visible surface and all its frames (or as many as memory allows).
 class BodyFrames {
  public:
-  /// Keeps a reference to the results. The inside of a solid is made coarse enough for so many bytes of the page,
-  /// about.
+  /// Keeps a reference to the results. The inside of a solid is coarsened to take approximately so many bytes of the
+  /// page.
   BodyFrames(const ResultsReader& results, Index most_triangles, std::size_t volume_bytes);
 
-  /// In at most so many bytes of the page, as far as leaving out frames and coarser levels go.
+  /// Packs at most so many bytes of the page, as far as omitting frames and coarser levels allow.
   [[nodiscard]] ContactPart pack_contact(std::size_t most_bytes, PackedArrays& arrays) const;
   [[nodiscard]] BodyPart pack_body(std::size_t most_bytes, PackedArrays& arrays) const;
-  /// How many frames the run has.
+  /// Returns the number of frames of the run.
   [[nodiscard]] Index frame_count() const { return static_cast<Index>(results_.times().size()); }
 
  private:
@@ -85,13 +85,13 @@ class BodyFrames {
   };
   struct Quality {
     int displacement_bits, field_bits;
-    std::size_t stride;  ///< every so many of the frames that are here
+    std::size_t stride;  ///< ratio of the frames read to those included
   };
-  /// What of a body is in the page, with its displacements and fields.
+  /// The surface or the inside of a body in the page, with its displacements and fields.
   struct Part {
     std::vector<Index> nodes;
-    std::vector<int> cells;    ///< the body's cells that are needed
-    std::vector<int> numbers;  ///< of each triangle or tetrahedron, in `cells`
+    std::vector<int> cells;    ///< cells of the body that are needed
+    std::vector<int> numbers;  ///< per triangle or tetrahedron, index in `cells`
     std::vector<Values> deviations, fields;
     Part() = default;
     Part(std::vector<Index> its_nodes, const std::vector<int>& cells_of_pieces);
@@ -102,7 +102,7 @@ class BodyFrames {
   void take_displacement(const std::vector<float>& field);
   void take_contact(const ResultField& field, const std::vector<float>& values);
   void take_field(const ResultField& field, const std::vector<float>& values);
-  /// Rows of the frames that a stride leaves, the last one always.
+  /// Returns the rows of the frames that a stride leaves, always including the last.
   [[nodiscard]] std::vector<std::size_t> kept(std::size_t stride) const;
   [[nodiscard]] std::vector<int> frames_of(const std::vector<std::size_t>& rows) const;
   void pack_frames(const Quality& quality, const std::vector<std::size_t>& rows, PackedArrays& arrays,
@@ -119,7 +119,7 @@ class BodyFrames {
   ContactLine line_;
   Volume volume_;
   Part outside_, inside_;
-  std::vector<int> frames_;   ///< numbers of the frames that are here
+  std::vector<int> frames_;   ///< numbers of the frames that were read
   std::vector<double> mean_;  ///< frames × 3
   std::vector<Values> contact_;
   std::vector<std::string> left_out_;

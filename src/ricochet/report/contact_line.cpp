@@ -12,7 +12,7 @@ namespace {
 
 using Neighbours = std::map<Index, std::vector<Index>>;
 
-/// Nodes one after the other along the facets; the middle of a facet of degree 2 lies between its ends.
+/// Returns the neighbours of nodes along the facets; the midside node of a facet of degree 2 lies between its ends.
 Neighbours neighbours_of(const std::vector<CellBlock>& facets) {
   Neighbours result;
   const auto join = [&result](Index a, Index b) {
@@ -33,7 +33,7 @@ Neighbours neighbours_of(const std::vector<CellBlock>& facets) {
   return result;
 }
 
-/// The first end by (x, y); of what is left when there are only closed pieces, the lowest number.
+/// Returns the first end by (x, y); if only closed pieces are left, the node with the lowest number.
 Index next_start(const Neighbours& neighbours, const Points& nodes, const std::set<Index>& left) {
   Index best = -1;
   for (const Index node : left) {
@@ -72,7 +72,7 @@ ContactLine make_contact_line(const Points& nodes, const std::vector<CellBlock>&
       node = next == around.end() ? -1 : *next;
     }
   }
-  // One piece after the other.
+  // The pieces follow one another.
   double whole = 0.0;
   for (std::size_t k = 0; k < line.pieces.size(); ++k) {
     const auto end = k + 1 < line.pieces.size() ? static_cast<std::size_t>(line.pieces[k + 1]) : line.nodes.size();

@@ -17,9 +17,9 @@ namespace ricochet {
 
 namespace {
 
-/// Points that a curve has at most: more are not seen, and make large files.
+/// Largest number of points of a curve: more are not visible and make large files.
 constexpr std::size_t most_points = 20'000;
-/// A run that reaches so many times as far as the others does not hide them.
+/// Ratio of a run's extent to that of the others from which its curve is cut off, so that it does not hide them.
 constexpr double outlying = 8.0;
 
 struct Extent {
@@ -39,7 +39,7 @@ struct Curve {
   Extent extent;
 };
 
-/// What a panel shows of a run, and how it is called.
+/// A quantity that a panel shows for a run, and its name.
 struct Quantity {
   std::string column, name;
   bool from_zero = false;
@@ -55,7 +55,7 @@ double spread(const std::vector<double>& values) {
   return *largest - *least;
 }
 
-/// The component that changes most.
+/// Returns the component with the largest range.
 std::string largest_component(const RunData& run, const std::string& vector) {
   std::string best;
   for (const char* axis : {"_x", "_y", "_z"}) {
@@ -65,7 +65,7 @@ std::string largest_component(const RunData& run, const std::string& vector) {
   return best;
 }
 
-/// Of the force on obstacles, or between two bodies where that changes more.
+/// Returns the component of the force on obstacles, or of the one between two bodies with a larger range.
 std::string force_component(const RunData& run) {
   std::string best = largest_component(run, "contact_force");
   for (std::size_t i = 0; i < run.summary.contacts.size(); ++i) {
@@ -117,7 +117,7 @@ Curve curve_of(const RunData& run, std::size_t number, const std::string& label,
     const double time = times[i] + shift;
     if (options.time && (time < options.time->first || time > options.time->second)) continue;
     curve.times.push_back(time);
-    // What cannot be shown is a gap in the curve.
+    // Values that cannot be shown leave a gap in the curve.
     const bool shown = std::isfinite(values[i]) && (!options.logarithmic || values[i] > 0.0);
     curve.values.push_back(shown ? values[i] : std::numeric_limits<double>::quiet_NaN());
     if (shown) curve.extent.add(values[i]);
@@ -135,7 +135,8 @@ Curve curve_of(const RunData& run, std::size_t number, const std::string& label,
   return curve;
 }
 
-/// The scale shows all curves but those that reach many times as far as the others; these get a note.
+/// Chooses the range such that all curves are shown except those whose extent is many times that of the others; these
+/// get a note.
 void choose_range(const std::vector<Curve>& curves, bool from_zero, Json& panel) {
   std::vector<double> reaches;
   for (const Curve& curve : curves) reaches.push_back(curve.extent.reach());
@@ -178,7 +179,7 @@ Json panel_of_curves(const std::vector<RunData>& runs, const std::vector<std::st
   }
   panel["y_label"] = name;
   if (!options.logarithmic) choose_range(curves, from_zero, panel);
-  // A smooth curve lies upon those that rattle.
+  // Smooth curves are drawn over those that oscillate.
   std::stable_sort(curves.begin(), curves.end(),
                    [&](const Curve& a, const Curve& b) { return roughness[a.run] > roughness[b.run]; });
   panel["curves"] = Json::array();
@@ -233,7 +234,7 @@ Json panel_of_map(const RunData& run, const std::string& label, const FigureOpti
     panel["values"].push_back(std::move(row));
   }
   if (panel["x"].size() < 2) refuse(fmt::format("{}: there are fewer than two frames to be drawn", run.directory));
-  // A few peaks hide nothing.
+  // The scale ends at a percentile, so that a few peaks hide nothing.
   std::sort(pressures.begin(), pressures.end());
   panel["high"] = pressures.empty() ? 1.0 : pressures[(pressures.size() - 1) * 99 / 100];
   return panel;

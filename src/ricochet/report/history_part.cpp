@@ -34,7 +34,7 @@ HistoryPart pack_history(const HistoryTable& history, std::size_t most_bytes, Pa
   const auto columns = static_cast<Index>(history.names.size());
   const auto rows = static_cast<Index>(history.columns.at(history.names.front()).size());
   HistoryPart part;
-  // Numbers of 8 bytes hardly become smaller.
+  // Doubles hardly compress.
   std::vector<double> table = all_rows(history);
   if (base64_size(8 * table.size()) < 4 * most_bytes) {
     PackedArrays alone;

@@ -14,9 +14,9 @@ namespace ricochet {
 
 namespace {
 
-/// Rows to either side of one whose mean is the trend, at least; rows below which there is no telling.
+/// Minimum number of rows on either side of one whose mean is the trend, and of rows for a meaningful trend.
 constexpr std::size_t least_half = 5, least_rows = 50;
-/// A force that varies by less than this part of itself is constant: the rest is rounding.
+/// Relative variation below which a force counts as constant: the rest is rounding.
 constexpr double constant = 1e-6;
 
 double largest_magnitude(const std::vector<double>& values) {
@@ -31,7 +31,7 @@ double total_variation(const std::vector<double>& values) {
   return sum;
 }
 
-/// Means over the rows around each one, `half` to either side where there are as many.
+/// Returns the means over the rows around each one, `half` on either side if they exist.
 std::vector<double> running_means(const std::vector<double>& values, std::size_t half) {
   std::vector<double> sums(values.size() + 1, 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) sums[i + 1] = sums[i] + values[i];
@@ -43,7 +43,7 @@ std::vector<double> running_means(const std::vector<double>& values, std::size_t
   return result;
 }
 
-/// When one of these columns is no finite number for the first time.
+/// Returns the first time at which one of these columns is not finite.
 std::optional<double> broken_at(const RunData& run, const std::vector<std::string>& columns) {
   std::optional<double> first;
   for (const std::string& column : columns) {
@@ -56,7 +56,7 @@ std::optional<double> broken_at(const RunData& run, const std::vector<std::strin
   return first;
 }
 
-/// What the discretization of time has put into the body, row by row.
+/// Returns the energy that the time discretization has added, row by row.
 std::vector<double> energy_of_method(const RunData& run) {
   std::vector<double> result = run.column("contact_work");
   const std::vector<double>& taken = run.column("numerical_dissipation");
@@ -75,7 +75,7 @@ void judge_energy(const RunData& run, Judgement& result) {
   result.is_isolated = true;
   for (const char* work : {"load_work", "friction_work", "support_work", "obstacle_work", "damping_work"})
     result.is_isolated = result.is_isolated && largest_magnitude(run.column(work)) == 0.0;
-  // Where nothing else acts a start that is small is a start, and what grows out of it was created.
+  // If only contact acts, even a small initial energy is the reference, as any growth was created.
   if (!(result.energy_scale > (result.is_isolated ? 0.0 : 1e-12 * most))) result.energy_scale = most;
   const std::vector<double> changing = result.is_isolated ? total : energy_of_method(run);
   const auto [least, largest] = std::minmax_element(changing.begin(), changing.end());
@@ -85,7 +85,7 @@ void judge_energy(const RunData& run, Judgement& result) {
   result.energy_residual = largest_magnitude(run.column("energy_residual"));
 }
 
-/// Of a vector.
+/// Returns the columns of the components of a vector.
 std::vector<std::string> components_of(const RunData& run, const std::string& name) {
   std::vector<std::string> result;
   for (const char* const axis : {"_x", "_y", "_z"}) {
@@ -100,7 +100,7 @@ double largest_magnitude(const RunData& run, const std::vector<std::string>& col
   return result;
 }
 
-/// The force that is judged: that on obstacles, or between two bodies where that is larger.
+/// Returns the columns of the force that is judged: the one on obstacles, or the one between two bodies if larger.
 std::vector<std::string> force_columns(const RunData& run) {
   std::vector<std::string> best = components_of(run, "contact_force");
   for (std::size_t i = 0; i < run.summary.contacts.size(); ++i) {
@@ -110,7 +110,7 @@ std::vector<std::string> force_columns(const RunData& run) {
   return best;
 }
 
-/// The component of the resultant in which most happens.
+/// Returns the component of the resultant with the largest magnitude.
 std::string resultant_column(const RunData& run) {
   std::string best = "contact_force_x";
   for (const std::string& column : force_columns(run)) {
@@ -159,7 +159,7 @@ void judge_force(const RunData& run, Judgement& result) {
   }
 }
 
-/// The worst of what contact points do and of what was found where there are none.
+/// Finds the deepest penetration, at contact points or where no contact is defined.
 void judge_penetration(const RunData& run, Judgement& result) {
   result.penetration = largest_magnitude(run.column("max_penetration"));
   if (run.results) {
@@ -180,7 +180,8 @@ void judge_penetration(const RunData& run, Judgement& result) {
                                                              : deepest->bodies[0] + " in \"" + deepest->obstacle + "\"";
 }
 
-/// What a restitution is changed by grows with the square of the angle by which the body has turned.
+/// Returns the limit of rotation for an impact. The error of its restitution is proportional to the square of the
+/// body's rotation.
 double rotation_limit_of(std::size_t number, const RunSummary& summary) {
   const Impact& impact = summary.impacts[number];
   if (!is_changed_by_turning(impact)) return std::numeric_limits<double>::infinity();

@@ -7,7 +7,7 @@ namespace ricochet {
 
 namespace {
 
-/// The bits of x, y and z taken in turns: boxes with near numbers are near one another.
+/// Interleaves the bits of x, y and z (Morton order), so that boxes with close numbers are close to one another.
 std::uint64_t interleaved(const GridBox& box) {
   std::uint64_t result = 0;
   for (unsigned bit = 0; bit < 20; ++bit) {

@@ -6,8 +6,8 @@
 
 #include "ricochet/mesh/mesh.hpp"
 
-/// @file Nodes by their places: boxes of a grid that put near nodes together, an order in which near nodes have near
-/// numbers.
+/// @file Nodes sorted by position: boxes of a grid that collect neighbouring nodes, and an order in which neighbouring
+/// nodes have close numbers.
 namespace ricochet {
 
 using GridBox = std::array<std::uint32_t, 3>;
@@ -23,11 +23,11 @@ class NodeGrid {
   double scale_ = 0.0;
 };
 
-/// Ascending, without repetitions.
+/// Returns the numbers in ascending order, without repetitions.
 [[nodiscard]] std::vector<Index> each_once(std::vector<Index> numbers);
-/// The same nodes, such that those near one another have near places in the list.
+/// Returns the same nodes, ordered such that neighbouring nodes are close to each other in the list.
 [[nodiscard]] std::vector<Index> by_place(const Points& nodes, const std::vector<Index>& chosen);
-/// Of `count` nodes the place of each in the list; −1: it is not there.
+/// Returns, for each of `count` nodes, its index in the list; −1 if it is not in the list.
 [[nodiscard]] std::vector<int> local_numbers(const std::vector<Index>& chosen, Index count);
 
 }  // namespace ricochet

@@ -8,16 +8,16 @@ namespace ricochet {
 
 namespace {
 
-/// Of the extent of what is drawn.
+/// Smallest visible distance, relative to the extent of the picture.
 constexpr double smallest_seen = 1e-6;
-/// Of a coordinate in the file, which has nine digits.
+/// Rounding of coordinates in the file, which have nine digits.
 constexpr double file_rounding = 1e-9;
 
 Eigen::Map<const Points> points_of(const ObstacleFrame& frame) {
   return {frame.positions.data(), 3, static_cast<Index>(frame.positions.size()) / 3};
 }
 
-/// How far obstacles are from where they were in the first frame, which has a point at least.
+/// Translations of obstacles relative to the first frame, which has at least one point.
 class Translations {
  public:
   explicit Translations(const ObstacleFrame& first)
@@ -30,7 +30,7 @@ class Translations {
     for (const int obstacle : obstacle_) count_[obstacle] += 1.0;
   }
 
-  /// 3 × obstacles; nothing where a point is visibly elsewhere than it would be then.
+  /// Returns 3 × obstacles; none if a point visibly deviates from the translation of its obstacle.
   [[nodiscard]] std::optional<Matrix> of(const ObstacleFrame& frame) const {
     const Eigen::Map<const Points> points = points_of(frame);
     const Points way = points - first_;
@@ -47,12 +47,12 @@ class Translations {
   [[nodiscard]] int obstacle(Index point) const { return obstacle_[static_cast<std::size_t>(point)]; }
 
   Eigen::Map<const Points> first_;
-  std::vector<int> obstacle_;  ///< of each point
-  Vector count_;               ///< of each obstacle's points
+  std::vector<int> obstacle_;  ///< per point
+  Vector count_;               ///< points per obstacle
   double seen_ = 0.0;
 };
 
-/// One row for each frame; nothing where an obstacle does something else than to translate.
+/// Returns one row per frame; none if an obstacle does not merely translate.
 std::optional<std::vector<double>> translations(const std::vector<const ObstacleFrame*>& frames) {
   const Translations translations(*frames.front());
   std::vector<double> all;

@@ -12,7 +12,7 @@ namespace ricochet {
 
 namespace {
 
-/// All first bytes, all second bytes, …
+/// Returns all first bytes, then all second bytes, …
 template <class Word>
 std::string by_byte(const std::vector<Word>& words) {
   std::string bytes(sizeof(Word) * words.size(), '\0');
@@ -25,7 +25,7 @@ std::string by_byte(const std::vector<Word>& words) {
 
 std::string deflated(const std::string& bytes, int strategy) {
   z_stream stream{};
-  // 15 and 9: the largest window and most memory.
+  // 15 and 9: the largest window and the most memory.
   if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, 15, 9, strategy) != Z_OK) throw std::bad_alloc();
   std::string result(deflateBound(&stream, static_cast<uLong>(bytes.size())), '\0');
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // zlib only reads it
@@ -38,7 +38,7 @@ std::string deflated(const std::string& bytes, int strategy) {
   return result;
 }
 
-/// Noise is smaller without a search for what repeats.
+/// Returns the smallest compressed form. Noise compresses better without a search for repetitions.
 std::string smallest(const std::string& bytes) {
   std::string best = deflated(bytes, Z_DEFAULT_STRATEGY);
   for (const int strategy : {Z_HUFFMAN_ONLY, Z_RLE}) {
@@ -48,7 +48,7 @@ std::string smallest(const std::string& bytes) {
   return best;
 }
 
-/// Steps of a row of levels against what was to be expected, small ones of either sign first: 0, −1, 1, −2, …
+/// Codes the differences of a row of levels from their predictions, small ones of either sign first: 0, −1, 1, −2, …
 class LevelCoder {
  public:
   LevelCoder(int bits, int prediction) : mask_((1U << bits) - 1U), bits_(bits), prediction_(prediction) {}
@@ -68,7 +68,7 @@ class LevelCoder {
   int bits_, prediction_;
 };
 
-/// Of each row the low bytes, then the high ones if there are any.
+/// Returns the low bytes of each row, followed by the high bytes if there are any.
 std::string coded(const std::vector<std::uint16_t>& levels, Index rows, Index columns, int bits, int prediction) {
   const LevelCoder coder(bits, prediction);
   const int planes = bits > 8 ? 2 : 1;
@@ -85,7 +85,7 @@ std::string coded(const std::vector<std::uint16_t>& levels, Index rows, Index co
   return bytes;
 }
 
-/// The prediction under which the steps of some rows in the middle are smaller.
+/// Returns the prediction with the smaller differences in some rows from the middle.
 int better_prediction(const std::vector<std::uint16_t>& levels, Index rows, Index columns, int bits) {
   double bits_needed[2] = {0.0, 0.0};
   for (Index r = std::max<Index>(rows / 2, 1); r < std::min(rows, rows / 2 + 8); ++r) {

@@ -22,12 +22,12 @@ namespace ricochet {
 
 namespace {
 
-/// Where the viewer wants the data, and what every report begins with.
+/// Position of the data in the viewer's page, and the mark with which every report begins.
 constexpr std::string_view data_begin = "<script type=\"application/json\" id=\"ricochet-runs\">";
 constexpr std::string_view data_place = "<!--RICOCHET-DATA-->", report_mark = "<!-- ricochet report -->";
-/// Of the data; the viewer's page begins with the one that it reads.
+/// Format of the data; the viewer's page begins with the one that it reads.
 constexpr int data_format = 5;
-/// Of all bodies together, but for each as many as may be had at any rate.
+/// Limit for all bodies together, and the number that each may have in any case.
 constexpr Index most_triangles = 200'000, always_triangles = 20'000;
 
 Json to_json(const PackedArray& array) {
@@ -58,7 +58,7 @@ Json to_json(const ObstaclePart& part) {
           {"offsets", part.offsets ? to_json(*part.offsets) : Json(nullptr)}};
 }
 
-/// What is not finite is a word: null is what there is nothing to say of.
+/// Numbers that are not finite become words, as null stands for values that do not exist.
 Json to_json(double value) {
   return Json::number(value);
 }
@@ -152,7 +152,7 @@ class PageBuilder {
  public:
   PageBuilder(std::vector<RunData> runs, std::size_t most_bytes) : runs_(std::move(runs)), most_bytes_(most_bytes) {}
 
-  /// The data as they stand in the page.
+  /// Returns the data as they appear in the page.
   [[nodiscard]] std::string data();
   [[nodiscard]] std::vector<std::string> thinned() const { return thinned_; }
 
@@ -180,7 +180,7 @@ Json PageBuilder::start(const RunData& run, std::size_t number) {
   json["judgement"] = to_json(judge(run));
   for (const std::string& sentence : run.notes) note(run, json, sentence);
   json["columns"] = run.history.names;
-  // All histories have two fifths; what one does not need is left to those after it.
+  // Two fifths are reserved for all histories; unused space is left to later ones.
   const std::size_t used = arrays_.page_bytes(), all = most_bytes_ / 5 * 2;
   const std::size_t share = (all - std::min(used, all)) / (runs_.size() - number);
   const HistoryPart history = pack_history(run.history, share, arrays_);
@@ -254,7 +254,7 @@ void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_by
 std::string PageBuilder::data() {
   Json page{{"format", data_format}, {"version", version}, {"runs", Json::array()}};
   for (std::size_t i = 0; i < runs_.size(); ++i) page["runs"].push_back(start(runs_[i], i));
-  // What summaries take is in the file, too, and is not binary.
+  // The summaries are in the file as well, as text.
   std::size_t text = 65536;
   for (const RunData& run : runs_) text += run.summary_json.size();
   most_bytes_ -= std::min(most_bytes_, text);

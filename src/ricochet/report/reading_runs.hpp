@@ -7,8 +7,9 @@
 /// @file Reading directories into which runs may be writing.
 namespace ricochet {
 
-/// Does what reads these directories; where that fails and a run goes on in one of them, again, a few times: what is
-/// read while a frame is written may not fit together. Throws Error as `read` does, and then says that a run goes on.
+/// Calls `read`, which reads these directories. If it fails while one of the runs is in progress, it is repeated a few
+/// times, as data read during the output of a frame may be inconsistent. Throws Error as `read` does, then stating that
+/// a run is in progress.
 void read_with_patience(const std::vector<std::string>& directories, const std::function<void()>& read);
 
 }  // namespace ricochet

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// probes-N.csv, in the order of their names.
+/// Returns the files probes-N.csv, ordered by name.
 std::vector<std::string> probe_files(const std::string& directory) {
   std::vector<std::string> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
@@ -102,7 +102,7 @@ std::vector<std::string> parts_of(const fs::path& path) {
   return parts;
 }
 
-/// How many parts all paths begin with.
+/// Returns the number of leading parts that all paths have in common.
 std::size_t common_parts(const std::vector<std::vector<std::string>>& paths) {
   std::size_t count = paths.front().size();
   for (const auto& path : paths) {
@@ -112,13 +112,13 @@ std::size_t common_parts(const std::vector<std::vector<std::string>>& paths) {
   return count;
 }
 
-/// The names of runs: what remains of their paths without what all have in common.
+/// Names the runs by their paths without the common part.
 void name_runs(std::vector<RunData>& runs) {
   std::vector<std::vector<std::string>> paths;
   for (const RunData& run : runs) paths.push_back(parts_of(whole_path(run.directory)));
   const std::size_t common = runs.size() == 1 ? paths.front().size() - 1 : common_parts(paths);
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    // A directory that holds the others has only its own name.
+    // A directory that contains the others keeps its own name.
     for (std::size_t k = std::min(common, paths[i].size() - 1); k < paths[i].size(); ++k)
       runs[i].name += (runs[i].name.empty() ? "" : "/") + paths[i][k];
   }
@@ -177,7 +177,7 @@ std::string common_folder(const std::vector<std::string>& directories) {
   if (directories.size() == 1) return directories.front();
   std::vector<std::vector<std::string>> paths;
   for (const std::string& directory : directories) paths.push_back(parts_of(whole_path(directory)));
-  if (common_parts(paths) < 2) return ".";  // "/" at most
+  if (common_parts(paths) < 2) return ".";  // at most "/"
   fs::path folder;
   for (std::size_t k = 0; k < common_parts(paths); ++k) folder /= paths.front()[k];
   return folder.lexically_proximate(fs::current_path()).string();

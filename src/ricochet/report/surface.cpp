@@ -21,13 +21,13 @@ struct Triangle {
   int edges;
 };
 
-/// A flat piece of a facet (or of a plane cell), by the element's own nodes.
+/// A flat piece of a facet (or of a plane cell), in the local nodes of the element.
 struct FacetPattern {
   FlatPiece corners;
   int edges;
 };
 
-/// The side from a corner to the next lies in an edge of the cell where both of its nodes do.
+/// Returns which sides lie on edges of the cell: those with both nodes on the edge.
 int edges_of(CellShape shape, int degree, const FlatPiece& corners) {
   int edges = 0;
   for (const std::vector<int>& edge : facet_nodes(shape, degree)) {
@@ -88,8 +88,7 @@ std::vector<Index> used_nodes(const std::vector<Triangle>& triangles) {
   return each_once(std::move(all));
 }
 
-/// One node for all of a box: the first of them. What is no triangle any more, or one that is there already, is left
-/// out.
+/// Merges all nodes of a box into the first of them. Degenerate and repeated triangles are left out.
 std::vector<Triangle> merged(const Points& nodes, const std::vector<Triangle>& triangles, double boxes) {
   const NodeGrid grid(nodes, boxes);
   std::map<std::array<std::uint32_t, 3>, Index> first;
@@ -118,7 +117,7 @@ Surface make_surface(const Points& nodes, const std::vector<CellBlock>& cells, I
   if (static_cast<Index>(triangles.size()) > most) {
     surface.is_thinned = true;
     const std::vector<Triangle> all = std::move(triangles);
-    // The number of triangles goes with the square of the boxes along a side; of a slender body there are fewer.
+    // The number of triangles grows with the square of the boxes along a side; a slender body has fewer.
     double boxes = 16.0 * std::sqrt(static_cast<double>(most));
     do {
       triangles = merged(nodes, all, boxes);
@@ -127,7 +126,7 @@ Surface make_surface(const Points& nodes, const std::vector<CellBlock>& cells, I
   }
   surface.nodes = by_place(nodes, used_nodes(triangles));
   const std::vector<int> local = local_numbers(surface.nodes, nodes.cols());
-  // Each triangle beside those with near nodes.
+  // Triangles with close nodes become neighbours in the list.
   const auto first_of = [&local](const Triangle& t) {
     const auto number = [&local](Index node) { return local[static_cast<std::size_t>(node)]; };
     return std::tuple(std::min({number(t.corners[0]), number(t.corners[1]), number(t.corners[2])}), t.cell);

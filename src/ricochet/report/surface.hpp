@@ -5,23 +5,22 @@
 
 #include "ricochet/mesh/mesh.hpp"
 
-/// @file What of a body can be seen, in triangles: the whole body in the plane, its boundary in space.
+/// @file The visible surface of a body in triangles: the whole body in the plane, its boundary in space.
 namespace ricochet {
 
-/// Cells of degree 2 are several flat triangles. Nodes that are near one another have near numbers.
+/// Triangles of the surface; cells of degree 2 are several flat triangles. Neighbouring nodes have close numbers.
 struct Surface {
-  std::vector<Index> nodes;    ///< the body's number of each node
-  std::vector<int> triangles;  ///< count × 3, numbers in `nodes`
-  std::vector<int> cells;      ///< the body's cell of each triangle
-  std::vector<int> edges;      ///< of each triangle: bit k is set where the side from its corner k to the next belongs
-                               ///< to an edge of a cell
+  std::vector<Index> nodes;    ///< number of each node in the body
+  std::vector<int> triangles;  ///< count × 3, indices in `nodes`
+  std::vector<int> cells;      ///< cell of each triangle in the body
+  std::vector<int> edges;      ///< per triangle: bit k is set if the side from its corner k to the next lies on an
+                               ///< edge of a cell
   bool is_thinned = false;     ///< triangles were merged
 
   [[nodiscard]] Index triangle_count() const { return static_cast<Index>(cells.size()); }
 };
 
-/// `nodes`: 3 × count. With more triangles than `most` nodes that are near one another are merged, until there are
-/// fewer.
+/// `nodes`: 3 × count. If there are more triangles than `most`, neighbouring nodes are merged until there are fewer.
 [[nodiscard]] Surface make_surface(const Points& nodes, const std::vector<CellBlock>& cells, Index most);
 
 }  // namespace ricochet

@@ -12,7 +12,7 @@ namespace ricochet {
 
 namespace {
 
-/// A tetrahedron inside a cell, by the element's own nodes.
+/// A tetrahedron inside a cell, in the local nodes of the element.
 struct CellPattern {
   std::array<int, 4> corners;
   int faces;
@@ -23,7 +23,7 @@ struct Tetrahedron {
   int cell, faces;
 };
 
-/// The face opposite to a corner lies in a facet of the cell where its three nodes do.
+/// Returns which faces lie on facets of the cell: those with all three nodes on the facet.
 int faces_of(CellShape shape, int degree, const std::array<int, 4>& corners) {
   int faces = 0;
   for (const std::vector<int>& facet : facet_nodes(shape, degree)) {
@@ -38,7 +38,8 @@ int faces_of(CellShape shape, int degree, const std::array<int, 4>& corners) {
   return faces;
 }
 
-/// Four at the corners, four in the octahedron between them around the line that joins two opposite edges' middles.
+/// Returns four tetrahedra at the corners, and four in the octahedron between them around the line that joins the
+/// midpoints of two opposite edges.
 std::vector<std::array<int, 4>> quadratic_tetrahedron() {
   const auto middle = [](int a, int b) { return node_at_mean(CellShape::tetrahedron, {a, b}); };
   const int a = middle(0, 1), b = middle(0, 2), c = middle(0, 3), d = middle(1, 2), e = middle(1, 3), f = middle(2, 3);
@@ -46,10 +47,11 @@ std::vector<std::array<int, 4>> quadratic_tetrahedron() {
           {a, f, b, c}, {a, f, c, e}, {a, f, e, d}, {a, f, d, b}};
 }
 
-/// A box of the lattice of nodes with its first corner there, in six around its diagonal: boxes side by side fit.
+/// Divides a box of the lattice of nodes, given by its first corner, into six tetrahedra around its diagonal, so that
+/// neighbouring boxes conform.
 void add_box(const std::array<int, 3>& first, int degree, std::vector<std::array<int, 4>>& result) {
   const auto node = [&](std::array<int, 3> at) {
-    // On this axis a node of the lattice is between the vertices with bit 0 and those with bit 1, or at one of them.
+    // On each axis a lattice node is either at the vertices with bit 0 or those with bit 1, or midway between them.
     std::vector<int> vertices;
     for (int v = 0; v < 8; ++v) {
       bool takes_part = true;
@@ -86,7 +88,7 @@ std::vector<CellPattern> cell_patterns(CellShape shape, int degree) {
   return result;
 }
 
-/// How many there would be.
+/// Returns the number of tetrahedra.
 Index count_of(const std::vector<CellBlock>& blocks, int most_degree) {
   Index count = 0;
   for (const CellBlock& block : blocks) {
@@ -119,7 +121,7 @@ std::vector<Index> used_nodes(const std::vector<Tetrahedron>& tetrahedra) {
   return each_once(std::move(all));
 }
 
-/// One node for all of a box: the first of them. What has no volume any more is left out.
+/// Merges all nodes of a box into the first of them. Tetrahedra without volume are left out.
 std::vector<Tetrahedron> merged(const Points& nodes, const std::vector<Tetrahedron>& tetrahedra, double boxes) {
   const NodeGrid grid(nodes, boxes);
   std::map<GridBox, Index> first;
@@ -148,7 +150,7 @@ Volume make_volume(const Points& nodes, const std::vector<CellBlock>& cells, Ind
   if (too_many()) {
     volume.is_thinned = true;
     const std::vector<Tetrahedron> all = std::move(tetrahedra);
-    // The number goes with the third power of the boxes along a side; of a slender body there are fewer.
+    // The number grows with the cube of the boxes along a side; a slender body has fewer.
     double boxes = 4.0 * std::cbrt(static_cast<double>(most));
     do {
       tetrahedra = merged(nodes, all, boxes);

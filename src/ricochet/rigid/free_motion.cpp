@@ -9,13 +9,13 @@ namespace {
 
 using Three = Eigen::Vector3d;
 
-/// a × b; of vectors in the plane its third component.
+/// Cross product a × b; for vectors in the plane its third component.
 SpaceVector cross(const SpaceVector& a, const SpaceVector& b) {
   if (a.size() == 3) return Three(a).cross(Three(b));
   return SpaceVector::Constant(1, a[0] * b[1] - a[1] * b[0]);
 }
 
-/// Of a torque or a rotation in the plane nothing changes.
+/// Rotates a vector from the principal axes to space; in the plane torques and rotations are unchanged.
 SpaceVector turned(const Pose::Rotation& axes, const SpaceVector& about_axes) {
   return about_axes.size() == 3 ? SpaceVector(axes * about_axes) : about_axes;
 }
@@ -56,7 +56,7 @@ void FreeMotion::begin_step(const Vector& displacement) {
   if (now == turned_) return;
   axes_ = axes(displacement);
   turned_ = now;
-  // The product of rotations is one to rounding, which grows with their number.
+  // A product of rotations is a rotation only up to rounding errors, which accumulate.
   if (dimension() == 3) {
     const Eigen::Quaterniond unit(Eigen::Matrix3d{axes_});
     axes_ = unit.normalized().toRotationMatrix();

@@ -7,65 +7,65 @@
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/rigid/pose.hpp"
 
-/// @file Rigid bodies that move by the forces on them.
+/// @file Rigid bodies that move freely under the forces on them.
 namespace ricochet {
 
 /// A rigid body has two nodes among those of the problem, at its centre of mass and without cells. The displacement of
-/// the first is that of the centre. That of the second is ℓ_k Θ_k, with Θ the rotation so far about its principal axes,
-/// step by step, and ℓ_k = √(J_k/m) its radii of gyration: with the mass m on either node the kinetic energy is
-/// ½VᵀMV. In the plane its second component is always zero.
+/// the first is that of the centre. The displacement of the second is ℓ_k Θ_k, with Θ the rotation accumulated step by
+/// step about its principal axes, and ℓ_k = √(J_k/m) its radii of gyration: with the mass m on either node the kinetic
+/// energy is ½VᵀMV. In the plane its second component is always zero.
 ///
 /// Over a step from the rotation A₀ (of principal axes) to A₁ = A₀ cay(Θ), cay(Θ) = (1 − ½Θ^)⁻¹(1 + ½Θ^), a point of
-/// the body moves by Δc + θ × a, with θ = A₀Θ and a its arm about the centre at the mean of both places, exactly. With
+/// the body moves by exactly Δc + θ × a, with θ = A₀Θ and a the mean of its arms about the centre at both ends. With
 /// the spin W about the axes, Θ = ½h(W₀ + W₁), and a torque τ = A₀τ₀ of the step in space,
 ///   A₁JW₁ − A₀JW₀ = hτ,   ½W₁ᵀJW₁ − ½W₀ᵀJW₀ = θ·τ
-/// hold together, to rounding (J. C. Simo, K. K. Wong, Int. J. Numer. Methods Engng. 31 (1991) 19–52), where
+/// hold together, to rounding (J. C. Simo, K. K. Wong, Int. J. Numer. Methods Engng. 31 (1991) 19–52), if
 ///   (2/h²) J(Θ − hW₀) = τ₀ − g(Θ, W₀),
-/// g the gyroscopic torque (gyroscopic_force): none in the plane.
+/// with g the gyroscopic torque (add_gyroscopic_force), which vanishes in the plane.
 class FreeMotion {
  public:
   struct Inertia {
     double mass = 0.0;
-    SpaceVector centre;        ///< of mass, as the obstacle is described
+    SpaceVector centre;        ///< centre of mass, in the frame of the obstacle's description
     SpaceVector moments;       ///< J_k about the centre: 1 in the plane, 3 in space
-    Pose::Rotation principal;  ///< axes as columns, in space; empty: those of space
+    Pose::Rotation principal;  ///< principal axes as columns, in space; empty: the coordinate axes
   };
-  /// `node`: the first of its nodes.
+  /// `node`: the first of its two nodes.
   FreeMotion(Inertia inertia, Index node);
 
   [[nodiscard]] const Inertia& inertia() const { return inertia_; }
   [[nodiscard]] Index centre_node() const { return node_; }
   [[nodiscard]] Index rotation_node() const { return node_ + 1; }
   [[nodiscard]] Index dimension() const { return inertia_.centre.size(); }
-  /// ℓ.
+  /// Radii of gyration ℓ.
   [[nodiscard]] const SpaceVector& gyration() const { return gyration_; }
 
-  /// From here on displacements are those of a step that begins with this one.
+  /// Begins a step at this displacement, to which the functions below refer.
   void begin_step(const Vector& displacement);
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
-  /// At a displacement of the step.
+  /// Pose at a displacement of the step.
   [[nodiscard]] Pose pose(const Vector& displacement) const;
   [[nodiscard]] SpaceVector centre(const Vector& displacement) const;
-  /// A at a displacement, and A₀: of the principal axes, in space.
+  /// Rotation A of the principal axes at a displacement, and A₀ at the start of the step.
   [[nodiscard]] Pose::Rotation axes(const Vector& displacement) const;
   [[nodiscard]] const Pose::Rotation& axes_at_start() const { return axes_; }
-  /// The change of n·(place of the body's point there) with the displacements of its nodes: 2d numbers; `arm` about the
-  /// centre, and the axes that θ is about.
+  /// Writes the derivative of n·(position of the body's point) with respect to the displacements of its nodes: 2d
+  /// numbers; `arm` is about the centre, `axes` are those to which θ refers.
   void write_row(const SpaceVector& direction, const SpaceVector& arm, const Pose::Rotation& axes, double* row) const;
-  /// About the centre, of forces on its second node (about A₀): a vector in space, of one component in the plane.
+  /// Torque about the centre from forces on its second node (about A₀): a vector in space, one component in the plane.
   [[nodiscard]] SpaceVector torque(const Vector& force) const;
-  /// Adds a torque in space to forces of a step.
+  /// Adds a torque in space to the forces of a step.
   void add_torque(const SpaceVector& torque, Vector& force) const;
-  /// The angular momentum about the centre at a displacement with this velocity, likewise.
+  /// Angular momentum about the centre at a displacement with this velocity, in the same components.
   [[nodiscard]] SpaceVector angular_momentum(const Vector& displacement, const Vector& velocity) const;
-  /// The spin in space.
+  /// Angular velocity in space.
   [[nodiscard]] SpaceVector spin(const Vector& displacement, const Vector& velocity) const;
-  /// V of a spin in space at a displacement: for the second node.
+  /// Velocity V of the second node for an angular velocity in space, at a displacement.
   [[nodiscard]] SpaceVector velocity_of_spin(const SpaceVector& spin, const Vector& displacement) const;
 
-  /// Adds −g/ℓ of a step of length h from a velocity, that ends at a displacement.
+  /// Adds −g/ℓ for a step of length h that starts with `velocity` and ends at the displacement `end`.
   void add_gyroscopic_force(const Vector& end, const Vector& velocity, double step, Vector& force) const;
   [[nodiscard]] bool has_gyroscopic_force() const { return dimension() == 3; }
 
@@ -79,7 +79,7 @@ class FreeMotion {
   SpaceVector turned_;   ///< the second node's displacement at the start of the step
 };
 
-/// cay(Θ); in the plane Θ has one component.
+/// Cayley transform cay(Θ); in the plane Θ has one component.
 [[nodiscard]] Pose::Rotation cayley(const SpaceVector& rotation);
 
 }  // namespace ricochet

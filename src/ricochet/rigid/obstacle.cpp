@@ -10,10 +10,10 @@ namespace ricochet {
 
 namespace {
 
-/// Of instants between which an instantaneous velocity is taken, relative to the time scale.
+/// Half the interval over which an instantaneous velocity is averaged, relative to the time scale.
 constexpr double instant_of_scale = 1e-3;
 
-/// rate about an axis, times an arm; in the plane the axis is the third one.
+/// Product of a rate about an axis and an arm; in the plane the axis is the third one.
 SpaceVector rate_times_arm(double rate, const SpaceVector& axis, const SpaceVector& arm) {
   if (arm.size() == 2) return rate * Eigen::Vector2d(-arm[1], arm[0]);
   return rate * Eigen::Vector3d(axis).cross(Eigen::Vector3d(arm));
@@ -31,7 +31,7 @@ SpaceVector solve(const Pose::Rotation& matrix, const SpaceVector& right) {
   return Eigen::Matrix3d(matrix).inverse() * Eigen::Vector3d(right);
 }
 
-/// The cosine of half the angle between two rotations, squared: the least singular value of their mean.
+/// Squared cosine of half the angle between two rotations; the cosine is the smallest singular value of their mean.
 double half_cosine(const Pose::Rotation& first, const Pose::Rotation& last) {
   const double trace = (first.transpose() * last).trace();
   return 0.5 * (1.0 + (first.rows() == 2 ? 0.5 * trace : 0.5 * (trace - 1.0)));
@@ -128,8 +128,9 @@ SpaceVector Obstacle::surface_velocity(const SpaceVector& position, double time,
   if (span > 0.0) return result + mean(time - 0.5 * span, time + 0.5 * span);
   const double near = instant_of_scale * time_scale_;
   if (time >= near) return result + mean(time - near, time + near);
-  // Expressions are not asked for what was before the start. A velocity below what the two means differ by is none: of
-  // an obstacle that starts from rest it would be rounding, whose direction friction would take for that of a slide.
+  // Expressions are not evaluated before the start. A velocity smaller than the difference of the two means counts as
+  // zero: for an obstacle that starts from rest it would be a rounding error, whose direction friction would treat as
+  // that of sliding.
   const SpaceVector first = mean(time, time + near), both = mean(time, time + 2.0 * near);
   const SpaceVector velocity = 2.0 * first - both;
   if (velocity.norm() <= 2.0 * (both - first).norm()) return result;

@@ -92,7 +92,7 @@ std::string contents_of(const std::string& file) {
   return std::move(text).str();
 }
 
-/// The last number of four is an angle in the plane, and a length is not meant to be one.
+/// Refuses a header that names the last of four columns as a length, since it is an angle in the plane.
 void look_at_angle(const NumberLines& lines, const std::string& file) {
   const std::array lengths{"z", "uz", "u_z", "dz", "Z", "UZ", "U_Z", "DZ"};
   const std::string last = lines.header().empty() ? "" : lines.header().back();

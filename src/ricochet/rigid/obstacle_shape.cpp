@@ -7,8 +7,7 @@
 
 namespace ricochet {
 
-// The obstacles, each by the function of its own file that registers it. One line each, in the order of the
-// documentation.
+// The obstacles, each by the registration function of its own file. One line each, in the order of the documentation.
 // clang-format off
 #define RICOCHET_OBSTACLES(obstacle) \
   obstacle(plane_obstacle)           \
@@ -27,7 +26,7 @@ std::unique_ptr<ObstacleShape> make_obstacle_shape(const std::string& type, Para
 
 namespace {
 
-/// Of unit vectors: within 60° of each other.
+/// Returns whether two unit vectors are within 60° of each other.
 bool agree(const SpaceVector& a, const SpaceVector& b) {
   return a.dot(b) > 0.5;
 }
@@ -36,8 +35,8 @@ bool agree(const SpaceVector& a, const SpaceVector& b) {
 
 namespace {
 
-/// Of a step that goes so far round that its middle says nothing: the normal at the end, unless a force along it would
-/// give energy; then the direction across the way that is nearest to it.
+/// Returns the normal of a step so long that its midpoint is not representative: the normal at the end, unless a force
+/// along it would create energy; then the direction perpendicular to `way` that is nearest to it.
 SpaceVector normal_far_round(const SpaceVector& way, double change, const SpaceVector& at_start,
                              const SpaceVector& at_end) {
   if (at_end.dot(way) * change >= 0.0) return at_end;
@@ -54,7 +53,7 @@ SpaceVector normal_far_round(const SpaceVector& way, double change, const SpaceV
   return (some - some.dot(along) * along).normalized();
 }
 
-/// In roundings of gaps. What a shorter way leaves out of the work of a force is no more than this times rounding.
+/// In rounding errors of gaps. A shorter displacement changes the work of a force by no more than this times rounding.
 constexpr double least_way = 100.0;
 
 }  // namespace
@@ -68,9 +67,9 @@ SpaceVector ObstacleShape::normal_at_middle(const SpaceVector& from, const Space
 SpaceVector corrected_normal(SpaceVector gradient, const SpaceVector& way, double change, double rounding,
                              const SpaceVector& at_start, const SpaceVector& at_end) {
   const double square = way.squaredNorm(), missing = change - gradient.dot(way);
-  // Beside rounding not at once: iterations in which a point that hardly moves is now on this side, now on that would
-  // find one normal, then another. A way that is itself little more than rounding, as that of a point which sticks to
-  // an obstacle that turns, has no direction.
+  // Not switched at once beyond rounding: iterations in which a point hardly moves, and crosses the threshold back and
+  // forth, would alternate between two normals. A displacement that is itself little more than rounding, as for a point
+  // that sticks to a rotating obstacle, has no direction.
   const double part = std::clamp(std::abs(missing) / rounding - 1.0, 0.0, 1.0) *
                       std::clamp(std::sqrt(square) / (least_way * rounding) - 1.0, 0.0, 1.0);
   if (square > 0.0 && part > 0.0) gradient += part * missing / square * way;
@@ -85,7 +84,7 @@ SpaceVector ObstacleShape::normal_of_step(const SpaceVector& from, const SpaceVe
                           gap_rounding(from) + gap_rounding(to), normal(from), normal(to));
 }
 
-/// Where the square of the length leaves the range of numbers, it is scaled first.
+/// Rescales the vector if the square of its length over- or underflows.
 Vector unit_vector(const Vector& direction, const std::string& what) {
   const double length = direction.norm();
   if (length == 0.0 && direction.isZero(0.0)) throw Error(ErrorKind::invalid_input, what + " is zero");

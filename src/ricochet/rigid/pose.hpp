@@ -2,35 +2,35 @@
 
 #include "ricochet/base/space_vector.hpp"
 
-/// @file Where a rigid obstacle is.
+/// @file Pose of a rigid obstacle.
 namespace ricochet {
 
-/// x = Q X + s takes a point of the obstacle as it is described (its shape) to where it is.
+/// The map x = Q X + s from the frame in which an obstacle is described (its shape) to its current position.
 struct Pose {
   using Rotation = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
   SpaceVector shift;  ///< s; empty: zero
   Rotation rotation;  ///< Q; empty: the identity
 
   [[nodiscard]] bool turns() const { return rotation.size() > 0; }
-  /// X of a point of space.
+  /// Returns X for a point in space.
   [[nodiscard]] SpaceVector seen_from(SpaceVector position) const {
     if (shift.size() > 0) position -= shift;
     return turns() ? SpaceVector(rotation.transpose() * position) : position;
   }
-  /// x of a point of the obstacle.
+  /// Returns x for a point of the obstacle.
   [[nodiscard]] SpaceVector in_space(SpaceVector position) const {
     if (turns()) position = SpaceVector(rotation * position);
     if (shift.size() > 0) position += shift;
     return position;
   }
-  /// The same of a direction.
+  /// Rotates a direction of the obstacle to space.
   [[nodiscard]] SpaceVector direction(const SpaceVector& of_obstacle) const {
     return turns() ? SpaceVector(rotation * of_obstacle) : of_obstacle;
   }
 };
 
-/// The rotation by a vector: |θ| about θ. In the plane `vector` has one component, about the third axis. By zero:
-/// empty.
+/// Rotation by a vector: angle |θ| about θ. In the plane `vector` has one component, about the third axis. Empty for
+/// the zero vector.
 [[nodiscard]] Pose::Rotation rotation_by(const SpaceVector& vector, Index dimension);
 
 }  // namespace ricochet

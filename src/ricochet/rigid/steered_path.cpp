@@ -3,12 +3,12 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/rigid/obstacle_path.hpp"
 
-/// @file Obstacles whose motion a program sets while the run goes on.
+/// @file Obstacles whose motion a program sets during the run.
 namespace ricochet {
 
 namespace {
 
-/// A step sees an obstacle at its ends and in the step before: older legs are asked for by nobody.
+/// A step evaluates an obstacle at its ends and in the previous step, so older legs are never needed.
 constexpr std::size_t most_legs = 8;
 
 void check_rates(const char* what, const SpaceVector& rates, Index wanted) {

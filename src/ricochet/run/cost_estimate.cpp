@@ -10,7 +10,7 @@ namespace ricochet {
 
 namespace {
 
-/// Time of a second call, as the first one allocates.
+/// Returns the time of a second call, as the first one allocates.
 template <class Call>
 double seconds_of(const Call& call) {
   call();
@@ -23,7 +23,7 @@ double rows_of_contact(const SemidiscreteProblem& problem, double points) {
   return (problem.contact.has_friction() ? static_cast<double>(problem.dimension) : 1.0) * points;
 }
 
-/// Time of a dense contact problem: iterations read its matrix, and some factorize it.
+/// Returns the time of a dense contact problem: iterations read its matrix, and some factorize it.
 double dense_seconds(double rows) {
   constexpr double iterations = 100.0, factorizations = 3.0;
   return iterations * sizeof(double) * rows * rows / estimated_bytes_per_second +
@@ -41,7 +41,8 @@ void estimate_iterations(const SemidiscreteProblem& problem, const Scheme& schem
   }
 }
 
-/// An iteration evaluates the force of a step and its derivative, the end of the step, and rows with their gaps.
+/// Estimates a step. An iteration evaluates the force of a step and its derivative, the end of the step, and rows with
+/// their gaps.
 void estimate_step(const SemidiscreteProblem& problem, const Scheme& scheme, CostEstimate& cost) {
   constexpr double forces = 3.0, gaps = 5.0;
   estimate_iterations(problem, scheme, cost);
@@ -51,7 +52,7 @@ void estimate_step(const SemidiscreteProblem& problem, const Scheme& scheme, Cos
     bytes_per_point += stage.bytes_per_point;
   }
   const double own = cost.product_seconds + forces * cost.force_seconds;
-  // Explicit steps evaluate the force of the whole body once, and iterate on contact nodes.
+  // Explicit steps evaluate the force of the whole body once and iterate on contact nodes only.
   const bool repeats_all = cost.least_iterations > 1 || problem.internal_force->is_linear();
   const auto seconds = [&](double points) {
     const double columns =
@@ -64,8 +65,8 @@ void estimate_step(const SemidiscreteProblem& problem, const Scheme& scheme, Cos
   cost.step_seconds = {cost.least_iterations * (own + solves), seconds(CostRange::part * points), seconds(points)};
 }
 
-/// Sums the program, matrices with the copies made while they are put together, vectors, and the dense contact problem
-/// with its factor and copies.
+/// Sums the program, matrices with the copies made during assembly, vectors, and the dense contact problem with its
+/// factor and copies.
 void estimate_memory(const SemidiscreteProblem& problem, CostEstimate& cost) {
   constexpr double program = 35e6, bytes_per_entry = 45.0;
   const double entries = static_cast<double>(problem.internal_force->tangent().nonZeros());

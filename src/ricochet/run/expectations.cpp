@@ -14,7 +14,7 @@ namespace ricochet {
 
 namespace {
 
-/// Why an expectation does not apply to this run, or "".
+/// Returns the reason why an expectation does not apply to this run, or "".
 std::string reason_not_to_check(const Case& input, const ExpectSection& expect, ExpectationScope scope) {
   for (const auto& [key, wanted] : expect.when) {
     const auto found = input.values.find(key);
@@ -41,7 +41,7 @@ std::string wanted_in_words(const ExpectSection& expect) {
   return text;
 }
 
-/// With its factor and its divisor.
+/// Returns the quantity with its factor and divisor.
 std::string quantity_in_words(const ExpectSection& expect) {
   return (expect.times == 1.0 ? "" : fmt::format("{:g} * ", expect.times)) + expect.quantity +
          (expect.over.empty() ? "" : " / " + expect.over);
@@ -83,7 +83,7 @@ ExpectationResult described(const ExpectSection& expect) {
   return result;
 }
 
-/// What is wrong with a quantity in a run of this case, or "".
+/// Returns the reason why a quantity cannot be evaluated in a run of this case, or "".
 std::string problem_of(const Case& input, const Quantity& quantity, const std::vector<std::string>& columns,
                        double end) {
   if (quantity.kind == Quantity::Kind::summary_value) return "";

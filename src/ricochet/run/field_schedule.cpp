@@ -11,17 +11,17 @@ namespace ricochet {
 
 namespace {
 
-/// Largest file of fields that nobody asked for, but for a mesh of which two frames are larger.
+/// Largest size of results if the case does not state how many frames to write, unless two frames already exceed it.
 constexpr double most_bytes = 200e6;
 
-/// A hundred; fewer in runs of small bodies that take less than a second, where writing that many would take as long as
-/// the steps.
+/// Returns 100; fewer for runs of small bodies that take less than a second, in which writing so many frames would take
+/// as long as the steps.
 long usual_frames(long steps, Index dofs) {
   constexpr double least = 10.0, most = 100.0, work_per_frame = 8e4;
   return std::lround(std::min(most, least + static_cast<double>(steps) * static_cast<double>(dofs) / work_per_frame));
 }
 
-/// Number of frames between those of the start and of the end.
+/// Returns the number of frames between the first and the last.
 long affordable_frames(const ResultsSize& size) {
   return std::max(1L, static_cast<long>((most_bytes - size.mesh) / size.frame) - 2);
 }
@@ -56,7 +56,7 @@ FieldSchedule::FieldSchedule(const Case& input, const Model& model, long steps, 
     every_ = *input.output.fields_every;
   } else if (snapshot == nullptr) {
     const long usual = usual_frames(steps, model.sizes.dofs);
-    // All ranks write together.
+    // All ranks must write the same frames.
     const auto affordable = static_cast<double>(affordable_frames(size_of_results(input, model)));
     const long frames = std::min(usual, std::lround(-model.problem.ranks->maximum(-affordable)));
     is_limited_ = frames < usual;
@@ -74,7 +74,7 @@ void FieldSchedule::save(Snapshot& snapshot) const {
   snapshot.save("fields.interval", Vector(Eigen::Vector2d(interval_, intervals_before_)));
 }
 
-/// Multiples of the interval up to this time; one that a step meets to rounding counts.
+/// Returns the number of whole intervals up to this time; one that a step completes up to rounding counts.
 double FieldSchedule::intervals(double time) const {
   return std::floor(time / interval_ * (1.0 + 1e-12));
 }
@@ -101,7 +101,7 @@ long FieldSchedule::frames(long steps, double end) const {
 }
 
 OutputEstimate estimate_output(const Case& input, const Model& model) {
-  constexpr double bytes_of_number = 18.0;  // of the shortest text that gives it back, with its comma
+  constexpr double bytes_of_number = 18.0;  // length of the shortest text that reads back exactly, with its comma
   const long steps = step_count(input.time);
   OutputEstimate result;
   const FieldSchedule schedule(input, model, steps);

@@ -6,49 +6,49 @@
 #include "ricochet/io/results_size.hpp"
 #include "ricochet/model/model.hpp"
 
-/// @file Steps after which fields are written, and how much a run writes.
+/// @file The steps after which fields are written, and the size of a run's output.
 namespace ricochet {
 
-/// Text like "12 MB", "1.2 GB".
+/// Returns a text such as "12 MB" or "1.2 GB".
 [[nodiscard]] std::string size_text(double bytes);
 [[nodiscard]] ResultsOptions results_options(const OutputSection& output);
 
 class FieldSchedule {
  public:
-  /// If the case does not say how often, that depends on the number of steps and on the size of a frame. A run that
-  /// goes on keeps what it began with, as its end may have been moved.
+  /// If the case does not state an interval, the number of steps and the size of a frame determine it. A resumed run
+  /// keeps its original interval, even if its end has been moved.
   FieldSchedule(const Case& input, const Model& model, long steps, const Snapshot* snapshot = nullptr);
   void save(Snapshot& snapshot) const;
   [[nodiscard]] bool any() const { return every_ > 0 || interval_ > 0.0; }
-  /// Asks whether a frame follows a step; asked of every step, in order.
+  /// Returns true if a frame follows a step. Must be called once for every step, in order.
   [[nodiscard]] bool includes(const State& state);
-  /// Whether this step was the last that was included.
+  /// Returns true if this step was the last one included.
   [[nodiscard]] bool is_last(const State& state) const { return last_ == state.step; }
-  /// Number of frames of a run of so many steps up to a time, those of its start and its end included.
+  /// Returns the number of frames of a run of so many steps up to a time, including its start and its end.
   [[nodiscard]] long frames(long steps, double end) const;
-  /// Whether there are fewer than a small body would have.
+  /// Returns true if the size of frames has reduced their number below that of a small body.
   [[nodiscard]] bool is_limited() const { return is_limited_; }
 
  private:
   [[nodiscard]] double intervals(double time) const;
 
   long every_ = 0;
-  double interval_ = 0.0;  ///< time, instead
+  double interval_ = 0.0;  ///< interval of time, used instead of every_ if positive
   double intervals_before_ = 0.0;
-  long last_ = -1;  ///< step that was included
+  long last_ = -1;  ///< step that was included last
   bool is_limited_ = false;
 };
 
-/// Files of a run, in bytes, before it begins and without compression.
+/// Files of a run, in bytes, before it starts and without compression.
 struct OutputEstimate {
   long frames = 0, rows = 0;
   double frame_bytes = 0.0, results_bytes = 0.0, history_bytes = 0.0;
   bool is_limited = false;     ///< fewer frames than a small body would have
   bool is_adaptive = false;    ///< rows are those of the longest steps
-  bool is_compressed = false;  ///< what is written is less
+  bool is_compressed = false;  ///< the files will be smaller than stated
 };
 [[nodiscard]] OutputEstimate estimate_output(const Case& input, const Model& model);
-/// Text like "101 frames of fields of 1.9 MB, 190 MB in all; history.csv of some 4.2 MB".
+/// Returns a text such as "101 frames of fields of 1.9 MB, 190 MB in all; history.csv of some 4.2 MB".
 [[nodiscard]] std::string output_text(const OutputEstimate& estimate);
 
 }  // namespace ricochet

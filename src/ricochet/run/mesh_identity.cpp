@@ -26,7 +26,7 @@ std::vector<MeshChecksum> of_whole(const Mesh& mesh) {
           {"nodes", "", nodes.text()}};
 }
 
-/// Checksums of one part, with numbers of its own: what changes in another part changes none of them.
+/// Checksums of one part, with its own numbering, so that changes in other parts leave them unchanged.
 class PartChecksums {
  public:
   PartChecksums(const Mesh& mesh, const MeshPart& part) : mesh_(mesh), part_(part) {
@@ -88,7 +88,7 @@ std::vector<MeshChecksum> mesh_checksums(const Mesh& mesh) {
   Checksum order;
   for (const MeshPart& part : mesh.parts) {
     PartChecksums(mesh, part).append_to(sums);
-    order.add(part.name.data(), part.name.size() + 1);  // with the end of the text
+    order.add(part.name.data(), part.name.size() + 1);  // including the terminating zero
   }
   sums.push_back({"the order of the parts", "", order.text()});
   return sums;

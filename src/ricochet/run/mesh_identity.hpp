@@ -5,17 +5,17 @@
 
 #include "ricochet/mesh/mesh.hpp"
 
-/// @file What says whether a mesh is the one that a run began with.
+/// @file Checksums that tell whether a mesh is the one with which a run began.
 namespace ricochet {
 
 struct MeshChecksum {
-  std::string of;    ///< "nodes"; of a mesh of several files "nodes of part "ball""
-  std::string part;  ///< its name; empty for those of the whole mesh
+  std::string of;    ///< "nodes"; in a mesh of several files "nodes of part "ball""
+  std::string part;  ///< name of the part; empty for the whole mesh
   std::string sum;
 };
 
-/// Of nodes, cells, boundary facets and groups; of each part by itself, so that a message can name the one that
-/// changed, and of the order of the parts.
+/// Returns the checksums of nodes, cells, boundary facets and groups, separately for each part, so that a message can
+/// name the one that changed, and of the order of the parts.
 [[nodiscard]] std::vector<MeshChecksum> mesh_checksums(const Mesh& mesh);
 
 }  // namespace ricochet

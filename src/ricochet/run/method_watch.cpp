@@ -50,10 +50,10 @@ void MethodWatch::enter_step(const State& state, double of_method) {
   if (acting_ && *acting_ != ReactionMean::end) enter_weight(state.forces);
 }
 
-/// Steps in which nothing presses have a weight, too, but it acts on nothing.
+/// Enters the weight of a step in which contact presses; weights of other steps act on nothing.
 void MethodWatch::enter_weight(const StepForces& forces) {
   if (!ranks_->any((forces.mean_normal_reaction.array() > 0.0).any())) return;
-  if (forces.end_weight == 1.0) {  // a mean that was found has less
+  if (forces.end_weight == 1.0) {  // a mean that was found has a smaller weight
     ++end_steps_;
     return;
   }

@@ -7,20 +7,21 @@
 #include "ricochet/io/summary.hpp"
 #include "ricochet/scheme/scheme.hpp"
 
-/// @file What the method itself does to the energy, and which reactions act: of every step, whatever rows are written.
+/// @file Energy gained or lost by the time discretization, and the reactions that act, over every step, whether or not
+/// it has a row in history.csv.
 namespace ricochet {
 
 class MethodWatch {
  public:
-  /// Of a scheme that lets such reactions act; none: it has no choice.
+  /// Watches a scheme with these acting reactions; none if the scheme has no choice.
   explicit MethodWatch(std::optional<ReactionMean> acting, const Ranks& ranks = one_rank())
       : acting_(acting), ranks_(&ranks) {}
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
-  /// With EnergyAccount::of_method at its end. Allocates nothing.
+  /// Enters a step with EnergyAccount::of_method at its end. Allocates nothing.
   void enter_step(const State& state, double of_method);
-  /// As parts of the largest energy.
+  /// Returns the energies relative to the largest energy.
   [[nodiscard]] MethodEnergy energy(double largest_energy) const;
   [[nodiscard]] std::optional<ActingReactions> reactions() const;
 
@@ -29,7 +30,7 @@ class MethodWatch {
 
   std::optional<ReactionMean> acting_;
   const Ranks* ranks_;
-  double least_ = 0.0, largest_ = 0.0, last_ = 0.0;  ///< of what the method has put in
+  double least_ = 0.0, largest_ = 0.0, last_ = 0.0;  ///< of the energy that the method has added
   double least_weight_ = std::numeric_limits<double>::infinity(), largest_weight_ = -least_weight_;
   long mean_steps_ = 0, end_steps_ = 0;
 };

@@ -18,7 +18,7 @@ namespace ricochet {
 namespace {
 
 constexpr const char *scheme = "semi-explicit", *mass = "equivalent-lumped";
-/// Part of the critical step of the undeformed body.
+/// Ratio of the step to the critical step of the undeformed body.
 constexpr double safe_part = 0.7;
 
 double first_steps(const Case& input, const Model& model) {
@@ -51,7 +51,7 @@ void NewtonWatch::save(Snapshot& snapshot, const std::string& name) const {
 }
 
 void NewtonWatch::load(const Snapshot& snapshot, const std::string& name) {
-  constexpr double limit = 1e15;  // whole numbers below it are exact
+  constexpr double limit = 1e15;  // integers below it are exact
   const Vector& numbers = snapshot.reals(name, 4);
   if (!(numbers.array() >= 0.0 && numbers.array() < limit).all())
     Snapshot::refuse(name, fmt::format("has entries that are not from 0 to {:g}", limit));

@@ -19,7 +19,7 @@ std::string export_directory(const RunOptions& options) {
 
 namespace {
 
-/// All files that a case is read from.
+/// Returns all files that a case is read from.
 std::vector<std::string> input_files(const Case& input) {
   std::vector<std::string> files{input.path, input.mesh.file};
   for (const PartSection& part : input.parts) files.push_back(part.file);
@@ -68,13 +68,13 @@ void refuse_old_run(const RunDirectory& directory, const RunOptions& options) {
 
 namespace {
 
-/// Empty where the directory does not know.
+/// Returns an empty origin if neither summary nor checkpoint states it.
 RunOrigin remembered_origin(const std::string& directory) {
   const std::string summary_path = (std::filesystem::path(directory) / "summary.json").string();
   try {
     const RunSummary summary = read_summary(summary_path);
     if (!summary.case_path.empty()) return {summary.case_path, summary.settings};
-  } catch (const Error&) {  // it is not waited for until it is on the disk: checkpoints are
+  } catch (const Error&) {  // the summary may be damaged, as it is not synced to the disk; checkpoints are
   }
   std::optional<Snapshot> snapshot = newest_checkpoint(directory);
   if (!snapshot) snapshot = newest_checkpoint(checkpoint_folder_of_first_rank(directory));

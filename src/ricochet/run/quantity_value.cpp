@@ -14,7 +14,7 @@ namespace ricochet {
 
 namespace {
 
-/// Of the distance of two rows: times are written in decimals, and rows have sums of steps.
+/// Tolerance of times, relative to the distance of two rows: cases state times in decimals, rows hold sums of steps.
 constexpr double same_time = 1e-6;
 
 /// A column over time, linear between its points.
@@ -28,10 +28,10 @@ struct Course {
   }
 };
 
-/// Between a point and the next one.
+/// Position between a point and the next one.
 struct Place {
   std::size_t point = 0;
-  double fraction = 0.0;  ///< of the way; 0: at the point itself
+  double fraction = 0.0;  ///< fraction of the interval; 0 at the point itself
 };
 
 const std::vector<double>& column_of(const HistoryTable& history, const std::string& name) {
@@ -118,7 +118,7 @@ double largest_absolute(const Course& course) {
                           course.times.front(), course.times.back(), above ? *largest : *least));
 }
 
-/// The first or the last time beyond a threshold.
+/// Returns the first or the last time at which a threshold is exceeded.
 double time_of_event(const Course& course, const Quantity& quantity) {
   const auto [level, above] = quantity.threshold;
   const bool first = quantity.kind == Quantity::Kind::first_time;

@@ -10,15 +10,15 @@
 /// @file Values of quantities in the results of a run.
 namespace ricochet {
 
-/// The value of a quantity. Between the rows of a history each column is taken to be linear in time; a time within a
-/// millionth of the distance of two rows of one of them is that row. Throws Error(invalid_input): there is no such
-/// column, row or entry, a time lies outside the rows, an event never is.
+/// Returns the value of a quantity. Between the rows of a history each column is interpolated linearly in time; a time
+/// within a millionth of the distance of two rows from one of them means that row. Throws Error(invalid_input) if there
+/// is no such column, row or entry, a time lies outside the rows, or an event never occurs.
 [[nodiscard]] double value_of(const Quantity& quantity, const HistoryTable& history, const std::string& summary_json);
 
-/// That history.csv has no column of this name, and which one may be meant.
+/// Returns the message that history.csv has no column of this name, with the one that may be meant.
 [[nodiscard]] std::string no_such_column(const std::string& name, const std::vector<std::string>& names);
 
-/// The same of runs of a case: columns of a probe with "every" are not there, but in a file of their own.
+/// Returns the same message for runs of a case; columns of a probe with "every" are in a file of their own.
 [[nodiscard]] std::string no_such_column(const Case& input, const std::string& name,
                                          const std::vector<std::string>& names);
 

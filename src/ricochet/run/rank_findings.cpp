@@ -19,7 +19,7 @@ void merge(const UnwatchedPenetration& other, std::vector<UnwatchedPenetration>&
   same->first_time = first_time;
 }
 
-/// Takes the larger share, which is one of the force that a process has.
+/// Keeps the larger share; shares refer to the contact force on one process.
 void merge(const UnsettledContact& other, std::vector<UnsettledContact>& contacts) {
   const auto same = std::find_if(contacts.begin(), contacts.end(),
                                  [&](const UnsettledContact& own) { return own.contact == other.contact; });

@@ -2,10 +2,11 @@
 
 #include "ricochet/io/summary.hpp"
 
-/// @file What ranks find, each in its part of a body.
+/// @file Merging of the findings of ranks, each in its part of a body.
 namespace ricochet {
 
-/// Adds what another rank has found to a summary: penetration, of each kind the deepest, and the largest stress.
+/// Merges the findings of another rank into a summary: the deepest penetration of each kind, doubtful contacts, and the
+/// largest stress.
 void merge_findings(const RunSummary& other, RunSummary& summary);
 
 }  // namespace ricochet

@@ -14,10 +14,10 @@ namespace ricochet {
 
 namespace {
 
-/// History is handed over to readers this often, in seconds.
+/// Interval, in seconds, at which rows of the history are flushed for readers.
 constexpr double flush_interval = 1.0;
 
-/// On the first rank.
+/// Opens the history on the first rank; returns null on the others.
 std::unique_ptr<HistoryWriter> open_history(const Ranks& ranks, const std::string& path,
                                             const std::vector<std::string>& columns, const Snapshot* snapshot,
                                             const std::string& name) {
@@ -30,7 +30,7 @@ std::unique_ptr<HistoryWriter> open_history(const Ranks& ranks, const std::strin
   return result;
 }
 
-/// Of those of the mesh, and of the rigid bodies that move freely.
+/// Returns the names of the bodies of the mesh and of the rigid bodies that move freely.
 std::vector<std::string> names_of_all_bodies(const Case& input, const Model& model) {
   std::vector<std::string> names = model.bodies.names;
   for (std::size_t i = 0; i < input.obstacles.size(); ++i) {
@@ -59,8 +59,8 @@ std::unique_ptr<ResultsWriter> open_results(const OutputSection& output, const M
   return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, whole);
 }
 
-/// Steps of finite strain find stresses and tangents of all cells and factors again, several times: so many looks at
-/// the stress of all cells take no longer (measured).
+/// Makes the watch of penetration. Steps at finite strain compute stresses and tangents of all cells and refactorize,
+/// several times: this many evaluations of the stress of all cells take no longer (measured).
 PenetrationWatch make_penetration_watch(const Case& input, const Model& model, std::size_t factor_entries) {
   std::vector<NamedObstacle> obstacles;
   for (std::size_t i = 0; i < input.obstacles.size(); ++i)
@@ -114,7 +114,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
   method_.load(*snapshot, "method");
 }
 
-/// Of all ranks.
+/// Sums over all ranks.
 double Recording::of_method(const State& state, EnergyAccount& account) const {
   return model_.problem.ranks->sum(account.of_method(state));
 }
@@ -258,7 +258,7 @@ void Recording::describe_peak_stress(RunSummary& summary) const {
       told, {place.centre.data(), place.centre.data() + place.centre.size()}, place.tag, body.materials[material].name};
 }
 
-/// Energies are squares: they leave the range of numbers long before the displacement does.
+/// Throws if the motion has diverged. Energies are squares: they overflow long before the displacement does.
 void Recording::check_finite(const std::vector<double>& row) const {
   for (std::size_t i = 0; i < row.size(); ++i) {
     if (std::isfinite(row[i])) continue;

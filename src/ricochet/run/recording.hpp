@@ -17,38 +17,37 @@
 #include "ricochet/simulation/monitor/penetration_watch.hpp"
 #include "ricochet/simulation/monitor/sliding_watch.hpp"
 
-/// @file Everything that is written while a run goes on: history and fields.
+/// @file Output during a run: history, fields, and the watches whose reports enter the summary.
 namespace ricochet {
 
 class Recording {
  public:
-  /// Of a run of so many steps, from this state on, into a directory: new files, or those of the run that the snapshot
-  /// belongs to. `factor_entries`: of the step solver. Throws Error(file_access).
+  /// Records a run of so many steps, from this state on, into a directory: in new files, or in those of the run to
+  /// which the snapshot belongs. `factor_entries` refers to the step solver. Throws Error(file_access).
   Recording(const Case& input, const Model& model, const Scheme& scheme, const State& state,
             const std::string& directory, long steps, std::size_t factor_entries, const Snapshot* snapshot);
 
-  /// Of the state after every step, the first one included: what a run without end would write. Throws
-  /// Error(file_access), and Error(not_converged) when the motion has grown beyond all bounds or breaks an account that
-  /// is to stop it.
+  /// Records the state after every step, including the initial one, as a run without end would. Throws
+  /// Error(file_access), and Error(not_converged) if the motion has diverged or violates a balance that is to stop it.
   void record(const State& state, EnergyAccount& account);
-  /// Before that: of every part of a step that was cut, or once.
+  /// Enters, before record(), every part of a step that was cut, or the whole step once.
   void enter_part(const State& state, EnergyAccount& account);
-  /// An impulse per dof that acted between two steps.
+  /// Enters an impulse per dof that acted between two steps.
   void enter_impulse(const State& state, const Vector& impulse) {
     checks_.enter_impulse(state, impulse);
     impacts_.enter_impulse(state);
   }
-  /// Of the last state, what record() has left out: the end of a run is always in its results.
+  /// Records the last state where record() has not done so: the end of a run is always among its results.
   void record_end(const State& state, EnergyAccount& account);
-  /// What is needed to go on; the files are on the disk then.
+  /// Saves the state that a resumed run needs, after syncing the files to the disk.
   void save(Snapshot& snapshot);
-  /// Hands over what has been recorded. Throws Error(file_access) where another program has changed a file of the run.
+  /// Flushes the files. Throws Error(file_access) if another program has changed a file of the run.
   void flush();
-  /// What there is so far.
+  /// Describes the results so far.
   void describe(RunSummary& summary) const;
-  /// Spent here.
+  /// Seconds spent in this class.
   [[nodiscard]] double seconds() const { return seconds_; }
-  /// Of these, looking for penetration.
+  /// Seconds spent in the watches of contact, included in seconds().
   [[nodiscard]] double watch_seconds() const { return watch_seconds_; }
 
  private:
@@ -60,7 +59,7 @@ class Recording {
 
   FieldSchedule fields_;
   std::unique_ptr<ResultsWriter>
-      results_;  ///< first: looks whether the fields are what was written, and changes nothing else
+      results_;  ///< first, as it checks that the fields are unchanged and modifies nothing else
   HistoryRecorder recorder_;
   std::unique_ptr<HistoryWriter> history_;  ///< on the first rank
   /// Probes with an interval of their own.

@@ -16,7 +16,7 @@ namespace ricochet {
 
 namespace {
 
-/// Below the least rotation nothing is noted, above it what has grown by a hundredth.
+/// Rotations below the least are not recorded; above it, each growth by a hundredth is.
 constexpr double least_noted = 1e-6, noted_growth = 1.01;
 
 }  // namespace
@@ -31,7 +31,7 @@ RotationWatch::RotationWatch(const Body& body, const Ranks& ranks, std::size_t c
       ranks_(ranks),
       column_(column),
       limit_(has_finite_strain(body) ? std::numeric_limits<double>::infinity() : rotation_limit) {
-  // No rotation is larger than pi.
+  // No rotation exceeds π.
   const double most = std::log(std::numbers::pi / least_noted) / std::log(noted_growth);
   growth_.reserve(static_cast<std::size_t>(most) + 3);
 }

@@ -7,26 +7,26 @@
 #include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/scheme/state.hpp"
 
-/// @file Rotations beyond what small strain allows.
+/// @file Rotations beyond the range of small strain.
 namespace ricochet {
 
-/// "a strain of 0.5 % that is not there (1 - cos of the angle)"
+/// Returns a text such as "a strain of 0.5 % that is not there (1 - cos of the angle)".
 [[nodiscard]] std::string spurious_strain(double rotation);
 
 class RotationWatch {
  public:
-  /// `column`: of max_rotation in a row. At finite strain there is no limit. Keeps references.
+  /// `column` is the index of max_rotation in a row. At finite strain there is no limit. Keeps references.
   RotationWatch(const Body& body, const Ranks& ranks, std::size_t column);
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
-  /// A row of history.csv. Warns the first time that a cell has turned too far. Allocates nothing.
+  /// Enters a row of history.csv. Warns the first time that a cell has rotated too far. Allocates nothing.
   void watch(const std::vector<double>& row, const State& state);
-  /// Beyond which small strain does not hold; infinite at finite strain.
+  /// Rotation beyond which small strain does not hold; infinite at finite strain.
   [[nodiscard]] double limit() const { return limit_; }
-  /// Of the first row in which a cell has turned too far; infinite: there is none.
+  /// Time of the first row in which a cell has rotated too far; infinite if none.
   [[nodiscard]] double time_beyond_limit() const;
-  /// The largest rotation in rows up to that time: to a hundredth, and on the right side of the limit.
+  /// Largest rotation in rows up to that time, accurate to a hundredth and on the correct side of the limit.
   [[nodiscard]] double largest_until(double time) const;
 
  private:

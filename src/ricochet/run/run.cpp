@@ -22,12 +22,13 @@ namespace ricochet {
 
 namespace {
 
-/// summary.json says how far a run is this often, in seconds.
+/// Interval, in seconds, at which summary.json reports the progress of a run.
 constexpr double report_interval = 2.0;
-/// Dofs from which on the start of a run takes seconds, and says so.
+/// Number of dofs from which the start of a run takes seconds and is reported.
 constexpr Index large_body = 20000;
 
-/// Fails early: a run of hours should not end because its last step cannot be written.
+/// Checks early that contact problems can be exported: a run of hours must not end because its last step cannot be
+/// written.
 void check_export(const Case& input, const RunOptions& options, long steps) {
   if (options.export_contact.empty()) return;
   if (input.time.adaptive)
@@ -62,7 +63,7 @@ Run::Run(Session& session, const RunOptions& options)
       at_interruption_([this] { end_early(); }) {}
 
 void Run::begin() {
-  // Of runs that are silent but for their warnings there may be many at once.
+  // Many quiet runs may execute at once; their warnings need a name.
   log::set_run_name(options_.quiet ? options_.output_directory : "");
   check_export(input_, options_, steps_);
   ranks_.together([&] {
@@ -86,7 +87,7 @@ void Run::begin() {
 
 RunSummary Run::finish() {
   if (has_nothing_to_do_) return summary_;
-  if (!has_ended_) {  // a program has taken the steps that it wanted
+  if (!has_ended_) {  // a program has stopped stepping
     if (!session_.at_end()) {
       interrupt("ended by the program");
     } else {
@@ -98,13 +99,13 @@ RunSummary Run::finish() {
   return summary_;
 }
 
-/// The run in the directory has come to its end: nothing to do.
+/// Returns true if the run in the directory is complete, so that nothing is left to do.
 bool Run::is_complete() {
   if (!std::filesystem::exists(summary_path())) return false;
   try {
     summary_ = read_summary(summary_path());
   } catch (const Error&) {
-    return false;  // a summary is not waited for until it is on the disk: checkpoints are
+    return false;  // the summary may be damaged, as it is not synced to the disk; checkpoints are
   }
   if (summary_.parameters.empty()) return false;
   knows_what_ran_ = true;
@@ -178,7 +179,7 @@ void Run::refuse_earlier_end(double reached) const {
 }
 
 void Run::begin_session() {
-  // What reading the case said is among those of the run that goes on.
+  // The snapshot already holds the warnings of reading the case.
   const std::vector<std::string> resume_warnings(session_.warnings().begin() + of_reading_, session_.warnings().end());
   BuildTimes build;
   session_.build(&build);
@@ -193,12 +194,12 @@ void Run::begin_session() {
   const std::string& kept_at = options_.case_path.empty() ? input_.path : options_.case_path;
   summary_.case_path = std::filesystem::absolute(kept_at).lexically_normal().string();
   summary_.settings = options_.settings;
-  stopping_points_.emplace();  // the steps are near
+  stopping_points_.emplace();  // the steps are about to begin
   if (snapshot_) {
-    // Those of the model have been said and remembered already.
+    // The snapshot already holds the warnings of building the model.
     std::vector<std::string> warnings = snapshot_->texts("run.warnings");
     warnings.insert(warnings.end(), resume_warnings.begin(), resume_warnings.end());
-    // The end may have been moved.
+    // The end may have been moved since.
     std::erase_if(warnings, [](const std::string& warning) { return warning.starts_with(end_warning); });
     for (auto said = session_.warnings().begin() + built; said != session_.warnings().end(); ++said) {
       if (std::find(warnings.begin(), warnings.end(), *said) == warnings.end()) warnings.push_back(*said);
@@ -221,26 +222,26 @@ void Run::begin_session() {
   warn_of_end(input_.time);
 }
 
-/// An error here is told in the summary, as one of a step is.
+/// Opens the files. Like an error of a step, an error here is reported in the summary.
 void Run::open_files() {
   const std::lock_guard files(files_);
   try {
     start_recording();
   } catch (const Error& problem) {
-    if (snapshot_) throw;  // the run is as it was
+    if (snapshot_) throw;  // the run in the directory is unchanged
     summary_.status = "failed";
     summary_.message = problem.what();
     summary_.steps = session_.simulation().state().step;
     try {
       write_own_summary(summary_);
-    } catch (const Error&) {  // what has failed first is what a user must hear
+    } catch (const Error&) {  // the first error is the one to report
     }
     throw;
   }
 }
 
-/// Not those of contact zones, which come and go and are others on other processes: the states that are looked at for
-/// the largest stress depend on it.
+/// Returns the number of factor entries of the whole body, excluding subdomains, which come and go and differ between
+/// processes: the choice of states that are searched for the largest stress depends on this number.
 std::size_t Run::entries_of_whole_body() const {
   const std::vector<ChosenMethod>& methods = session_.simulation().methods();
   const bool is_factored = std::all_of(
@@ -260,7 +261,7 @@ void Run::start_recording() {
   recording_.emplace(input_, session_.model(), session_.scheme(), session_.simulation().state(),
                      options_.output_directory, steps_, entries_of_whole_body(), snapshot_ ? &*snapshot_ : nullptr);
   if (!snapshot_) recording_->record(session_.simulation().state(), session_.simulation().account());
-  // Only now, when the run has found its files as it left them.
+  // Only now is it certain that the files of the run are as it left them.
   ranks_.together([&] {
     if (snapshot_ && ranks_.is_first()) remove_files(directory_.left_behind(session_.simulation().state().step));
   });
@@ -297,7 +298,7 @@ bool Run::take_step() {
     if (!session_.at_end() && advance()) return true;
     end_steps();
   } catch (const Error& problem) {
-    // What one rank alone has found ends all at once: the others are still in the step, and answer nothing.
+    // An error on one rank alone ends all ranks at once: the others are still in the step and do not respond.
     constexpr double patience = 1.5;
     if (ranks_.are_several() && !ranks_.all_arrive(patience)) throw;
     failure_ = problem;
@@ -307,9 +308,9 @@ bool Run::take_step() {
   return false;
 }
 
-/// False: a signal asks for the end.
+/// Computes and records a step. Returns false if a signal requests the end.
 bool Run::advance() {
-  // What any of the ranks is told.
+  // A signal that any rank has received counts.
   const int own_signal = options_.stop_signal ? options_.stop_signal() : 0;
   if (const int signal = static_cast<int>(ranks_.maximum(own_signal)); signal != 0) {
     stop(signal);
@@ -335,7 +336,7 @@ bool Run::advance() {
   const bool checkpoint_is_due =
       !is_near_end() && ((output.checkpoint_every > 0 && simulation.state().step % output.checkpoint_every == 0) ||
                          (output.checkpoint_seconds > 0.0 && since_checkpoint_.seconds() >= output.checkpoint_seconds));
-  // By the first one's clock.
+  // The clock of the first rank decides.
   std::array<double, 2> due{ranks_.is_first() && checkpoint_is_due ? 1.0 : 0.0,
                             ranks_.is_first() && since_report_.seconds() >= report_interval ? 1.0 : 0.0};
   ranks_.sum(due);
@@ -344,13 +345,13 @@ bool Run::advance() {
   return true;
 }
 
-/// Tells whether the end has shortened the next of the adaptive steps.
+/// Returns true if the end of the run has shortened the next adaptive step.
 bool Run::is_near_end() {
   const StepControl* const control = session_.simulation().control();
   return control != nullptr && control->is_shortened_by_end();
 }
 
-/// Writes the checkpoint from which the run can go on to a later end: nothing that was done before knows of this one.
+/// Writes the checkpoint from which the run can go on to a later end: the steps up to it do not depend on the end.
 void Run::write_end_checkpoint() {
   const bool wanted = input_.output.checkpoint_every > 0 || input_.output.checkpoint_seconds > 0.0;
   if (!wanted || has_end_checkpoint_) return;
@@ -359,7 +360,7 @@ void Run::write_end_checkpoint() {
   has_end_checkpoint_ = true;
 }
 
-/// Warns once in a run. (Of a divided body the first process would have to build the whole anew.)
+/// Warns once per run. (With a divided body the first process would have to build the whole body anew.)
 void Run::tell_of_many_iterations() {
   if (ranks_.are_several()) return;
   const double now = session_.simulation().state().time;
@@ -367,7 +368,7 @@ void Run::tell_of_many_iterations() {
                                     session_.scheme().step()));
 }
 
-/// Tells before what takes long, and before the disk is full.
+/// Announces long preparations and large files in advance.
 void Run::tell_of_size() const {
   constexpr double large_files = 100e6;
   const Model& model = session_.model();
@@ -381,15 +382,15 @@ void Run::tell_of_size() const {
                     counted(model.sizes.dofs, "dof"), counted(model.sizes.contact_points, "contact point"),
                     size_text(memory_of_iterations(model.sizes.dofs)), size_text(memory_of_contact(rows))));
   }
-  if (snapshot_) return;  // a run that goes on writes as it began
+  if (snapshot_) return;  // a resumed run writes as it began
   const OutputEstimate files = estimate_output(input_, model);
   if (is_large || files.results_bytes + files.history_bytes >= large_files) log::info(output_text(files));
 }
 
-/// What the last state leaves, where all steps were taken.
+/// Writes the final results once all steps are computed.
 void Run::end_steps() {
   if (!session_.at_end()) return;
-  write_end_checkpoint();  // before what is written at the end only
+  write_end_checkpoint();  // before anything that only the end of a run writes
   const std::lock_guard files(files_);
   before_step_.reset();
   recording_->record_end(session_.state(), session_.simulation().account());

@@ -19,8 +19,7 @@
 #include "ricochet/run/run_times.hpp"
 #include "ricochet/run/session.hpp"
 
-/// @file One run: how it starts or goes on and takes its steps (run.cpp), and what it leaves on the way, checkpoints
-/// and summaries (run_records.cpp).
+/// @file One run: its start or resumption and its steps (run.cpp); its checkpoints and summaries (run_records.cpp).
 namespace ricochet {
 
 /// A run from its directory to its summary.
@@ -29,18 +28,18 @@ class Run {
   /// Keeps references to both.
   Run(Session& session, const RunOptions& options);
 
-  /// Looks at what is in the directory, builds and starts the session, and opens the files. Nothing is left to do where
-  /// the run that is to be resumed is complete.
+  /// Examines the directory, builds and starts the session, and opens the files. Nothing is left to do if the run to be
+  /// resumed is complete.
   void begin();
-  /// The run that was to be resumed has come to its end before: there is no state.
+  /// Returns true if the run to be resumed was complete already, so that there is no state.
   [[nodiscard]] bool is_complete_already() const { return has_nothing_to_do_; }
-  /// A program has changed the velocity, by an impulse per dof.
+  /// Enters an impulse per dof by which a program has changed the velocity.
   void enter_impulse(const Vector& impulse);
   /// Writes a checkpoint of the present state, unless the run has ended.
   void keep();
-  /// One step, recorded. False: the end, a failure, or a signal.
+  /// Computes and records one step. Returns false at the end, after a failure, or after a signal.
   bool take_step();
-  /// The summary; throws the error that ended the steps.
+  /// Returns the summary; throws the error that ended the steps.
   RunSummary finish();
 
  private:
@@ -59,7 +58,7 @@ class Run {
   void tell_of_many_iterations();
   void tell_of_size() const;
   void end_steps();
-  /// "step 12 of 100", or of adaptive steps "step 12 (t = 0.5 of 2)".
+  /// Returns "step 12 of 100", or with adaptive steps "step 12 (t = 0.5 of 2)".
   [[nodiscard]] std::string step_in_words();
   void stop(int signal);
   void interrupt(const std::string& how);
@@ -86,33 +85,33 @@ class Run {
   const Ranks& ranks_;
   RunDirectory directory_;
   long steps_;
-  std::ptrdiff_t of_reading_;  ///< warnings that there were before
+  std::ptrdiff_t of_reading_;  ///< number of warnings from reading the case
   RunTimes times_;
-  bool has_nothing_to_do_ = false;  ///< to be resumed: the run is complete
+  bool has_nothing_to_do_ = false;  ///< the run to be resumed is complete
   bool has_ended_ = false, has_end_checkpoint_ = false;
-  bool knows_what_ran_ = false;       ///< to be resumed: there is a summary, and it is that of this case
-  bool was_complete_ = false;         ///< to be resumed: to a later end
-  std::optional<Snapshot> snapshot_;  ///< that the run goes on from
+  bool knows_what_ran_ = false;       ///< the run to be resumed has a summary of this case
+  bool was_complete_ = false;         ///< the run to be resumed had ended, and now has a later end
+  std::optional<Snapshot> snapshot_;  ///< snapshot from which the run resumes
   std::optional<ContactExport> contact_export_;
   std::optional<FailureBundle> failure_bundle_;
   std::optional<Recording> recording_;
   std::optional<Progress> progress_;
   NewtonWatch newton_;
   double contact_before_ = 0.0;
-  Traffic traffic_before_;  ///< of what came before the steps
-  long first_step_ = 0;     ///< of this process, or the one that the run goes on from
+  Traffic traffic_before_;  ///< before the steps
+  long first_step_ = 0;     ///< number of steps before this session
   RunSummary summary_;
   std::optional<Error> failure_;
   Timer since_checkpoint_, since_report_;
-  long step_ = 0;                                       ///< that was begun last
-  double step_seconds_ = 0.0, snapshot_seconds_ = 0.0;  ///< the last took
+  long step_ = 0;                                       ///< number of the step begun last
+  double step_seconds_ = 0.0, snapshot_seconds_ = 0.0;  ///< of the last step, and of its snapshot
 
-  /// Held while the files of the run change: whoever ends the run in the middle of its work waits for that.
+  /// Held while the files of the run change: an interruption in the middle of a step waits for it.
   std::timed_mutex files_;
-  std::optional<RunSummary> reported_;  ///< the run's own that is on the disk
+  std::optional<RunSummary> reported_;  ///< summary that this run has written to the disk
   std::optional<Snapshot> before_step_;
   std::optional<StoppingPoints> stopping_points_;
-  AtInterruption at_interruption_;  ///< the last to be made, the first to go
+  AtInterruption at_interruption_;  ///< made last, destroyed first
 };
 
 }  // namespace ricochet

@@ -14,9 +14,9 @@ namespace ricochet {
 
 namespace {
 
-/// What a sum of works is rounded to, relative to the largest.
+/// Rounding of a sum of works, relative to the largest work.
 constexpr double rounding_of_works = 1e-12;
-/// The same of momenta, relative to √(2 m T).
+/// Rounding of momenta, relative to √(2 m T).
 constexpr double rounding_of_momenta = 1e-12;
 
 }  // namespace
@@ -54,7 +54,7 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
   linear_.result.limit = input.check.momentum;
   angular_.result.name = "angular_momentum";
   angular_.result.limit = input.check.angular_momentum;
-  // The functions of degree 1 on curved cells do not contain rotations.
+  // The shape functions of degree 1 on curved cells do not contain rotations.
   if (!model.contains_rotations) angular_.result.limit = 0.0;
   if (!model.problem.internal_force->is_linear() && !scheme.keeps_moments_at_finite_strain())
     angular_.result.limit = 0.0;
@@ -94,7 +94,7 @@ double RunChecks::size_of_momenta(const std::vector<double>& row, const Resultan
   return std::max(sum, all.force.norm());
 }
 
-/// Of the two balances of momentum; 1 where neither is checked.
+/// Returns the larger limit of the two balances of momentum; 1 if neither is checked.
 double RunChecks::largest_limit() const {
   const double limit = std::max(linear_.result.limit, angular_.result.limit);
   return limit > 0.0 ? limit : 1.0;
@@ -119,14 +119,14 @@ void RunChecks::watch(const std::vector<double>& row, const State& state) {
     has_start_ = true;
   }
   energy_scale_ = std::max({energy_scale_, std::abs(row[total_]), std::abs(row[kinetic_]), std::abs(row[elastic_])});
-  // Momenta of bodies that meet head-on cancel, their sizes do not. Of a body that only spins or vibrates rounding is
-  // left: relative to √(2 m T), T the kinetic energy, which no momentum of a part exceeds.
+  // Momenta of bodies that collide head-on cancel, their magnitudes do not. The momentum of a body that only spins or
+  // vibrates is mere rounding, relative to √(2 m T), where T is the kinetic energy; no momentum of a part exceeds this.
   momentum_scale_ =
       std::max({momentum_scale_, size_of_momenta(row, now),
                 rounding_of_momenta / largest_limit() * std::sqrt(2.0 * mass_ * std::max(row[kinetic_], 0.0))});
   const double momentum_scale = momentum_scale_ + momentum_.size();
   for (const std::size_t work : works_) work_scale_ = std::max(work_scale_, std::abs(row[work]));
-  // Of works that cancel rounding is left, which no limit can be below.
+  // Works that cancel leave rounding, below which no limit can be.
   const double rounding = energy_.result.limit > 0.0 ? rounding_of_works * work_scale_ / energy_.result.limit : 0.0;
   judge(energy_, std::abs(row[residual_]), std::max(energy_scale_, rounding), row, state);
   judge(linear_, (now.force - start_.force - momentum_.impulse().force).norm(), momentum_scale, row, state);
@@ -137,12 +137,12 @@ void RunChecks::watch(const std::vector<double>& row, const State& state) {
 void RunChecks::judge(Account& account, double residual, double scale, const std::vector<double>& row,
                       const State& state) {
   CheckResult& result = account.result;
-  // Of an energy that is next to nothing its own rounding is a large part: a load may come up as exp(-t²).
+  // Rounding is a large part of an energy that nearly vanishes, as when a load starts like exp(-t²).
   constexpr double least_scale = 1e-280;
   if (!(scale > least_scale)) return;
   const bool broken = result.limit > 0.0 && residual > result.limit * scale;
   if (broken && &account == &energy_ && !account.told) {
-    // Asked again only when there is much more energy: it takes as long as some steps.
+    // Tested again only after the energy has grown tenfold, as the test takes as long as some steps.
     if (scale < 10.0 * ignored_scale_) return;
     if (is_rounding_of_energy(scale, model_.problem, state)) {
       ignored_scale_ = scale;

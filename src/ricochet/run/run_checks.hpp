@@ -7,21 +7,21 @@
 #include "ricochet/model/model.hpp"
 #include "ricochet/simulation/history/momentum_account.hpp"
 
-/// @file What a run must keep: its accounts of energy, momentum and angular momentum. Section [check] of a case.
+/// @file Balances that a run must satisfy: energy, momentum and angular momentum. Section [check] of a case.
 namespace ricochet {
 
 class RunChecks {
  public:
-  /// Opens the accounts on a starting state, or on the state of the snapshot. `columns` are those of history.csv.
+  /// Opens the balances at a starting state, or at the state of the snapshot. `columns` are those of history.csv.
   RunChecks(const Case& input, const Model& model, const Scheme& scheme, const State& state,
             const std::vector<std::string>& columns, const Snapshot* snapshot);
   void save(Snapshot& snapshot, const std::string& name) const;
 
-  /// After every step, and after the parts of one that was cut.
+  /// Enters a part of a step that was cut, or the whole step.
   void enter_part(const State& state) { momentum_.enter_step(state); }
   void enter_impulse(const State& state, const Vector& impulse) { momentum_.enter_impulse(state, impulse); }
-  /// A row of history.csv. Warns the first time that an account does not balance, or throws Error(not_converged) where
-  /// the case asks for that.
+  /// Enters a row of history.csv. Warns the first time that a balance is violated, or throws Error(not_converged) if
+  /// the case demands it.
   void watch(const std::vector<double>& row, const State& state);
   [[nodiscard]] std::vector<CheckResult> results() const;
 
@@ -33,7 +33,7 @@ class RunChecks {
   };
   void judge(Account& account, double residual, double scale, const std::vector<double>& row, const State& state);
   [[nodiscard]] Resultant momentum(const std::vector<double>& row) const;
-  /// Σ |P| over the bodies.
+  /// Returns Σ |P| over the bodies.
   [[nodiscard]] double size_of_momenta(const std::vector<double>& row, const Resultant& all) const;
   [[nodiscard]] double largest_limit() const;
 

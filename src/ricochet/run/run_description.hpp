@@ -5,18 +5,18 @@
 #include "ricochet/model/model.hpp"
 #include "ricochet/simulation/simulation.hpp"
 
-/// @file What a run is, in words and numbers, before it has run.
+/// @file Description of a run, in words and numbers, before its steps.
 namespace ricochet {
 
-/// The contacts of a case as a summary lists them; of contacts between bodies without how they face each other.
+/// Returns the contacts of a case as listed in the summary, without the facing of bodies.
 [[nodiscard]] std::vector<ContactDescription> describe_contacts(const Case& input);
-/// None of a contact with an obstacle, or of tied surfaces.
+/// Returns how the sides of a contact face each other; none for obstacles and tied surfaces.
 [[nodiscard]] std::optional<FacingDescription> describe_facing(const Model& model, std::size_t contact);
 
 [[nodiscard]] RunSummary describe_run(const Case& input, const Model& model, const Scheme& scheme,
                                       const Simulation& simulation);
 
-/// Where exported contact problems come from.
+/// Returns the origin of exported contact problems.
 [[nodiscard]] ContactProvenance describe_provenance(const Case& input, const RunSummary& summary);
 
 }  // namespace ricochet

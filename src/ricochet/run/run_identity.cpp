@@ -17,17 +17,17 @@ namespace ricochet {
 namespace {
 
 bool decides_results(const std::string& key) {
-  // Of files the content counts, not the name.
+  // The contents of files decide, not their names.
   static const std::set<std::string> others{"title", "mesh.file", "output.checkpoint_every",
                                             "output.checkpoint_seconds"};
   const bool is_file = (key.starts_with("part.") && key.ends_with(".file")) ||
                        (key.starts_with("obstacle.") && (key.ends_with(".file") || key.ends_with(".table")));
-  // Not the end either: what was written before it does not depend on it.
+  // Results written before the end do not depend on it.
   return !is_file && !others.contains(key) && key != "time.end" && !key.starts_with("expect.") &&
          !key.starts_with("check.");
 }
 
-/// Of the obstacles that come from files, by their names.
+/// Returns the checksums of obstacles that are read from files, by name.
 std::map<std::string, std::string> obstacle_checksums(const Case& input, const Model& model) {
   std::map<std::string, std::string> result;
   for (std::size_t i = 0; i < model.obstacles.size(); ++i) {
@@ -37,7 +37,7 @@ std::map<std::string, std::string> obstacle_checksums(const Case& input, const M
   return result;
 }
 
-/// Of products with a fixed vector: sees every rounding of the operators.
+/// Returns the checksum of products with a fixed vector, which detects any difference in the rounding of the operators.
 std::string operator_checksum(const SemidiscreteProblem& problem) {
   Vector values(problem.dof_count()), product;
   for (Index i = 0; i < values.size(); ++i) values[i] = 1.0 / static_cast<double>(i + 1);

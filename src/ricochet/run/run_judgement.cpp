@@ -14,21 +14,22 @@ namespace ricochet {
 
 namespace {
 
-/// Above this rotation, in rad, the run says again how large the error has become: it grows with the square.
+/// Rotation, in rad, above which the run reports at its end how large the error has become: it grows with the square.
 constexpr double large_rotation = 2.0 * rotation_limit;
-/// Above this equivalent strain small strain does not hold.
+/// Equivalent strain above which small strain does not hold.
 constexpr double strain_limit = 0.1;
 
 }  // namespace
 
 bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, const State& state) {
-  // Energies are those of displacements less their rigid part (LinearElasticity), and round as these do.
+  // Energies are computed from displacements without their rigid part (LinearElasticity), and their rounding is that of
+  // this part.
   const InternalForce& force = *problem.internal_force;
   double terms = 0.0;
   if (force.is_linear()) {
     terms = force.energy_terms(state.displacement);
   } else {
-    // Strains are differences of positions, which are rounded: so many strains of that size.
+    // Strains are differences of rounded positions, so that strains of that size are rounding.
     constexpr double rounding = 1e-14;
     const Vector magnitude = rounding * problem.nodes.reshaped().cwiseAbs();
     terms = magnitude.dot(force.tangent().cwiseAbs() * magnitude);
@@ -36,8 +37,9 @@ bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, co
   return energy <= 1e-14 * problem.ranks->sum(terms);
 }
 
-/// Energy that no real body loses, in an impact whose step is long for its waves. Where nothing rebounds, as in a drag
-/// or a press, forces do far more work than is ever stored, and what the method takes is a part of that.
+/// Warns of a loss of energy that no real body has, in an impact whose step is too long for its waves. Where nothing
+/// rebounds, as in sliding or pressing, forces do far more work than is ever stored, and the loss is compared with that
+/// work.
 void judge_loss(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state) {
   constexpr double most = 0.05;
   const double loss = summary.loss_by_method(), energy = summary.energy_scale(), work = summary.work_scale();
@@ -71,7 +73,7 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
   const bool friction_creates = summary.digest("friction_work").maximum > 0.01 * scale;
   const double rotation = summary.digest("max_rotation").maximum;
   const bool is_small = std::isfinite(summary.largest_rotation());  // small strain
-  // What a body does in free flight after its impacts does not change what they came to.
+  // Rotations in free flight after the impacts do not affect their results.
   const bool rotates = is_small && rotation > large_rotation && !summary.cells_turn_little_in_impacts();
   if (summary.adaptive && summary.adaptive->counts.tolerated > 0) {
     const StepCounts& counts = summary.adaptive->counts;
@@ -159,7 +161,7 @@ void judge_turning(const RunSummary& summary) {
   double largest = restitution_by_turning_limit;
   for (std::size_t i = 0; i < summary.impacts.size(); ++i) {
     const double error = std::abs(restitution_by_turning(summary.impacts[i]));
-    // Of the others the run has said so when cells turned too far.
+    // A warning at the time when cells rotated too far has covered the others.
     if (!(error > largest) || !summary.cells_turn_little_in(i)) continue;
     worst = i;
     largest = error;

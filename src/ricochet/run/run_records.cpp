@@ -20,15 +20,16 @@ namespace ricochet {
 
 namespace {
 
-/// For the files of the run to come to rest, where it is to end in the middle of its work.
+/// Longest wait for the files of the run to be at rest when it ends in the middle of a step.
 constexpr std::chrono::milliseconds longest_wait{300};
-/// Seconds of a step from which on the state before it is kept, where that takes no more than this share of the step.
+/// Duration of a step, in seconds, from which the state before it is kept, provided that this takes no more than the
+/// given fraction of the step.
 constexpr double long_step = 0.5, snapshot_share = 0.05;
 
 }  // namespace
 
-/// The state before the step that failed (or after it, where its results are not to be had) and its contact problem;
-/// the message tells where they are.
+/// Writes the state before the failed step (or after it, if its results are not available) and its contact problem; the
+/// message states where they are.
 void Run::write_failure_bundle(long step) {
   Snapshot snapshot;
   session_.save(snapshot);
@@ -55,7 +56,7 @@ std::string Run::step_in_words() {
 void Run::interrupt(const std::string& how) {
   const std::lock_guard files(files_);
   write_checkpoint();
-  // Behind what the checkpoint knows: a run that goes on takes it back.
+  // After the checkpoint: a resumed run removes these results again.
   recording_->record_end(session_.state(), session_.simulation().account());
   summary_.status = "interrupted";
   summary_.message = fmt::format("{} after {}; {} goes on from there", how, step_in_words(),
@@ -64,10 +65,10 @@ void Run::interrupt(const std::string& how) {
                                                          : run_command(ranks_.size()) + " --resume");
 }
 
-/// On another thread, while this run is in the middle of something that takes too long. What is on the disk is good
-/// enough for --resume at any time; if the files are at rest, more is kept of the run.
+/// Runs on another thread while the run is in the middle of something that takes too long. The files on the disk always
+/// suffice for --resume; if they are at rest, more of the run is kept.
 void Run::end_early() {
-  if (ranks_.are_several()) return;  // the others are in the middle of something, too
+  if (ranks_.are_several()) return;  // the other ranks are busy as well
   const std::unique_lock files(files_, longest_wait);
   if (!files || !reported_) return;
   RunSummary& summary = *reported_;
@@ -83,8 +84,8 @@ void Run::end_early() {
   interruption::say(fmt::format("ricochet: {}\n", log::with_run_name(summary.message)).c_str());
 }
 
-/// Where a step takes longer than anybody should wait who wants to stop the run: a checkpoint of the state before it
-/// can then be written at any time.
+/// Keeps the state before a step if steps take longer than a user who stops the run should have to wait: a checkpoint
+/// of that state can then be written at any time.
 void Run::keep_state_before_step() {
   if (ranks_.are_several()) return;
   const bool wanted = step_seconds_ >= long_step && snapshot_seconds_ <= snapshot_share * step_seconds_;
@@ -145,7 +146,7 @@ void Run::describe_progress(RunSummary& summary) {
   if (const StepControl* const control = session_.simulation().control()) {
     summary.adaptive = AdaptiveSteps{.tolerance = input_.time.tolerance, .time = control->time()};
     summary.adaptive->counts = control->counts();
-    // As many as there will be: nobody knows before.
+    // The total number of steps is known only at the end.
     if (session_.at_end()) summary.all_steps = summary.steps;
   }
   const RunTimes times = times_until_now();
@@ -176,7 +177,7 @@ void Run::describe_processes(RunSummary& summary) const {
                                     most_per_step(now.reductions, traffic_before_.reductions)};
 }
 
-/// Time and memory of all ranks; contact may be solved by others than the first.
+/// Sums time and memory over all ranks; contact may be solved on other ranks than the first.
 void Run::add_work_of_ranks(RunSummary& summary) const {
   std::array<double, 2> sums{static_cast<double>(summary.factor_entries), summary.processor_seconds};
   ranks_.sum(sums);
@@ -188,8 +189,8 @@ void Run::add_work_of_ranks(RunSummary& summary) const {
   }
 }
 
-/// What ranks have found in their parts of the body. Warnings are said by the first; of those that several ranks have,
-/// each of places of its own, once.
+/// Gathers the findings of ranks in their parts of the body. The first rank issues the warnings, and those that several
+/// ranks have, each with its own positions, only once.
 void Run::gather_from_ranks(RunSummary& summary) {
   if (!ranks_.are_several()) return;
   describe_processes(summary);
@@ -208,12 +209,12 @@ void Run::gather_from_ranks(RunSummary& summary) {
   }
 }
 
-/// On the first rank.
+/// Writes the summary on the first rank.
 void Run::write_own_summary(const RunSummary& summary) const {
   if (ranks_.is_first()) write_summary(summary_path(), summary);
 }
 
-/// For those who look at a run that goes on.
+/// Writes the progress of a run for its observers.
 void Run::report_progress() {
   RunSummary summary = summary_;
   summary.status = "running";
@@ -231,11 +232,11 @@ void Run::write_end() {
     summary_.message = failure_->what();
   }
   describe_progress(summary_);
-  // Parts of rounding say nothing.
+  // An energy that is mere rounding has no meaningful parts.
   if (summary_.method_energy &&
       is_rounding_of_energy(summary_.energy_scale(), session_.model().problem, session_.simulation().state()))
     summary_.method_energy = MethodEnergy{};
-  // A step that cannot be solved is often the end of a motion that has gained energy.
+  // A step that cannot be solved often ends a motion that has gained energy.
   const bool fails_to_converge = failure_ && failure_->kind() == ErrorKind::not_converged;
   if (summary_.status == "done" || fails_to_converge) {
     judge_energy(summary_, session_.scheme(), session_.model().problem, session_.simulation().state());
@@ -252,7 +253,7 @@ void Run::write_end() {
     try {
       write();
     } catch (const Error&) {
-      // What has failed first is what a user must hear, here and in the summary, if there is room for that.
+      // The first error is the one to report, here and, if there is room, in the summary.
       if (!failure_) throw;
     }
   };

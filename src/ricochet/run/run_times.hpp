@@ -9,25 +9,25 @@
 #include "ricochet/model/model.hpp"
 #include "ricochet/solver/step_solver.hpp"
 
-/// @file Where the time of a run goes, in seconds, all of its sessions together.
+/// @file Time spent in the phases of a run, in seconds, over all of its sessions.
 namespace ricochet {
 
 struct RunTimes {
   double read_mesh = 0.0, model = 0.0, assembly = 0.0, ordering = 0.0, factorization = 0.0;
-  double start = 0.0;    ///< the starting state, and what is constant, without the factorization
+  double start = 0.0;    ///< the starting state and constant data, without the factorization
   double steps = 0.0;    ///< without output
-  double contact = 0.0;  ///< in contact solvers, of `steps`
+  double contact = 0.0;  ///< part of `steps` spent in contact solvers
   double output = 0.0, checkpoints = 0.0;
-  double watch = 0.0;  ///< looking for penetration, of `output`
+  double watch = 0.0;  ///< part of `output` spent in the watches of contact
 
   void add_build(const BuildTimes& build);
   void add_start(double seconds, const std::vector<ChosenMethod>& methods);
-  /// By name, in the order of a run, with "total".
+  /// Returns the times by name, in the order of a run, with "total".
   [[nodiscard]] std::vector<std::pair<std::string, double>> phases() const;
-  /// Of processors: what of it was spent on steps that an interruption has lost is not in it.
+  /// Returns the processor time; steps that an interruption has lost are not included.
   [[nodiscard]] double processor() const { return earlier_processor_ + processor_.seconds(); }
   void save(Snapshot& snapshot, const std::string& name) const;
-  /// Adds those of earlier sessions.
+  /// Adds the times of earlier sessions.
   void load(const Snapshot& snapshot, const std::string& name);
 
  private:

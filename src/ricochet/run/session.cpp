@@ -18,7 +18,7 @@ void refuse_use(const std::string& why) {
   throw Error(ErrorKind::usage, "session: " + why);
 }
 
-/// With the preconditioners that the model has.
+/// Returns the options of the solver, with the preconditioners of the model.
 StepSolverOptions solver_options(const Case& input, const Model& model) {
   StepSolverOptions options = step_solver_options(input);
   options.preconditioners = model.preconditioners;
@@ -135,7 +135,7 @@ void Session::set_load(const Vector& force) {
     built.problem.loads.add_general([load = load_](double, Vector& sum) { sum += *load; });
   }
   *load_ = force;
-  // Tied nodes have no equations: what acts on them acts on those that they follow.
+  // Tied nodes have no equations: loads on them act on the nodes that they follow.
   if (built.problem.tied != nullptr)
     built.problem.tied->condense_load(*load_, static_cast<int>(built.problem.dimension));
 }
@@ -166,7 +166,8 @@ ObstacleSection& Session::section_of_obstacle(const std::string& obstacle) {
                                                     obstacle, names.empty() ? "none" : names));
 }
 
-/// How an obstacle moves decides how the problem is built: it is built again where that has been done.
+/// Marks an obstacle as steered. The motion of an obstacle affects how the problem is built, so that an existing model
+/// is discarded.
 void Session::steer_from_start(ObstacleSection& section) {
   if (section.is_steered) return;
   if (section.is_free()) {
@@ -218,7 +219,7 @@ bool Session::at_end() {
 bool Session::step() {
   const log::CollectWarnings collect(warnings_);
   if (take_step()) return true;
-  // The first call at the end is how a loop comes to know of it.
+  // A loop learns of the end by the first such call.
   if (++calls_at_end_ == 2)
     log::warning("session: the run has ended: this call of step(), and every further one, does nothing");
   return false;

@@ -8,13 +8,13 @@ namespace ricochet {
 
 namespace {
 
-/// The composite scheme of K.-J. Bathe and M. M. I. Baig (Comput. Struct. 83 (2005) 2513–2524; K.-J. Bathe, Comput.
-/// Struct. 85 (2007) 437–445): the trapezoidal rule to the middle of the step, then backward differences of three
-/// points, with contact at both. With Δ₁ = U_½−U₀, Δ₂ = U₁−U_½, F the forces outside J,
+/// Composite scheme of K.-J. Bathe and M. M. I. Baig (Comput. Struct. 83 (2005) 2513–2524; K.-J. Bathe, Comput. Struct.
+/// 85 (2007) 437–445): the trapezoidal rule to the middle of the step, then three-point backward differences, with
+/// contact at both instants. With Δ₁ = U_½−U₀, Δ₂ = U₁−U_½, F the forces outside J,
 ///   M A + C V + K U = L + F at ½ and 1,   V₁ = (3Δ₂−Δ₁)/h,   A₁ = (V₀−4V_½+3V₁)/h,   slip rates B_T 2Δ₁/h and B_T V₁.
 /// Bases U₀ + (h/2)V₀ + (h²/16)A₀ and U_½ + Δ₁/3 + (h/9)(4V_½−V₀), so that A_½ = (16/h²) δ, A₁ = (9/h²) δ. J changes by
 /// ⅓(F₀+F_½)ᵀ(3Δ₁/2+hV₁/4) + ⅓F₁ᵀhV₁, less ½|Δ₂|²_K + ½|V₁−V_½|²_M − ⅓Δ₁ᵀ(KU₁−L) + (h/12)V₁ᵀ(KU₀+KU_½−2L), which has no
-/// sign; momentum by ⅓h(F₀+F_½+F₁). On massless dofs the velocity of the middle is 2Δ₁/h.
+/// sign; the momentum changes by ⅓h(F₀+F_½+F₁). On massless dofs the velocity of the middle is 2Δ₁/h.
 class Bathe final : public Scheme {
  public:
   using Scheme::Scheme;
@@ -59,12 +59,12 @@ class Bathe final : public Scheme {
   }
 
  private:
-  /// Of the middle. Damping acts on mean velocities where there are massless dofs, as under newmark.
+  /// Damping factor of the middle. Damping acts on mean velocities if there are massless dofs, as under newmark.
   [[nodiscard]] double damping_factor(const SemidiscreteProblem& problem) const {
     return (problem.has_singular_mass() ? 2.0 : 4.0) / step();
   }
 
-  /// Δ₁ and V_½.
+  /// Computes Δ₁ and V_½.
   void go_to_middle(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {
     const double h = step(), time = state.time + 0.5 * h;
     first_ = (0.5 * h) * state.velocity + (h * h / 16.0) * state.acceleration;
@@ -93,7 +93,7 @@ class Bathe final : public Scheme {
     dissipation_ += step() / 12.0 * (elastic_product(problem, change_, rate_, force_) - 2.0 * rate_.dot(load));
   }
 
-  /// Those of the start and the middle, before the state has those of the end.
+  /// Stores the forces of the start and the middle, before the state receives those of the end.
   void take_first_forces(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {
     StepPart &start = parts_[0], &middle = parts_[1];
     start.forces = state.forces;

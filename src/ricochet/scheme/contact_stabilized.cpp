@@ -7,16 +7,16 @@ namespace ricochet {
 
 namespace {
 
-/// The contact-stabilized Newmark scheme (P. Deuflhard, R. Krause, S. Ertel, Int. J. Numer. Meth. Engng. 73 (2008)
+/// Contact-stabilized Newmark scheme (P. Deuflhard, R. Krause, S. Ertel, Int. J. Numer. Meth. Engng. 73 (2008)
 /// 1274–1290): the free flight is projected onto the admissible displacements in the norm of the mass, then the
-/// trapezoidal rule is taken with the contact forces wholly at the end of the step:
+/// trapezoidal rule is applied with the contact forces wholly at the end of the step:
 ///   M (Û − U₀ − hV₀) = Gᵀμ,   0 ≤ μ ⟂ g(Û) ≥ 0;
 ///   (2/h²) M (U₁ − Û) + C (U₁−U₀)/h + K (U₀+U₁)/2 = L_½ + Gᵀ r_N − B_Tᵀ r_T,   0 ≤ r_N ⟂ g(U₁) ≥ 0,
 ///   friction on B_T (U₁−U₀)/h;   V₁ = V₀ + (2/h)(U₁ − Û).
-/// The second stage depends on the first. J changes in a step by ΔUᵀ(Gᵀr_N − …) − (2/h²)(Û−U₀−hV₀)ᵀM(U₁−Û), without
-/// friction and but for the work of supports by −r_N·g₀ − (2/h²) μ·g₁ ≤ 0 where gaps are linear: no step, however long,
-/// creates energy there. r_N acts along normals of the step, so that its part holds on spheres, too; that of μ is less
-/// in hollows (concave gaps) and more on balls (convex ones), by up to (2/h²) μ |U₁−Û|²/2R.
+/// The second stage depends on the first. In a step J changes by ΔUᵀ(Gᵀr_N − …) − (2/h²)(Û−U₀−hV₀)ᵀM(U₁−Û); without
+/// friction, and apart from the work of supports, by −r_N·g₀ − (2/h²) μ·g₁ ≤ 0 if gaps are linear: no step, however
+/// long, creates energy there. r_N acts along normals of the step, so that its part also holds on spheres; the part of
+/// μ is smaller in hollows (concave gaps) and larger on balls (convex ones), by up to (2/h²) μ |U₁−Û|²/2R.
 class ContactStabilized final : public Scheme {
  public:
   using Scheme::Scheme;
@@ -56,7 +56,7 @@ class ContactStabilized final : public Scheme {
     const StageSolution& solution = stages.solve(1);
 
     problem.mass.multiply(solution.increment, momentum_);
-    // Of what holds supports during the projection.
+    // Reactions of supports during the projection.
     support_work_ = -2.0 / (h * h) * problem.supports.work(projected.support_reaction, solution.increment);
     dissipation_ = 2.0 / (h * h) * shift.dot(momentum_) + support_work_;
     increment = flight_ + solution.increment;

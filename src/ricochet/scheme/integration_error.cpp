@@ -4,7 +4,7 @@ namespace ricochet {
 
 void IntegrationError::begin(const SemidiscreteProblem& problem, const State& state) {
   if (problem.internal_force->is_linear() || step_ == state.step) return;
-  step_ = -1;  // parts of a step have its number, and other places
+  step_ = -1;  // substeps have the same step number at other displacements
   problem.internal_force->evaluate(state.displacement, force_);
   energy_ = problem.internal_force->energy(state.displacement);
 }

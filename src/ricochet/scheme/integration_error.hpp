@@ -3,16 +3,17 @@
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/state.hpp"
 
-/// @file What the internal forces that a scheme takes for a step miss of the change of the elastic energy.
+/// @file Integration error of the elastic energy: its change less the work of the internal forces that a scheme uses
+/// for a step.
 namespace ricochet {
 
-/// ΔW − ΔU·[(1−w)f₀ + wf₁]: for linear elasticity −(w−½)ΔUᵀKΔU, else without a sign. Force and energy of the start are
-/// those that were computed for the end of the step before; where that was another step they are computed anew.
+/// Error ΔW − ΔU·[(1−w)f₀ + wf₁]: for linear elasticity −(w−½)ΔUᵀKΔU, otherwise without a sign. Force and energy at the
+/// start are those computed for the end of the previous step; they are evaluated anew if that was another step.
 class IntegrationError {
  public:
-  /// At the start of a step.
+  /// Starts a step.
   void begin(const SemidiscreteProblem& problem, const State& state);
-  /// At its end, with the new displacement in the state but the number of the step before.
+  /// Returns the error at the end of the step. The state has the new displacement, but the number of the previous step.
   [[nodiscard]] double end(const SemidiscreteProblem& problem, const Vector& increment, double weight,
                            const State& state);
 
@@ -22,13 +23,13 @@ class IntegrationError {
   Vector force_, mean_;
 };
 
-/// The same of the force half way, ΔW − ΔU·f(U₀+½ΔU): zero for linear elasticity, else of the order h³ and without a
-/// sign. The energy of the start is that of the end of the step before; where that was another step it is computed
-/// anew.
+/// Error ΔW − ΔU·f(U₀+½ΔU) of the force at the middle: zero for linear elasticity, otherwise of order h³ and without a
+/// sign. The energy at the start is that of the end of the previous step; it is evaluated anew if that was another
+/// step.
 class MidpointIntegrationError {
  public:
-  /// Of a step that goes on from the state, before the state is changed. Throws as InternalForce::energy() does where a
-  /// cell is turned inside out at the end of the step, which half way need not show.
+  /// Returns the error of a step from `state`, before the state is changed. Throws as InternalForce::energy() does if a
+  /// cell is inverted at the end of the step, which need not show half way.
   [[nodiscard]] double of_step(const SemidiscreteProblem& problem, const State& state, const Vector& increment);
 
  private:

@@ -6,16 +6,16 @@
 
 namespace ricochet {
 
-/// The scheme of C. Kane, E. A. Repetto, M. Ortiz and J. E. Marsden (Comput. Methods Appl. Mech. Engrg. 180 (1999)
-/// 1–26) with β = ¼, γ = ½: the trapezoidal rule inside the body, and contact and friction forces wholly those of the
-/// end of the step,
+/// Scheme of C. Kane, E. A. Repetto, M. Ortiz and J. E. Marsden (Comput. Methods Appl. Mech. Engrg. 180 (1999) 1–26)
+/// with β = ¼, γ = ½: the trapezoidal rule inside the body, contact and friction forces wholly those of the end of the
+/// step,
 ///   M (V₁−V₀)/h + C (U₁−U₀)/h + K (U₀+U₁)/2 = L_½ + Gᵀ r_N − B_Tᵀ r_T,   (V₀+V₁)/2 = (U₁−U₀)/h,
 ///   0 ≤ r_N ⟂ g(U₁) ≥ 0,   friction on the slip rate B_T (U₁−U₀)/h.
-/// Unknown x = U₁, base U₀ + hV₀, so that M (V₁−V₀)/h = (2/h²) M δ. J changes in a step by −r_N·g₀ − h r_T·w ≤ 0
-/// besides the works of loads, supports and damping: no step creates energy, and every impact loses some. At finite
-/// strain the internal force is f((U₀+U₁)/2), and what it misses of the change of the elastic energy, of either sign,
-/// is in integration_error.hpp. (For β ≠ γ/2 the velocity takes a solve with M, and the change of J has a part without
-/// a sign.)
+/// Unknown x = U₁, base U₀ + hV₀, so that M (V₁−V₀)/h = (2/h²) M δ. In a step J changes by −r_N·g₀ − h r_T·w ≤ 0
+/// besides the works of loads, supports and damping: no step creates energy, and every impact dissipates some. At
+/// finite strain the internal force is f((U₀+U₁)/2), and its integration error, of either sign, is in
+/// integration_error.hpp. (For β ≠ γ/2 the velocity requires a solve with M, and the change of J has a part without a
+/// sign.)
 class Kane : public Scheme {
  public:
   explicit Kane(double step, std::string name = "kane") : Scheme(step), name_(std::move(name)) {}
@@ -36,11 +36,11 @@ class Kane : public Scheme {
   }
 
  protected:
-  /// The stage, but for its contact conditions.
+  /// Fills the stage except its contact conditions.
   Stage& balance(const SemidiscreteProblem& problem, const State& state, StageSolve& stages);
-  /// Its contact conditions.
+  /// Adds the contact conditions.
   void require_contact(const SemidiscreteProblem& problem, const State& state, Stage& stage);
-  /// Takes the state to the end of the step.
+  /// Advances the state to the end of the step.
   void take(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, State& state,
             Vector& increment);
   [[nodiscard]] const std::string& name() const { return name_; }

@@ -7,13 +7,13 @@ namespace ricochet {
 
 namespace {
 
-/// The persistency condition of T. A. Laursen and V. Chawla (Int. J. Numer. Meth. Engng. 40 (1997) 863–886) in the
-/// midpoint scheme: a point that touches at the start of the step does not approach its obstacle over the step, the
-/// others carry no force,
+/// Persistency condition of T. A. Laursen and V. Chawla (Int. J. Numer. Meth. Engng. 40 (1997) 863–886) in the midpoint
+/// scheme: a point that touches at the start of the step does not approach its obstacle over the step, the others carry
+/// no force,
 ///   M (V₁−V₀)/h + C V_½ + K U_½ = L_½ + Gᵀ r_N − B_Tᵀ r_T,   V_½ = (V₀+V₁)/2 = (U₁−U₀)/h,
 ///   g(U₀) > 0 ⇒ r_N = 0,   g(U₀) ≤ 0 ⇒ 0 ≤ r_N ⟂ (g(U₁) − g(U₀))/h ≥ 0,   friction on the slip rate B_T V_½.
-/// Unknown x = U_½, base U₀ + (h/2)V₀, so that M (V₁−V₀)/h = (4/h²) M δ. Contact forces do no work: J is kept to
-/// rounding, but points penetrate by what they move in a step, and forces rattle.
+/// Unknown x = U_½, base U₀ + (h/2)V₀, so that M (V₁−V₀)/h = (4/h²) M δ. Contact forces do no work: J is conserved to
+/// rounding, but points penetrate by up to their motion in a step, and contact forces oscillate.
 class LaursenChawla final : public Scheme {
  public:
   using Scheme::Scheme;

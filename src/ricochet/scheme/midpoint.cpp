@@ -8,13 +8,13 @@ namespace ricochet {
 
 namespace {
 
-/// The midpoint scheme of the source's section 3, with the contact condition at the midpoint:
+/// Midpoint scheme of the source's section 3, with the contact condition at the midpoint:
 ///   M (V₁−V₀)/h + C V_½ + K U_½ = L_½ + Gᵀ r_N − B_Tᵀ r_T,   U_½ = (U₀+U₁)/2,   V_½ = (V₀+V₁)/2 = (U₁−U₀)/h,
 ///   0 ≤ r_N ⟂ g(U_½) ≥ 0,   friction on the slip rate B_T V_½.
 /// Unknown x = U_½, base U₀ + (h/2)V₀, so that M (V₁−V₀)/h = (4/h²) M δ.
-/// Away from contact it conserves energy (at finite strain but for ΔW − ΔU·f(U_½), f the internal force:
-/// integration_error.hpp); with contact its energy changes by (U₁−U₀)ᵀGᵀr of either sign, which
-/// multiplies it by hundreds and does not vanish as h → 0: it is here to show that.
+/// Away from contact it conserves energy (at finite strain up to ΔW − ΔU·f(U_½), f the internal force:
+/// integration_error.hpp); with contact its energy changes by (U₁−U₀)ᵀGᵀr of either sign, which multiplies it by
+/// hundreds and does not vanish as h → 0: the scheme is included to show this.
 class Midpoint final : public Scheme {
  public:
   using Scheme::Scheme;
@@ -36,7 +36,7 @@ class Midpoint final : public Scheme {
     const double h = step(), middle = state.time + 0.5 * h;
     base_ = state.displacement + (0.5 * h) * state.velocity;
     Stage& stage = stages.stage(0);
-    // V_½ = V₀ + (2/h) δ, also where there is no inertia: V is ΔU/h there, and 2(x − U₀)/h = ΔU/h.
+    // V_½ = V₀ + (2/h) δ, also without inertia: V is ΔU/h there, and 2(x − U₀)/h = ΔU/h.
     equations_.balance(problem, middle, base_, state.velocity, stage);
     const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - base_[dof]; };
     equations_.prescribe(problem, state.time + h, half_way, stage);

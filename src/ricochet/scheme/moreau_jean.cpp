@@ -7,15 +7,16 @@ namespace ricochet {
 
 namespace {
 
-/// The θ scheme of M. Jean and J. J. Moreau with contact on velocities and Newton's restitution e (M. Jean, Comput.
-/// Methods Appl. Mech. Engrg. 177 (1999) 235–257):
+/// θ scheme of M. Jean and J. J. Moreau with contact on velocities and Newton's restitution e (M. Jean, Comput. Methods
+/// Appl. Mech. Engrg. 177 (1999) 235–257):
 ///   M (V₁−V₀)/h + C V_θ + K U_θ = L_θ + Gᵀ r_N − B_Tᵀ r_T,   V_θ = (1−θ)V₀+θV₁ = (U₁−U₀)/h,   U_θ = (1−θ)U₀+θU₁,
 ///   g(U₀ + (h/2)V₀) > 0 ⇒ r_N = 0,   else 0 ≤ r_N ⟂ G V₁ + e G V₀ ≥ 0,
-/// friction on the slip rate B_T V₁, or on B_T V_θ (V. Acary, Z. Angew. Math. Mech. 96 (2016) 585–603);
-/// velocities are relative to the obstacle. h r are impulses. Unknown x = U₁, base U₀ + hV₀, so that δ = θh(V₁−V₀).
-/// J changes in a step by h (r_N·G V_θ − r_T·B_T V_θ) − (θ−½)(|ΔV|²_M + |ΔU|²_K). Of these friction has a sign where it
-/// acts on V_θ; contact's is (1−θ(1+e)) h r_N·G V₀, and points that leave have G V₀ > 0: it can create energy.
-/// Positions are never corrected: points stay where an impact caught them, by what they move in a step too deep.
+/// friction on the slip rate B_T V₁, or on B_T V_θ (V. Acary, Z. Angew. Math. Mech. 96 (2016) 585–603); velocities are
+/// relative to the obstacle. h r are impulses. Unknown x = U₁, base U₀ + hV₀, so that δ = θh(V₁−V₀). In a step J
+/// changes by h (r_N·G V_θ − r_T·B_T V_θ) − (θ−½)(|ΔV|²_M + |ΔU|²_K). The friction term has a sign if friction acts on
+/// V_θ; the contact term is (1−θ(1+e)) h r_N·G V₀, and points that separate have G V₀ > 0: contact can create energy.
+/// Positions are never corrected: points keep the penetration, of up to their motion in a step, at which an impact
+/// stopped them.
 class MoreauJean final : public Scheme {
  public:
   MoreauJean(double step, double theta, double restitution, bool slip_at_end)

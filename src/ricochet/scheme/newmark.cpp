@@ -13,13 +13,13 @@ namespace {
 ///   U₁ = U₀ + hV₀ + h²[(½−β)A₀ + βA₁],   V₁ = V₀ + h[(1−γ)A₀ + γA₁]   (textbook β and γ).
 /// Unknown x = U₁, base Ũ = U₀ + hV₀ + h²(½−β)A₀, so that A₁ = δ/(βh²).
 ///
-/// Energy: J + ½h²(β−γ/2)AᵀMA changes in a step by ΔUᵀ[(1−γ)F₀+γF₁], with F the forces outside J, less
+/// Energy: in a step J + ½h²(β−γ/2)AᵀMA changes by ΔUᵀ[(1−γ)F₀+γF₁], with F the forces outside J, less
 ///   (γ−½)ΔUᵀKΔU + ½h²(β−γ/2)(2γ−1)ΔAᵀMΔA
-/// (S. Krenk, Int. J. Numer. Meth. Engng. 67 (2006) 1–16). Where the internal force f is not linear, the change of the
-/// elastic energy W has ΔW − ΔU·[(1−γ)f₀+γf₁] in place of the term with K (integration_error.hpp).
+/// (S. Krenk, Int. J. Numer. Meth. Engng. 67 (2006) 1–16). For a nonlinear internal force f, ΔW − ΔU·[(1−γ)f₀+γf₁]
+/// replaces the term with K in the change of the elastic energy W (integration_error.hpp).
 ///
-/// On massless dofs A and V are no states: A = 0, V = ΔU/h. Damping then acts on ΔU/h for all dofs, because a mixture
-/// of the two velocities would make the operator unsymmetric.
+/// On massless dofs A and V are not state variables: A = 0, V = ΔU/h. Damping then acts on ΔU/h for all dofs, because a
+/// mixture of the two velocities would make the operator unsymmetric.
 class Newmark final : public Scheme {
  public:
   Newmark(double step, double beta, double gamma) : Scheme(step), beta_(beta), gamma_(gamma) {}
@@ -31,9 +31,9 @@ class Newmark final : public Scheme {
   }
   [[nodiscard]] WorkRule work_rule() const override { return {1.0 - gamma_, gamma_}; }
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
-  /// A stuck node keeps ±V under the trapezoidal rule, and creeps.
+  /// Under the trapezoidal rule a stuck node keeps ±V, and creeps.
   [[nodiscard]] bool stuck_nodes_alternate() const override { return beta_ == 0.25 && gamma_ == 0.5; }
-  /// Of the random cases of docs/energy.md with the equivalent mass.
+  /// Figures of the random cases of docs/energy.md with the equivalent mass.
   [[nodiscard]] LongSteps long_steps(const SemidiscreteProblem&) const override {
     return {.crossings = 1.0,
             .trouble =
@@ -89,7 +89,7 @@ class Newmark final : public Scheme {
     return problem.has_singular_mass() ? 1.0 / step() : gamma_ * step() * alpha();
   }
 
-  /// The velocity that damping acts on, at δ = 0.
+  /// Computes the velocity that damping acts on, at δ = 0.
   void find_damping_velocity(const SemidiscreteProblem& problem, const State& state) {
     velocity_ = state.velocity + (step() * (1.0 - gamma_)) * state.acceleration;
     if (problem.has_singular_mass()) velocity_ = predicted_ / step();

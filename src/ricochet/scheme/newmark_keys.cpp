@@ -11,7 +11,7 @@ namespace ricochet {
 
 namespace {
 
-/// Values of beta and gamma that go by a name.
+/// Named pair of values of beta and gamma.
 struct Preset {
   std::string name;
   double beta, gamma;
@@ -28,7 +28,7 @@ std::vector<std::string> preset_names() {
   return names;
 }
 
-/// beta and gamma, or a preset in their place. False, with a problem, where they do not say which.
+/// Returns whether either beta and gamma or a preset are given; otherwise adds a problem.
 bool is_complete(const ParameterCheck& place) {
   const bool has_preset = place.is_given("preset");
   for (const std::string name : {"beta", "gamma"}) {
@@ -52,7 +52,7 @@ bool is_complete(const ParameterCheck& place) {
   return true;
 }
 
-/// Of a preset and beta or gamma, that of --set counts.
+/// Chooses between a preset and a given beta or gamma: the one from --set takes precedence.
 void choose(const ParameterCheck& place, const std::string& name, double of_preset, Parameters& values) {
   const bool own_counts = place.is_usable(name) && place.is_override(name);
   if (place.is_usable(name)) {

@@ -4,7 +4,7 @@
 
 #include "ricochet/base/parameters.hpp"
 
-/// @file Newmark's beta and gamma in a case file: by themselves or by the name of a preset.
+/// @file Keys of Newmark's beta and gamma in a case file: by value or by the name of a preset.
 namespace ricochet {
 
 struct NewmarkParameters {
@@ -12,7 +12,7 @@ struct NewmarkParameters {
 };
 
 [[nodiscard]] std::vector<Key> newmark_keys();
-/// Afterwards the values have the beta and gamma that count; and the preset, where both come from it.
+/// Resolves a preset: afterwards `values` contains the effective beta and gamma, and the preset if both come from it.
 void check_newmark(const ParameterCheck& place, Parameters& values);
 [[nodiscard]] NewmarkParameters newmark_parameters(const Parameters& values);
 

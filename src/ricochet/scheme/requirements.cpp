@@ -10,7 +10,7 @@ namespace ricochet {
 
 namespace {
 
-/// Of the critical step: above it changes of contact leave high frequencies of large amplitude.
+/// Fraction of the critical step above which changes of contact leave high frequencies of large amplitude.
 constexpr double safe_fraction = 0.9;
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 namespace ricochet {
 
-/// "restitution", of schemes in which every contact point has one.
+/// Key "restitution" of schemes with a coefficient of restitution at every contact point.
 [[nodiscard]] inline Key restitution_key() {
   return {.name = "restitution",
           .type = KeyType::number,

@@ -46,7 +46,7 @@ void save(const SemidiscreteProblem& problem, const State& state, Snapshot& snap
 
 namespace {
 
-/// Values of one of these lengths.
+/// Reads values whose count is one of these lengths.
 const Vector& memory(const Snapshot& snapshot, const std::string& name, std::initializer_list<Index> lengths) {
   const Vector& values = snapshot.reals(name);
   if (std::find(lengths.begin(), lengths.end(), values.size()) == lengths.end())

@@ -9,22 +9,22 @@
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 
-/// @file The state of a run between two steps: all that the next step depends on.
+/// @file State of a run between two steps: everything that the next step depends on.
 namespace ricochet {
 
-/// Forces at the scheme's instant of a step, as its momentum equation contains them.
+/// Forces at the scheme's instant of a step, as in its momentum equation.
 struct StepForces {
   std::shared_ptr<const ContactRows> rows;  ///< directions of the reactions: Gᵀ r_N − B_Tᵀ r_T is their nodal force
   Vector normal_reaction;                   ///< r_N per contact point
   Vector tangential_reaction;               ///< r_T, (d−1) per contact point; empty without friction
-  /// Mean reactions over the step, where those act on the body and the ones above hold at its end; else empty.
+  /// Mean reactions over the step, if these act on the body and the ones above hold at its end; else empty.
   Vector mean_normal_reaction, mean_tangential_reaction;
   double end_weight = 1.0;  ///< of the reactions at the end in that mean
   Vector support_reaction;  ///< on supported dofs
   Vector varying_load;      ///< varying part of L, per dof; empty without one
   Vector damping_force;     ///< C times the scheme's velocity, per dof; empty without damping
 
-  /// What acted on the body over the step.
+  /// Reactions that acted on the body over the step.
   [[nodiscard]] const Vector& acting_normal() const {
     return mean_normal_reaction.size() > 0 ? mean_normal_reaction : normal_reaction;
   }
@@ -39,23 +39,22 @@ struct State {
   Vector displacement;  ///< U at `time`
   Vector velocity;      ///< V; on massless dofs the mean velocity of the last step
   Vector acceleration;  ///< A; 0 on massless dofs
-  /// Of stress that relaxes (viscous_force.hpp); empty where nothing does.
+  /// Internal strains of viscoelastic branches (viscous_force.hpp); empty if none.
   Vector internal_strain;
   StepForces forces;
   std::vector<ContactStatus> contact_status;  ///< per contact point, at the instant of the forces
-  /// Displacement of the obstacles at the contact points while the body made the increment of the last step.
+  /// Displacement of the obstacles at the contact points over the increment of the last step.
   ObstacleMotion obstacle_increment;
-  int iterations = 0;  ///< of the contact solver in the last step
-  int newton_rounds =
-      0;  ///< linear stages that the last step took, with all attempts and parts, where the force is not linear
-  /// What a scheme remembers besides, by name, so that a checkpoint can write it: of a length per dof, per supported
-  /// dof, (d−1) per contact point, per value of the rows of G and B_T, or `memory_numbers` of them.
+  int iterations = 0;     ///< of the contact solver in the last step
+  int newton_rounds = 0;  ///< Newton iterations of the last step, with all attempts and substeps; 0 if linear
+  /// Further memory of the scheme by name, so that a checkpoint can contain it: one value per dof, per supported dof,
+  /// (d−1) per contact point, per value of the rows of G and B_T, or `memory_numbers` of them.
   static constexpr Index memory_numbers = 5;
   std::map<std::string, Vector> memory;
 };
 
 void save(const SemidiscreteProblem& problem, const State& state, Snapshot& snapshot, const std::string& name);
-/// Throws Error(invalid_input) where the sizes are not those of this problem.
+/// Throws Error(invalid_input) if sizes do not match this problem.
 [[nodiscard]] State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, const std::string& name);
 
 }  // namespace ricochet

@@ -4,27 +4,27 @@
 #include "ricochet/scheme/stage_solve.hpp"
 #include "ricochet/scheme/step_part.hpp"
 
-/// @file What every scheme says of its stages, and takes from them: written once.
+/// @file Terms that all schemes share: balance and contact conditions of stages, and the transfer of solutions.
 namespace ricochet {
 
-/// The momentum equation and the contact conditions of a stage at an instant t of the step,
+/// Momentum equation and contact conditions of a stage at an instant t of the step,
 ///   M A + C V + K x = L(t) + Gᵀ r_N − B_Tᵀ r_T,   x = base + δ,   V = v + η δ,
-/// and the forces that its solution leaves in the state. Keeps its storage from step to step.
+/// and transfer of the forces of its solution to the state. Keeps its storage from step to step.
 class StepEquations {
  public:
-  /// b = L(t) − f(base), f the internal force, with the loads that follow the surface as they are at the base. M A has
-  /// no part in b: bases are chosen so.
+  /// Sets b = L(t) − f(base), f the internal force, with follower loads evaluated at the base. M A does not contribute
+  /// to b: bases are chosen accordingly.
   void balance(const SemidiscreteProblem& problem, double time, const Vector& base, Stage& stage);
-  /// b = load − f(base) − C v, with loads that are no instant's.
+  /// Sets b = load − f(base) − C v, for loads that do not belong to one instant.
   void balance_with(const SemidiscreteProblem& problem, const Vector& load, const Vector& base, const Vector& velocity,
                     Stage& stage);
   /// f(base) of the last balance.
   [[nodiscard]] const Vector& internal_force() const { return force_; }
-  /// b = L(t) − f(base) − C v.
+  /// Sets b = L(t) − f(base) − C v.
   void balance(const SemidiscreteProblem& problem, double time, const Vector& base, const Vector& velocity,
                Stage& stage);
 
-  /// δ on supported dofs: increment(dof, prescribed displacement at `time`).
+  /// Sets δ on supported dofs: increment(dof, prescribed displacement at `time`).
   template <class Increment>
   void prescribe(const SemidiscreteProblem& problem, double time, const Increment& increment, Vector& prescribed) {
     problem.supports.values(time, prescribed);
@@ -38,41 +38,41 @@ class StepEquations {
     prescribe(problem, time, increment, stage.prescribed);
   }
 
-  /// The same with the base: supported dofs get to where they are prescribed at `time`.
+  /// Sets δ on supported dofs such that they reach their prescribed displacements at `time` from the base.
   void prescribe_from(const SemidiscreteProblem& problem, double time, const Vector& base, Stage& stage) {
     prescribe(
         problem, time, [&](Index dof, double place) { return place - base[dof]; }, stage);
   }
 
-  /// The obstacles' mean velocities over a step from one displacement to another, where the points are in its middle. A
-  /// stage whose gaps are those of the end follows the points there. Beside it, see observe_obstacles().
+  /// Observes the obstacles' mean velocities over a step from one displacement to another, with the points half way. A
+  /// stage whose gaps are those of the end follows the points there. See also observe_obstacles().
   void observe_step(const SemidiscreteProblem& problem, const Vector& start, double start_time, const Vector& end,
                     double step, Stage& stage);
-  /// Newton's impact law at the points that touch at `place` and `time`, with the obstacles observed and one
-  /// coefficient of restitution e: y = G (after + s δ) + e G before, of velocities relative to the obstacles.
+  /// Imposes Newton's impact law at the points that touch at `place` and `time`, with the obstacles observed and one
+  /// coefficient of restitution e: y = G (after + s δ) + e G before, for velocities relative to the obstacles.
   /// Velocities are differences of displacements over `step`. The caller sets s.
   void require_impact_law(const SemidiscreteProblem& problem, const Vector& place, double time, const Vector& after,
                           const Vector& before, double restitution, double step, Stage& stage);
-  /// Coulomb's law on the slip rate B_T (velocity + slip_factor δ) relative to the obstacles observed, where y is a
-  /// velocity, too: both round as displacements over a step do.
+  /// Imposes Coulomb's law on the slip rate B_T (velocity + slip_factor δ) relative to the observed obstacles, in
+  /// stages in which y is a velocity, too: both have the rounding of displacements over a step.
   static void require_friction_beside_rates(const SemidiscreteProblem& problem, const Vector& velocity,
                                             double slip_factor, Stage& stage);
-  /// The same on the mean slip rate B_T ΔU/h of the step, ΔU = predicted + δ; the obstacles' at its middle.
+  /// Imposes it on the mean slip rate B_T ΔU/h of the step, ΔU = predicted + δ; that of the obstacles is at its middle.
   void require_friction_over_step(const SemidiscreteProblem& problem, const State& state, const Vector& predicted,
                                   double step, Stage& stage);
 
-  /// Reactions, contact status and the motion of the obstacles over the step; the loads at the instant of the last
-  /// balance(), and the damping force there, rate · C motion.
+  /// Transfers to the state reactions, contact status and the motion of the obstacles over the step; the loads at the
+  /// instant of the last balance(); and the damping force at that instant, rate · C motion.
   void take_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, double step,
                    const Vector& motion, double rate, State& state) const;
-  /// The reactions alone.
+  /// Transfers the contact data alone.
   static void take_contact(const Stage& stage, const StageSolution& solution, double step, State& state);
-  /// The same as take_forces of a stage whose forces are not those of the state.
+  /// Transfers, like take_forces(), the forces of a stage that are not those of the state.
   void take_part(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, double step,
                  const Vector& motion, double rate, StepPart& part) const;
 
  private:
-  /// Takes the damping force C v from the right-hand side.
+  /// Subtracts the damping force C v from the right-hand side.
   void resist(const SemidiscreteProblem& problem, const Vector& velocity, Stage& stage);
   void take_loads(const SemidiscreteProblem& problem, const StageSolution& solution, const Vector& motion, double rate,
                   StepForces& forces) const;
@@ -84,14 +84,14 @@ class StepEquations {
   ObstacleMotion impact_;
 };
 
-/// A stage on which nothing acts: b = 0, δ = 0 on supported dofs. Its rows and contact conditions are as they were.
+/// Returns a stage without loads: b = 0, δ = 0 on supported dofs. Its rows and contact conditions are unchanged.
 Stage& unloaded_stage(const SemidiscreteProblem& problem, std::size_t number, StageSolve& stages);
 
-/// yᵀ K x where the internal force is linear. `force`: work space, receives K x.
+/// Returns yᵀ K x for a linear internal force. `force` is work space and receives K x.
 [[nodiscard]] double elastic_product(const SemidiscreteProblem& problem, const Vector& x, const Vector& y,
                                      Vector& force);
 
-/// On dofs without inertia A and V are no states: A = 0, V = ΔU/h.
+/// Sets A = 0 and V = ΔU/h on dofs without inertia, on which A and V are not state variables.
 void follow_without_inertia(const SemidiscreteProblem& problem, const Vector& increment, double step, State& state);
 
 }  // namespace ricochet

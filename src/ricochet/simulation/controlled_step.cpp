@@ -4,17 +4,17 @@
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/simulation/simulation.hpp"
 
-/// @file Steps whose length follows the motion: how a simulation takes them.
+/// @file Adaptive steps of a simulation.
 namespace ricochet {
 
 namespace {
 
-/// Level of the shortest step that looks ahead.
+/// Level of the shortest trial step.
 constexpr int shortest_look_ahead = 4;
 
 }  // namespace
 
-/// Returns kinetic and elastic energy, of all ranks.
+/// Returns kinetic and elastic energy, summed over ranks.
 double Simulation::energy_of_motion() const {
   return problem_.ranks->sum(0.5 * problem_.mass.form(state_.velocity) +
                              stored_energy(*problem_.internal_force, state_.displacement, state_.internal_strain));
@@ -37,9 +37,9 @@ double Simulation::take_controlled_step() {
   }
 }
 
-/// Takes the longest step that has a solution, and takes it back; after some that have none nothing is known. The
-/// account is taken back as a whole: of changes of the step there and back rounding would be left, relative to the
-/// algorithmic energy of the longest step.
+/// Takes the longest step that has a solution, up to a level, and undoes it; if none has one, the energy ahead is
+/// unknown (0). The energy account is restored as a whole: changing the step length there and back would leave rounding
+/// errors relative to the algorithmic energy of the longest step.
 void Simulation::look_ahead() {
   const EnergyAccount account = *account_;
   const int shortest = std::min(shortest_look_ahead, control_->deepest());

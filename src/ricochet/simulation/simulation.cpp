@@ -15,21 +15,21 @@ namespace ricochet {
 
 namespace {
 
-/// Of the dofs that the stage solves for; a stage of contact nodes need not look at the whole body.
+/// Checks the dofs that the stage solves for; a stage of contact nodes need not inspect the whole body.
 bool is_finite(const SemidiscreteProblem& problem, StageDofs dofs, const Vector& increment) {
   if (dofs != StageDofs::contact) return increment.allFinite();
   return std::all_of(problem.contact_dofs.begin(), problem.contact_dofs.end(),
                      [&](Index dof) { return std::isfinite(increment[dof]); });
 }
 
-/// Of what a solver keeps.
+/// Name of a solver in snapshots.
 std::string level_name(int number) {
   return "solver." + std::to_string(number);
 }
 
-/// Halvings of a step that finds no solution.
+/// Number of times that a step without a solution is halved.
 constexpr int deepest_cut = 8;
-/// Of a step so many times as long that a user who sees it stand should know why.
+/// Level of parts from which the user is warned: the step then takes 2^k times as long.
 constexpr int short_parts = 5;
 
 constexpr const char* nameless = "this time scheme";
@@ -84,7 +84,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
     const auto number = static_cast<int>(level);
     if (scheme_.step() != length_of(number)) scheme_.change_step(problem_, length_of(number));
     const std::string name = level_name(number);
-    // Whatever would be chosen for the steps that are left: another method has other bits.
+    // The saved methods are kept even if others would now be chosen for the remaining steps: they change the bits.
     StepSolverOptions kept = options;
     kept.chosen = saved_methods(snapshot, name, scheme_.operators(problem_).size());
     make_level(number, kept).solver->load(snapshot, name);
@@ -164,14 +164,14 @@ const StageSolution& Simulation::solve(std::size_t number) {
                     : "a correction of Newton's method has entries that are no finite numbers");
   }
   iterations_ += solution.iterations;
-  // Contact nodes alone are part of other stages' rounds, where there are any.
+  // Stages of contact nodes alone, if there are other stages, are solved within the iterations of these.
   const bool counts = dofs != StageDofs::contact || current_->stages.size() == 1;
   if (!problem_.internal_force->is_linear() && counts) newton_rounds_ += solution.rounds;
   return solution;
 }
 
-/// Nodes of contact groups, and contact points that are elsewhere, against the obstacles that they touch, where these
-/// have another side.
+/// Sets up the check of contact nodes, and of contact points that lie between nodes, against the obstacles that they
+/// touch, if these have another side.
 void Simulation::guard_passages() {
   const ContactBoundary& contact = problem_.contact;
   std::map<const Obstacle*, std::vector<Index>> nodes, points;
@@ -186,7 +186,7 @@ void Simulation::guard_passages() {
     const Obstacle* const obstacle = problem_.obstacles[static_cast<std::size_t>(contact.node_pair[i])];
     if (obstacle != nullptr && !obstacle->shape().is_flat()) nodes[obstacle].push_back(contact.nodes[i]);
   }
-  // In the order of the case: where they lie in memory is none.
+  // The order is that of the case, as the order of addresses in memory is arbitrary.
   for (const Obstacle* const obstacle : problem_.obstacles) {
     const auto found = nodes.find(obstacle);
     if (found == nodes.end()) continue;
@@ -199,7 +199,7 @@ void Simulation::guard_passages() {
   has_guards_ = problem_.ranks->any(!guards_.empty());
 }
 
-/// No node goes through an obstacle in a step that can be shorter.
+/// Refuses a step in which a node goes through an obstacle, if the step can be shorter.
 void Simulation::take_step(bool is_shortest) {
   goes_through_ = false;
   const bool is_guarded = has_guards_ && !is_shortest;
@@ -215,8 +215,8 @@ void Simulation::take_step(bool is_shortest) {
                           state_.step + 1, end, scheme_.step()));
 }
 
-/// Leaves step and time as they were. Where no solution was found the fault may be that of operators that are of
-/// another place: those of the tangent at the start of the step are tried, too.
+/// Leaves step and time unchanged. If no solution is found, the operators may belong to a configuration too far away:
+/// the step is attempted again with those of the tangent at its start.
 void Simulation::solve_step() {
   try {
     attempt_step();
@@ -229,11 +229,11 @@ void Simulation::solve_step() {
   attempt_step();
 }
 
-/// Once.
+/// Attempts the step once.
 void Simulation::attempt_step() {
   iterations_ = 0;
   for (const auto& body : problem_.free_bodies) body->begin_step(state_.displacement);
-  // Rows that follow the motion go on from those of the state, whatever was solved in between.
+  // Rows that follow the motion continue from those of the state, whatever has been solved in between.
   if (problem_.contact.follows_motion()) {
     problem_.contact.geometry->begin_step();
     for (SolvedStage& each : current_->stages) each.stage.rows = state_.forces.rows;
@@ -250,7 +250,7 @@ void Simulation::attempt_step() {
   state_.newton_rounds = newton_rounds_;
 }
 
-/// An operator that is needed for the first time is factorized.
+/// Factorizes operators that are needed for the first time.
 void Simulation::use_level(int number) {
   if (scheme_.step() != length_of(number))
     account_->change_step(state_, [&] { scheme_.change_step(problem_, length_of(number)); });
@@ -258,7 +258,7 @@ void Simulation::use_level(int number) {
   current_ = found != levels_.end() ? &found->second : &make_level(number, options_);
 }
 
-/// Of no use to the equations: for those who look at the state.
+/// The impulse is not used by the equations; it serves those who monitor the state.
 Vector Simulation::set_velocity(const Vector& velocity) {
   Vector change = velocity - state_.velocity, impulse;
   for (const Index dof : problem_.supports.dofs()) change[dof] = 0.0;
@@ -291,7 +291,7 @@ const char* Simulation::why_no_solution() const {
                                                 : "Newton's method found no solution";
 }
 
-/// Once in a run.
+/// Warns once in a run.
 void Simulation::tell_short_parts(int level) {
   if (level < short_parts || std::exchange(told_short_parts_, true)) return;
   log::warning(fmt::format(
@@ -300,7 +300,7 @@ void Simulation::tell_short_parts(int level) {
       state_.step + 1, 1L << level, why_no_solution()));
 }
 
-/// Parts are of the lengths h 2^-k. After each the longest is tried that fits into what is left.
+/// Parts have the lengths h 2^-k. After each part the longest one that fits into the remaining step is tried.
 void Simulation::take_step_in_parts(const std::function<void(const State&)>& each_part) {
   const char* const reason = why_no_solution();
   const State start = state_;
@@ -324,7 +324,7 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
       }
       state_ = start;
       for (std::size_t k = 0; k < bodies.size(); ++k) *problem_.free_bodies[k] = bodies[k];
-      use_level(0);  // enters a change of the step, of which the account of the start knows nothing
+      use_level(0);  // enters a change of the step, unknown to the account of the start
       account_ = std::make_unique<EnergyAccount>(account);
       if (problem.kind() != ErrorKind::not_converged) throw;
       throw Error(problem.kind(),

@@ -13,56 +13,57 @@
 #include "ricochet/simulation/step_control.hpp"
 #include "ricochet/solver/step_solver.hpp"
 
-/// @file A problem, a scheme and a state, step by step.
+/// @file Time stepping of a problem with a scheme.
 namespace ricochet {
 
 class Simulation : private StageSolve {
  public:
   /// Finds the starting state and factorizes the scheme's operators. Keeps references to both arguments. With `control`
-  /// the lengths of steps follow the motion; throws Error(invalid_input) where the scheme cannot change them.
+  /// the step lengths follow the motion; throws Error(invalid_input) if the scheme cannot change its step length.
   Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
              const StepSolverOptions& options = {}, const std::optional<StepControlOptions>& control = {});
 
-  /// Goes on from what save() has put into a snapshot: steps give the same bits as if there had been no interruption.
-  /// Throws Error(invalid_input) where it does not fit.
+  /// Resumes from a snapshot written by save(): the following steps have the same bits as without the interruption.
+  /// Throws Error(invalid_input) if the snapshot does not fit.
   Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const Snapshot& snapshot,
              const StepSolverOptions& options = {}, const std::optional<StepControlOptions>& control = {});
   void save(Snapshot& snapshot) const;
 
-  /// One step. Throws Error(not_converged) with the step and its time; the state is then that before the
-  /// step, but where steps are adaptive and the scheme has created most of the energy. At finite strain a step of fixed
-  /// length for which Newton's method finds nothing is taken in parts, by halves, where the scheme changes its step.
-  /// `each_part` is called after the step, and after each of its parts.
+  /// Advances the state by one step. Throws Error(not_converged), which names the step and its time; the state is then
+  /// that before the step, except if adaptive steps stop because the scheme has created most of the energy. At finite
+  /// strain, or with contact that follows the motion, a step of fixed length without a solution is divided by halving
+  /// if the scheme can change its step length. Calls `each_part` after the step, or after each of its parts.
   void advance(const std::function<void(const State&)>& each_part = {});
 
-  /// Gives the body another velocity (per dof) from here on, as an impulse at once would: what the loads' work then
-  /// contains. Returns the impulse, per dof. Prescribed and tied dofs keep to what they follow.
+  /// Changes the velocity of the body (per dof), as an instantaneous impulse would; the work of the loads then contains
+  /// the change of energy. Returns the impulse, per dof. Supported and tied dofs keep the velocity that is prescribed
+  /// for them.
   Vector set_velocity(const Vector& velocity);
 
-  /// Shows the contact problems of the next steps, and their solutions, to the observer; none if it is empty.
+  /// Passes the contact problems of the following steps and their solutions to the observer; an empty one ends this.
   void observe_contact(const ContactObserver& observer);
 
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] EnergyAccount& account() { return *account_; }
   [[nodiscard]] const Vector& increment() const { return increment_; }
-  /// Null where all steps are of one length.
+  /// Step control; null if all steps have the same length.
   [[nodiscard]] const StepControl* control() const { return control_ ? &*control_ : nullptr; }
-  /// Steps that were taken in parts so far.
+  /// Number of steps that were divided into parts so far.
   [[nodiscard]] long cut_steps() const { return cut_steps_; }
-  /// Of all operators that were factorized.
+  /// Number of entries of the factors of all operators.
   [[nodiscard]] std::size_t factor_entries() const;
   [[nodiscard]] double contact_seconds() const;
   [[nodiscard]] IterationCounts iteration_counts() const;
   [[nodiscard]] const std::vector<ChosenMethod>& methods() const { return current_->solver->methods(); }
 
  private:
-  /// A stage of the step with what it gave.
+  /// Stage of the step and its solution.
   struct SolvedStage {
     Stage stage;
     StageSolution solution;
-    StageDofs dofs = StageDofs::all;  ///< that it solves for
+    StageDofs dofs = StageDofs::all;  ///< dofs that it solves for
   };
-  /// Steps of one length.
+  /// Solver and stages for steps of one length.
   struct Level {
     std::unique_ptr<StepSolver> solver;
     std::vector<SolvedStage> stages;
@@ -79,10 +80,10 @@ class Simulation : private StageSolve {
   [[nodiscard]] double length_of(int level) const;
   void end_part(const std::function<void(const State&)>& each_part);
   void complete_tied();
-  /// Returns kinetic and elastic energy at its end.
+  /// Returns kinetic and elastic energy at the end of the step.
   double take_controlled_step();
   [[nodiscard]] double energy_of_motion() const;
-  /// Tells the control what a step of the longest length would end with.
+  /// Passes the energy at the end of a trial step of the longest length to the step control.
   void look_ahead();
   Stage& stage(std::size_t number) override;
   const StageSolution& solve(std::size_t number) override;
@@ -92,25 +93,25 @@ class Simulation : private StageSolve {
   }
 
   const SemidiscreteProblem& problem_;
-  Index contact_points_;  ///< of all ranks
+  Index contact_points_;  ///< on all ranks
   Scheme& scheme_;
   State state_;
   StepSolverOptions options_;
   ContactObserver observer_;
-  std::map<int, Level> levels_;  ///< by the control's number; without control 0, and −log₂ of parts of a step
+  std::map<int, Level> levels_;  ///< by k, for steps of length H 2^-k; without control H is the whole step
   Level* current_ = nullptr;
   std::optional<StepControl> control_;
-  double whole_step_;  ///< without control
+  double whole_step_;  ///< length, without control
   long cut_steps_ = 0;
   bool told_short_parts_ = false;
-  std::vector<PassageWatch> guards_;  ///< of contact nodes, each for the obstacle that they touch
-  bool has_guards_ = false;           ///< here or on other ranks
-  State unguarded_;                   ///< the start of a step, where there are guards
-  bool goes_through_ = false;         ///< the last attempt was refused for that
-  State before_;                      ///< an attempt, with control
+  std::vector<PassageWatch> guards_;  ///< contact nodes and points, each against the obstacle that they touch
+  bool has_guards_ = false;           ///< on this or another rank
+  State unguarded_;                   ///< state at the start of a step, with guards
+  bool goes_through_ = false;         ///< true if the last attempt was refused for tunnelling
+  State before_;                      ///< state before an attempt, with control
   std::unique_ptr<EnergyAccount> account_;
-  int iterations_ = 0;     ///< of the contact solver in this step
-  int newton_rounds_ = 0;  ///< in all attempts and parts of this step
+  int iterations_ = 0;     ///< of the contact solver in the last attempt
+  int newton_rounds_ = 0;  ///< Newton iterations, of all attempts and parts of this step
   Vector increment_;
 };
 

@@ -16,11 +16,11 @@ namespace {
 
 constexpr double order = 2.0;  ///< of the error of a step
 constexpr int first_level = 4;
-constexpr double most_created = 100.0;  ///< times the energy that the motion has by itself
-constexpr double most_growth = 4.0;     ///< of the largest energy in a step, as the measure of its error
+constexpr double most_created = 100.0;  ///< times the energy that the motion has without it
+constexpr double most_growth = 4.0;     ///< of the largest energy in a step, in the measure of its error
 constexpr double aim = 0.5;             ///< of the tolerance, for the next step
 constexpr double part_of_prospect = 0.25;
-/// Growth of the largest energy in an attempt above which more is about to come. Less is rounding, or a step of many.
+/// Growth of the largest energy in an attempt above which more is about to come; less is rounding or gradual growth.
 constexpr double growth_ahead = 1e-3;
 constexpr int least_patience = 2, most_patience = 64;  ///< steps
 
@@ -37,7 +37,7 @@ StepControl::StepControl(const SemidiscreteProblem& problem, const StepControlOp
     refuse(fmt::format("the smallest step, {:.6g}, is more than 2^{} times shorter than the largest, {:.6g}",
                        options.smallest, most_levels, options.largest));
   deepest_ = static_cast<int>(halvings);
-  // An end that is a whole number of smallest steps to rounding is that number of steps.
+  // An end that is a whole number of smallest steps up to rounding is taken as that number.
   const double ticks =
       std::ceil(options.end / step_of(deepest_) - std::min(1e-12 * options.end / step_of(deepest_), 0.5));
   if (!(ticks <= most_ticks))
@@ -80,7 +80,7 @@ void StepControl::start(const State& state) {
   ticks_ = 0;
   level_ = wanted_ = last_level_ = finest_ = std::min(deepest_, first_level);
   acceleration_before_ = state.acceleration;
-  // The acceleration at t = 0, where that of a step is at its middle.
+  // This acceleration is that at t = 0, while those of steps are at their midpoints.
   step_before_ = 0.0;
   fit_to_end();
 }
@@ -89,7 +89,7 @@ bool StepControl::accept(const State& before, const State& after, double energy)
   const double h = step();
   acceleration_ = (after.velocity - before.velocity) / h;
   change_ = acceleration_ - acceleration_before_;
-  // An attempt that blows up must not be judged by its own energy.
+  // The energy of a diverging attempt must not be the measure of its own error.
   const double scale =
       largest_energy_ > 0.0 ? std::clamp(energy, largest_energy_, most_growth * largest_energy_) : energy;
   const double own = energy_of_change();
@@ -108,7 +108,7 @@ bool StepControl::accept(const State& before, const State& after, double energy)
       const double halvings = std::isfinite(error_) ? std::ceil(std::log2(error_ / aim) / order) : 3.0;
       level_ = wanted_ = std::min(deepest_, level_ + std::clamp(static_cast<int>(halvings), 1, 3));
       finest_ = std::max(finest_, wanted_);
-      // Growth that fails is tried again ever more rarely.
+      // Growth that fails is retried ever more rarely.
       backoff_ = grown ? std::min(2 * backoff_, most_patience) : least_patience;
       patience_ = backoff_;
       return false;
@@ -128,8 +128,8 @@ bool StepControl::accept(const State& before, const State& after, double energy)
     patience_ = 0;
   }
   patience_ = std::max(patience_ - 1, -most_patience - 1);
-  // Vibrations that no step of this size resolves have a smaller error with a longer one: it is worth a try now and
-  // then. They are most of the error as a rule, which then grows by less than the fourfold of a smooth motion.
+  // Vibrations that no step of this size resolves have a smaller error with a longer step, so that growth is tried now
+  // and then. They usually dominate the error, which then grows by less than the factor of four of a smooth motion.
   const bool may_grow = error_ <= aim ? patience_ < 0 : patience_ < -most_patience;
   if (may_grow && level_ == wanted_ && wanted_ > 0) --wanted_;
   level_ = wanted_;
@@ -149,7 +149,7 @@ void StepControl::watch(double energy, double created) {
           time(), created, own_energy_));
 }
 
-/// None counts until it has come: what is found where an attempt was refused serves that attempt, taken again, too.
+/// No energy ahead counts once its time has come; one found after a refusal also serves the repeated attempt.
 void StepControl::take_prospect(int level, double energy) {
   prospect_ = std::isfinite(energy) ? part_of_prospect * energy : 0.0;
   prospect_ticks_ = ticks_ + ticks_of(level);
@@ -190,7 +190,7 @@ bool StepControl::shorten() {
   return true;
 }
 
-/// Near the end lengths that are there already are taken; of steps of the shortest of them the last may pass the end.
+/// Near the end lengths in use are preferred; of steps of the shortest of them the last may exceed the end.
 void StepControl::fit_to_end() {
   while (level_ < finest_ && ticks_ + ticks_of(level_) > end_ticks_) ++level_;
 }
@@ -242,7 +242,7 @@ void StepControl::load(const Snapshot& snapshot, const std::string& name) {
   own_energy_ = numbers[6];
   prospect_ = numbers[7];
   acceleration_before_ = snapshot.reals(name + ".acceleration", problem_.dof_count());
-  // The end may be another than that which the length was fitted to.
+  // The end may differ from the one that the saved length was fitted to.
   level_ = wanted_;
   fit_to_end();
 }

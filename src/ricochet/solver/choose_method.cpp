@@ -14,28 +14,29 @@ namespace ricochet {
 
 namespace {
 
-/// Part of the machine's memory that factors may take. The model, and what else runs, need the rest.
+/// Part of the machine's memory that factors may take. The model and other programs need the rest.
 constexpr double memory_part = 0.5;
-/// A factorization of less time is not worth a thought: solves with a factor are exact to rounding.
+/// Seconds up to which a factorization is always preferred: solves with a factor are exact to rounding.
 constexpr double short_factorization = 10.0;
-/// Where nobody knows how many solves follow.
+/// Number of solves that is assumed if it is unknown.
 constexpr double many_solves = 1000.0;
-/// Vectors that an iteration reads or writes besides what the product does, in single precision, and with a mass apart
-/// in double.
+/// Vectors that an iteration reads or writes besides those of the product: in single precision, and in double precision
+/// with a separate mass.
 constexpr double single_vectors_per_iteration = 13.0;
 constexpr double vectors_per_iteration = 12.0;
-/// Products in double precision of a stage whose iterations are in single precision: two for each of five rounds.
+/// Products in double precision of a stage whose iterations are in single precision: two in each of five alternations
+/// with the subdomains.
 constexpr double double_products = 10.0;
 
-/// M 1, component by component: also of a mass that acts on components alike.
+/// M 1, component by component: also for a mass that acts on all components alike.
 Vector row_sums(const NodeMatrix& mass) {
   Vector result;
   mass.multiply(Vector::Ones(mass.size()), result);
   return result;
 }
 
-/// The displacement that shears each body in the plane of two axes: along each what the position is along the other,
-/// from the body's centre of mass.
+/// Displacement that shears each body in the plane of two axes: along each, the position along the other, from the
+/// body's centre of mass.
 Vector shear(const SemidiscreteProblem& problem, const std::vector<std::vector<Index>>& bodies, const Vector& inertia,
              int a, int b) {
   const int d = problem.dimension;
@@ -63,8 +64,8 @@ double product_in(const std::vector<Index>& body, int d, const Vector& x, const 
   return sum;
 }
 
-/// The largest ratio uᵀDu/uᵀAu of the shears u of a body, over the bodies: D is A's diagonal, without what M has off
-/// its own.
+/// Largest ratio uᵀDu/uᵀAu of the shears u of a body, over the bodies: D is A's diagonal, without the off-diagonal part
+/// of M.
 double softness(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                 const NodeMatrix& stiffness) {
   const int d = problem.dimension;
@@ -112,7 +113,8 @@ IterationEstimate estimate_iterations(const SemidiscreteProblem& problem, const 
   const NodeMatrix* const kept = problem.internal_force->constant_tangent();
   const NodeMatrix tangent = kept != nullptr ? NodeMatrix() : NodeMatrix(problem.internal_force->tangent(), d);
   const NodeMatrix& stiffness = kept != nullptr ? *kept : tangent;
-  // Of A beside its diagonal blocks: as of the matrix of a simplex, at most the number of its nodes.
+  // Largest eigenvalue of A relative to its diagonal blocks: as for the matrix of a simplex, at most its number of
+  // nodes.
   const double largest_eigenvalue = d + 1.0;
   const double condition = std::max(1.0, largest_eigenvalue * softness(problem, coefficients, stiffness));
   const auto nodes = static_cast<double>(problem.nodes.cols());
@@ -120,7 +122,7 @@ IterationEstimate estimate_iterations(const SemidiscreteProblem& problem, const 
   IterationEstimate result;
   result.iterations = 0.5 * std::sqrt(condition) * std::log(2.0 / tolerance);
   const double product = blocks * (8.0 * d * d + 4.0);
-  // Of a mass that couples many more nodes than K (stage_product.hpp) iterations are in double precision.
+  // With a mass that couples many more nodes than K (stage_product.hpp) iterations are in double precision.
   if (keeps_mass_apart(problem, stiffness)) {
     result.bytes = product + static_cast<double>(problem.mass.bytes()) + 8.0 * nodes * d * (d + vectors_per_iteration);
   } else {

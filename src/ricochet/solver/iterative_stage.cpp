@@ -19,23 +19,23 @@ namespace ricochet {
 
 namespace {
 
-/// A round of conjugate gradients goes on to this part of what it began with: the zone has its say before the end.
+/// Reduction of the residual by conjugate gradients before the subdomains are solved again.
 constexpr double round_reduction = 1e-2;
 constexpr int round_limit = 60;
 constexpr int iteration_limit = 5000;
-/// What iterations in single precision are asked for at once; their roundings are a hundredth of it.
+/// Reduction requested from iterations in single precision at once; their rounding is a hundredth of it.
 constexpr double single_reduction = 1e-5;
-/// Iterations in single precision have gone astray where they leave so many times what they say.
+/// Iterations in single precision have failed if the residual exceeds the one they report by this factor.
 constexpr double astray = 10.0;
 
-/// Where a stage takes so many iterations with diagonal blocks, multigrid takes two thirds of the time
+/// If a stage takes so many iterations with diagonal blocks, multigrid takes two thirds of the time
 /// (docs/distributed.md).
 constexpr int iterations_for_multigrid = 600;
 constexpr const char *block_jacobi = "block-jacobi", *multigrid = "gamg";
 
-/// The stages of one operator without a factor of it: conjugate gradients on the whole body and the contact zones in
-/// turn. The zones come last: contact and friction hold to rounding, and what is left over is a force of at most
-/// `tolerance` times the forces of the step, in the energy norm as the preconditioner sees it.
+/// Stages of one operator without a factor of it: conjugate gradients on the whole body and the contact subdomains in
+/// turn. The subdomains come last: contact and friction hold to rounding, and the residual is a force of at most
+/// `tolerance` times the forces of the step, in the energy norm of the preconditioner.
 class IterativeStage final : public StageSolver {
  public:
   IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
@@ -79,23 +79,23 @@ class IterativeStage final : public StageSolver {
   std::unique_ptr<Preconditioner> preconditioner_;
   std::string kind_ = block_jacobi;  ///< of the preconditioner
   IterationCounts counts_;
-  long gradients_before_ = 0;  ///< this stage
+  long gradients_before_ = 0;  ///< of the previous stages
   ConjugateGradients gradients_;
-  std::unique_ptr<SingleGradients> single_;  ///< null where A is not stored in blocks
+  std::unique_ptr<SingleGradients> single_;  ///< null if A is not stored in blocks
   bool single_is_trusted_ = true;            ///< in this stage
-  double promised_ = 0.0;                    ///< the norm of the residual that they ended with
-  ContactCandidates near_;                   ///< the points that the zones are made for
+  double promised_ = 0.0;                    ///< norm of the residual that they reported
+  ContactCandidates near_;                   ///< points for which the subdomains were made
   PointsNearby nearby_;
   std::unique_ptr<NearContact> zones_;
-  MovedProduct moved_;             ///< by the zones
-  bool may_touch_ = false;         ///< some point may, in this stage
-  bool presses_at_start_ = false;  ///< points whose reactions at the start of the step are part of a mean
+  MovedProduct moved_;             ///< of the motion of the subdomains
+  bool may_touch_ = false;         ///< some point may touch in this stage
+  bool presses_at_start_ = false;  ///< points with reactions at the start of the step are part of a mean
   bool touches_ = false;           ///< the last stage had a contact problem
-  Vector displacement_;            ///< of the tangent; empty: the undeformed body
-  Vector increment_, previous_;    ///< of this stage and the last one, for the guess
+  Vector displacement_;            ///< at the tangent; empty: the undeformed body
+  Vector increment_, previous_;    ///< of this stage and the last one, for the initial guess
   bool has_previous_ = false;
-  Vector reactions_;        ///< their forces, those of the last zones
-  Vector right_hand_side_;  ///< put together
+  Vector reactions_;        ///< forces of the last reactions
+  Vector right_hand_side_;  ///< accumulated over ranks
   Vector guess_, residual_, work_, motion_, prescribed_, supported_force_;
 };
 
@@ -126,12 +126,12 @@ IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const Operato
   previous_ = increment_;
 }
 
-/// Zones are made for the new operator when they are needed next.
+/// Discards the subdomains: they are made for the new operator on demand.
 void IterativeStage::refactorize(const Vector& displacement) {
   displacement_ = displacement;
   single_.reset();
   preconditioner_.reset();
-  product_ = StageProduct();  // before there is another
+  product_ = StageProduct();  // released before the new one is made
   product_ = StageProduct(problem_, coefficients_, displacement);
   make_preconditioner();
   zones_->clear();
@@ -157,7 +157,7 @@ void IterativeStage::make_preconditioner() {
     single_ = std::make_unique<SingleGradients>(*matrix, blocks, solved_, *problem_.ranks);
 }
 
-/// Diagonal blocks need too many iterations: all ranks see the same number.
+/// Replaces diagonal blocks, which need too many iterations, by multigrid. All ranks see the same number.
 bool IterativeStage::turn_to_multigrid() {
   if (options_.preconditioner != "auto" || !options_.preconditioners || kind_ == multigrid) return false;
   log::info("the step is long for the mesh: iterations are preconditioned by multigrid (gamg) from now on");
@@ -170,13 +170,13 @@ void IterativeStage::mask(Vector& values) const {
   for (const int dof : unsolved_) values[dof] = 0.0;
 }
 
-/// Some of them are in no zone.
+/// Returns whether some of these points are in no subdomain.
 bool IterativeStage::are_outside(const std::vector<Index>& points) const {
   return std::any_of(points.begin(), points.end(), [&](Index point) { return near_.number(point) < 0; });
 }
 
-/// For these points and those near them, and those of the last zones unless they have become too many: a body that
-/// rolls leaves them behind.
+/// Makes subdomains for these points and those near them, and for those of the last subdomains unless there are too
+/// many: a body that rolls leaves them behind.
 void IterativeStage::make_zones(const Stage& stage, const std::vector<Index>& wanted) {
   std::vector<Index> points = wanted;
   if (problem_.ranks->any(near_.are_too_many())) {
@@ -194,7 +194,7 @@ void IterativeStage::make_zones(const Stage& stage, const std::vector<Index>& wa
     zones_->make(points);
     keep_columns();
   } catch (const Error& problem) {
-    // The tangent of a place that an iteration leads to is no fault of the case.
+    // The tangent at a displacement that an iteration reaches is no error of the case.
     if (problem.kind() != ErrorKind::invalid_input || displacement_.size() == 0) throw;
     throw Error(ErrorKind::not_converged, problem.what());
   }
@@ -227,7 +227,7 @@ void IterativeStage::load(const Snapshot& snapshot, const std::string& name) {
   near_.load_history(snapshot, name + ".near");
 }
 
-/// The guess: increments of a smooth motion go on as they did. Supports are exact.
+/// Sets the initial guess: increments of a smooth motion continue. Supports are exact.
 void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   right_hand_side_ = stage.right_hand_side;
   put_together(right_hand_side_);
@@ -235,7 +235,7 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   if (has_previous_) guess_ += increment_ - previous_;
   for (const int dof : unsolved_) guess_[dof] = 0.0;
   prescribe(problem_, stage, guess_);
-  // Nothing that acts or is given: the residual of another guess would have nothing to be small beside.
+  // Nothing is loaded or prescribed: the residual of a nonzero guess would have no reference.
   const bool is_loaded = !stage.right_hand_side.isZero(0.0) || !stage.prescribed.isZero(0.0);
   if (!problem_.ranks->any(is_loaded)) guess_.setZero();
   solution.open_all(problem_.contact.size(), problem_.contact.has_friction() ? problem_.dimension - 1 : 0);
@@ -252,21 +252,21 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   if (presses_at_start_ && ranks.any(are_outside(pressing))) make_zones(stage, pressing);
 }
 
-/// Of a force of which each rank has a part, the whole, on the dofs that are solved for.
+/// Accumulates a force over the ranks that hold parts of it, on the dofs that are solved for.
 void IterativeStage::put_together(Vector& force) const {
   problem_.ranks->accumulate(force);
   mask(force);
 }
 
-/// b − A x. Of several ranks b is put together once: their parts may be large where it vanishes, in an equilibrium, and
-/// would leave their rounding in every residual.
+/// Computes b − A x. On several ranks b is accumulated once: its parts may be large where it vanishes, in an
+/// equilibrium, and would leave their rounding in every residual.
 void IterativeStage::find_residual() {
   product_.multiply(guess_, residual_);
   put_together(residual_);
   residual_ = right_hand_side_ - residual_;
 }
 
-/// They move few nodes, whose columns of A tell what is left of the residual.
+/// Solves the subdomains and updates the residual. They move few nodes, so that these columns of A suffice.
 void IterativeStage::solve_zones(const Stage& stage, StageSolution& solution) {
   moved_.begin(guess_);
   zones_->solve(stage, residual_, guess_, solution);
@@ -281,7 +281,7 @@ void IterativeStage::find_reactions(const Stage& stage, const StageSolution& sol
   put_together(reactions_);
 }
 
-/// The norm of all that acts, what moving supports exert among it: what the residual is small beside.
+/// Norm of all forces, those of moving supports included: the reference of the residual.
 double IterativeStage::forces(const Stage& stage) {
   work_ = right_hand_side_;
   if (problem_.ranks->any(!stage.prescribed.isZero(0.0))) {
@@ -295,7 +295,7 @@ double IterativeStage::forces(const Stage& stage) {
   return std::max(given, gradients_.norm(*preconditioner_, reactions_));
 }
 
-/// From a residual of this norm to one of `target`; of the first digits in single precision.
+/// Reduces a residual of this norm to `target`; the first digits in single precision.
 void IterativeStage::solve_linear(double norm, double target) {
   const auto product = [&](const Vector& x, Vector& y) {
     product_.multiply(x, y);
@@ -318,7 +318,7 @@ void IterativeStage::solve_linear(double norm, double target) {
                           result.iterations, result.residual / target));
 }
 
-/// Whether they have led where they said: `residual_` is b − A x, reactions left out.
+/// Checks the reported residual of single precision: `residual_` is b − A x without reactions.
 void IterativeStage::watch_single_precision() {
   if (promised_ == 0.0) return;
   work_ = residual_ + reactions_;
@@ -333,7 +333,7 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
   gradients_before_ = counts_.gradients;
   reactions_.setZero(problem_.dof_count());
   double target = 0.0;
-  bool must_touch = false;  // points have penetrated where none was thought to touch
+  bool must_touch = false;  // points have penetrated where none was expected to touch
   for (int round = 0; round < round_limit; ++round) {
     ++counts_.rounds;
     find_residual();

@@ -9,8 +9,8 @@ namespace ricochet {
 
 class GatheredContact;
 
-/// Conjugate gradients on all dofs around a direct solve near the contact. `gathered`: where there are several ranks,
-/// and contact on some; kept. The layer is then that of its home.
+/// Conjugate gradients on all dofs around a direct solve near the contact. `gathered`, to which a reference is kept, is
+/// required on several ranks with contact on some; `layer` is then at its root.
 [[nodiscard]] std::unique_ptr<StageSolver> make_iterative_stage(const SemidiscreteProblem& problem,
                                                                 const OperatorCoefficients& coefficients,
                                                                 const StepSolverOptions& options,

@@ -30,14 +30,14 @@ void NewtonRounds::evaluate(const Vector& displacement, Vector& force) {
   force -= follower_load_;
 }
 
-/// δ goes on by a correction, or where corrections that hardly shrink ask for it.
+/// Updates δ by a correction; accelerated if corrections hardly shrink.
 void NewtonRounds::correct(const Vector& correction) {
   before_ = total_;
   total_ += correction;
   if (progress_.wants_acceleration()) acceleration_.advance(before_, total_, total_);
 }
 
-/// f(p + κδ). Where a correction turns a cell inside out half of it is taken, and half of that.
+/// Evaluates f(p + κδ). If a correction inverts a cell, half of it is taken, then half of that.
 void NewtonRounds::take_internal_force(double factor) {
   constexpr int most_halvings = 5;
   for (int halving = 0;; ++halving) {
@@ -52,7 +52,7 @@ void NewtonRounds::take_internal_force(double factor) {
   }
 }
 
-/// The stage for a correction of δ = total.
+/// Sets the stage for a correction of δ = total.
 void NewtonRounds::linearize(const OperatorCoefficients& coefficients, Stage& stage) {
   problem_.mass.multiply(total_, product_);
   stage.right_hand_side = right_hand_side_ - coefficients.mass * product_ - (force_ - force_at_place_);

@@ -7,20 +7,20 @@
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/problem/stage.hpp"
 
-/// @file Stages whose internal force is no linear function of the displacement.
+/// @file Stages whose internal force is nonlinear in the displacement.
 namespace ricochet {
 
-/// Solves  αM δ + ηC δ + f(p + κδ) − f(p) = b + Hᵀρ  with the contact conditions of the stage by Newton's method with a
-/// factor that is kept (f without the loads that follow the surface, which are in b at p): A d = residual + Hᵀρ, δ +=
-/// d, the conditions on contact exact for δ + d in every round.
+/// Solves αM δ + ηC δ + f(p + κδ) − f(p) = b + Hᵀρ with the contact conditions of the stage by Newton's method with a
+/// factor that is kept (f without follower loads, which are in b at p): A d = residual + Hᵀρ, δ += d, with exact
+/// contact conditions for δ + d in every iteration.
 class NewtonRounds {
  public:
   explicit NewtonRounds(const SemidiscreteProblem& problem) : problem_(problem) {}
 
-  /// The linear stage, and a new factor at a displacement.
+  /// Solvers of the linear stage, and of a new factor at a displacement.
   using SolveLinear = std::function<void(Stage&, StageSolution&)>;
   using Renew = std::function<void(const Vector& displacement)>;
-  /// Leaves the stage as the last round had it. Throws Error(not_converged).
+  /// Leaves the stage as in the last iteration. Throws Error(not_converged).
   void solve(const OperatorCoefficients& coefficients, const SolveLinear& solve_linear, const Renew& renew,
              Stage& stage, StageSolution& solution);
 
@@ -29,14 +29,14 @@ class NewtonRounds {
   void linearize(const OperatorCoefficients& coefficients, Stage& stage);
   void correct(const Vector& correction);
   void take_internal_force(double factor);
-  /// f less the loads that follow the surface.
+  /// Evaluates f less the follower loads.
   void evaluate(const Vector& displacement, Vector& force);
 
   const SemidiscreteProblem& problem_;
   NewtonProgress progress_;
   AndersonAcceleration acceleration_{8};
   Vector total_, before_, displacement_, force_, product_, follower_load_;
-  // Of the stage at δ = 0:
+  // Data of the stage at δ = 0:
   double pressure_time_ = 0.0, pressure_part_ = 1.0;
   Vector place_, force_at_place_, right_hand_side_, prescribed_, gap_offset_, slip_offset_, motion_, velocity_,
       observed_;

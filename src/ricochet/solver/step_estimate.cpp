@@ -15,8 +15,8 @@ namespace {
 
 constexpr Index sampled_points = 100;
 
-/// Of the elimination tree of a matrix in the order of its factor: per row the length of the path to the root, which is
-/// the number of entries of a column of L⁻¹. Liu's algorithm with compressed paths.
+/// Elimination tree of a matrix in the order of its factor: per row, the root and the length of the path to it, which
+/// is the number of entries of a column of L⁻¹. Liu's algorithm with compressed paths.
 struct PathsToRoots {
   std::vector<int> length, root;
 };
@@ -45,7 +45,7 @@ PathsToRoots find_paths(const SparseMatrix& matrix, const SparseCholesky& factor
 }
 
 /// Mean over some contact points, evenly spread over their numbers, of rows × the longest path of their unknowns in
-/// each tree: there is a tree for each body.
+/// each tree: there is one tree per body.
 double column_entries(const SemidiscreteProblem& problem, const AnalysedOperator& analysed,
                       const std::vector<int>& number, const SparseMatrix& matrix) {
   const Index points = problem.contact.size();
@@ -85,7 +85,7 @@ StageEstimate estimate(const SemidiscreteProblem& problem, const OperatorCoeffic
   const std::vector<int> number = number_dofs(problem, analysed.dofs);
   const SparseMatrix matrix =
       extract(combine_operator(problem, coefficients), number, result.unknowns, number, result.unknowns);
-  // Beside the factor there is a triangle of the operator in its order while it is made, and little else.
+  // Besides the factor, a triangle of the operator in its order exists during factorization, and little else.
   constexpr double bytes_per_entry = sizeof(double) + sizeof(int);
   result.peak_bytes =
       result.factor_bytes + 0.5 * bytes_per_entry * static_cast<double>(matrix.nonZeros() + result.unknowns);
@@ -105,7 +105,7 @@ std::vector<StageEstimate> estimate_step_solver(const SemidiscreteProblem& probl
   return result;
 }
 
-/// K's triangle by blocks of nodes with an index each, and the vectors that a step reads and writes beside it
+/// Counts K's triangle by blocks of nodes with an index each, and the vectors that a step reads and writes besides
 /// (docs/theory.md counts them for the semi-explicit scheme).
 double estimate_products(const SemidiscreteProblem& problem) {
   constexpr double vectors = 180.0;  // bytes per dof

@@ -19,13 +19,13 @@ namespace ricochet {
 
 namespace {
 
-/// Operations of a factorization that takes seconds: it is worth a message.
+/// Operations from which a factorization takes seconds and is announced.
 constexpr double long_factorization = 1e11;
 
-constexpr const char* methods_entry = ".methods";  ///< of a snapshot
+constexpr const char* methods_entry = ".methods";  ///< entries of a snapshot
 constexpr const char* made_at_entry = ".made_at";
 constexpr const char* contact_made_at_entry = ".contact_made_at";
-constexpr const char* pressure_at_entry = ".pressure_at";  ///< when the factor was made; the last forces
+constexpr const char* pressure_at_entry = ".pressure_at";  ///< at the factorization; of the last forces
 constexpr const char* frame_entry = ".frame";
 constexpr const char* kept = "as when the run began";
 
@@ -141,7 +141,7 @@ class StagesStepSolver final : public StepSolver {
   [[nodiscard]] const std::vector<ChosenMethod>& methods() const override { return methods_; }
 
  private:
-  /// False where an operator is not positive definite.
+  /// Returns false if an operator is not positive definite.
   bool make_factors(const Vector& displacement, const Vector& of_contact_nodes) {
     try {
       refactorize_all(displacement, of_contact_nodes);
@@ -153,25 +153,25 @@ class StagesStepSolver final : public StepSolver {
     contact_made_at_ = of_contact_nodes;
     return true;
   }
-  /// The stiffness of a pressure is symmetric but for the edges of its surface; what is left of those has no sign, and
-  /// may push a body that only contact holds.
+  /// The stiffness of a pressure is symmetric except at the edges of its surface; the contribution of these has no
+  /// sign, and may push a body that only contact holds.
   bool leave_pressure_out(const Vector& displacement, const Vector& of_contact_nodes) {
     if (!problem_.pressure) return false;
     pressure_at_.part = 0.0;
     problem_.pressure->set_last(pressure_at_);
     return make_factors(displacement, of_contact_nodes);
   }
-  /// Of a body that is squeezed against an obstacle the tangent may be indefinite, as contact is not in it. (Half of a
-  /// displacement is no place of bodies that turn; where supports hold something they mostly do not.)
+  /// The tangent of a body squeezed against an obstacle may be indefinite, as contact is not part of it. (Half of a
+  /// displacement is no configuration of bodies that rotate; if supports hold something they mostly do not.)
   bool go_half_way(const Vector& displacement, const Vector& of_contact_nodes) {
     return problem_.supports.size() > 0 && make_factors(0.5 * displacement, 0.5 * of_contact_nodes);
   }
-  /// In their order: a layer is made before the stage that has it.
+  /// Refactorizes in order: a stage of contact nodes precedes the stage that refers to it.
   void refactorize_all(const Vector& displacement, const Vector& of_contact_nodes) {
     for (std::size_t i = 0; i < stages_.size(); ++i)
       stages_[i]->refactorize(operators_[i].dofs == StageDofs::contact ? of_contact_nodes : displacement);
   }
-  /// Of a body on several ranks there is no factor, but on the dofs of contact nodes.
+  /// Adds a stage of a body on several ranks, which has a factor only on the dofs of contact nodes.
   void add_divided_stage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                          const StepSolverOptions& options) {
     if (coefficients.dofs == StageDofs::contact) {
@@ -223,12 +223,12 @@ class StagesStepSolver final : public StepSolver {
 
   const SemidiscreteProblem& problem_;
   std::vector<OperatorCoefficients> operators_;
-  std::unique_ptr<TurnedFrame> frame_;     ///< null where the internal force is linear
+  std::unique_ptr<TurnedFrame> frame_;     ///< null if the internal force is linear
   Vector made_at_, contact_made_at_;       ///< displacement of the factors; empty: the undeformed body
   FollowerPressure::Instant pressure_at_;  ///< likewise
   TangentRounds rounds_;
   NewtonRounds newton_;
-  std::unique_ptr<GatheredContact> gathered_;  ///< of several ranks, where there is contact
+  std::unique_ptr<GatheredContact> gathered_;  ///< on several ranks with contact
   std::vector<std::unique_ptr<StageSolver>> stages_;
   std::vector<ChosenMethod> methods_;
 };

@@ -13,19 +13,19 @@ namespace ricochet {
 
 namespace {
 
-/// Rounds that settle by themselves take fewer.
+/// Iterations that settle by themselves take fewer.
 constexpr int plain_rounds = 6;
 constexpr int most_rounds = 400;
-/// Rounds without progress after which the acceleration forgets what it knows: points touch and leave, and the map has
-/// changed; and after which the step fails.
+/// Iterations without progress after which the acceleration is restarted, since points that touch and separate change
+/// the map; and after which the step fails.
 constexpr int patience_of_acceleration = 20, patience_of_rounds = 60;
-/// Rounds without progress after which pairs of facets are held.
+/// Iterations without progress after which pairs of facets are held.
 constexpr int patience_of_pairs = 25;
-/// After so many rounds, where the last ones came no nearer, some times the rounding of the gaps may be left: forces
-/// that turn with large surfaces keep it.
+/// After so many iterations, if the last ones brought no progress, the error may be a multiple of the rounding of the
+/// gaps: forces that turn with large surfaces keep it.
 constexpr int patient_rounds = 40, patience_of_rounding = 5;
 constexpr double rounding_left = 100.0;
-/// And what may be left before a step fails: gaps are rounded with all that moves the points, and in narrow corners
+/// Largest error before a step fails: gaps have the rounding of everything that moves the points, and in narrow corners
 /// more than once.
 constexpr double most_rounding_left = 1e4;
 constexpr int last_rounds = 60;
@@ -45,10 +45,10 @@ TangentRounds::TangentRounds(const SemidiscreteProblem& problem) : problem_(prob
 void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution) {
   int iterations = solution.iterations, last_progress = 0, last_start = 0;
   double least = std::numeric_limits<double>::infinity();
-  linearized_at_.setZero(problem_.dof_count());  // before the first round nothing has moved
+  linearized_at_.setZero(problem_.dof_count());  // no motion before the first iteration
   for (int round = 0;; ++round) {
     const LinearizationError left = linearization_error(problem_, solution, stage, gap_);
-    // What settles by itself does so to the rounding of the gaps.
+    // Iterations that settle by themselves do so to the rounding of the gaps.
     const double error = round <= plain_rounds ? left.beyond_rounding : left.beyond_all_rounding;
     if (error <= 0.0) break;
     if (error < 0.9 * least) {
@@ -60,7 +60,8 @@ void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSoluti
     const double of_rounding = error / problem_.ranks->maximum(rounding.size() > 0 ? rounding.maxCoeff() : 0.0);
     if (round >= patient_rounds && round - last_progress >= patience_of_rounding && of_rounding <= rounding_left) break;
     if (round >= last_rounds && of_rounding <= most_rounding_left) break;
-    // What faces what changes from round to round: it is held, and the next round solves what is then linear.
+    // Pairs change from iteration to iteration: they are held, and the next iteration solves the then linear
+    // conditions.
     const bool is_stuck = round - last_progress > patience_of_pairs || !std::isfinite(error) || round == most_rounds;
     if (is_stuck && problem_.contact.follows_motion() && problem_.contact.geometry->hold()) {
       least = std::numeric_limits<double>::infinity();
@@ -89,7 +90,7 @@ void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSoluti
   solution.iterations = iterations;
 }
 
-/// Beside the contact it does not matter where.
+/// Sets the point of linearization, which does not matter away from the contact.
 void TangentRounds::linearize_at(const Vector& increment, bool accelerate) {
   if (!accelerate) {
     linearized_at_ = increment;

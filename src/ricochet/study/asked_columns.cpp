@@ -24,11 +24,12 @@ namespace {
 using Names = std::vector<std::string>;
 
 struct AskedColumn {
-  std::string asked;   ///< "--quantity max(history.time)"
-  std::string column;  ///< of history.csv
+  std::string asked;   ///< such as "--quantity max(history.time)"
+  std::string column;  ///< column of history.csv
 };
 
-/// An entry of summary.json by its dotted path. What is inside of it depends on what a run comes to.
+/// Requires an entry of summary.json at a dotted path. Only its first part is checked, as the contents of an entry
+/// depend on the results of the run.
 void require_summary_entry(const std::string& asked, const std::string& path) {
   const Json summary = Json::parse(to_json(RunSummary{}));
   Names known;
@@ -57,14 +58,14 @@ bool is_run_of_study(const std::string& reference) {
   return reference.starts_with("last:") || reference.starts_with("finest:");
 }
 
-/// Meshes and probes make columns.
+/// Returns true if the runs may have different columns, which follow from meshes and probes.
 bool columns_vary(const StudyPlan& plan) {
   const Names keys = varied_keys(plan);
   return std::any_of(keys.begin(), keys.end(),
                      [](const std::string& key) { return key.starts_with("mesh.") || key.starts_with("probe."); });
 }
 
-/// Whether a run has the column whatever its mesh is.
+/// Returns true if a run has the column whatever its mesh.
 bool is_always_there(const std::string& column) {
   const auto in = [&](int dimension) {
     const Names names = names_of(HistoryRecorder::standard_columns(dimension));
@@ -77,15 +78,15 @@ std::optional<Case> first_valid_case(const Study& study) {
   for (const StudyRun& run : study.runs) {
     try {
       return read_case(study.plan.case_path, run.planned.settings);
-    } catch (const Error&) {  // its row will say so
+    } catch (const Error&) {  // its row reports the error
     }
   }
   return std::nullopt;
 }
 
-/// Of runs of this case; none where it does not fit its mesh, which the runs will say.
+/// Returns the columns of runs of this case; none if it does not fit its mesh, which the runs will report.
 std::optional<Names> columns_of(const Case& input) {
-  const log::Silence silence;  // the runs say what there is to say
+  const log::Silence silence;  // the runs issue the warnings
   try {
     const std::unique_ptr<Model> model = build_model(input);
     return names_of(history_columns(*model));
@@ -98,16 +99,16 @@ std::optional<Names> columns_of(const Case& input) {
   throw Error(ErrorKind::usage, fmt::format("{}: {}", asked.asked, no_such_column(input, asked.column, columns)));
 }
 
-/// Of runs whose meshes or probes differ.
+/// Refuses a column that no run has, for runs whose meshes or probes differ.
 void require_possible_column(const AskedColumn& asked, const Case& input) {
   const Names names = history_column_names();
   if (std::count(names.begin(), names.end(), asked.column) > 0) return;
-  // Of a probe, which may have another name in another run.
+  // A column of a probe, which may have another name in another run.
   if (asked.column.find('.') != std::string::npos) return;
   refuse(asked, input, names);
 }
 
-/// What find_compared looks into.
+/// Returns a table without rows for find_compared.
 HistoryTable empty_table(const Names& columns) {
   HistoryTable table{columns, {}};
   for (const std::string& column : columns) table.columns[column];

@@ -12,7 +12,7 @@ namespace ricochet {
 
 namespace {
 
-/// Columns NAME_x, NAME_y, NAME_z, those that there are.
+/// Returns the columns NAME_x, NAME_y, NAME_z, as far as they exist.
 std::vector<std::string> components_of(const std::string& name, const HistoryTable& table) {
   std::vector<std::string> columns;
   for (const char* axis : {"_x", "_y", "_z"}) {
@@ -33,7 +33,7 @@ class TimeFunction {
   [[nodiscard]] double time(std::size_t row) const { return times_[row] + delay_; }
   [[nodiscard]] double value(std::size_t row) const { return values_[row]; }
 
-  /// Linear between rows. A time that rounding puts beyond the first or last row is that of the row.
+  /// Interpolates linearly between rows. A time that rounding puts beyond the first or last row counts as that row.
   [[nodiscard]] std::optional<double> at(double time) const {
     const double wanted = time - delay_;
     const double slack = 1e-9 * std::max(std::abs(times_.front()), std::abs(times_.back()));
@@ -52,7 +52,7 @@ class TimeFunction {
   double delay_;
 };
 
-/// ∫ of the squares of error and reference, of one component.
+/// Time integrals of the squared error and the squared reference, for one component.
 struct Squares {
   double error = 0.0, reference = 0.0;
   long intervals = 0;

@@ -19,15 +19,16 @@ std::string last_part(const std::string& key) {
   return key.substr(key.rfind('.') + 1);
 }
 
-/// A value of an axis as short as it can be told from the others: by the first key alone, if that does.
+/// Returns the shortest label of an axis value that distinguishes it from the others: the first key alone, if that
+/// suffices.
 std::string value_label(const StudyAxis& axis, std::size_t at) {
   const auto same = [&](const auto& other) { return other.front() == axis.values[at].front(); };
   if (std::count_if(axis.values.begin(), axis.values.end(), same) == 1) return axis.values[at].front();
   return fmt::format("{}", fmt::join(axis.values[at], "/"));
 }
 
-/// The kinds of one key's values; empty where they make no lines: all numbers, or words that are all different, such
-/// as meshes that become finer.
+/// Returns the kinds of one key's values; empty if they do not make separate lines: all numbers, or all different
+/// words, such as meshes that are refined successively.
 Texts kinds_of_key(const StudyAxis& axis, std::size_t key) {
   Texts kinds;
   for (const Texts& entry : axis.values) {
@@ -61,7 +62,7 @@ Texts kinds_along(const StudyAxis& axis, const std::string& shown) {
   for (std::size_t i = 0; i < whole.size(); ++i) {
     for (const Texts& kinds : by_key) whole[i] += (whole[i].empty() ? "" : ", ") + kinds[i];
   }
-  // One key alone, where it tells them apart.
+  // A single key if it suffices to distinguish the lines.
   const std::size_t distinct = std::set<std::string>(whole.begin(), whole.end()).size();
   for (const Texts& kinds : by_key) {
     if (std::set<std::string>(kinds.begin(), kinds.end()).size() == distinct) return kinds;

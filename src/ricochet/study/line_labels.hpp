@@ -6,20 +6,20 @@
 
 #include "ricochet/study/plan.hpp"
 
-/// @file What the lines of a figure are called: by the values of what varies.
+/// @file Labels of the lines of a figure, from the values that vary.
 namespace ricochet {
 
-/// The values that a run has of these axes, each as short as it can be told from the others: "bathe, step 0.01".
+/// Returns the values of a run on these axes, each as short as possible while unambiguous: "bathe, step 0.01".
 [[nodiscard]] std::string label_by_axes(const PlannedRun& run, const StudyPlan& plan,
                                         const std::vector<std::size_t>& axes);
 
-/// Along an axis whose keys change together, values that are of different kinds make different lines: numbers, "-", and
-/// words that come more than once or beside numbers, as in time.step,time.tolerance=1e-4/-,5e-5/-,adaptive/1e-3. The
-/// kind of each value of the axis in words, "adaptive" or "numeric step"; "" where all are of one kind. `shown` is the
-/// key on the horizontal axis, which makes none.
+/// Returns the kind of each value along an axis whose keys change together: "adaptive" or "numeric step", or "" if all
+/// are of one kind. Values of different kinds make different lines: numbers, "-", and words that occur more than once
+/// or beside numbers, as in time.step,time.tolerance=1e-4/-,5e-5/-,adaptive/1e-3. `shown` is the key on the horizontal
+/// axis, which makes no lines.
 [[nodiscard]] std::vector<std::string> kinds_along(const StudyAxis& axis, const std::string& shown);
 
-/// Of runs of one study, by what differs between them; empty where they are not all of one study.
+/// Returns labels of runs of one study, from their differences; empty if they do not all belong to one study.
 [[nodiscard]] std::vector<std::string> labels_in_study(const std::vector<std::string>& directories);
 
 }  // namespace ricochet

@@ -13,11 +13,11 @@ namespace ricochet {
 
 namespace {
 
-/// Solutions with fronts have orders down to a third. Half the step then takes a fifth of the error away, and this
-/// order a fifteenth.
+/// Smallest meaningful order. Solutions with fronts have orders down to a third, where halving the step removes a fifth
+/// of the error; with this order it removes a fifteenth.
 constexpr double least_order = 0.1;
 
-/// The run before it along an axis; nothing for the first.
+/// Returns the preceding run along an axis; none for the first.
 std::optional<std::size_t> run_before(const Study& study, std::size_t run, std::size_t axis) {
   std::vector<std::size_t> at = study.runs[run].planned.at;
   if (at[axis]-- == 0) return std::nullopt;
@@ -26,7 +26,7 @@ std::optional<std::size_t> run_before(const Study& study, std::size_t run, std::
   return static_cast<std::size_t>(found - study.runs.begin());
 }
 
-/// Of the column of errors c, run by run.
+/// Returns the orders for column c of errors, run by run.
 std::vector<std::optional<double>> orders_of(const Study& study, const ResultTable& table, std::size_t c) {
   const KeyPlace place = find_varied(study.plan, study.questions.order_key, "--order");
   const auto step = [&](std::size_t run) {
@@ -43,7 +43,7 @@ std::vector<std::optional<double>> orders_of(const Study& study, const ResultTab
   return orders;
 }
 
-/// "2 of 6 of tip.displacement", or "".
+/// Returns a text such as "2 of 6 of tip.displacement", or "".
 std::string idle_text(const std::string& key, const std::string& name,
                       const std::vector<std::optional<double>>& orders) {
   std::vector<double> found;

@@ -27,28 +27,28 @@ Impacts::const_iterator hardest(const Impacts& impacts) {
                           [](const Impact& a, const Impact& b) { return a.largest_force < b.largest_force; });
 }
 
-/// Of the case itself, and not of what came out.
+/// Returns true unless a warning concerns the case only, not its results.
 bool concerns_validity(const std::string& warning) {
   return !warning.starts_with(end_warning);
 }
 
-/// Whether cells had turned so far that numbers of that impact are not those of a body that small strain describes.
+/// Returns true if cells had rotated so far that small strain does not describe that impact.
 bool is_strained(const RunSummary& s, Impacts::const_iterator impact) {
   return !s.cells_turn_little_in(static_cast<std::size_t>(impact - s.impacts.begin()));
 }
 
-/// A coordinate of the place of the largest stress, in as many as there are dimensions.
+/// Returns a coordinate of the position of the largest stress, for each of the dimensions.
 TableCell peak_coordinate(const RunSummary& s, std::size_t k) {
   return s.peak_stress && k < s.peak_stress->place.size() ? TableCell(s.peak_stress->place[k]) : TableCell();
 }
 
-/// What a column is and what stands in it.
+/// A column and the function that fills its cells.
 struct OutcomeColumn {
   TableColumn column;
   std::function<TableCell(const std::string& run, const RunState& state)> cell;
 };
 
-/// Of a run without a summary nothing.
+/// Makes a column that is empty for a run without a summary.
 OutcomeColumn of_summary(TableColumn column, TableCell (*cell)(const RunSummary&)) {
   return {std::move(column), [cell](const std::string&, const RunState& state) {
             return state.summary ? cell(*state.summary) : TableCell();
@@ -72,7 +72,7 @@ TableCell exit_status_of(const RunState& state) {
 
 using Summary = const RunSummary&;
 
-/// In their order.
+/// Returns all columns in their order.
 const std::vector<OutcomeColumn>& all_columns() {
   static const std::vector<OutcomeColumn> columns{
       {{"run", false}, [](const std::string& run, const RunState&) { return TableCell(run); }},

@@ -6,15 +6,15 @@
 #include "ricochet/study/run_state.hpp"
 #include "ricochet/study/table.hpp"
 
-/// @file The columns that a run fills by its own summary. Studies and benchmarks have them.
+/// @file Columns that the summary of a run fills, in the tables of studies and benchmarks.
 namespace ricochet {
 
-/// run, status, …: without those of a message.
+/// Returns the columns run, status, …, without those of messages.
 [[nodiscard]] std::vector<TableColumn> outcome_columns();
-/// The cells under them; numbers that the run does not have are empty.
+/// Returns the cells of these columns; numbers that the run does not have are empty.
 [[nodiscard]] std::vector<TableCell> outcome_cells(const std::string& run, const RunState& state);
 
-/// Why some numbers of a run cannot be trusted, in a few words; empty: nothing is known against them.
+/// Returns, in a few words, why some numbers of a run cannot be trusted; empty if there is no such reason.
 [[nodiscard]] std::string doubts_of(const RunSummary& summary);
 
 }  // namespace ricochet

@@ -18,7 +18,7 @@ namespace ricochet {
 
 namespace {
 
-/// The value of a key that a run leaves as the case has it.
+/// Value of a key that a run leaves as in the case.
 constexpr std::string_view left_out = "-";
 constexpr std::size_t most_runs = 10'000, longest_name = 80;
 
@@ -35,7 +35,7 @@ std::string trimmed_value(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
 }
 
-/// Parts between separators that are in no bracket and no quotes.
+/// Splits a text at separators outside brackets and quotes.
 std::vector<std::string> split(const std::string& text, char separator, const std::string& whole) {
   std::vector<std::string> parts;
   std::string part;
@@ -63,7 +63,7 @@ std::vector<std::string> split(const std::string& text, char separator, const st
   return parts;
 }
 
-/// Keys as short as they can be told apart: what stands behind the last dot, else the whole.
+/// Returns the keys as short as possible while unambiguous: the part after the last dot, else the whole.
 std::vector<std::string> short_names(const std::vector<std::string>& keys) {
   const auto last_part = [](const std::string& key) { return key.substr(key.rfind('.') + 1); };
   std::vector<std::string> names;
@@ -101,7 +101,7 @@ StudyAxis parse_axis(const std::string& text) {
       throw Error(ErrorKind::usage, fmt::format("--vary {}: {}", text, problem.what()));
     }
   }
-  std::map<std::vector<std::string>, std::string> seen;  // entries by what they mean, not by how they are written
+  std::map<std::vector<std::string>, std::string> seen;  // entries by meaning, not by spelling
   for (const std::string& entry : split(text.substr(equals + 1), ',', text)) {
     axis.values.push_back(axis.keys.size() > 1 ? split(entry, '/', text) : std::vector{entry});
     const std::vector<std::string>& values = axis.values.back();

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
                           path.string(), why));
 }
 
-/// A run that has not come far enough to leave anything has an empty folder.
+/// Returns true for a folder of a run; an empty one belongs to a run that ended before it wrote anything.
 bool looks_like_run(const fs::path& folder) {
   std::error_code problem;
   if (fs::is_empty(folder, problem) && !problem) return true;
@@ -47,7 +47,7 @@ bool is_run_folder_name(std::string_view name) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
            std::string_view("._=+-").find(c) != std::string_view::npos;
   };
-  // Names that begin with a dot are of this folder, of the one above, or hidden.
+  // Names that begin with a dot denote this folder, its parent, or hidden files.
   return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), is_plain);
 }
 

@@ -18,12 +18,12 @@ namespace ricochet {
 
 namespace {
 
-/// Runs that are still to be run, and what is known of them on the way.
+/// Runs that are not complete, and their progress.
 class RunPool {
  public:
   RunPool(const std::vector<PooledRun>& runs, const RunPoolOptions& options);
   [[nodiscard]] bool empty() const { return pending_.empty(); }
-  /// The signal that has stopped it, or 0.
+  /// Returns the signal that has stopped it, or 0.
   int run();
 
  private:
@@ -79,7 +79,7 @@ ChildProcess RunPool::start(std::size_t i) {
     child.arguments.push_back(setting);
   }
   child.arguments.insert(child.arguments.end(), {"--threads", std::to_string(options_.threads), "--quiet"});
-  // What is left of a run that has no checkpoint is written over.
+  // Remains of a run without a checkpoint are overwritten.
   child.arguments.emplace_back(actions_[i] == NextAction::resume ? "--resume" : "--force");
   child.output = directory + "/" + messages_file;
   progress_->begin(directory);
@@ -88,7 +88,7 @@ ChildProcess RunPool::start(std::size_t i) {
 
 void RunPool::end(std::size_t i, const ChildOutcome& outcome) {
   const std::string& directory = run_at(i).directory;
-  // As a shell has it, where something from outside has killed the process.
+  // As shells report it if a signal has killed the process.
   const int status = WIFSIGNALED(outcome.status) ? 128 + WTERMSIG(outcome.status) : outcome.exit_status();
   std::string message = last_error(read_file(directory + "/" + messages_file), directory);
   if (message.empty()) message = fmt::format("its process {}", outcome.description());

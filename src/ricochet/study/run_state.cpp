@@ -27,7 +27,7 @@ bool is_done(const RunState& state) {
   return state.summary && state.summary->status == "done";
 }
 
-/// What tells one summary from another; of none, that of no bytes.
+/// Returns a checksum that distinguishes summaries; if there is none, the checksum of an empty text.
 std::string summary_checksum(const std::string& directory) {
   const std::string path = (std::filesystem::path(directory) / "summary.json").string();
   std::error_code ignored;
@@ -61,7 +61,7 @@ std::string RunState::word() const {
 NextAction next_action(const RunState& state) {
   if (state.word() == "done") return NextAction::nothing;
   if (state.exit_status == refused_status) return NextAction::nothing;
-  // Status 3 without a summary that knows of it: out of memory, which may be otherwise next time.
+  // Status 3 without a summary that states the failure: out of memory, which may not recur.
   const bool knows = state.summary && state.summary->status == "failed";
   if (state.exit_status == failed_status && knows) return NextAction::nothing;
   return state.summary || state.has_checkpoint ? NextAction::resume : NextAction::start;
@@ -76,20 +76,20 @@ RunState read_run_state(const std::string& directory) {
       RunSummary summary = read_summary(summary_path);
       state.summary_json = read_file(summary_path);
       state.summary = std::move(summary);
-    } catch (const Error&) {  // it is not waited for until it is on the disk: checkpoints are
+    } catch (const Error&) {  // the summary may be damaged, as it is not synced to the disk; checkpoints are
     }
   }
   state.has_checkpoint = std::filesystem::is_directory(directory, ignored) && !checkpoint_files(directory).empty();
   if (!std::filesystem::exists(outcome_path(directory), ignored)) return state;
   try {
     const Json json = Json::parse(read_file(outcome_path(directory)));
-    // Somebody has gone on with the run by hand: how an earlier process ended no longer matters. (Not every version
-    // told of which summary it was.)
+    // A summary that has changed means that somebody has resumed the run by hand, and the status of the earlier process
+    // no longer matters. (Some versions did not record the checksum of the summary.)
     const std::string of_summary = json.value("summary", "");
     if (of_summary.empty() ? is_done(state) : of_summary != summary_checksum(directory)) return state;
     state.exit_status = json.at("exit_status").get<int>();
     state.message = json.at("message").get<std::string>();
-  } catch (const Json::Exception&) {  // then it is not known, and the run is tried again
+  } catch (const Json::Exception&) {  // the status is unknown, and the run is tried again
   }
   return state;
 }

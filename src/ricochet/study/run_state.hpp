@@ -5,29 +5,29 @@
 
 #include "ricochet/io/summary.hpp"
 
-/// @file What has become of a run of a study, and what is still to be done with it.
+/// @file State of a run of a study, and the next action for it.
 namespace ricochet {
 
-/// How the process of a run has ended, in its directory.
+/// File in the directory of a run that states how its process ended.
 inline constexpr const char* outcome_file = "outcome.json";
 
-/// What its directory tells.
+/// State of a run, read from its directory.
 struct RunState {
-  std::optional<RunSummary> summary;  ///< none: there is none, or it cannot be read
+  std::optional<RunSummary> summary;  ///< none if it does not exist or cannot be read
   std::string summary_json;
   bool has_checkpoint = false;
-  std::optional<int> exit_status;  ///< that its last process has left, where not 0; 128 + N: signal N killed it
-  std::string message;             ///< with that status, one line
+  std::optional<int> exit_status;  ///< nonzero status of its last process; 128 + N: killed by signal N
+  std::string message;             ///< message of one line that belongs to that status
 
-  /// The status that the study gives it: that of its process where it was not 0, whatever its files say; else 0, or 5
-  /// where an expectation does not hold. Nothing where it has not come to an end.
+  /// Returns the status of the run in the study: a nonzero status of its process takes precedence over its files; else
+  /// 0, or 5 if an expectation does not hold. None if the run has not ended.
   [[nodiscard]] std::optional<int> final_status() const;
-  /// "done", "refused", "failed", "interrupted" or "not run".
+  /// Returns "done", "refused", "failed", "interrupted" or "not run".
   [[nodiscard]] std::string word() const;
 };
 
 enum class NextAction {
-  nothing,  ///< it is done; or it was refused or has failed, and would again
+  nothing,  ///< it is done, was refused, or has failed and would again
   resume,
   start,
 };
@@ -35,14 +35,14 @@ enum class NextAction {
 
 [[nodiscard]] RunState read_run_state(const std::string& directory);
 
-/// Says in the directory of a run how its process has ended, for read_run_state; 0 leaves nothing.
+/// Records in the directory of a run how its process has ended, for read_run_state; a status of 0 leaves no record.
 void record_outcome(const std::string& directory, int exit_status, const std::string& message);
 
-/// What a process has said last and loudest: the first line of its last "ricochet: …", without the name of its run.
+/// Returns the first line of the last "ricochet: …" message of a process, without the name of its run.
 [[nodiscard]] std::string last_error(const std::string& messages, const std::string& run_name);
 
-/// Of two exit statuses the one that says more: defects and files before steps that failed, these before cases that
-/// were refused, and last expectations that do not hold.
+/// Returns the more serious of two exit statuses: defects and file errors, then steps that failed, then cases that were
+/// refused, and last expectations that do not hold.
 [[nodiscard]] int worse_status(int a, int b);
 
 }  // namespace ricochet

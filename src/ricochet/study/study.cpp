@@ -18,7 +18,7 @@ namespace ricochet {
 
 namespace {
 
-/// A study of which nothing could run is a mistake in the case, or in what varies.
+/// Refuses a study none of whose runs is valid: the case, or its varied values, must be wrong.
 void require_one_valid_case(const Study& study) {
   std::optional<Error> first;
   for (const StudyRun& run : study.runs) {
@@ -32,7 +32,7 @@ void require_one_valid_case(const Study& study) {
   throw Error(first->kind(), fmt::format("study: no run of it could start; the first one says:\n{}", first->what()));
 }
 
-/// Runs that are done stay only where the case still is what they ran.
+/// Requires that completed runs are those of the present case.
 void require_runs_of_this_case(const Study& study) {
   for (const StudyRun& run : study.runs) {
     const RunState state = read_run_state(study.path(run));
@@ -60,7 +60,7 @@ void refuse_other_results(const std::string& directory, const StudyOptions& opti
                           directory));
 }
 
-/// Only what the study itself says is its own.
+/// Removes a study; only folders that the study itself lists belong to it.
 void remove_old_study(const std::string& directory) {
   std::vector<std::string> folders;
   for (const StudyRun& run : read_study(directory).runs) folders.push_back(run.folder);
@@ -85,7 +85,7 @@ int run_study(const Study& study, const StudyOptions& options) {
   std::vector<PooledRun> runs;
   for (const StudyRun& run : study.runs) runs.push_back({study.plan.case_path, run.planned.settings, study.path(run)});
   return run_pool(runs, {options.jobs, options.threads, options.quiet, options.stop_signal, options.program}, [&] {
-    // Until there are new ones: what the old tables say will not be so any more.
+    // The old tables are obsolete until new ones are written.
     for (const char* file : {"study.csv", "study.md"}) {
       std::error_code ignored;
       std::filesystem::remove(study.path(file), ignored);

@@ -21,10 +21,10 @@ namespace {
 
 constexpr std::string_view against = "-against-";
 
-/// What a panel shows: columns of the table, and the axis of the plan along which its lines go.
+/// Contents of a panel: columns of the table, and the axis of the plan along which its lines extend.
 struct StudyPanel {
   std::string x, y;
-  std::string part = {};  ///< of a key whose values are vectors: "x", "y", "z" or "length"; empty: chosen
+  std::string part = {};  ///< component for a key whose values are vectors: "x", "y", "z" or "length"; empty: chosen
   std::size_t axis = 0;
   bool log_x = false, log_y = false, has_slopes = false;
 };
@@ -56,7 +56,7 @@ void require_column(const std::string& what, const std::string& column, const Re
                                   near.empty() ? "" : fmt::format(" (is \"{}\" meant?)", near)));
 }
 
-/// The components of a vector, as "[0, -0.5]" has them; nothing where the text is none.
+/// Returns the components of a vector written as "[0, -0.5]"; empty if the text is not a vector.
 std::vector<double> vector_in(const std::string& text) {
   if (text.size() < 2 || text.front() != '[' || text.back() != ']') return {};
   std::vector<double> result;
@@ -71,7 +71,7 @@ std::vector<double> vector_in(const std::string& text) {
   return result;
 }
 
-/// The vectors of a column, one of each row; nothing where a row has none, or one of another dimension.
+/// Returns the vectors of a column, one per row; empty if some row has none or one of another dimension.
 std::vector<std::vector<double>> vectors_of(const ResultTable& table, std::size_t column) {
   std::vector<std::vector<double>> result;
   for (const auto& row : table.rows) {
@@ -81,7 +81,7 @@ std::vector<std::vector<double>> vectors_of(const ResultTable& table, std::size_
   return result;
 }
 
-/// "initial.velocity.y" is a part of the values of "initial.velocity".
+/// Interprets "initial.velocity.y" as a component of the values of "initial.velocity".
 void take_part(const ResultTable& table, StudyPanel& panel) {
   const std::size_t dot = panel.x.rfind('.');
   if (dot == std::string::npos || table.find(panel.x) < table.columns.size()) return;
@@ -95,7 +95,7 @@ void take_part(const ResultTable& table, StudyPanel& panel) {
   panel.part = part;
 }
 
-/// Returns one number on the axis for each vector: the part that is asked for, else the only component in which they
+/// Returns one number on the axis for each vector: the requested component, else the only component in which they
 /// differ, else their length.
 std::vector<double> numbers_of(const std::vector<std::vector<double>>& vectors, std::string& part) {
   std::vector<std::string> differing;
@@ -113,7 +113,7 @@ std::vector<double> numbers_of(const std::vector<std::vector<double>>& vectors, 
   return numbers;
 }
 
-/// The axis of a key; of any other column that along which orders are, else the last.
+/// Returns the axis of a key; for any other column the axis along which orders are observed, else the last.
 std::size_t axis_of(const std::string& column, const Study& study) {
   for (const std::string& key : {column, study.questions.order_key}) {
     const std::vector<std::string> keys = varied_keys(study.plan);
@@ -151,7 +151,7 @@ std::vector<StudyPanel> panels_of(const std::string& what, const Study& study, c
   return panels;
 }
 
-/// How the runs of a line are told from the others: by the values of the other axes, and by their kind along its own.
+/// Returns the label that distinguishes the runs of a line: the values of the other axes, and their kind along its own.
 std::string line_label(const PlannedRun& run, const StudyPlan& plan, const StudyPanel& panel) {
   std::vector<std::size_t> others;
   for (std::size_t a = 0; a < plan.axes.size(); ++a) {
@@ -163,7 +163,7 @@ std::string line_label(const PlannedRun& run, const StudyPlan& plan, const Study
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// "error of tip.displacement": for readers, without what tells programs where a number comes from.
+/// Returns a label for readers, such as "error of tip.displacement", without the prefixes for programs.
 std::string axis_label(const std::string& column) {
   if (column.starts_with(error_prefix))
     return fmt::format("error of {}", axis_label(column.substr(std::string(error_prefix).size())));
@@ -176,13 +176,13 @@ std::string axis_label(const std::string& column) {
   return label;
 }
 
-/// Points of lines, by label, in the order of the table.
+/// A line: its label and its points, in the order of the table.
 struct StudyLine {
   std::string label;
   std::vector<double> x, y;
 };
 
-/// `numbers`: of each row, on the axis.
+/// `numbers` holds the position of each row on the horizontal axis.
 std::vector<StudyLine> lines_of(const StudyPanel& panel, const Study& study, const ResultTable& table,
                                 const std::vector<double>& numbers) {
   const std::size_t y_column = table.find(panel.y);
@@ -202,7 +202,7 @@ std::vector<StudyLine> lines_of(const StudyPanel& panel, const Study& study, con
   return lines;
 }
 
-/// Between neighbours, from the first point on.
+/// Returns the orders between neighbouring points, from the first point on.
 std::vector<double> orders_of(const StudyLine& line) {
   std::vector<double> orders;
   for (std::size_t i = 1; i < line.x.size(); ++i) {
@@ -211,8 +211,8 @@ std::vector<double> orders_of(const StudyLine& line) {
   return orders;
 }
 
-/// The whole orders that are nearest to observed ones, for guides: two at most, and the order at the end of each line.
-/// From where the error no longer falls there are none, and the order just before has some of that.
+/// Describes the integer orders nearest to the observed ones, as guides (at most two), and the last order of each line.
+/// Points from which the error no longer decreases, and the order just before them, are excluded.
 void describe_orders(const std::vector<StudyLine>& lines, const std::string& key, Json& panel) {
   std::map<long, int> found;
   std::vector<std::string> last;
@@ -238,7 +238,7 @@ void describe_orders(const std::vector<StudyLine>& lines, const std::string& key
   panel["note"] = fmt::format("last order{}: {}", last.size() > 1 ? "s" : "", fmt::join(last, ", "));
 }
 
-/// What spans no more than a factor of five is seen well on a linear scale.
+/// Returns true if the values span more than a factor of five; others are legible on a linear scale.
 bool spans_much(const std::vector<StudyLine>& lines) {
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (const StudyLine& line : lines) {
@@ -250,8 +250,8 @@ bool spans_much(const std::vector<StudyLine>& lines) {
   return least > 0.0 && most > 5.0 * least;
 }
 
-/// Returns the number on the axis for each row: its own, that of a part of vectors, or that of a word among
-/// `categories`.
+/// Returns the position of each row on the axis: its number, that of a component of its vector, or the index of a word
+/// among `categories`.
 std::vector<double> places_of(const ResultTable& table, StudyPanel& panel, std::vector<std::string>& categories) {
   const std::size_t column = table.find(panel.x);
   if (const auto vectors = vectors_of(table, column); !vectors.empty()) return numbers_of(vectors, panel.part);

@@ -60,7 +60,7 @@ StudyQuestions questions_from(const Json& json) {
   return questions;
 }
 
-/// What they mean, however values are written.
+/// Returns the meaning of settings, independent of how their values are written.
 std::set<std::string> meaning_of(const Texts& settings) {
   std::set<std::string> meaning;
   for (const std::string& setting : settings) meaning.insert(normal_override(setting));
@@ -71,7 +71,7 @@ std::string numbered(std::size_t number, const std::string& name) {
   return fmt::format("{:03}-{}", number, name);
 }
 
-/// The key that "last", "finest" or an order is about, where nobody says it.
+/// Returns the key for "last", "finest" or an order if none is given.
 std::string only_numeric_key(const StudyPlan& plan, const std::string& option, bool must_be_one) {
   Texts numeric;
   for (const std::string& key : varied_keys(plan)) {
@@ -135,7 +135,7 @@ void require_format(const Json& json, const std::string& path) {
                   path, format, study_format));
 }
 
-/// What could not have come from a command line. Throws Json::Exception or Error.
+/// Refuses a plan that no command line could have made. Throws Json::Exception or Error.
 void require_sound(const StudyPlan& plan) {
   for (const StudyAxis& axis : plan.axes) {
     if (axis.keys.empty() || axis.values.empty()) throw Json::Exception("\"axes\": one has no keys or no values");
@@ -151,7 +151,7 @@ void require_sound(const StudyPlan& plan) {
 void require_sound(StudyQuestions questions, const StudyPlan& plan) {
   const bool is_of_study = questions.reference.starts_with("last:") || questions.reference.starts_with("finest:");
   if (!is_of_study && !questions.reference.empty()) {
-    // A run elsewhere may have been moved or removed since, which the table says.
+    // A run elsewhere may have been moved or removed since; the table reports this.
     questions.reference.clear();
     questions.compare.clear();
   }

@@ -6,23 +6,23 @@
 
 #include "ricochet/study/plan.hpp"
 
-/// @file The directory of a study: study.json, which says what it is of, its runs in runs/, and its tables.
+/// @file The directory of a study: study.json with its plan, its runs in runs/, and its tables.
 namespace ricochet {
 
-/// What the table says besides what every run comes to.
+/// Contents of the table in addition to the results of every run.
 struct StudyQuestions {
-  std::vector<std::string> quantities;                ///< in the language of [[expect]]
-  std::vector<std::pair<std::string, double>> exact;  ///< a quantity, and the value that it should have
-  /// The run that errors of histories are those to: "", the directory of a run, "last:KEY" or "finest:KEY" (the last,
-  /// or smallest, value of this key, with the same values of all others).
+  std::vector<std::string> quantities;                ///< in the syntax of [[expect]]
+  std::vector<std::pair<std::string, double>> exact;  ///< quantities with their exact values
+  /// Run to which errors of histories refer: "", the directory of a run, "last:KEY" or "finest:KEY" (the last, or
+  /// smallest, value of this key, with the same values of all others).
   std::string reference;
   std::vector<std::string> compare;  ///< columns of the history, or vectors without their _x; empty: the usual ones
-  std::string order_key;             ///< the key whose values give observed orders; empty: chosen
+  std::string order_key;             ///< key whose values give observed orders; empty: chosen
 };
 
 struct StudyRun {
   PlannedRun planned;
-  std::string folder;  ///< its name in runs/
+  std::string folder;  ///< name of its folder in runs/
 };
 
 struct Study {
@@ -36,20 +36,20 @@ struct Study {
 };
 
 [[nodiscard]] bool holds_study(const std::string& directory);
-/// Throws Error(file_access) where there is none, Error(invalid_input) where it is damaged.
+/// Throws Error(file_access) if there is no study, Error(invalid_input) if it is damaged.
 [[nodiscard]] Study read_study(const std::string& directory);
 void write_study(const Study& study);
 
-/// The runs of a plan in new folders.
+/// Returns the runs of a plan in new folders.
 [[nodiscard]] std::vector<StudyRun> number_runs(const StudyPlan& plan);
-/// The runs of a plan in the folders of a study that is there, and those that it lacks in new ones. Throws
-/// Error(file_access) where runs that are there are not of this plan.
+/// Returns the runs of a plan in the folders of an existing study, and those that it lacks in new folders. Throws
+/// Error(file_access) if the study has runs that are not in this plan.
 [[nodiscard]] std::vector<StudyRun> take_over_runs(const StudyPlan& plan, const Study& before);
 
-/// What a study may ask, checked: quantities can be read, KEYs vary; "last" and "finest" get their key, and an order
-/// its own. Throws Error(usage) or Error(invalid_input).
+/// Checks the questions of a study: quantities can be parsed, KEYs vary; "last", "finest" and orders get their keys.
+/// Throws Error(usage) or Error(invalid_input).
 [[nodiscard]] StudyQuestions checked_questions(StudyQuestions questions, const StudyPlan& plan);
-/// "QUANTITY=VALUE", taken apart. Throws Error(usage).
+/// Parses "QUANTITY=VALUE". Throws Error(usage).
 [[nodiscard]] std::pair<std::string, double> parse_exact(const std::string& text);
 
 }  // namespace ricochet

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* page_mark = "ricochet study";
 
-/// An SVG as part of a page: without what stands before its element.
+/// Returns an SVG as part of a page, without the text before its element.
 std::string inline_svg(const std::string& document) {
   const std::size_t begin = document.find("<svg");
   return begin == std::string::npos ? "" : document.substr(begin);

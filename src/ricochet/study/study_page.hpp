@@ -8,12 +8,12 @@
 /// @file The page of a study: an HTML file with its table and figures.
 namespace ricochet {
 
-/// `figure`: an SVG document, or empty. `runs_page`: the name of a report of its runs in its directory, or empty. Links
-/// go to the study's directory as seen from `folder`, where the page is.
+/// Makes the page. `figure` is an SVG document, or empty; `runs_page` is the name of a report of its runs in its
+/// directory, or empty. Links to the study's directory are relative to `folder`, which contains the page.
 [[nodiscard]] std::string make_study_page(const Study& study, const StudyResults& results, const std::string& figure,
                                           const std::string& runs_page, const std::string& folder);
 
-/// Is this file one that make_study_page has made?
+/// Returns true if make_study_page has made this file.
 [[nodiscard]] bool is_study_page(const std::string& path);
 
 }  // namespace ricochet

@@ -14,14 +14,14 @@ namespace ricochet {
 
 namespace {
 
-/// Seconds between two looks at the summaries of runs, which they write every two seconds.
+/// Seconds between two readings of the summaries of runs, which are written every two seconds.
 constexpr double redraw_interval = 0.5;
 
-/// The part of its steps that a run has taken, by its summary.
+/// Returns the fraction of its steps that a run has completed, from its summary.
 double part_done(const std::string& directory) {
   try {
     return read_summary(directory + "/summary.json").part_done();
-  } catch (const Error&) {  // it has none yet
+  } catch (const Error&) {  // no summary yet
     return 0.0;
   }
 }
@@ -67,7 +67,7 @@ double StudyProgress::runs_done() const {
 std::string StudyProgress::time_left(double done) const {
   const double here = done - static_cast<double>(ended_before_), left = static_cast<double>(runs_) - done;
   if (!(here > 0.0 && left > 0.0)) return "";
-  // As many go on at a time as before: the number of jobs is in the mean.
+  // The mean time per run includes the number of jobs, which stays the same.
   return fmt::format(", {} left", duration_text(timer_.seconds() / here * left));
 }
 

@@ -5,29 +5,30 @@
 
 #include "ricochet/base/timer.hpp"
 
-/// @file Progress of many runs on standard error: a bar on a terminal, a line for each that ends elsewhere.
+/// @file Progress of many runs on standard error: a bar on a terminal, else a line for each run that ends.
 namespace ricochet {
 
 class StudyProgress {
  public:
-  /// Of so many runs, of which some had ended before.
+  /// Shows the progress of so many runs, some of which had ended before.
   StudyProgress(std::size_t runs, std::size_t ended_before, bool quiet);
-  /// Ends the bar's line if one is open.
+  /// Ends the line of the bar if it is open.
   ~StudyProgress();
   StudyProgress(const StudyProgress&) = delete;
   StudyProgress& operator=(const StudyProgress&) = delete;
 
   void begin(const std::string& directory);
-  /// `words`: what has become of it.
+  /// `words`: the state in which it ended.
   void end(const std::string& directory, const std::string& words);
-  /// Looks how far the runs are, now and then.
+  /// Updates the progress of the runs from time to time.
   void watch();
 
  private:
   void draw();
-  /// Of all runs, with the part that those that go on have done.
+  /// Returns the number of completed runs, including fractions of those in progress.
   [[nodiscard]] double runs_done() const;
-  /// ", 12 s left": what the runs of this command have taken so far, of those that are left. "" before there is any.
+  /// Returns ", 12 s left": an estimate for the remaining runs from those of this command. "" before the first has
+  /// progressed.
   [[nodiscard]] std::string time_left(double done) const;
 
   std::size_t runs_, ended_before_, ended_;

@@ -23,7 +23,7 @@ namespace ricochet {
 
 namespace {
 
-/// Quantities of the case's [[expect]] entries, each once. What they want does not matter here.
+/// Returns the quantities of the case's [[expect]] entries, each once; the expected values do not matter here.
 std::vector<std::string> expected_quantities(const Study& study) {
   std::vector<std::string> quantities;
   for (const StudyRun& run : study.runs) {
@@ -33,7 +33,7 @@ std::vector<std::string> expected_quantities(const Study& study) {
           quantities.push_back(expect.quantity);
       }
       break;
-    } catch (const Error&) {  // a run that was refused: its row says so
+    } catch (const Error&) {  // a run that was refused, as its row states
     }
   }
   return quantities;
@@ -73,22 +73,22 @@ class StudyTableMaker {
   const Study& study_;
   const StudyQuestions& questions_;
   std::vector<RunState> states_;
-  std::map<std::string, RunHistory> histories_;  ///< read and still needed
+  std::map<std::string, RunHistory> histories_;  ///< histories that are still needed
   std::vector<CellOf> new_columns_;
-  std::map<std::string, std::string> problems_;  ///< what the runs do not have, by the option that asks for it
-  std::set<std::string> answered_;               ///< such options that have a value of some run
-  std::map<std::string, int> lacking_;           ///< how many runs do not have it
+  std::map<std::string, std::string> problems_;  ///< error per option that requests a value runs do not have
+  std::set<std::string> answered_;               ///< such options for which some run has a value
+  std::map<std::string, int> lacking_;           ///< number of runs without the value
   bool has_unanswered_ = false;
   StudyResults results_;
 };
 
-/// To be filled by the next fill_columns().
+/// Adds a column to be filled by the next fill_columns().
 void StudyTableMaker::add_column(TableColumn column, CellOf cell) {
   results_.table.columns.push_back(std::move(column));
   new_columns_.push_back(std::move(cell));
 }
 
-/// Run by run, so that no more histories are in memory than that of one run and those of the references.
+/// Fills columns run by run, so that only the histories of one run and of the references are in memory.
 void StudyTableMaker::fill_columns() {
   std::set<std::string> references;
   for (std::size_t i = 0; i < study_.runs.size(); ++i) references.insert(reference_of(i));
@@ -100,7 +100,8 @@ void StudyTableMaker::fill_columns() {
   note_problems();
 }
 
-/// A question that some runs cannot answer leaves cells empty; one that none can is a mistake in the question.
+/// Reports values that could not be found. If only some runs lack a value, their cells stay empty; if all lack it, the
+/// question is wrong.
 void StudyTableMaker::note_problems() {
   for (const auto& [question, problem] : problems_) {
     if (answered_.contains(question) && lacking_.contains(question)) {
@@ -130,7 +131,7 @@ void StudyTableMaker::add_outcomes() {
   }
 }
 
-/// nullptr: the run has none that can be read.
+/// Returns null if the run has no history that can be read.
 const RunHistory* StudyTableMaker::history_of(const std::string& directory) {
   const auto known = histories_.find(directory);
   if (known != histories_.end()) return &known->second;
@@ -144,7 +145,7 @@ const RunHistory* StudyTableMaker::history_of(const std::string& directory) {
   }
 }
 
-/// Where somebody has asked for it by an option, runs that do not have it are told.
+/// Returns the value of a quantity. If an option requests it, runs without the value are reported.
 TableCell StudyTableMaker::value_of(const std::string& quantity, std::size_t run, const std::string& option) {
   if (states_[run].word() != "done") return {};
   const std::string question = option + " " + quantity;
@@ -163,7 +164,7 @@ TableCell StudyTableMaker::value_of(const std::string& quantity, std::size_t run
   }
 }
 
-/// Of the case's expectations for programs only: there are often many.
+/// Adds the quantities; those of the case's expectations, often numerous, are for programs only.
 void StudyTableMaker::add_quantities() {
   std::vector<std::string> seen;
   const auto add = [&](const std::string& quantity, bool is_asked) {
@@ -192,7 +193,7 @@ void StudyTableMaker::add_exact_errors() {
   }
 }
 
-/// The directory of the run that a run is compared with.
+/// Returns the directory of the run with which a run is compared.
 std::string StudyTableMaker::reference_of(std::size_t run) const {
   const std::size_t colon = questions_.reference.find(':');
   const std::string kind = questions_.reference.substr(0, colon);
@@ -214,7 +215,7 @@ std::string StudyTableMaker::reference_of(std::size_t run) const {
   return study_.path(*found);
 }
 
-/// By the first reference that there is.
+/// Returns the quantities to compare, from the first reference that exists.
 std::vector<ComparedQuantity> StudyTableMaker::compared() {
   for (std::size_t i = 0; i < study_.runs.size(); ++i) {
     const RunHistory* reference = history_of(reference_of(i));
@@ -224,7 +225,7 @@ std::vector<ComparedQuantity> StudyTableMaker::compared() {
     for (const std::string& name : questions_.compare) {
       try {
         result.push_back(find_compared(name, reference->table));
-      } catch (const Error&) {  // the rest of the table is there all the same
+      } catch (const Error&) {  // the rest of the table is made nonetheless
         problems_["--compare " + name] = "the history of the reference has no such column or vector";
       }
     }

@@ -6,28 +6,29 @@
 #include "ricochet/study/study_files.hpp"
 #include "ricochet/study/table.hpp"
 
-/// @file What came out of the runs of a study: its table.
+/// @file The table of a study: results of its runs.
 namespace ricochet {
 
 struct StudyResults {
   ResultTable table;
-  /// For readers, a sentence each: what the columns mean, and why runs failed; and what runs warned of.
+  /// For readers, a sentence each: the meaning of the columns, and why runs failed; and the warnings of runs.
   std::vector<std::string> notes, warnings;
-  int done = 0;  ///< runs that came to their end
-  /// Of the runs that have one; where all of these are 0, that of a question that no run that is done could answer.
+  int done = 0;  ///< completed runs
+  /// The worst status of the runs that have one; if these are all 0, the status of a question that no completed run
+  /// could answer.
   int worst_status = 0;
 };
 
-/// Reads all runs, as far as they are. Columns: the varied keys; what every run comes to; the quantities of the case's
-/// [[expect]] entries and those asked for; errors and orders; the message of a run that failed. Two studies of the same
-/// plan have the same table but for processor_seconds. Throws Error as reading does, and Error(usage) where the
-/// reference cannot answer.
+/// Reads the results of all runs, as far as they exist. Columns: the varied keys; the results of every run; the
+/// quantities of the case's [[expect]] entries and those requested; errors and orders; the message of a run that
+/// failed. Two studies of the same plan have the same table except for processor_seconds. Throws Error as reading does,
+/// and Error(usage) if the reference lacks a quantity to compare.
 [[nodiscard]] StudyResults make_study_table(const Study& study);
 
 /// Writes study.csv and study.md.
 void write_study_table(const Study& study, const StudyResults& results);
 
-/// What error columns and order columns begin with.
+/// Prefixes of the names of error columns and order columns.
 inline constexpr const char *error_prefix = "error:", *order_prefix = "order:";
 
 }  // namespace ricochet

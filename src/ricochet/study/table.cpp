@@ -21,13 +21,13 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
-/// A cell as readers see it.
+/// Returns a cell for readers.
 std::string rounded(const TableCell& cell, int digits) {
   const double* const number = std::get_if<double>(&cell);
   return number != nullptr ? fmt::format("{:.{}g}", *number, digits) : text_of(cell);
 }
 
-/// What readers see: the names of columns, then the cells of each row; and which columns hold numbers alone.
+/// Table for readers: the names of columns, then the cells of each row; and which columns contain only numbers.
 struct ReadersTable {
   std::vector<std::vector<std::string>> lines;
   std::vector<bool> is_number;
@@ -48,7 +48,7 @@ ReadersTable readers_table(const ResultTable& table, const std::vector<std::size
   return result;
 }
 
-/// Part by part, those of which there is something to say besides the keys.
+/// Returns the parts with entries besides the keys.
 std::vector<ReadersTable> parts_of(const ResultTable& table) {
   std::map<int, std::vector<std::size_t>> columns;
   for (std::size_t c = table.key_columns; c < table.columns.size(); ++c) {
@@ -65,7 +65,7 @@ std::vector<ReadersTable> parts_of(const ResultTable& table) {
   return parts;
 }
 
-/// Characters, not bytes, of UTF-8.
+/// Returns the number of UTF-8 characters, not bytes.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
@@ -192,13 +192,13 @@ std::string markdown_text(const std::string& text) {
   };
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    // Of entities, since not every reader of Markdown knows \<.
+    // As entities, since not every Markdown reader supports \<.
     if (c == '<' || c == '>' || c == '&') {
       result += escaped(std::string(1, c));
     } else if (c == '\n' || c == '\r') {
       result += ' ';
     } else {
-      // Inside of a word _ means nothing; ( makes a link behind ] alone. Names and formulas stay legible so.
+      // _ has no meaning inside a word, and ( makes a link only after ]: names and formulas stay legible.
       const bool is_underscore = c == '_' && !(i > 0 && is_word(i - 1) && is_word(i + 1));
       const bool is_link = c == '(' && i > 0 && text[i - 1] == ']';
       if (is_underscore || is_link || std::string_view("\\|`*~$").find(c) != std::string_view::npos) result += '\\';

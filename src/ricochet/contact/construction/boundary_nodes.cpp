@@ -15,7 +15,7 @@ namespace ricochet {
 
 namespace {
 
-/// Multipliers that share a node must agree on what holds there.
+/// Checks that multipliers that share a node agree in their properties.
 void check_agreement(const ContactPair& first, const ContactPair& second, bool held) {
   if (first.multipliers != second.multipliers) {
     throw Error(ErrorKind::invalid_input,
@@ -33,13 +33,13 @@ void check_agreement(const ContactPair& first, const ContactPair& second, bool h
                           first.group, second.group, first.obstacle_name));
 }
 
-/// It makes no difference which of the two obstacles carries a node.
+/// Whether it makes no difference which of the two obstacles carries a node.
 bool carry_alike(const ContactPair& one, const ContactPair& other) {
   if (!one.friction.any() && !other.friction.any()) return true;
   return one.friction == other.friction && !one.obstacle->moves() && !other.obstacle->moves();
 }
 
-/// The surfaces agree here, to rounding, in place and direction.
+/// Whether the surfaces coincide here, to rounding, in position and direction.
 bool coincide(const Obstacle& one, const Obstacle& other, const Vector& at) {
   constexpr double same_direction = 1e-8;
   if ((one.normal(at) - other.normal(at)).norm() > same_direction) return false;
@@ -54,7 +54,7 @@ BoundaryNodes::BoundaryNodes(const Body& body, const std::vector<ContactPair>& p
     for (const Index node : facet_nodes(*body.space, pairs[k].facets)) {
       const auto [entry, added] = nodes_.try_emplace({node, pairs[k].obstacle});
       if (added) {
-        // Where the normal turns with the motion, only a node that supports hold altogether is held along it.
+        // If the normal rotates with the motion, only a node with all components constrained is constrained along it.
         const int d = body.space->dimension;
         const Vector normal = pairs[k].obstacle->has_constant_normals()
                                   ? Vector(pairs[k].obstacle->normal(body.space->nodes.col(node)))
@@ -77,8 +77,8 @@ int BoundaryNodes::first_pair(Index node, const Obstacle* obstacle) const {
   return known != nodes_.end() ? known->second.first_pair : -1;
 }
 
-/// Conditions at a node may depend on one another: the step has one motion then, too. But where two surfaces are one
-/// and the same, it must not matter which of them carries the node: how they share the force is not determined.
+/// Conditions at a node may be linearly dependent: the step still has a unique motion. But if two surfaces coincide, it
+/// must not matter which of them carries the node: the distribution of the force between them is not determined.
 void BoundaryNodes::check_coincidence(const Body& body, const std::vector<ContactPair>& pairs) const {
   for (auto one = nodes_.begin(); one != nodes_.end(); ++one) {
     for (auto other = std::next(one); other != nodes_.end() && other->first.first == one->first.first; ++other) {

@@ -6,21 +6,21 @@
 
 #include "ricochet/contact/contact_boundary.hpp"
 
-/// @file The nodes of the contacts with obstacles and the conditions they must meet.
+/// @file Nodes of the contacts with obstacles, and the checks that they must pass.
 namespace ricochet {
 
-/// Each node once per obstacle. Pairs of bodies have no part in it.
+/// Contains each node once per obstacle. Pairs of bodies are excluded.
 class BoundaryNodes {
  public:
-  /// Throws Error(invalid_input) when pairs that share a node and an obstacle differ in multipliers or, where a
-  /// multiplier stands for both, in friction; and when obstacles that share a node are one plane there, with different
-  /// friction or motion.
+  /// Throws Error(invalid_input) if pairs that share a node and an obstacle differ in multipliers or, if a
+  /// multiplier belongs to both, in friction; and if obstacles that share a node coincide in one plane there, with
+  /// different friction or motion.
   BoundaryNodes(const Body& body, const std::vector<ContactPair>& pairs, const FreeComponent& is_free);
 
-  /// Whether supports hold the node along the obstacle's normal.
+  /// Whether supports constrain the node along the obstacle's normal.
   [[nodiscard]] bool is_held(Index node, const Obstacle* obstacle) const;
   [[nodiscard]] Index held_count() const { return held_count_; }
-  /// The first pair of this obstacle that names the node; −1: none does.
+  /// Number of the first pair of this obstacle that contains the node; −1 if none does.
   [[nodiscard]] int first_pair(Index node, const Obstacle* obstacle) const;
 
  private:

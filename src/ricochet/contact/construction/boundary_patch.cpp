@@ -41,7 +41,7 @@ void make_obstacle_patch(const Body& body, const BoundaryNodes& nodes, BoundaryP
   patch.facets.is_held = [&nodes, obstacle](Index node) { return nodes.is_held(node, obstacle); };
   patch.space = make_multiplier_space(patch.multipliers, patch.facets);
   patch.kept = patch.space->multipliers();
-  // Those that could only press against supports are left out.
+  // Multipliers that can only act on supports are omitted.
   std::erase_if(patch.kept,
                 [&](const Multiplier& multiplier) { return only_presses_supports(multiplier, patch.facets); });
   take_obstacle_conditions(body, patch);
@@ -61,10 +61,10 @@ void make_body_patch(const Body& body, const ContactPair& pair, const FreeCompon
   facing = bodies.facing;
 }
 
-/// Nodal forces at tied nodes are left out: a tied node's gap is a mean of those of the nodes that it follows, on the
-/// same surface. These get its share of the area, D' = D + Pᵀ D_s, and with it of the force, so that a uniform pressure
-/// p still has the forces p D' and is recovered from them: of r' at the nodes that stay, a node had D/D' r', and a tied
-/// one Σ P D_s/D' r'. Nodes that it follows inside the seam carry no contact.
+/// Removes nodal forces at tied nodes: the gap of a tied node is a mean of those of the nodes to which it is tied, on
+/// the same surface. These receive its share of the area, D' = D + Pᵀ D_s, and with it of the force, so that a uniform
+/// pressure p still has the forces p D' and is recovered from them: of r' at the remaining nodes, a node had D/D' r',
+/// and a tied one Σ P D_s/D' r'. Nodes of the tie inside the seam carry no contact.
 void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
   std::vector<Multiplier> kept;
   std::vector<PointConditions> conditions;
@@ -76,7 +76,7 @@ void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
     conditions.push_back(patch.conditions[i]);
   }
   std::vector<Index> lost;
-  std::vector<TiedNodes::Weights> areas(patch.kept.size());  // of each: (multiplier that stays, area that goes there)
+  std::vector<TiedNodes::Weights> areas(patch.kept.size());  // of each: (remaining multiplier, area assigned to it)
   for (std::size_t i = 0; i < patch.kept.size(); ++i) {
     const Multiplier& multiplier = patch.kept[i];
     double known = 0.0;
@@ -119,7 +119,7 @@ void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
   patch.conditions = std::move(conditions);
 }
 
-/// Traces act on nodes that are not tied. Where points are, and what is recovered at nodes, stays as it is.
+/// Expresses traces on untied nodes. Positions of points, and nodal recovery, are unchanged.
 void follow_ties(const TiedNodes& tied, BoundaryPatch& patch) {
   if (!patch.space->has_functions()) leave_out_tied_forces(tied, patch);
   for (PointConditions& conditions : patch.conditions) conditions.opposite = tied.spread(conditions.opposite);

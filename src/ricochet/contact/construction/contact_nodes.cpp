@@ -3,12 +3,12 @@
 
 #include "ricochet/contact/construction/boundary_patch.hpp"
 
-/// @file What is reported node by node.
+/// @file Nodal output of the contact boundary.
 namespace ricochet {
 
 namespace {
 
-/// A node with the (first) pair that it belongs to, and on which side: 1 opposite.
+/// Node with the (first) pair to which it belongs, and its side: 1 for the opposite one.
 using NodeKey = std::tuple<Index, int, char>;
 
 class NodeTable {
@@ -54,7 +54,7 @@ class NodeTable {
     boundary.opposite_place.setFromTriplets(places.begin(), places.end());
   }
 
-  /// Points that are anchored at nodes, and pressures.
+  /// Registers points that are anchored at nodes, and pressure recovery.
   void recover(const BoundaryPatch& patch, ContactBoundary& boundary, std::vector<Eigen::Triplet<double>>& recovery) {
     for (std::size_t i = 0; i < patch.kept.size(); ++i) {
       const Index node = patch.kept[i].node;
@@ -64,7 +64,7 @@ class NodeTable {
     }
     const auto add = [&](const NodeKey& key, const Eigen::Triplet<double>& entry) {
       const auto row = rows_.find(key);
-      if (row == rows_.end()) return;  // no multiplier in use reaches the node
+      if (row == rows_.end()) return;  // no multiplier in use has the node in its trace
       recovery.emplace_back(row->second.number, patch.numbers[static_cast<std::size_t>(entry.col())], entry.value());
     };
     for (const auto& entry : patch.recovery) add(key(patch, entry.row()), entry);

@@ -43,9 +43,9 @@ void resize(ContactBoundary& boundary, ContactRows& rows, Index count) {
   boundary.friction_bound.resize(count);
 }
 
-/// Multipliers in stress units need positive weights; a nodal force needs one only where friction is a stress.
+/// Multipliers in stress units need positive weights; a nodal force needs one only if its friction is a stress.
 void check_weights(const BoundaryPatch& patch, const std::vector<ContactPair>& pairs) {
-  if (patch.obstacle == nullptr) return;  // points that are hardly covered have been left out
+  if (patch.obstacle == nullptr) return;  // points that are hardly covered are already omitted
   double largest = 0.0;
   for (const Multiplier& multiplier : patch.kept) largest = std::max(largest, multiplier.weight);
   for (const Multiplier& multiplier : patch.kept) {
@@ -71,21 +71,21 @@ void fill_friction(const BoundaryPatch& patch, const std::vector<ContactPair>& p
     boundary.friction_coefficient[patch.numbers[i]] = law.coefficient;
     boundary.friction_bound[patch.numbers[i]] = 0.0;
     if (law.bound == 0.0) continue;
-    // Weights of nodal forces at the vertices of flat triangles of degree 2 vanish: a rounding error below zero is
-    // zero, and with it the friction that the bound leaves.
+    // Weights of nodal forces at the vertices of flat triangles of degree 2 vanish: a negative rounding error counts as
+    // zero, and with it the friction that the bound admits.
     const double bound = law.bound * std::max(patch.kept[i].weight, 0.0);
     boundary.friction_bound[patch.numbers[i]] = bound;
     if (bound == 0.0) boundary.friction_coefficient[patch.numbers[i]] = 0.0;
   }
 }
 
-/// G = t ⊗ nᵀ and B_T = t ⊗ τᵀ.
+/// Assembles G = t ⊗ nᵀ and B_T = t ⊗ τᵀ.
 class Operators {
  public:
   explicit Operators(int dimension) : d_(dimension) {}
 
-  /// `follows`: rows follow the motion, and a row of G may then have entries at some more nodes; those of a rigid body,
-  /// −1 without one, have them in rows of B_T, too.
+  /// Adds a point. `follows`: whether rows follow the motion; a row of G may then have entries at some more nodes, and
+  /// rows of B_T, too, have entries at those of a rigid body (−1 without one).
   void add(int point, const Multiplier& multiplier, const TiedNodes::Weights& free_trace,
            const PointConditions& conditions, const ContactTangents& tangents, bool follows,
            const std::vector<Index>& more_nodes, Index nodes_of_body) {
@@ -123,7 +123,7 @@ class Operators {
       gap_.emplace_back(point, dof, weight * normal[k]);
       for (int j = 0; j < d_ - 1; ++j) {
         const bool slips = tangents.slips[static_cast<std::size_t>(j)];
-        if (!slips && is_flat) continue;  // a row that follows the motion has its entries at all times
+        if (!slips && is_flat) continue;  // a row that follows the motion always has its entries
         slip_.emplace_back(point * (d_ - 1) + j, dof, slips ? weight * tangents.directions(k, j) : 0.0);
       }
     }
@@ -133,7 +133,7 @@ class Operators {
   std::vector<Eigen::Triplet<double>> trace_, own_, gap_, slip_;
 };
 
-/// The first of those of a rigid body that moves freely, or −1.
+/// Returns the first of the nodes of a free rigid body, or −1.
 Index nodes_of_body(const BoundaryPatch& patch) {
   const FreeMotion* const body = patch.obstacle != nullptr ? patch.obstacle->free_motion() : nullptr;
   return body != nullptr ? body->centre_node() : -1;
@@ -164,7 +164,7 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
   }
 }
 
-/// The trace of the points whose directions turn at obstacles that do not move by the forces on them.
+/// Returns the trace of the points whose directions rotate, at obstacles that are not free rigid bodies.
 std::shared_ptr<const SparseRowMatrix> turning_trace(const CurvedContactData& data) {
   std::vector<char> turns(static_cast<std::size_t>(data.trace.rows()), 0);
   for (const CurvedContactData::Point& point : data.points)
@@ -175,7 +175,7 @@ std::shared_ptr<const SparseRowMatrix> turning_trace(const CurvedContactData& da
   return result;
 }
 
-/// Points and nodes at curved obstacles; null: there are none.
+/// Creates the geometry of points and nodes at curved obstacles; null if there are none.
 std::unique_ptr<ContactGeometry> follow_curved_obstacles(const Body& body, const Patches& patches,
                                                          const std::vector<ContactPair>& pairs,
                                                          const FreeComponent& is_free, const ContactBoundary& boundary,
@@ -209,7 +209,7 @@ std::unique_ptr<ContactGeometry> follow_curved_obstacles(const Body& body, const
   return make_curved_contact(std::move(data));
 }
 
-/// Points and nodes where gaps and normals follow the motion.
+/// Creates the geometry of points and nodes where gaps and normals follow the motion.
 void follow_motion(const Body& body, const Patches& patches, const std::vector<ContactPair>& pairs,
                    const FreeComponent& is_free, ContactRows& rows, ContactBoundary& boundary) {
   std::vector<std::unique_ptr<ContactGeometry>> parts;
@@ -220,7 +220,7 @@ void follow_motion(const Body& body, const Patches& patches, const std::vector<C
   if (parts.empty()) return;
   rows.revision.assign(static_cast<std::size_t>(rows.size()), 0);
   boundary.geometry = combine(std::move(parts));
-  // Gaps at the start are those that the rows are the derivatives of.
+  // Initial gaps must be consistent with the rows, which are their derivatives.
   Vector gap = boundary.initial_gap;
   boundary.geometry->gaps(Vector::Zero(body.space->dof_count()), 0.0, gap);
   boundary.initial_gap = gap;
@@ -229,9 +229,9 @@ void follow_motion(const Body& body, const Patches& patches, const std::vector<C
     return pair.slides_far || (pair.obstacle != nullptr && pair.obstacle->free_motion() != nullptr);
   };
   if (std::none_of(pairs.begin(), pairs.end(), reaches_more)) return;
-  // Where points touch, the entries of rigid bodies that move freely, and those of what faces them.
+  // Creates, at points in contact, the entries of free rigid bodies, and those of opposite surfaces.
   boundary.geometry->update(Vector::Zero(body.space->dof_count()), 0.0, nullptr, rows);
-  // The rows of the start, whoever else numbers those that come later.
+  // Numbers the initial rows 0, independent of the numbers of later updates.
   rows.revision.assign(static_cast<std::size_t>(rows.size()), 0);
 }
 

@@ -9,12 +9,12 @@
 #include "ricochet/contact/mortar/paired_surfaces.hpp"
 #include "ricochet/contact/sliding/sliding_contact.hpp"
 
-/// @file Pairs of bodies that slide without limit: their points, and what makes rows follow them.
+/// @file Pairs of bodies with unlimited sliding: their points, and the geometry that updates their rows.
 namespace ricochet {
 
 namespace {
 
-/// Out of the opposite surface, at the start; facets around an edge, or nodes on an axis, share one.
+/// Initial normals out of the opposite surface; a common one for facets around an edge, and for nodes on an axis.
 class OwnNormals {
  public:
   OwnNormals(const Body& body, const ContactPair& pair)
@@ -37,7 +37,7 @@ class OwnNormals {
   [[nodiscard]] TurningNormal of(const Multiplier& multiplier) const {
     return multiplier.node >= 0 ? at_node(multiplier.node) : at_facet(multiplier.facet);
   }
-  /// The length of the mean of unit normals around a node: 1 where they agree.
+  /// Length of the mean of unit normals around a node: 1 if they agree.
   [[nodiscard]] double agreement(Index node) const { return areas_.at(node).vector.norm() / areas_.at(node).size; }
 
  private:
@@ -106,7 +106,7 @@ SlidingPair::Data data_of(const Body& body, const ContactPair& pair, const Bound
   return data;
 }
 
-/// How the points face the other surface where bodies start, and what closes gaps there.
+/// Evaluates the pairing at the initial positions, and sets offsets that close gaps there.
 void look_at_the_start(const Body& body, const ContactPair& pair, const FreeComponent& is_free, BoundaryPatch& patch,
                        PairFacing& facing) {
   patch.numbers.assign(patch.kept.size(), 0);

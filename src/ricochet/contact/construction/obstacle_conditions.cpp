@@ -8,7 +8,7 @@ namespace ricochet {
 
 namespace {
 
-/// Mean of a multiplier's nodes; its own for one that is anchored at a node.
+/// Mean position of a multiplier's nodes; that of its anchor if this is a node.
 Vector anchor_position(const DisplacementSpace& space, const Multiplier& multiplier) {
   if (multiplier.node >= 0) return space.nodes.col(multiplier.node);
   Vector position = Vector::Zero(space.dimension);
@@ -16,7 +16,7 @@ Vector anchor_position(const DisplacementSpace& space, const Multiplier& multipl
   return position;
 }
 
-/// (1/D_i) ∫ψ_i g₀ over the curved facets, by anchor.
+/// Computes (1/D_i) ∫ψ_i g₀ over the curved facets, by anchor.
 std::map<Index, double> mean_gaps(const BoundaryPatch& patch) {
   std::map<Index, double> gaps, weights;
   const FacetIntegration integration(*patch.facets.body);
@@ -42,10 +42,11 @@ std::map<Index, double> mean_gaps(const BoundaryPatch& patch) {
 
 }  // namespace
 
-/// Where the displacement's space contains the geometry, the trace of the nodes' gaps is the mean gap against planes,
-/// exactly.
+/// If the displacement space contains the geometry, the trace of the nodes' gaps is
+/// exactly the mean gap against planes.
 void take_obstacle_conditions(const Body& body, BoundaryPatch& patch) {
-  // Displacements come from solves over the whole body, so their rounding is relative to its size, wherever a node is.
+  // Displacements result from solutions for the whole body, so that their rounding is relative to
+  // its size, wherever a node is.
   const double body_size = extent(body.space->nodes);
   const double body_rounding = 8.0 * std::numeric_limits<double>::epsilon() * body_size;
   const bool by_quadrature = patch.space->has_functions() && body.mesh->degree > body.space->degree;

@@ -16,8 +16,8 @@ namespace {
 
 using Patches = std::vector<std::unique_ptr<BoundaryPatch>>;
 
-/// Nodes whose displacement a row of a contact point may depend on, per node: those that some trace reaches, which have
-/// no inertia where contact nodes have none.
+/// Marks the nodes on whose displacement a row of a contact point may depend: those in some trace, which have no
+/// inertia if contact nodes have none.
 std::vector<char> reached_by_traces(const Body& body, const Patches& patches) {
   std::vector<char> result(static_cast<std::size_t>(body.space->node_count()), 0);
   const auto mark = [&result](const TiedNodes::Weights& weights) {
@@ -30,7 +30,7 @@ std::vector<char> reached_by_traces(const Body& body, const Patches& patches) {
   return result;
 }
 
-/// Those of the facets of which every node is marked.
+/// Returns the facets of which every node is marked.
 std::vector<Index> of_marked_nodes(const DisplacementSpace& space, const std::vector<Index>& facets,
                                    const std::vector<char>& marked) {
   std::vector<Index> result;
@@ -48,7 +48,7 @@ std::vector<Index> around(const FacetsAround& facets, Index node) {
   return found != facets.end() ? found->second : std::vector<Index>{};
 }
 
-/// The facets of the other side that a multiplier sees.
+/// Returns the facets of the other side in the trace of a multiplier.
 std::vector<Index> facets_seen(const FacetsAround& facets, const TiedNodes::Weights& seen) {
   std::vector<Index> result;
   for (const auto& [node, weight] : seen) {
@@ -86,7 +86,7 @@ TurningPairsData::Point turning_point(const Body& body, const BoundaryPatch& pat
   return point;
 }
 
-/// What is reported node by node turns with the facets around the node.
+/// Adds nodes of the nodal output, which rotate with the facets around them.
 void add_nodes(const Body& body, const std::vector<ContactPair>& pairs, const ContactBoundary& boundary,
                TurningPairsData& data) {
   std::map<std::pair<int, bool>, FacetsAround> around_nodes;

@@ -21,15 +21,16 @@ namespace {
 
 using Three = Eigen::Vector3d;
 
-/// Directions that agree to this are one: those of a flat surface.
+/// Difference up to which directions are identified: those of a flat surface.
 constexpr double same_direction = 1e-13;
-/// Of a multiplier's whole area: what is covered by less is no contact point.
+/// Fraction of a multiplier's whole area below which it is not covered and no contact point.
 constexpr double least_cover = 1e-8;
-/// Length of the mean of unit normals below which there is no direction.
+/// Length of the mean of unit normals below which no direction is defined.
 constexpr double folded = 0.5;
-/// Of a facet's size: so far off the rim a surface is continued to find a direction.
+/// Distance beyond a surface's boundary, in sizes of a facet, over which it is extrapolated to find a direction.
 constexpr double beyond_rim = 0.25;
-/// Of the height of cells: surfaces that overlap by no more touch, and their coordinates have been rounded.
+/// Overlap, relative to the height of cells, that is attributed to the rounding of
+/// coordinates in files and set to zero.
 constexpr double rounding_of_files = 1e-6;
 
 }  // namespace
@@ -67,7 +68,7 @@ struct BodyPairing::Implementation {
   }
 
   [[nodiscard]] const Three& normal_of(std::size_t facet) const { return normals[facet]; }
-  /// One that has been met lately, where it differs by no more than rounding: all facets of a plane have the very same.
+  /// Reuses a recent normal that differs by no more than rounding: all facets of a plane have an identical normal.
   [[nodiscard]] Three known_normal(const Three& normal) const {
     constexpr std::size_t memory = 16;
     for (std::size_t k = normals.size(); k > 0 && k + memory > normals.size(); --k) {
@@ -92,10 +93,10 @@ struct BodyPairing::Implementation {
   void summarize(bool has_gaps, BodyContact& result) const;
 };
 
-/// n_i: between minus the mean normal of the facing facets around the anchor, and the normal of the surface that the
-/// anchor faces along it. Normals of one side alone are off those of the contact by their angle at the edges of a
-/// contact of curved bodies; that is of first order in a/R, has the opposite sign on the other side, and would make
-/// friction between equal bodies that are only pressed.
+/// Computes n_i: the mean of minus the average normal of the facing facets around the anchor, and the normal of the
+/// surface that the anchor faces along it. The normals of a single side differ from those of the contact by their angle
+/// at the edges of a contact of curved bodies; the difference is of first order in a/R, has the opposite sign on the
+/// other side, and would cause friction between equal bodies that are only pressed together.
 AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, PairFacing& found) const {
   AnchorDirections directions;
   const std::map<Index, AreaSum> faced = areas_around_faced_nodes(surfaces, direct);
@@ -121,7 +122,7 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
     found.edge = in_mesh(surfaces.position(node));
   }
   refuse_fold(pair, found);
-  // On a flat surface all facets and multipliers have the very same one.
+  // On a flat surface all facets and multipliers have an identical direction.
   for (std::size_t k = 0; k < own.facets().size(); ++k) {
     if (!faces(k)) continue;
     for (const auto& [node, normal] : normals_at_nodes(own.facets()[k].number, own_areas))
@@ -135,7 +136,8 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
   return directions;
 }
 
-/// At the nodes of a facet: between vertices the mean of theirs, as the opposite side's normals are taken, too.
+/// Returns the normals at the nodes of a facet: between vertices the mean of theirs, consistent with the normals of the
+/// opposite side.
 std::vector<std::pair<Index, Three>> BodyPairing::Implementation::normals_at_nodes(
     Index facet, const std::map<Index, AreaSum>& areas) const {
   const PlaceInBlocks place = locate_facet(*body.space, facet);
@@ -149,7 +151,7 @@ std::vector<std::pair<Index, Three>> BodyPairing::Implementation::normals_at_nod
   return result;
 }
 
-/// Per anchor the mean normal of what its facets see along their own normals.
+/// Returns for each anchor the mean normal of the facets onto which its facets project along their own normals.
 AnchorDirections BodyPairing::Implementation::normals_seen(bool at_facets) const {
   AnchorDirections result;
   for (std::size_t k = 0; k < own.facets().size(); ++k) {
@@ -168,7 +170,7 @@ AnchorDirections BodyPairing::Implementation::normals_seen(bool at_facets) const
   return result;
 }
 
-/// The normals at the vertices, from the areas around them, interpolated.
+/// Interpolates the normals at the vertices, which follow from the areas around them.
 Three BodyPairing::Implementation::normal_between_nodes(const SegmentFinder::Hit& hit,
                                                         const std::map<Index, AreaSum>& areas) const {
   Matrix values;
@@ -183,10 +185,10 @@ Three BodyPairing::Implementation::normal_between_nodes(const SegmentFinder::Hit
   return normal;
 }
 
-/// The middle of the own direction and the normal of the opposite surface at the place that is seen along that very
-/// middle: that of the facet there where `faced` is null. So surfaces that are mirror images have the normal of the
-/// mirror, at any gap; along the own direction another place would be seen, off by the gap times its slope. Where the
-/// rounds find no such place, what is seen along the own direction decides, or that direction alone.
+/// Returns the mean of the own direction and the normal of the opposite surface at the point hit along this very mean:
+/// the normal of the facet there if `faced` is null. Surfaces that are mirror images thus have the normal of the
+/// mirror, at any gap; along the own direction another point would be hit, shifted by the gap times its slope. If the
+/// iterations find no such point, the point hit along the own direction is used, or that direction alone.
 Three BodyPairing::Implementation::middle_direction(const Three& at, const Three& own_direction, const Three& seen,
                                                     double height, const std::map<Index, AreaSum>* faced) const {
   constexpr int most_rounds = 30;
@@ -231,7 +233,7 @@ void BodyPairing::Implementation::take_functions(const MultiplierSpace& space, c
   }
 }
 
-/// Nodal forces: a node against the place of the other surface that it faces.
+/// Nodal forces: pairs each node with its projection onto the other surface.
 void BodyPairing::Implementation::take_nodes_as_points(const MultiplierSpace& space, const AnchorDirections& directions,
                                                        BodyContact& result) const {
   constexpr double at_node = 1e-6;
@@ -249,7 +251,7 @@ void BodyPairing::Implementation::take_nodes_as_points(const MultiplierSpace& sp
   }
 }
 
-/// Points that could only press against supports: on both sides.
+/// Removes points that can only act on supports, on both sides.
 void BodyPairing::Implementation::leave_out_held(const FreeComponent& is_free, BodyContact& result) const {
   result.facing.held = result.keep([&](const Multiplier& multiplier, const PointConditions& conditions) {
     const auto is_free_here = [&](const auto& entry) { return has_free_part(entry.first, conditions.normal, is_free); };
@@ -258,7 +260,7 @@ void BodyPairing::Implementation::leave_out_held(const FreeComponent& is_free, B
   });
 }
 
-/// Gaps and their rounding, and what of the group faces.
+/// Computes gaps and their rounding, and the statistics of the pairing.
 void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) const {
   const double size = extent(body.space->nodes);
   double height = std::numeric_limits<double>::infinity();

@@ -14,31 +14,31 @@ namespace ricochet {
 
 namespace {
 
-/// Ratio from which two sides differ.
+/// Ratio above which two sides differ.
 constexpr double alike = 1.1;
 
-/// Ratio from which turns within facets differ, and the turn from which forces are off by more than some per cent: both
-/// measured (docs/sliding.md).
+/// Ratio above which variations of normals differ, and the variation above which forces are in error by more than some
+/// per cent: both measured (docs/sliding.md).
 constexpr double alike_turns = 1.25, doubtful_turn = 0.25;
 
-/// Turn below which sides are as good as flat, in rad.
+/// Variation below which sides count as flat, in rad.
 constexpr double flat = 1e-3;
 
-/// Ratio of areas from which a surface is the smaller one, and the ratio of mesh sizes up to which that decides.
+/// Ratio of areas above which a surface is the smaller one, and the ratio of mesh sizes up to which this decides.
 constexpr double smaller_from = 1.5, coarsest = 3.0;
 
 struct Side {
   double size = 0.0;       ///< mean distance of nodes on the facets
-  double curvature = 0.0;  ///< mean turn of the normal per length from facet to facet
-  double stiffness = 0.0;  ///< the mean of Young's modulus behind the facets, by area
+  double curvature = 0.0;  ///< mean rotation of the normal per length from facet to facet
+  double stiffness = 0.0;  ///< mean of Young's modulus behind the facets, weighted by area
   double area = 0.0;
 };
 
-/// Neighbours at a larger angle, in rad, meet at an edge.
+/// Angle, in rad, above which neighbours meet at an edge.
 constexpr double largest_bend = 0.26 * 3.14159265358979323846;
 
-/// Of facets that share a node: the angle of their normals over the distance of their centres, the mean of all.
-/// Neighbours at a larger angle than `most` count as if they were of one plane.
+/// Mean, over facets that share a node, of the angle between their normals divided by the distance of their centres.
+/// Neighbours at an angle above `most` count as coplanar.
 double curvature_of(const Body& body, const FacetSurface& surface, double most) {
   std::map<Index, std::vector<std::size_t>> around;
   for (std::size_t k = 0; k < surface.facets().size(); ++k) {
@@ -86,8 +86,8 @@ double distance_from_curved(const Body& body, const ContactPair& pair) {
   if (body.mesh->degree > 1) return 0.0;
   double result = 0.0;
   for (const std::vector<Index>* const facets : {&pair.facets, &pair.opposite_facets}) {
-    const Side side = measure(body, *facets, largest_bend);  // edges are no curves that facets stand for
-    const double size = side.size * body.space->degree;      // of facets, not of the distance of their nodes
+    const Side side = measure(body, *facets, largest_bend);  // edges do not approximate curves
+    const double size = side.size * body.space->degree;      // of the facets, not of their node spacing
     result = std::max(result, 0.125 * side.curvature * size * size);
   }
   return result;
@@ -110,8 +110,8 @@ SideChoice choose_side(const Body& body, const ContactPair& pair) {
         opposite, fmt::format("{} ({:.3g} against {:.3g})", what, opposite ? others : own, opposite ? own : others)};
   };
   const TouchingTurns turns = pair.tied ? TouchingTurns{} : touching_turns(body, pair.facets, pair.opposite_facets);
-  // Edges turn more than all else, and which of them touch is not known beforehand: they are left out where forces
-  // would be wrong without them.
+  // Normals vary most at edges, and it is not known beforehand which edges come into contact: edges are excluded if the
+  // forces would be inaccurate even without them.
   const bool by_bends = std::max(turns.own_of_bends, turns.opposite_of_bends) > doubtful_turn;
   const double own = by_bends ? turns.own_of_bends : turns.own,
                others = by_bends ? turns.opposite_of_bends : turns.opposite;

@@ -14,7 +14,7 @@ namespace {
 
 using Three = FacetSurface::Three;
 
-/// Of the facet's size: nodes that are no farther from the mean of their vertices are on it.
+/// Distance, relative to the facet's size, up to which a node counts as lying at the mean of its vertices.
 constexpr double straight = 1e-12;
 
 Three in_space(const Points& positions, Index node) {
@@ -23,7 +23,7 @@ Three in_space(const Points& positions, Index node) {
   return result;
 }
 
-/// A facet of second order whose nodes lie where those of a straight one would has the pieces of that one.
+/// Whether the nodes of a second-order facet lie on the straight facet, whose pieces it then has.
 bool is_straight(CellShape shape, const std::vector<Three>& nodes, double size) {
   const auto& vertices_of = node_vertices(shape, 2);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -35,8 +35,8 @@ bool is_straight(CellShape shape, const std::vector<Three>& nodes, double size) 
   return true;
 }
 
-/// The area of a triangle, and the length of a segment, along the normal on the side where the nodes turn
-/// counter-clockwise, or to the right of the way.
+/// Area vector of a triangle, or length vector of a segment, along the normal on the side from which the nodes are in
+/// counter-clockwise order, or to the right of the direction of travel.
 Three area_vector(const std::array<Three, 3>& corners, bool plane) {
   const Three along = corners[1] - corners[0];
   if (plane) return {along[1], -along[0], 0.0};
@@ -88,7 +88,7 @@ void FacetSurface::move(const Points& nodes) {
   if (!boxes_.empty()) tree_.refit(boxes_);
 }
 
-/// Areas, normals and the centre of the corners, from where the pieces are.
+/// Computes areas, normals and the centre from the positions of the pieces.
 void FacetSurface::place(Facet& facet) {
   facet.area = 0.0;
   facet.area_vector.setZero();

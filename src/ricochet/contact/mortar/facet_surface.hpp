@@ -7,16 +7,16 @@
 #include "ricochet/fem/facet_map.hpp"
 #include "ricochet/mesh/search/box_tree.hpp"
 
-/// @file One side of a contact between bodies: its facets, cut into flat pieces, where they can be found.
+/// @file One side of a contact between bodies: its facets, cut into flat pieces, in a search tree.
 namespace ricochet {
 
-/// Everything has three coordinates; in two dimensions the third is 0.
+/// All vectors have three components; in 2D the third is 0.
 class FacetSurface {
  public:
   using Three = Eigen::Vector3d;
-  /// A segment or, in three dimensions, a triangle between nodes of a facet.
+  /// Segment or, in 3D, triangle between nodes of a facet.
   struct Piece {
-    int facet = 0;               ///< its place in facets()
+    int facet = 0;               ///< its index in facets()
     std::array<Index, 3> nodes;  ///< of the mesh, at the corners
     std::array<Three, 3> corners;
     Three normal;  ///< out of the body, of length 1
@@ -25,23 +25,21 @@ class FacetSurface {
     Index number = 0;  ///< through all blocks
     int first_piece = 0, piece_count = 0;
     double area = 0.0;           ///< of the pieces
-    Three area_vector{0, 0, 0};  ///< ∫ N of them, out of the body: a length in two dimensions, an area in three
+    Three area_vector{0, 0, 0};  ///< ∫ N over the pieces, out of the body: a length in 2D, an area in 3D
     Three centre{0, 0, 0};       ///< the mean of its vertices
     double size = 0.0;           ///< the longest distance between corners
-    double height = 0.0;         ///< of the cell behind it, or what take_heights() says
+    double height = 0.0;         ///< of the cell behind it, or as set by take_heights()
   };
 
-  /// `facets`: numbered through all blocks, ascending. They are seen where they are displaced by `shift` (d; empty: not
-  /// at all).
+  /// `facets`: numbered through all blocks, ascending. Their positions are displaced by `shift` (d; zero if empty).
   FacetSurface(const Body& body, const std::vector<Index>& facets, const Vector& shift = {});
-  /// Of a surface that moves: facets of second order have all their pieces, whether or not they are curved at the
-  /// start.
+  /// Surface for a moving body: facets of second order have all their pieces, even if they are flat at the start.
   [[nodiscard]] static FacetSurface moving(const Body& body, const std::vector<Index>& facets);
-  /// Takes the pieces to where the nodes of the mesh are now; sizes and heights stay those of the start. Allocates
-  /// nothing.
+  /// Moves the pieces to the current positions of the mesh nodes; sizes and heights remain the initial ones. Does not
+  /// allocate.
   void move(const Points& nodes);
 
-  /// How deep what is behind each of the facets is, where more is known than the height of its cell.
+  /// Sets the depth of the body behind each facet, if it is known better than by the height of its cell.
   void take_heights(const std::vector<double>& heights) {
     for (std::size_t k = 0; k < facets_.size(); ++k) facets_[k].height = heights[k];
   }
@@ -49,9 +47,9 @@ class FacetSurface {
   [[nodiscard]] const std::vector<Facet>& facets() const { return facets_; }
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
   [[nodiscard]] const BoxTree& tree() const { return tree_; }
-  /// Behind each of the facets, numbered through all blocks.
+  /// Cells behind the facets, numbered through all blocks.
   [[nodiscard]] const std::vector<Index>& cells() const { return cells_; }
-  /// The least height of the cells behind the facets around a node.
+  /// Smallest height of the cells behind the facets around a node.
   [[nodiscard]] double height_at(Index node) const { return node_height_.at(node); }
   [[nodiscard]] const Vector& shift() const { return shift_; }
 

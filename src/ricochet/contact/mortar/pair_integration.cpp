@@ -20,7 +20,7 @@ void gather_points(const FacetMap& map, Index facet, const FacetSegments& segmen
   points.quadrature.whole = segments.is_whole();
 }
 
-/// Once for each direction among the multipliers of the facet.
+/// Integrates once for each distinct direction among the multipliers of the facet.
 void PairIntegration::add_facet(int facet, const Eigen::Vector3d& normal, const FacetSegments& direct) {
   const Index number = own_.facets()[static_cast<std::size_t>(facet)].number;
   whole_.evaluate(number, quadrature_);

@@ -5,21 +5,21 @@
 #include "ricochet/contact/mortar/body_contact.hpp"
 #include "ricochet/contact/mortar/surface_segments.hpp"
 
-/// @file The integrals of a contact between bodies over its segments.
+/// @file Integrals over the segments of a contact between bodies.
 namespace ricochet {
 
-/// The directions n_i of multipliers, by their anchors: nodes, or facets.
+/// Directions n_i of the multipliers, by their anchors: nodes, or facets.
 using AnchorDirections = std::map<Index, Eigen::Vector3d>;
 
-/// ∫ψ_i, ∫ψ_i φˢ_j, ∫ψ_i φᵐ_k and ∫ψ_i g of one multiplier.
+/// Integrals ∫ψ_i, ∫ψ_i φˢ_j, ∫ψ_i φᵐ_k and ∫ψ_i g of one multiplier.
 struct MultiplierSums {
-  double weight = 0.0, whole = 0.0;  ///< the second over the whole facets
+  double weight = 0.0, whole = 0.0;  ///< the second over the facets as a whole
   double gap = 0.0;
   std::map<Index, double> own, opposite;
 };
 
-/// Adds what a facet of the own surface has a part in. `direct`: its segments along its own normal, which are those of
-/// multipliers with that direction.
+/// Adds all contributions of a facet of the own surface. `direct`: its segments along its own normal, which multipliers
+/// with that direction share.
 class PairIntegration {
  public:
   PairIntegration(const Body& body, const FacetMap& map, const FacetSurface& own, const SegmentFinder& finder,
@@ -28,7 +28,7 @@ class PairIntegration {
 
   void add_facet(int facet, const Eigen::Vector3d& normal, const FacetSegments& direct);
   [[nodiscard]] const std::map<Index, MultiplierSums>& sums() const { return sums_; }
-  /// Segments that were left out.
+  /// Number of omitted segments.
   [[nodiscard]] Index lost() const { return lost_; }
 
  private:
@@ -48,9 +48,9 @@ class PairIntegration {
   Index lost_ = 0;
 };
 
-/// The pressure on the opposite side as a mean of that on the own one: entries (opposite vertex, own vertex, weight),
-///   p_a = Σ_v (∫ ψˢ_v ψᵐ_a∘Π / ∫ ψᵐ_a∘Π) p_v   with the hat functions ψ of the vertices, over all that is covered.
-/// So a uniform pressure is the same on both sides, up to the last covered node.
+/// Pressure on the opposite side as a mean of that on the own one: entries (opposite vertex, own vertex, weight),
+///   p_a = Σ_v (∫ ψˢ_v ψᵐ_a∘Π / ∫ ψᵐ_a∘Π) p_v   with the hat functions ψ of the vertices, over the covered part.
+/// A uniform pressure is thus the same on both sides, up to the last covered node.
 class PressureTransfer {
  public:
   PressureTransfer(const Body& body, const FacetMap& map) : body_(body), map_(map) {}
@@ -66,7 +66,8 @@ class PressureTransfer {
   std::map<std::pair<Index, Index>, double> products_;  ///< (opposite vertex, own vertex)
 };
 
-/// The measures of all segments' points on the own facet, in their order, with its shape functions there.
+/// Computes the measures on the own facet of the points of all segments, in their order,
+/// with its shape functions there.
 void gather_points(const FacetMap& map, Index facet, const FacetSegments& segments, FacetPoints& points);
 
 }  // namespace ricochet

@@ -6,10 +6,10 @@ namespace ricochet {
 
 namespace {
 
-/// Per node what it has of each multiplier.
+/// Weights of the multipliers, per node.
 using PressureRows = std::map<Index, std::map<int, double>>;
 
-/// Nodes between vertices of the opposite facets: the mean of those vertices that have a pressure.
+/// Computes rows of nodes between vertices of the opposite facets: the mean of those vertices that have a pressure.
 PressureRows rows_between_vertices(const PairedSurfaces& surfaces, const PressureRows& rows) {
   PressureRows middles;
   const DisplacementSpace& space = *surfaces.body.space;

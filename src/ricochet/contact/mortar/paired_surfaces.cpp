@@ -9,15 +9,15 @@ namespace {
 
 using Three = Eigen::Vector3d;
 
-/// Degree of the rule on segments. On straight simplices products of two shape functions are polynomials of the place.
-/// On quadrilaterals they are rational functions, and the rule is exact to nine digits (body_contact_test.cpp). On
-/// curved facets areas are those of the flat pieces anyway, to the order of the geometry.
+/// Degree of the rule on segments. On straight simplices products of two shape functions are polynomials of the
+/// position. On quadrilaterals they are rational functions, and the rule is exact to nine digits
+/// (body_contact_test.cpp). On curved facets areas are those of the flat pieces, accurate to the order of the geometry.
 int segment_degree(const Body& body) {
   const bool simplices = std::all_of(body.mesh->facets.begin(), body.mesh->facets.end(),
                                      [](const CellBlock& block) { return block.shape != CellShape::quadrilateral; });
   if (!simplices) return 2 * body.space->degree + 8;
   const int degree = 2 * body.space->degree + (body.mesh->degree == 1 ? 0 : 2);
-  return is_axisymmetric(body) ? degree + body.mesh->degree : degree;  // and the distance from the axis
+  return is_axisymmetric(body) ? degree + body.mesh->degree : degree;  // for the distance from the axis
 }
 
 }  // namespace

@@ -14,18 +14,18 @@ using Three = Eigen::Vector3d;
 
 /// Cosine of the angle to the direction below which a piece is seen edge-on.
 constexpr double edge_on = 0.1;
-/// Of a piece's area: parts that are smaller are rounding.
+/// Fraction of a piece's area below which an intersection is rounding error.
 constexpr double sliver = 1e-13;
-/// Of a piece's area: parts that face several pieces at once.
+/// Excess, relative to a piece's area, above which intersections overlap each other.
 constexpr double doubly = 1e-9;
 
 }  // namespace
 
-/// The plane in which surfaces are seen along a direction.
+/// Plane onto which surfaces are projected along a direction.
 struct SegmentFinder::View {
-  bool plane;  ///< two dimensions
+  bool plane;  ///< whether the problem is 2D
   Three direction;
-  Three first, second;  ///< axes; the second is 0 in two dimensions
+  Three first, second;  ///< axes; the second is 0 in 2D
 
   View(int dimension, const Three& along) : plane(dimension == 2), direction(along), second(Three::Zero()) {
     if (plane) {
@@ -72,11 +72,11 @@ struct SegmentFinder::View {
   }
 };
 
-/// What one own piece and one opposite piece have in common.
+/// Intersection of the projections of an own and an opposite piece.
 struct SegmentFinder::Cut {
   int own_piece, opposite_piece;
   SeenPiece own, opposite;
-  SeenPolygon common;  ///< in two dimensions from corner 0 to corner 1
+  SeenPolygon common;  ///< in 2D from corner 0 to corner 1
   double area = 0.0;
   [[nodiscard]] double gap_at(const PlanePoint& at) const { return own.height_at(at) - opposite.height_at(at); }
 };
@@ -87,7 +87,7 @@ bool is_among(const std::vector<int>& places, int facet) {
   return std::binary_search(places.begin(), places.end(), facet);
 }
 
-/// The range of a box along a unit vector.
+/// Whether the extent of a box along a unit vector overlaps the interval.
 bool overlaps(const BoxTree::Box& box, const Three& along, double from, double to) {
   const double centre = along.dot(box.center()), half = along.cwiseAbs().dot(0.5 * box.sizes());
   return centre - half <= to && centre + half >= from;
@@ -102,7 +102,7 @@ SegmentFinder::SegmentFinder(const FacetMap& map, const FacetSurface& own, const
       interval_(quadrature(CellShape::interval, degree)),
       triangle_(quadrature(CellShape::triangle, degree)) {}
 
-/// The opposite pieces that an own piece faces.
+/// Finds the opposite pieces that an own piece faces.
 void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std::vector<Cut>& cuts) const {
   const FacetSurface::Piece& piece = own_.pieces()[static_cast<std::size_t>(number)];
   if (-view.direction.dot(piece.normal) < edge_on) return;
@@ -136,13 +136,13 @@ void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std:
   });
 }
 
-/// Points on the common parts, gathered by opposite facet.
+/// Adds quadrature points on the intersections, gathered by opposite facet.
 void SegmentFinder::add_points(const View& view, const std::vector<Cut>& cuts,
                                std::vector<SurfaceSegment>& segments) const {
   double all = 0.0;
   for (const Cut& cut : cuts) all += cut.area;
   const bool several = !cuts.empty() && all > (1.0 + doubly) * cuts.front().own.area;
-  // Behind another piece that is nearer.
+  // Whether a nearer piece hides the point.
   const auto is_hidden = [&](const Cut& cut, const PlanePoint& at) {
     const double own = std::abs(cut.gap_at(at));
     return std::any_of(cuts.begin(), cuts.end(), [&](const Cut& other) {
@@ -175,7 +175,7 @@ void SegmentFinder::add_points(const View& view, const std::vector<Cut>& cuts,
       }
     }
     const Index rows = view.plane ? 1 : 2, before = segment->weights.size(), more = static_cast<Index>(at.size());
-    segment->own_local.conservativeResize(rows, before + more);  // places in the plane, until they are inverted
+    segment->own_local.conservativeResize(rows, before + more);  // coordinates in the plane, until they are inverted
     segment->weights.conservativeResize(before + more);
     for (Index q = 0; q < more; ++q) {
       segment->own_local.col(before + q) = at[static_cast<std::size_t>(q)].head(rows);
@@ -184,8 +184,8 @@ void SegmentFinder::add_points(const View& view, const std::vector<Cut>& cuts,
   }
 }
 
-/// From places in the plane, in own_local, to reference coordinates on both facets. False where a facet is so curved
-/// that it is seen edge-on.
+/// Converts coordinates in the plane, in own_local, to reference coordinates on both facets. Returns false if a facet
+/// is so curved that it is seen edge-on.
 bool SegmentFinder::find_coordinates(Index facet, const Points& axes, SurfaceSegment& segment) const {
   const Points plane = segment.own_local;
   const auto seen_at = [&](const Vector& shift) { return Points(plane.colwise() - axes.transpose() * shift); };
@@ -215,7 +215,7 @@ FacetSegments SegmentFinder::find(int facet, const Three& direction, bool any_de
   return result;
 }
 
-/// Calls visit(number, piece, as it is seen) for opposite pieces near a place of the plane, but for those seen edge-on.
+/// Calls visit(number, piece, its projection) for opposite pieces near a point of the plane that are not seen edge-on.
 template <class Visit>
 void SegmentFinder::visit_pieces_at(const View& view, const PlanePoint& at, double beyond, const Visit& visit) const {
   const auto may_face = [&](const BoxTree::Box& box) {

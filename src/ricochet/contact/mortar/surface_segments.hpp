@@ -4,64 +4,65 @@
 
 #include "ricochet/contact/mortar/facet_surface.hpp"
 
-/// @file Where two surfaces face each other: the pieces into which the facets of both cut one of them, with points to
-/// integrate over each.
+/// @file Segments on which two surfaces face each other: the intersections of the facets of
+/// both, with quadrature points.
 namespace ricochet {
 
-/// The part of a facet of the own surface that one facet of the opposite surface faces.
+/// Part of a facet of the own surface that faces one facet of the opposite surface.
 struct SurfaceSegment {
   Index opposite = 0;     ///< facet, numbered through all blocks
   Points own_local;       ///< reference coordinates on the own facet, (d−1) × points
-  Points opposite_local;  ///< on the opposite facet, of the points that face them
+  Points opposite_local;  ///< their projections on the opposite facet
   Vector weights;         ///< areas in the plane perpendicular to the direction
 };
 
 struct FacetSegments {
   Points axes;  ///< d × (d−1), orthonormal with the direction
   std::vector<SurfaceSegment> segments;
-  double covered = 0.0;  ///< part of the facet, seen along the direction, that faces the other surface
-  Index lost = 0;        ///< segments left out, as a curved facet is seen edge-on there
+  double covered = 0.0;  ///< fraction of the facet, as projected along the direction, that faces the other surface
+  Index lost = 0;        ///< number of segments omitted because a curved facet is seen edge-on there
   [[nodiscard]] bool is_whole() const { return covered > 1.0 - 1e-8; }
 };
 
-/// Of the height of what is behind two pieces: overlaps that are deeper are none.
+/// Deepest admissible overlap, relative to the height of the body behind two pieces.
 constexpr double deepest_overlap = 0.5;
 
-/// Cuts facets of one surface by those of another, seen along one direction.
+/// Intersects facets of one surface with those of another, projected along one direction.
 ///
-/// Both are cut in the plane perpendicular to the direction: intervals in two dimensions, polygons of triangles in
-/// three. A rule on every triangle of a polygon integrates there, so that what is piecewise polynomial on the two
-/// meshes is integrated exactly: of degree `degree` of the facets' own coordinates, where those depend linearly on the
-/// place. Own and opposite shape functions are taken at the same points: their sums agree to rounding with any rule.
+/// Both are intersected in the plane perpendicular to the direction: intervals in 2D, polygons of triangles in 3D. A
+/// rule on every triangle of a polygon integrates piecewise polynomials on the two meshes exactly: up to degree
+/// `degree` in the facets' own coordinates, if those depend linearly on the position. Own and opposite shape functions
+/// are evaluated at the same points: their sums agree to rounding for any rule.
 class SegmentFinder {
  public:
   /// Keeps references. `own` and `opposite` may belong to one body.
   SegmentFinder(const FacetMap& map, const FacetSurface& own, const FacetSurface& opposite, int degree);
 
-  /// Of each own facet, the opposite ones that it does not see, by their places in facets(), ascending: those near it,
-  /// where both surfaces are one.
+  /// Sets for each own facet the opposite facets to be ignored, by their indices in facets(), ascending: those in its
+  /// neighbourhood if both surfaces are one.
   void leave_out(std::vector<std::vector<int>> unseen) { unseen_ = std::move(unseen); }
 
-  /// `facet`: place in own.facets(). `direction`: unit, out of the opposite surface. Pieces that are seen nearly
-  /// edge-on, or do not face each other, count for nothing, and so do those that lie inside of each other by more than
-  /// half of the height of the cells behind them: a line that passes through a thin body meets its far side there. Of
-  /// several pieces behind each other the nearest counts. `any_depth`: no overlap is too deep.
+  /// Finds the segments of own facet number `facet` in own.facets(). `direction`: unit, out of the opposite surface.
+  /// Pieces that are seen nearly edge-on, or do not face each other, are ignored, and so are those that overlap by more
+  /// than half of the height of the cells behind them: a line through a thin body meets its far side there. Of several
+  /// pieces behind each other the nearest counts. `any_depth`: admits any overlap.
   [[nodiscard]] FacetSegments find(int facet, const Eigen::Vector3d& direction, bool any_depth = false) const;
 
-  /// A point of the own side, seen along a direction: the facet that it faces, and where. None: facet −1.
-  /// What is off a facet by less, in its size, is on it.
+  /// Projection of a point of the own side along a direction: the facet that it hits, and where. Facet −1 if none.
+  /// A distance outside of a facet below on_rim, relative to its size, counts as on it.
   static constexpr double on_rim = 1e-7;
   struct Hit {
     Index facet = -1;
     Points local;      ///< (d−1) × 1
     double gap = 0.0;  ///< along the direction
   };
-  /// `reach`: how far it may be inside of the opposite surface. `beyond`: how far off the surface's rim, in sizes of a
-  /// facet, which is continued there. `unseen`: opposite facets that it does not see, by place, ascending.
+  /// Projects a point. `reach`: admissible depth inside the opposite surface. `beyond`: admissible distance outside
+  /// the surface's boundary, in sizes of a facet, over which it is extrapolated. `unseen`: opposite facets to be
+  /// ignored, by index, ascending.
   [[nodiscard]] Hit find_point(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, double reach,
                                double beyond = on_rim, const std::vector<int>& unseen = {}) const;
-  /// How thick the body behind an own facet is: from its centre against its normal to the nearest opposite piece.
-  /// Infinite: there is none.
+  /// Thickness of the body behind an own facet: from its centre against its normal to the nearest opposite
+  /// piece. Infinite if there is none.
   [[nodiscard]] double thickness_behind(int facet) const;
 
  private:
@@ -76,7 +77,7 @@ class SegmentFinder {
   const FacetMap& map_;
   const FacetSurface &own_, &opposite_;
   QuadratureRule interval_, triangle_;
-  std::vector<std::vector<int>> unseen_;  ///< empty: every facet sees all
+  std::vector<std::vector<int>> unseen_;  ///< empty if no facet is ignored
 };
 
 }  // namespace ricochet

@@ -17,14 +17,14 @@ namespace ricochet {
 
 namespace {
 
-/// Weights below are rounding.
+/// Weight below which an entry is rounding error.
 constexpr double least_weight = 1e-14;
 
-/// Σ P = 1 but for the rounding of the solve.
+/// Tolerance of Σ P = 1, for the rounding error of the solution.
 constexpr double rounding_of_sum = 1e-9;
 
-/// Leaves out the multipliers of nodes that are to stay free, and of those that do not face the other surface
-/// themselves, though a part of their facets does. P would have entries of the size of a cell over that part.
+/// Removes the multipliers of nodes that are to remain free, and of those that do not face the other surface
+/// themselves, although a part of their facets does: P would have entries extrapolated by a cell size over that part.
 void leave_out_overhanging(BodyContact& contact, const std::function<bool(Index)>& stays_free) {
   std::set<Index> facing;
   for (const BodyContact::Node& node : contact.nodes) {
@@ -35,7 +35,7 @@ void leave_out_overhanging(BodyContact& contact, const std::function<bool(Index)
   if (stays_free) contact.keep([&](const Multiplier& multiplier, const auto&) { return !stays_free(multiplier.node); });
 }
 
-/// P = C⁻¹ (M̂ − C_u) with the columns C_u of nodes that stay free. Few nodes have more than themselves in C.
+/// Computes P = C⁻¹ (M̂ − C_u) with the columns C_u of nodes that remain free. C is diagonal except for a few nodes.
 std::vector<TiedNodes::Tie> solve_ties(const BodyContact& contact) {
   std::map<Index, int> number, column;
   for (const Multiplier& multiplier : contact.multipliers) {
@@ -94,7 +94,7 @@ std::vector<TiedNodes::Tie> solve_ties(const BodyContact& contact) {
   return ties;
 }
 
-/// The largest distance of a tied node from where the geometry has it, over the size of its facet.
+/// Largest distance of a tied node from its position in the geometry, relative to the size of its facet.
 double distance_from_geometry(const TiedNodes& tied, const Mesh& mesh, const DisplacementSpace& space) {
   double largest = 0.0;
   for (std::size_t b = 0; b < space.facets.size(); ++b) {
@@ -142,7 +142,7 @@ TiedSurface tie_surfaces(const Body& body, const ContactPair& pair, const std::f
 }
 
 double move_tied_nodes(const TiedNodes& tied, Mesh& mesh, DisplacementSpace& space) {
-  std::map<Index, Vector> moves;  // of the geometry's nodes
+  std::map<Index, Vector> moves;  // of the nodes of the geometry
   const int d = mesh.dimension;
   Vector positions = space.nodes.reshaped();
   tied.complete(positions, d);
@@ -157,7 +157,7 @@ double move_tied_nodes(const TiedNodes& tied, Mesh& mesh, DisplacementSpace& spa
           if (tied.is_tied(own[k])) moves[at[k]] = moved(own[k]);
           continue;
         }
-        // Nodes of the geometry that the displacement does not have go along with the vertices around them.
+        // Nodes of the geometry that the displacement does not have move with the vertices around them.
         const std::vector<int>& vertices = vertices_of[static_cast<std::size_t>(k)];
         if (!std::all_of(vertices.begin(), vertices.end(), [&](int v) { return tied.is_tied(own[v]); })) continue;
         Vector mean = Vector::Zero(d);

@@ -17,7 +17,7 @@ using Three = FacetSurface::Three;
 /// Facets whose normals differ by less than `level` are coplanar; neighbours at more than `edge` meet at an edge.
 constexpr double level = 1e-6, edge = 0.25 * std::numbers::pi;
 
-/// Angle, in turns between two facets, up to which a normal is seen past the last of them.
+/// Angle, in angles between two facets, up to which a normal counts as included beyond the last of them.
 constexpr double past_end = 0.75;
 
 double angle_between(const Three& one, const Three& other) {
@@ -28,10 +28,10 @@ BoxTree::Box box_around(const Three& centre, double reach) {
   return {centre - Three::Constant(reach), centre + Three::Constant(reach)};
 }
 
-/// Some facets that can touch the other surface: their turns per length, with edges and without.
+/// Mean or sum over facets that can touch the other surface: their angles per length, with edges and without.
 struct Bend {
   double curvature = 0.0, smooth = 0.0, size = 0.0;
-  double bulge = 0.0;  ///< the curvature, negative where the surface is hollow
+  double bulge = 0.0;  ///< the curvature, negative if the surface is concave
   double weight = 0.0;
   void add(const Bend& other, double of_weight) {
     curvature += of_weight * other.curvature;
@@ -45,7 +45,7 @@ struct Bend {
   }
 };
 
-/// One surface by its normals.
+/// One surface, searchable by its normals.
 class TurningSurface {
  public:
   TurningSurface(const Body& body, const std::vector<Index>& facets) : surface_(body, facets) {
@@ -54,7 +54,7 @@ class TurningSurface {
     find_planes();
   }
 
-  /// Connected facets of one plane, or one facet.
+  /// Connected coplanar facets, or one facet.
   struct Plane {
     Three normal = Three::Zero();
     Bend bend;  ///< a mean; its weight is the area
@@ -62,10 +62,10 @@ class TurningSurface {
   [[nodiscard]] const std::vector<Plane>& planes() const { return planes_; }
 
   struct Sight {
-    Bend bend;  ///< a mean; no weight: no facet has this normal
+    Bend bend;  ///< a mean; its weight is zero if no facet has this normal
     bool is_level = false;
   };
-  /// Facets with this normal; if there are none, those between whose normals it lies.
+  /// Finds facets with this normal; if there are none, those between whose normals it lies.
   [[nodiscard]] Sight look(const Three& normal) const {
     const auto may_have = [&](const BoxTree::Box& box) { return box.contains(normal); };
     Sight result;
@@ -81,15 +81,15 @@ class TurningSurface {
   }
 
  private:
-  /// Two facets that share a node, and are not of one plane.
+  /// Two facets that share a node and are not coplanar.
   struct Joint {
     std::size_t one = 0, other = 0;
     double angle = 0.0;
     Bend bend;
   };
 
-  /// Joints that a normal lies in; if there are none, those beside it: a surface that ends at a plane of symmetry
-  /// touches what lies across that plane with half of a facet.
+  /// Finds joints whose normals include a given one; if there are none, those adjacent to it: a surface that ends at a
+  /// plane of symmetry touches its counterpart across that plane with half of a facet.
   template <class MayHave>
   [[nodiscard]] Bend look_at_joints(const Three& normal, const MayHave& may_have) const {
     Bend within, beside;
@@ -106,7 +106,7 @@ class TurningSurface {
     return within.weight > 0.0 ? within : beside;
   }
 
-  /// The end of a line in the plane: a facet with one neighbour.
+  /// Whether the facet is the end of a line in 2D: it has one neighbour.
   [[nodiscard]] bool is_last(std::size_t facet) const { return turns_[facet].weight == 1.0; }
 
   void find_joints(const Mesh& mesh) {
@@ -132,7 +132,7 @@ class TurningSurface {
     if (!boxes.empty()) joint_tree_ = BoxTree(boxes);
   }
 
-  /// Facets that share an edge in space are seen at both of its ends, each time alike.
+  /// Facets that share an edge in 3D are joined at both of its ends, in the same way.
   void join(std::size_t one, std::size_t other) {
     const FacetSurface::Facet &a = surface_.facets()[one], &b = surface_.facets()[other];
     const double angle = angle_between(normals_[one], normals_[other]), distance = (a.centre - b.centre).norm();
@@ -168,14 +168,14 @@ class TurningSurface {
 
   FacetSurface surface_;
   std::vector<Three> normals_;
-  std::vector<Bend> turns_;  ///< of each facet towards its neighbours: sums
+  std::vector<Bend> turns_;  ///< per facet, towards its neighbours: sums
   std::vector<Joint> joints_;
   DisjointSets sets_{0};
   std::vector<Plane> planes_;
   BoxTree joint_tree_, plane_tree_;
 };
 
-/// Sums over places; `first`: the surface whose facets are gone through.
+/// Sums over locations; `first`: the surface over whose facets the sum runs.
 struct TurnSums {
   double first = 0.0, second = 0.0, first_of_bends = 0.0, second_of_bends = 0.0, area = 0.0, area_of_bends = 0.0;
 };
@@ -185,7 +185,7 @@ double turn_of(const Bend& carrier, const Bend& other, bool is_straight, double 
   return carrier.size * (carrier.*curvature) + 2.0 * window * (other.*curvature);
 }
 
-/// One surface is hollow and the other one does not fit in: the facets would be in each other.
+/// Whether one surface is concave and the other one does not fit in: the facets would penetrate each other.
 bool are_parted(const Bend& one, const Bend& other) {
   constexpr double fitting = 0.1;
   return one.bulge + other.bulge < -fitting * (one.curvature + other.curvature);

@@ -4,22 +4,24 @@
 
 #include "ricochet/fem/assembly.hpp"
 
-/// @file How far the normals of two surfaces turn within a facet, where the surfaces can touch.
+/// @file Variation of the normals of two surfaces within a facet, where the surfaces can come into contact.
 namespace ricochet {
 
-/// Means over all places where two bodies can touch that move without turning: there the normals of their surfaces are
-/// opposite. A facet of one surface touches the other one where the other's normals pass the opposite of its own; the
-/// facets of both surfaces count by their areas. A hollow is touched by what bulges at least as much.
+/// Means over all locations at which two bodies can come into contact by translation: there the normals of their
+/// surfaces are opposite. A facet of one surface touches the other one where the other's normals include the
+/// opposite of its own; the facets of both surfaces are weighted by their areas. A concave part is touched by
+/// parts that are at least as convex.
 ///
 /// With the curvatures κ of both surfaces there and the size h of a facet of the surface that carries the multipliers,
-/// its turn is h (κ_own + 2 κ_opposite). Gaps are means over its facets, which surfaces that bend away spoil; forces
-/// have the normals of the opposite surface, which should not vary within one of its facets. Facets without curvature
-/// of their own show the size of their neighbours: on a mesh of first order h is the larger of both sizes in the second
-/// term. The factor 2 is measured (docs/sliding.md): a flat surface against a round one needs facets of half the size.
+/// the variation is the angle h (κ_own + 2 κ_opposite). Gaps are means over its facets, and become inaccurate if the
+/// surfaces bend away from each other; forces have the normals of the opposite surface, which should not vary within
+/// one facet. Facets without curvature of their own are resolved at the size of their counterparts: on a mesh of first
+/// order h is the larger of both sizes in the second term. The factor 2 is measured (docs/sliding.md): a flat surface
+/// against a round one needs facets of half the size.
 struct TouchingTurns {
-  bool touch = false;                ///< false: nowhere on either surface is the opposite of a normal of the other one
-  double own = 0.0, opposite = 0.0;  ///< turn of either surface, in rad, if it carries the multipliers
-  /// Turns where at least one surface bends. Edges, of more than 45 degrees, are left out.
+  bool touch = false;                ///< false if no normal of either surface is opposite to one of the other
+  double own = 0.0, opposite = 0.0;  ///< variation, in rad, if that surface carries the multipliers
+  /// Variations where at least one surface bends. Edges, of more than 45 degrees, are excluded.
   double own_of_bends = 0.0, opposite_of_bends = 0.0;
 };
 

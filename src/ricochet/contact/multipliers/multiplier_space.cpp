@@ -7,7 +7,7 @@
 
 namespace ricochet {
 
-// The spaces, each by the function of its own file that registers it. One line each, in the order of the documentation.
+// The spaces, each by the registration function of its own file. One line each, in the order of the documentation.
 // clang-format off
 #define RICOCHET_MULTIPLIER_SPACES(space) \
   space(nodal_multipliers)                \

@@ -14,8 +14,8 @@
 /// To add one: a file with a class and its registration, and one line in multiplier_space.cpp.
 namespace ricochet {
 
-/// What a space is built on: the facets of all contact pairs that share an obstacle and name the same space, or of one
-/// pair of bodies.
+/// Domain of a space: the facets of all contact pairs that share an obstacle and name the same space, or of one pair of
+/// bodies.
 struct ContactPatch {
   struct Part {
     int pair = 0;               ///< number of the ContactPair
@@ -23,21 +23,21 @@ struct ContactPatch {
   };
   const Body* body = nullptr;
   std::vector<Part> parts;                       ///< pairs ascending
-  std::function<bool(Index node)> is_held = {};  ///< whether supports hold the node along the normal; empty: none is
+  std::function<bool(Index node)> is_held = {};  ///< whether supports constrain the node along the normal; empty: none
 };
 
 enum class MultiplierAnchor { node, facet };
 
-/// One multiplier ψ_i of a space, anchored at a node or at a facet.
+/// Multiplier ψ_i of a space, anchored at a node or at a facet.
 struct Multiplier {
-  int pair = 0;                                 ///< the first pair whose facets it lives on
-  Index node = -1;                              ///< its anchor, or −1
-  Index facet = -1;                             ///< its anchor, or −1
+  int pair = 0;                                 ///< the first pair whose facets are in its support
+  Index node = -1;                              ///< its anchor; −1 if anchored at a facet
+  Index facet = -1;                             ///< its anchor; −1 if anchored at a node
   double weight = 0.0;                          ///< D_i = ∫ψ_i
   std::vector<std::pair<Index, double>> trace;  ///< (node j, c_ij = (1/D_i) ∫ψ_i φ_j)
 };
 
-/// The functions ψ_i on one facet.
+/// Functions ψ_i on one facet.
 struct FacetMultipliers {
   std::vector<Index> anchors;  ///< nodes, or the facet itself, as in Multiplier
   Matrix values;               ///< anchors × quadrature points
@@ -50,20 +50,20 @@ class MultiplierSpace {
   MultiplierSpace(const MultiplierSpace&) = delete;
   MultiplierSpace& operator=(const MultiplierSpace&) = delete;
 
-  /// All multipliers of the patch, by ascending anchor. Those that could only press against supports may be left out.
+  /// All multipliers of the patch, by ascending anchor. Those that can only act on supports may be omitted.
   [[nodiscard]] virtual std::vector<Multiplier> multipliers() const = 0;
-  /// Pressure at nodes from reactions: entries (node, number of the multiplier in `kept`, value) of the matrix P in
-  /// p = P r. `kept` are those of multipliers() that are in use: others are zero. Between bodies D_i and c_ij are those
-  /// of the covered part.
+  /// Recovers the pressure at nodes from reactions: entries (node, number of the multiplier in `kept`, value) of
+  /// the matrix P in p = P r. `kept` are the multipliers in use: the others are zero. Between bodies D_i and c_ij
+  /// are those of the covered part.
   [[nodiscard]] virtual std::vector<Eigen::Triplet<double>> pressure_recovery(
       const std::vector<Multiplier>& kept) const = 0;
-  /// False for nodal forces: they are conditions at nodes, not functions. `evaluate` then gives a basis of their L²
-  /// representatives.
+  /// Whether multipliers are functions; false for nodal forces, which are conditions at nodes. `evaluate` then returns
+  /// a basis of their L² representatives.
   [[nodiscard]] virtual bool has_functions() const { return true; }
-  /// ψ_i at the quadrature points of a facet of the patch. Between bodies these are in the part of it that faces the
-  /// other surface (FacetQuadrature::whole tells). There each facet has the same anchors in the same order wherever the
-  /// points are, and the functions sum to 1 and have positive integrals over any part: a multiplier without one is left
-  /// out as not covered.
+  /// Evaluates ψ_i at the quadrature points of a facet of the patch. Between bodies the points lie in the part of it
+  /// that faces the other surface (FacetQuadrature::whole). In that case each facet has the same anchors in the same
+  /// order for any points, and the functions sum to 1 and have positive integrals over any part: a multiplier without
+  /// one is omitted as not covered.
   virtual void evaluate(const FacetQuadrature& facet, FacetMultipliers& result) const = 0;
 
   [[nodiscard]] const ContactPatch& patch() const { return *patch_; }
@@ -77,34 +77,35 @@ struct MultiplierSpaceType {
   /// The patch must outlive the space.
   std::function<std::unique_ptr<MultiplierSpace>(const ContactPatch&)> make;
   MultiplierAnchor anchor = MultiplierAnchor::node;
-  std::function<std::string(CellShape, int)> instability = {};  ///< as the function of that name; empty: stable
+  std::function<std::string(CellShape, int)> instability = {};  ///< see instability(); empty if stable
 };
 using MultiplierSpaceRegistration = Registration<MultiplierSpaceType>;
 
-/// All spaces. A program of one's own may add to them.
+/// Registry of all spaces. A program may add its own.
 [[nodiscard]] Registry<MultiplierSpaceType>& multiplier_space_registry();
 [[nodiscard]] inline std::vector<std::string> multiplier_space_names() {
   return multiplier_space_registry().names();
 }
-/// By the name used in a case file; throws Error(invalid_input) that lists the names. The patch must outlive the space.
+/// Creates a space by its name in case files; throws Error(invalid_input) that lists the names. The
+/// patch must outlive the space.
 [[nodiscard]] std::unique_ptr<MultiplierSpace> make_multiplier_space(const std::string& name,
                                                                      const ContactPatch& patch);
-/// What the multipliers of a space are anchored at; throws like make_multiplier_space.
+/// Anchor of the multipliers of a space; throws like make_multiplier_space.
 [[nodiscard]] MultiplierAnchor anchor_of(const std::string& multipliers);
 
-/// Whether a space is uniformly inf–sup stable with displacements of a degree on facets of a shape, as the numerical
-/// test inf_sup_test.cpp finds it on families of meshes (docs/multipliers.md). Without stability, pressures that
-/// oscillate from facet to facet are not controlled, and there may be too many conditions for the displacements there
-/// are.
+/// Whether a space is uniformly inf–sup stable with displacements of a degree on facets of a shape,
+/// according to the numerical test inf_sup_test.cpp on families of meshes (docs/multipliers.md). Without
+/// stability, pressures that oscillate from facet to facet are not controlled, and there may be too many
+/// conditions for the available displacements.
 [[nodiscard]] bool is_stable(const std::string& multipliers, CellShape facet, int displacement_degree);
-/// Why not, and what to use instead, as a sentence without its full stop; empty for a stable one.
+/// Reason of the instability, and an alternative, as a sentence without its full stop; empty if stable.
 [[nodiscard]] std::string instability(const std::string& multipliers, CellShape facet, int displacement_degree);
 
-/// Whether supports hold a multiplier's node or, of one that is anchored at a facet, all nodes: then it is left out.
+/// Whether supports constrain a multiplier's node or, if it is anchored at a facet, all its nodes: it is then omitted.
 [[nodiscard]] bool only_presses_supports(const Multiplier& multiplier, const ContactPatch& patch);
 
-/// D_i and c_ij of a space from integrals of its functions over the patch; c_ij that vanish to rounding are exact
-/// zeros.
+/// Computes D_i and c_ij of a space by integrating its functions over the patch; c_ij that vanish to
+/// rounding are set to exact zero.
 [[nodiscard]] std::vector<Multiplier> integrate_multipliers(const MultiplierSpace& space, MultiplierAnchor anchor);
 
 }  // namespace ricochet

@@ -11,21 +11,23 @@ namespace {
 
 /// Biorthogonal multipliers, one per node. Facet by facet, with a basis φ̃ = T φ of the displacement's trace,
 ///   ψ = D_e M_e⁻¹ φ̃,   M_e = ∫_e φ̃ φ̃ᵀ,   D_e = diag ∫_e φ̃,   so that ∫_e ψ_i φ̃_j = δ_ij ∫_e φ̃_i,
-/// with the area of the curved facet. Since Σφ̃ = 1, M_e 1 = D_e 1 and Σψ = 1: a uniform pressure is in the space. D_i =
-/// ∫φ̃_i, and the trace c is the inverse change of basis: for φ̃ = φ the identity.
+/// with the area of the curved facet. Since Σφ̃ = 1, M_e 1 = D_e 1 and Σψ = 1: a uniform pressure is in the space.
+/// D_i = ∫φ̃_i, and the trace c is the inverse change of basis: for φ̃ = φ the identity.
 ///
 /// On triangular facets of degree 2 ∫φ_v = 0 at vertices, so the basis is changed (Popp, Wohlmuth, Gee and Wall, Dual
 /// quadratic mortar finite element methods for 3D finite deformation contact, SIAM J. Sci. Comput. 34, 2012,
 /// B421–B446):
 ///   φ̃_v = φ_v + α Σ_e φ_e over the edges e at v,   φ̃_e = (1 − 2α) φ_e,   α = 1/5,
-/// on every edge of a triangular facet, where another shape shares it, too. The coefficients of a trace with nodal
-/// values g are then g̃_v = g_v and g̃_e = (g_e − α (g_v1 + g_v2))/(1 − 2α).
+/// on every edge of a triangular facet, including edges shared with facets of another shape. The coefficients of a
+/// trace with nodal values g are then g̃_v = g_v and g̃_e = (g_e − α (g_v1 + g_v2))/(1 − 2α).
 ///
-/// So has a facet of degree 2 with an end on the axis of an axisymmetric body: there ∫φ_v 2πr = 0 at that end.
+/// A facet of degree 2 with an end on the axis of an axisymmetric body has this change of basis, too: ∫φ_v 2πr = 0 at
+/// that end.
 ///
-/// Between bodies a facet may be covered in part. Functions that are biorthogonal there can have negative integrals (on
-/// less than 2/3 of an interval, those of the whole one), or come from a matrix that is nearly singular. So such a
-/// facet has Bernstein's polynomials: they span the same space, are positive and sum to 1, whatever is covered.
+/// Between bodies a facet may be covered partially. Functions that are biorthogonal on the covered part can
+/// have negative integrals (on less than 2/3 of an interval, those of the whole one do), or come from a matrix
+/// that is nearly singular. Such a facet therefore has Bernstein polynomials: they span the same space, are
+/// positive and sum to 1 on any part.
 class DualMultipliers final : public MultiplierSpace {
  public:
   explicit DualMultipliers(const ContactPatch& patch) : MultiplierSpace(patch), integration_(*patch.body) {
@@ -66,7 +68,8 @@ class DualMultipliers final : public MultiplierSpace {
     return result;
   }
 
-  /// The continuous field Σ λ_i φ̃_i at the nodes; where supports have removed a vertex, the mean of what is left.
+  /// Recovers the continuous field Σ λ_i φ̃_i at the nodes; if supports have removed a vertex,
+  /// the mean of the remaining ones.
   [[nodiscard]] std::vector<Eigen::Triplet<double>> pressure_recovery(
       const std::vector<Multiplier>& kept) const override {
     std::map<Index, int> number;
@@ -107,13 +110,13 @@ class DualMultipliers final : public MultiplierSpace {
  private:
   static constexpr double alpha = 0.2;
 
-  /// `nodes`: of a facet in the plane.
+  /// `nodes`: those of a facet in 2D.
   [[nodiscard]] bool ends_on_axis(const Index* nodes) const {
     const Body& body = *patch().body;
     return is_on_axis(body, nodes[0]) || is_on_axis(body, nodes[1]);
   }
 
-  /// T on a facet.
+  /// Returns T on a facet.
   [[nodiscard]] Matrix basis_change(const FacetQuadrature& facet) const {
     Matrix result = Matrix::Identity(facet.node_count(), facet.node_count());
     if (transformed_.empty()) return result;
@@ -127,7 +130,7 @@ class DualMultipliers final : public MultiplierSpace {
     return result;
   }
 
-  /// Bernstein's polynomials at the nodes: those of degree 2 are (1 − s)², 2s(1 − s), s² along an edge.
+  /// Returns the Bernstein polynomials at the nodes: those of degree 2 are (1 − s)², 2s(1 − s), s² along an edge.
   [[nodiscard]] static Matrix bernstein(const FacetQuadrature& facet) {
     Matrix result = Matrix::Identity(facet.node_count(), facet.node_count());
     if (facet.node_count() == facet.vertex_count()) return result;
@@ -138,8 +141,8 @@ class DualMultipliers final : public MultiplierSpace {
     };
     for (std::size_t at = 0; at < vertices_of.size(); ++at) {
       for (std::size_t k = 0; k < vertices_of.size(); ++k) {
-        // A node at the mean of an edge's ends has halves of its own and quarters of theirs; one inside, their
-        // products.
+        // A node at the mean of an edge's ends has half of its own polynomial and a quarter of theirs; an
+        // inner node has the products.
         const double own = static_cast<double>(vertices_of[k].size()),
                      all = static_cast<double>(vertices_of[at].size());
         result(static_cast<Index>(k), static_cast<Index>(at)) = is_between(k, at) ? own / (all * all) : 0.0;
@@ -156,7 +159,7 @@ class DualMultipliers final : public MultiplierSpace {
   }
 
   FacetIntegration integration_;
-  std::map<Index, std::array<Index, 2>> transformed_;  ///< middle nodes of such edges, with their vertices
+  std::map<Index, std::array<Index, 2>> transformed_;  ///< mid-side nodes of these edges, with their vertices
 };
 
 }  // namespace

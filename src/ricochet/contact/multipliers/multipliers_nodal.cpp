@@ -8,7 +8,7 @@ namespace ricochet {
 
 namespace {
 
-/// ∫ φ_i over facets, for all nodes of the space.
+/// Computes ∫ φ_i over facets, for all nodes of the space.
 Vector nodal_weights(const Body& body, const std::vector<Index>& facets) {
   Vector weights = Vector::Zero(body.space->node_count());
   const FacetIntegration integration(body);
@@ -23,7 +23,7 @@ Vector nodal_weights(const Body& body, const std::vector<Index>& facets) {
   return weights;
 }
 
-/// For each non-vertex node of the facets, the vertices it lies between.
+/// Returns for each non-vertex node of the facets the vertices between which it lies.
 std::map<Index, std::vector<Index>> middle_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
   std::map<Index, std::vector<Index>> middles;
   for (const Index facet : facets) {
@@ -43,10 +43,10 @@ std::map<Index, std::vector<Index>> middle_nodes(const DisplacementSpace& space,
 
 /// Forces at nodes: c is the identity, and the gap is that of the node itself.
 ///
-/// Pressure from nodal forces. On degree 1: p_i = r_i / ∫φ_i. On degree 2 vertex weights are smaller than those of the
-/// middles and vanish on flat triangles, so forces are first gathered on the linear hat functions ψ_a of the vertices:
-/// p_a = Σ_j ψ_a(x_j) r_j / ∫ψ_a, and a middle node takes the mean of the vertices of its edge or face. This is exact
-/// for a uniform pressure, keeps the sign, and Σ_a p_a ∫ψ_a is the total force.
+/// Pressure from nodal forces. With degree 1: p_i = r_i / ∫φ_i. With degree 2 vertex weights are smaller than those of
+/// the mid-side nodes and vanish on flat triangles, so forces are first gathered on the linear hat functions ψ_a of the
+/// vertices: p_a = Σ_j ψ_a(x_j) r_j / ∫ψ_a, and a node between vertices has the mean over the vertices of its edge or
+/// face. This is exact for a uniform pressure, preserves the sign, and Σ_a p_a ∫ψ_a is the total force.
 class NodalMultipliers final : public MultiplierSpace {
  public:
   using MultiplierSpace::MultiplierSpace;
@@ -77,7 +77,7 @@ class NodalMultipliers final : public MultiplierSpace {
       number[kept[static_cast<std::size_t>(i)].node] = i;
       own_weights[i] = kept[static_cast<std::size_t>(i)].weight;
     }
-    // gathering(a, j) = ψ_a(x_j): the identity on degree 1.
+    // gathering(a, j) = ψ_a(x_j): the identity with degree 1.
     SparseRowMatrix gathering(count, count), spreading(count, count);
     fill_gathering(number, gathering, spreading);
     const Vector weights = gathering * own_weights;
@@ -96,7 +96,7 @@ class NodalMultipliers final : public MultiplierSpace {
   }
 
   [[nodiscard]] bool has_functions() const override { return false; }
-  /// The L² representatives of the forces are the displacement's own shape functions.
+  /// The L² representatives of the forces are the shape functions of the displacement.
   void evaluate(const FacetQuadrature& facet, FacetMultipliers& result) const override {
     result.anchors.assign(facet.nodes, facet.nodes + facet.node_count());
     result.values = *facet.displacement;
@@ -116,7 +116,7 @@ class NodalMultipliers final : public MultiplierSpace {
           const auto found = number.find(vertex);
           if (found != number.end()) known.push_back(found->second);
         }
-        // Where supports have removed the vertices, the middle keeps its force to itself.
+        // If supports have removed the vertices, the mid-side node keeps its own force.
         is_middle[static_cast<std::size_t>(point->second)] = known.empty() ? 0 : 1;
         for (const Index vertex : known) {
           const double share = 1.0 / static_cast<double>(known.size());

@@ -6,8 +6,8 @@ namespace ricochet {
 
 namespace {
 
-/// One multiplier per facet, constant on it: ψ_e = 1, D_e = |e|, c_ej = (1/|e|) ∫_e φ_j. A node's pressure is the mean
-/// of its facets' pressures, weighted by their areas.
+/// One multiplier per facet, constant on it: ψ_e = 1, D_e = |e|, c_ej = (1/|e|) ∫_e φ_j. The pressure at a node is the
+/// mean of its facets' pressures, weighted by their areas.
 class P0Multipliers final : public MultiplierSpace {
  public:
   using MultiplierSpace::MultiplierSpace;
@@ -37,7 +37,7 @@ class P0Multipliers final : public MultiplierSpace {
   }
 };
 
-/// Why p0 is not stable, where it is not: see instability().
+/// Reason of the instability of p0, empty if it is stable: see instability().
 std::string p0_instability(CellShape facet, int displacement_degree) {
   if (displacement_degree == 1) {
     return "multipliers \"p0\" are not inf-sup stable with displacements of degree 1: pressures that alternate from "

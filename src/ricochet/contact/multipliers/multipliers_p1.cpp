@@ -8,10 +8,10 @@ namespace ricochet {
 
 namespace {
 
-/// One multiplier per vertex, continuous: ψ_v is the (multi)linear hat function of the vertex, whatever the degree of
-/// the displacement. Vertices that supports hold have no multiplier; the hats of the held vertices of a facet are
-/// shared equally by its others, so that Σψ = 1 up to the support and a uniform pressure stays in the space. Pressures
-/// at nodes are λ_v at vertices (0 at held ones) and the mean of the vertices at middle nodes.
+/// One multiplier per vertex, continuous: ψ_v is the (multi)linear hat function of the vertex, for any degree of the
+/// displacement. Constrained vertices have no multiplier; the hats of the constrained vertices of a facet are
+/// distributed equally to its others, so that Σψ = 1 up to the support and a uniform pressure remains in the space.
+/// Pressures at nodes are λ_v at vertices (0 at constrained ones) and the mean over the vertices at mid-side nodes.
 class P1Multipliers final : public MultiplierSpace {
  public:
   using MultiplierSpace::MultiplierSpace;

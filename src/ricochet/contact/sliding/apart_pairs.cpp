@@ -41,7 +41,7 @@ bool ApartPairs::are_apart(std::size_t pair) const {
   const Surface &first = surfaces_[static_cast<std::size_t>(of.first)],
                 &second = surfaces_[static_cast<std::size_t>(of.second)];
   const double reach = reach_of_sliding(std::max(first.way, second.way), of.height);
-  // A displacement that is no number has no boxes: such pairs are looked at, and found out.
+  // False if a displacement is NaN: such pairs are evaluated, and the error is found there.
   return first.box.exteriorDistance(second.box) > reach;
 }
 

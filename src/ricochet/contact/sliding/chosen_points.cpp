@@ -8,8 +8,8 @@ namespace ricochet {
 
 namespace {
 
-/// Of a point's weights on the opposite side, whose sum is 1: less is a touch at the rim. Shape functions of degree 2
-/// may cancel at the vertices of what is seen: there any weight counts.
+/// Weight on the opposite side, out of a sum of 1, below which a node is only touched at its support's boundary. Shape
+/// functions of degree 2 may cancel at the vertices of the facing part: there any weight counts.
 constexpr double at_the_rim = 1e-3;
 
 template <class Visit>
@@ -44,7 +44,7 @@ ChosenPoints::ChosenPoints(const SlidingPair& pair, Index nodes, int degree)
   }
 }
 
-/// It is near, and in no conflict with those that are chosen.
+/// Whether the point is active and has no conflict with selected ones.
 bool ChosenPoints::is_free(std::size_t point) const {
   const SlidingView* const view = views_[point];
   if (view == nullptr || !view->faces) return false;
@@ -61,7 +61,7 @@ void ChosenPoints::take(std::size_t point) {
   visit_seen(*views_[point], sees_, [&](Index node) { is_seen_[static_cast<std::size_t>(node)] = 1; });
 }
 
-/// To neighbours of those that were taken, and theirs.
+/// Extends the selection to neighbours of selected points, recursively.
 void ChosenPoints::grow() {
   for (; grown_ < taken_.size(); ++grown_) {
     for (const std::size_t next : neighbours_[taken_[grown_]]) {

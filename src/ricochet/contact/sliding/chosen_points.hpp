@@ -4,27 +4,28 @@
 
 #include "ricochet/contact/sliding/sliding_pair.hpp"
 
-/// @file Which points carry the conditions where a surface touches itself.
+/// @file Selection of the points that carry the conditions where a surface is in contact with itself.
 ///
-/// Such a place is seen from both of its sides, and the rows of both would say nearly the same: W would be singular.
-/// Two points are in conflict where one sees a node that the other is anchored at. The points that are chosen are a
-/// maximal set without conflicts (none can be added): no row reaches the anchors of another one from the opposite side,
-/// and so rows are as independent as those of the traces c are. Points that are chosen stay so while they are in no
-/// conflict; from them the choice grows over the surface to neighbours, and then begins anew at the point with the
-/// lowest number: of two sides that meet, one carries the conditions.
+/// Such a contact is detected from both sides, and the rows of both would be nearly identical: the Delassus operator W
+/// would be singular. Two points are in conflict if one projects onto a node at which the other is anchored. The
+/// selected points are a maximal set without conflicts (none can be added): no row involves the anchors of another one
+/// from the opposite side, so that rows are as independent as those of the traces c. Selected points remain so as long
+/// as they have no conflict; from them the selection grows over the surface to neighbours, and then restarts at the
+/// point with the lowest number: of two sides that meet, one carries the conditions.
 namespace ricochet {
 
 class ChosenPoints {
  public:
-  /// `pair` touches itself. `nodes`: of the model. `degree`: of the displacement.
+  /// `pair`: a surface that may come into contact with itself. `nodes`: number of nodes of the model.
+  /// `degree`: of the displacement.
   ChosenPoints(const SlidingPair& pair, Index nodes, int degree);
 
   enum class Choice : char { none, chosen, left_out };
   [[nodiscard]] const std::vector<Choice>& choices() const { return choices_; }
-  /// As a run that is resumed knows them.
+  /// Restores the selection of a resumed run.
   void restore(std::vector<Choice> choices) { choices_ = std::move(choices); }
 
-  /// Chooses among the points that are `near`, from what they see (views with rows); null or facing nothing: not near.
+  /// Selects among the active points, based on their views with rows; null, or facing nothing: inactive.
   void choose(const std::vector<const SlidingView*>& views);
 
  private:
@@ -36,10 +37,10 @@ class ChosenPoints {
   std::vector<std::vector<std::size_t>> neighbours_;  ///< points whose traces share a node
   std::vector<Choice> choices_;
   std::vector<const SlidingView*> views_;
-  std::vector<char> is_seen_, is_anchor_;  ///< per node: of those that are chosen
-  std::vector<std::size_t> taken_;         ///< in order
+  std::vector<char> is_seen_, is_anchor_;  ///< per node: whether it belongs to selected points
+  std::vector<std::size_t> taken_;         ///< in order of selection
   std::size_t grown_ = 0;
-  double sees_;  ///< of a point's weights on the opposite side
+  double sees_;  ///< least weight on the opposite side with which a point counts as facing a node
 };
 
 }  // namespace ricochet

@@ -15,11 +15,11 @@ int degree_on_segments(const Body& body) {
   return (simplices ? 2 : 4) * body.space->degree;
 }
 
-/// Of the thickness at the start: as thin a body that is squeezed may become. What is seen inside of it to half of that
-/// is no far side.
+/// Fraction of the initial thickness to which a body may be squeezed. Overlaps up to half of that are
+/// not attributed to its far side.
 constexpr double squeezed = 0.5;
 
-/// The mesh of the displacement: isoparametric, whatever the geometry's degree is.
+/// Mesh of the displacement: isoparametric, for any degree of the geometry.
 Mesh mesh_of(const DisplacementSpace& space) {
   Mesh mesh;
   mesh.dimension = space.dimension;

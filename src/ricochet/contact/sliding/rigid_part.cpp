@@ -8,7 +8,8 @@ namespace {
 
 using Places = std::vector<Eigen::Vector3d>;
 
-/// Of the trace: places on a line have no moment of inertia about it, and no motion has a momentum there.
+/// Inertia, relative to the trace, below which it is rounding error: collinear points have no moment of inertia about
+/// their line, and no motion has angular momentum about it.
 constexpr double least_inertia = 1e-13;
 
 Eigen::Vector3d mean_of(const Places& values) {
@@ -17,7 +18,7 @@ Eigen::Vector3d mean_of(const Places& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// ω with I ω = momentum, I of the places about their middle.
+/// Returns ω with I ω = momentum, I the inertia of unit masses at the points about their middle.
 Eigen::Vector3d rotation_of(const Places& places, const Eigen::Vector3d& middle, bool plane,
                             const Eigen::Vector3d& momentum) {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
@@ -34,7 +35,7 @@ Eigen::Vector3d rotation_of(const Places& places, const Eigen::Vector3d& middle,
   Eigen::Matrix3d definite = inertia;
   definite.diagonal().array() += least_inertia * inertia.trace();
   const Eigen::PartialPivLU<Eigen::Matrix3d> solver(definite);
-  // The second round takes back what the first has lost to that.
+  // The second iteration corrects for the regularization.
   for (int round = 0; round < 2; ++round) result += solver.solve(momentum - inertia * result);
   return result;
 }
@@ -51,7 +52,7 @@ void take_off_rigid_part(const Places& places, bool plane, Places& motions) {
   if (places.empty()) return;
   const Eigen::Vector3d middle = mean_of(places), drift = mean_of(motions);
   for (Eigen::Vector3d& motion : motions) motion -= drift;
-  // The second round takes off what the first has left by rounding.
+  // The second pass removes the rounding error of the first.
   for (int round = 0; round < 2; ++round) {
     const Eigen::Vector3d rotation = rotation_of(places, middle, plane, momentum_of(places, middle, motions));
     for (std::size_t k = 0; k < places.size(); ++k) motions[k] -= rotation.cross(places[k] - middle);

@@ -6,11 +6,11 @@
 
 #include "ricochet/contact/sliding/sliding_pair.hpp"
 
-/// @file The positions that rows which follow sliding surfaces were made at, from which they can be made again.
+/// @file Positions from which the rows of sliding surfaces were computed, and can be recomputed.
 namespace ricochet {
 
-/// A vector of values: 1 if rows are those of a step, then the displacements of all surface nodes at its end, then
-/// those at its start.
+/// Layout of a vector of values: 1 if rows are those of a step, then the displacements of all surface nodes at its end,
+/// then those at its start.
 class RowPlaces {
  public:
   RowPlaces(const std::vector<std::unique_ptr<SlidingPair>>& pairs, Index dimension) : dimension_(dimension) {
@@ -21,7 +21,7 @@ class RowPlaces {
 
   [[nodiscard]] Index count() const { return 1 + 2 * half(); }
 
-  /// Overwrites the first values. `start`: null if rows are those of an instant.
+  /// Writes the leading values. `start`: null if rows are those of an instant.
   void write(const Vector& displacement, const Vector* start, Vector& values) const {
     values[0] = start != nullptr ? 1.0 : 0.0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -31,7 +31,7 @@ class RowPlaces {
     }
   }
 
-  /// Sets the displacements of surface nodes at the end and at the start. Leaves other nodes as they are. Returns
+  /// Reads the displacements of surface nodes at the end and at the start; other nodes are unchanged. Returns
   /// whether rows are those of a step.
   bool read(const Vector& values, Vector& displacement, Vector& start) const {
     for (std::size_t i = 0; i < nodes_.size(); ++i) {

@@ -8,26 +8,26 @@
 
 namespace ricochet {
 
-/// What the points of a pair were found to see lately. Views and flags are per point of the pair; flags are 0 or 1.
+/// Latest views of the points of a pair. Views and flags are per point of the pair; flags are 0 or 1.
 struct SeenPoints {
   using Views = std::vector<SlidingView>;
 
-  Vector start_at;  ///< displacement at which `at_start` was found, d per node of the body
-  Vector gaps_at;   ///< displacement at which `gaps` were found, likewise
-  Views at_start;   ///< where the step begins, without rows
-  Views gaps;       ///< where the gaps were last asked for, without rows; valid for points that are not far
-  Views middle;     ///< in the middle of the step, or at the instant; valid for points that are not left out
-  Views entering;   ///< at the end of the step; valid for points that enter
-  Views other;      ///< where couples were last asked for; valid for points on which forces act
-  std::vector<char> any_depth;  ///< points that face something where the step begins; empty: none
-  std::vector<char> far;        ///< points that do not move so far in the step: their gaps are those of its start
+  Vector start_at;              ///< displacement at which `at_start` was computed, d per node of the body
+  Vector gaps_at;               ///< displacement at which `gaps` were computed, likewise
+  Views at_start;               ///< at the start of the step, without rows
+  Views gaps;                   ///< at the last evaluation of gaps, without rows; valid for points that are not far
+  Views middle;                 ///< in the middle of the step, or at the instant; valid unless left out
+  Views entering;               ///< at the end of the step; valid for points that enter
+  Views other;                  ///< at the last evaluation of couples; valid for points with forces
+  std::vector<char> any_depth;  ///< points that face something at the start of the step; empty: none
+  std::vector<char> far;        ///< points beyond the motion of the step: their gaps are those of its start
   std::vector<char> left_out;   ///< points that are far or face nothing, and have no view in `middle`
-  std::optional<ChosenPoints> chosen;  ///< where the pair touches itself
+  std::optional<ChosenPoints> chosen;  ///< for contact of the surface with itself
   bool has_start = false, has_gaps = false;
-  bool is_apart = false;  ///< at the last update, nothing was looked at
+  bool is_apart = false;  ///< whether the pair was skipped in the last update
 
   [[nodiscard]] bool is_far(std::size_t point) const { return !far.empty() && far[point] != 0; }
-  /// Points that face nothing where the step begins, or in its middle, but where it ends.
+  /// Whether a point faces nothing at the start or in the middle of the step, but does at its end.
   [[nodiscard]] bool enters(std::size_t i) const { return left_out[i] == 0 && !(at_start[i].faces && middle[i].faces); }
 };
 

@@ -19,7 +19,7 @@ using Seen = SeenPoints;
 using SlidingNode = SlidingContactData::Node;
 using Choice = ChosenPoints::Choice;
 
-/// Of the model: overlaps that are no rounding.
+/// Overlap, relative to the size of the model, above which it is not rounding error.
 constexpr double least_overlap = 1e-12;
 
 class SlidingContact final : public ContactGeometry {
@@ -52,7 +52,7 @@ class SlidingContact final : public ContactGeometry {
         continue;
       }
       if (seen_[k].is_apart && start != nullptr) look_at_start(k, *start);
-      // Forces may move points farther in the step than was known when the rows were made.
+      // Forces may move points farther in the step than predicted when the rows were computed.
       if (is_step_ && seen_[k].has_start) find_far(k, longest_way(*data_.pairs[k], displacement, seen_[k].start_at));
       look_at_gaps(k, displacement);
       for (std::size_t i = 0; i < data_.pairs[k]->points().size(); ++i) gap[number(k, i)] = gap_of(seen_[k], i);
@@ -115,7 +115,7 @@ class SlidingContact final : public ContactGeometry {
       if (seen.is_apart) continue;
       for (std::size_t i = 0; i < seen.at_start.size(); ++i) {
         const double before = seen.at_start[i].faces ? seen.at_start[i].gap : 0.0;
-        // Held gaps of those that enter have it in them.
+        // Held gaps of points that enter already include it.
         const bool has_it = is_held_ && seen.enters(i);
         if (before < -least_overlap * extent_ && !seen.is_far(i) && !has_it) gap[number(k, i)] -= before;
       }
@@ -138,7 +138,8 @@ class SlidingContact final : public ContactGeometry {
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) add_couples_of(k, place, rows, normal, tangential, force);
   }
 
-  /// The places that rows were made at, those of a step's start after those of its end, and which points were chosen.
+  /// Displacements from which rows were computed, at the end of a step and then at its start, followed by the selected
+  /// points and the pairs that were skipped.
   [[nodiscard]] Index row_value_count() const override {
     Index points = 0;
     for (const Seen& seen : seen_) points += seen.chosen ? static_cast<Index>(seen.chosen->choices().size()) : 0;
@@ -151,7 +152,7 @@ class SlidingContact final : public ContactGeometry {
     Vector end = Vector::Zero(data_.node_positions.size()), before = end;
     const bool is_step = places_.read(row_values, end, before);
     rows.places = row_values;
-    rows.places.tail(apart_.count()).setZero();  // they have to be written
+    rows.places.tail(apart_.count()).setZero();  // forces their rows to be written
     const StepStart start{before, 0.0};
     update(end, 0.0, is_step ? &start : nullptr, rows);
   }
@@ -174,7 +175,7 @@ class SlidingContact final : public ContactGeometry {
     return node.normal.at(data_.node_positions, displacement).normalized();
   }
 
-  /// The choice goes on from that of the rows, whoever has asked for others in between.
+  /// Continues the selection from that of the rows, even if other rows were computed in between.
   void take_choices(const Vector& places) const {
     Index at = places_.count();
     for (Seen& seen : seen_) {
@@ -198,7 +199,7 @@ class SlidingContact final : public ContactGeometry {
     }
   }
 
-  /// Linear about the last update.
+  /// Computes gaps linearized about the last update.
   void take_held_gaps(std::size_t k, const Vector& displacement, Vector& gap) const {
     const Seen& seen = seen_[k];
     const Index d = dimension();
@@ -211,7 +212,7 @@ class SlidingContact final : public ContactGeometry {
         gap[point] += value.head(d).dot(displacement.segment(node * d, d) - at_update_.segment(node * d, d));
         along_step += value.head(d).dot(writer_.step().segment(node * d, d));
       }
-      // Seen from the step's end such a point begins inside: to push it out would give energy.
+      // As seen from the end of the step such a point starts with penetration: removing it would create energy.
       if (seen.enters(i)) gap[point] -= std::min(gap_at_update_[point] - along_step, 0.0);
     }
   }
@@ -224,7 +225,7 @@ class SlidingContact final : public ContactGeometry {
     seen.has_gaps = true;
   }
 
-  /// Who faces something where the step begins sees it wherever the step ends.
+  /// Records which points face something at the start of the step: these admit any depth wherever the step ends.
   void look_at_start(std::size_t k, const Vector& displacement) const {
     Seen& seen = seen_[k];
     if (seen.has_start && seen.start_at == displacement) return;
@@ -236,7 +237,8 @@ class SlidingContact final : public ContactGeometry {
     seen.has_gaps = false;
   }
 
-  /// Which points are farther from touching than a step in which nodes go so far may take them. Infinite: none.
+  /// Finds the points that cannot come into contact in a step with the given largest
+  /// displacement. Infinite: none is far.
   void find_far(std::size_t k, double way) const {
     const SlidingPair& pair = *data_.pairs[k];
     Seen& seen = seen_[k];
@@ -257,7 +259,7 @@ class SlidingContact final : public ContactGeometry {
       has_told_ = has_told_ || warn_of_blind_step(*pair, at_update_, start_at_update_);
   }
 
-  /// Rows of surfaces that are far apart are those of planes across the normals of the start, wherever they are.
+  /// Rows of surfaces that are far apart are those of planes perpendicular to the initial normals, at any displacement.
   void set_apart(std::size_t k, bool was_apart, ContactRows& rows) const {
     seen_[k].is_apart = true;
     seen_[k].has_start = seen_[k].has_gaps = false;
@@ -313,7 +315,7 @@ class SlidingContact final : public ContactGeometry {
     }
   }
 
-  /// Among the points that may touch in the step.
+  /// Selects among the points that may come into contact in the step.
   void choose(bool is_step, Seen& seen) const {
     views_.assign(seen.gaps.size(), nullptr);
     for (std::size_t i = 0; i < views_.size(); ++i) {
@@ -322,7 +324,7 @@ class SlidingContact final : public ContactGeometry {
     seen.chosen->choose(views_);
   }
 
-  /// Rows of points that enter are those of the end.
+  /// Computes the views at the end, from which points that enter have their rows.
   void look_at_entering(const SlidingPair& pair, const Vector& displacement, Seen& seen) const {
     bool any = false;
     left_out_.assign(seen.gaps.size(), 1);
@@ -333,7 +335,7 @@ class SlidingContact final : public ContactGeometry {
     if (any) pair.look(displacement, SlidingPair::Wanted::row, left_out_, seen.any_depth, seen.entering);
   }
 
-  /// Sums over segments of differences of places.
+  /// Rounding error of sums over segments of differences of positions.
   [[nodiscard]] double rounding(const SlidingPair::Point& point, const Vector& displacement) const {
     double size = extent_;
     for (const auto& [node, weight] : point.multiplier.trace)
@@ -366,16 +368,16 @@ class SlidingContact final : public ContactGeometry {
 
   SlidingContactData data_;
   double extent_;
-  Vector at_rest_;                  ///< no displacement
+  Vector at_rest_;                  ///< zero displacement
   mutable std::vector<Seen> seen_;  ///< per pair
   mutable ApartPairs apart_;
   RowPlaces places_;
   mutable SlidingRows writer_;
   mutable Vector at_update_, start_at_update_, gap_at_update_;  ///< of the last update
-  mutable bool is_held_ = false, was_held_ = false;             ///< the second until the next step begins
+  mutable bool is_held_ = false, was_held_ = false;             ///< the latter until the next step begins
   mutable bool has_held_ = false;                               ///< in the run so far
-  mutable bool is_step_ = false;                                ///< the last update was of a step
-  mutable bool has_told_ = false;                               ///< of steps that are too long to see what passes
+  mutable bool is_step_ = false;                                ///< whether the last update was of a step
+  mutable bool has_told_ = false;                               ///< whether the warning of too long steps was logged
   mutable std::vector<char> left_out_;
   mutable std::vector<const SlidingView*> views_;
   mutable SlidingCouples couples_;

@@ -15,10 +15,10 @@ namespace ricochet {
 
 namespace {
 
-/// Of a multiplier's whole area: a point that is covered by less faces nothing.
+/// Fraction of a multiplier's whole area below which a point faces nothing.
 constexpr double least_sliding_cover = 1e-3;
 
-/// The entry of a node, made where there is none.
+/// Entry of a node, created if there is none.
 template <class Value>
 Value& entry_of(std::vector<std::pair<Index, Value>>& entries, Index node, const Value& nothing) {
   for (auto& [known, value] : entries) {
@@ -32,13 +32,13 @@ void sort_by_node(std::vector<std::pair<Index, Value>>& entries) {
   std::sort(entries.begin(), entries.end(), [](const auto& one, const auto& other) { return one.first < other.first; });
 }
 
-/// n·ν from which a place counts in full, and up to which it counts for nothing.
+/// n·ν from which a point counts fully, and up to which it is ignored.
 constexpr double seen_well = 0.7, seen_badly = 0.15;
 
-/// Of what is seen at a place of the opposite surface.
+/// Projection onto a point of the opposite surface.
 struct Sight {
   SlidingVector normal;  ///< along ν, with n·normal = 1
-  double part;           ///< what it counts for: places that are seen nearly edge-on come and go
+  double part;           ///< weight, which vanishes gradually for points that are seen nearly edge-on and may disappear
 };
 Sight sight_of(const PolynomialMap<3>::Place& at, bool plane, const SlidingVector& n) {
   const auto& [along, across] = at.slopes;
@@ -51,11 +51,11 @@ Sight sight_of(const PolynomialMap<3>::Place& at, bool plane, const SlidingVecto
 }  // namespace
 
 struct SlidingPair::Implementation {
-  /// The sums of one point.
+  /// Sums of one point.
   struct Sums {
     double weight = 0.0, gap = 0.0;
     SlidingVector force = SlidingVector::Zero();  ///< ∫ψ ν/(n·ν)
-    SlidingVector pull = SlidingVector::Zero();   ///< ∫ψ g ν/(n·ν) over the facet that is looked from
+    SlidingVector pull = SlidingVector::Zero();   ///< ∫ψ h ν/(n·ν) over the current own facet
   };
 
   Data data;
@@ -66,14 +66,14 @@ struct SlidingPair::Implementation {
   mutable MovingSurfaces surfaces;
   double least_height = std::numeric_limits<double>::infinity();
   double sight = least_height;  ///< see SlidingPair::sight()
-  /// Per own facet, in the order of the space's anchors there: which point, or −1.
+  /// Per own facet, in the order of the space's anchors there: number of the point, or −1.
   std::vector<std::vector<int>> points_of;
-  std::vector<TurningNormal> normals;  ///< per own facet: into its body
-  // Of the look that is on.
+  std::vector<TurningNormal> normals;  ///< per own facet, into its body
+  // State of the current evaluation.
   mutable Vector looked_at;
   mutable std::vector<Sums> sums;
   mutable std::vector<SlidingVector> turning;  ///< N of each own facet
-  mutable std::vector<char> takes_part;        ///< per anchor of the facet that is looked from
+  mutable std::vector<char> takes_part;        ///< per anchor of the current own facet
   mutable FacetPoints points;
   mutable FacetMultipliers functions;
   mutable Matrix shapes, weighted;
@@ -127,7 +127,7 @@ struct SlidingPair::Implementation {
   void finish(std::size_t point, Wanted wanted, SlidingView& view) const;
 };
 
-/// Once for the points that see no deep overlaps, and once for those that do.
+/// Integrates once for the points that do not admit deep overlaps, and once for those that do.
 void SlidingPair::Implementation::look_from(int facet, Wanted wanted, const std::vector<char>& left_out,
                                             const std::vector<char>& any_depth, std::vector<SlidingView>& views) const {
   const std::vector<int>& here = points_of[static_cast<std::size_t>(facet)];
@@ -195,7 +195,7 @@ void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segm
   if (wanted == Wanted::row) turn_with_facet(facet, n, views);
 }
 
-/// −(∂n/∂x)ᵀ ∫ψ g ν/(n·ν).
+/// Adds −(∂n/∂x)ᵀ ∫ψ h ν/(n·ν).
 void SlidingPair::Implementation::turn_with_facet(int facet, const SlidingVector& n,
                                                   std::vector<SlidingView>& views) const {
   const std::vector<int>& here = points_of[static_cast<std::size_t>(facet)];
@@ -213,7 +213,7 @@ void SlidingPair::Implementation::turn_with_facet(int facet, const SlidingVector
   }
 }
 
-/// From integrals to means.
+/// Converts integrals to means.
 void SlidingPair::Implementation::finish(std::size_t point, Wanted wanted, SlidingView& view) const {
   const Sums& sum = sums[point];
   const Point& of = data.points[point];

@@ -12,9 +12,9 @@ namespace ricochet {
 
 namespace {
 
-/// Of a row.
+/// Largest correction, relative to the norm of a row.
 constexpr double most_correction = 0.25;
-/// Motions of less than so many roundings have no direction.
+/// Multiple of the rounding error below which a motion has no meaningful direction.
 constexpr double least_motion = 1e3;
 
 }  // namespace
@@ -93,7 +93,7 @@ void SlidingRows::take_directions(const SlidingPair::Point& point, const Sliding
         tangents.slips[static_cast<std::size_t>(j)] ? 1 : 0;
 }
 
-/// t ⊗ τ with the trace in trace_.
+/// Writes t ⊗ τ with the trace in trace_.
 void SlidingRows::write_slips(Index point, const ContactRows& rows) {
   const Index d = dimension();
   for (Index j = 0; j < d - 1; ++j) {

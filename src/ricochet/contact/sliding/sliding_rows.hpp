@@ -7,7 +7,7 @@
 #include "ricochet/contact/row_writer.hpp"
 #include "ricochet/contact/sliding/sliding_pair.hpp"
 
-/// @file The rows of points that slide far, from what they see.
+/// @file Rows of points that slide far, from their views.
 namespace ricochet {
 
 class SlidingRows {
@@ -15,22 +15,23 @@ class SlidingRows {
   /// `nodes`: reference positions of all nodes, d × count; kept by reference.
   explicit SlidingRows(const Points& nodes);
 
-  /// Rows of the step between two displacements, or where `start` is null those of an instant, come from now on.
+  /// Begins the rows of the step between two displacements, or, if `start` is null, those of an instant.
   void begin(const Vector& displacement, const Vector* start);
-  /// Half way between both, or the instant.
+  /// Middle of both displacements, or the displacement of the instant.
   [[nodiscard]] const Vector& middle() const { return middle_; }
-  /// The displacement over the step.
+  /// Displacement increment of the step.
   [[nodiscard]] const Vector& step() const { return step_; }
 
-  /// Makes the row's product with the step the change of the gap; where none is known, no positive one. A product that
-  /// is too large could give energy and is mended in any case; one that is too small takes some, and is, up to a part
-  /// of the row. What is less than a part of `rounding` stays.
+  /// Corrects the row so that its product with the step equals the change of the gap, or, if no change is
+  /// known, is not positive. A product that is too large could create energy and is always corrected; one
+  /// that is too small dissipates energy, and is corrected up to a fraction of the row. Deviations below a
+  /// fraction of `rounding` are ignored.
   void correct(SlidingView& view, std::optional<double> change, double rounding);
-  /// The row of a point that sees something.
+  /// Writes the row of a point that faces something.
   void write(const SlidingPair::Point& point, const SlidingView& view, ContactRows& rows);
-  /// That of a point that is far from touching, or faces nothing: of a plane across its normal.
+  /// Writes the row of a point that is far from contact, or faces nothing: that of a plane perpendicular to its normal.
   void write_plane(const SlidingPair::Point& point, const SlidingVector& normal, ContactRows& rows);
-  /// Writes all of them; rows that are others than before get the next revision.
+  /// Writes all rows; those that differ from before receive the next revision.
   void finish(ContactRows& rows);
 
  private:
@@ -45,7 +46,7 @@ class SlidingRows {
   RowWriter::Entries entries_, trace_;
   std::vector<char> changed_, slip_changed_;
   std::vector<SlidingVector> places_, motions_;
-  long revision_ = 0;  ///< of the last update: no two rows that differ have the same
+  long revision_ = 0;  ///< number of the last update; different rows never share it
 };
 
 }  // namespace ricochet

@@ -26,7 +26,7 @@ std::vector<Key> elastic_constant_keys() {
 
 namespace {
 
-/// Of E and ν.
+/// Lamé's parameters from E and ν.
 ElasticConstants lame_parameters(double young, double poisson) {
   return {young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson))};
 }

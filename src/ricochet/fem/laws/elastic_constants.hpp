@@ -4,7 +4,7 @@
 
 #include "ricochet/base/registry.hpp"
 
-/// @file The constants of isotropic elasticity as a case gives them: keys of several laws.
+/// @file Constants of isotropic elasticity in a case file: keys shared by several laws.
 namespace ricochet {
 
 /// Lamé's parameters.
@@ -14,9 +14,9 @@ struct ElasticConstants {
 
 /// lambda, mu, young and poisson.
 [[nodiscard]] std::vector<Key> elastic_constant_keys();
-/// Either pair of them.
+/// The two pairs of constants, either of which determines the law.
 [[nodiscard]] KeySets elastic_constant_pairs();
-/// 3 lambda + 2 mu must be positive, and lambda finite.
+/// Checks that 3 lambda + 2 mu is positive and lambda finite.
 void check_elastic_constants(const ParameterCheck& place, Parameters& values);
 [[nodiscard]] ElasticConstants elastic_constants(const Parameters& parameters);
 

@@ -5,7 +5,7 @@ namespace ricochet {
 
 namespace {
 
-/// Of the small strain.
+/// Law of small strain.
 class LinearElasticityLaw final : public QuadraticLaw {
  public:
   using QuadraticLaw::QuadraticLaw;

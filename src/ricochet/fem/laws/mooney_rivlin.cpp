@@ -6,10 +6,10 @@ namespace ricochet {
 
 namespace {
 
-/// W = c₁₀(Ī₁ − 3) + c₀₁(Ī₂ − 3) + (K/4)(J² − 1 − 2 ln J), Ī₁ = J^(−2/3) I₁, Ī₂ = J^(−4/3) I₂ of C: rubber.
+/// W = c₁₀(Ī₁ − 3) + c₀₁(Ī₂ − 3) + (K/4)(J² − 1 − 2 ln J), Ī₁ = J^(−2/3) I₁, Ī₂ = J^(−4/3) I₂ of C: a law for rubber.
 ///
 /// With c = (2/3) tr E and D the deviator of E, I₁ = 3(1+c), I₂ = 3(1+c)² − 2D:D and
-/// J² = (1+c)³ − 2(1+c) D:D + 8 det D, so that all differences are of the second order in D:
+/// J² = (1+c)³ − 2(1+c) D:D + 8 det D, so that all differences are of second order in D:
 ///   Ī₁ − 3 = 3(y − 1) = 3q/(1 + y + y²),   Ī₂ − 3 = 3[y²(1 − p) − 1] = 3[(y−1)(y+1) − p y²],   y = (1+q)^(1/3),
 ///   q = ((1+c)³ − J²)/J²,   p = ⅔ D:D/(1+c)².
 class MooneyRivlin final : public PackedLaw<MooneyRivlin> {
@@ -33,10 +33,10 @@ class MooneyRivlin final : public PackedLaw<MooneyRivlin> {
            0.25 * volume_.modulus * logarithm_rest(s);
   }
 
-  // With m = 1 + c, C = mI + 2D, S is ½K s C⁻¹ and
+  // With m = 1 + c, C = mI + 2D, S is ½K s C⁻¹ plus
   //   [4 c₁₀ J^(−2/3) + 4 c₀₁ J^(−4/3) m] D C⁻¹ − 8 c₀₁ J^(−4/3) (D² − ⅓ D:D I) C⁻¹:
-  // I − (I₁/3) C⁻¹ = 2D C⁻¹ and I₁I − C − ⅔I₂C⁻¹ = (2mD − 4(D² − ⅓ D:D I)) C⁻¹. By Cayley and Hamilton's theorem,
-  // with X = adj D, D² = X + ½ D:D I, D X = det D I and X² = det D D − ½ D:D X, all of that is made of D, X and I:
+  // I − (I₁/3) C⁻¹ = 2D C⁻¹ and I₁I − C − ⅔I₂C⁻¹ = (2mD − 4(D² − ⅓ D:D I)) C⁻¹. By the Cayley–Hamilton theorem, with X
+  // = adj D, D² = X + ½ D:D I, D X = det D I and X² = det D D − ½ D:D X, all terms are combinations of D, X and I:
   //   J² C⁻¹ = m² I − 2m D + 4X,   J² D C⁻¹ = m² D − 2m X + (4 det D − m D:D) I,
   //   J² (D² − ⅓ D:D I) C⁻¹ = (4 det D − ⅓ m D:D) D + (m² − (4/3) D:D) X + (m² D:D/6 − 2m det D) I.
   template <class T>
@@ -76,7 +76,7 @@ class MooneyRivlin final : public PackedLaw<MooneyRivlin> {
   }
 
  private:
-  /// What the energy is made of.
+  /// Invariants in which the energy is expressed.
   template <class T>
   struct Distortion {
     using Number = typename T::Number;

@@ -5,7 +5,7 @@ namespace ricochet {
 
 namespace {
 
-/// W = (μ/2)(tr C − 3 − 2 ln J) + (λ/4)(J² − 1 − 2 ln J), polyconvex, and infinite where a volume vanishes
+/// W = (μ/2)(tr C − 3 − 2 ln J) + (λ/4)(J² − 1 − 2 ln J), polyconvex, and infinite if a volume vanishes
 /// (P. G. Ciarlet, Mathematical Elasticity I, North-Holland 1988, section 4.10). With s = J² − 1,
 ///   S = μ(I − C⁻¹) + ½λ s C⁻¹,   I − C⁻¹ = 2 E C⁻¹.
 class NeoHookean final : public PackedLaw<NeoHookean> {

@@ -2,7 +2,7 @@
 
 #include "ricochet/fem/packed_law.hpp"
 
-/// @file Laws whose energy is quadratic in the strain they are given: small or Green's.
+/// @file Laws whose energy is quadratic in their strain, small or Green's.
 namespace ricochet {
 
 /// W = ½λ (tr E)² + μ E : E.

@@ -5,8 +5,8 @@ namespace ricochet {
 
 namespace {
 
-/// Of Green's strain: linear elasticity that rotations do not change. For small strains only: a bar under compression
-/// has its largest force at the stretch 1/√3, and beyond it has less and less.
+/// Linear elasticity in Green's strain, invariant under rotations. For small strains only: the force on a bar in
+/// compression has its maximum at the stretch 1/√3 and decreases beyond it.
 class SaintVenantKirchhoff final : public QuadraticLaw {
  public:
   using QuadraticLaw::QuadraticLaw;

@@ -9,9 +9,9 @@ namespace ricochet {
 
 namespace {
 
-/// At the nodes; off the contact boundary pressure and traction are 0, the gap is NaN and the status −1. Where two
-/// obstacles meet at a node, the larger pressure, the smaller gap and the larger status are given. Pressures and
-/// tractions are those on the deformed surface; at finite strain the nominal ones differ from them.
+/// Nodal fields; outside the contact boundary pressure and traction are 0, the gap is NaN and the status −1. At a node
+/// with two obstacles they are the larger pressure, the smaller gap and the larger status. Pressures and tractions
+/// refer to the deformed surface; at finite strain the nominal ones differ from them.
 class ContactFields final : public FieldSource {
  public:
   explicit ContactFields(const FieldContext& context)
@@ -66,7 +66,7 @@ class ContactFields final : public FieldSource {
   std::vector<double> gap_;
   std::vector<int> status_;
   Vector node_gap_, node_pressure_, node_traction_;
-  Index entries_per_node_ = 1;  ///< of the contact boundary, at most
+  Index entries_per_node_ = 1;  ///< maximum number of entries of the contact boundary per node
   Vector per_node_;
   Vector area_, stretch_, true_normal_, true_tangential_;
 };
@@ -86,9 +86,10 @@ void ContactFields::evaluate(const State& state) {
   }
   for (Index i = 0; i < node_gap_.size(); ++i) {
     const std::size_t node = number(contact.nodes[static_cast<std::size_t>(i)]);
-    gap_[node] = std::fmin(gap_[node], node_gap_[i]);  // of a number and NaN the number
+    gap_[node] = std::fmin(gap_[node], node_gap_[i]);  // the number, if one of the two is NaN
     status_[node] = std::max(status_[node], 0);
-    // A node does what its own contact point does, or, without one, what those do that its pressure comes from.
+    // A node has the status of its own contact point or, without one, of the points from which its pressure is
+    // recovered.
     const auto take = [&](Index point) {
       const auto at = static_cast<std::size_t>(point);
       if (at < state.contact_status.size())
@@ -104,7 +105,7 @@ void ContactFields::evaluate(const State& state) {
   agree_on_status();
 }
 
-/// Forces per area before the deformation in place of those per area now.
+/// Divides reactions by the area stretch a/A, so that recovery with undeformed areas yields true pressures.
 void ContactFields::find_true_reactions(const State& state) {
   problem_.contact.surface->find_stretch(state.displacement, area_, stretch_);
   true_normal_ = state.forces.normal_reaction.cwiseQuotient(stretch_);
@@ -127,7 +128,8 @@ void ContactFields::evaluate(const ContactRows& rows, const Vector& normal, cons
   if (has_friction_) evaluate_friction(rows, tangential, stresses.traction);
 }
 
-/// Each rank knows what its own points do. Entries of a node are the same ones on all of its ranks, in one order.
+/// Sums over ranks, each of which has the part of its own points. Entries of a node are the same on all of its ranks,
+/// in the same order.
 void ContactFields::add_up_pressures() {
   const Ranks& ranks = *problem_.ranks;
   if (!ranks.are_several()) return;
@@ -148,11 +150,11 @@ void ContactFields::add_up_pressures() {
   for (std::size_t i = 0; i < nodes.size(); ++i) node_pressure_[static_cast<Index>(i)] = per_node_[place(i)];
 }
 
-/// The largest of those of the ranks, as of several contacts.
+/// Uses the largest status of the ranks, as for several contacts.
 void ContactFields::agree_on_status() {
   const Ranks& ranks = *problem_.ranks;
   if (!ranks.are_several()) return;
-  constexpr int kinds = 4;  // open, and what a point may do
+  constexpr int kinds = 4;  // open, and the states of a point
   per_node_.setZero(space_.node_count() * kinds);
   for (Index node = 0; node < space_.node_count(); ++node) {
     const int status = status_[number(node)];
@@ -166,14 +168,15 @@ void ContactFields::agree_on_status() {
   }
 }
 
-/// The friction traction on the body, in stress units: −t r_T of the points, recovered at the nodes like pressures.
+/// Computes the friction traction on the body, in stress units: −t r_T of the points, recovered at the nodes like
+/// pressures.
 void ContactFields::evaluate_friction(const ContactRows& rows, const Vector& tangential,
                                       std::vector<double>& traction) {
   const ContactBoundary& contact = problem_.contact;
   const int d = problem_.dimension;
   node_traction_.setZero(problem_.dof_count());
   for (std::size_t i = 0; i < contact.nodes.size() && tangential.size() > 0; ++i) {
-    // On the other body the traction is the opposite one.
+    // On the opposite body the traction has the opposite sign.
     const double sign = contact.is_opposite[i] != 0 ? 1.0 : -1.0;
     contact.visit_recovery(static_cast<Index>(i), [&](Index point, double value) {
       node_traction_.segment(contact.nodes[i] * d, d) += sign * value * rows.along_tangents(point, tangential);

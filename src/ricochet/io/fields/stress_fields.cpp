@@ -6,7 +6,7 @@ namespace ricochet {
 
 namespace {
 
-/// Means of the cells, and what is recovered at the nodes from them.
+/// Cell means, and nodal values recovered from them.
 class StressFields final : public FieldSource {
  public:
   explicit StressFields(const FieldContext& context)

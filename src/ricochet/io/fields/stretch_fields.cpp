@@ -12,7 +12,7 @@ namespace ricochet {
 namespace {
 
 /// √(1 + 2 E_i) of the principal values of each cell's mean of Green's strain, the first the largest: the principal
-/// stretches where the deformation is the same all over the cell. Of laws of finite strain; of others there are none.
+/// stretches if the deformation is uniform in the cell. Available for laws of finite strain only.
 class StretchFields final : public FieldSource {
  public:
   explicit StretchFields(const FieldContext& context) : body_(context.body) {

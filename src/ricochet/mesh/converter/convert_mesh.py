@@ -1,7 +1,7 @@
 """Writes the mesh of a file as .msh (4.1, binary) for Ricochet: convert_mesh.py INPUT OUTPUT, or --version.
 
-Exit status: 0; 2: refused, the last line says why; 3: a package is missing, the last line names it. What the user should
-know stands in the section $Notes of OUTPUT, behind $MeshFormat, a line each, so that a mesh that was kept says it again.
+Exit status: 0; 2: refused, the last line says why; 3: a package is missing, the last line names it. Notes for the user
+are written to the section $Notes of OUTPUT, behind $MeshFormat, one per line, so that a cached mesh repeats them.
 """
 
 import re

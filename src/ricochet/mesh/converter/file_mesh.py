@@ -1,4 +1,4 @@
-"""What a file of another program says about its mesh: nodes, cells, groups. Shared by the readers and convert_mesh.py."""
+"""Content of a mesh file of another program: nodes, cells, groups. Shared by the readers and convert_mesh.py."""
 
 import sys
 
@@ -10,14 +10,14 @@ except ImportError:
 
 
 class Refusal(Exception):
-    """What a user can mend."""
+    """A problem that the user can correct."""
 
 
 class Missing(Exception):
-    """A Debian package that is not there."""
+    """A Debian package that is missing."""
 
 
-# Of the cells, in meshio's (VTK's) order of nodes: Gmsh's type, dimension, the vertices at whose mean each node lies,
+# Cell types in meshio's (VTK's) order of nodes: Gmsh's type, dimension, the vertices at whose mean each node lies,
 # Gmsh's order of nodes, and the facets by vertices, in the order in which Abaqus numbers the faces S1, S2, ...
 TRIANGLE_EDGES = [(0, 1), (1, 2), (2, 0)]
 QUAD_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0)]
@@ -35,7 +35,7 @@ class CellType:
         self.order = list(range(len(self.places))) if order is None else order
 
     def facet_nodes(self, number):
-        """The cell's nodes on a facet, in meshio's order of the facet's own nodes."""
+        """Returns the cell's nodes on a facet, in meshio's order of the facet's own nodes."""
         facet = self.facets[number]
         own = {2: TYPES["line3"], 3: TYPES["triangle6"], 4: TYPES["quad9"]}[len(facet)]
         places = own.places if len(self.places) > self.vertices else own.places[:own.vertices]
@@ -58,13 +58,13 @@ TYPES = {
 }
 FACET_TYPES = {(2, False): "line", (2, True): "line3", (3, False): "triangle", (3, True): "triangle6",
                (4, False): "quad", (4, True): "quad9"}
-# Types that are known and not supported: their dimension.
+# Dimension of types that are known but not supported.
 OTHERS = {"quad8": 2, "hexahedron20": 3, "hexahedron24": 3, "wedge": 3, "wedge12": 3, "wedge15": 3, "wedge18": 3,
           "pyramid": 3, "pyramid13": 3, "pyramid14": 3, "polygon": 2, "polyhedron": 3}
 
 
 def dimension_of(kind):
-    """-1: of no use whatever the mesh is (points)."""
+    """Returns the dimension of a kind of cells; raises Refusal for an unknown kind."""
     if kind in TYPES:
         return TYPES[kind].dimension
     if kind in OTHERS:
@@ -77,7 +77,7 @@ def dimension_of(kind):
 
 
 class Block:
-    """Cells of one kind; `name` is what the file calls it."""
+    """Cells of one kind; `name` is the name of the kind in the file."""
 
     def __init__(self, kind, nodes, ids, name=None):
         self.kind, self.name = kind, name or kind
@@ -88,11 +88,11 @@ class Block:
 
 
 class FileMesh:
-    """What a file says. Groups are lists of (name, ...), nodes and cells are indices."""
+    """Mesh of a file. Groups are lists of (name, ...); nodes and cells are indices."""
 
     def __init__(self):
         self.points, self.node_ids, self.blocks = None, None, []
         self.cell_groups = []  # (name, {block: indices})
-        self.side_groups = []  # (name, [(block, indices, facet)]), facet being the number in CellType.facets
+        self.side_groups = []  # (name, [(block, indices, facet)]), facet: number in CellType.facets
         self.node_groups = []  # (name, indices)
         self.notes = []

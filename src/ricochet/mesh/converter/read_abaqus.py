@@ -1,5 +1,7 @@
-"""Reads .inp files of Abaqus and CalculiX. meshio's reader loses surfaces, the numbers of elements, instances, and the sets
-of included files, so it is not used here.
+"""Reads .inp files of Abaqus and CalculiX.
+
+meshio's reader loses surfaces, the numbers of elements, instances, and the sets of included files, so it is not used
+here.
 """
 
 import os
@@ -15,17 +17,17 @@ SOLIDS = {"4": "tetra", "10": "tetra10", "8": "hexahedron", "20": "hexahedron20"
 PLANES = {"3": "triangle", "6": "triangle6", "4": "quad", "8": "quad8"}
 LINES = {"2": "line", "3": "line3"}
 NODE_COUNTS = {"quad8": 8, "hexahedron20": 20, "wedge": 6, "wedge15": 15, "pyramid": 5, "pyramid13": 13}
-# Keywords that make nodes, elements or sets in ways that are not read: without them the mesh would be another one.
+# Keywords that generate nodes, elements or sets in ways not read here: ignoring them would give another mesh.
 GENERATORS = {"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SUBSTRUCTURE PATH", "SYMMETRIC MODEL GENERATION"}
-# A number of more digits could not be kept in 64 bits; Abaqus itself takes nine.
+# A number with more digits does not fit into 64 bits; Abaqus itself accepts nine.
 LONGEST_NUMBER = 18
-# Python's own float() and int() take "nan" and "1_0", too.
+# Python's float() and int() also accept "nan" and "1_0".
 NUMBER = {int: re.compile(r"[+-]?\d+", re.ASCII),
           float: re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([EeDd][+-]?\d+)?", re.ASCII)}
 
 
 def element_kind(name, fail):
-    """The kind of an element type, or None for one that is no part of a mesh of a body (masses, springs)."""
+    """Returns the kind of an element type, or None for types outside the mesh of a body (masses, springs)."""
     name = name.upper()
     for pattern, kinds in ((r"(?:C3D|DC3D|AC3D)(\d+)", SOLIDS), (r"(?:CPS|CPE|CPEG|DC2D|AC2D)(\d)", PLANES),
                            (r"(?:S|M3D|SFM3D|R3D|DS|STRI|SC)(\d+)", PLANES),
@@ -59,12 +61,12 @@ class InpReader:
     def fail(self, message):
         raise Refusal(f"{self.at[0]}:{self.at[1]}: {message}")
 
-    # Lines: comments and blank ones left out, those of included files in their place.
+    # Lines without comments and blank ones, with those of included files inserted.
     def lines(self, path, depth=0):
         if depth > 20:
             self.fail("*INCLUDE goes more than 20 files deep")
         try:
-            # The program has looked at the file itself. Of a device or a pipe there may be no end.
+            # The program has checked the main file. Devices and pipes may have no end.
             if depth > 0 and not stat.S_ISREG(os.stat(path).st_mode):
                 self.fail(f"*INCLUDE: {path}: it is no regular file")
             file = open(path, encoding="latin-1")
@@ -118,7 +120,7 @@ class InpReader:
         return self.mesh()
 
     def begin(self, keyword, parameters):
-        """What takes the lines of data behind a keyword, and None at their end."""
+        """Returns the function to call with each data line behind a keyword and None at their end; None to skip."""
         if keyword in GENERATORS:
             self.fail(f"*{keyword} is not read; write the input file with all nodes and elements listed (in Abaqus/CAE: "
                       "Job > Write Input), or mesh the part in Gmsh")
@@ -217,7 +219,7 @@ class InpReader:
         return handle
 
     def named(self, sets, word, what):
-        for name in (word, word.split(".", 1)[-1]):  # of an instance: INSTANCE.SET
+        for name in (word, word.split(".", 1)[-1]):  # a set of an instance: INSTANCE.SET
             if name.strip('"').upper() in sets:
                 return sets[name.strip('"').upper()]
         self.fail(f'there is no {what} "{word}" before this line')
@@ -254,7 +256,7 @@ class InpReader:
                 self.fail("a generated set needs first, last and a positive increment")
             known = self.nodes if keyword == "NSET" else self.element_ids
             numbers = range(values[0], values[1] + 1, values[2] if len(values) == 3 else 1)
-            # The shorter of the two is gone through: a generated set may name far more numbers than there are.
+            # Iterate over the shorter of the two: a generated set may name far more numbers than exist.
             if len(numbers) <= len(known):
                 sets[name.upper()].extend(number for number in numbers if number in known)
             else:
@@ -264,7 +266,7 @@ class InpReader:
     def surface_reader(self, parameters):
         name = parameters.get("NAME", "")
         kind = parameters.get("TYPE", "ELEMENT").upper()
-        if kind in ("SEGMENTS", "CYLINDER", "REVOLUTION"):  # an analytical rigid surface: no part of a body
+        if kind in ("SEGMENTS", "CYLINDER", "REVOLUTION"):  # an analytical rigid surface, not part of a body
             self.aside[f"SURFACE of type {kind}, which an [obstacle.NAME] of the case can stand for"] = 1
             return None
         if "COMBINE" in parameters or kind not in ("ELEMENT", "NODE"):
@@ -286,7 +288,7 @@ class InpReader:
             sides.append((self.members(self.elsets, words[0], "set of elements"), label, self.at))
         return handle
 
-    # From numbers to indices.
+    # Conversion of numbers to indices.
     def mesh(self):
         mesh = FileMesh()
         ids = numpy.array(sorted(self.nodes), dtype=numpy.int64)

@@ -1,4 +1,4 @@
-"""Reads what meshio reads, with the groups that it loses: families of MED, blocks and side sets of Exodus."""
+"""Reads files through meshio, and the groups that it loses: families of MED, blocks and side sets of Exodus."""
 
 import os
 
@@ -14,7 +14,7 @@ def text_of(characters):
 
 
 def add_families(mesh, source):
-    """MED: a family is a combination of groups, and a number of cells or nodes."""
+    """Adds the groups of MED: a family is a combination of groups, and a number assigned to cells or nodes."""
     tags = source.cell_data.get("cell_tags")
     for family, names in (getattr(source, "cell_tags", {}) or {}).items() if tags is not None else ():
         parts = {number: numpy.nonzero(numpy.asarray(values) == family)[0] for number, values in enumerate(tags)}
@@ -28,7 +28,7 @@ def add_families(mesh, source):
     mesh.node_groups += [(name, numpy.concatenate(parts)) for name, parts in groups.items()]
 
 
-# By the kind of cell: the facet of Exodus' sides 1, 2, ...
+# Facets of Exodus' sides 1, 2, ... by kind of cell.
 EXODUS_SIDES = {"triangle": [0, 1, 2], "quad": [0, 1, 2, 3], "tetra": [1, 2, 3, 0], "hexahedron": [2, 3, 4, 5, 0, 1]}
 
 
@@ -72,7 +72,7 @@ def add_exodus_sets(mesh, path):
 
 
 def add_cell_data(mesh, source):
-    """An array of integers, one per cell, usually says what the cells are: "ARRAY VALUE" is the group."""
+    """Makes groups "ARRAY VALUE" of an array of integers, one per cell, which usually classifies the cells."""
     for name, parts in source.cell_data.items():
         parts = [numpy.asarray(part) for part in parts]
         parts = [part[:, 0] if part.ndim == 2 and part.shape[1] == 1 else part for part in parts]
@@ -100,7 +100,7 @@ def read_by_meshio(path):
     except ImportError as problem:
         raise Missing({"h5py": "python3-h5py", "netCDF4": "python3-netcdf4", "lxml": "python3-lxml"}.get(
             problem.name, f"the Python module {problem.name}"))
-    except (Exception, SystemExit) as problem:  # some of its readers leave so
+    except (Exception, SystemExit) as problem:  # some of its readers exit
         reason = "" if isinstance(problem, SystemExit) else f" ({type(problem).__name__}: {problem})"
         raise Refusal(f"meshio could not read this file{reason}{gmsh_advice(path)}")
     mesh = FileMesh()

@@ -1,4 +1,7 @@
-"""Writes a mesh as .msh (4.1, binary), with notes for the user in the section $Notes: of the converter, and of the Python package."""
+"""Writes a mesh as .msh (4.1, binary), with notes for the user in the section $Notes.
+
+Used by the converter and by the Python package.
+"""
 
 if __package__:
     from .file_mesh import FACET_TYPES, TYPES, Refusal, numpy
@@ -7,7 +10,10 @@ else:
 
 
 def unique_rows(rows):
-    """First places of the distinct rows, and for each row the number of its like. numpy.unique is several times slower."""
+    """Returns the first index of each distinct row, and for each row the number of its distinct row.
+
+    numpy.unique is several times slower.
+    """
     order = numpy.lexsort(rows.T)
     is_first = numpy.ones(len(rows), dtype=bool)
     is_first[1:] = (rows[order[1:]] != rows[order[:-1]]).any(axis=1)
@@ -17,7 +23,7 @@ def unique_rows(rows):
 
 
 class Facets:
-    """All facets in groups, of one kind, each once."""
+    """Facets of one kind that belong to groups."""
 
     def __init__(self):
         self.nodes, self.ids, self.names = [], [], []
@@ -29,7 +35,7 @@ class Facets:
 
 
 def boundary_facets(mesh, dimension):
-    """By the facets' kind: the nodes of those that one cell has."""
+    """Returns, by kind, the nodes of the facets that belong to one cell only."""
     found = {}
     for block in mesh.blocks:
         if block.dimension != dimension:
@@ -82,7 +88,7 @@ def collect_facets(mesh, dimension):
     without = []
     for name, indices in mesh.node_groups:
         if name in names:
-            continue  # a surface or a set of surface elements of that name says it better
+            continue  # a surface or a set of surface elements of that name takes precedence
         marked = numpy.zeros(len(mesh.points), dtype=bool)
         marked[indices] = True
         found = False
@@ -99,8 +105,10 @@ def collect_facets(mesh, dimension):
 
 
 def combine(count, groups):
-    """For each of `count` things the number of its combination of groups, and the groups of each combination. The
-    combination 0 is that of no group."""
+    """Returns for each of `count` items the number of its combination of groups, and the groups of each combination.
+
+    Combination 0 has no group.
+    """
     numbers, combinations = numpy.zeros(count, dtype=numpy.int64), [()]
     for group, members in groups:
         mask = numpy.zeros(count, dtype=bool)
@@ -108,13 +116,13 @@ def combine(count, groups):
         keys, inverse = numpy.unique(numbers * 2 + mask, return_inverse=True)
         combinations = [combinations[key // 2] + ((group,) if key % 2 else ()) for key in keys]
         numbers = inverse.reshape(-1)
-        if combinations[0] != ():  # none is left without a group: keep the place of that combination
+        if combinations[0] != ():  # all items have groups: keep combination 0 empty
             combinations, numbers = [()] + combinations, numbers + 1
     return numbers, combinations
 
 
 class MshWriter:
-    """Format 4.1. A combination of groups is an entity."""
+    """Writer of format 4.1. Each combination of groups becomes an entity."""
 
     def __init__(self, mesh):
         self.mesh, self.names, self.entities, self.elements = mesh, {}, [[], [], [], []], []
@@ -123,7 +131,7 @@ class MshWriter:
         return self.names.setdefault((dimension, name), sum(key[0] == dimension for key in self.names) + 1)
 
     def add(self, dimension, blocks, groups):
-        """blocks: (kind, nodes, ids); groups: (name, numbers through all blocks)."""
+        """Adds elements; blocks: (kind, nodes, ids); groups: (name, numbers through all blocks)."""
         merged = {}
         for name, members in groups:
             merged.setdefault(self.tag(dimension, name), []).append(members)

@@ -17,7 +17,7 @@ BoxTree::BoxTree(const std::vector<Box>& boxes) : order_(boxes.size()) {
   refit(boxes);
 }
 
-/// Returns the number of the node.
+/// Builds a subtree and returns the number of its root.
 int BoxTree::build(const std::vector<Box>& boxes, int first, int last) {
   const int number = static_cast<int>(nodes_.size());
   nodes_.push_back({{}, first, last - first, 0});
@@ -39,7 +39,7 @@ int BoxTree::build(const std::vector<Box>& boxes, int first, int last) {
   return number;
 }
 
-/// From the last node to the first: those inside of a node come after it.
+/// From the last node to the first, since descendants follow a node.
 void BoxTree::refit(const std::vector<Box>& boxes) {
   for (std::size_t number = nodes_.size(); number-- > 0;) {
     Node& node = nodes_[number];

@@ -5,36 +5,36 @@
 #include <cstddef>
 #include <vector>
 
-/// @file Axis-aligned boxes in a tree: which of many things may be near?
+/// @file Axis-aligned boxes in a tree, to find the items that may be near.
 namespace ricochet {
 
-/// A binary tree over things that are known by their boxes, in three coordinates (the third is 0 in the plane). Each
-/// half of a box has half of its things, along the longest side of the box around their middles; ties go by number. So
-/// the tree depends on nothing but the boxes. Nothing is allocated after the construction.
+/// A binary tree over items given by their boxes, in three coordinates (the third is 0 in the plane). A node's items
+/// are halved along the longest side of the box around their centres; ties are resolved by number. Hence the tree
+/// depends on the boxes alone. Nothing is allocated after construction.
 class BoxTree {
  public:
   using Box = Eigen::AlignedBox3d;
   struct Node {
     Box box;
-    int first = 0, count = 0;  ///< things (in `order`) of a leaf; count 0: two nodes, the next one and `second`
+    int first = 0, count = 0;  ///< items (in `order`) of a leaf; count 0: two children, the next node and `second`
     int second = 0;
   };
-  static constexpr std::size_t deepest = 64;  ///< of the ways from the root to a leaf
+  static constexpr std::size_t deepest = 64;  ///< longest path from the root to a leaf
 
   BoxTree() = default;
-  /// Not empty.
+  /// `boxes` must not be empty.
   explicit BoxTree(const std::vector<Box>& boxes);
-  /// The same things, elsewhere.
+  /// Updates the boxes of the same items.
   void refit(const std::vector<Box>& boxes);
 
   [[nodiscard]] bool empty() const { return nodes_.empty(); }
-  /// A node comes before those inside of it; the first is the root.
+  /// A node precedes its descendants; the first is the root.
   [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
-  /// Things by leaves.
+  /// Items in the order of the leaves.
   [[nodiscard]] const std::vector<int>& order() const { return order_; }
 
-  /// Calls visit(thing) for the things of all leaves that `may_touch(box)` lets through, in an order that depends on
-  /// the tree alone.
+  /// Calls visit(item) for the items of all leaves that `may_touch(box)` accepts, in an order that depends on the tree
+  /// alone.
   template <class MayTouch, class Visit>
   void visit(const MayTouch& may_touch, const Visit& visit) const {
     if (nodes_.empty()) return;

@@ -6,7 +6,7 @@ namespace ricochet {
 
 namespace {
 
-/// What of a polygon lies to the left of a line (I. E. Sutherland, G. W. Hodgman, Commun. ACM 17, 1974, 32–42).
+/// Clips a polygon to the left of a line (I. E. Sutherland, G. W. Hodgman, Commun. ACM 17, 1974, 32–42).
 SeenPolygon left_of(const SeenPolygon& polygon, const PlanePoint& from, const PlanePoint& to) {
   SeenPolygon result;
   const auto side = [&](const PlanePoint& point) { return plane_cross(to - from, point - from); };

@@ -3,17 +3,17 @@
 #include <Eigen/Core>
 #include <array>
 
-/// @file Pieces of surfaces as they are seen along a direction, and what two of them have in common.
+/// @file Pieces of surfaces projected along a direction, and their intersections.
 namespace ricochet {
 
-/// In the plane perpendicular to the direction; the second coordinate is 0 in two dimensions.
+/// A point of the plane perpendicular to the direction; the second coordinate is 0 in two dimensions.
 using PlanePoint = Eigen::Vector2d;
 
 [[nodiscard]] inline double plane_cross(const PlanePoint& a, const PlanePoint& b) {
   return a[0] * b[1] - a[1] * b[0];
 }
 
-/// A triangle or a segment in the plane, counter-clockwise, with its height along the direction as a linear function.
+/// A projected triangle or segment, counter-clockwise, with its height along the direction as a linear function.
 struct SeenPiece {
   std::array<PlanePoint, 3> corners;
   PlanePoint slope = PlanePoint::Zero();
@@ -21,11 +21,12 @@ struct SeenPiece {
   double area = 0.0;
 
   [[nodiscard]] double height_at(const PlanePoint& at) const { return height + slope.dot(at); }
-  /// Also up to this part of its size outside. `is_segment`: in two dimensions.
+  /// Returns whether a point is inside, or outside by at most `outside` times the size. `is_segment`: in two
+  /// dimensions.
   [[nodiscard]] bool covers(const PlanePoint& at, bool is_segment, double outside = 0.0) const;
 };
 
-/// Convex, counter-clockwise; two triangles meet in six corners at most.
+/// A convex polygon, counter-clockwise; two triangles intersect in at most six corners.
 struct SeenPolygon {
   std::array<PlanePoint, 12> corners;
   int count = 0;
@@ -35,7 +36,7 @@ struct SeenPolygon {
   [[nodiscard]] double area() const;
 };
 
-/// What two triangles, or two segments (then of two corners), have in common. Empty: nothing.
+/// Returns the intersection of two triangles, or of two segments (with two corners); empty if there is none.
 [[nodiscard]] SeenPolygon common_part(const SeenPiece& one, const SeenPiece& other, bool are_segments);
 
 }  // namespace ricochet

@@ -10,8 +10,8 @@ namespace ricochet {
 
 namespace {
 
-/// Without ends: a shaft that bodies stay outside of, or a bore that they stay inside of. Gap ±(|p| − R), p the part of
-/// x − o across the axis. As on a sphere, the normal at the middle of a step is that of the step.
+/// An infinite cylinder: a shaft with bodies outside, or a bore with bodies inside. Gap ±(|p| − R), with p the part of
+/// x − o perpendicular to the axis. As for a sphere, the normal at the midpoint is the normal of a step.
 class Cylinder final : public ObstacleShape {
  public:
   Cylinder(const Vector& centre, const Vector& axis, double radius, double side)
@@ -20,7 +20,7 @@ class Cylinder final : public ObstacleShape {
   [[nodiscard]] double gap(const SpaceVector& position) const override {
     return sign_ * (across(position).stableNorm() - radius_);
   }
-  /// On the axis, where no direction is nearest, some one across it.
+  /// On the axis, where the nearest direction is undefined, returns an arbitrary perpendicular one.
   [[nodiscard]] SpaceVector normal(const SpaceVector& position) const override {
     const Eigen::Vector3d from_axis = across(position);
     const double distance = from_axis.stableNorm();
@@ -38,7 +38,7 @@ class Cylinder final : public ObstacleShape {
   [[nodiscard]] SpaceVector centre() const override { return centre_; }
   [[nodiscard]] OwnAxis own_axis() const override { return {true, axis_}; }
 
-  /// A piece of it, beside the body along the axis.
+  /// Shows a piece of it beside the body along the axis.
   [[nodiscard]] ObstacleSurface surface(const Vector& centre, double radius) const override {
     const Eigen::Vector3d middle = centre_ + axis_.dot(Eigen::Vector3d(centre) - centre_) * axis_;
     const Eigen::Vector3d first = axis_.unitOrthogonal(), second = sign_ * axis_.cross(first);

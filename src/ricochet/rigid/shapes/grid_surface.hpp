@@ -2,11 +2,11 @@
 
 #include "ricochet/rigid/obstacle_shape.hpp"
 
-/// @file Pictures of surfaces in space that have two parameters.
+/// @file Pictures of surfaces in space with two parameters.
 namespace ricochet {
 
-/// (rows + 1) × columns points point(i, k), where the last column meets the first if `closes`, else (columns + 1).
-/// Seen from outside, i to k is a turn counterclockwise.
+/// Makes (rows + 1) × columns points point(i, k) if the last column meets the first (`closes`), else (columns + 1).
+/// Seen from outside, the rotation from i to k is counterclockwise.
 template <class PointAt>
 [[nodiscard]] ObstacleSurface grid_surface(int rows, int columns, bool closes, const PointAt& point) {
   const int wide = closes ? columns : columns + 1;

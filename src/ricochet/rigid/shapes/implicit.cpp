@@ -12,20 +12,20 @@ namespace ricochet {
 
 namespace {
 
-/// Of the differences that derivatives are taken from, relative to the size of the bodies: of fourth order, they have
-/// 12 digits of a surface that is as curved as a body, and 10 of one that is ten times as curved.
+/// Step of the differences that approximate derivatives, relative to the size of the bodies: of fourth order, they are
+/// accurate to 12 digits on a surface with the curvature of a body, and to 10 on one ten times as curved.
 constexpr double step_of_size = 2e-4;
 constexpr double digits_of_slopes = 4e-12;
-/// Of searches for the nearest point. Near the surface they take two to four rounds; those that end before they settle
-/// are far away, where nothing depends on digits.
+/// Iterations of a search for the nearest point. Near the surface two to four suffice; searches that end without
+/// converging are far away, where nothing depends on digits.
 constexpr int most_rounds = 60;
-/// Halvings of a step that comes no nearer.
+/// Halvings of a step that does not come nearer.
 constexpr int most_cuts = 30;
-constexpr double least_part = 1e-6;  ///< of a way along the surface
+constexpr double least_part = 1e-6;  ///< smallest fraction of a step along the surface
 
-/// Where an expression φ(x, y, z) is zero; φ > 0 where bodies may be. The nearest point y of a position x is found by
-/// Newton's method along ∇φ to the surface, and steps in its tangent plane towards x that are brought back to it. The
-/// gap is n·(x − y), n = ∇φ/|∇φ|: a distance whatever the size of ∇φ is.
+/// Zero set of an expression φ(x, y, z), φ > 0 where bodies may be. The nearest point y of a position x is found by
+/// Newton's method along ∇φ to the surface, followed by steps in its tangent plane towards x that are projected back to
+/// the surface. The gap is n·(x − y) with n = ∇φ/|∇φ|, which is a distance for any size of ∇φ.
 class Implicit final : public ObstacleShape {
  public:
   Implicit(const Parameters& parameters, double side)
@@ -62,7 +62,7 @@ class Implicit final : public ObstacleShape {
   struct Slope {
     double value;
     SpaceVector gradient;
-    double variation;  ///< of the values that the gradient comes from
+    double variation;  ///< of the values from which the gradient is computed
   };
   [[nodiscard]] double value_at(const SpaceVector& at) const {
     return value_(at[0], at[1], at.size() == 3 ? at[2] : 0.0, 0.0);
@@ -92,7 +92,8 @@ class Implicit final : public ObstacleShape {
                             value_.text(), place));
   }
 
-  /// The slope where the steepest way from a point reaches the surface, and that place; false: it does not.
+  /// Moves a point along the gradient to the surface and computes the slope there; returns false if it does not
+  /// converge.
   bool project(SpaceVector& at, Slope& slope) const {
     for (int round = 0; round < most_rounds; ++round) {
       slope = slope_at(at);
@@ -101,15 +102,15 @@ class Implicit final : public ObstacleShape {
       if (!(std::sqrt(square) * step_of_size * size_ > least_slope * slope.variation)) refuse(at);
       SpaceVector step = (slope.value / square) * slope.gradient;
       if (step.norm() <= eight_roundings(at.lpNorm<1>() + size_)) return true;
-      // Where the slope is little, as in the middle of a thin body, the way is much too long.
+      // If the slope is small, as in the middle of a thin body, the Newton step is much too long.
       for (int cut = 0; cut < most_cuts && !(std::abs(value_at(at - step)) < std::abs(slope.value)); ++cut) step *= 0.5;
       at -= step;
     }
     return false;
   }
 
-  /// From where the steepest way ends along the surface towards the position, as long as that comes nearer: with the
-  /// steps of J. Barzilai and J. M. Borwein, IMA J. Numer. Anal. 8 (1988) 141–148, which find how curved it is.
+  /// Moves from the projection along the surface towards the position as long as that comes nearer, with the step
+  /// lengths of J. Barzilai and J. M. Borwein, IMA J. Numer. Anal. 8 (1988) 141–148, which adapt to its curvature.
   [[nodiscard]] Foot foot_of(const SpaceVector& position) const {
     SpaceVector foot = position;
     Slope slope{};
@@ -142,7 +143,7 @@ class Implicit final : public ObstacleShape {
     const SpaceVector normal = slope.gradient.normalized();
     return {side_ * normal, side_ * normal.dot(position - foot)};
   }
-  /// Where no way leads to the surface: it has the sign and a size.
+  /// Approximates the gap if no path leads to the surface: its sign is right, and its size approximate.
   [[nodiscard]] Foot first_tangent_plane(const SpaceVector& position) const {
     const Slope slope = slope_at(position);
     const double steepness = slope.gradient.norm();

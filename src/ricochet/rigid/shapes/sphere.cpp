@@ -11,11 +11,11 @@ namespace ricochet {
 
 namespace {
 
-/// Of the rings of a sphere's picture.
+/// Number of sectors in the rings of a sphere's picture.
 constexpr int sectors = 48;
 
-/// A ball that bodies stay outside of, gap |x − o| − R, or a hollow that they stay inside of, gap R − |x − o|. In the
-/// plane a disc and a round hole.
+/// A ball with bodies outside, gap |x − o| − R, or a hollow with bodies inside, gap R − |x − o|. In the plane a disc
+/// and a round hole.
 class Sphere final : public ObstacleShape {
  public:
   Sphere(const Vector& centre, double radius, double side) : centre_(centre), radius_(radius), sign_(side) {}
@@ -23,7 +23,7 @@ class Sphere final : public ObstacleShape {
   [[nodiscard]] double gap(const SpaceVector& position) const override {
     return sign_ * ((position - centre_).stableNorm() - radius_);
   }
-  /// At the centre, where no direction is nearest, that of the last axis.
+  /// At the centre, where the nearest direction is undefined, returns that of the last axis.
   [[nodiscard]] SpaceVector normal(const SpaceVector& position) const override {
     const SpaceVector from_centre = position - centre_;
     const double distance = from_centre.stableNorm();
@@ -50,13 +50,13 @@ class Sphere final : public ObstacleShape {
     return sign_ > 0.0 ? radius_ : std::numeric_limits<double>::infinity();
   }
 
-  /// An arc, or a cap of quadrilaterals, around the point nearest to `centre`; wider than asked for, since bodies slide
-  /// and roll on it. The obstacle is to the right of the arc, and behind the quadrilaterals.
+  /// Shows an arc, or a cap of quadrilaterals, around the point nearest to `centre`, larger than requested, since
+  /// bodies slide and roll on it. The obstacle is on the right of the arc, and behind the quadrilaterals.
   [[nodiscard]] ObstacleSurface surface(const Vector& centre, double radius) const override {
     const SpaceVector towards = sign_ * normal(centre);
     const bool in_plane = towards.size() == 2;
     const double angle = std::min((in_plane ? 20.0 : 4.0) * radius / radius_, std::numbers::pi);
-    // Chords whose sagitta is small beside the body; rings no wider than sectors are at the equator.
+    // Chords whose sagitta is small compared with the body; rings no wider than sectors at the equator.
     const double widest = in_plane ? 0.1 : 2.0 * std::numbers::pi / sectors;
     const double chord = std::min(std::sqrt(0.04 * radius / radius_), widest);
     const int pieces = std::clamp(static_cast<int>(std::ceil(angle / chord)), 8, in_plane ? 256 : 32);
@@ -75,7 +75,7 @@ class Sphere final : public ObstacleShape {
     return result;
   }
 
-  /// Rings around the pole at `towards`; those of a whole sphere end at the other pole.
+  /// Makes rings around the pole at `towards`; those of a whole sphere end at the other pole.
   [[nodiscard]] ObstacleSurface cap(const Eigen::Vector3d& towards, double angle, int rings) const {
     const bool is_whole = angle >= std::numbers::pi;
     const Eigen::Vector3d middle = centre_, first = towards.unitOrthogonal(), second = sign_ * towards.cross(first);

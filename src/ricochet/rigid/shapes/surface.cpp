@@ -18,12 +18,11 @@ namespace {
 
 using Three = RigidSurface::Three;
 
-/// Where a case gives no radius it is this part of the distance between contact nodes: what is smaller than that
-/// distance contact does not see.
+/// Default radius as a fraction of the distance between contact nodes: contact cannot resolve smaller features.
 constexpr double part_of_spacing = 0.25;
-/// A derivative that is shorter, as in a plate that is thinner than the radius, has no direction to speak of.
+/// A shorter derivative, as in a plate thinner than the radius, has no reliable direction.
 constexpr double least_length = 0.1;
-/// Facets of a picture.
+/// Number of facets of a picture.
 constexpr std::size_t most_shown = 6000;
 constexpr double most_of_reach = 6.0;
 
@@ -33,9 +32,9 @@ Three in_three(const SpaceVector& point) {
   return result;
 }
 
-/// A body from a file. With a radius, the gap near the surface is the mean height above the facets that are so near
-/// (RigidSurface::mean_height): its derivative, the normal, turns round edges and in corners, and does not jump. It is
-/// exact on faces and rounds edges: at a right-angled one it is off by 15 % of the radius at most. Farther away than
+/// A body from a file. With a radius, the gap near the surface is the mean height above the facets within that radius
+/// (RigidSurface::mean_height): its derivative, the normal, varies continuously around edges and in corners. The gap is
+/// exact on faces and rounds edges: at a right-angled one the error is at most 15 % of the radius. Farther away than
 /// the radius, and without one, it is the exact distance.
 class Surface final : public ObstacleShape {
  public:
@@ -107,7 +106,7 @@ class Surface final : public ObstacleShape {
     if (!(distance < 1.0) || foot.on_border) return exact;
     const RigidSurface::Height mean = surface_.mean_height(at, radius_);
     if (!(mean.weight > 0.0)) return exact;
-    // All of the mean up to half of the radius, from there on less and less.
+    // The mean alone up to half the radius, then a smooth transition to the exact distance.
     const double t = std::max(2.0 * distance - 1.0, 0.0);
     const double part = t * t * (3.0 - 2.0 * t), slope = 12.0 * t * (1.0 - t) / radius_;
     const double height = side_ * mean.value;
@@ -117,8 +116,8 @@ class Surface final : public ObstacleShape {
     if (!(turned.norm() > least_length)) return exact;
     return {(1.0 - part) * height + part * exact.gap, turned};
   }
-  /// The distance and its derivative: towards the point, or that of the edge where the two are too near to tell. Beyond
-  /// a border nothing is behind the surface.
+  /// Returns the distance and its derivative: the direction towards the point, or the normal of the edge if the two are
+  /// too near to distinguish. Beyond a border no point is behind the surface.
   [[nodiscard]] Look exact_look(const Three& at, const RigidSurface::Foot& foot) const {
     const Three away = at - foot.position;
     const double along = away.dot(foot.normal), distance = away.norm();
@@ -139,8 +138,8 @@ class Surface final : public ObstacleShape {
   std::string file_;  ///< for messages
 };
 
-/// Some facets of a surface, for a picture. With a width of 0 all corners are themselves, else those in one cell of a
-/// grid of that width are one, at their mean.
+/// Shows some facets of a surface. With width 0 all corners are kept; otherwise those within one cell of a grid of that
+/// width are merged at their mean.
 ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& facets, double width, double side) {
   std::map<std::array<long, 3>, int> numbers;
   std::vector<Three> sums;
@@ -171,7 +170,7 @@ ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& 
     for (int& corner : own) corner = point_of(corner);
     if (surface.in_space() && (own[1] == own[2] || own[2] == own[0])) continue;
     if (own[0] == own[1]) continue;
-    std::array<int, 3> key = own;  // the same facet is there once, whichever of its corners comes first
+    std::array<int, 3> key = own;  // identifies a facet independently of its first corner
     if (surface.in_space()) std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
     if (width > 0.0 && !known.try_emplace(key, 1).second) continue;
     if (side < 0.0) std::swap(own[0], own[1]);
@@ -185,12 +184,12 @@ ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& 
   return result;
 }
 
-/// Shows the facets that are near; if they are too many, as coarse as it takes and no coarser: what stands out of a
-/// plate is still seen.
+/// Shows the nearby facets; if they are too many, coarsened no more than necessary, so that features that protrude from
+/// a plate remain visible.
 ObstacleSurface Surface::surface(const Vector& centre, double radius) const {
   const Three middle = in_three(SpaceVector(centre));
   const double reach = radius + std::abs(gap(SpaceVector(centre)));
-  // One that is not much larger is shown whole.
+  // A surface that is not much larger is shown whole.
   const bool is_small = surface_.box().diagonal().norm() < most_of_reach * reach;
   std::vector<int> shown;
   surface_.tree().visit([&](const BoxTree::Box& box) { return is_small || box.exteriorDistance(middle) < reach; },

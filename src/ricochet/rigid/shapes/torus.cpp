@@ -9,8 +9,8 @@ namespace ricochet {
 
 namespace {
 
-/// A ring that bodies stay outside of, or a round pipe that closes on itself and that they stay inside of. With ρ and z
-/// across and along the axis, the gap is ±(√((ρ − R)² + z²) − r).
+/// A ring with bodies outside, or a closed round pipe with bodies inside. With ρ and z perpendicular to and along the
+/// axis, the gap is ±(√((ρ − R)² + z²) − r).
 class Torus final : public ObstacleShape {
  public:
   Torus(const Vector& centre, const Vector& axis, double ring_radius, double tube_radius, double side)
@@ -23,7 +23,7 @@ class Torus final : public ObstacleShape {
   [[nodiscard]] double gap(const SpaceVector& position) const override {
     return sign_ * (from_ring(position).stableNorm() - tube_radius_);
   }
-  /// On the ring in the middle of the tube, where no direction is nearest, that of the axis.
+  /// On the centre line of the tube, where the nearest direction is undefined, returns that of the axis.
   [[nodiscard]] SpaceVector normal(const SpaceVector& position) const override {
     const Eigen::Vector3d offset = from_ring(position);
     const double distance = offset.stableNorm();
@@ -32,7 +32,7 @@ class Torus final : public ObstacleShape {
   [[nodiscard]] double gap_rounding(const SpaceVector& position) const override {
     return eight_roundings(position.lpNorm<1>() + centre_.lpNorm<1>() + ring_radius_ + tube_radius_);
   }
-  /// Inside the tube it is the side towards the axis that bulges, along the ring.
+  /// From inside the tube, the side towards the axis is the convex one, along the ring.
   [[nodiscard]] double least_radius() const override {
     return sign_ > 0.0 ? tube_radius_ : ring_radius_ - tube_radius_;
   }
@@ -60,7 +60,7 @@ class Torus final : public ObstacleShape {
   }
 
  private:
-  /// From the nearest point of the ring; on the axis from some one.
+  /// Vector from the nearest point of the ring; for a point on the axis, from an arbitrary one.
   [[nodiscard]] Eigen::Vector3d from_ring(const SpaceVector& position) const {
     const Eigen::Vector3d from_centre = Eigen::Vector3d(position) - centre_;
     const Eigen::Vector3d across = from_centre - axis_.dot(from_centre) * axis_;

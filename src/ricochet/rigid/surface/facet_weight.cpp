@@ -10,8 +10,8 @@ namespace {
 
 using Three = Eigen::Vector3d;
 
-/// Where the line a + s (b − a) is inside of the circle of a squared radius about the origin, cut to [0, 1]. False:
-/// nowhere.
+/// Finds the interval in [0, 1] where the line a + s (b − a) is inside the circle of a squared radius about the origin.
+/// Returns false if there is none.
 bool part_inside(const Three& a, const Three& along, double square, double& first, double& last) {
   const double length = along.squaredNorm(), middle = -a.dot(along) / length;
   const double discriminant = middle * middle - (a.squaredNorm() - square) / length;
@@ -22,14 +22,15 @@ bool part_inside(const Three& a, const Three& along, double square, double& firs
   return last > first;
 }
 
-/// Integrals over the part of a flat figure inside of a circle of radius R about the origin: of R² − r², and of y.
+/// Integrals of R² − r² and of y over the part of a plane figure inside a circle of radius R about the origin.
 struct Part {
   double weight = 0.0;
   Three moment = Three::Zero();
 };
 
-/// Of the triangle (0, a, b), signed by its turn about the normal. Where the side is outside of the circle it is a
-/// sector, θ R⁴/4 and R³/3 times the difference of the unit vectors, turned; else a triangle.
+/// Adds the integrals over the triangle (0, a, b), with the sign of its orientation about the normal. Where the side is
+/// outside the circle, the figure is a sector, with θ R⁴/4 and R³/3 times the difference of the unit vectors, rotated;
+/// else it is a triangle.
 void add_sector(const Three& a, const Three& b, const Three& normal, double square, Part& sum) {
   const auto turn = [&](const Three& from, const Three& to) {
     const double first = from.norm(), last = to.norm();
@@ -48,7 +49,7 @@ void add_sector(const Three& a, const Three& b, const Three& normal, double squa
   if (last < 1.0) turn(to, b);
 }
 
-/// Its area alone.
+/// Returns its area alone.
 double area_of_sector(const Three& a, const Three& b, const Three& normal, double square) {
   const auto turn = [&](const Three& from, const Three& to) {
     return 0.5 * square * std::atan2(normal.dot(from.cross(to)), from.dot(to));

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int squares = 160, cubes = 32;
 
-/// Cuts simplices of a grid where the function changes its sign.
+/// Cuts the simplices of a grid in which the function changes its sign.
 class LevelSet {
  public:
   LevelSet(const std::function<double(const SpaceVector&)>& function, const SpaceVector& middle, double half_width)
@@ -62,7 +62,7 @@ class LevelSet {
     cut_triangle({first, first + 1, first + wide + 1});
     cut_triangle({first, first + wide + 1, first + wide});
   }
-  /// Corners counterclockwise: the line has the corners inside to its right.
+  /// Corners are counterclockwise, and the line has the inside corners on its right.
   void cut_triangle(const std::array<long, 3>& corners) {
     for (std::size_t k = 0; k < 3; ++k) {
       const long alone = corners[k], next = corners[(k + 1) % 3], last = corners[(k + 2) % 3];
@@ -73,7 +73,7 @@ class LevelSet {
     }
   }
 
-  /// Six tetrahedra around a diagonal.
+  /// Cuts a cube into six tetrahedra around a diagonal.
   void cut_cube(long first, long wide) {
     const std::array<long, 3> along{1, wide, wide * wide};
     constexpr std::array<std::array<std::size_t, 3>, 6> orders{

@@ -4,11 +4,11 @@
 
 #include "ricochet/rigid/obstacle_shape.hpp"
 
-/// @file Pictures of surfaces that are where a function is zero.
+/// @file Pictures of zero level sets of functions.
 namespace ricochet {
 
-/// The part of it in a square or a cube of half this width, out of lines or triangles; the function is positive
-/// outside.
+/// Approximates the zero level set within a square or a cube of this half width by lines or triangles; the function is
+/// positive outside.
 [[nodiscard]] ObstacleSurface picture_of_level_set(const std::function<double(const SpaceVector&)>& function,
                                                    const SpaceVector& middle, double half_width);
 

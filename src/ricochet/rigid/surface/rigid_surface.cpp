@@ -20,7 +20,7 @@ namespace {
 
 using Three = Eigen::Vector3d;
 
-/// Of the angle at corner k.
+/// Angle of a triangle at corner k.
 double angle_at(const std::array<Three, 3>& corners, int k) {
   const Three& at = corners[static_cast<std::size_t>(k)];
   const Three a = corners[static_cast<std::size_t>((k + 1) % 3)] - at;
@@ -46,7 +46,7 @@ RigidSurface::RigidSurface(const SurfaceFacets& facets, const std::string& name)
   tree_ = BoxTree(boxes);
 }
 
-/// Corners at one and the same place are one.
+/// Merges corners at the same position.
 void RigidSurface::join_corners(const SurfaceFacets& facets) {
   const auto per_facet = static_cast<std::size_t>(corner_count());
   std::vector<std::size_t> order(facets.corners.size() * per_facet);
@@ -65,16 +65,16 @@ void RigidSurface::join_corners(const SurfaceFacets& facets) {
   for (std::array<int, 3>& facet : facets_) facet[2] = facet[1];
 }
 
-/// Those of borders that numbers with seven digits may have parted.
+/// Merges border corners that rounding to seven digits may have separated.
 bool RigidSurface::join_borders() {
-  constexpr double near = 1e-6;  // of the surface
+  constexpr double near = 1e-6;  // relative to the size of the surface
   std::vector<int> order;
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     if (corner_normals_[i].is_border) order.push_back(static_cast<int>(i));
   }
   const auto places = Eigen::Map<const Points>(corners_.front().data(), 3, static_cast<Index>(corners_.size()));
   const double reach = near * enclosing_diameter(places);
-  // Along a direction in which few corners of a surface that people make are level.
+  // A direction along which few corners of usual surfaces have equal heights.
   const Three direction = Three(0.6182, 0.5432, 0.5681).normalized();
   const auto at = [&](int corner) -> const Three& { return corners_[static_cast<std::size_t>(corner)]; };
   const auto height = [&](int corner) { return direction.dot(at(corner)); };
@@ -124,7 +124,8 @@ std::string RigidSurface::text_of(int facet) const {
   return fmt::format("{} {} at {}", in_space_ ? "triangle" : "segment", facet + 1, place_text(middle));
 }
 
-/// Two facets that run along an edge in opposite directions, or one. In the plane corners take the place of edges.
+/// Accepts one facet, or two that traverse the edge in opposite directions. In the plane corners take the role of
+/// edges.
 void RigidSurface::check_edge(std::span<const Side> sides, const std::string& name) const {
   if (sides.size() == 1 || (sides.size() == 2 && sides[0].forward != sides[1].forward)) return;
   const auto sorted = [&](const Side& side) {
@@ -156,8 +157,8 @@ RigidSurface::Three RigidSurface::middle_of(const Side& side) const {
   return 0.5 * (corners_[static_cast<std::size_t>(side.low)] + corners_[static_cast<std::size_t>(side.high)]);
 }
 
-/// By the corners of each. Of a facet two of whose corners are one there are none: its other two sides are neighbours
-/// of each other.
+/// Returns the sides sorted by their corners. A facet with two coincident corners contributes none: its other two sides
+/// are neighbours of each other.
 std::vector<RigidSurface::Side> RigidSurface::sorted_sides() const {
   std::vector<Side> sides;
   for (std::size_t i = 0; i < facets_.size(); ++i) {
@@ -208,7 +209,7 @@ void RigidSurface::find_edges(const std::string& name) {
   if (in_space_) find_corner_normals();
 }
 
-/// How wide the facets at edges that bend are, and how much the sharpest does.
+/// Accumulates the width of the facets at edges that bend, and the sharpest bend.
 void RigidSurface::look_at_bend(std::span<const Side> sides) {
   const auto facet_of = [&](int k) { return static_cast<std::size_t>(sides[static_cast<std::size_t>(k)].facet); };
   const double cosine = normals_[facet_of(0)].dot(normals_[facet_of(1)]);
@@ -234,7 +235,7 @@ double RigidSurface::width_of_smooth() const {
   return is_smooth ? bent_width_ / bent_count_ : std::numeric_limits<double>::infinity();
 }
 
-/// Those of the facets, weighted by their angles.
+/// Corner normals: those of the facets, weighted by their angles.
 void RigidSurface::find_corner_normals() {
   for (std::size_t i = 0; i < facets_.size(); ++i) {
     for (int k = 0; k < 3; ++k)
@@ -267,8 +268,9 @@ double RigidSurface::volume() const {
   return moments().volume;
 }
 
-/// Σ over cones from the middle of the box to the facets, so that nothing is lost far from the origin: of a tetrahedron
-/// (0, a, b, c) ∫ r rᵀ = V/20 (s sᵀ + a aᵀ + b bᵀ + c cᵀ), s = a + b + c; of a triangle A/12 (s sᵀ + a aᵀ + b bᵀ).
+/// Sums over cones from the centre of the box to the facets, so that no accuracy is lost far from the origin. For a
+/// tetrahedron (0, a, b, c), ∫ r rᵀ = V/20 (s sᵀ + a aᵀ + b bᵀ + c cᵀ) with s = a + b + c; for a triangle,
+/// A/12 (s sᵀ + a aᵀ + b bᵀ).
 RigidSurface::Moments RigidSurface::moments() const {
   BoxTree::Box box;
   for (const Three& point : corners_) box.extend(point);
@@ -293,7 +295,7 @@ RigidSurface::Moments RigidSurface::moments() const {
 RigidSurface::Three RigidSurface::block_sides() const {
   const Moments sums = moments();
   if (sums.volume == 0.0) return Three::Zero();
-  // Of a block of sides a, b, c they are a²/12, b²/12, c²/12.
+  // For a block with sides a, b, c they are a²/12, b²/12, c²/12.
   return symmetric_eigenvalues(Eigen::Matrix3d(12.0 / sums.volume * sums.second)).cwiseMax(0.0).cwiseSqrt();
 }
 

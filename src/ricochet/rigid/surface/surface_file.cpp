@@ -18,7 +18,7 @@ namespace ricochet {
 
 namespace {
 
-constexpr int header_of_stl = 80;  ///< bytes of the binary format that mean nothing
+constexpr int header_of_stl = 80;  ///< bytes of the binary format without a meaning
 
 std::string contents(const std::string& file, int header = 0) {
   const std::string why_not = why_no_input(file, header);
@@ -48,7 +48,8 @@ void expect(TextWords& words, std::string_view word) {
   if (!same(found, word)) words.fail(fmt::format("expected \"{}\" but found \"{}\"", word, shown_word(found)));
 }
 
-/// Normals are not used, and those of triangles without area may be "nan"; a word that is no number is an error.
+/// Normals are not used, and those of triangles without area may be "nan"; any other word that is not a number is an
+/// error.
 void skip_normal(TextWords& words) {
   for (int k = 0; k < 3; ++k) {
     const std::string_view word = words.next();
@@ -114,7 +115,7 @@ SurfaceFacets read_binary(const std::string& file, const std::string& bytes, dou
 
 }  // namespace
 
-/// Binary files may begin with "solid", too: their size tells.
+/// Binary files may begin with "solid", too: their size distinguishes them.
 SurfaceFacets read_stl(const std::string& file, double scale) {
   const std::string bytes = contents(file, header_of_stl);
   const bool is_binary = bytes.size() == binary_header + binary_triangle * std::size_t{count_of_binary(bytes)};

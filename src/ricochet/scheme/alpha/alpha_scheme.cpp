@@ -52,7 +52,7 @@ void AlphaScheme::advance(const SemidiscreteProblem& problem, State& state, Stag
   equations_.take_forces(problem, stage, solution, h, velocity_, 1.0, state);
 }
 
-/// The velocity that damping acts on, at δ = 0.
+/// Computes the velocity that damping acts on, at δ = 0.
 void AlphaScheme::find_damping_velocity(const SemidiscreteProblem& problem, const State& state, const Vector& before) {
   if (problem.has_singular_mass()) {
     velocity_ = predicted_ / step();

@@ -6,10 +6,10 @@
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
-/// @file Newmark's scheme with inertia and forces weighted over the step: the alpha schemes.
+/// @file Alpha schemes: Newmark's scheme with inertia and forces weighted over the step.
 namespace ricochet {
 
-/// What the weights α_m of inertia and α_f of forces at the start of a step lead to.
+/// Parameters that follow from the weights α_m of inertia and α_f of forces at the start of a step.
 struct AlphaWeights {
   AlphaWeights(double step, double inertia_weight, double force_weight);
 
@@ -18,22 +18,22 @@ struct AlphaWeights {
   double alpha;           ///< (1−α_m)/((1−α_f)βh²)
   double energy_factor;   ///< ½h²(β−γ/2)
 };
-/// Of generalized-alpha, by its spectral radius.
+/// Weights of generalized-alpha for its spectral radius.
 [[nodiscard]] AlphaWeights generalized_alpha_weights(double step, double spectral_radius);
 
-/// With contact at the end of the step, its forces weighted as all others:
+/// Newmark's scheme with contact at the end of the step, whose forces are weighted as all others:
 ///   M [(1−α_m)A₁ + α_m A₀] = (1−α_f) F₁ + α_f F₀,   F = L − C V − K U + Gᵀ r_N − B_Tᵀ r_T,   0 ≤ r_N ⟂ g(U₁) ≥ 0,
 ///   friction on the slip rate B_T (U₁−U₀)/h,   U₁, V₁ from A₀, A₁ by Newmark's formulas with
 ///   γ = ½ + α_f − α_m,   β = ¼(½+γ)²   (J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371–375).
 /// Written with the true acceleration a, M a = F at every t_n (M. Arnold, O. Brüls, Multibody Syst. Dyn. 18 (2007)
 /// 185–202): (1−α_m)A₁ + α_m A₀ = (1−α_f)a₁ + α_f a₀. Unknown x = U₁, base Ũ − c/α with Ũ = U₀ + hV₀ + h²(½−β)A₀,
-/// α = (1−α_m)/((1−α_f)βh²) and c = (α_m A₀ − α_f a₀)/(1−α_f), so that a₁ = α δ. The state's acceleration is a; A is
-/// in its memory.
+/// α = (1−α_m)/((1−α_f)βh²) and c = (α_m A₀ − α_f a₀)/(1−α_f), so that a₁ = α δ. The state's acceleration is a; A is in
+/// its memory.
 ///
-/// Energy: J + ½h²(β−γ/2)AᵀMA changes in a step by ΔUᵀ[α_f F₀+(1−α_f)F₁], with F the forces outside J, less
+/// Energy: in a step J + ½h²(β−γ/2)AᵀMA changes by ΔUᵀ[α_f F₀+(1−α_f)F₁], with F the forces outside J, less
 ///   (½−α_f)(ΔUᵀKΔU + ΔUᵀMΔA) + ½h²(β−γ/2)(2γ−1)ΔAᵀMΔA,
-/// which has no sign; momentum: M (V + (½−α_f)h A) by the impulses of the same forces. On massless dofs a = A = 0, V =
-/// ΔU/h, and damping acts on ΔU/h, as under newmark.
+/// which has no sign; the momentum M (V + (½−α_f)h A) changes by the impulses of the same forces. On massless dofs
+/// a = A = 0, V = ΔU/h, and damping acts on ΔU/h, as under newmark.
 class AlphaScheme final : public Scheme {
  public:
   AlphaScheme(double step, const AlphaWeights& weights) : Scheme(step), weights_(weights) {}
@@ -75,10 +75,11 @@ class AlphaScheme final : public Scheme {
   IntegrationError error_;
 };
 
-/// Key of State::memory: A, which is not the acceleration that the forces give.
+/// Key of State::memory: A, which differs from the acceleration of the forces.
 inline const std::string algorithmic_acceleration = "algorithmic_acceleration";
 
-/// "spectral_radius", of vibrations that are fast against the step; `least`: the smallest there is.
+/// Key "spectral_radius", for vibrations that are fast compared with the step; `least` is the smallest admissible
+/// value.
 [[nodiscard]] Key spectral_radius_key(double least);
 
 }  // namespace ricochet

@@ -2,8 +2,8 @@
 
 namespace ricochet {
 
-/// J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371–375: of all weights with this spectral radius those that damp
-/// slow vibrations least.
+/// Generalized-alpha scheme of J. Chung and G. M. Hulbert (J. Appl. Mech. 60 (1993) 371–375): of all weights with this
+/// spectral radius, those that damp low frequencies least.
 SchemeRegistration generalized_alpha_scheme() {
   const auto make = [](double step, const Parameters& parameters) {
     return std::make_unique<AlphaScheme>(step, generalized_alpha_weights(step, parameters.number("spectral_radius")));

@@ -2,8 +2,8 @@
 
 namespace ricochet {
 
-/// H. M. Hilber, T. J. R. Hughes, R. L. Taylor, Earthquake Engng Struct. Dyn. 5 (1977) 283–292: forces are weighted,
-/// inertia is not; their alpha is −α_f.
+/// HHT-alpha scheme of H. M. Hilber, T. J. R. Hughes and R. L. Taylor (Earthquake Engng Struct. Dyn. 5 (1977) 283–292):
+/// forces are weighted, inertia is not; their alpha is −α_f.
 SchemeRegistration hht_alpha_scheme() {
   const auto make = [](double step, const Parameters& parameters) {
     const double rho = parameters.number("spectral_radius");

@@ -7,16 +7,16 @@ namespace ricochet {
 
 namespace {
 
-/// The nonsmooth generalized-α scheme (O. Brüls, V. Acary, A. Cardona, Comput. Methods Appl. Mech. Engrg. 281 (2014)
+/// Nonsmooth generalized-α scheme (O. Brüls, V. Acary, A. Cardona, Comput. Methods Appl. Mech. Engrg. 281 (2014)
 /// 131–161), without friction and damping. Accelerations are those without contact, M a = L − K U, weighted as under
 /// generalized-alpha, (1−α_m)A₁ + α_mA₀ = (1−α_f)a₁ + α_fa₀; contact acts through jumps of positions and velocities,
 ///   U₁ = U₀ + hV₀ + h²[(½−β)A₀+βA₁] + Q,   M Q = Gᵀν,   0 ≤ ν ⟂ g(U₁) ≥ 0;
 ///   V₁ = V₀ + hA* + W,   A* = (1−γ)A₀+γA₁,   M W = GᵀΛ,   0 ≤ Λ ⟂ G V₁ + e G V₀ ≥ 0 where ν > 0 or g(U₁) = 0.
-/// Unknown of the first: x = U₁ from AlphaScheme's base, r = αν, so that M (a₁ + αQ) = αM δ; of the second: V₁ from
-/// V₀ + hA*. The force of a step is Λ/h. No point penetrates or drifts. With F̄ = (1−α_f)F₁+α_fF₀ of the forces outside
-/// J but contact, J + ½h²(β−γ/2)AᵀMA changes in a step by
+/// The unknown of the first problem is x = U₁ from AlphaScheme's base, r = αν, so that M (a₁ + αQ) = αM δ; that of the
+/// second is V₁ from V₀ + hA*. The force of a step is Λ/h. No point penetrates or drifts. With F̄ = (1−α_f)F₁+α_fF₀ of
+/// the forces outside J except contact, in a step J + ½h²(β−γ/2)AᵀMA changes by
 ///   (GᵀΛ)ᵀ(V₀+V₁)/2 + ΔUᵀF̄ − (½−α_f)(ΔUᵀKΔU + ΔUᵀMΔA) − ½h²(β−γ/2)(2γ−1)ΔAᵀMΔA − (Q−½hW)ᵀMA*;
-/// the last has no sign: contact can create energy.
+/// the last term has no sign: contact can create energy.
 class NonsmoothGeneralizedAlpha final : public Scheme {
  public:
   NonsmoothGeneralizedAlpha(double step, double spectral_radius, double restitution)
@@ -55,7 +55,7 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
     const double h = step();
     stages_.position(problem, state, h, weights_, stages);
     const StageSolution& impact = stages_.impulses(problem, state, h, weights_, stages);
-    increment = (0.5 * h) * (state.velocity + stages_.velocity + impact.increment);  // that Λ/h works on
+    increment = (0.5 * h) * (state.velocity + stages_.velocity + impact.increment);  // on which Λ/h does work
     account(problem, state.time, impact, increment, state.memory[smooth_varying_load]);
     take_forces(problem, stages, impact, state);
     state.displacement += stages_.motion;
@@ -71,13 +71,13 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
   }
 
  private:
-  /// F̄ works on ΔU, not on the increment: the difference.
+  /// Books the difference between the work of F̄ on ΔU, where it acts, and on the increment.
   void account(const SemidiscreteProblem& problem, double time, const StageSolution& impact, const Vector& increment,
                Vector& load_before) {
     const double h = step(), less = 0.5 - weights_.force;
     work_on_ = stages_.motion - increment;
     corrections_ = {.support_work = problem.supports.work(stages_.mean_support, work_on_)};
-    if (load_before.size() == 0) {  // of an older checkpoint
+    if (load_before.size() == 0) {  // older checkpoint
       load_before = Vector::Zero(problem.dof_count());
       if (problem.loads.varies()) problem.loads.varying(time, load_before);
     }
@@ -107,7 +107,7 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
   AlphaWeights weights_;
   NonsmoothStages stages_;
   StepCorrections corrections_;
-  Vector load_, work_on_, force_;  ///< F̄ of varying loads, ΔU less the increment, work space
+  Vector load_, work_on_, force_;  ///< F̄ of varying loads; ΔU less the increment; work space
   StageSolution solution_;
 };
 

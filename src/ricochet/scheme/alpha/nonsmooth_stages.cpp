@@ -5,7 +5,7 @@
 
 namespace ricochet {
 
-/// M δ = Gᵀ normal: a jump of positions or velocities.
+/// Solves M δ = Gᵀ normal for a jump of positions or velocities.
 const StageSolution& NonsmoothStages::push(const SemidiscreteProblem& problem, const Vector& normal,
                                            StageSolve& stages) {
   unloaded_stage(problem, velocity_stage, stages);

@@ -12,25 +12,25 @@ class NonsmoothStages {
   /// Numbers of the stages with the operators αM + K and M.
   static constexpr std::size_t position_stage = 0, velocity_stage = 1;
 
-  /// At t = 0: contact that presses already is no part of a₀, A₀ and the support reactions, a₀ = a − M⁻¹Gᵀr.
+  /// Removes, at t = 0, contact that presses already from a₀, A₀ and the support reactions: a₀ = a − M⁻¹Gᵀr.
   void start(const SemidiscreteProblem& problem, State& state, StageSolve& stages);
 
-  // Of the start of the step, from the state.
+  // At the start of the step, from the state:
   Vector smooth, algorithmic;  ///< accelerations a₀ and A₀ without contact; position() replaces a₀ by a₁
-  Vector support;              ///< what supports exert without contact; likewise
+  Vector support;              ///< support reactions without contact; likewise
 
-  // Of the end.
+  // At the end:
   Vector motion;        ///< U₁ − U₀
   Vector jump;          ///< Q
   Vector after;         ///< A₁
   Vector change;        ///< A₁ − A₀
-  Vector mean_support;  ///< (1−α_f) of what supports exert without contact, α_f of that at the start
+  Vector mean_support;  ///< (1−α_f) of the support reactions without contact, and α_f of those at the start
   Vector velocity;      ///< V₀ + hA*
   Vector mean;          ///< A*
-  /// U₁ and what comes with it.
+  /// Computes U₁ and the values above that belong to it.
   void position(const SemidiscreteProblem& problem, const State& state, double step, const AlphaWeights& weights,
                 StageSolve& stages);
-  /// Λ, and W as the solution's increment.
+  /// Computes Λ, and W as the solution's increment.
   const StageSolution& impulses(const SemidiscreteProblem& problem, const State& state, double step,
                                 const AlphaWeights& weights, StageSolve& stages);
 
@@ -46,7 +46,7 @@ class NonsmoothStages {
 
 /// Key of State::memory: `support` of the last step.
 inline const std::string smooth_support_reaction = "smooth_support_reaction";
-/// Key of State::memory: the varying load that a₀ is of. A load that is set between two steps is not.
+/// Key of State::memory: the varying load contained in a₀. A load set between two steps is not contained.
 inline const std::string smooth_varying_load = "smooth_varying_load";
 
 }  // namespace ricochet

@@ -2,8 +2,8 @@
 
 namespace ricochet {
 
-/// W. L. Wood, M. Bossak, O. C. Zienkiewicz, Int. J. Numer. Meth. Engng. 15 (1980) 1562–1566: inertia is weighted,
-/// forces are not.
+/// WBZ-alpha scheme of W. L. Wood, M. Bossak and O. C. Zienkiewicz (Int. J. Numer. Meth. Engng. 15 (1980) 1562–1566):
+/// inertia is weighted, forces are not.
 SchemeRegistration wbz_alpha_scheme() {
   const auto make = [](double step, const Parameters& parameters) {
     const double rho = parameters.number("spectral_radius");

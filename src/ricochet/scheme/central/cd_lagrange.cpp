@@ -8,9 +8,9 @@ namespace {
 /// CD-Lagrange, central differences with impulses (F.-E. Fekak, M. Brun, A. Gravouil, B. Depale, Comput. Mech. 60
 /// (2017) 547–567): κ = 0, and with the velocities V^{n±½} = ±(U^{n±1}−Uⁿ)/h, relative to the obstacle,
 ///   gⁿ > 0 ⇒ r_N = 0,   gⁿ ≤ 0 ⇒ 0 ≤ r_N ⟂ G V^{n+½} + e G V^{n−½} ≥ 0,   friction on the slip rate B_T V^{n+½}.
-/// h r are impulses; V^{n+½} = V^{n−½} + δ/h. Contact changes the energy by ½h r_N·G(V^{n+½}+V^{n−½}), which
-/// is minus what an impact takes from the contact nodes, ½(1−e²)m|G V|² at each, as long as they approach; of a point
-/// that touches and leaves it can have either sign. Points penetrate by what they move in a step.
+/// h r are impulses; V^{n+½} = V^{n−½} + δ/h. Contact changes the energy by ½h r_N·G(V^{n+½}+V^{n−½}). As long as
+/// contact nodes approach, this is minus the energy lost in an impact, ½(1−e²)m|G V|² at each node; at a point that
+/// touches and separates it can have either sign. Points penetrate by up to their motion in a step.
 class CdLagrange final : public CentralScheme {
  public:
   CdLagrange(double step, double restitution)

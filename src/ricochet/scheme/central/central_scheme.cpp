@@ -35,7 +35,7 @@ void CentralScheme::start(const SemidiscreteProblem& problem, State& state, Stag
 void CentralScheme::advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) {
   const double h = step(), time = state.time + h;
   Vector& ahead = state.memory.at(increment_ahead);  // Uⁿ − Uⁿ⁻¹
-  now_ = state.displacement + ahead;                 // Uⁿ; the state is that of n−1
+  now_ = state.displacement + ahead;                 // Uⁿ; the state is at n−1
   velocity_ = ahead / h;
   Stage& stage = stages.stage(0);
   equations_.balance(problem, time, now_, velocity_, stage);  // Vⁿ = (Uⁿ−Uⁿ⁻¹)/h + δ/2h
@@ -53,7 +53,7 @@ void CentralScheme::advance(const SemidiscreteProblem& problem, State& state, St
   equations_.take_forces(problem, stage, solution, h, state.velocity, 1.0, state);
 }
 
-/// The velocity is that of the step ahead.
+/// Changes the coming increment, too: the velocity is that of the step ahead.
 void CentralScheme::change_velocity(State& state, const Vector& change) const {
   state.velocity += change;
   state.memory.at(increment_ahead) += step() * change;

@@ -5,12 +5,12 @@ namespace ricochet {
 
 namespace {
 
-/// The energy-conserving scheme of the source's section 4, with the contact condition on velocities: κ = ¼ and
+/// Energy-conserving scheme of the source's section 4, with the contact condition on velocities: κ = ¼ and
 ///   gⁿ > 0 ⇒ r_N = 0,   gⁿ ≤ 0 ⇒ 0 ≤ r_N ⟂ G Vⁿ ≥ 0,   friction on the slip rate B_T Vⁿ.
-/// J((Uⁿ+Uⁿ⁺¹)/2, (Uⁿ⁺¹−Uⁿ)/h) is conserved exactly, since r_Nⁿ does no work on (Uⁿ⁺¹−Uⁿ⁻¹)/2; friction takes
-/// h r_T·w ≥ 0 from it.
+/// J((Uⁿ+Uⁿ⁺¹)/2, (Uⁿ⁺¹−Uⁿ)/h) is conserved exactly, since r_Nⁿ does no work on (Uⁿ⁺¹−Uⁿ⁻¹)/2; friction dissipates h
+/// r_T·w ≥ 0.
 /// (Massless dofs would follow K_cc (Uⁿ⁺¹+2Uⁿ+Uⁿ⁻¹)/4 = …, whose characteristic polynomial (z+1)² has a double root:
-/// they oscillate from step to step with an amplitude that grows linearly, and the half-step energy does not see it.)
+/// they oscillate from step to step with a linearly growing amplitude, which the half-step energy does not show.)
 class KlrConserving final : public CentralScheme {
  public:
   explicit KlrConserving(double step)

@@ -7,12 +7,12 @@ namespace ricochet {
 
 namespace {
 
-/// The scheme of L. Paoli and M. Schatzman (SIAM J. Numer. Anal. 40 (2002) 702–733) with restitution e, as a multiplier
-/// of the positions: κ = ¼ or 0, and
+/// Scheme of L. Paoli and M. Schatzman (SIAM J. Numer. Anal. 40 (2002) 702–733) with restitution e, as a multiplier of
+/// the positions: κ = ¼ or 0, and
 ///   0 ≤ r_N ⟂ g(Uⁿ⁺¹) + e g(Uⁿ⁻¹) ≥ 0,   friction on the slip rate B_T Vⁿ.
-/// Contact changes the energy by r_N·G(Uⁿ⁺¹−Uⁿ⁻¹)/2 = −½(1+e) r_N·g(Uⁿ⁻¹) where gaps are linear and obstacles rest:
-/// with e = 0 no point penetrates and none creates energy; e > 0 lets points in by e times the gap of before, and a
-/// gap that was negative can create energy.
+/// Contact changes the energy by r_N·G(Uⁿ⁺¹−Uⁿ⁻¹)/2 = −½(1+e) r_N·g(Uⁿ⁻¹) if gaps are linear and obstacles rest: with
+/// e = 0 no point penetrates and none creates energy; e > 0 admits a penetration of e times the previous gap, and a
+/// previous gap that was negative can create energy.
 class PaoliSchatzman final : public CentralScheme {
  public:
   PaoliSchatzman(double step, double restitution, bool is_explicit)

@@ -8,10 +8,10 @@ namespace {
 /// Central differences with forces that stop a node at the obstacle: κ = 0 and
 ///   0 ≤ r_N ⟂ g(Uⁿ⁺¹) ≥ 0,   friction on the slip rate B_T (Uⁿ⁺¹−Uⁿ)/h.
 /// This is the position form of the contact of L. M. Taylor and D. P. Flanagan's PRONTO 3D (Sandia report SAND87-1912,
-/// 1989), r = −m g*/h² with the gap g* that a step without contact ends at, written for every mass matrix; N. J.
-/// Carpenter, R. L. Taylor and M. G. Katona's forward increment multipliers (Int. J. Numer. Meth. Engng. 32 (1991)
-/// 103–128) are the same. Its normal part is that of Paoli and Schatzman with e = 0: contact changes the energy by
-/// −½ r_N·g(Uⁿ⁻¹) ≤ 0. (Others mean r = −m G V*/h by this name, which holds a node where it was, apart from the
+/// 1989), r = −m g*/h² with g* the gap at the end of a step without contact, written for every mass matrix; the forward
+/// increment multipliers of N. J. Carpenter, R. L. Taylor and M. G. Katona (Int. J. Numer. Meth. Engng. 32 (1991)
+/// 103–128) are identical. Its normal part is that of Paoli and Schatzman with e = 0: contact changes the energy by −½
+/// r_N·g(Uⁿ⁻¹) ≤ 0. (Elsewhere the name denotes r = −m G V*/h, which holds a node at its position, apart from the
 /// obstacle.)
 class TaylorFlanagan final : public CentralScheme {
  public:

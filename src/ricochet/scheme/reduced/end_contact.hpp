@@ -3,16 +3,16 @@
 #include "ricochet/scheme/reduced/stick_memory.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
-/// @file The contact conditions at the end of a step, of schemes whose contact nodes have no inertia.
+/// @file Contact conditions at the end of a step, for schemes whose contact nodes have no inertia.
 namespace ricochet {
 
 class EndContact {
  public:
-  /// No penetration at `place` + 2m, friction on the slip of the step, and where a mean of the reactions acts what its
-  /// path starts from. `place`: where contact nodes are at the end, at δ = 0.
+  /// Imposes no penetration at `place` + 2m and friction on the slip of the step and, if a mean of the reactions acts,
+  /// sets the start of its path. `place` is the displacement of contact nodes at the end, at δ = 0.
   void require(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
                const Vector& place, StepEquations& equations, Stage& stage);
-  /// After the step. `before`: the displacement at its start.
+  /// Updates the memory of sticking points after the step. `before` is the displacement at its start.
   void learn(const SemidiscreteProblem& problem, const Vector& before, State& state) {
     stick_.learn(problem, before, state);
   }

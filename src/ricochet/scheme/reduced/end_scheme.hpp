@@ -4,8 +4,8 @@
 
 #include "ricochet/scheme/reduced/massless_layer.hpp"
 
-/// @file Schemes whose contact conditions at the end of a step decide it (MasslessLayer::advance). They differ in the
-/// reactions that act over the step.
+/// @file Schemes whose steps are determined by contact conditions at their end (MasslessLayer::advance). They differ in
+/// the reactions that act over the step.
 namespace ricochet {
 
 class EndScheme : public Scheme {
@@ -41,7 +41,7 @@ class EndScheme : public Scheme {
   void step_changed(const SemidiscreteProblem& problem) override { layer_.change_step(problem, step()); }
 
  private:
-  /// What acts over a step where there is a contact dof.
+  /// Mean that acts over a step if there are contact dofs.
   [[nodiscard]] virtual ReactionMean mean(const SemidiscreteProblem& problem) const = 0;
   [[nodiscard]] ReactionMean mean_of(const SemidiscreteProblem& problem) const {
     return !problem.has_contact_dofs() ? ReactionMean::end : mean(problem);

@@ -8,11 +8,11 @@ namespace ricochet {
 
 namespace {
 
-/// σ is about half of the change of a strain; one that is larger means that steps are far too long.
+/// Upper bound of |σ|, which is about half of the change of a strain; larger values mean that steps are far too long.
 constexpr double largest_sigma = 1.0;
-/// Slopes dσ_asked/dσ that a secant is taken of; those from `weak` on are weak.
+/// Admissible slopes dσ_required/dσ of a secant; those from `weak` on are weak.
 constexpr double steepest = 4.0, weak = 0.8, least_left = 0.002, least_left_settled = 1e-6;
-/// In which places settle.
+/// Iterations in which displacements settle.
 constexpr int settling_rounds = 3;
 
 }  // namespace

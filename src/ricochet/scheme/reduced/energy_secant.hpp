@@ -1,35 +1,37 @@
 #pragma once
 
-/// @file The number σ of finite_layer.hpp, which makes the work of a step's forces the change of its energy, found
-/// beside the places of the step.
+/// @file Secant iteration for the scalar σ of finite_layer.hpp, for which the work of a step's forces is the change of
+/// its energy. It runs along with the iterations for the displacements of the step.
 namespace ricochet {
 
-/// The balance at the last places asks for a σ, and the places depend on σ: what two rounds say of that tells where
-/// both agree (the secant method). Where strains change next to contact nodes alone, as where one begins to touch,
-/// places answer σ so that the work hardly does (dσ_asked/dσ near 1, "weak"): then a σ is kept for some rounds, in
-/// which places settle, before the next one; and where that does not help, to the end.
+/// The energy balance at the last displacements determines a required σ, and the displacements depend on σ: two
+/// iterations show where both agree (secant method). Where strains change only next to contact nodes, as when one
+/// begins to touch, displacements respond to σ such that the work hardly changes (dσ_required/dσ near 1, "weak"): then
+/// a σ is kept for some iterations, in which displacements settle, before the next one; if that does not help, to the
+/// end.
 class EnergySecant {
  public:
-  /// Of a step: σ = 0.
+  /// Starts a step with σ = 0.
   void start();
-  /// With the σ that the balance asks for at places that were found with value(), what that balance lacks, the size
-  /// below which that is too near to rounding to tell a slope, and whether these places have converged. True where a
-  /// weak σ was changed: corrections of places are judged anew.
+  /// Updates σ from the value `asked` that the balance requires at displacements found with value(), the energy defect
+  /// `lacking` of that balance, the size below which a defect is too near to rounding to determine a slope, and whether
+  /// these displacements have converged. Returns true if a weak σ was changed: corrections of displacements are then
+  /// judged anew.
   bool choose(double asked, double lacking, double near_rounding, bool has_converged);
   [[nodiscard]] double value() const { return sigma_; }
   [[nodiscard]] bool is_weak() const { return is_weak_; }
-  /// Several changes in a row brought nothing: it stays as it is.
+  /// True if several changes in a row brought no progress: σ stays as it is.
   [[nodiscard]] bool is_settled() const { return vain_ >= most_vain; }
 
  private:
-  static constexpr int most_vain = 3;  ///< changes in a row that do not halve what the energy lacks
+  static constexpr int most_vain = 3;  ///< changes in a row that do not halve the energy defect
 
   double sigma_ = 0.0;
-  /// σ of the round before and what the balance of energy asked for then; NaN before the second round.
+  /// σ of the previous iteration and the value that the balance then required; NaN before the second iteration.
   double sigma_before_ = 0.0, asked_before_ = 0.0;
-  double slope_ = 0.0;  ///< dσ_asked/dσ, the last; not finite: none
+  double slope_ = 0.0;  ///< last dσ_required/dσ; not finite if none
   bool is_weak_ = false;
-  int settling_ = 0, vain_ = 0;  ///< rounds with this σ; changes in a row that brought nothing
+  int settling_ = 0, vain_ = 0;  ///< iterations with this σ; changes in a row without progress
   double least_lacking_ = 0.0;
 };
 

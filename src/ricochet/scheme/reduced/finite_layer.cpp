@@ -12,14 +12,14 @@ namespace ricochet {
 
 namespace {
 
-/// What the balance of energy of a step may lack: relative to kinetic and elastic energy where a step is accepted, to
-/// the elastic energies where σ is chosen.
+/// Admissible energy defect of a step: relative to kinetic and elastic energy for acceptance, relative to the elastic
+/// energies for the choice of σ.
 constexpr double energy_tolerance = 1e-15;
-/// The same where σ hardly changes the work (EnergySecant::is_weak): another σ there brings no more than rounding.
+/// Likewise if σ hardly changes the work (EnergySecant::is_weak): another σ improves nothing but rounding there.
 constexpr double weak_energy_tolerance = 1e-14;
-/// Parts of a step may lack what the step may, by their length; those below this part as much as it.
+/// The admissible defect of a substep is that of the full step times its fraction of it, which counts as at least this.
 constexpr double least_part = 0.1;
-/// σ is looked for from corrections of this part of the increment on: before, places are not worth it.
+/// Corrections, relative to the increment, from which on σ is sought: before, displacements are too inaccurate.
 constexpr double near_solution = 1e-2;
 
 double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vector& b) {
@@ -28,7 +28,7 @@ double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vec
   return sum;
 }
 
-/// Of forces on rigid bodies that move freely: part of the kinetic energy, as on all that has inertia.
+/// Work of forces on rigid bodies that move freely: part of the kinetic energy, as on everything that has inertia.
 double on_free_bodies(const SemidiscreteProblem& problem, const Vector& force, const Vector& end, const Vector& start) {
   double sum = 0.0;
   for (Index dof = problem.cell_node_count() * problem.dimension; dof < end.size(); ++dof)
@@ -87,7 +87,7 @@ double FiniteLayer::tolerance() const {
   return sigma_.is_weak() ? weak_energy_tolerance : energy_tolerance;
 }
 
-/// f̄, p, f(u₁), and σ from the balance of energy at these.
+/// Computes f̄, p, f(u₁), and σ from the balance of energy at these.
 void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near) {
   const InternalForce& elastic = *problem.internal_force;
   const ViscousForce* const viscous = elastic.viscous();
@@ -106,11 +106,11 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
   if (viscous != nullptr) viscous_dissipation_ = viscous->advance_internal(branches, internal_);
   energy_ = stored_energy(elastic, end_, internal_);
   if (!std::isfinite(energy_)) {
-    elastic.evaluate(end_, product_);  // says which cell is turned inside out
+    elastic.evaluate(end_, product_);  // throws the error that names the inverted cell
     throw Error(ErrorKind::not_converged, "the elastic energy at the end of the step is no number");
   }
   load_work_ = layer_ ? loads_.work_of_change(problem.contact_dofs, state.displacement, end_, middle_) : 0.0;
-  // P(x) on contact nodes is in neither: it is in the work of D, too.
+  // P(x) on contact nodes is in neither term, since the work of D contains it, too.
   const double wanted = (energy_ - energy_start_) + viscous_dissipation_ -
                         on_contact(problem, loads_.mean(), increment_) - load_work_ - obstacle_work_ -
                         end_weight_ * (work_at_end_ - dissipation_);
@@ -119,13 +119,13 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
   const double unit = strain_force_.dot(increment_);
   lacking_ = wanted - has - sigma_.value() * unit;
   const double size = std::abs(energy_start_ + energy_);
-  // What is rounding of the energies says nothing, least of all where the body hardly moves.
+  // A defect at the level of rounding carries no information, least of all if the body hardly moves.
   if (std::abs(lacking_) <= tolerance() * size || unit <= energy_tolerance * energy_tolerance * size) return;
   if (sigma_.choose((wanted - has) / unit, lacking_, near_rounding * size, converged_))
-    progress_.restart();  // the next correction is that of σ
+    progress_.restart();  // the next correction is due to σ
 }
 
-/// b of the stage: what is missing at the middle.
+/// Computes b of the stage: the residual at the middle.
 void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage) {
   product_ = middle_ - base_;
   problem.mass.multiply(product_, right_);
@@ -151,8 +151,8 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
   equations_.prescribe(problem, state.time + step, half_way, stage);
 }
 
-/// The contact nodes at the end, at δ = 0: u_c1 + K_cc⁻¹ (L₁ + P_c(u₁) − f_c(u₁) − 2 b_c); b and L₁ have the force of
-/// lagged rows.
+/// Imposes contact at the end with the contact nodes, at δ = 0, at u_c1 + K_cc⁻¹ (L₁ + P_c(u₁) − f_c(u₁) − 2 b_c); b
+/// and L₁ contain the force of lagged rows.
 void FiniteLayer::require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                   const State& state, StageSolve& stages, Stage& stage) {
   right_ = loads_.mean() - end_force_ - 2.0 * stage.right_hand_side + row_force_;
@@ -163,14 +163,14 @@ void FiniteLayer::require_contact(const SemidiscreteProblem& problem, ReactionMe
   lagged_.let_go();
   contact_.require(problem, mean, step, state, end_, equations_, stage);
   if (!problem.contact.follows_motion()) return;
-  // Conditions are linear about the end of the round before: −m there, in place of δ = 0.
+  // Conditions are linear about the end of the previous iteration: −m there, in place of δ = 0.
   product_.setZero();
   for (const Index dof : problem.contact_dofs) product_[dof] = 0.5 * (last_end_[dof] - end_[dof]);
   linearize_contact(problem, product_, stage);
   lagged_.take_over(product_, stage);
 }
 
-/// x += δ, u₁ += 2δ, on contact nodes 2m.
+/// Updates x += δ, u₁ += 2δ, on contact nodes 2m.
 FiniteLayer::Round FiniteLayer::correct(const SemidiscreteProblem& problem, const State& state,
                                         const StageSolution& solution) {
   middle_ += solution.increment;
@@ -184,12 +184,12 @@ FiniteLayer::Round FiniteLayer::correct(const SemidiscreteProblem& problem, cons
   reactions_.tangential = solution.tangential_reaction;
   reactions_.acting_normal = solution.acting_normal();
   reactions_.acting_tangential = solution.acting_tangential();
-  // Of the step less that of a free flight: what forces do.
+  // Increment of the step less that of a free flight: the effect of forces.
   round.increment = 2.0 * (middle_ - base_).lpNorm<Eigen::Infinity>();
   return round;
 }
 
-/// Where corrections hardly shrink: places, with the reactions that acted on them.
+/// Accelerates corrections that hardly shrink: displacements, with the reactions that acted on them.
 void FiniteLayer::accelerate(const SemidiscreteProblem& problem, const State& state) {
   const auto contact = static_cast<Index>(problem.contact_dofs.size());
   const Index middle = middle_.size(), places = middle + contact, points = reactions_.normal.size(),
@@ -212,7 +212,7 @@ void FiniteLayer::accelerate(const SemidiscreteProblem& problem, const State& st
   reactions_.acting_tangential = image_.tail(slips);
 }
 
-/// Hᵀρ, Hᵀρ̄, and where some of it is that of the end one round for u₀ + J.
+/// Computes Hᵀρ and Hᵀρ̄ and, if the end reactions have a part in the mean, performs one iteration for u₀ + J.
 void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages,
                                Stage& stage, const StageSolution& solution) {
   nodal_.setZero();
@@ -247,7 +247,7 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   problem.take_contact(right_, layer_right_);
   const Vector& change = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) relaxed_[dof] += change[dof];
-  // d: both energies are of the cells at contact nodes, as the others are the same.
+  // d: both energies are those of the cells at contact nodes, as the others are equal.
   product_ = relaxed_ - state.displacement;
   if (!layer_energy_start_) layer_energy_start_ = layer_->energy(state.displacement);
   dissipation_ = on_contact(problem, at_start_, product_) - (layer_->energy(relaxed_) - *layer_energy_start_);
@@ -259,7 +259,7 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
                  on_free_bodies(problem, nodal_, end_, state.displacement);
 }
 
-/// Of reactions on the motion of the obstacles over the step.
+/// Work of reactions on the motion of the obstacles over the step.
 double FiniteLayer::obstacle_work(Stage& stage, const Vector& normal, const Vector& tangential, double step) {
   if (stage.obstacle.normal.size() == 0) return 0.0;
   project_motion(*stage.rows, stage.obstacle);
@@ -297,11 +297,11 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
                   .integration_error = corrects_velocity_ ? 0.0 : lacking_,
                   .viscous_dissipation = viscous_dissipation_};
   if (end_weight_ == 1.0) return;
-  // The mean works nothing along the path; what of it is the end's works what that does.
+  // The mean does no work along the path; the end reactions' part of it does their work.
   corrections_.contact_work = end_weight_ * work_at_end_ - (mean_nodal_.dot(increment) - obstacle_work_);
 }
 
-/// The linear stage of a round.
+/// Solves the linear stage of an iteration.
 const StageSolution& FiniteLayer::solve_round(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                               const State& state, StageSolve& stages) {
   const std::size_t number = MasslessLayer::midpoint_stage(problem);
@@ -338,7 +338,7 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
     const StageSolution& solution = solve_round(problem, mean, step, state, stages);
     const Round round = correct(problem, state, solution);
     const NewtonProgress::Advice advice = progress_.judge(round.correction, round.increment);
-    // Once places have converged, which they stay while σ is found, the solution is that of the equations.
+    // Once displacements have converged, which lasts while σ is sought, the solution is that of the equations.
     if (!converged_ && progress_.wants_acceleration() && advice == NewtonProgress::Advice::go_on)
       accelerate(problem, state);
     converged_ = converged_ || advice == NewtonProgress::Advice::done;
@@ -358,7 +358,7 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
       sigma_.start();
       continue;
     }
-    if (converged_ && sigma_.is_weak()) {  // with another number now
+    if (converged_ && sigma_.is_weak()) {  // with another σ now
       converged_ = false;
       progress_.restart();
     } else if (!converged_) {

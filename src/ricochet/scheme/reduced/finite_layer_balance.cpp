@@ -7,23 +7,23 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/scheme/reduced/finite_layer.hpp"
 
-/// @file Whether the energy of a step is balanced.
+/// @file Energy balance of a step.
 namespace ricochet {
 
-/// Whether places have converged and the energy is balanced, as far as rounding of forces and energies lets it. A step
-/// that makes or loses energy is none of this scheme: Error(not_converged).
+/// Returns whether displacements have converged and the energy is balanced, as far as rounding of forces and energies
+/// permits. A step that creates or loses energy is not acceptable: throws Error(not_converged).
 bool FiniteLayer::is_balanced(double step, const State& state, const Round& round, bool near) {
-  if (!near) return false;  // what is missing is not known
+  if (!near) return false;  // the defect is not known
   constexpr double most = 1e-8, most_corrected = 1e-6, most_snapped = 1e-4, most_created = 1e-11;
-  // Shorter parts of a step would lack as much: contact nodes, which have no inertia, snap to another equilibrium, and
-  // the motion has what that sets free or takes.
+  // Shorter substeps would have the same defect: contact nodes, which have no inertia, snap to another equilibrium, and
+  // the energy that this releases or absorbs is exchanged with the motion.
   const bool is_short = step <= whole_step_ / 64.0;
   const double size = std::max(kinetic_start_, kinetic_) + energy_start_ + energy_;
   const bool is_exact = std::abs(lacking_) <= tolerance() * size;
   const bool is_vain = std::abs(lacking_) > 0.5 * lacked_;
   vain_ = converged_ && is_vain ? vain_ + 1 : 0;
   lacked_ = std::abs(lacking_);
-  // Far from rounding one round may bring little, and the next one much.
+  // Far from rounding one iteration may bring little, and the next one much.
   const int most_vain = lacked_ <= 1e-13 * size ? 1 : 2;
   const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : vain_ >= most_vain;
   if (log::enabled(log::Level::debug)) {
@@ -57,7 +57,7 @@ bool FiniteLayer::is_balanced(double step, const State& state, const Round& roun
                   lacked_ / size));
 }
 
-/// Velocities at the end balance what no σ does.
+/// Corrects the velocities at the end such that they balance the energy if no σ does.
 bool FiniteLayer::correct_velocity(double step, const State& state) {
   product_ = middle_ - base_;
   right_ = state.velocity + (4.0 / step) * product_;

@@ -1,17 +1,17 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/scheme/reduced/finite_layer.hpp"
 
-/// @file How the rounds of a step go on where they come no nearer.
+/// @file Treatment of iterations of a step that make no progress.
 namespace ricochet {
 
 namespace {
 
-/// Rounds after which pairs of facets that change all the time are held.
+/// Iterations after which pairs of facets that keep changing are held.
 constexpr int patience_of_pairs = 80;
 
 }  // namespace
 
-/// From now on, until the step is done. False: there is nothing to hold, or it is held already.
+/// Holds pairs from now on, until the step is done. Returns false if there is nothing to hold, or it is held already.
 bool FiniteLayer::hold_pairs(const SemidiscreteProblem& problem) {
   if (!problem.contact.follows_motion() || !problem.contact.geometry->hold()) return false;
   progress_.restart();
@@ -21,7 +21,7 @@ bool FiniteLayer::hold_pairs(const SemidiscreteProblem& problem) {
 
 void FiniteLayer::heed(const SemidiscreteProblem& problem, NewtonProgress::Advice advice, const Round& round,
                        StageSolve& stages) {
-  // What faces what may change from round to round.
+  // Pairs may change from iteration to iteration.
   const bool is_stuck = advice == NewtonProgress::Advice::failed ||
                         (advice == NewtonProgress::Advice::renew && progress_.rounds() > patience_of_pairs);
   if (is_stuck && hold_pairs(problem)) return;
@@ -33,8 +33,8 @@ void FiniteLayer::heed(const SemidiscreteProblem& problem, NewtonProgress::Advic
   acceleration_.restart();
 }
 
-/// Throws Error(not_converged) that names a cell which the places of this round turn inside out: operators there mean
-/// nothing, and what a stage says of them does not tell why.
+/// Throws Error(not_converged), which names a cell inverted by the displacements of this iteration, if any: operators
+/// are meaningless there, and the error of a stage does not show the cause.
 void FiniteLayer::name_inverted_cell(const SemidiscreteProblem& problem) {
   problem.internal_force->evaluate(end_, product_);
   problem.internal_force->evaluate(middle_, product_);

@@ -24,7 +24,7 @@ void LaggedRows::start(const State& state) {
   if (lagged_ == nullptr) {
     lagged_ = std::make_shared<ContactRows>(*state.forces.rows);
     read_only_ = lagged_;
-    // Numbers of another count.
+    // Revision numbers from another count.
     std::fill(lagged_->revision.begin(), lagged_->revision.end(), ++revision_);
   }
   if (known->second.size() != row_value_count(*lagged_))
@@ -50,7 +50,7 @@ void LaggedRows::take_over(const Vector& motion, Stage& stage) {
   stage.slip_offset -= stage.slip_factor * motion_;
 }
 
-/// Where Ĥ is off H by too much it becomes H.
+/// Replaces Ĥ by H at points where they differ too much.
 void LaggedRows::renew() {
   const ContactRows* const exact = exact_.get();
   if (lagged_ == nullptr || is_stale_) {

@@ -7,27 +7,27 @@
 #include "ricochet/problem/stage.hpp"
 #include "ricochet/scheme/state.hpp"
 
-/// @file Rows that follow the motion, for iterations that correct what is wrong with them.
+/// @file Lagged contact rows, for iterations that correct the error of rows which follow the motion.
 namespace ricochet {
 
-/// A contact solver keeps a solution of the factor for every row, and rows that follow the motion are new in every
-/// iteration. An iteration that ends where nothing is left to correct may solve with rows Ĥ of before: with the force
-/// (H − Ĥ)ᵀρ of the reactions before on its right-hand side, and gaps and slips of H where it stands, it ends where
-/// H has it all. Ĥ is made new point by point where H is off it by more than `slack` of it.
+/// A contact solver keeps one solution with the factor per row, and rows that follow the motion change in every
+/// iteration. An iteration that ends when nothing is left to correct may solve with earlier rows Ĥ: with the force
+/// (H − Ĥ)ᵀρ of the previous reactions on its right-hand side, and gaps and slips of H at its present displacement, its
+/// limit satisfies everything with H. Ĥ is renewed point by point if its relative distance from H exceeds `slack`.
 ///
-/// The state remembers Ĥ, so that a run that is resumed goes on with the same numbers. Where rows reach other dofs as
-/// bodies slide (ContactRows::places), each step begins with its own H.
+/// The state remembers Ĥ, so that a resumed run continues with the same numbers. If rows reach other dofs as bodies
+/// slide (ContactRows::places), each step begins with its own H.
 class LaggedRows {
  public:
-  /// Those that the state remembers, if any.
+  /// Reads the rows that the state remembers, if any.
   void start(const State& state);
-  /// Ĥ becomes the rows of a stage whose conditions are linear about the contact motion m, with rows H, which are kept:
-  /// offsets are such that gaps and slips at m stay what they are. The stage takes no rows anew.
+  /// Replaces the rows H of a stage, whose conditions are linear about the contact motion m, by Ĥ, and keeps H. Offsets
+  /// are shifted such that gaps and slips at m are unchanged. The stage does not renew its rows.
   void take_over(const Vector& motion, Stage& stage);
   [[nodiscard]] const std::shared_ptr<const ContactRows>& exact() const { return exact_; }
-  /// Others may write H from now on.
+  /// Releases H, which may be overwritten from now on.
   void let_go() { exact_ = nullptr; }
-  /// Adds (H − Ĥ)ᵀρ; without friction `tangential` is empty.
+  /// Adds (H − Ĥ)ᵀρ; `tangential` is empty without friction.
   void add_difference(const Vector& normal, const Vector& tangential, Vector& force);
   void remember(State& state) const;
 
@@ -39,8 +39,8 @@ class LaggedRows {
   std::shared_ptr<ContactRows> lagged_;
   std::shared_ptr<const ContactRows> read_only_, exact_;
   PointCopier copier_;
-  bool is_new_ = false;    ///< not yet remembered
-  bool is_stale_ = false;  ///< of another step, and not to be used
+  bool is_new_ = false;    ///< not yet in the state
+  bool is_stale_ = false;  ///< of another step, not to be used
   long revision_ = 0;
   Vector motion_, negative_;  ///< work space
 };

@@ -14,7 +14,7 @@ namespace ricochet {
 
 namespace {
 
-/// C_c = ηK_c to this.
+/// Relative error up to which C_c = ηK_c holds.
 constexpr double same_damping = 1e-12;
 
 }  // namespace
@@ -60,7 +60,7 @@ void MasslessLayer::find_damping(const SemidiscreteProblem& problem) {
   if (!problem.has_damping()) return;
   ContactStiffness damping;
   damping.analyse(problem, 0.0, 1.0);
-  // Of the parts that ranks have; C_c = ηK_c holds for each or not at all.
+  // Ranks have parts of these; C_c = ηK_c holds for each part or not at all.
   const auto norm = [&](const SparseRowMatrix& rows) { return std::sqrt(problem.ranks->sum(rows.squaredNorm())); };
   const double size = norm(damping.rows());
   if (size == 0.0) return;
@@ -109,7 +109,7 @@ void MasslessLayer::balance(const SemidiscreteProblem& problem, const State& sta
   equations_.prescribe(problem, state.time + step_, half_way, stage);
 }
 
-/// K u₀ is K base less K of the small difference: no digits are lost to a rigid motion.
+/// Computes K u₀ as K base less K of the small difference: no digits are lost to a rigid motion.
 void MasslessLayer::find_residual(const SemidiscreteProblem& problem, const State& state) {
   stiffness_.multiply(state.velocity, residual_);
   residual_ *= 0.5 * step_;
@@ -145,7 +145,7 @@ void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mea
   const bool has_layer = problem.has_contact_dofs();
   Stage& stage = stages.stage(midpoint_stage(problem));
   balance(problem, state, stage);
-  contact_base_ = state.displacement + h * state.velocity;  // of the end, at δ = 0
+  contact_base_ = state.displacement + h * state.velocity;  // at the end, at δ = 0
   if (has_layer) {
     find_residual(problem, state);
     const double eta_part = one_damping_ ? eta_ / h : 0.0, weight = 1.0 / (1.0 + 2.0 * eta_part);
@@ -166,14 +166,14 @@ void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mea
   if (has_layer) correct(problem, mean, stage, solution, increment, state, stages);
 }
 
-/// Again while the gyroscopic force of rigid bodies changes: it depends on how they turn in the step.
+/// Repeats the solve while the gyroscopic force of rigid bodies changes: it depends on their rotation in the step.
 const StageSolution& MasslessLayer::solve(const SemidiscreteProblem& problem, const State& state, Stage& stage,
                                           StageSolve& stages) {
   const StageSolution* solution = &stages.solve(midpoint_stage(problem));
   if (problem.free_bodies.empty() || !problem.free_bodies.front()->has_gyroscopic_force()) return *solution;
   row_force_.setZero(problem.dof_count());
   constexpr int most_rounds = 100;
-  // Torques that come no nearer, for the rounding of what the stage is solved to, but are as near as this have settled.
+  // Torques stop converging at the rounding of the stage; if their change is below this, they have settled.
   constexpr double near = 1e-11;
   double last = std::numeric_limits<double>::infinity();
   for (int round = 0;; ++round) {
@@ -231,8 +231,8 @@ MasslessLayer::LayerWork MasslessLayer::layer_work(const SemidiscreteProblem& pr
   return work;
 }
 
-/// Of a mean, what loads that change work on contact nodes: ½ zᵀΔL of the part μ of the end reactions, and
-/// −ΔLᵀK_cc⁻¹Hᵀ(ρ̄_path − ½(ρ₀+ρ)) of the rest. With the nodal forces a = Hᵀ(ρ̄ − ½ρ) + ½r₀ that layer_work has left.
+/// Work of changing loads on contact nodes under a mean: ½ zᵀΔL for the part μ of the end reactions, and
+/// −ΔLᵀK_cc⁻¹Hᵀ(ρ̄_path − ½(ρ₀+ρ)) for the rest. Uses the nodal forces a = Hᵀ(ρ̄ − ½ρ) + ½r₀ from layer_work.
 double MasslessLayer::load_work_of_mean(const SemidiscreteProblem& problem, double mu, double at_end,
                                         StageSolve& stages) {
   if (!problem.ranks->any(!load_change_.isZero(0.0))) return 0.0;

@@ -10,16 +10,16 @@
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
-/// @file The step of schemes whose contact nodes have no inertia and are in equilibrium at the end of each step, while
-/// the others follow the midpoint rule. With c the contact nodes, f the others, ρ = (r_N, −r_T) and H = [G; B_T]:
+/// @file Step of schemes whose contact nodes have no inertia and are in equilibrium at the end of each step, while the
+/// other nodes follow the midpoint rule. With c the contact nodes, f the others, ρ = (r_N, −r_T) and H = [G; B_T]:
 ///   M (v₁−v₀)/h + (2/h) C (x−u₀) + K x = L̄ on f,   x_f = (u_f0 + u_f1)/2,   L̄ = (L₀ + L₁)/2,
 ///   (2/h) C (x−u₀) + K x = L̄ + Hᵀ ρ̄ on c,
 ///   (K u₁)_c + (C/h) (u₁ − u₀) on c = L₁ + Hᵀ ρ,   Coulomb's law at the end on the slip of the step.
-/// x is the unknown of a stage on the midpoint's operator A = 4M/h² + K + 2C/h, and the end of the contact nodes is
+/// x is the unknown of a stage on the midpoint's operator A = 4M/h² + K + 2C/h, and the contact nodes at the end are at
 ///   u_c1 = 2 x_c − u_c0 − ℓ Q⁻¹ (r₀ − (η/h)(L₁−L₀) + Hᵀρ) − 2 Q⁻¹ Hᵀ(ρ̄−ρ),   r₀ = L₀ − (K u₀)_c,
-/// Q = (K + C/h)_cc with ℓ = 1/(1 + 2η/h) where C_c = ηK_c. Where η is not one number at the contact nodes, the
-/// damping at their end is 2C/h, so that Q = A_cc, ℓ = 1 and there is no term with η. ρ̄ ≠ ρ only where η = 0.
-/// docs/energy.md derives it, with the balance of energy for η = 0
+/// Q = (K + C/h)_cc with ℓ = 1/(1 + 2η/h) if C_c = ηK_c. If η is not uniform over the contact nodes, the damping at
+/// their end is 2C/h, so that Q = A_cc, ℓ = 1 and there is no term with η. ρ̄ ≠ ρ only if η = 0. docs/energy.md derives
+/// it, with the balance of energy for η = 0
 ///   E₁ − E₀ = L̄·Δu + ρ̄·HΔu − ΔuᵀCΔu/h − zᵀ(Hᵀ(ρ̄ − ½ρ) + ½r₀),   K_cc z = (K Δu)_c.
 namespace ricochet {
 
@@ -27,56 +27,59 @@ class MasslessLayer {
  public:
   MasslessLayer(std::string scheme, double step) : scheme_(std::move(scheme)), step_(step) {}
 
-  /// Throws Error(invalid_input) where contact nodes have inertia.
+  /// Throws Error(invalid_input) if contact nodes have inertia.
   void analyse(const SemidiscreteProblem& problem);
-  /// For schemes whose balance of energy holds without friction, against planes, and without stiffness damping at
-  /// contact nodes. After analyse(). Throws Error(invalid_input) that says what to use.
+  /// Checks the requirements of schemes whose balance of energy holds without friction, against planes, and without
+  /// stiffness damping at contact nodes. To be called after analyse(). Throws Error(invalid_input), which names the
+  /// remedy.
   void require_frictionless_planes(const SemidiscreteProblem& problem) const;
   void change_step(const SemidiscreteProblem& problem, double step);
   [[nodiscard]] bool damps_contact_nodes() const { return damps_; }
-  /// The layer's and the midpoint's; the midpoint's alone where there is no contact dof.
+  /// Operators of the contact nodes and of the midpoint; without contact dofs that of the midpoint alone.
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem,
                                                             ReactionMean mean) const;
 
-  /// A step in which the contact conditions at the end decide, see above.
+  /// Performs a step that is determined by the contact conditions at its end, see above.
   void advance(const SemidiscreteProblem& problem, ReactionMean mean, State& state, StageSolve& stages,
                Vector& increment);
-  /// Of the last step.
+  /// Corrections of the last step.
   [[nodiscard]] const StepCorrections& corrections() const { return finite_ ? finite_->corrections() : corrections_; }
 
   [[nodiscard]] bool has_finite_strain() const { return finite_.has_value(); }
-  /// Of the last step at finite strain; else null.
+  /// Middle x of the last step at finite strain; else null.
   [[nodiscard]] const Vector* place_of_forces() const { return finite_ ? &finite_->middle() : nullptr; }
 
-  // Pieces of a step, for schemes that put them together in another way.
-  /// L̄, base = u₀ + (h/2)v₀, and the balance at the middle in the stage.
+  // Parts of a step, for schemes that combine them in another way.
+  /// Computes L̄ and base = u₀ + (h/2)v₀, and fills the stage with the balance at the middle.
   void balance(const SemidiscreteProblem& problem, const State& state, Stage& stage);
   [[nodiscard]] const Vector& base() const { return base_; }
   [[nodiscard]] StepEquations& equations() { return equations_; }
-  /// r₀, per contact dof.
+  /// Computes r₀, per contact dof.
   void find_residual(const SemidiscreteProblem& problem, const State& state);
   [[nodiscard]] const Vector& residual() const { return residual_; }
   /// L₁ − L₀, per contact dof.
   [[nodiscard]] const Vector& load_change() const { return load_change_; }
   [[nodiscard]] const ContactStiffness& stiffness() const { return stiffness_; }
-  /// Number of the midpoint's stage.
+  /// Number of the stage of the midpoint.
   [[nodiscard]] static std::size_t midpoint_stage(const SemidiscreteProblem& problem) {
     return !problem.has_contact_dofs() ? 0 : layer_stage + 1;
   }
   static constexpr std::size_t layer_stage = 0;
-  /// Forces on contact nodes alone, per contact dof, that nothing else moves: the right-hand side of the layer's stage.
+  /// Sets the right-hand side of the stage of contact nodes: forces per contact dof, with supports at rest.
   static void set_layer_force(const SemidiscreteProblem& problem, const Vector& force, Stage& stage);
-  /// Solves with the layer's operator, no contact: the solution's increment, per dof. `right`: per contact dof.
+  /// Solves with the operator of contact nodes, without contact. Returns the increment, per dof; `right` is per contact
+  /// dof.
   static const Vector& solve_layer(const SemidiscreteProblem& problem, const Vector& right, StageSolve& stages);
-  /// u₁, v₁ from δ of the midpoint's stage and the increment of the step.
+  /// Sets u₁, v₁ from δ of the midpoint's stage and the increment of the step.
   void move(const SemidiscreteProblem& problem, const Vector& solution, const Vector& increment, State& state) const;
-  /// Forces of the step; loads are those of the balance.
+  /// Transfers the forces of the step to the state; loads are those of the balance.
   void take_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
                    const Vector& increment, State& state);
-  /// zᵀ(Hᵀ(ρ̄ − ½ρ) + ½r₀) and ½ zᵀ(L₁−L₀); leaves (K Δu)_c and z, per contact dof.
+  /// Works zᵀ(Hᵀ(ρ̄ − ½ρ) + ½r₀) and ½ zᵀ(L₁−L₀).
   struct LayerWork {
     double reactions, load;
   };
+  /// Computes these works; leaves (K Δu)_c and z, per contact dof.
   [[nodiscard]] LayerWork layer_work(const SemidiscreteProblem& problem, const ContactRows& rows,
                                      const StageSolution& solution, const Vector& increment, StageSolve& stages);
 
@@ -91,12 +94,12 @@ class MasslessLayer {
   std::string scheme_;
   double step_;
   bool damps_ = false, one_damping_ = true;
-  double eta_ = 0.0;                         ///< of one_damping_
-  ContactStiffness stiffness_, layer_rows_;  ///< K_c; K_c + 2C_c/h, where there are several η
+  double eta_ = 0.0;                         ///< η, if uniform
+  ContactStiffness stiffness_, layer_rows_;  ///< K_c; K_c + 2C_c/h if η is not uniform
   EndContact contact_;
   StepEquations equations_;
   StepCorrections corrections_;
-  std::optional<FiniteLayer> finite_;  ///< where the internal force is not linear
+  std::optional<FiniteLayer> finite_;  ///< for a nonlinear internal force
   Vector load_, next_varying_, base_, residual_, load_change_, right_, contact_base_, middle_, before_;
   Vector row_force_, of_layer_, nodal_, gap_change_, slip_change_, normal_, tangential_;
 };

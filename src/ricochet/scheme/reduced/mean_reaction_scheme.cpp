@@ -5,10 +5,10 @@ namespace ricochet {
 namespace {
 
 /// Contact nodes in equilibrium, and over a step the mean of the reactions along the straight path of the gaps
-/// (massless_layer.hpp, mean_reaction.hpp, μ = 0): without friction the potential of the contact nodes has this mean as
-/// its discrete gradient, so
+/// (massless_layer.hpp, mean_reaction.hpp, μ = 0): without friction this mean is the discrete gradient of the potential
+/// of the contact nodes, so
 ///   E₁ − E₀ = work of loads, supports and obstacles,
-/// the contact works nothing, and momenta are exact; each step has one solution, however long it is. Beyond the time in
+/// contact does no work, and momenta are exact; each step has one solution, however long it is. Beyond the time in
 /// which a wave crosses a cell the end reactions alternate: reduced-kane is for such steps.
 class MeanReactionScheme final : public EndScheme {
  public:

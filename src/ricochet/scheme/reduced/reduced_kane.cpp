@@ -9,13 +9,13 @@ namespace ricochet {
 
 namespace {
 
-/// C. Kane, E. A. Repetto, M. Ortiz, J. E. Marsden, Comput. Methods Appl. Mech. Engrg. 180 (1999) 1–26, have the
-/// reactions of the end of the step act over all of it. Here nodes without inertia are in equilibrium with them, and
-/// the others follow the midpoint rule (massless_layer.hpp, ρ̄ = ρ): with z the change of the contact nodes' place
-/// relative to the others,
+/// In the scheme of C. Kane, E. A. Repetto, M. Ortiz and J. E. Marsden (Comput. Methods Appl. Mech. Engrg. 180 (1999)
+/// 1–26) the reactions of the end of the step act over all of it. Here nodes without inertia are in equilibrium with
+/// them, and the others follow the midpoint rule (massless_layer.hpp, ρ̄ = ρ): with z the change of the contact nodes'
+/// displacement relative to the others,
 ///   E₁ − E₀ = −r_N·g₀ − Σ F r_N |Δy_T| − ½ zᵀK_cc z + work of loads, supports, obstacles and damping,
-/// each part ≤ 0 at each point, for every step and friction. With weight "adaptive" ρ̄ is a mean (mean_reaction.hpp),
-/// whose parts have the same signs, and which loses much less at impacts.
+/// each of the first three parts ≤ 0 at each point, for every step and friction. With weight "adaptive" ρ̄ is a mean
+/// (mean_reaction.hpp) whose parts have the same signs, and which loses much less at impacts.
 class ReducedKane final : public EndScheme {
  public:
   ReducedKane(double step, const std::string& weight) : EndScheme("reduced-kane", step), weight_(weight) {}
@@ -33,11 +33,11 @@ class ReducedKane final : public EndScheme {
   }
 
  private:
-  /// There the balance of a step has no place for the work of friction along a path (finite_layer.hpp).
+  /// True if the balance of a step has no term for the work of friction along a path (finite_layer.hpp).
   [[nodiscard]] static bool takes_friction_of_finite_strain(const SemidiscreteProblem& problem) {
     return problem.contact.has_friction() && !problem.internal_force->is_linear();
   }
-  /// A mean is of gaps that are linear, and of nodes without memory.
+  /// True if a mean is possible: it requires linear gaps, and nodes without memory.
   [[nodiscard]] bool has_mean(const SemidiscreteProblem& problem) const {
     return !problem.contact.follows_motion() && !layer().damps_contact_nodes() &&
            !takes_friction_of_finite_strain(problem);

@@ -5,14 +5,15 @@ namespace ricochet {
 
 namespace {
 
-/// The midpoint scheme where contact nodes have no inertia: contact at the middle of the step decides the motion of the
+/// Midpoint scheme for contact nodes without inertia: contact at the middle of the step determines the motion of the
 /// other nodes, and contact nodes are in equilibrium, contact included, at its end:
 ///   1. A δ = b + Gᵀ r̄,   0 ≤ r̄ ⟂ g(x) ≥ 0,   u_f1 = 2x_f − u_f0   (massless_layer.hpp, ρ̄ = r̄);
 ///   2. K_cc u_c1 + K_cf u_f1 = L₁ + Gᵀ r₁,   0 ≤ r₁ ⟂ g(u₁) ≥ 0.
-/// With W_c = G K_cc⁻¹ Gᵀ:   E₁ − E₀ = r̄·Δg − (r̄ − ½(r₀+r₁))ᵀW_c(r₁−r₀) + work of loads, supports and obstacles;
-/// the first two, which are the contact work here, vanish while the points that press stay the same.
-/// The midpoint alone would have u_c1 = 2x_c − u_c0, which flips contact nodes from step to step.
-/// At finite strain the reactions that act are those of mean-reaction, and energy is exact (finite_layer.hpp).
+/// With W_c = G K_cc⁻¹ Gᵀ: E₁ − E₀ = r̄·Δg − (r̄ − ½(r₀+r₁))ᵀW_c(r₁−r₀) + work of loads, supports and obstacles; the
+/// first two terms, which are the contact work here, vanish while the set of pressing points is unchanged. The midpoint
+/// rule alone would have u_c1 = 2x_c − u_c0, with which contact nodes alternate from step to step.
+/// At finite strain the acting reactions are those of mean-reaction, and energy is conserved exactly
+/// (finite_layer.hpp).
 class ReducedMidpoint final : public Scheme {
  public:
   explicit ReducedMidpoint(double step) : Scheme(step), layer_("reduced-midpoint", step) {}
@@ -70,7 +71,7 @@ class ReducedMidpoint final : public Scheme {
   static ReactionMean mean(const SemidiscreteProblem& problem) {
     return !problem.has_contact_dofs() ? ReactionMean::end : ReactionMean::path;
   }
-  /// The contact nodes at the end: K_cc δ = L₁ + Gᵀr₁ − (K u)_c, from where the step left them.
+  /// Computes the contact nodes at the end: K_cc δ = L₁ + Gᵀr₁ − (K u)_c, from their predicted displacement.
   void settle(const SemidiscreteProblem& problem, const State& state, StageSolve& stages, Vector& increment) {
     for (const Index dof : problem.contact_dofs) increment[dof] = step() * state.velocity[dof];
     layer_.stiffness().multiply(increment, row_force_);
@@ -85,7 +86,7 @@ class ReducedMidpoint final : public Scheme {
     result_.contact_status = end.contact_status;
   }
 
-  /// What the contact at the middle gives; part by part, so that storage is kept.
+  /// Copies the results of contact at the middle, member by member, so that storage is kept.
   void take(const StageSolution& solution) {
     result_.normal_reaction = solution.normal_reaction;
     result_.mean_normal_reaction = solution.normal_reaction;

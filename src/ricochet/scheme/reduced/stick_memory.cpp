@@ -6,7 +6,8 @@ namespace {
 
 constexpr const char* stick_slip = "stick_slip";
 
-/// Where rows turn with the motion, tangents are others in every step, and there is no place to come back to.
+/// True if sticking points have a position to return to: rows that turn with the motion have other tangents in each
+/// step.
 bool keeps_places(const SemidiscreteProblem& problem) {
   return problem.contact.has_friction() && !problem.contact.follows_motion();
 }
@@ -23,7 +24,7 @@ void StickMemory::require(const SemidiscreteProblem& problem, const State& state
 
 void StickMemory::learn(const SemidiscreteProblem& problem, const Vector& before, State& state) {
   if (!keeps_places(problem)) return;
-  motion_ = state.displacement - before;  // as the displacement has it, rounded
+  motion_ = state.displacement - before;  // rounded, as in the displacement
   state.forces.rows->tangential_motion(motion_, slip_);
   if (state.obstacle_increment.tangential.size() > 0) slip_ -= state.obstacle_increment.tangential;
   Vector& memory = state.memory[stick_slip];

@@ -3,15 +3,15 @@
 #include "ricochet/problem/stage.hpp"
 #include "ricochet/scheme/state.hpp"
 
-/// @file How far points that stick have come from where they began to: a remainder of rounding, which the next step
-/// takes back. The sum of all steps telescopes, so a point that sticks stays where it is, however many steps there are.
+/// @file Drift of sticking points from their initial position: a remainder of rounding, which the next step reverses.
+/// The sum over all steps telescopes, so a sticking point stays where it is, however many steps there are.
 namespace ricochet {
 
 class StickMemory {
  public:
-  /// Shifts the slip rate of a stage (over a step h) by what points that stick have moved so far.
+  /// Shifts the slip rate of a stage (over a step h) by the drift of sticking points so far.
   void require(const SemidiscreteProblem& problem, const State& state, double step, Stage& stage);
-  /// After a step, of which `before` was the displacement at its start.
+  /// Updates the drift after a step; `before` is the displacement at its start.
   void learn(const SemidiscreteProblem& problem, const Vector& before, State& state);
 
  private:

@@ -20,13 +20,13 @@ bool VelocityCorrection::find(const Vector& velocity, const Vector& displacement
   return true;
 }
 
-/// Translations first; of axisymmetric bodies that along their axis alone.
+/// Number of modes, translations first; for axisymmetric bodies only that along their axis.
 int VelocityCorrection::mode_count() const {
   if (problem_.axisymmetric) return 1;
   return problem_.dimension == 2 ? 3 : 6;
 }
 
-/// The values of mode k of every body.
+/// Writes the values of a mode of every body.
 void VelocityCorrection::set_mode(int mode, Vector& values) const {
   const int d = problem_.dimension;
   values.setZero(problem_.dof_count());
@@ -51,7 +51,7 @@ void VelocityCorrection::mask(Vector& values) const {
   values.tail(values.size() - problem_.cell_node_count() * problem_.dimension).setZero();
 }
 
-/// w.
+/// Computes w.
 void VelocityCorrection::find_relative(const Vector& velocity, const Vector& displacement) {
   const Index d = problem_.dimension;
   const int modes = mode_count();
@@ -90,7 +90,7 @@ void VelocityCorrection::find_relative(const Vector& velocity, const Vector& dis
       });
     }
   }
-  // Supports may leave less than these motions.
+  // Supports may leave fewer than these motions.
   std::vector<Vector> parts;
   parts.reserve(systems.size());
   for (const Matrix& system : systems)

@@ -2,25 +2,26 @@
 
 #include "ricochet/problem/body_rotations.hpp"
 
-/// @file What is left to balance the energy of a step where no stress of its middle does (finite_layer.hpp).
+/// @file Correction that balances the energy of a step if no stress of its middle does (finite_layer.hpp).
 namespace ricochet {
 
-/// Where cells at contact nodes are so much stiffer than their inertia in a step that they are in equilibrium through
-/// it, as in one in which they begin to touch, their forces have the work that the motion of the others asks for,
-/// whatever σ is: σ p is taken back by the places. Then the velocities at the end get α w, w the part of them that is
-/// no motion of a body as a whole,
+/// If cells at contact nodes are so much stiffer than their inertia in a step that they are in equilibrium throughout,
+/// as in a step in which they begin to touch, their forces do the work that the motion of the others requires, for
+/// every σ: displacements compensate σ p. Then α w is added to the velocities at the end, w their part that is no
+/// motion of a body as a whole,
 ///   w = P (v₁ − Σ c_k r_k),   r_kᵀ M w = 0,
-/// r_k the translations and rotations of each body about its places at the end, P the dofs that are neither supported
-/// nor without inertia. M α w / h is a force without resultant and moment: momenta stay exact, supports hold what they
-/// held. α, the smaller root of ½ α² wᵀMw + α v₁ᵀMw = −(what the balance lacks), makes the balance exact.
+/// r_k the translations and rotations of each body about its positions at the end, P the projection on the dofs that
+/// are neither supported nor without inertia. M α w / h is a force without resultant and moment: momenta stay exact,
+/// and support reactions are unchanged. α, the smaller root of ½ α² wᵀMw + α v₁ᵀMw = −(energy defect), makes the
+/// balance exact.
 class VelocityCorrection {
  public:
   /// Keeps references.
   VelocityCorrection(const SemidiscreteProblem& problem, const BodyRotations& bodies)
       : problem_(problem), bodies_(bodies) {}
 
-  /// Of the velocity and displacement at the end, for what the kinetic energy is to change by, J. False where that
-  /// takes more than half of w.
+  /// Computes the correction at this velocity and displacement at the end for a given change of the kinetic energy, in
+  /// J. Returns false if that takes more than half of w.
   [[nodiscard]] bool find(const Vector& velocity, const Vector& displacement, double change);
   /// α w.
   [[nodiscard]] const Vector& value() const { return value_; }
@@ -35,7 +36,7 @@ class VelocityCorrection {
 
   const SemidiscreteProblem& problem_;
   const BodyRotations& bodies_;
-  Points places_;  ///< from the centre of a node's body
+  Points places_;  ///< positions relative to the centre of the node's body
   Vector value_, momentum_, mode_;
 };
 

@@ -9,7 +9,7 @@ namespace ricochet {
 
 namespace {
 
-/// r = H⁻¹ b of these points, zero at the others.
+/// Returns r = H⁻¹ b on these points, zero at the others.
 Vector solve_on(const Matrix& h, const Vector& b, const std::vector<char>& presses) {
   std::vector<Index> points;
   for (Index i = 0; i < b.size(); ++i) {

@@ -6,13 +6,12 @@ namespace ricochet {
 
 namespace {
 
-/// The velocity update of T. A. Laursen and G. R. Love (Int. J. Numer. Meth. Engng. 53 (2002) 245–274) on Kane's
-/// scheme: positions are Kane's, and impulses p ≥ 0 of the obstacle, at the points that pressed at the end of a step
-/// they began apart from it, give back what their forces took,
-///   V₁ = V₁* + M⁻¹Gᵀp,   p_i [(G V₁*)_i + ½(W p)_i] = r_N,i g₀,i,   W = G M⁻¹Gᵀ   (velocities relative to the
-///   obstacle).
-/// J changes in a step by friction, loads, supports and damping alone, without penetration. Each touch is an elastic
-/// impact of the contact nodes, which bounce off again: forces rattle.
+/// Velocity update of T. A. Laursen and G. R. Love (Int. J. Numer. Meth. Engng. 53 (2002) 245–274) on Kane's scheme:
+/// positions are Kane's, and impulses p ≥ 0 of the obstacle, at points that press at the end of a step which they began
+/// apart from it, return the energy that their forces took,
+///   V₁ = V₁* + M⁻¹Gᵀp, p_i [(G V₁*)_i + ½(W p)_i] = r_N,i g₀,i, W = G M⁻¹Gᵀ (velocities relative to the obstacle).
+/// In a step J changes by friction, loads, supports and damping alone, without penetration. Each touch is an elastic
+/// impact of the contact nodes, which rebound: contact forces oscillate.
 class LaursenLove final : public Kane {
  public:
   [[nodiscard]] bool takes_ranks() const override { return false; }
@@ -66,7 +65,7 @@ class LaursenLove final : public Kane {
     kick(problem, stages);
   }
 
-  /// The change of the velocity, and the work of the impulses on the mean of the velocities before and after.
+  /// Computes the change of the velocity, and the work of the impulses on the mean of the velocities before and after.
   void kick(const SemidiscreteProblem& problem, StageSolve& stages) {
     const double h = step();
     unloaded_stage(problem, 1, stages);

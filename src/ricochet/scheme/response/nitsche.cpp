@@ -9,15 +9,15 @@ namespace ricochet {
 namespace {
 
 /// Nitsche's method, symmetric (θ = 1), under the midpoint scheme with the hybrid contact term of F. Chouly, P. Hild
-/// and Y. Renard (ESAIM: M2AN 49 (2015) 481–502 and 503–528), in the contact points: with s_i the force that the stress
-/// of the body asks of the obstacle (ContactStress), Γ_i a stiffness and p = s − Γ g,
+/// and Y. Renard (ESAIM: M2AN 49 (2015) 481–502 and 503–528), at the contact points: with s_i the force of the obstacle
+/// that balances the stress of the body (ContactStress), Γ_i a stiffness and p = s − Γ g,
 ///   r = [½(p₀+p₁)]₊ where p₀ > 0, else ½[p₁]₊;   f = SᵀΓ⁻¹(½(s₀+s₁) − r).
-/// J − ½Σs²/Γ + ½Σ[p]₊²/Γ is kept where p stays positive, and falls by nitsche_dissipation() otherwise, where gaps are
-/// linear and obstacles rest; with Γ_i = `penalty` κ_i that is at least (1−1/penalty) of the elastic energy. f has
-/// neither resultant nor moment. No friction: the source has none. In the exact motion r = s and f = 0, so that points
-/// penetrate by (r − s)/Γ, what the stress of the cells is wrong by.
+/// J − ½Σs²/Γ + ½Σ[p]₊²/Γ is conserved while p stays positive, and falls by nitsche_dissipation() otherwise, if gaps
+/// are linear and obstacles rest; with Γ_i = `penalty` κ_i it is at least (1−1/penalty) of the elastic energy. f has
+/// neither resultant nor moment. No friction: the source has none. In the exact motion r = s and f = 0; points
+/// penetrate by (r − s)/Γ, due to the error of the stress of the cells.
 ///
-/// A step needs one dense problem of all contact points: it is for a few hundred.
+/// A step requires one dense problem of all contact points: suitable for a few hundred.
 class Nitsche final : public ForcedMidpoint {
  public:
   [[nodiscard]] bool takes_ranks() const override { return false; }
@@ -43,7 +43,7 @@ class Nitsche final : public ForcedMidpoint {
     find_pressures(unforced.start.displacement, unforced.gap_before, points_.s_before, points_.p_before);
     points_.s.noalias() = stress_.rows * unforced.place;
     points_.gap = unforced.gap;
-    if (stiffness_.size() == 0) {  // no contact: there are no dense problems of no points
+    if (stiffness_.size() == 0) {  // no contact: no dense problem
       normal.resize(0);
       q_.resize(0);
       return true;
@@ -68,13 +68,13 @@ class Nitsche final : public ForcedMidpoint {
   }
 
  private:
-  /// s and p.
+  /// Computes s and p.
   void find_pressures(const Vector& displacement, const Vector& gap, Vector& s, Vector& p) const {
     s.noalias() = stress_.rows * displacement;
     p = s - stiffness_.cwiseProduct(gap);
   }
 
-  /// Made once per length of the step.
+  /// Law for this length of the step, made once.
   NitscheLaw& law(const SemidiscreteProblem& problem, const ContactRows& rows, StageSolve& stages) {
     const auto found = laws_.find(step());
     if (found != laws_.end()) return found->second;

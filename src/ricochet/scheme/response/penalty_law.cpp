@@ -12,7 +12,7 @@ namespace ricochet {
 
 namespace {
 
-/// Of a point, without cancellation: the force, and its derivative by the gap at the end.
+/// Force of a point, without cancellation, and its derivative with respect to the gap at the end.
 struct PenaltyForce {
   double force, slope;
 };
@@ -27,7 +27,7 @@ PenaltyForce penalty_force(double stiffness, double before, double after) {
   return {force, -force / change};
 }
 
-/// The forces at which the law, taken linear, and gap = free + W r agree; `motion`: gap − free.
+/// Returns the forces at which the linearized law and gap = free + W r agree; `motion` is gap − free.
 Vector newton_forces(const Matrix& w, const Vector& law, const Vector& slope, const Vector& motion) {
   std::vector<Index> pressing;
   for (Index i = 0; i < slope.size(); ++i) {
@@ -49,8 +49,8 @@ double penalty_energy(const Vector& stiffness, const Vector& gap) {
 }
 
 /// Newton's method for r = f(free + W r), the minimum of a convex function whose derivative is W (r − f). The unknown
-/// is r, with W + diag(−1/slope) of the points that press: written for the gaps, a stiffness much larger than W⁻¹ would
-/// leave of r only the rounding of gaps times that stiffness.
+/// is r, with W + diag(−1/slope) of the pressing points: with gaps as unknowns, a stiffness much larger than W⁻¹ would
+/// reduce r to the rounding of gaps times that stiffness.
 Vector penalty_forces(const Matrix& w, const PenaltyPoints& points) {
   constexpr int most_iterations = 200, most_halvings = 50;
   constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon(), good_enough = 1e-12;
@@ -70,7 +70,7 @@ Vector penalty_forces(const Matrix& w, const PenaltyPoints& points) {
     const Vector motion = w * change;
     const double size = std::max(gap.lpNorm<Eigen::Infinity>(), points.free.lpNorm<Eigen::Infinity>());
     const double moved = size > 0.0 ? motion.lpNorm<Eigen::Infinity>() / size : 0.0;
-    // The law at a gap has the gap's rounding times the stiffness; the change has not.
+    // The law at a gap has the rounding of the gap times the stiffness; the change does not.
     if (moved <= rounding || (moved <= good_enough && moved >= 0.5 * last)) return (r + change).cwiseMax(0.0);
     last = moved;
     const double descent = -motion.dot(r - law);

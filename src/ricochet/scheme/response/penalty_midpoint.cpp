@@ -8,14 +8,15 @@ namespace ricochet {
 
 namespace {
 
-/// The midpoint scheme with a penalty whose force is a discrete gradient of its energy (P. Hauret, P. Le Tallec,
-/// Comput. Methods Appl. Mech. Engrg. 195 (2006) 4890–4916; the same force: F. Armero, E. Petőcz, 158 (1998) 269–300):
+/// Midpoint scheme with a penalty whose force is a discrete gradient of its energy (P. Hauret, P. Le Tallec, Comput.
+/// Methods Appl. Mech. Engrg. 195 (2006) 4890–4916; the same force: F. Armero, E. Petőcz, 158 (1998) 269–300):
 ///   r_i = −(ψ_i(g₁)−ψ_i(g₀))/(g₁−g₀),   ψ_i(g) = ½ k_i min(g, 0)²,   f = 0.
-/// J + Σψ_i(g_i) is kept to rounding where gaps are linear and obstacles rest. Points penetrate by r/k; a large k makes
-/// forces rattle. k_i is `penalty` times the stiffness n·Kn of the body at the point. No friction: the source has none.
+/// J + Σψ_i(g_i) is conserved to rounding if gaps are linear and obstacles rest. Points penetrate by r/k; with a large
+/// k contact forces oscillate. k_i is `penalty` times the stiffness n·Kn of the body at the point. No friction: the
+/// source has none.
 ///
 /// r decreases with g₁, so each step has one solution: Newton's method on g₁ = q + W r, W = G A⁻¹Gᵀ, for the points
-/// that are or come inside.
+/// that penetrate before or after.
 class PenaltyMidpoint final : public ForcedMidpoint {
  public:
   [[nodiscard]] bool takes_ranks() const override { return false; }
@@ -37,7 +38,7 @@ class PenaltyMidpoint final : public ForcedMidpoint {
  protected:
   void step_changed(const SemidiscreteProblem&) override { response_.forget(); }
 
-  /// On the points that are or come inside: more of them where forces bring others there.
+  /// Solves for the points that penetrate before or after, and for more of them if forces push others inside.
   bool find_forces(const SemidiscreteProblem& problem, const ContactRows& rows, const Unforced& unforced,
                    StageSolve& stages, Vector& normal) override {
     points_.clear();
@@ -57,7 +58,7 @@ class PenaltyMidpoint final : public ForcedMidpoint {
     }
   }
 
-  /// Σψ.
+  /// Contact energy Σψ.
   [[nodiscard]] double contact_energy(const Vector&, const Vector& gap) const override {
     return penalty_energy(stiffness_, gap);
   }

@@ -11,8 +11,8 @@ namespace ricochet {
 
 namespace {
 
-/// Of ½ w p² + a p = c. The difference of two equal numbers would be 0 where points part fast and little was lost, and
-/// the logarithm of 0 goes nowhere.
+/// Positive root of ½ w p² + a p = c. The difference of two equal numbers would be 0 if points separate fast and little
+/// was lost, and the logarithm of 0 is not finite.
 double positive_root(double w, double a, double c) {
   const double s = std::sqrt(a * a + 2.0 * w * c);
   return a > 0.0 ? 2.0 * c / (a + s) : (s - a) / w;
@@ -26,17 +26,17 @@ Vector restoring_impulses(const Matrix& w, const Vector& approach, const Vector&
   constexpr double rounding = std::numeric_limits<double>::epsilon();
   double last = std::numeric_limits<double>::infinity();
   const auto residual = [&](const Vector& at) { return Vector(at.cwiseProduct(approach + 0.5 * (w * at)) - lost); };
-  // Of the terms that the residual is the sum of: where p is large, they cancel.
+  // Relative to the terms that the residual is the sum of: if p is large, they cancel.
   const auto size = [&](const Vector& at, const Vector& error) {
     const Vector terms = at.cwiseProduct(approach.cwiseAbs() + 0.5 * (w.cwiseAbs() * at)) + lost;
     return error.cwiseQuotient(terms).lpNorm<Eigen::Infinity>();
   };
-  // Of the function to be minimised, from p to p exp(change); no logarithm of a number with units.
+  // Change of the function to be minimized, from p to p exp(change), without logarithms of dimensional numbers.
   const auto rise = [&](const Vector& next, const Vector& change) {
     return approach.dot(next - p) + 0.25 * (next - p).dot(w * (next + p)) - lost.dot(change);
   };
   constexpr int most_iterations = 100;
-  constexpr double good_enough = 1e-12;  // where no step makes it smaller
+  constexpr double good_enough = 1e-12;  // if no step makes it smaller
   for (int k = 0; k < most_iterations; ++k) {
     const Vector error = residual(p);
     const double worst = size(p, error);

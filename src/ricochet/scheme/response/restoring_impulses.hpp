@@ -4,8 +4,8 @@
 
 namespace ricochet {
 
-/// Finds p > 0 with p_i (a_i + ½(Wp)_i) = c_i, the only minimum of a·p + ¼pᵀWp − Σc_i ln p_i, which is convex: Newton's
-/// method in ln p, from the solution that a diagonal W has. Throws Error(not_converged).
+/// Returns p > 0 with p_i (a_i + ½(Wp)_i) = c_i, the only minimum of a·p + ¼pᵀWp − Σc_i ln p_i, which is convex:
+/// Newton's method in ln p, from the solution for a diagonal W. Throws Error(not_converged).
 [[nodiscard]] Vector restoring_impulses(const Matrix& w, const Vector& approach, const Vector& lost);
 
 }  // namespace ricochet

@@ -46,7 +46,7 @@ void ContactEquilibrium::require(const SemidiscreteProblem& problem, const State
     const Index dof = problem.contact_dofs[i];
     stage.right_hand_side[dof] = load[dof] - force[dof] - row_force_[static_cast<Index>(i)];
   }
-  stage.prescribed.setZero(problem.supports.size());  // what supports prescribe is in the base
+  stage.prescribed.setZero(problem.supports.size());  // prescribed displacements are in the base
   require_no_penetration(problem, base_, state.time + step, stage);
   if (problem.has_moving_obstacles()) observe_obstacles(problem, middle_, {state.time + 0.5 * step, step, 0.5}, stage);
   require_friction(problem, rate_, 1.0 / step, stage);

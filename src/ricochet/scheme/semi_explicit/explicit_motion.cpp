@@ -26,7 +26,7 @@ void ExplicitMotion::predict(const SemidiscreteProblem& problem, double step, co
   }
 }
 
-/// One pass over memory.
+/// Makes one pass over memory.
 void ExplicitMotion::move(const SemidiscreteProblem& problem, const Vector& correction, double step, State& state,
                           Vector& increment) {
   const Index count = state.displacement.size();
@@ -59,7 +59,7 @@ void ExplicitMotion::move(const SemidiscreteProblem& problem, const Vector& corr
   }
 }
 
-/// One pass over memory, on one rank.
+/// Makes one pass over memory, on a single rank.
 void ExplicitMotion::accelerate(const Vector& force, const Vector& load, double step, State& state) {
   const double half = 0.5 * step;
   if (ranks_->are_several()) {

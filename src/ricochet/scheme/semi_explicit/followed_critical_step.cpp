@@ -22,24 +22,25 @@ namespace {
 // Keys of State::memory.
 /// (Names this short are looked up without allocating.)
 constexpr const char* critical_numbers = "critical_step";  ///< see CriticalNumbers
-constexpr const char* critical_place = "critical.place";   ///< displacement of the last check
+constexpr const char* critical_place = "critical.place";   ///< displacement at the last check
 constexpr const char* critical_mode = "critical.mode";     ///< eigenvector M^{½}x found there
 
-/// Places in the numbers of the state's memory.
+/// Indices of the numbers in the state's memory.
 enum CriticalNumbers : Index { last_found, smallest_found, told_near, found_at, evaluations_made };
 
-/// Products of a check.
+/// Products with K per check.
 constexpr int products = 8;
-/// Of the random part of its start, relative to the last eigenvector.
+/// Size of the random part of their starting vector, relative to the last eigenvector.
 constexpr double random_part = 0.3;
-/// Change of a distance that a check is worth, relative to it, and part of the room that is left.
+/// Relative change of a distance that makes a check due: least and largest, and as a part of the remaining margin.
 constexpr double least_change = 0.02, part_of_room = 0.5, most_change = 0.15;
-/// Part of the energy that the highest frequencies have where something is wrong, and steps between such checks.
+/// Part of the energy in the highest frequencies that indicates an instability, and steps between such checks.
 constexpr double high_frequency_part = 0.5;
 constexpr double rest_between = 16.0;
-/// Of the critical step: above it the run warns; and what to take where it is likely to fall further.
+/// Fractions of the critical step: above the first the run warns; the second is advised if it is likely to fall
+/// further.
 constexpr double near_fraction = 0.9, careful_fraction = 0.8;
-/// ε x, of the shortest distance of neighbours.
+/// Size of ε x relative to the shortest distance of neighbours.
 constexpr double difference = 1e-6;
 
 double critical_of(double eigenvalue) {
@@ -79,7 +80,7 @@ void FollowedCriticalStep::find_pairs(const SemidiscreteProblem& problem) {
 
 void FollowedCriticalStep::start(const SemidiscreteProblem& problem, double step, bool check, State& state) {
   const double critical = central_difference_limit(problem, state.displacement);
-  // What the undeformed body has been told of is not said again.
+  // A warning for the undeformed body is not repeated.
   if (check && (step >= critical || step <= near_fraction * smallest_)) check_critical_step(scheme_, step, critical);
   state.memory[critical_numbers].setZero(State::memory_numbers);
   state.memory[critical_numbers][smallest_found] = critical;
@@ -88,7 +89,7 @@ void FollowedCriticalStep::start(const SemidiscreteProblem& problem, double step
   take(critical, state);
 }
 
-/// With the displacement of the state.
+/// Stores a critical step with the displacement of the state.
 void FollowedCriticalStep::take(double critical, State& state) {
   Vector& numbers = state.memory.at(critical_numbers);
   numbers[last_found] = critical;
@@ -123,7 +124,7 @@ void FollowedCriticalStep::require_stable(const SemidiscreteProblem& problem, do
                           rounded_down(careful_fraction * critical, 3)));
 }
 
-/// The largest relative change of a distance of neighbours since the last check, by its weight.
+/// Largest relative change of a distance of neighbours since the last check, weighted.
 double FollowedCriticalStep::change_since(const SemidiscreteProblem& problem, const State& state) const {
   const Vector& before = state.memory.at(critical_place);
   const double* const u = state.displacement.data();
@@ -159,7 +160,7 @@ double FollowedCriticalStep::change_since(const SemidiscreteProblem& problem, co
 bool FollowedCriticalStep::is_due(const SemidiscreteProblem& problem, double step, double energy,
                                   const State& state) const {
   const Vector& numbers = state.memory.at(critical_numbers);
-  if (!std::isfinite(numbers[last_found])) return false;  // nothing has both mass and freedom
+  if (!std::isfinite(numbers[last_found])) return false;  // no dof has both mass and freedom
   const double room = 1.0 - step / numbers[last_found];
   if (change_since(problem, state) > std::clamp(part_of_room * room, least_change, most_change)) return true;
   if (static_cast<double>(state.step) < numbers[found_at] + rest_between) return false;
@@ -167,7 +168,7 @@ bool FollowedCriticalStep::is_due(const SemidiscreteProblem& problem, double ste
   return high > high_frequency_part * (0.5 * problem.mass.form(state.velocity) + std::abs(energy));
 }
 
-/// λ by some products from the last eigenvector.
+/// Computes λ by some products from the last eigenvector.
 double FollowedCriticalStep::find(const SemidiscreteProblem& problem, const Vector& force, State& state) {
   const auto multiply = [&](const Vector& x, Vector& y) {
     place_ = inverse_root_.cwiseProduct(x);
@@ -182,7 +183,7 @@ double FollowedCriticalStep::find(const SemidiscreteProblem& problem, const Vect
     y = inverse_root_.cwiseProduct(force_ - force) / scale;
   };
   Vector& mode = state.memory.at(critical_mode);
-  // Another random part in every check: what one misses the next ones find.
+  // Each check has another random part: the next ones find what one misses.
   std::mt19937_64 generator(static_cast<std::uint64_t>(state.step));
   std::normal_distribution<double> normal;
   const double part = mode.isZero(0.0) ? 1.0 : random_part / std::sqrt(static_cast<double>(mode.size()));

@@ -13,13 +13,13 @@ namespace ricochet {
 
 namespace {
 
-/// Key of State::memory; its first number is the step from which on the factor may be made anew.
+/// Key of State::memory; its first number is the step from which on the factor may be renewed.
 constexpr const char* layer_renewal = "layer_renewal";
-/// Iterations that are many, and steps that a new factor is kept for: it costs as much as some tens of evaluations of
-/// the internal force.
+/// Iterations that count as many, and steps for which a new factor is kept: it costs as much as some tens of
+/// evaluations of the internal force.
 constexpr int many_rounds = 8;
 constexpr double kept_steps = 100.0;
-/// Iterations after which they are accelerated.
+/// Iterations before acceleration begins.
 constexpr int plain_layer_rounds = 2;
 
 double largest_on_contact(const SemidiscreteProblem& problem, const Vector& values) {
@@ -50,14 +50,14 @@ void LayerEquilibrium::renew_where_slow(const SemidiscreteProblem& problem, Stat
   stages.renew(state.displacement, state.displacement);
 }
 
-/// `place`: the increments of contact dofs.
+/// Moves contact nodes; `place` has the increments of contact dofs.
 void LayerEquilibrium::move_to(const SemidiscreteProblem& problem, const State& state, const Vector& place,
                                Vector& increment, Vector& end) {
   problem.put_contact(place, increment);
   for (const Index dof : problem.contact_dofs) end[dof] = state.displacement[dof] + increment[dof];
 }
 
-/// f at the end. Where the last change of places turns a cell inside out half of it is taken, and half of that.
+/// Evaluates f at the end. If the last change inverts a cell, half of it is taken, then half of that.
 void LayerEquilibrium::evaluate(const SemidiscreteProblem& problem, const State& state, Vector& increment,
                                 Vector& end) {
   constexpr int most_halvings = 5;
@@ -94,7 +94,7 @@ const StageSolution* LayerEquilibrium::solve(const SemidiscreteProblem& problem,
   stages.follow(end);
   Stage& stage = stages.stage(0);
   if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
-  stage.prescribed.setZero(problem.supports.size());  // supported nodes are where they are prescribed
+  stage.prescribed.setZero(problem.supports.size());  // supported nodes are at their prescribed displacements
   progress_.start(4.0 * std::numeric_limits<double>::epsilon() * (reach_ + largest_on_contact(problem, end)));
   moved_ = false;
   point_.resize(static_cast<Index>(problem.contact_dofs.size()));

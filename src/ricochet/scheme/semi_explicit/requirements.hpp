@@ -5,14 +5,14 @@
 
 #include "ricochet/scheme/scheme.hpp"
 
-/// @file What explicit schemes with contact nodes in equilibrium ask of a problem.
+/// @file Requirements on a problem of explicit schemes with contact nodes in equilibrium.
 namespace ricochet {
 
-/// Throws Error(invalid_input) unless the mass is diagonal and zero on the contact nodes and damping is diagonal. The
-/// message names the scheme.
+/// Throws Error(invalid_input), which names the scheme, unless the mass is diagonal and zero on the contact nodes,
+/// damping is diagonal and no pressure follows the surface.
 void require_semi_explicit(const SemidiscreteProblem& problem, const std::string& scheme);
 
-/// The scheme "semi-explicit" without that check: for tests of what happens above the critical step.
+/// Makes the scheme "semi-explicit" without a check of its step, for tests above the critical step.
 [[nodiscard]] std::unique_ptr<Scheme> make_semi_explicit_at_any_step(double step);
 
 }  // namespace ricochet

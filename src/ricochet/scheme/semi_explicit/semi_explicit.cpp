@@ -18,31 +18,32 @@ namespace {
 /// Key of State::memory: the internal force at the state.
 constexpr const char* force_memory = "internal_force";
 
-/// Central differences inside, contact nodes without inertia at the end of the step (D. Doyen, A. Ern, S. Piperno, SIAM
-/// J. Sci. Comput. 33 (2011) 223–249). The mass is diagonal and zero on the contact nodes (index c; i: all others):
+/// Central differences inside, contact nodes without inertia in equilibrium at the end of the step (D. Doyen, A. Ern,
+/// S. Piperno, SIAM J. Sci. Comput. 33 (2011) 223–249). The mass is diagonal and zero on the contact nodes (index c; i:
+/// all others):
 ///   M_ii A + C_ii V + K_ii u_i + K_ic u_c = L_i   and   K_cc u_c + K_ci u_i = L_c + Gᵀr_N − B_Tᵀr_T   at every t_n,
 ///   V^{n+½} = (U^{n+1}−Uⁿ)/h,   V^{n±½} = Vⁿ ± (h/2)Aⁿ,   0 ≤ r_N ⟂ g(U^{n+1}) ≥ 0,   friction on B_T (U^{n+1}−Uⁿ)/h.
-/// So u_i^{n+1} needs no system, and then u_c^{n+1} and the reactions come from the stage on the contact dofs alone.
+/// So u_i^{n+1} requires no system, and then u_c^{n+1} and the reactions follow from the stage on the contact dofs
+/// alone.
 ///
-/// In terms of Uⁿ, Vⁿ, Aⁿ this is Newmark's scheme with β = 0, γ = ½, and its account holds: J − (h²/8)AᵀMA changes in
-/// a step by ½ΔUᵀ(F₀+F₁), F the forces outside J. The same balance at half steps, for V^{n+½} and the elastic energy
-/// ½(Uⁿ)ᵀKU^{n+1}, gains ½r_Nⁿ·(g^{n+1}−g^{n−1}) from contact.
+/// In terms of Uⁿ, Vⁿ, Aⁿ this is Newmark's scheme with β = 0, γ = ½, and its energy balance holds: in a step
+/// J − (h²/8)AᵀMA changes by ½ΔUᵀ(F₀+F₁), F the forces outside J. The balance at half steps, for V^{n+½} and the
+/// elastic energy ½(Uⁿ)ᵀKU^{n+1}, gains ½r_Nⁿ·(g^{n+1}−g^{n−1}) from contact.
 ///
 /// Stable for h < 2/√λ, λ the largest eigenvalue of M_ii⁻¹K_ii; see critical_step.hpp.
 ///
-/// One product with K in a step, and one with its contact rows.
+/// A step performs one product with K, and one with its contact rows.
 ///
-/// Where the internal force f = ∂W/∂u is no linear function of the displacement (finite strain) f_i(U) and f_c(U) are
-/// in the place of the products, the contact nodes' equilibrium takes Newton's method (layer_equilibrium.hpp), and a
-/// step one evaluation of f and one of W. The body without its contact nodes has the potential Ψ(u_i) = min over
-/// admissible u_c of W − L·u, and this is Störmer's and Verlet's scheme for it, so that
-/// - energy: J − (h²/8)AᵀMA changes in a step by ½ΔUᵀ(F₀+F₁) and by ΔW − ½ΔUᵀ(f₀+f₁) (`integration_error`), of order h³
-///   and of either sign: in flight it goes up and down and does not pile up, which is no proof of a bound;
+/// For an internal force f = ∂W/∂u that is nonlinear in the displacement (finite strain) f_i(U) and f_c(U) replace the
+/// products, the contact nodes' equilibrium requires Newton's method (layer_equilibrium.hpp), and a step one evaluation
+/// of f and one of W. The body without its contact nodes has the potential Ψ(u_i) = min over admissible u_c of W − L·u,
+/// and this is the Störmer–Verlet scheme for it, so that
+/// - energy: in a step J − (h²/8)AᵀMA changes by ½ΔUᵀ(F₀+F₁) and by ΔW − ½ΔUᵀ(f₀+f₁) (`integration_error`), of order h³
+/// and of either sign: in flight it oscillates and does not accumulate, which is no proof of a bound;
 /// - momenta: ΔU = hV^{n+½} has no moment with V^{n+½}, and f has no resultant and no moment about the current
-/// positions,
-///   so Σ m x×V changes in a step by (h/2)(N₀+N₁), N the moment of all outer forces about the positions of their
-///   instant: exactly, as the resultant does.
-/// The critical step changes with the deformation (followed_critical_step.hpp): it is followed, and a step beyond it is
+/// positions, so Σ m x×V changes in a step by (h/2)(N₀+N₁), N the moment of all external forces about the positions at
+/// their instant: exactly, as the resultant does.
+/// The critical step changes with the deformation (followed_critical_step.hpp): it is tracked, and a step beyond it is
 /// not taken.
 class SemiExplicit final : public Scheme {
  public:
@@ -119,7 +120,7 @@ class SemiExplicit final : public Scheme {
   }
 
  private:
-  /// None where there is no contact dof.
+  /// Returns null without contact dofs.
   const StageSolution* solve_contact(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {
     if (!problem.has_contact_dofs()) return nullptr;
     contact_.require(problem, state, state.memory.at(force_memory), load(problem), state.memory.at(supported_next),
@@ -127,8 +128,8 @@ class SemiExplicit final : public Scheme {
     return &stages.solve(0);
   }
 
-  /// Displacement, increment, force and acceleration at the end of the step, and the reactions. The state changes only
-  /// when all of them are known.
+  /// Computes displacement, increment, force and acceleration at the end of the step, and the reactions. The state
+  /// changes only when all of them are known.
   void advance_finite(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) {
     const double h = step();
     if (!at_any_step_) followed_->require_stable(problem, h, state);
@@ -175,7 +176,7 @@ class SemiExplicit final : public Scheme {
   std::optional<FollowedCriticalStep> followed_;
   LayerEquilibrium layer_;
   Vector end_, force_;     ///< displacement at the end of the last step, and the internal force there
-  long energy_step_ = -1;  ///< that energy_ is of
+  long energy_step_ = -1;  ///< step whose end energy_ belongs to
   double energy_ = 0.0, integration_error_ = 0.0;
   SupportedMotion supports_{contact_.contact_node_dofs()};
 };

@@ -16,10 +16,10 @@ class BoundarySensor final : public Sensor {
     for (const Index node : nodes) inside_[static_cast<std::size_t>(node)] = 1;
     for (Index i = 0; i < problem.supports.size(); ++i) {
       const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-      if (problem.axisymmetric && dof % d == 0 && problem.nodes(0, dof / d) == 0.0) continue;  // of the axis itself
+      if (problem.axisymmetric && dof % d == 0 && problem.nodes(0, dof / d) == 0.0) continue;  // on the axis itself
       if (inside_[static_cast<std::size_t>(dof / d)] != 0) supports_.push_back({i, dof});
     }
-    // Of a point's force the part Σ c_ij acts on these nodes, with the moment Σ c_ij X_j × force where places are those
+    // The part Σ c_ij of a point's force acts on these nodes, with the moment Σ c_ij X_j × force if positions are those
     // of the reference.
     for (Index point = 0; point < problem.contact.size(); ++point) {
       if (deforms_ || problem.contact.slides(point)) {
@@ -75,12 +75,12 @@ class BoundarySensor final : public Sensor {
   void append_values(const Eigen::Vector3d& force, const Eigen::Vector3d& moment, std::vector<double>& row) const {
     const Index d = problem_.dimension;
     append(force.head(d), row);
-    // Over the ring of an axisymmetric body moments cancel.
+    // Moments cancel over the ring of an axisymmetric body.
     const double part = problem_.axisymmetric ? 0.0 : 1.0;
     append(part * moment.tail(d == 2 ? 1 : 3), row);
   }
 
-  /// From `about` to a place.
+  /// Vector from `about` to a position.
   template <class Place>
   [[nodiscard]] Eigen::Vector3d arm(const Place& place) const {
     Eigen::Vector3d result = Eigen::Vector3d::Zero();
@@ -88,14 +88,14 @@ class BoundarySensor final : public Sensor {
     return result;
   }
 
-  /// To where a node is: at finite strain that of the state, as for the angular momentum of the history.
+  /// Lever arm of a node, at finite strain at its current position, as for the angular momentum of the history.
   [[nodiscard]] Eigen::Vector3d arm_of(Index node, const State& state) const {
     const Index d = problem_.dimension;
     if (!deforms_) return arm(problem_.nodes.col(node));
     return arm(problem_.nodes.col(node) + state.displacement.segment(node * d, d));
   }
 
-  /// Points whose nodes move, or whose rows reach other nodes as bodies slide: node by node.
+  /// Adds, node by node, the forces of points whose nodes move or whose rows reach other nodes in large sliding.
   void add_by_nodes(const State& state, Eigen::Vector3d& force, Eigen::Vector3d& moment) const {
     const StepForces& forces = state.forces;
     const Index d = problem_.dimension, tangents = d - 1;
@@ -130,7 +130,7 @@ class BoundarySensor final : public Sensor {
   Vector about_;
   std::vector<Support> supports_;
   std::vector<Point> points_;
-  std::vector<Index> by_nodes_;  ///< points
+  std::vector<Index> by_nodes_;  ///< points evaluated node by node
   std::vector<char> inside_;     ///< per node
 };
 

@@ -9,7 +9,7 @@
 /// @file Columns of the history and of sensors.
 namespace ricochet {
 
-/// A name, and how the number comes from those of the ranks: of most quantities each rank has a part.
+/// Name of a column and how its value follows from those of the ranks, each of which holds a part of most quantities.
 struct Column {
   std::string name;
   Reduction by = Reduction::sum;
@@ -21,7 +21,7 @@ struct Column {
 };
 using Columns = std::vector<Column>;
 
-/// "name_x", "name_y", … appended.
+/// Appends "name_x", "name_y", ….
 void add_vector_columns(Columns& columns, const std::string& name, int dimension, Reduction by = Reduction::sum);
 [[nodiscard]] std::vector<std::string> names_of(const Columns& columns);
 [[nodiscard]] std::vector<Reduction> reductions_of(const Columns& columns);

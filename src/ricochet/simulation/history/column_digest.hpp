@@ -2,14 +2,14 @@
 
 #include <array>
 
-/// @file Columns of the history, over a run.
+/// @file Digests of the columns of a history.
 namespace ricochet {
 
-/// The columns that are works, cumulative.
+/// Columns of cumulative works.
 inline constexpr std::array work_columns{"load_work",    "contact_work",  "friction_work",
                                          "support_work", "obstacle_work", "damping_work"};
 
-/// What a column did over a run.
+/// Summary of a column over a run.
 struct ColumnDigest {
   double first = 0.0, last = 0.0, minimum = 0.0, maximum = 0.0;
   double total_variation = 0.0;  ///< Σ |difference of consecutive rows|

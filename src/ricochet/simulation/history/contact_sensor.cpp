@@ -5,10 +5,10 @@ namespace ricochet {
 
 namespace {
 
-/// The points of a pair.
+/// Contact points of a pair.
 struct PairPoints {
   std::vector<Index> points;
-  bool exchanged;  ///< the body of the case's first group has the force opposite to that of the rows
+  bool exchanged;  ///< the force on the body of the case's first group is opposite to that of the rows
 };
 
 std::vector<PairPoints> points_of(const ContactBoundary& boundary, const std::vector<SensedPair>& pairs) {
@@ -22,7 +22,7 @@ std::vector<PairPoints> points_of(const ContactBoundary& boundary, const std::ve
   return result;
 }
 
-/// On the bodies of the first groups: rows have the force on those which carry the multipliers.
+/// Returns the force on the bodies of the first groups; rows refer to the bodies that carry the multipliers.
 SpaceVector force_on_first(const State& state, const std::vector<PairPoints>& pairs, Index dimension) {
   SpaceVector sum = SpaceVector::Zero(dimension);
   for (const PairPoints& pair : pairs) {
@@ -91,7 +91,7 @@ class ContactSensor final : public Sensor {
         });
       }
     }
-    // A ratio of sums: the sensor sees to it itself.
+    // A ratio of sums cannot be reduced as a column, so the sensor sums over ranks itself.
     pressing = problem_.ranks->sum(pressing);
     for (double& component : centre) component = problem_.ranks->sum(component);
     if (pressing > 0.0) centre /= pressing;

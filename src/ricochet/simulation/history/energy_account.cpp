@@ -67,18 +67,18 @@ void EnergyAccount::look_at_gaps(const State& state) {
   }
 }
 
-/// Along the rows that the motion has just been found along.
+/// Uses the rows along which the motion has last been computed.
 void EnergyAccount::enter_re_pairing(const StepForces& forces, double weight) {
   const Vector& normal = forces.acting_normal();
   for (Index i = 0; i < normal.size(); ++i) {
     if (normal[i] == 0.0 || !problem_.contact.slides(i)) continue;
-    // From nothing to something is no change of a gap.
+    // The change between facing nothing and facing a surface is no change of a gap.
     if (std::max(gap_now_[i], gap_before_[i]) >= problem_.contact.out_of_sight) continue;
     works_.re_pairing += weight * normal[i] * (gap_increment_[i] - (gap_now_[i] - gap_before_[i]));
   }
 }
 
-/// `rows`: those that the motion was found along before.
+/// `rows`: those along which the motion was computed before.
 void EnergyAccount::enter(const StepForces& forces, double weight, const Vector& increment, const ContactRows*& rows) {
   if (weight == 0.0) return;
   if (rows != forces.rows.get()) find_motion(*forces.rows, increment, obstacle_);
@@ -96,8 +96,8 @@ void EnergyAccount::enter(const StepForces& forces, double weight, const Vector&
 void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   obstacle_ = state.obstacle_increment;
   if (problem_.contact.has_sliding_pairs()) look_at_gaps(state);
-  // Forces work along the rows that they act through: those of the two ends of a step differ where they follow the
-  // motion, and with the account of either for the other energy would be missing.
+  // Forces work along the rows through which they act: those of the two ends of a step differ if they follow the
+  // motion, and the motion along the rows of one end would violate the energy balance of the other's forces.
   const ContactRows* rows = nullptr;
   enter(previous_, rule_.previous_weight, increment, rows);
   enter(state.forces, rule_.current_weight, increment, rows);
@@ -137,7 +137,7 @@ void EnergyAccount::enter_impulse(const State& state, const std::function<void()
   works_.load += energy() - before;
 }
 
-/// Rows of the history and what watches the method ask for the same.
+/// The value is kept since rows of the history and the checks of the method both request it.
 double EnergyAccount::algorithmic(const State& state) {
   if (!algorithmic_) algorithmic_ = scheme_.algorithmic_energy(problem_, state);
   return *algorithmic_;

@@ -5,7 +5,7 @@
 
 #include "ricochet/scheme/scheme.hpp"
 
-/// @file The account of energy: each part computed from forces and increments, never as a remainder.
+/// @file Energy balance, in which each term is computed from forces and increments, never as a remainder.
 namespace ricochet {
 
 /// Cumulative works since the start.
@@ -14,13 +14,14 @@ struct Works {
   double contact = 0.0;   ///< of normal reactions on the change of the gaps
   double friction = 0.0;  ///< of tangential reactions on the slip relative to the obstacle
   double support = 0.0;
-  double obstacle = 0.0;  ///< of all reactions on the motion of the obstacles: what these put into the body
+  double obstacle = 0.0;  ///< of all reactions on the motion of the obstacles: the energy that these supply to the body
   double damping = 0.0;
-  double numerical_dissipation = 0.0;  ///< taken away by the scheme, positive when energy is lost
-  double integration_error = 0.0;      ///< what the scheme's internal forces miss of the change of the elastic energy
-  double viscous_dissipation = 0.0;    ///< of stress that relaxes, which turns into heat; never falls
-  /// Part of `contact`: of normal reactions between bodies that slide far, on what their rows miss of the change of the
-  /// gaps. Zero to rounding for rows of steps (sliding_contact.hpp), but where facets come and go at once.
+  double numerical_dissipation = 0.0;  ///< removed by the scheme, positive when energy is lost
+  double integration_error = 0.0;      ///< change of the elastic energy that the scheme's internal forces miss
+  double viscous_dissipation = 0.0;    ///< of viscoelastic branches, turned into heat; never decreases
+  /// Part of `contact`: work of normal reactions between bodies with large sliding on the change of the gaps that their
+  /// rows miss. Zero to rounding for rows of steps (sliding_contact.hpp), except where the facing facets change
+  /// abruptly.
   double re_pairing = 0.0;
 
   [[nodiscard]] double sum() const { return load + contact + friction + support + obstacle + damping; }
@@ -28,7 +29,7 @@ struct Works {
 
 struct Energies {
   double kinetic = 0.0;
-  double elastic = 0.0;         ///< with what branches that relax have stored
+  double elastic = 0.0;         ///< including the energy of viscoelastic branches
   double load_potential = 0.0;  ///< −LᵀU of the constant loads
   double algorithmic = 0.0;
 
@@ -39,34 +40,34 @@ class EnergyAccount {
  public:
   /// Opens the account on a starting state.
   EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state);
-  /// Goes on with an account that was saved at this state.
+  /// Resumes an account that was saved at this state.
   EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state, const Snapshot& snapshot,
                 const std::string& name);
   void save(Snapshot& snapshot, const std::string& name) const;
 
   /// Enters a step: its displacement increment and the forces at its end (in the state).
   void enter_step(const Vector& increment, const State& state);
-  /// Calls `change`, which gives the scheme's next step another length and with it the state another algorithmic
-  /// energy: the difference is numerical dissipation.
+  /// Calls `change`, which changes the length of the scheme's next step and with it the algorithmic energy of the
+  /// state: the difference counts as numerical dissipation.
   void change_step(const State& state, const std::function<void()>& change);
-  /// Calls `change`, which gives the body another velocity between two steps: the difference of energy is work of
-  /// loads.
+  /// Calls `change`, which changes the velocity of the body between two steps: the difference of energy counts as work
+  /// of the loads.
   void enter_impulse(const State& state, const std::function<void()>& change);
-  /// Energies at the scheme's own instant.
+  /// Energies at the instant at which the scheme evaluates them.
   [[nodiscard]] Energies energies(const State& state);
   [[nodiscard]] const Works& works() const { return works_; }
-  /// What the discretization of time has put into the body since the start; negative where it has taken energy away:
-  /// contact work, which exact motions have none of, less numerical dissipation, the error of integration and the
-  /// change of the algorithmic energy. Of the state of the last step; what total energy then changes besides is the
-  /// other works.
+  /// Energy that the time discretization has put into the body since the start, negative if it has removed energy:
+  /// contact work, which is zero for exact motions, plus the integration error, less numerical dissipation and the
+  /// change of the algorithmic energy. Valid for the state of the last step; the other works account for the remaining
+  /// change of the total energy.
   [[nodiscard]] double of_method(const State& state);
   /// total + algorithmic − initial values − Σ works + numerical and viscous dissipation − integration error: zero to
   /// rounding.
   [[nodiscard]] double residual(const Energies& now) const;
-  /// Between bodies that slide far: the largest gap, or overlap, of points that were pressed in the last step. Zero to
-  /// rounding but where a step has been held (ContactGeometry::hold).
+  /// Largest gap or overlap, between bodies with large sliding, of points that were pressed in the last step. Zero to
+  /// rounding unless a step has been held (ContactGeometry::hold).
   [[nodiscard]] double unsettled_gap() const { return unsettled_gap_; }
-  /// The velocity that `energies` was last computed from, for this state.
+  /// Velocity from which `energies` was last computed, for this state.
   [[nodiscard]] const Vector& velocity(const State& state) const {
     return scheme_.energy_instant() == 0.0 ? state.velocity : velocity_;
   }
@@ -80,7 +81,7 @@ class EnergyAccount {
   void look_at_gaps(const State& state);
   void enter_re_pairing(const StepForces& forces, double weight);
   void enter(const StepForces& forces, double weight, const Vector& increment, const ContactRows*& rows);
-  /// Motion of the contact points over the step along these rows, and that of the obstacles.
+  /// Computes the motion of the contact points over the step along these rows, and that of the obstacles.
   void find_motion(const ContactRows& rows, const Vector& increment, ObstacleMotion& obstacle);
 
   const SemidiscreteProblem& problem_;
@@ -89,10 +90,10 @@ class EnergyAccount {
   Works works_;
   StepForces previous_;
   double initial_ = 0.0, initial_algorithmic_ = 0.0;
-  std::optional<double> algorithmic_;  ///< of the last step, once it was asked for
-  Vector displacement_, velocity_;     ///< of the scheme's instant, where that is not the state's
+  std::optional<double> algorithmic_;  ///< of the last step; empty until it is requested
+  Vector displacement_, velocity_;     ///< at the scheme's instant, if that differs from the state's
   Vector gap_increment_, slip_increment_;
-  Vector gap_before_, gap_now_;  ///< where bodies slide far
+  Vector gap_before_, gap_now_;  ///< with large sliding
   double unsettled_gap_ = 0.0;
   ObstacleMotion obstacle_;
 };

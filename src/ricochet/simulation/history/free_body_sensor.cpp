@@ -8,7 +8,7 @@ namespace ricochet {
 
 namespace {
 
-/// A rigid body that moves freely.
+/// Sensor of a free rigid body.
 class FreeBodySensor final : public Sensor {
  public:
   FreeBodySensor(const std::string& name, const SemidiscreteProblem& problem, const Obstacle& obstacle)
@@ -42,7 +42,7 @@ class FreeBodySensor final : public Sensor {
   }
 
  private:
-  /// In the plane the angle, whole turns included; in space the vector of the rotation, of length π at most.
+  /// In the plane the angle, whole turns included; in space the rotation vector, of length π at most.
   [[nodiscard]] SpaceVector rotation(const Vector& displacement) const {
     const Pose::Rotation turned = body_.pose(displacement).rotation;
     if (problem_.dimension == 3) {

@@ -11,14 +11,14 @@ namespace ricochet {
 
 namespace {
 
-/// A node of the group with ∫ φ_i over it, which for second-order elements may be zero or negative.
+/// Node of the group with ∫ φ_i over the group, which for second-order elements may be zero or negative.
 struct WeightedNode {
   Index node;
   double weight;
 };
 
-/// ∫ φ_i over some cells of one dimension, numbered through all blocks. `measure`: of a cell, per reference measure,
-/// in the plane of axisymmetric bodies.
+/// ∫ φ_i over some cells of one dimension, numbered through all blocks. `measure`: that of a cell per reference
+/// measure, in the meridian plane for axisymmetric bodies.
 template <class Measure>
 std::vector<WeightedNode> weighted_nodes(const Body& body, const std::vector<CellBlock>& geometry,
                                          const std::vector<CellBlock>& cells, const std::vector<Index>& members,
@@ -120,9 +120,9 @@ class GroupSensor final : public Sensor {
 
   std::string name_;
   int dimension_;
-  std::vector<WeightedNode> nodes_;  ///< weights that add up to 1
-  bool is_of_cells_;                 ///< else of facets
-  std::vector<Index> cells_;         ///< those that are here, of a group of cells
+  std::vector<WeightedNode> nodes_;  ///< weights sum to 1
+  bool is_of_cells_;                 ///< otherwise of facets
+  std::vector<Index> cells_;         ///< those on this rank, for a group of cells
   std::vector<double> cell_weights_, stress_, energy_density_;
   CellStress stress_of_;
 };

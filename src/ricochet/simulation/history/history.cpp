@@ -117,12 +117,12 @@ void HistoryRecorder::weigh_nodes() {
     mass.multiply(Vector::Ones(problem_.dof_count()), momentum_);
     for (Index node = 0; node < node_weight_.size(); ++node) node_weight_[node] = momentum_[node * problem_.dimension];
   }
-  // Rotations of rigid bodies are no momentum of their nodes.
+  // Rotations of rigid bodies do not contribute to the momentum of their nodes.
   for (const auto& body : problem_.free_bodies) node_weight_[body->rotation_node()] = 0.0;
   weigh_positions();
 }
 
-/// Rigid bodies are where they are, whatever the strain of the others.
+/// Sets the positions of rigid bodies to the current ones, also at small strain of the others.
 void HistoryRecorder::place_free_bodies(const State& state) {
   const Index d = problem_.dimension;
   for (const auto& body : problem_.free_bodies)
@@ -193,11 +193,11 @@ void HistoryRecorder::add_momentum(const State& state, const Vector& velocity) {
     const SpaceVector own = body->angular_momentum(state.displacement, velocity);
     sum.angular.tail(own.size()) += own;
   }
-  if (problem_.axisymmetric) {  // over the ring these cancel
+  if (problem_.axisymmetric) {  // cancel over the ring
     sum.linear[0] = 0.0;
     sum.angular.setZero();
   }
-  // The order of the columns.
+  // Appended in the order of the columns.
   append(sum.linear.head(problem_.dimension), row_);
   append(problem_.dimension == 2 ? sum.angular.tail(1) : sum.angular.head(3), row_);
   if (!bodies_.labels.empty()) sum_of_bodies(values);
@@ -228,7 +228,7 @@ void HistoryRecorder::add_contact_state(const Observation& observation) {
     slipping += status == ContactStatus::slip ? 1.0 : 0.0;
   }
   double penetration = 0.0;
-  for (const double gap : observation.gap) penetration = std::max(penetration, -gap);  // false of NaN
+  for (const double gap : observation.gap) penetration = std::max(penetration, -gap);  // false for NaN
   for (const double value : {active, sticking, slipping, penetration, static_cast<double>(state.iterations)})
     row_.push_back(value);
 }

@@ -12,7 +12,7 @@
 /// @file One row of numbers per step: energies, works, forces, momenta, counts, probes.
 namespace ricochet {
 
-/// What sensors observe, computed once per row.
+/// Computes, once per row, the quantities that sensors observe.
 class Observer {
  public:
   explicit Observer(const SemidiscreteProblem& problem) : problem_(problem) {}
@@ -24,7 +24,7 @@ class Observer {
   Vector area_, stretch_, true_reaction_;  ///< at finite strain (contact_surface.hpp)
 };
 
-/// Rows of some sensors alone: step, time, and their columns.
+/// Rows of sensors without the rest of the history: step, time and their columns.
 class SensorRecorder {
  public:
   SensorRecorder(const SemidiscreteProblem& problem, std::vector<std::shared_ptr<Sensor>> sensors);
@@ -42,10 +42,10 @@ class SensorRecorder {
   std::vector<double> row_;
 };
 
-/// The place of a column that must be there; throws std::logic_error where it is not.
+/// Index of a column that must exist; throws std::logic_error otherwise.
 [[nodiscard]] std::size_t column_index(const std::vector<std::string>& columns, const std::string& name);
 
-/// The bodies of a mesh that have columns of their own; none where there is one body.
+/// Bodies of a mesh that have columns of their own; empty if there is one body.
 struct HistoryBodies {
   std::vector<std::string> labels = {};  ///< momentum.LABEL_x
   std::vector<int> of_node = {};
@@ -58,17 +58,17 @@ class HistoryRecorder {
 
   /// Names of the columns, in the order of a row.
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
-  /// The same of a history that is yet to come.
+  /// Columns of a history that has not been started.
   [[nodiscard]] static Columns columns_of(const SemidiscreteProblem& problem,
                                           const std::vector<std::shared_ptr<Sensor>>& sensors,
                                           const HistoryBodies& bodies = {});
-  /// Of every history of a body of this dimension; with those of finite strain and of stress that relaxes, names that a
-  /// probe cannot have.
+  /// Columns of every history of a body of this dimension. The following functions return those of finite strain, of
+  /// viscoelastic branches and of large sliding; probes must not have their names.
   [[nodiscard]] static Columns standard_columns(int dimension);
   [[nodiscard]] static Columns finite_strain_columns();
   [[nodiscard]] static Columns relaxation_columns();
   [[nodiscard]] static Columns sliding_columns(bool touches_itself);
-  /// The row of a state. The reference stays valid until the next call.
+  /// Row of a state. The reference stays valid until the next call.
   [[nodiscard]] const std::vector<double>& row(const State& state, EnergyAccount& account);
 
  private:
@@ -86,15 +86,15 @@ class HistoryRecorder {
   Observer observer_;
   std::vector<std::shared_ptr<Sensor>> sensors_;
   HistoryBodies bodies_;
-  std::vector<double> body_momentum_;  ///< d of each
+  std::vector<double> body_momentum_;  ///< d entries of each body
   bool finite_strain_;
   std::vector<std::string> columns_;
   std::vector<Reduction> reductions_;
   std::vector<double> row_;
   std::vector<char> takes_part_;
-  /// Momentum and angular momentum are Σ node_weight_ p and Σ node_arm_ × p over the nodes. Where M = m ⊗ I, as it is
-  /// for a density, p is the velocity, and these are m 1 and m x of the reference positions x: no product with M. Else
-  /// p is M V, and these are 1 and x. At finite strain x are the positions of the state.
+  /// Momentum and angular momentum are Σ node_weight_ p and Σ node_arm_ × p over the nodes. If M = m ⊗ I, as for a
+  /// density, p is the velocity, and the factors are m 1 and m x with the reference positions x, which avoids a product
+  /// with M. Otherwise p is M V, and they are 1 and x. At finite strain x are the current positions.
   Vector node_weight_;
   Points node_arm_;
   Vector momentum_, position_;  ///< M V, x
@@ -105,7 +105,7 @@ class HistoryDigest {
  public:
   void add(const std::vector<double>& row);
   void save(Snapshot& snapshot, const std::string& name) const;
-  /// Throws Error(invalid_input) where it is not of so many columns.
+  /// Throws Error(invalid_input) if the saved digest has another number of columns.
   void load(const Snapshot& snapshot, const std::string& name, std::size_t columns);
   [[nodiscard]] const std::vector<ColumnDigest>& columns() const { return columns_; }
   [[nodiscard]] long rows() const { return rows_; }

@@ -10,7 +10,7 @@ namespace ricochet {
 
 namespace {
 
-/// In space, also of a vector in the plane.
+/// Extends a vector in the plane by zeros.
 template <class Values>
 Eigen::Vector3d in_space(const Values& values) {
   Eigen::Vector3d result = Eigen::Vector3d::Zero();
@@ -42,7 +42,7 @@ MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Schem
 
 void MomentumAccount::take_positions(const Vector& displacement) {
   if (finite_strain_) positions_ = problem_.nodes + displacement.reshaped(problem_.dimension, problem_.nodes.cols());
-  // Rigid bodies are where they are, whatever the strain of the others.
+  // Rigid bodies have their current positions, also at small strain of the others.
   for (const auto& body : problem_.free_bodies) {
     positions_.col(body->centre_node()) = body->centre(displacement);
     positions_.col(body->rotation_node()).setZero();
@@ -51,14 +51,14 @@ void MomentumAccount::take_positions(const Vector& displacement) {
   constant_load_ = of_nodes(problem_.loads.constant());
 }
 
-/// Of the momentum that is not M V, over h.
+/// Part of the momentum beside M V, divided by h.
 Resultant MomentumAccount::algorithmic(const State& state) {
   if (!scheme_.momentum_acceleration(state, acceleration_)) return {};
   problem_.mass.multiply(acceleration_, momentum_);
   return of_nodes(momentum_);
 }
 
-/// What acted at the end of the last step was about its places, which the state does not tell.
+/// The resultant at the end of the last step is saved, as it is about positions that the state does not contain.
 void MomentumAccount::save(Snapshot& snapshot, const std::string& name) const {
   Vector numbers(21);
   numbers << impulse_.force, impulse_.moment, size_, previous_.total.force, previous_.total.moment, previous_.size,
@@ -98,7 +98,7 @@ Resultant MomentumAccount::of_nodes(const Vector& force) const {
   return result;
 }
 
-/// In one exchange for all.
+/// Uses one exchange for all parts.
 void MomentumAccount::add_up_ranks(std::span<Resultant> parts) const {
   if (!problem_.ranks->are_several()) return;
   std::array<double, 6 * most_parts> numbers{};
@@ -111,14 +111,14 @@ void MomentumAccount::add_up_ranks(std::span<Resultant> parts) const {
   for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {at(2 * i), at(2 * i + 1)};
 }
 
-/// The forces of a point are those of all its rows, and are taken node by node: between bodies at finite strain, where
-/// they are about where nodes are (turning_pairs.hpp), and at rigid bodies.
+/// The force of such a point has the entries of all its rows and is summed node by node: between bodies at finite
+/// strain, where it acts at the positions of the nodes (turning_pairs.hpp), and at rigid bodies.
 bool MomentumAccount::is_taken_by_nodes(Index point) const {
   if (problem_.contact.between_bodies(point)) return finite_strain_ || problem_.contact.slides(point);
   return !problem_.free_bodies.empty() && problem_.obstacle_of_point(point)->free_motion() != nullptr;
 }
 
-/// Of these points.
+/// Resultant of the points that are summed node by node.
 Resultant MomentumAccount::between_bodies(const StepForces& forces) {
   normal_ = forces.acting_normal();
   tangential_ = forces.acting_tangential();
@@ -130,7 +130,7 @@ Resultant MomentumAccount::between_bodies(const StepForces& forces) {
   }
   force_.setZero(problem_.dof_count());
   forces.rows->add_force(normal_, tangential_, force_);
-  // Before the first step no force has acted anywhere.
+  // Before the first step no force has acted at any position.
   const Vector* const place = scheme_.has_couples_between_bodies() ? scheme_.place_of_forces() : nullptr;
   if (place != nullptr && place->size() == problem_.dof_count() && problem_.contact.follows_motion())
     problem_.contact.geometry->add_couples(*place, *forces.rows, normal_, tangential_, force_);
@@ -155,7 +155,7 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
       presses_bodies = true;
       continue;
     }
-    // Between bodies nothing is left but the moment of forces that do not act along the gap.
+    // Between bodies the moment of forces that do not act along the gap is the only remainder.
     const Eigen::Vector3d force = in_space(acting_contact_force(forces, i));
     contact.force += problem_.contact.net[i] * force;
     contact.moment += in_space(problem_.contact.arm(i, positions_)).cross(force);
@@ -187,7 +187,7 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
   return sum;
 }
 
-/// What holds the rotation of a rigid body.
+/// Torque that holds the rotation of a rigid body.
 SpaceVector MomentumAccount::held_torque(const FreeMotion& body, const StepForces& forces) {
   const Index first = body.rotation_node() * problem_.dimension;
   force_.setZero(problem_.dof_count());
@@ -198,7 +198,8 @@ SpaceVector MomentumAccount::held_torque(const FreeMotion& body, const StepForce
   return body.torque(force_);
 }
 
-/// Of rigid bodies to the ground: linear in the displacement, whose mean over the step is that of its ends.
+/// Springs between rigid bodies and the ground: their force is linear in the displacement, so that its mean over the
+/// step is that of its ends.
 MomentumAccount::Sum MomentumAccount::of_springs() {
   force_.setZero(problem_.dof_count());
   problem_.internal_force->add_ground_force(mean_, force_);

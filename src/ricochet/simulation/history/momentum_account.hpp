@@ -4,20 +4,20 @@
 
 #include "ricochet/scheme/scheme.hpp"
 
-/// @file Impulses of the forces that act on the body: what changes its momentum.
+/// @file Balance of momentum: impulses of all forces that act on the body.
 ///
-/// A rigid velocity does no work on the stress, so its product with the momentum equation is the balance of momentum:
-/// over a step P₁ − P₀ = h (w₀ F₀ + w₁ F₁), with the resultants F of the loads, obstacles, supports and damping at the
-/// two ends and the scheme's weights (WorkRule). The same for moments about the origin with reference positions. It
-/// holds to rounding where the displacement's functions contain rigid rotations: not for degree 1 on curved cells. Of
-/// an axisymmetric body only forces along its axis have an impulse: the others cancel over the ring, and so do all
-/// moments.
-/// At finite strain moments are about current positions, those of forces at the middle of the step: for schemes whose
-/// internal forces are of that middle (Scheme::keeps_moments_at_finite_strain); or, where the forces of both ends of a
-/// step act, about the positions at either.
+/// A rigid velocity does no work on the stress, so that its product with the momentum equation is the balance of
+/// momentum: over a step P₁ − P₀ = h (w₀ F₀ + w₁ F₁), with the resultants F of the loads, obstacles, supports and
+/// damping at the two ends and the scheme's weights (WorkRule). Likewise for moments about the origin with reference
+/// positions. The balance holds to rounding if the displacement space contains rigid rotations, which degree 1 on
+/// curved cells does not. In an axisymmetric body only forces along the axis have an impulse: the other forces cancel
+/// over the ring, and so do all moments.
+/// At finite strain moments are about current positions: at the middle of the step for schemes that evaluate internal
+/// forces there (Scheme::keeps_moments_at_finite_strain), or, if the forces of both ends of a step act, at the
+/// respective end.
 namespace ricochet {
 
-/// Resultant and moment, or momentum and angular momentum.
+/// Resultant force and moment, or momentum and angular momentum.
 struct Resultant {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
@@ -28,18 +28,18 @@ class MomentumAccount {
   /// Opens the account on a starting state.
   MomentumAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state);
   void save(Snapshot& snapshot, const std::string& name) const;
-  /// Of an account that was saved at the state this one was opened on.
+  /// Loads an account that was saved at the state on which this one was opened.
   void load(const Snapshot& snapshot, const std::string& name);
 
   /// Enters a step with the forces at its end (in the state).
   void enter_step(const State& state);
-  /// Enters an impulse per dof that acts between two steps, where the body is then.
+  /// Enters an impulse per dof that acts between two steps, at the current position of the body.
   void enter_impulse(const State& state, const Vector& impulse);
-  /// Since the start.
+  /// Impulse since the start.
   [[nodiscard]] const Resultant& impulse() const { return impulse_; }
-  /// Σ of the sizes of all impulses, of each kind of force by itself: what their sum is rounded to.
+  /// Σ of the magnitudes of all impulses, per kind of force: the scale of rounding of their sum.
   [[nodiscard]] double size() const { return size_; }
-  /// Largest distance of a node from the origin.
+  /// Largest distance of a node from the origin so far.
   [[nodiscard]] double arm() const { return arm_; }
 
  private:
@@ -54,7 +54,8 @@ class MomentumAccount {
   [[nodiscard]] Sum resultant(const StepForces& forces);
   [[nodiscard]] Sum of_springs();
   [[nodiscard]] Resultant algorithmic(const State& state);
-  /// Of a resultant: contact, supports, loads, damping, and in the last one the size of the supports' forces.
+  /// Parts of a resultant: contact, supports, loads, damping, and in the last one the magnitude of the supports'
+  /// forces.
   static constexpr std::size_t most_parts = 5;
   [[nodiscard]] Resultant part_of_nodes(const Vector& force) const;
   void add_up_ranks(std::span<Resultant> parts) const;
@@ -67,10 +68,10 @@ class MomentumAccount {
   WorkRule rule_;
   double arm_ = 0.0;
   bool finite_strain_;
-  Points positions_;  ///< of the nodes, that moments are taken with
-  Vector before_;     ///< displacement at the start of the step, at finite strain
+  Points positions_;  ///< of the nodes, about which moments are computed
+  Vector before_;     ///< displacement at the start of the step, at finite strain or with rigid bodies
   bool has_springs_ = false;
-  Vector mean_;  ///< displacement of the step, where there are springs
+  Vector mean_;  ///< mean displacement over the step, with springs
   Resultant constant_load_;
   Sum previous_;
   Resultant algorithmic_;                                         ///< of M a, Scheme::momentum_acceleration

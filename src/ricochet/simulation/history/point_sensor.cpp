@@ -12,7 +12,7 @@ class PointSensor final : public Sensor {
  public:
   PointSensor(const SemidiscreteProblem& problem, Probe probe) : problem_(problem), probe_(std::move(probe)) {
     if (probe_.contact_node < 0) return;
-    // All points of this obstacle whose trace reaches the node.
+    // All points of this obstacle whose trace reaches the node contribute.
     const ContactBoundary& contact = problem.contact;
     deforms_ = contact.surface->deforms();
     has_gap_ = !std::isnan(contact.node_initial_gap[probe_.contact_node]);
@@ -44,7 +44,7 @@ class PointSensor final : public Sensor {
   void observe(const Observation& observation, std::vector<double>& row) override {
     const Index d = problem_.dimension;
     const State& state = observation.state;
-    // Of several ranks that have the node one speaks.
+    // Only one of the ranks that share the node contributes.
     const double part = problem_.ranks->is_owned(probe_.node) ? 1.0 : 0.0;
     append(part * state.displacement.segment(probe_.node * d, d), row);
     append(part * state.velocity.segment(probe_.node * d, d), row);
@@ -54,11 +54,11 @@ class PointSensor final : public Sensor {
     const SpaceVector normal = problem_.node_normal(probe_.contact_node, state.displacement, state.time);
     const double normal_force = normal.dot(force);
     if (has_gap_) {
-      // Where bodies slide far it may face nothing now.
+      // With large sliding the node may face nothing at present.
       const double gap = observation.gap[probe_.contact_node];
       row.push_back(part * (std::isnan(gap) ? problem_.contact.out_of_sight : gap));
     }
-    // Of the force and the pressure each rank has what its contact points do.
+    // Each rank contributes the force and the pressure of its contact points.
     for (const double value : {observation.pressure[probe_.contact_node], normal_force}) row.push_back(value);
     force -= normal_force * normal;
     append(force, row);
@@ -68,9 +68,9 @@ class PointSensor final : public Sensor {
  private:
   const SemidiscreteProblem& problem_;
   Probe probe_;
-  bool has_gap_ = false;                          ///< false where the node faces nothing
+  bool has_gap_ = false;                          ///< false if the node faces nothing
   bool deforms_ = false;                          ///< its pressure differs from the nominal one
-  std::vector<std::pair<Index, double>> points_;  ///< with the part of their force that acts on the node
+  std::vector<std::pair<Index, double>> points_;  ///< with the fraction of their force that acts on the node
 };
 
 }  // namespace

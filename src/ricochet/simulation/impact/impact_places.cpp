@@ -4,10 +4,10 @@
 
 #include "ricochet/simulation/impact/impacts.hpp"
 
-/// @file What can meet what: the bodies, and the obstacles or other bodies that their contact points belong to.
+/// @file Collision pairs: bodies, and the obstacles or other bodies to which their contact points belong.
 namespace ricochet {
 
-/// Which of two bodies is named first: that of the `group` of their first contact.
+/// Order in which two bodies are named: first that of the `group` of their first contact.
 class ImpactRecorder::BodyOrder {
  public:
   void enter(int first, int second, int contact) {
@@ -24,7 +24,7 @@ class ImpactRecorder::BodyOrder {
 
 void ImpactRecorder::find_places(const std::vector<ContactPair>& pairs) {
   const ContactBoundary& contact = problem_.contact;
-  // Per point between bodies: what of its force acts on each of the bodies that it faces.
+  // Per point between bodies: the fraction of its force that acts on each of the bodies that it faces.
   std::vector<std::map<int, double>> opposite(static_cast<std::size_t>(contact.size()));
   const auto own_body = [&](Index point) { return rigid_.body_of_node(contact.first_own_node(point)); };
   const auto pair_of = [&](Index point) { return contact.pair[static_cast<std::size_t>(point)]; };
@@ -36,7 +36,7 @@ void ImpactRecorder::find_places(const std::vector<ContactPair>& pairs) {
       const int body = rigid_.body_of_node(node);
       if (body != own) opposite[static_cast<std::size_t>(point)][body] -= weight;
     });
-    // What a point sees that slides far is of one body, whatever it sees (model_bodies.cpp).
+    // All surfaces that a point with large sliding can face belong to one body (model_bodies.cpp).
     if (contact.slides(point)) {
       const int body = rigid_.body_of_node(contact.opposite_node[static_cast<std::size_t>(pair_of(point))]);
       opposite[static_cast<std::size_t>(point)].clear();
@@ -64,7 +64,7 @@ void ImpactRecorder::find_places(const std::vector<ContactPair>& pairs) {
   }
 }
 
-/// Of several ranks all have the places of all, in one order: bodies, and pairs with obstacles.
+/// Gives all ranks the collision pairs of all, in one order: by body, then by contact pair with an obstacle.
 void ImpactRecorder::add_places_of_ranks(const std::vector<ContactPair>& pairs) {
   if (!problem_.ranks->are_several()) return;
   const ContactBoundary& contact = problem_.contact;
@@ -90,7 +90,7 @@ void ImpactRecorder::add_places_of_ranks(const std::vector<ContactPair>& pairs) 
   }
 }
 
-/// The number of the rigid body that moves freely at this point; −1: none.
+/// Returns the number of the free rigid body at this point; −1 if none.
 int ImpactRecorder::free_body_of(Index point) const {
   const Obstacle* const obstacle = problem_.obstacle_of_point(point);
   if (obstacle == nullptr || obstacle->free_motion() == nullptr) return -1;

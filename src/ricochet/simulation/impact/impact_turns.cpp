@@ -1,21 +1,22 @@
 #include "ricochet/simulation/impact/impacts.hpp"
 #include "ricochet/simulation/impact/turn_growth.hpp"
 
-/// @file How far bodies have turned when an impact begins, and what that does to it.
+/// @file Rotation of bodies at the start of an impact, and its effect on the impact.
 namespace ricochet {
 
-/// One of the mesh with the linear law. The mean rotation of a body that supports hold is bending, and no turn of it.
+/// True for bodies of the mesh with the linear law that supports do not hold: the mean rotation of a held body is
+/// bending.
 bool ImpactRecorder::grows_as_it_turns(int body) const {
   const auto count = static_cast<int>(rigid_.bodies().size() - problem_.free_bodies.size());
   return problem_.internal_force->is_linear() && body >= 0 && body < count &&
          !rigid_.bodies()[static_cast<std::size_t>(body)].held;
 }
 
-/// At the beginning of the step. What rigid_ says of the velocity is overwritten, and asked for anew.
+/// Uses the state at the start of the step. Overwrites the motion of rigid_, which is therefore computed anew.
 void ImpactRecorder::take_turns(Interval& interval) {
   const Place& place = places_[static_cast<std::size_t>(interval.place)];
   if (!problem_.internal_force->is_linear()) return;
-  // Of the displacement as if it were a velocity: its mean, and its mean rotation.
+  // The displacement is treated as a velocity, which yields its mean and its mean rotation.
   const std::vector<RigidMotionState>& moved = rigid_.motion(displacement_before_, displacement_before_);
   const auto at = [&](int body) -> const RigidMotionState& { return moved[static_cast<std::size_t>(body)]; };
   const auto centre = [&](int body) -> const Eigen::Vector3d& {
@@ -31,7 +32,7 @@ void ImpactRecorder::take_turns(Interval& interval) {
   motion_ = &rigid_.motion(velocity_before_, displacement_before_);
 }
 
-/// Of an impact that has ended.
+/// Sums the growth of both bodies in an impact that has ended.
 double ImpactRecorder::growth_in(const Interval& interval, const Impact& impact) const {
   const Place& place = places_[static_cast<std::size_t>(interval.place)];
   const double duration = impact.end - impact.begin;

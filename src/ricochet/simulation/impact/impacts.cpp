@@ -41,7 +41,7 @@ ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme&
   displacement_before_ = state.displacement;
 }
 
-/// The velocity that momenta are accounted for with.
+/// Computes the velocity with which momenta are accounted for.
 void ImpactRecorder::take_velocity(const State& state, Vector& velocity) {
   if (scheme_.energy_instant() == 0.0) {
     velocity = state.velocity;
@@ -78,7 +78,7 @@ void ImpactRecorder::find_forces(const StepForces& acting, const ObstacleMotion&
   add_up_ranks(forces);
 }
 
-/// Of equal forces the first rank's leads.
+/// Among equal largest forces that of the first rank is the leading one.
 void ImpactRecorder::add_up_ranks(std::vector<Force>& forces) const {
   if (!problem_.ranks->are_several()) return;
   constexpr std::size_t sums = 12, numbers = sums + 4;
@@ -110,8 +110,8 @@ void ImpactRecorder::add_up_ranks(std::vector<Force>& forces) const {
   }
 }
 
-/// What is left of a point's force, and of its obstacle's motion, over the ring: of rings that press on a cone, the
-/// part along the axis.
+/// Adds the part of a point's force, and of its obstacle's motion, that remains over the ring: for rings that press on
+/// a cone the component along the axis.
 void ImpactRecorder::add_along_axis(Index point, double part, const SpaceVector& own, const StepForces& acting,
                                     const ObstacleMotion& travel, Force& force) const {
   const double reaction = acting.acting_normal()[point], slope = acting.rows->normal(point)[1];
@@ -176,7 +176,7 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
   const double h = scheme_.step();
   if (acting.current == nullptr) {
     if (acting.other == nullptr) return;
-    // It acts before the instant of the others.
+    // The other force acts before the instant of the forces in the state.
     interval.end = instant;
     interval.contact_time += 0.5 * h;
     take_largest(interval, *acting.other, instant);
@@ -191,7 +191,7 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
   take_largest(interval, current, instant);
 }
 
-/// At the beginning of the step.
+/// Returns the motion at the start of the step.
 ImpactRecorder::Motion ImpactRecorder::motion_of(int body) const {
   const RigidMotionState& now = (*motion_)[static_cast<std::size_t>(body)];
   return {numbers_of(now.velocity), numbers_of(now.spin), now.kinetic_energy, now.rigid_kinetic_energy};
@@ -206,14 +206,14 @@ void ImpactRecorder::let_go(Interval& interval) const {
   const Place& place = places_[static_cast<std::size_t>(interval.place)];
   interval.after = motion_of(place.body);
   if (place.other >= 0) interval.other_after = motion_of(place.other);
-  interval.method_after = method_energy_;  // letting go costs energy, too
+  interval.method_after = method_energy_;  // the release also changes the energy
   interval.phase = apart;
 }
 
 void ImpactRecorder::touch(Interval& interval, const Acting& acting, double instant) {
   const double h = scheme_.step();
   const bool acts_before = acting.previous != nullptr;
-  // Only at the start does a force act before the first instant of the steps.
+  // A force acts before the first instant of the steps only at the start of the run.
   const double time = acts_before ? 0.0 : std::max(0.0, instant - 0.5 * h);
   if (interval.phase == apart && time - interval.end < std::max(2.0 * h, separation_at(interval))) {
     interval.intervals += 1.0;
@@ -223,7 +223,7 @@ void ImpactRecorder::touch(Interval& interval, const Acting& acting, double inst
   }
   interval.phase = touching;
   if (!acts_before) return;
-  // It acts in the first half of the step, and may be the only one that does.
+  // The force acts in the first half of the step, possibly as the only one.
   interval.end = instant - 0.5 * h;
   interval.contact_time += 0.5 * h;
   take_largest(interval, *acting.previous, instant - h);
@@ -249,7 +249,7 @@ void ImpactRecorder::take_largest(Interval& interval, const Force& force, double
   interval.largest_time = instant;
 }
 
-/// In the reference configuration.
+/// Returns the position in the reference configuration.
 ImpactRecorder::Three ImpactRecorder::place_of(Index point) const {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   double sum = 0.0;

@@ -5,12 +5,12 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/simulation/impact/impacts.hpp"
 
-/// @file What a checkpoint keeps of impacts.
+/// @file Impacts in checkpoints.
 namespace ricochet {
 
 namespace {
 
-/// Structures of numbers, one after the other.
+/// Concatenates structures that consist of double only.
 template <class Structure>
 Vector as_numbers(const std::vector<Structure>& values) {
   static_assert(std::is_trivially_copyable_v<Structure> && sizeof(Structure) % sizeof(double) == 0);
@@ -49,7 +49,7 @@ void ImpactRecorder::load(const Snapshot& snapshot, const std::string& name) {
   method_before_ = snapshot.real(name + ".method_energy");
   for (const auto* list : {&open_, &filed_}) {
     for (const Interval& interval : *list) {
-      // Also false where it is no number.
+      // Also false for NaN.
       if (!(interval.place >= 0.0 && interval.place < static_cast<double>(places_.size()))) damaged();
       if (interval.place != std::floor(interval.place)) damaged();
       if (interval.phase != no_contact && interval.phase != touching && interval.phase != apart) damaged();

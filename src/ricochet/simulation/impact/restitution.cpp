@@ -6,16 +6,16 @@
 namespace ricochet {
 
 namespace {
-/// A body whose centre comes nearer by less than this, relative to what the impulse changes, does so to rounding.
+/// Approach velocity, relative to the change by the impulse, below which it is rounding.
 constexpr double rounding_of_velocity = 1e-9;
-/// Below these parts of other speeds the velocity towards an obstacle says nothing of how it was reversed. Spin,
-/// vibrations and loads act on the normal velocity itself; sliding only by what friction makes of it.
+/// Fractions of other speeds below which the approach velocity does not determine how it is reversed. Spin, vibrations
+/// and loads act on the normal velocity itself, sliding only through friction.
 constexpr double slowest_beside_sliding = 0.01, slowest_beside_others = 0.1;
 }  // namespace
 
 namespace {
 
-/// Twice the energy of spin and vibrations over the mass: the square of their speed. All that a held body does is
+/// Twice the energy of spin and vibrations over the mass: the square of their speed. The whole motion of a held body is
 /// vibration.
 double squared_speed_of_others(double mass, const RigidMotionState& motion, bool is_ground) {
   const double of_centre = is_ground ? 0.0 : 0.5 * mass * motion.velocity.squaredNorm();
@@ -23,7 +23,7 @@ double squared_speed_of_others(double mass, const RigidMotionState& motion, bool
   return std::max(0.0, 2.0 * energy / mass);
 }
 
-/// Of spin and vibrations, of both bodies where there are two.
+/// Speed of spin and vibrations, of both bodies if there are two.
 double speed_of_others(const Impact& impact) {
   double squared = squared_speed_of_others(impact.mass, impact.before, impact.is_ground());
   if (impact.other)
@@ -31,7 +31,7 @@ double speed_of_others(const Impact& impact) {
   return std::sqrt(squared);
 }
 
-/// Across the normal, against the obstacle or the other body.
+/// Speed across the normal, relative to the obstacle or the other body.
 double sliding_speed(const Impact& impact) {
   Eigen::Vector3d sliding = -impact.obstacle_sliding;
   if (!impact.is_ground()) sliding += impact.tangential_velocity_before();
@@ -42,7 +42,7 @@ double sliding_speed(const Impact& impact) {
   return sliding.norm();
 }
 
-/// Along the normal, of one body against the other where there are two: what pulls both alike makes none.
+/// Velocity along the normal, of two bodies the relative one: forces that accelerate both alike do not contribute.
 double velocity_by_other_forces(const Impact& impact) {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (!impact.is_ground()) velocity += impact.other_impulse() / impact.mass;
@@ -79,7 +79,7 @@ std::string why_no_restitution(const Impact& impact) {
 }
 
 RestitutionError restitution_error(const Impact& impact) {
-  // A tenth of what the impact has lost, and nothing that the first three digits of e would not show.
+  // Large is a tenth of the loss in the impact, but nothing that the first three digits of e do not show.
   constexpr double large_beside_impact = 0.1, visible = 1e-3;
   const std::optional<double> restitution = impact.restitution();
   if (!restitution || !impact.method_energy) return {};

@@ -4,23 +4,23 @@
 
 #include "ricochet/simulation/impact/impact.hpp"
 
-/// @file When the ratio of an impact's normal velocities says something of the impact.
+/// @file Conditions under which the ratio of an impact's normal velocities characterizes the impact.
 namespace ricochet {
 
-/// Why an impact has no restitution: it has not ended; the body began inside; it did not come nearer; or it did, but so
-/// slowly beside its sliding, its spin and vibrations, or what other forces did meanwhile, that the ratio would tell of
-/// these. Of two bodies it is about the motion of one against the other. Empty: there is one.
+/// Returns why an impact has no restitution: it has not ended; the body began inside; it did not approach; or it
+/// approached so slowly, compared with its sliding, its spin and vibrations, or the effect of other forces meanwhile,
+/// that the ratio would characterize these. For two bodies the relative motion counts. Empty if there is a restitution.
 [[nodiscard]] std::string why_no_restitution(const Impact& impact);
 
-/// What the discretization of time did to the energy during an impact, and 1 − e² of its restitution e: both as parts
+/// Energy that the time discretization has created during an impact, and 1 − e² of its restitution e: both as fractions
 /// of ½ m v², v the normal velocity before and m the approach_mass().
 struct RestitutionError {
-  double by_method = 0.0;  ///< negative: energy is missing
+  double by_method = 0.0;  ///< negative if energy is lost
   double by_impact = 0.0;
-  /// The method's part cannot be told from what the impact itself has lost.
+  /// True if the method's part obscures the loss of the impact itself.
   bool is_large = false;
 };
-/// All zero where there is no restitution, or where the method's part is not known.
+/// Returns zeros if there is no restitution or the method's part is unknown.
 [[nodiscard]] RestitutionError restitution_error(const Impact& impact);
 
 }  // namespace ricochet

@@ -74,7 +74,7 @@ Eigen::Vector3d RigidBodies::arm(Index node) const {
   return result;
 }
 
-/// RᵀMR with the rigid velocities R about each body's origin: mass, first and second moments.
+/// Computes RᵀMR with the rigid velocities R about each body's origin: mass, first and second moments.
 void RigidBodies::measure() {
   const int d = problem_.dimension, first_rotation = d == 2 ? 2 : 0;
   Vector velocity(problem_.dof_count());
@@ -90,7 +90,7 @@ void RigidBodies::measure() {
       visit(static_cast<std::size_t>(body_of_node(node)), arm(node), own);
     }
   };
-  // A translation along k has the momentum m e_k and the moment m c × e_k, which gives two components of the centre c.
+  // A translation along k has the momentum m e_k and the moment m c × e_k, which yields two components of the centre c.
   std::vector<Eigen::Vector3d> offset(bodies_.size(), Eigen::Vector3d::Zero());
   for (int k = 0; k < 2; ++k) {
     momentum_of([&](Index) { return Eigen::Vector3d::Unit(k); });
@@ -123,7 +123,7 @@ void RigidBodies::measure() {
   }
 }
 
-/// Of the whole solid, with the moments xᵀmx, yᵀmy, yᵀm1 of M = m ⊗ I, x the distance from the axis.
+/// Measures the whole solid, with the moments xᵀmx, yᵀmy, yᵀm1 of M = m ⊗ I, x the distance from the axis.
 void RigidBodies::measure_round_axis() {
   for (Eigen::Vector3d& origin : origin_) origin[0] = 0.0;
   Vector places(problem_.dof_count());
@@ -149,7 +149,7 @@ void RigidBodies::measure_round_axis() {
   }
 }
 
-/// Centres and inertia at current positions x, from Σ x_a (M x)_aᵀ about each body's origin.
+/// Computes centres and inertia at current positions x, from Σ x_a (M x)_aᵀ about each body's origin.
 void RigidBodies::measure_at(const Vector& displacement) {
   const int d = problem_.dimension;
   position_.resize(problem_.dof_count());

@@ -5,8 +5,8 @@
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/simulation/impact/rigid_body.hpp"
 
-/// @file The bodies of a mesh as rigid bodies: what their mass matrix says of mass, centre, inertia and mean motion.
-/// After them come the rigid bodies that move by the forces on them.
+/// @file Rigid-body quantities of the bodies of a mesh: mass, centre, inertia and mean motion from their mass matrix.
+/// The free rigid bodies follow them.
 namespace ricochet {
 
 class RigidBodies {
@@ -16,9 +16,9 @@ class RigidBodies {
 
   [[nodiscard]] const std::vector<RigidBody>& bodies() const { return bodies_; }
   [[nodiscard]] int body_of_node(Index node) const { return body_of_node_[static_cast<std::size_t>(node)]; }
-  /// Of all bodies with this velocity at this displacement. One product with M and one pass; allocates nothing after
-  /// the first time. The reference stays valid until the next call.
-  /// Spins of the mesh's bodies are about the places of the reference, or, at finite strain, about where they are.
+  /// Motion of all bodies with this velocity at this displacement. Costs one product with M and one pass; allocates
+  /// nothing after the first time. The reference stays valid until the next call.
+  /// Spins of the mesh's bodies are about reference positions, at finite strain about current ones.
   [[nodiscard]] const std::vector<RigidMotionState>& motion(const Vector& velocity, const Vector& displacement);
 
  private:
@@ -32,7 +32,7 @@ class RigidBodies {
 
   const SemidiscreteProblem& problem_;
   std::vector<int> body_of_node_;
-  std::vector<Eigen::Vector3d> origin_;  ///< mean of the body's nodes: what sums are taken about, for their rounding
+  std::vector<Eigen::Vector3d> origin_;  ///< mean of the body's nodes, about which sums are taken to limit rounding
   std::vector<RigidBody> bodies_;
   std::vector<RigidMotionState> motion_;
   Vector momentum_;

@@ -2,25 +2,26 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file What a body is and how it moves, as a rigid one.
+/// @file Properties and motion of a body as a rigid body.
 namespace ricochet {
 
 /// Reference configuration; in the plane z = 0, and per unit of thickness. An axisymmetric body is the whole solid: its
-/// centre is on the axis, and its inertia that in space.
+/// centre is on the axis, and its inertia is that in space.
 struct RigidBody {
   double mass = 0.0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre; in the plane only its zz entry is used
-  bool held = false;                                  ///< supports, which do not move, leave it no rigid motion
+  bool held = false;                                  ///< supports at rest leave it no rigid motion
 };
 
 /// Mean motion of a body and its energies.
 struct RigidMotionState {
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the centre of mass: momentum / mass; along an axis
-  /// Angular momentum about the centre of mass, solved with the inertia about it; reference positions.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< momentum / mass; if axisymmetric, that along the axis
+  /// Angular momentum about the centre of mass, solved with the inertia about it; reference positions, at finite strain
+  /// current ones.
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();
   double kinetic_energy = 0.0;        ///< of the whole motion, ½VᵀMV
-  double rigid_kinetic_energy = 0.0;  ///< of velocity and spin alone; the rest is that of vibrations
+  double rigid_kinetic_energy = 0.0;  ///< of velocity and spin alone; the remainder is that of vibrations
 };
 
 }  // namespace ricochet

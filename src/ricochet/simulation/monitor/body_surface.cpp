@@ -11,7 +11,7 @@ namespace ricochet {
 
 namespace {
 
-/// Angle of a triangle between two of its sides.
+/// Angle between two sides of a triangle.
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
@@ -104,8 +104,8 @@ Eigen::Vector3d BodySurface::normal_at(int node) const {
   return normal;
 }
 
-/// Of the piece inside of it; at an edge the sum of those of its pieces, at a corner weighted by the pieces' angles
-/// there.
+/// Returns the normal of the piece if the position is inside it; at an edge the sum of those of its pieces, at a corner
+/// weighted by the pieces' angles there.
 Eigen::Vector3d BodySurface::normal_at(const Closest& place) const {
   const Corners& corners = place.corners;
   const bool inside = corners[1] >= 0 && (plane_ || corners[2] >= 0);

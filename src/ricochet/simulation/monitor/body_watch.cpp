@@ -10,9 +10,9 @@ namespace ricochet {
 
 namespace {
 
-/// Of the length of an edge.
+/// Relative motion between two checks, in edge lengths.
 constexpr double motion_between_looks = 0.25;
-/// How much farther bodies may move that were found to overlap, and told: then it is the depth only that is looked for.
+/// Factor on this motion for bodies whose overlap has been reported: then only its depth is of interest.
 constexpr double resolution_of_found = 4.0;
 
 }  // namespace
@@ -52,7 +52,7 @@ void BodyWatch::take_kept(const std::vector<KeptNode>& kept, const ConnectedBodi
   }
 }
 
-/// Gaps of nodes that face nothing are no numbers.
+/// Gaps of nodes that face nothing are NaN.
 double BodyWatch::Kept::depth_allowed(const Vector& gap) const {
   return allowance + (entry >= 0 && gap[entry] < 0.0 ? -gap[entry] : 0.0);
 }
@@ -77,7 +77,7 @@ void BodyWatch::look(const Vector& displacement, double time, bool now, const No
   const Index d = positions_.rows();
   for (std::size_t i = 0; i < nodes_.size(); ++i)
     seen_.segment(static_cast<Index>(i) * d, d) = displacement.segment(nodes_[i] * d, d);
-  free_way_ = 0.5 * std::max(apart, resolution_);  // both may have moved
+  free_way_ = 0.5 * std::max(apart, resolution_);  // both bodies may have moved
 }
 
 bool BodyWatch::is_due(const Vector& displacement) const {

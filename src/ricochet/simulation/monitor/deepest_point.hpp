@@ -4,13 +4,13 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file The worst that was seen of a penetration: where and when.
+/// @file Deepest penetration so far, with its position and time.
 namespace ricochet {
 
 struct DeepestPoint {
-  Index node = -1;  ///< none was found yet
+  Index node = -1;  ///< −1: none found
   double depth = 0.0, time = 0.0;
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< where the node was
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< position of the node at that time
   double first_time = 0.0;
 
   [[nodiscard]] bool found() const { return node >= 0; }
@@ -34,7 +34,7 @@ struct DeepestPoint {
   }
 };
 
-/// What of a depth is rounding: this part of the size of the body.
+/// Depth, relative to the size of the body, up to which it is rounding.
 inline constexpr double rounding_of_depth = 1e-9;
 
 }  // namespace ricochet

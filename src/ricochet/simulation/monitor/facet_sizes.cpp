@@ -10,7 +10,7 @@ namespace ricochet {
 
 namespace {
 
-/// Of facets; a displacement of half a facet takes a node from its middle to its end.
+/// Fraction of a facet by which a displacement takes a node from its middle to its end.
 constexpr double half = 0.5;
 
 std::set<int> bodies_of(const Body& body, const std::vector<Index>& facets, const std::vector<int>& body_of_node) {
@@ -38,7 +38,7 @@ FacetSizes facet_sizes(const Body& body, const std::vector<Index>& facets) {
 
 namespace {
 
-/// Both sides of a pair that slides far: which facets a node faces is not known beforehand.
+/// Adds both sides of a pair with large sliding, as the facets that a node will face are not known beforehand.
 void add_sliding_nodes(const Body& body, const ContactBoundary& contact, const ContactPair& pair, int number,
                        const std::vector<int>& body_of_node, std::vector<KeptNode>& result) {
   const FacetSizes own = facet_sizes(body, pair.facets), opposite = facet_sizes(body, pair.opposite_facets);
@@ -83,7 +83,7 @@ std::vector<KeptNode> kept_nodes(const Body& body, const ContactBoundary& contac
       const auto node = static_cast<std::size_t>(contact.nodes[entry]);
       const bool is_opposite = contact.is_opposite[entry] != 0;
       double size = (is_opposite ? opposite : own).largest[node];
-      // Of the facets that it faces, the conditions may be the coarser ones.
+      // The conditions may be those of the facets that the node faces, which may be coarser.
       for (SparseRowMatrix::InnerIterator at(contact.opposite_place, static_cast<Index>(entry)); at; ++at)
         size = std::max(size, (is_opposite ? own : opposite).largest[static_cast<std::size_t>(at.col())]);
       for (const int other : is_opposite ? own_bodies : opposite_bodies) {

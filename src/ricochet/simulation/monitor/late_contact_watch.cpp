@@ -14,8 +14,8 @@ namespace ricochet {
 
 namespace {
 
-/// Of what the contact itself is allowed, half of the largest facet: smooth surfaces are off by h²/8R before they
-/// touch.
+/// Fraction of the allowance of the contact itself, which is half of the largest facet: smooth surfaces deviate by
+/// h²/8R before they touch.
 constexpr double allowed = 0.2;
 
 }  // namespace
@@ -26,7 +26,7 @@ LateContactWatch::LateContactWatch(const Body& body, const SemidiscreteProblem& 
   const ContactBoundary& contact = problem.contact;
   std::map<int, std::vector<Node>> nodes;
   for (const KeptNode& kept : kept_nodes(body, contact, pairs, find_connected_bodies(*body.space).of_node)) {
-    // Of the far side of a pair that slides no gaps are known.
+    // Gaps are not known on the opposite side of a pair with large sliding.
     if (kept.entry >= 0) nodes[kept.contact].push_back({kept.entry, allowed * kept.allowance});
   }
   for (auto& [number, of_contact] : nodes) {

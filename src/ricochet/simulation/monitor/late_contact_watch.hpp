@@ -8,8 +8,8 @@
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/state.hpp"
 
-/// @file Bodies that are inside each other though no force acts. Between bodies gaps are means over facets: a corner or
-/// a ridge of one side against larger facets of the other is met when the mean closes, which is late, or never.
+/// @file Bodies that overlap without a contact force. Gaps between bodies are means over facets: if a corner or a ridge
+/// of one side meets larger facets of the other, contact begins when the mean closes, which is late, or never.
 namespace ricochet {
 
 class LateContactWatch {
@@ -19,14 +19,14 @@ class LateContactWatch {
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
-  /// After every step, and of the starting state: warns, once, of each contact between bodies that carries no force
-  /// while a node of it is inside of the other body by more than a tenth of the largest facet there.
+  /// Checks the starting state and the state after every step: warns, once, of each contact between bodies that carries
+  /// no force while one of its nodes is inside the other body by more than a tenth of the largest facet there.
   void look(const State& state);
 
  private:
   struct Node {
     Index entry = 0;         ///< in ContactBoundary::nodes
-    double allowance = 0.0;  ///< how deep it may be inside
+    double allowance = 0.0;  ///< admissible depth
   };
   struct Contact {
     std::size_t number = 0;

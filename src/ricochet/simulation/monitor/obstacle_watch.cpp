@@ -6,7 +6,7 @@ namespace ricochet {
 
 namespace {
 
-/// A facet beyond a rim that rises by no more than this is taken for one that touches, too.
+/// Slope up to which a facet beyond a border counts as touching, too.
 constexpr double flat_slope = 0.25;
 
 Eigen::Vector3d in_space(const Vector& position) {
@@ -54,8 +54,8 @@ void ObstacleWatch::find_nodes(const std::vector<CellBlock>& cells, const std::v
   alone.erase(std::unique(alone.begin(), alone.end()), alone.end());
 }
 
-/// Along the obstacle's normal: supports then do what contact would, and such a node is no contact node though its
-/// facets are.
+/// Tests for supports along the obstacle's normal: they then replace contact, and such a node is no contact node
+/// although its facets belong to contact.
 bool ObstacleWatch::is_held_by_supports(std::size_t obstacle, Index node) const {
   const Vector normal = obstacles_[obstacle]->normal(problem_.nodes.col(node));
   for (Index k = 0; k < normal.size(); ++k) {
@@ -102,7 +102,7 @@ bool ObstacleWatch::has_told(int pair) const {
   return std::any_of(rims_.begin(), rims_.end(), [pair](const RimContact& rim) { return rim.pair == pair; });
 }
 
-/// Of nodes at which no contact point is anchored the gap tells.
+/// Uses the gap at nodes where no contact point is anchored.
 bool ObstacleWatch::is_pressed(std::size_t obstacle, Index contact_node, const State& state) {
   const Index point = problem_.contact.own_point[static_cast<std::size_t>(contact_node)];
   if (point >= 0) return state.contact_status[static_cast<std::size_t>(point)] != ContactStatus::open;

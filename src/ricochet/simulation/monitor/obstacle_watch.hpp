@@ -7,51 +7,52 @@
 #include "ricochet/scheme/state.hpp"
 #include "ricochet/simulation/monitor/deepest_point.hpp"
 
-/// @file The boundary that no contact keeps out of the obstacles.
+/// @file Penetration of obstacles by the part of the boundary without contact.
 namespace ricochet {
 
-/// A contact whose group ends where it touches.
+/// Contact whose group ends within the contact area.
 struct RimContact {
   int pair = 0;     ///< index of the ContactPair
-  Index node = -1;  ///< on the rim
+  Index node = -1;  ///< on the border of the group
   double time = 0.0;
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
 };
 
-/// Looks at the nodes of the boundary against each obstacle, but for those that are contact nodes of it (their gaps are
-/// in the history), and at the rims of the contact groups: facets of the boundary that have nodes of both kinds.
-/// Contact goes on beyond a rim where a contact node on it is pressed and the rest of such a facet is as good as on the
-/// obstacle: seen from that node it rises by less than a quarter. (The side of a block that rests on its base is such a
-/// facet, too; it rises steeply.)
+/// Checks the nodes of the boundary against each obstacle, except for the contact nodes of that obstacle (whose gaps
+/// are in the history), and the borders of the contact groups: boundary facets that have nodes of both kinds. Contact
+/// continues beyond a border if a contact node on it is pressed and the rest of such a facet practically lies on the
+/// obstacle: seen from that node its slope is less than a quarter. (The side of a block that rests on its base is such
+/// a facet, too, but it is steep.)
 class ObstacleWatch {
  public:
-  /// `obstacles`: all of the case; `size`: of the body that a node belongs to, per node.
+  /// `obstacles`: all of the case; `size`: per node, of the body to which it belongs.
   ObstacleWatch(const SemidiscreteProblem& problem, const std::vector<CellBlock>& cells,
                 const std::vector<CellFacet>& boundary, const std::vector<const Obstacle*>& obstacles,
                 const std::vector<double>& size);
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
-  /// Allocates nothing.
+  /// Checks a state. Allocates nothing.
   void look(const State& state);
-  /// All nodes but those of contacts: a body whose boundary lies on that of its obstacle may be inside all the same.
+  /// Checks all nodes except those of contacts: even a body whose boundary coincides with that of its obstacle may be
+  /// inside.
   void look_at_start(const State& state);
 
-  /// The deepest point of the boundary in each obstacle.
+  /// Deepest point of the boundary in each obstacle.
   [[nodiscard]] const std::vector<DeepestPoint>& deepest() const { return deepest_; }
-  /// The first of each pair.
+  /// First border contact of each pair.
   [[nodiscard]] const std::vector<RimContact>& rims() const { return rims_; }
 
  private:
-  /// A facet of the boundary at a rim.
+  /// Boundary facet at the border of a contact group.
   struct RimFacet {
     std::size_t obstacle = 0;
-    std::vector<Index> inside;   ///< contact nodes, as entries of problem.contact.nodes
+    std::vector<Index> inside;   ///< contact nodes, as indices into problem.contact.nodes
     std::vector<Index> outside;  ///< nodes of the body
   };
   void find_nodes(const std::vector<CellBlock>& cells, const std::vector<CellFacet>& boundary, std::size_t obstacle);
   [[nodiscard]] bool is_held_by_supports(std::size_t obstacle, Index node) const;
-  /// Sets position_.
+  /// Returns the gap of a node; sets position_.
   [[nodiscard]] double gap(std::size_t obstacle, Index node, const Vector& displacement);
   void look_at_node(std::size_t obstacle, Index node, const State& state);
   void look_at_rim(const RimFacet& facet, const State& state);
@@ -65,7 +66,7 @@ class ObstacleWatch {
   std::vector<RimFacet> rim_;
   std::vector<DeepestPoint> deepest_;
   std::vector<RimContact> rims_;
-  std::vector<PlacedObstacle> placed_;  ///< each obstacle at this time
+  std::vector<PlacedObstacle> placed_;  ///< each obstacle at the current time
   Vector position_;
 };
 

@@ -6,7 +6,7 @@ namespace ricochet {
 
 namespace {
 
-/// How deep the way from one place to another goes, seen from the shape.
+/// Largest depth on a straight path between two positions in the frame of the shape.
 double deepest_between(const ObstacleShape& shape, const SpaceVector& from, const SpaceVector& to) {
   constexpr int pieces = 16;
   double depth = 0.0;
@@ -17,7 +17,7 @@ double deepest_between(const ObstacleShape& shape, const SpaceVector& from, cons
   return depth;
 }
 
-/// Of a node that goes through; 0 of others. `gap_before` may be less than the gap was.
+/// Depth of a node that passes through; 0 otherwise. `gap_before` may be a lower bound.
 double depth_of_passage(const ObstacleShape& shape, const SpaceVector& before, double gap_before,
                         const SpaceVector& now, double gap) {
   if ((now - before).norm() <= std::max(gap, 0.0) + std::max(gap_before, 0.0)) return 0.0;
@@ -39,7 +39,7 @@ PassageWatch::PassageWatch(const SemidiscreteProblem& problem, std::vector<Index
 
 void PassageWatch::look(const State& state) {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    // On the other side of a plane it is inside.
+    // A node on the other side of a plane is inside.
     if (!obstacles_[k]->shape().is_flat()) look_at(k, state);
   }
 }

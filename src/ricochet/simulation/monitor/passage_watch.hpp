@@ -7,13 +7,13 @@
 #include "ricochet/scheme/state.hpp"
 #include "ricochet/simulation/monitor/deepest_point.hpp"
 
-/// @file Nodes that go through an obstacle within one step, so that neither end of the step shows it.
+/// @file Tunnelling: nodes that pass through an obstacle within one step, so that neither end of the step shows it.
 namespace ricochet {
 
-/// Looks at nodes against obstacles whose normals are not the same everywhere. Seen from the obstacle a node goes
-/// straight from one place to the other; it has gone through where it was inside between them, and the normals at the
-/// ends are more than a right angle apart. (A node that slides round an edge goes through less of a chord.) As a gap
-/// changes by no more than the node moves, most nodes are not looked at in most steps.
+/// Checks nodes against obstacles whose normal varies. Relative to the obstacle a node moves straight from one position
+/// to the next; it has passed through if it was inside between them and the normals at the ends differ by more than a
+/// right angle. (A node that slides round an edge passes through less of a chord.) As a gap changes by no more than the
+/// node moves, most nodes need not be evaluated in most steps.
 class PassageWatch {
  public:
   enum class Of { nodes, contact_points };
@@ -23,15 +23,15 @@ class PassageWatch {
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
-  /// Allocates nothing after the first time.
+  /// Checks a state after the previous one. Allocates nothing after the first time.
   void look(const State& state);
-  /// Whether a node goes through between the last look and this state at a time: nothing is remembered of it.
+  /// Returns whether a node passes through between the last checked state and this one at a time, without recording it.
   [[nodiscard]] bool any_passes(const State& state, double time) const;
-  /// Of each obstacle, with the depth that it went through.
+  /// First passage through each obstacle, with its depth.
   [[nodiscard]] const std::vector<DeepestPoint>& passages() const { return passages_; }
 
  private:
-  /// Of the nodes before: where they are seen from the obstacle, and no more than their gaps.
+  /// Previous state of the nodes: positions in the frame of the obstacle, and lower bounds of their gaps.
   struct Seen {
     Points places;
     Vector gaps;

@@ -10,7 +10,7 @@ namespace ricochet {
 
 namespace {
 
-/// A state is worth a look of its own when its contact presses harder by this, relative to those looked at.
+/// Relative increase of the contact force, over that of the evaluated states, from which a state is evaluated.
 constexpr double harder = 5e-3;
 
 }  // namespace
@@ -45,7 +45,7 @@ PeakStress::PeakStress(const Body& body, double step_work, const Ranks& ranks, s
 
 void PeakStress::enter(const State& state, bool is_frame) {
   ++result_.states;
-  // Half of the looks come regularly; the others are saved until contact presses harder than it did.
+  // Half of the evaluations are regular; the others are saved until the contact force exceeds its previous maximum.
   since_look_ += looks_per_step_ < 1.0 ? 0.5 * looks_per_step_ : 1.0;
   saved_ += 0.5 * looks_per_step_;
   const double press = ranks_.sum(state.forces.normal_reaction.sum());

@@ -9,30 +9,30 @@
 #include "ricochet/simulation/monitor/peak_stress_result.hpp"
 #include "ricochet/simulation/monitor/stress_raisers.hpp"
 
-/// @file The largest von Mises stress of a run: means of cells, as in the field of that name.
+/// @file Largest von Mises stress of a run: means over cells, as in the field of that name.
 ///
-/// A look at all cells costs a good part of a step, so where that would take more than `share` of the run only some
-/// states are looked at: every so many, and while there is contact those in which the contact forces press harder than
-/// in any state looked at before, for which what other times save is spent. How many were looked at is told. Which ones
-/// depends on the case alone, never on the clock.
+/// Evaluating all cells costs a good part of a step. If this would take more than `share` of the run, only some states
+/// are evaluated: at regular intervals, and during contact those with a larger contact force than any state evaluated
+/// before, for which the budget saved at other times is spent. The number of evaluated states is reported; their
+/// selection depends on the case alone, never on the clock.
 namespace ricochet {
 
 class PeakStress {
  public:
-  /// Of all looks together, in the time of the steps.
+  /// Largest share of all evaluations in the time of the steps.
   static constexpr double share = 0.05;
 
-  /// `step_work`: how much a step of the whole body does, see step_work(). Keeps a reference to the body.
-  /// Of a body that is divided: the largest of the cells of this rank, at the same looks on all.
-  /// `raisers`: says what the largest stress sits on; null: nobody asks.
+  /// `step_work`: work of a step of the whole body, see step_work(). Keeps a reference to the body.
+  /// On a divided body the result is the largest stress of the cells of this rank, at the same states on all ranks.
+  /// `raisers`: identifies what raises the largest stress; null if this is not required.
   PeakStress(const Body& body, double step_work, const Ranks& ranks = one_rank(),
              std::unique_ptr<StressRaisers> raisers = nullptr);
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
-  /// A state, one after the other. One of a frame is looked at in any case.
+  /// Enters the next state. A state that is saved in a frame is always evaluated.
   void enter(const State& state, bool is_frame);
-  /// The last of these states gets a frame all the same, as an end does.
+  /// Evaluates the last of these states if it is saved in a frame after all, as at the end.
   void enter_frame(const State& state);
   [[nodiscard]] const PeakStressResult& result() const { return result_; }
 
@@ -43,17 +43,17 @@ class PeakStress {
   const Ranks& ranks_;
   CellStress stress_;
   std::unique_ptr<StressRaisers> raisers_;
-  double looks_per_step_;       ///< that may be taken
-  double saved_ = 0.0;          ///< looks for states that press harder
-  double since_look_ = 0.0;     ///< looks that regular ones have not taken
-  double hardest_press_ = 0.0;  ///< Σ r_N of the states looked at
-  long last_look_ = -1;         ///< its step
+  double looks_per_step_;       ///< budget of evaluations
+  double saved_ = 0.0;          ///< evaluations saved for larger contact forces
+  double since_look_ = 0.0;     ///< fraction of the next regular evaluation
+  double hardest_press_ = 0.0;  ///< largest Σ r_N of the evaluated states
+  long last_look_ = -1;         ///< step of the last evaluation
   PeakStressResult result_;
 };
 
-/// Time of a look at all cells relative to that of reading a number of a factor: measured, see docs/performance.md.
+/// Time of evaluating all cells relative to that of reading a number of a factor: measured, see docs/performance.md.
 [[nodiscard]] double look_work(const Body& body);
-/// What a step reads at least, in numbers: the factor twice, or the stiffness where there is none.
+/// Numbers that a step reads at least: the factor twice, or the stiffness if there is no factor.
 [[nodiscard]] double step_work(Index dofs, std::size_t factor_entries);
 
 }  // namespace ricochet

@@ -2,7 +2,7 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file The largest von Mises stress of a run, and what it was looked for in.
+/// @file Largest von Mises stress of a run and the number of states that were evaluated for it.
 namespace ricochet {
 
 /// Causes of a stress that grows with refinement, see stress_raisers.hpp.
@@ -12,8 +12,8 @@ inline constexpr int stress_raisers = 5;
 struct PeakStressResult {
   double von_mises = 0.0, time = 0.0;
   long step = 0;
-  Index cell = -1;             ///< numbered through all blocks; −1: no look yet
-  long looks = 0, states = 0;  ///< that were looked at, of so many
+  Index cell = -1;             ///< numbered through all blocks; −1: not evaluated yet
+  long looks = 0, states = 0;  ///< evaluated states, and all states
   StressRaiser sits_on = StressRaiser::none;
 };
 

@@ -9,7 +9,7 @@
 #include "ricochet/simulation/monitor/penetration_watch.hpp"
 #include "ricochet/simulation/monitor/penetration_words.hpp"
 
-/// @file Bodies that have gone through themselves: what is told of them.
+/// @file Warnings of self-penetration.
 namespace ricochet {
 
 namespace words = penetration_words;
@@ -41,7 +41,7 @@ void PenetrationWatch::tell_of(const BodyInItself& found) const {
       named(p.through_groups), words::see_summary, contact_with_itself(found.body, p)));
 }
 
-/// Names the smallest group on this body alone that has both facets, or one group for each.
+/// Names the smallest group on this body alone that contains both facets, or one group for each.
 std::string PenetrationWatch::contact_with_itself(int body, const UnwatchedPenetration& found) const {
   std::map<std::string, std::size_t> sizes;
   for (const BoundaryGroup& group : boundary_groups_) {

@@ -17,8 +17,8 @@ namespace words = penetration_words;
 
 namespace {
 
-/// Edges that nodes may go between two looks at bodies by themselves: what parts that meet go into each other by and
-/// out again unseen is not much more.
+/// Edge lengths that nodes may move between two checks for self-penetration: parts that pass into each other and out
+/// again undetected get hardly deeper than that.
 constexpr double most_unseen = 1.0;
 
 std::vector<const Obstacle*> obstacles_of(const std::vector<NamedObstacle>& named) {
@@ -27,14 +27,14 @@ std::vector<const Obstacle*> obstacles_of(const std::vector<NamedObstacle>& name
   return result;
 }
 
-/// Of the body that a node belongs to, per node.
+/// Size per node, of the body to which it belongs.
 std::vector<double> sizes_at_nodes(const std::vector<double>& size_of_body, const ConnectedBodies& bodies) {
   std::vector<double> result;
   for (const int body : bodies.of_node) result.push_back(body < 0 ? 0.0 : size_of_body[static_cast<std::size_t>(body)]);
   return result;
 }
 
-/// Ascending, each once.
+/// Nodes of a boundary, ascending and without repetition.
 std::vector<Index> nodes_of(const std::vector<CellFacet>& boundary, const std::vector<CellBlock>& cells) {
   std::vector<Index> nodes;
   for (const CellFacet& facet : boundary) {
@@ -92,7 +92,7 @@ void PenetrationWatch::look(const State& state) {
 }
 
 void PenetrationWatch::look_at_bodies(const State& state, bool now) {
-  // Two references are kept without an allocation, no more.
+  // std::function stores two references without an allocation, but no more.
   const BodyWatch::NodeGaps gaps = [this, &state]() -> const Vector& {
     problem_.node_gaps(state.displacement, state.time, node_gap_);
     return node_gap_;
@@ -170,7 +170,7 @@ void PenetrationWatch::tell_of(const BodyPair& pair) const {
                            words::depth_text(p), words::coordinates(p.place), why, words::see_summary));
 }
 
-/// With sliding = "large" pairs follow the motion, and what helps where small sliding ends is no help.
+/// With sliding = "large" pairs follow the motion, so that remedies for exceeded small sliding do not help.
 void PenetrationWatch::tell_at_contact(const BodyPair& pair) const {
   const UnwatchedPenetration p = at_contact(pair);
   const ContactPair& contact = pairs_[static_cast<std::size_t>(pair.contact)];
@@ -336,7 +336,7 @@ void PenetrationWatch::load(const Snapshot& snapshot, const std::string& name) {
   body_watch_.load(snapshot, name + ".bodies");
   self_watch_.load(snapshot, name + ".themselves");
   looks_ = snapshot.integer(name + ".looks");
-  // What was found was told at once.
+  // Everything that was found has been reported at once.
   for (std::size_t k = 0; k < told_obstacle_.size(); ++k) told_obstacle_[k] = obstacles_.deepest()[k].found() ? 1 : 0;
   for (std::size_t k = 0; k < told_passage_.size(); ++k) told_passage_[k] = passages_.passages()[k].found() ? 1 : 0;
   told_rims_ = obstacles_.rims().size();

@@ -9,11 +9,11 @@
 #include "ricochet/simulation/monitor/penetration_report.hpp"
 #include "ricochet/simulation/monitor/self_watch.hpp"
 
-/// @file Penetration that no contact prevents: the whole boundary against every obstacle, and bodies against each
-/// other and against themselves.
+/// @file Penetration that no contact prevents: the whole boundary against every obstacle, bodies against each other and
+/// against themselves.
 namespace ricochet {
 
-/// An obstacle and its name in the case.
+/// Obstacle and its name in the case.
 struct NamedObstacle {
   std::string name;
   const Obstacle* obstacle = nullptr;
@@ -24,26 +24,27 @@ class PenetrationWatch {
   /// Keeps references to body and problem.
   PenetrationWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
                    const std::vector<NamedObstacle>& obstacles);
-  /// With what is known of the bodies. `step_work`: what looks at bodies against themselves take a share of
+  /// As above, with known bodies. `step_work`: work of a step, of which checks for self-penetration may take a share
   /// (SelfWatch).
   PenetrationWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
                    const std::vector<NamedObstacle>& obstacles, BodiesOfMesh bodies, double step_work);
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
-  /// After every step, and of the starting state. Warns, once, of each obstacle, contact and pair of bodies. Allocates
-  /// nothing where there is nothing to tell.
+  /// Checks the starting state and the state after every step. Warns, once, of each obstacle, contact and pair of
+  /// bodies. Allocates nothing if there is nothing to report.
   void look(const State& state);
-  /// After every part of a step that is taken in several, before that: a node may go round an edge within the whole.
+  /// Checks the state after each part of a divided step, before look(): within the whole step a node may move round an
+  /// edge.
   void look_at_part(const State& state) { passages_.look(state); }
-  /// Of the last state, besides: at bodies even if none has moved far.
+  /// Checks the last state in addition: bodies even if none has moved far.
   void look_at_end(const State& state);
 
-  /// For a run that goes on it is asked for again and again: what it costs does not grow with the mesh.
+  /// Current report. A continuing run requests it repeatedly, so its cost does not grow with the mesh.
   [[nodiscard]] PenetrationReport report() const;
 
  private:
-  /// A group of facets of the mesh.
+  /// Group of boundary facets of the mesh.
   struct BoundaryGroup {
     std::string name;
     std::vector<Index> nodes;  ///< sorted
@@ -58,13 +59,13 @@ class PenetrationWatch {
   [[nodiscard]] UnwatchedPenetration at_contact(const BodyPair& pair) const;
   [[nodiscard]] UnwatchedPenetration in_itself(const BodyInItself& found) const;
   [[nodiscard]] UnwatchedPenetration in_itself_at_contact(const BodyInItself& found) const;
-  /// Boundary groups of the mesh that all nodes of a facet belong to; −1 is none.
+  /// Boundary groups of the mesh to which all nodes of a facet belong; node −1 is absent.
   [[nodiscard]] std::vector<std::string> groups_of_facet(const std::array<Index, 3>& nodes) const;
   [[nodiscard]] std::vector<const ContactPair*> contacts_between(int first, int second) const;
   void tell_of(const BodyPair& pair) const;
   void tell_at_contact(const BodyPair& pair) const;
   [[nodiscard]] ContactBeyondRim beyond(const RimContact& rim) const;
-  /// What to do about a node that no contact keeps out of an obstacle.
+  /// Advice on a node that enters an obstacle without a contact.
   [[nodiscard]] std::string advice(std::size_t obstacle) const;
   void look_at_bodies(const State& state, bool now);
   void tell();
@@ -72,14 +73,14 @@ class PenetrationWatch {
   void tell_of_themselves();
   void tell_of(const BodyInItself& found) const;
   void tell_at_contact(const BodyInItself& found) const;
-  /// The contact that would keep a body out of itself, as lines of a case.
+  /// Lines of a case that define a contact which keeps a body out of itself.
   [[nodiscard]] std::string contact_with_itself(int body, const UnwatchedPenetration& found) const;
 
   const Body& body_;
   const std::vector<ContactPair>& pairs_;
   std::vector<NamedObstacle> named_;
   BodiesOfMesh bodies_;
-  std::vector<double> size_;  ///< of its body, per node
+  std::vector<double> size_;  ///< per node, of its body
   ObstacleWatch obstacles_;
   PassageWatch passages_;
   BodyWatch body_watch_;
@@ -88,10 +89,10 @@ class PenetrationWatch {
   Vector node_gap_;
   std::vector<BoundaryGroup> boundary_groups_;
   long looks_ = 0;
-  // What was told.
+  // Warnings that have been logged.
   std::vector<char> told_obstacle_, told_passage_;
   std::size_t told_rims_ = 0;
-  std::vector<char> told_pairs_, told_contacts_;  ///< of the pairs of bodies
+  std::vector<char> told_pairs_, told_contacts_;  ///< per pair of bodies
   std::vector<char> told_itself_, told_itself_at_contact_;
 };
 

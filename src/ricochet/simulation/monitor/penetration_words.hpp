@@ -4,7 +4,7 @@
 
 #include "ricochet/simulation/monitor/penetration_report.hpp"
 
-/// @file Parts of what is told of penetration.
+/// @file Text fragments of messages about penetration.
 namespace ricochet::penetration_words {
 
 /// "(1, 0.5)"

@@ -11,17 +11,17 @@ namespace {
 
 using Three = Eigen::Vector3d;
 
-/// Relative: what a ray may miss a piece by, and what places on it are apart by that are one.
+/// Relative tolerance by which a ray may miss a piece, and within which two positions on it coincide.
 constexpr double rounding_of_rays = 1e-9;
-/// Cosine between a ray and the normals of the node's own pieces, at least.
+/// Minimum cosine between a ray and the normals of the node's own pieces.
 constexpr double least_lead = 0.02;
-/// Cosine between the normals of a node and of the surface that it has come through, at most: sides of a body beside
+/// Maximum cosine between the normals of a node and of the surface through which it has passed: sides of a body next to
 /// the node do not face it.
 constexpr double most_facing = -0.3;
-/// Slant of the two rays beside the normal one.
+/// Slope of the two rays beside the normal one.
 constexpr double slant = 0.3;
 
-/// Whether a ray meets a box within a distance, in lengths of the direction.
+/// Returns whether a ray meets a box within a distance, in lengths of the direction.
 bool meets_box(const Eigen::AlignedBox3d& box, const Three& from, const Three& along, double distance, double pad) {
   double first = 0.0, last = distance;
   for (Index k = 0; k < 3; ++k) {
@@ -43,7 +43,7 @@ bool is_in_segment(const Three& point, const Three& a, const Three& b) {
   return at >= -rounding_of_rays && at <= 1.0 + rounding_of_rays;
 }
 
-/// `area`: the vector of twice the triangle's area.
+/// `area`: vector of twice the triangle's area.
 bool is_in_triangle(const Three& point, const Three& a, const Three& b, const Three& c, const Three& area) {
   const double least = -rounding_of_rays * area.squaredNorm();
   return (b - a).cross(point - a).dot(area) >= least && (c - b).cross(point - b).dot(area) >= least &&
@@ -106,12 +106,12 @@ bool SelfOverlap::leads_out(int node, const Three& direction) const {
                      [&](int piece) { return surface_.normal_of(piece).dot(direction) > least; });
 }
 
-/// Before all else. Beyond the axis it goes through the image, as its own image goes through the surface.
+/// With a mirror image, a ray beyond the axis passes through the image, as its own image passes through the surface.
 SelfOverlap::Hit SelfOverlap::first_hit(int node, const Three& direction) const {
   Hit first{std::numeric_limits<double>::infinity()};
   const Three& from = surface_.at(node);
   trace(from, direction, node, first);
-  // On the axis a node is its own image. Elsewhere the image's pieces around it are in the way as any other ones.
+  // On the axis a node is its own image. Elsewhere the image's pieces around it obstruct the ray like any others.
   const int own = from[0] <= rounding_of_rays * surface_.tree().nodes().front().box.max()[0] ? node : -1;
   if (mirrored_) trace(mirrored(from), mirrored(direction), own, first);
   return first;
@@ -141,7 +141,7 @@ void SelfOverlap::trace(const Three& from, const Three& along, int node, Hit& fi
   }
 }
 
-/// `same`: places that are less apart are one.
+/// `same`: distance within which positions coincide.
 void SelfOverlap::meet(const Three& from, const Three& along, int piece, double same, Hit& first) const {
   const BodySurface::Corners& corners = surface_.pieces()[static_cast<std::size_t>(piece)];
   const Three &a = surface_.at(corners[0]), &b = surface_.at(corners[1]);

@@ -13,17 +13,17 @@ namespace ricochet {
 
 namespace {
 
-/// Parts of the mean edge that nodes may move by against the body's mean motion between two looks, as others may come
-/// towards them by as much; the second once an overlap was found and told, when only its depth is looked for.
+/// Fractions of the mean edge that nodes may move relative to the body's mean motion between two checks, as others may
+/// approach them by as much; the second after an overlap has been reported, when only its depth is of interest.
 constexpr double motion_before_look = 0.0125, motion_once_found = 0.125;
-/// Part of the mean edge up to which overlaps of the start are those of facets that stand for curved surfaces.
+/// Fraction of the mean edge up to which initial overlaps are attributed to facets that approximate curved surfaces.
 constexpr double overlap_of_facets = 0.5;
-/// SelfOverlap::opening at the start, at least: corners of cubes have 0.58.
+/// Minimum of SelfOverlap::opening at the start: corners of cubes have 0.58.
 constexpr double least_opening = 0.5;
-/// Time of a look at a node relative to that of reading a number of a factor: measured, 0.2 µs in the plane and up to
-/// 1 µs in space to 0.4 ns.
+/// Time of checking a node relative to that of reading a number of a factor: measured, 0.2 µs in the plane and up to 1
+/// µs in space to 0.4 ns.
 constexpr double work_per_node_in_plane = 500.0, work_per_node_in_space = 2500.0;
-/// Most looks that are saved for later, and those that there are at the start.
+/// Largest number of checks that are saved for later, and the number available at the start.
 constexpr double most_saved = 4.0;
 constexpr Index numbers_of_body = 2 * DeepestPoint::numbers + 7;
 
@@ -41,7 +41,7 @@ std::vector<std::vector<CellFacet>> facets_of_bodies(const Body& body, const Bod
   std::vector<std::vector<CellFacet>> result(static_cast<std::size_t>(bodies.connected.count));
   for (const CellFacet& facet : bodies.boundary) {
     const std::vector<Index> nodes = nodes_of_facet(body.space->cells, facet);
-    // A facet on an axis is no surface.
+    // A facet on the axis is not part of the surface.
     if (is_axisymmetric(body) &&
         std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return is_on_axis(body, node); }))
       continue;
@@ -89,7 +89,7 @@ SelfWatch::Part SelfWatch::make_part(const Body& body, const std::vector<CellFac
   return part;
 }
 
-/// Takes those of the body with itself, and leaves out nodes that are tied.
+/// Stores the contacts of the body with itself, and excludes nodes that are tied.
 void SelfWatch::take_contacts(const Body& body, const ContactBoundary& contact, const std::vector<ContactPair>& pairs,
                               Part& part) const {
   const std::vector<Index>& nodes = part.surface.nodes();
@@ -152,7 +152,7 @@ void SelfWatch::look(const Vector& displacement, double time, bool now, const No
   if (any) ++looks_;
 }
 
-/// Looks at the motion against the mean one, which brings no two parts of the surface together.
+/// Considers the motion relative to the mean one, which brings no two parts of the surface together.
 bool SelfWatch::is_due(const Part& part, double limit, const Vector& displacement) const {
   const Index d = positions_.rows();
   const std::vector<Index>& nodes = part.surface.nodes();
@@ -172,8 +172,8 @@ bool SelfWatch::is_due(const Part& part, double limit, const Vector& displacemen
   return false;
 }
 
-/// How far the farthest node has gone since the last look, beside the rigid motion that is nearest to that of the
-/// surface: a body that flies and spins has not come nearer to itself.
+/// Largest displacement of a node since the last check relative to the rigid motion that is nearest to that of the
+/// surface: a body that flies and spins has not approached itself.
 double SelfWatch::strain_since(const Part& part, const Vector& displacement) const {
   using Three = Eigen::Vector3d;
   const Index d = positions_.rows();
@@ -200,7 +200,7 @@ double SelfWatch::strain_since(const Part& part, const Vector& displacement) con
   return longest;
 }
 
-/// Surfaces that were farther apart at the last look than nodes have gone towards each other have not met since.
+/// Surfaces whose distance at the last check exceeds the motion of nodes towards each other have not met since.
 void SelfWatch::enter_unseen(Part& part, const Vector& displacement) const {
   const double way = strain_since(part, displacement);
   if (2.0 * way > part.clearance) part.unseen = std::max(part.unseen, way / part.surface.edge_length());
@@ -226,7 +226,7 @@ void SelfWatch::look_at(std::size_t number, const Vector& displacement, double t
     if (part.is_left_out[i] != 0) continue;
     double clearance = 0.0;
     const auto found = overlap.at(node, &clearance);
-    // A contact of the body with itself keeps its nodes out whether or not they are looked at.
+    // A contact of the body with itself keeps its nodes out whether or not they are checked.
     if (part.sides[i].empty()) part.clearance = std::min(part.clearance, clearance);
     if (!found) continue;
     const Eigen::Vector3d& position = part.surface.at(node);
@@ -273,8 +273,8 @@ const SelfWatch::Side* SelfWatch::contact_at(const Part& part, int node, int pie
   return nullptr;
 }
 
-/// A quarter of what nodes of a facet of second order are away from where they are on a straight one, since pieces lead
-/// from node to node; what the nodes of a quadrilateral of first order are away from a plane.
+/// For facets of second order a quarter of the distance of the nodes from those of the straight facet, since pieces
+/// connect the nodes; for quadrilaterals of first order the distance of the nodes from a plane.
 double SelfWatch::bend_of(const Facet& facet, const Vector& displacement) const {
   const Index d = positions_.rows();
   const auto at = [&](int k) {
@@ -353,7 +353,7 @@ void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
   }
   saved_ = snapshot.real(name + ".saved");
   if (!(saved_ >= 0.0) || !std::isfinite(saved_)) Snapshot::refuse(name + ".saved", "is no work");
-  // Infinite where every look that is due is taken.
+  // Infinite if all checks that are due are performed.
   work_per_step_ = snapshot.real(name + ".work");
   if (!(work_per_step_ >= 0.0)) Snapshot::refuse(name + ".work", "is no work");
   looks_ = snapshot.integer(name + ".looks");

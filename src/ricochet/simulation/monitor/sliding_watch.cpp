@@ -42,7 +42,7 @@ void SlidingWatch::add_far_contact(int number) {
   far.is_self = pairs_[static_cast<std::size_t>(number)].is_self();
   for (Index point = 0; point < contact.size(); ++point) {
     if (!contact.slides(point) || contact.pair[static_cast<std::size_t>(point)] != number) continue;
-    // The nodes of the point along its row, as the row moves them, and all others at rest: of the other side, too.
+    // Moves the nodes of the point along its row and holds all others, including those of the opposite side.
     double sum = 0.0, squares = 0.0;
     contact.visit_own_nodes(point, [&](Index node, double weight) {
       sum += weight * weight * stiffness.segment(node * d, d).maxCoeff();
@@ -53,7 +53,7 @@ void SlidingWatch::add_far_contact(int number) {
   }
 }
 
-/// Of the mean vector across the gap what is along the surface: where facets were paired it is along the normal.
+/// Returns the component along the surface of the mean vector across the gap, which is normal where facets were paired.
 double SlidingWatch::slip_of(Index point, const State& state) const {
   const Index d = problem_.dimension;
   SpaceVector apart = SpaceVector::Zero(d);
@@ -82,7 +82,7 @@ void SlidingWatch::look_at_far_contacts(const State& state) {
   }
 }
 
-/// Enters a contact with the gaps at the end of a step. (Of a surface that touches itself others stand for points
+/// Enters a contact with the gaps at the end of a step. (On a surface that touches itself, other points stand for those
 /// without a force.)
 void SlidingWatch::enter(FarContact& contact, const State& state) const {
   constexpr double settled = 1e-9;
@@ -119,7 +119,7 @@ void SlidingWatch::tell(const FarContact& contact) const {
       100.0 * contact.share()));
 }
 
-/// Warns of the first held step, whatever it leaves.
+/// Warns of the first held step, whatever its effect.
 void SlidingWatch::tell_of_held(const State& state) {
   if (has_told_held_ || !problem_.contact.geometry->has_held()) return;
   has_told_held_ = true;
@@ -214,7 +214,7 @@ void SlidingWatch::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".far", far);
 }
 
-/// Loads nothing from checkpoints of earlier versions, which have nothing of contacts that slide far.
+/// Loads nothing from checkpoints of earlier versions, which contain no record of contacts with large sliding.
 void SlidingWatch::load_far(const Snapshot& snapshot, const std::string& name) {
   if (!snapshot.has(name)) return;
   const Vector& numbers = snapshot.reals(name, 9 * static_cast<Index>(far_.size()));

@@ -9,8 +9,8 @@
 #include "ricochet/scheme/state.hpp"
 #include "ricochet/simulation/monitor/sliding_report.hpp"
 
-/// @file Slip between bodies beyond what their pairing allows: facets that faced each other at the start are taken to
-/// face each other for the whole run. Of pairs that slide far, the force that held steps put at stake.
+/// @file Slip between bodies beyond the limit of their pairing: facets that face each other at the start are assumed to
+/// do so for the whole run. For pairs with large sliding, the doubtful force of held steps.
 namespace ricochet {
 
 class SlidingWatch {
@@ -20,31 +20,31 @@ class SlidingWatch {
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
-  /// After every step, and of the starting state: looks at the points between bodies that are pressed. Warns, once, of
-  /// each contact whose slip exceeds its limit. Allocates nothing where there is nothing to tell.
+  /// Checks the pressed points between bodies in the starting state and after every step. Warns, once, of each contact
+  /// whose slip exceeds its limit. Allocates nothing if there is nothing to report.
   void look(const State& state);
-  /// Of each contact between bodies.
+  /// Report on each contact between bodies.
   [[nodiscard]] std::vector<PairSliding> report() const;
-  /// Report on each contact that slides far and had such points.
+  /// Report on each contact with large sliding that had such points.
   [[nodiscard]] std::vector<UnsettledContact> unsettled() const;
 
  private:
-  /// Record of a contact that slides far.
+  /// Record of a contact with large sliding.
   struct FarContact {
     int contact = 0;
     bool is_self = false;
     std::vector<Index> points;
-    std::vector<double> stiffness;  ///< of each: no less than the force that moves it along a normal by one
+    std::vector<double> stiffness;  ///< per point: upper bound of the force for a unit displacement along the normal
     double largest_force = 0.0;     ///< normal, of all points
-    double force = 0.0;             ///< the largest at stake
-    double missing = 0.0;           ///< part of it that should be there besides
+    double force = 0.0;             ///< largest doubtful force
+    double missing = 0.0;           ///< part of it that is missing in the contact force
     long steps = 0;
     double first_time = 0.0, time = 0.0, gap = 0.0;
     Index point = -1;
     bool is_told = false;
     [[nodiscard]] double share() const { return force > 0.0 ? force / (largest_force + missing) : 0.0; }
   };
-  /// Of a contact between bodies.
+  /// Record of a contact between bodies.
   struct Largest {
     int contact = 0;
     double ratio = 0.0, slip = 0.0, limit = 0.0, time = 0.0, time_beyond = 0.0;
@@ -65,7 +65,7 @@ class SlidingWatch {
   const std::vector<ContactPair>& pairs_;
   Vector limit_;                 ///< per point
   std::vector<Index> points_;    ///< between bodies
-  std::vector<std::size_t> at_;  ///< of these: in largest_
+  std::vector<std::size_t> at_;  ///< per entry of points_: index into largest_
   std::vector<Largest> largest_;
   std::vector<FarContact> far_;
   double size_ = 0.0;  ///< of the model

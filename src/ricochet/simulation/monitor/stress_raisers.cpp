@@ -10,14 +10,14 @@ namespace ricochet {
 namespace {
 
 constexpr double right_angle = 0.5 * std::numbers::pi;
-/// A support on this much of a direction does not count as one along it.
+/// Cosine between a support and a direction up to which the support does not count as one along it.
 constexpr double nearly_across = 0.05;
-/// The free angle beside a clamped face from which the stress at the border is infinite, for common Poisson's ratios.
+/// Free angle next to a clamped face from which the stress at its border is infinite, for common Poisson's ratios.
 constexpr double clamped_angle = std::numbers::pi / 3.0;
-/// Change of an obstacle's normal over two cells, from which it is sharp for this mesh: that of 30°.
+/// Change of an obstacle's normal over two cells from which it is sharp for this mesh: that of 30°.
 constexpr double sharp_change = 0.52;
 
-/// Returns the raiser to report where both are present: the earlier enumerator.
+/// Returns the raiser to report if both are present: the earlier enumerator.
 StressRaiser stronger(StressRaiser a, StressRaiser b) {
   if (a == StressRaiser::none || b == StressRaiser::none) return std::max(a, b);
   return std::min(a, b);
@@ -73,7 +73,7 @@ StressRaisers::StressRaisers(const Body& body, const SemidiscreteProblem& proble
   }
 }
 
-/// Components that supports hold at all of some nodes, one bit each.
+/// Returns the components that supports hold at all of the nodes, one bit each.
 unsigned StressRaisers::held(Nodes nodes) const {
   const int d = problem_.dimension;
   unsigned result = (1U << static_cast<unsigned>(d)) - 1U;
@@ -115,7 +115,7 @@ void StressRaisers::judge(const Ridge& ridge) {
   for (std::size_t k = 0; k < 2; ++k) hold[k] = hold_of(facet_held_[ridge.facets[k]], ridge.normals[k]);
   if (hold[0] == Hold::mirror && hold[1] == Hold::mirror) return;
   const bool is_mirrored = hold[0] == Hold::mirror || hold[1] == Hold::mirror;
-  // With its mirror image the body has twice the angle.
+  // The mirror image doubles the angle of the body.
   const double turn = is_mirrored ? 2.0 * (ridge.turn - right_angle) : ridge.turn;
   const bool sharp = is_sharp(turn, ridge.nearby);
   const bool is_clamp_end = !is_mirrored && hold[0] != hold[1];
@@ -129,8 +129,8 @@ void StressRaisers::judge(const Ridge& ridge) {
   }
 }
 
-/// Takes in the nodes beside those of raisers: the mean of the cell in a corner is often less than that of the next
-/// one.
+/// Includes the nodes next to those of raisers: the mean over the cell in a corner is often less than that of the next
+/// cell.
 void StressRaisers::reach_neighbours() {
   const std::vector<StressRaiser> own = of_node_;
   each_cell(body_.space->cells, [&](Index, Nodes nodes) {
@@ -160,7 +160,8 @@ void StressRaisers::find_pressed(const State& state) {
   }
 }
 
-/// The edge of another body lies on this one, as where equal faces meet: neither presses into the other.
+/// Returns whether the edge of another body lies on this one, as where equal faces meet: neither presses into the
+/// other.
 bool StressRaisers::is_flush(const State& state, Index node, double size) const {
   const SpaceVector at = position(state, node);
   return std::any_of(contact_edges_.begin(), contact_edges_.end(), [&](const ContactEdge& other) {
@@ -168,7 +169,7 @@ bool StressRaisers::is_flush(const State& state, Index node, double size) const 
   });
 }
 
-/// Looks at edges within the size of the cell around its nodes, those of other bodies around its pressed ones.
+/// Considers edges within the size of the cell around its nodes; those of other bodies around its pressed nodes.
 bool StressRaisers::presses_by_edge(const State& state, Nodes nodes, double size) const {
   const std::vector<int>& body_of = bodies_.connected.of_node;
   const auto body = [&](Index node) { return body_of[static_cast<std::size_t>(node)]; };
@@ -185,7 +186,7 @@ bool StressRaisers::presses_by_edge(const State& state, Nodes nodes, double size
   });
 }
 
-/// The obstacle's normal turns from side to side as at a bulge that cells of this size cannot follow.
+/// Returns whether the obstacle's normal varies from side to side as at a ridge that cells of this size cannot follow.
 bool StressRaisers::touches_sharp_obstacle(const State& state, Nodes nodes, double size) const {
   const ContactBoundary& contact = problem_.contact;
   const int d = problem_.dimension;

@@ -10,28 +10,28 @@
 #include "ricochet/scheme/state.hpp"
 #include "ricochet/simulation/monitor/peak_stress_result.hpp"
 
-/// @file Where linear elasticity has a stress that is infinite, so that the largest one of a mesh grows with its
-/// refinement and says nothing of the body.
+/// @file Singularities of linear elasticity, where the stress is infinite, so that the largest one of a mesh grows with
+/// its refinement and does not characterize the body.
 ///
-/// - At a re-entrant edge, of more than 180° inside the body (M. L. Williams, J. Appl. Mech. 19 (1952) 526–528).
-/// - Where a support ends: between a held face and a free one from some 60° on. A support along the normal alone stands
-///   for a mirror image of the body: it ends in twice the angle, 180° at the border of a plane of symmetry. Likewise
-///   one of all tangential components.
-/// - At a sharp edge of a body or of an obstacle that is pressed against another surface (a punch). A face that lies
-///   without friction on an obstacle up to its edge is as by a mirror, and has none.
-/// Ends of tied surfaces and of interfaces between materials are not looked at.
+/// - Re-entrant edges, of more than 180° inside the body (M. L. Williams, J. Appl. Mech. 19 (1952) 526–528).
+/// - Ends of supports: between a held face and a free one from about 60° on. A support along the normal alone
+///   represents a mirror image of the body: it ends in twice the angle, 180° at the border of a plane of symmetry.
+///   Likewise a support of all tangential components.
+/// - Sharp edges of a body or an obstacle that are pressed against another surface (a punch). A face that lies without
+///   friction on an obstacle up to its edge is mirrored by it and has no singularity.
+/// Ends of tied surfaces and of interfaces between materials are not considered.
 namespace ricochet {
 
-/// "a re-entrant edge of the body"; empty: none.
+/// Description such as "a re-entrant edge of the body"; empty for none.
 [[nodiscard]] std::string name_of(StressRaiser raiser);
 
 class StressRaisers {
  public:
-  /// Keeps references. Of a divided body, ridges between parts are not looked at.
+  /// Keeps references. On a divided body, ridges between the parts are not considered.
   StressRaisers(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
                 const BodiesOfMesh& bodies);
 
-  /// Returns what raises the stress in a cell, in this state.
+  /// Returns the cause of a raised stress in a cell in this state.
   [[nodiscard]] StressRaiser at(const State& state, Index cell);
 
  private:
@@ -55,14 +55,14 @@ class StressRaisers {
   const BodiesOfMesh& bodies_;
   struct ContactEdge {
     Index node;
-    bool is_open_ended;         ///< of two bodies, or with friction: no mirror image goes on beyond it
-    std::vector<Index> beside;  ///< nodes of the contact facets around it
+    bool is_open_ended;         ///< of two bodies, or with friction: no mirror image continues beyond it
+    std::vector<Index> beside;  ///< nodes of the adjacent contact facets
   };
-  std::vector<unsigned> facet_held_;        ///< components that supports hold at all nodes, per facet
-  std::vector<char> facet_touches_;         ///< all nodes are of contact facets
-  std::vector<StressRaiser> of_node_;       ///< there or beside it, whatever the state is
+  std::vector<unsigned> facet_held_;        ///< per facet: components that supports hold at all nodes
+  std::vector<char> facet_touches_;         ///< per facet: all nodes belong to contact facets
+  std::vector<StressRaiser> of_node_;       ///< per node: raiser there or at a neighbour, in any state
   std::vector<ContactEdge> contact_edges_;  ///< ascending
-  std::vector<char> touching_;              ///< per node: 1 of contact facets, 2 also of open-ended ones
+  std::vector<char> touching_;              ///< per node: 1 in contact facets, 2 also in open-ended ones
   std::vector<char> pressed_;               ///< per node
 };
 

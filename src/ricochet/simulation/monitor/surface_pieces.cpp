@@ -22,7 +22,7 @@ void add_pieces(const Points& positions, const std::vector<CellBlock>& cells, co
   const Eigen::Vector3d origin = at(nodes[0]), along = at(nodes[1]) - origin;
   const Eigen::Vector3d normal = shape == CellShape::interval ? Eigen::Vector3d(along[1], -along[0], 0.0)
                                                               : Eigen::Vector3d(along.cross(at(nodes[2]) - origin));
-  double side = 0.0;  // on which the cell is
+  double side = 0.0;  // positive if the cell is on the side of the normal
   for (int v = 0; v < vertex_count(block.shape); ++v) side += normal.dot(at(block.cell(facet.cell)[v]) - origin);
   const int degree = degree_of(shape, static_cast<int>(nodes.size()));
   for (const FlatPiece& local : flat_pieces(shape, degree)) {

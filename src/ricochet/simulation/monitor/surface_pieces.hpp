@@ -5,7 +5,7 @@
 #include "ricochet/mesh/boundary_facets.hpp"
 #include "ricochet/simulation/monitor/body_surface.hpp"
 
-/// @file From the facets of a boundary to the pieces of its surface.
+/// @file Triangulation of boundary facets into the pieces of a surface.
 namespace ricochet {
 
 /// Segments or triangles between the nodes of the facets, with normals out of the facets' cells. `positions`: d ×

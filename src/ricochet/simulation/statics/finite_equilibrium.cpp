@@ -16,11 +16,12 @@ namespace {
 
 constexpr double shortest_increment = 1e-5;
 constexpr int most_rounds = 100, most_renewals = 12;
-/// ε relative to the least K_ii/M_ii. Bodies that supports hold do not need it. Of those that contact holds, too, the
-/// motion that supports leave has no other resistance in the operator, and rounding in it is that of forces over ε:
-/// with too small a one Newton's method does not settle; a larger one takes more rounds at the end.
+/// ε relative to the smallest K_ii/M_ii. Bodies that supports hold do not need it. For bodies that contact helps to
+/// hold, ε is the only resistance of the operator to the motion that supports leave free, whose rounding is that of
+/// forces over ε: with too small a value Newton's method does not settle; a larger one requires more iterations at the
+/// end.
 constexpr double proximal_fraction = 1e-10, proximal_fraction_of_unheld = 1e-6;
-/// What may be left of the largest of the forces.
+/// Tolerated residual, relative to the largest force.
 constexpr double left_of_forces = 1e-10;
 
 double proximal_coefficient(const SemidiscreteProblem& problem) {
@@ -43,8 +44,8 @@ class LoadPath {
     problem.supports.values(0.0, supported_);
   }
 
-  /// From a displacement to that with a part of loads and supports, near enough to go on from. Throws
-  /// Error(not_converged).
+  /// Advances a displacement to the equilibrium under a fraction of loads and prescribed displacements, near enough to
+  /// continue from. Throws Error(not_converged).
   void advance(double part, StaticEquilibrium& at) {
     constexpr int most_corrections = 40;
     constexpr double near = 1e-6;  // of the size of the bodies
@@ -53,7 +54,7 @@ class LoadPath {
     for (int k = 0; k < most_corrections; ++k) {
       const double before = last_, correction = correct(part, at);
       if (correction <= near) return;
-      // Beyond the loads that a body holds corrections lead anywhere, also with a new factor.
+      // Beyond the loads that a body can carry corrections are erratic, also with a new factor.
       if (correction > (may_renew() ? most_growth : 1.0) * before)
         throw Error(ErrorKind::not_converged, "the corrections of Newton's method grow");
     }
@@ -63,9 +64,9 @@ class LoadPath {
                     most_corrections, last_ * size_));
   }
 
-  /// With all of the loads one more correction, which is a round of the proximal point method. True where what is left
-  /// of all forces is rounding, and corrections shrink no more: rounding of a motion that only contact holds is
-  /// amplified by 1/ε, so that how far they shrink is not known.
+  /// Performs another correction under the full loads, which is an iteration of the proximal point method. Returns true
+  /// if the residual of all forces is rounding and corrections no longer shrink: rounding of a motion that only contact
+  /// restrains is amplified by 1/ε, so that the size of the smallest correction is unknown.
   [[nodiscard]] bool settle(StaticEquilibrium& at) {
     constexpr double rounding = 1e-13;  // of the size of the bodies
     constexpr double stalled = 0.9;
@@ -75,7 +76,7 @@ class LoadPath {
   }
 
  private:
-  /// The slips of friction are counted from here.
+  /// Resets the iteration; slips of friction are measured from this displacement.
   void start(const Vector& displacement) {
     origin_ = displacement;
     renewals_ = 0;
@@ -84,8 +85,8 @@ class LoadPath {
     rate_ = 1.0;
   }
 
-  /// A correction of Newton's method; its largest entry relative to the size of the bodies. The factor is made anew
-  /// where the one before came hardly nearer.
+  /// Performs a correction of Newton's method and returns its largest entry relative to the size of the bodies. Renews
+  /// the factor if the previous correction converged slowly.
   double correct(double part, StaticEquilibrium& at) {
     constexpr double slow = 0.3;
     Stage stage = stage_at(part, at.displacement);
@@ -105,7 +106,7 @@ class LoadPath {
     return correction;
   }
 
-  /// What comes no nearer may do so with another factor.
+  /// Returns whether a new factor may improve slow convergence.
   [[nodiscard]] bool may_renew() const { return !is_new_ && renewals_ < most_renewals; }
 
   Stage stage_at(double part, const Vector& displacement) {
@@ -118,7 +119,7 @@ class LoadPath {
     return stage;
   }
 
-  /// Of the loads, with the reactions of the last correction, where supports do not hold.
+  /// Checks the balance of the loads, with the reactions of the last correction, at unsupported dofs.
   [[nodiscard]] bool is_balanced(const StaticEquilibrium& at) {
     find_forces(1.0, at.displacement);
     const double size = largest(problem_, force_) + largest(problem_, load_);
@@ -127,7 +128,7 @@ class LoadPath {
     return largest(problem_, right_) <= left_of_forces * size;
   }
 
-  /// f, and L − f with what follows the surface.
+  /// Computes f, and L − f with the pressure that follows the surface.
   void find_forces(double part, const Vector& displacement) {
     problem_.internal_force->evaluate(displacement, force_);
     right_ = part * load_ - force_;
@@ -136,12 +137,12 @@ class LoadPath {
 
   const SemidiscreteProblem& problem_;
   double epsilon_, size_;
-  double last_ = std::numeric_limits<double>::infinity(), rate_ = 1.0;  ///< of corrections
+  double last_ = std::numeric_limits<double>::infinity(), rate_ = 1.0;  ///< last correction, ratio to the previous
   int renewals_ = 0;
-  bool is_new_ = false;  ///< the factor of the last correction
+  bool is_new_ = false;  ///< the last correction used a new factor
   std::unique_ptr<StepSolver> solver_;
   StageSolution solution_;
-  std::shared_ptr<const ContactRows> rows_;  ///< of its reactions
+  std::shared_ptr<const ContactRows> rows_;  ///< for the reactions in solution_
   Vector origin_, load_, supported_, force_, right_;
 };
 

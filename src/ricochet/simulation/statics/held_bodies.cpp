@@ -9,7 +9,7 @@ namespace ricochet {
 
 namespace {
 
-/// Of the rigid motions R of a body at its supported dofs, in units of its size, RᵀR. Ranks ask together.
+/// RᵀR of the rigid motions R of a body at its supported dofs, in units of its size. All ranks call it together.
 Matrix square_of_supported_motions(const SemidiscreteProblem& problem, const std::vector<Index>& members) {
   const Index d = problem.dimension;
   const Ranks& ranks = *problem.ranks;

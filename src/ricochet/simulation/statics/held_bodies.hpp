@@ -4,17 +4,17 @@
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
 
-/// @file Bodies that supports hold.
+/// @file Bodies that are held by supports.
 namespace ricochet {
 
-/// Whether the supports of some nodes, those of one body, leave it no rigid motion: to first order, at the places of
-/// the reference.
+/// Returns whether the supports of some nodes, those of one body, leave it no rigid motion: to first order, at the
+/// reference positions.
 [[nodiscard]] bool are_held_by_supports(const SemidiscreteProblem& problem, const std::vector<Index>& members);
 
-/// The same of all bodies.
+/// Returns whether this holds for all bodies.
 [[nodiscard]] bool all_are_held_by_supports(const SemidiscreteProblem& problem);
 
-/// The same of one, and the supports stay where they are: nothing that they prescribe depends on time.
+/// Returns whether this holds for one body whose supports do not move: no prescribed displacement depends on time.
 [[nodiscard]] bool are_held_at_rest(const SemidiscreteProblem& problem, const std::vector<Index>& members);
 
 }  // namespace ricochet

@@ -11,14 +11,14 @@ namespace ricochet {
 
 namespace {
 
-/// Part of the loads that is rounding.
+/// Fraction of the loads that is rounding.
 constexpr double rounding = 1e-11;
-/// Part of the load's power on a motion that reactions may take from it before it proves nothing.
+/// Fraction of the load's power on a motion that reactions may balance at most if the motion proves anything.
 constexpr double proof = 1e-3;
-/// The same at which the motion is known to the digits that are shown.
+/// Likewise, for a motion that is accurate to the digits that are shown.
 constexpr double settled = 1e-9;
-/// Part of the loads above which a distance that no column reduces any more is one: its square has the rounding of the
-/// loads' square.
+/// Fraction of the loads above which a distance that no column reduces any more counts as nonzero: its square has the
+/// rounding of the loads' square.
 constexpr double resolution = 1e-7;
 constexpr int column_limit = 2000;
 
@@ -42,18 +42,18 @@ class FreeMotions {
   [[nodiscard]] Index count() const { return modes_.cols(); }
   [[nodiscard]] bool contains(Index dof) const { return in_body_[static_cast<std::size_t>(dof / d_)] != 0; }
   [[nodiscard]] const Vector& centre() const { return centre_; }
-  /// Adds factor × the generalized force of a unit force on this dof; nothing of the dofs of other bodies.
+  /// Adds factor × the generalized force of a unit force on this dof; ignores dofs of other bodies.
   void add_force(Index dof, double factor, Vector& force) const {
     if (!contains(dof)) return;
     force.noalias() += modes_.transpose() * (factor * speeds(dof)).head(modes_.rows());
   }
-  /// Of the centre.
+  /// Velocity of the centre.
   [[nodiscard]] Vector velocity(const Vector& motion) const { return (modes_ * motion).head(d_); }
 
  private:
   using Speeds = Eigen::Matrix<double, 6, 1>;
 
-  /// What the translations and the rotations after them do at a dof.
+  /// Speeds at a dof due to the translations and then the rotations.
   [[nodiscard]] Speeds speeds(Index dof) const {
     Speeds result = Speeds::Zero();
     const Index component = dof % d_;
@@ -68,7 +68,7 @@ class FreeMotions {
     return result;
   }
 
-  /// Linear functions on curved cells do not contain rotations.
+  /// Returns whether rotations cause strain: linear functions on curved cells do not contain them.
   [[nodiscard]] bool rotations_strain(const std::vector<Index>& members) const {
     const SparseMatrix& stiffness = problem_.internal_force->tangent();
     for (const Index node : members) {
@@ -85,10 +85,10 @@ class FreeMotions {
     return false;
   }
 
-  /// The combinations of the first so many motions that stand still where the body is held.
+  /// Restricts the first motions to the combinations that are at rest where the body is held.
   void leave_to_supports(const std::vector<Index>& members, Index motions) {
     Matrix square = Matrix::Zero(motions, motions);
-    if (problem_.axisymmetric) square(0, 0) = 1.0;  // its rings hold it across the axis
+    if (problem_.axisymmetric) square(0, 0) = 1.0;  // the rings hold it across the axis
     for (const Index node : members) {
       for (Index dof = node * d_; dof < (node + 1) * d_; ++dof) {
         if (!problem_.supports.contains(dof)) continue;
@@ -115,20 +115,20 @@ class FreeMotions {
 /// Generalized forces of the reactions at a contact point.
 struct Cone {
   Vector normal;
-  Matrix tangential;  ///< a column per tangent
+  Matrix tangential;  ///< one column per tangent
   double coefficient = 0.0;
-  bool is_rough = false;  ///< tangential forces of any size
+  bool is_rough = false;  ///< tangential forces are unlimited
   Index point = 0;
 };
 
-/// The point of all cones together that is nearest to a target: non-negative least squares over columns that are made
-/// as they are needed.
+/// Point of the sum of all cones that is nearest to a target: non-negative least squares with columns that are
+/// generated as needed.
 class NearestForce {
  public:
   NearestForce(const std::vector<Cone>& cones, Vector target, double unit)
       : cones_(cones), left_(target), target_(std::move(target)), unit_(unit) {}
 
-  /// True: what is left is not rounding, and no reaction can take more than a small part of it.
+  /// Returns true if the residual is more than rounding and no reaction can balance more than a small fraction of it.
   bool is_out_of_reach() {
     bool is_proved = false;
     for (int k = 0; k < column_limit; ++k) {
@@ -154,12 +154,12 @@ class NearestForce {
 
   [[nodiscard]] const Vector& left() const { return left_; }
   [[nodiscard]] double unit() const { return unit_; }
-  /// Weights and points of the forces in use.
+  /// Weights and contact points of the active forces.
   [[nodiscard]] const std::vector<double>& sizes() const { return sizes_; }
   [[nodiscard]] const std::vector<Index>& points() const { return points_; }
 
  private:
-  /// Of the reactions of a point the one that takes most.
+  /// Returns the reaction at a point that reduces the residual most.
   [[nodiscard]] Vector best_column(const Cone& cone) const {
     const Vector along = cone.tangential.transpose() * left_;
     const double length = along.norm();
@@ -168,7 +168,7 @@ class NearestForce {
     return cone.is_rough ? friction : Vector(cone.normal + cone.coefficient * friction);
   }
 
-  /// False: nothing has come of it.
+  /// Adds a column. Returns false if the residual does not decrease.
   bool enter(const Vector& column, Index point) {
     const double before = left_.norm();
     columns_.push_back(column);
@@ -215,7 +215,8 @@ std::vector<Cone> make_cones(const SemidiscreteProblem& problem, const FreeMotio
   const Index tangents = problem.dimension - 1;
   std::vector<Cone> cones;
   for (Index i = 0; i < contact.size(); ++i) {
-    // Another body is taken for one that can press as it is pressed: what no reactions can hold, they cannot either.
+    // Another body is assumed to press as hard as it is pressed: what such reactions cannot hold, it cannot hold
+    // either.
     bool reaches = false;
     contact.visit_nodes(i,
                         [&](Index node, double) { reaches = reaches || motions.contains(node * problem.dimension); });
@@ -236,8 +237,8 @@ std::vector<Cone> make_cones(const SemidiscreteProblem& problem, const FreeMotio
   return cones;
 }
 
-/// The motion as it would be seen. In the mechanism that Farkas' lemma gives, a body lifts as it slides (friction in it
-/// is that of an associated law): by as much as it lifts, it presses too hard, and friction is short of that besides.
+/// Describes the motion as it would be observed. In the mechanism of Farkas' lemma a body lifts as it slides (its
+/// friction law is associated). The lift is an excess of the normal reaction; without it, friction is smaller as well.
 UnheldMotion describe(const SemidiscreteProblem& problem, const FreeMotions& motions, const NearestForce& nearest) {
   const Vector unbalanced = motions.velocity(-nearest.left());
   UnheldMotion result{motions.centre(), unbalanced, false, nearest.left().norm() / nearest.unit()};

@@ -57,9 +57,9 @@ void take_supports(const SemidiscreteProblem& problem, double step, State& state
   }
 }
 
-/// Massless contact nodes are in equilibrium with their surroundings at every instant, the first included. Friction
-/// acts on their velocity with the relaxation taken over one step: where they slide at t = 0 it opposes that sliding,
-/// where they are at rest it opposes the relaxation.
+/// Massless contact nodes are in equilibrium with their surroundings at every instant, including the first. Friction
+/// acts on their velocity plus the relaxation, which is assumed to take one step: at nodes that slide at t = 0 it
+/// opposes that sliding, at nodes at rest it opposes the relaxation.
 void relax_contact_nodes(const SemidiscreteProblem& problem, double step, const StepSolverOptions& options,
                          State& state) {
   const auto solver = make_step_solver(problem, {{0.0, 1.0, 0.0, StageDofs::contact}}, options);
@@ -87,8 +87,8 @@ void relax_contact_nodes(const SemidiscreteProblem& problem, double step, const 
 }
 
 /// Points that rest on their obstacle at t = 0: no gap, no normal velocity. Those that carry a force in a static
-/// equilibrium (`pressed`, empty without one) have no gap by construction, though their gap may be rounding of the
-/// solve.
+/// equilibrium (`pressed`, empty without one) have no gap by construction, although their computed gap may be rounding
+/// of the solution.
 std::vector<char> resting_points(const SemidiscreteProblem& problem, const State& state, const Vector& pressed) {
   std::vector<char> resting(static_cast<std::size_t>(problem.contact.size()), 0);
   if (problem.has_singular_mass()) return resting;
@@ -111,7 +111,8 @@ std::vector<char> resting_points(const SemidiscreteProblem& problem, const State
   return resting;
 }
 
-/// A diagonal mass needs no factorization where no contact point is at rest on its obstacle. False when it does.
+/// Computes the acceleration dof by dof: a diagonal mass needs no factorization if no contact point rests on its
+/// obstacle. Returns false otherwise.
 bool find_acceleration_pointwise(const SemidiscreteProblem& problem, const Vector& support_acceleration,
                                  const std::vector<char>& resting, State& state) {
   const bool rests = std::find(resting.begin(), resting.end(), 1) != resting.end();
@@ -139,8 +140,8 @@ bool find_acceleration_pointwise(const SemidiscreteProblem& problem, const Vecto
   return true;
 }
 
-/// Part of the gaps' second derivative in time that the velocity makes, by differences over a step: zero against
-/// planes.
+/// Computes the part of the gaps' second time derivative that is due to the velocity, by differences over a step; it is
+/// zero against planes.
 void find_curvature_term(const SemidiscreteProblem& problem, const State& state, double step, Vector& term) {
   term.setZero();
   if (!problem.contact.follows_motion()) return;
@@ -151,7 +152,7 @@ void find_curvature_term(const SemidiscreteProblem& problem, const State& state,
   term = (before - 2.0 * now + after) / (step * step);
 }
 
-/// Friction acts on the slip rate at the end of a step of this acceleration.
+/// Applies friction to the slip rate at the end of a step with this acceleration.
 void find_acceleration(const SemidiscreteProblem& problem, const Vector& support_acceleration, const Vector& pressed,
                        double step, const StepSolverOptions& options, State& state) {
   std::vector<char> resting = resting_points(problem, state, pressed);
@@ -161,10 +162,10 @@ void find_acceleration(const SemidiscreteProblem& problem, const Vector& support
   const auto solver = make_step_solver(problem, {{1.0, 0.0, 0.0, StageDofs::massive}}, once);
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
   stage.prescribed = support_acceleration;
-  stage.force_place.resize(0);  // its unknown is an acceleration
+  stage.force_place.resize(0);  // the unknown is an acceleration
   stage.eligible = std::move(resting);
   stage.motion.reset();
-  find_curvature_term(problem, state, step, stage.gap_offset);  // the condition is on G a and this
+  find_curvature_term(problem, state, step, stage.gap_offset);  // the condition is on the sum of G a and this
   stage.gap_offset_rounding.setZero();
   observe_obstacles(problem, state.displacement, {}, stage);
   require_friction(problem, state.velocity, step, stage);
@@ -176,7 +177,7 @@ void find_acceleration(const SemidiscreteProblem& problem, const Vector& support
   add_reactions(solution, state);
 }
 
-/// Support reactions from the momentum equation itself: R = M a + C V + K U − L − Gᵀ r_N + B_Tᵀ r_T.
+/// Computes support reactions from the momentum equation itself: R = M a + C V + K U − L − Gᵀ r_N + B_Tᵀ r_T.
 void find_support_reaction(const SemidiscreteProblem& problem, State& state) {
   Vector force;
   problem.mass.multiply(state.acceleration, force);
@@ -192,7 +193,7 @@ void find_support_reaction(const SemidiscreteProblem& problem, State& state) {
 
 namespace {
 
-/// What is deeper is refused (model_bodies.cpp).
+/// Warns of small overlaps; deeper ones are refused (model_bodies.cpp).
 void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
   const PointsInside inside = points_inside_at_start(problem, state.displacement);
   const Index points = problem.all_contact_points();
@@ -205,8 +206,8 @@ void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
 
 }  // namespace
 
-/// A body that floats above another one is moved by a static start until that one holds it. One that is moved onto an
-/// obstacle is what static starts are for.
+/// Warns of closed gaps between bodies: a static start moves a floating body until another one holds it. Gaps at
+/// obstacles are ignored, since closing them is the purpose of static starts.
 void warn_of_closed_gaps(const SemidiscreteProblem& problem, const Vector& pressed) {
   constexpr double seen = 1e-3;  // of the size of the bodies
   Vector gap;
@@ -245,8 +246,8 @@ void require_upright_cells(const SemidiscreteProblem& problem, const Vector& dis
 
 namespace {
 
-/// A body that starts inside of something is pushed out at once, whatever the loads are: where that leads nowhere, the
-/// reasons of the search are about what came of it.
+/// A body that starts inside an obstacle or another body is pushed out at once, whatever the loads are: if that fails,
+/// the reasons given by the search concern the result rather than the cause.
 [[noreturn]] void refuse_static_from_inside(const SemidiscreteProblem& problem, const PointsInside& inside,
                                             const Error& reason) {
   constexpr std::string_view key = "initial.displacement = \"static\": ";
@@ -316,7 +317,7 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
   if (problem.loads.varies() || problem.pressure) problem.loads.varying(0.0, state.forces.varying_load);
   if (problem.pressure) problem.pressure->add_force(state.displacement, 0.0, state.forces.varying_load);
   if (problem.has_damping()) problem.damping.evaluate(state.velocity, state.forces.damping_force);
-  // Bodies have been where they start for long.
+  // Bodies are assumed to have rested in their starting positions for a long time.
   if (const ViscousForce* const viscous = problem.internal_force->viscous())
     viscous->relax(state.displacement, state.internal_strain);
   return state;

@@ -20,8 +20,8 @@ namespace ricochet {
 
 namespace {
 
-/// Part of the loads that the test of an equilibrium may leave unbalanced (in places: see below), with room to spare. A
-/// body of which more is unbalanced is refused at once.
+/// Fraction of the loads that the equilibrium test may leave unbalanced (at single dofs: see below), with a margin. A
+/// body with a larger unbalanced fraction is refused at once.
 constexpr double clearly_unbalanced = 1e-4;
 
 double lowest_local_frequency_squared(const SemidiscreteProblem& problem) {
@@ -34,13 +34,13 @@ double lowest_local_frequency_squared(const SemidiscreteProblem& problem) {
   return lowest;
 }
 
-/// Tells rounding from a force that still moves the body.
+/// Distinguishes rounding from a force that still moves the body.
 class EquilibriumTest {
  public:
   explicit EquilibriumTest(const SemidiscreteProblem& problem)
       : EquilibriumTest(problem, problem.internal_force->tangent()) {}
 
-  /// True when what is left is rounding of the internal forces' terms, and small beside the loads that act.
+  /// Returns true if the residual is rounding of the internal forces' terms, and small compared with the loads.
   [[nodiscard]] bool passed(const Vector& displacement, const Vector& left_over) const {
     Vector deformation;
     rigid_.remove(displacement, deformation);
@@ -60,12 +60,12 @@ class EquilibriumTest {
   const SemidiscreteProblem& problem_;
   SparseMatrix magnitude_;  ///< |K|
   RigidMotion rigid_;
-  double load_ = 0.0;  ///< the largest
+  double load_ = 0.0;  ///< largest entry
 };
 
-/// Friction in a static equilibrium. Where a point is at rest relative to its obstacle, the slip is its displacement
-/// from the undeformed body, as if the loads had been applied in one increment. Where it slides, friction has the
-/// direction of that sliding; a body that friction would then accelerate has no equilibrium but one without it.
+/// Friction in a static equilibrium. At a point at rest relative to its obstacle the slip is its displacement from the
+/// undeformed body, as if the loads had been applied in one increment. At a sliding point friction has the direction of
+/// that sliding; a body that friction would then accelerate has an equilibrium only without it.
 class StaticFriction {
  public:
   StaticFriction(const SemidiscreteProblem& problem, const Vector& velocity) : problem_(problem) {
@@ -99,7 +99,7 @@ class StaticFriction {
     if (!problem_.contact.has_friction()) return;
     require_friction(problem_, displacement, 1.0, stage);
     if (left_out_) stage.frictionless = sliding_;
-    // Increments vanish at the equilibrium, and beside them only the slide is left: its direction is that of friction.
+    // Increments vanish at the equilibrium, so that only the slide remains: its direction is that of friction.
     for (std::size_t i = 0; i < sliding_.size(); ++i) {
       const Index first = static_cast<Index>(i) * tangents();
       if (sliding_[i] != 0) stage.slip_offset.segment(first, tangents()) = slide_.segment(first, tangents());
@@ -111,14 +111,14 @@ class StaticFriction {
 
   const SemidiscreteProblem& problem_;
   std::vector<char> sliding_;  ///< per contact point
-  Vector slide_;               ///< by the size of the body, where it slides
+  Vector slide_;               ///< of the size of the body, at points that slide
   bool left_out_ = false;
 };
 
 /// Proximal point iterations: (εM + K) δ = L − K U + Gᵀr, then U += δ.
 class ProximalPoint {
  public:
-  /// ε as a fraction of the least K_ii/M_ii: of the softest region, where stiffnesses differ.
+  /// `fraction`: ε relative to the smallest K_ii/M_ii, that of the softest region if stiffnesses differ.
   ProximalPoint(const SemidiscreteProblem& problem, const StaticFriction& friction, double fraction,
                 const StepSolverOptions& options)
       : problem_(problem),
@@ -142,7 +142,7 @@ class ProximalPoint {
     for (const Index dof : problem_.supports.dofs()) left_over_[dof] = 0.0;
   }
 
-  /// The force that is not in equilibrium yet.
+  /// Unbalanced force.
   [[nodiscard]] const Vector& left_over() const { return left_over_; }
   [[nodiscard]] double largest_left_over() const { return largest(problem_, left_over_); }
 
@@ -155,7 +155,7 @@ class ProximalPoint {
   Vector supported_, left_over_;
 };
 
-/// What to think of first where friction is involved.
+/// Returns a hint on friction, which is the first suspect if it is involved.
 std::string role_of_friction(const SemidiscreteProblem& problem, const StaticFriction& friction) {
   if (friction.sliding_points() > 0) return ", and friction does not hold points that slide at t = 0";
   return problem.contact.has_friction() ? ", and contact with friction does not hold it (it slides or tips)" : "";
@@ -167,7 +167,7 @@ std::string as_text(const Vector& vector) {
   return "(" + text + ")";
 }
 
-/// A body that no reactions can hold has no equilibrium, whatever an iteration might say.
+/// A body that no reactions can hold has no equilibrium, whatever an iteration converges to.
 [[noreturn]] void refuse_unheld(const SemidiscreteProblem& problem, const StaticFriction& friction,
                                 const UnheldMotion& motion) {
   std::string how = "turns or tips over: a moment has";
@@ -211,8 +211,8 @@ std::string as_text(const Vector& vector) {
                   force, role_of_friction(problem, friction)));
 }
 
-/// Iterates until the test is passed. False after many iterations or, with `give_up_early`, as soon as the force left
-/// over is no longer reduced.
+/// Iterates until the test is passed. Returns false after many iterations or, with `give_up_early`, as soon as the
+/// unbalanced force no longer decreases.
 bool converges(ProximalPoint& point, const EquilibriumTest& test, bool give_up_early, StaticEquilibrium& at) {
   constexpr int rounds = 60;
   double before = std::numeric_limits<double>::infinity();
@@ -226,10 +226,10 @@ bool converges(ProximalPoint& point, const EquilibriumTest& test, bool give_up_e
   return false;
 }
 
-/// The equilibrium by proximal point iterations. ε well below the lowest elastic frequency squared converges in a few
-/// of them, wherever the body has to go. Slender or very uneven bodies have lower frequencies: ε is taken down while
-/// the iteration stalls. Friction starts with a larger one: where it is all that holds the body, a small ε leaves a
-/// condensed operator on which stick and slip of single points hardly show beside the rigid motion.
+/// Finds the equilibrium by proximal point iterations. With ε well below the lowest elastic frequency squared a few of
+/// them suffice, however far the body has to move. Slender or very uneven bodies have lower frequencies: ε is reduced
+/// while the iteration stalls. With friction, ε starts at a larger value: if friction alone holds the body, a small ε
+/// yields a condensed operator in which stick and slip of single points hardly show beside the rigid motion.
 bool find_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& friction, const EquilibriumTest& test,
                       const StepSolverOptions& options, StaticEquilibrium& at, Vector& left_over) {
   for (const double fraction : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
@@ -241,7 +241,7 @@ bool find_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& 
   return false;
 }
 
-/// As find_equilibrium, for a body that slides: most have none.
+/// As find_equilibrium, for a sliding body: most of these have no equilibrium.
 bool find_sliding_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& friction,
                               const EquilibriumTest& test, const StepSolverOptions& options, StaticEquilibrium& at) {
   ProximalPoint point(problem, friction, 1e-4, options);
@@ -258,7 +258,8 @@ bool find_sliding_equilibrium(const SemidiscreteProblem& problem, const StaticFr
 StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess, const Vector& velocity,
                                      const StepSolverOptions& step_options) {
   require_linear(*problem.internal_force, "initial.displacement = \"static\"");
-  // Without inertia iterations converge badly, and not at all where contact alone holds a body: a factor where it fits.
+  // Without inertia iterative solvers converge badly, and not at all if contact alone holds a body: a factorization is
+  // used if it fits into memory.
   StepSolverOptions options = step_options;
   if (options.method == SolverMethod::iterative) options.method = SolverMethod::automatic;
   options.solves = 0;
@@ -267,7 +268,7 @@ StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const V
   StaticFriction friction(problem, velocity);
   const EquilibriumTest test(problem);
   const auto held = [&](const std::vector<char>& frictionless) -> std::optional<UnheldMotion> {
-    // Where normals follow the motion, those at the start do not tell what holds the body where it comes to rest.
+    // If normals follow the motion, those at the start do not show what holds the body in its final position.
     if (problem.contact.follows_motion()) return {};
     const std::optional<UnheldMotion> unheld = find_unheld_motion(problem, frictionless);
     if (unheld && unheld->unbalanced > clearly_unbalanced) refuse_unheld(problem, friction, *unheld);
@@ -298,8 +299,8 @@ StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const V
                       counted(friction.sliding_points(), "contact point slides", "contact points slide")));
     }
   }
-  // A small ε leaves rounding of the size of weight/ε in the gaps of a body that only contact holds. A large one, from
-  // where we are now, takes it away.
+  // With a small ε the gaps of a body that only contact holds have rounding errors of the size of weight/ε. Iterations
+  // with a large ε, from the current position, remove them.
   ProximalPoint near(problem, friction, 1e-2, options);
   for (int polish = 0; polish < 3; ++polish) near.iterate(result);
   return result;

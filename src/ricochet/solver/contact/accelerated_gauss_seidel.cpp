@@ -6,9 +6,9 @@
 namespace ricochet {
 
 namespace {
-/// A sweep that changes this many times as much as the last one tells that the extrapolation was bad.
+/// Growth of the change from sweep to sweep that indicates a bad extrapolation.
 constexpr double growth = 2.0;
-/// Of the largest product of residual steps: keeps nearly parallel ones apart.
+/// Regularization relative to the largest product of residual steps: keeps nearly parallel ones apart.
 constexpr double ridge = 1e-13;
 }  // namespace
 
@@ -35,7 +35,7 @@ bool AcceleratedGaussSeidel::sweep(const ContactSystem& system, ContactIterate& 
   residual_ = iterate.reaction - start_reaction_;
   const double change = residual_.norm();
   if (has_last_ && stored_ > 0 && change > growth * change_) {
-    // Back to the end of the sweep before.
+    // Back to the end of the previous sweep.
     start_reaction_ = end_reaction_;
     start_motion_ = end_motion_;
     stored_ = next_ = 0;
@@ -62,7 +62,7 @@ bool AcceleratedGaussSeidel::sweep(const ContactSystem& system, ContactIterate& 
   return changed;
 }
 
-/// The weights of an extrapolation add up to one: what was wrong with all u of the past is wrong with the next start.
+/// The weights of an extrapolation add up to one: an error common to all earlier u is that of the next start.
 void AcceleratedGaussSeidel::correct(const Vector& motion) {
   start_motion_ += motion - end_motion_;
   end_motion_ = motion;
@@ -75,7 +75,7 @@ void AcceleratedGaussSeidel::extrapolate() {
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, depth, depth>;
   using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, depth, 1>;
   Small system = products_.topLeftCorner(stored_, stored_);
-  // Each step by its own size, so that the small ones of late sweeps count.
+  // Each step is scaled by its own size, so that the small ones of late sweeps count.
   SmallVector scale(stored_), right(stored_);
   for (Index k = 0; k < stored_; ++k) {
     scale[k] = system(k, k) > 0.0 ? 1.0 / std::sqrt(system(k, k)) : 0.0;

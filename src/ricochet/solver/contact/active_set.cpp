@@ -12,7 +12,7 @@ namespace ricochet {
 namespace {
 /// Block steps without fewer violations before single ones are taken.
 constexpr int block_patience = 8;
-/// Rounding of u, as a part of the data, above which reactions are so large that they may balance nothing but the
+/// Rounding of u, relative to the data, above which reactions are so large that they may balance nothing but the
 /// rounding of a singular W.
 constexpr double trusted = 1e-9;
 
@@ -24,7 +24,7 @@ double hidden_part(const ContactSystem& system, const ContactIterate& iterate) {
 }
 }  // namespace
 
-/// The factor is of rows of another selection of points.
+/// Maps the factor, which has rows of another selection of points, to this system.
 void PrimalDualActiveSet::renumber(const ContactSystem& system) {
   renumbered_.clear();
   for (const Index row : base_) {
@@ -40,10 +40,10 @@ void PrimalDualActiveSet::renumber(const ContactSystem& system) {
   has_base_to_factor_ = false;
 }
 
-/// r on the active points from W_AA r_A = −q_A, once more for what rounding left over, and u everywhere.
+/// Solves W_AA r_A = −q_A for r on the active points, with one refinement, and evaluates u everywhere.
 bool PrimalDualActiveSet::solve_active(const ContactSystem& system, ContactIterate& current) {
   if (!factor_.set_indices(*system.dense(), indices_)) {
-    reset();  // the factor has no base any more
+    reset();  // the factor has lost its base
     return false;
   }
   const auto count = static_cast<Index>(indices_.size());
@@ -77,7 +77,7 @@ std::string PrimalDualActiveSet::solve(const ContactSystem& system, double toler
   const bool solved = reason.empty() && system.is_solved(current, std::max(tolerance, loosest_residual));
   const double hidden = solved ? hidden_part(system, current) : std::numeric_limits<double>::infinity();
   if (hidden <= trusted) return "";
-  // Whatever it was that pivoting has come to: a few steps lead to the solution from where it began.
+  // From any result of pivoting: a few steps lead to the solution from its starting point.
   std::swap(current, start_);
   const std::string why = dependent_.solve(system, current, iterations);
   if (solved && dependent_.contradiction().empty() && !(why.empty() && hidden_part(system, current) < hidden)) {
@@ -134,7 +134,7 @@ std::string PrimalDualActiveSet::pivot(const ContactSystem& system, ContactItera
 
 namespace {
 
-/// Without friction PrimalDualActiveSet; with friction in two dimensions whole Alart–Curnier steps, which are an active
+/// Without friction PrimalDualActiveSet; with friction in two dimensions full Alart–Curnier steps, which are an active
 /// set method over open, stick and slip to either side.
 class ActiveSetSolver final : public IterativeContactSolver {
  protected:

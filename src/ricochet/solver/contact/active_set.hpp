@@ -9,22 +9,22 @@
 #include "ricochet/solver/contact/contact_system.hpp"
 #include "ricochet/solver/contact/dual_active_set.hpp"
 
-/// @file The frictionless contact problem.
+/// @file Frictionless contact problems.
 namespace ricochet {
 
-/// Primal–dual active set, as block principal pivoting: all points on the wrong side change sides at once. When that
-/// has not reduced their number for several steps (cycling), only the one with the largest index changes (Murty's
-/// rule), which ends for every positive definite W; as soon as the number has fallen, blocks are used again. J. J.
-/// Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587–596. Starts from the points that have a reaction.
+/// Primal–dual active set method as block principal pivoting: all points on the wrong side change sides at once. If
+/// that has not reduced their number for several steps (cycling), only the one with the largest index changes (Murty's
+/// rule), which terminates for every positive definite W; as soon as the number has fallen, blocks are used again. J.
+/// J. Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587–596. Starts from the points that have a reaction.
 ///
-/// Wrong sides are r_i < 0 (no tolerance: what is returned is never negative) and u_i below −(rounding of q_i + that of
-/// W r). The factor follows the set (PrincipalFactor). Where W is singular on a set that it comes to, or so nearly that
-/// what comes out is no solution, conditions depend on one another: DualActiveSet.
+/// Wrong sides are r_i < 0 (no tolerance: no returned reaction is negative) and u_i below −(rounding of q_i + that of W
+/// r). The factor follows the set (PrincipalFactor). If W is singular on a set that occurs, or so nearly that the
+/// result is no solution, conditions depend on one another: DualActiveSet.
 class PrimalDualActiveSet {
  public:
-  /// A system whose points have no friction, with entries in dense form. Counts its steps in `iterations`. Returns why
-  /// it ended without a solution, or nothing: `current` is the solution, evaluated. Shows what it has come to after
-  /// every step to `watch`, if there is one.
+  /// Solves a system whose points have no friction, with entries in dense form. Counts its steps in `iterations`.
+  /// Returns the reason of a failure, or nothing: `current` is the solution, evaluated. Shows the iterate after every
+  /// step to `watch`, if given.
   using Watch = std::function<void(const ContactIterate& current)>;
   std::string solve(const ContactSystem& system, double tolerance, ContactIterate& current, int& iterations,
                     int& factorizations, const Watch& watch = {});
@@ -36,7 +36,7 @@ class PrimalDualActiveSet {
     has_base_to_factor_ = false;
   }
 
-  /// The rows of the factor's base set, see IterativeContactSolver.
+  /// Rows of the factor's base set, see IterativeContactSolver.
   [[nodiscard]] const std::vector<Index>& base() const { return base_; }
   void take_base(std::vector<Index> base) {
     reset();
@@ -58,7 +58,7 @@ class PrimalDualActiveSet {
   std::vector<Index> indices_;  ///< rows of active points
   std::vector<std::size_t> violations_;
   PrincipalFactor factor_;
-  std::vector<Index> base_;  ///< of the factor, by the problem's rows
+  std::vector<Index> base_;  ///< of the factor, by rows of the problem
   std::vector<Index> renumbered_;
   bool has_base_to_factor_ = false;  ///< after take_base
   Vector right_, solution_;

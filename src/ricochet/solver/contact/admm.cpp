@@ -17,17 +17,18 @@ namespace {
 
 constexpr int admm_iterations = 20000;
 constexpr double relaxation = 1.6;
-/// Iterations between verdicts where the residuals of the iteration itself do not ask for one.
+/// Iterations between verdicts if the residuals of the iteration itself do not call for one.
 constexpr int verdict_interval = 16;
-/// The penalty is looked at after this many iterations, later and later, and changed by no less than a factor.
+/// Iterations between adaptations of the penalty, at first and their growth, and the least factor of a change.
 constexpr int first_interval = 12;
 constexpr double interval_growth = 1.3;
 constexpr double least_change = 2.5;
-/// Of the start's estimate of W's extreme eigenvalues; the smallest counts for no less than this part of the largest.
+/// Lanczos steps of the initial estimate of W's extreme eigenvalues; the smallest counts as at least this part of the
+/// largest.
 constexpr int lanczos_steps = 16;
 constexpr double smallest_part = 1e-8;
 
-/// The Cholesky factor of W + ρ D, D = diag(w_i).
+/// Cholesky factor of W + ρ D, D = diag(w_i).
 class PenaltyFactor {
  public:
   bool compute(const ContactSystem& system, double penalty);
@@ -36,7 +37,7 @@ class PenaltyFactor {
  private:
   Matrix matrix_;
   DenseCholesky dense_;
-  std::vector<Index> rows_;  ///< of a sparse W, those of points
+  std::vector<Index> rows_;  ///< rows of points, for a sparse W
   std::optional<SparseCholesky> sparse_;
   Vector right_, solution_;
 };
@@ -78,8 +79,8 @@ void PenaltyFactor::solve(const Vector& right, Vector& x) {
   x(rows_) = solution_;
 }
 
-/// The root of the product of the extreme eigenvalues of D⁻¹W, as a few steps of Lanczos see them (B. Parlett, The
-/// Symmetric Eigenvalue Problem, 1980), from a start that has a part of everything.
+/// Root of the product of the extreme eigenvalues of D⁻¹W, as estimated by a few steps of Lanczos (B. Parlett, The
+/// Symmetric Eigenvalue Problem, 1980), from a start with a component along every eigenvector.
 double geometric_mean_eigenvalue(const ContactSystem& system) {
   const Index rows = system.rows();
   Vector root = Vector::Zero(rows);
@@ -116,10 +117,10 @@ double geometric_mean_eigenvalue(const ContactSystem& system) {
 ///   (W + ρ D) r⁺ = ρ D (z − m) − q − s n,   v = α r⁺ + (1 − α) z + m,   z⁺ = P_K(v),   m⁺ = v − z⁺,
 /// with −ρ D m the û of the iteration, from which the next s is taken. S. Boyd et al., Found. Trends Mach. Learn. 3
 /// (2011) 1–122, with their over-relaxation α and balancing of residuals; on contact problems V. Acary, M. Brémond, O.
-/// Huber, INRIA RR-9118 (2017). ρ begins at the geometric mean of D⁻¹W's extreme eigenvalues, with which the slowest of
-/// a linear problem's modes are fastest, and follows
+/// Huber, INRIA RR-9118 (2017). ρ starts at the geometric mean of the extreme eigenvalues of D⁻¹W, with which the
+/// slowest modes of a linear problem are fastest, and follows
 ///   ρ ← ρ (|r − z|/max(|r|, |z|) · |m|/|z⁺ − z|)^½
-/// when that is far from it: only then is the matrix factored again.
+/// if that is far from it: only then is the matrix factorized again.
 class Admm final : public IterativeContactSolver {
  protected:
   [[nodiscard]] std::string refuses(const ContactSystem& system) const override {
@@ -142,7 +143,7 @@ class Admm final : public IterativeContactSolver {
   PenaltyFactor* factor_ = &start_factor_;
   Vector right_, r_, z_, last_z_, multiplier_;
   ContactIterate candidate_, best_;
-  double balance_ = 1.0;  ///< what ρ should be multiplied with
+  double balance_ = 1.0;  ///< factor by which ρ should change
 };
 
 bool Admm::start(const ContactSystem& system, const ContactIterate& current, ContactSolution& solution) {
@@ -191,7 +192,7 @@ void Admm::advance(const ContactSystem& system) {
   }
 }
 
-/// The larger of the primal and the dual residual, and their balance.
+/// Computes the larger of the primal and the dual residual, and their balance.
 double Admm::measure(const ContactSystem& system) {
   double largest = 0.0;
   double primal = 0.0, dual = 0.0, of_r = 0.0, of_z = 0.0, of_multiplier = 0.0;
@@ -214,7 +215,7 @@ double Admm::measure(const ContactSystem& system) {
   return std::sqrt(largest);
 }
 
-/// False: the matrix with the new penalty is not positive definite.
+/// Adapts the penalty. Returns false if the matrix with the new penalty is not positive definite.
 bool Admm::adapt(const ContactSystem& system, ContactSolution& solution) {
   if (balance_ < least_change && balance_ > 1.0 / least_change) return true;
   penalty_ *= balance_;

@@ -6,24 +6,23 @@
 namespace ricochet {
 
 namespace {
-/// A diagonal of this many W leaves p = 0 to rounding.
+/// Multiple of W from which a diagonal leaves p = 0 to rounding.
 constexpr double rigid = 0x1p60;
-/// Up to this many unknowns LU in double precision is the fastest.
+/// Number of unknowns up to which LU in double precision is the fastest.
 constexpr Index few_unknowns = 64;
 /// A new factor is worth unknowns/`iterations_per_factor` iterations with an old one, and no fewer than these.
 constexpr Index iterations_per_factor = 30;
 constexpr Index fewest_iterations = 6;
-/// How many more operations of a factorization than of a product with a vector the machine does in the same time, and
-/// what a row of a factorization costs besides.
+/// Ratio of the speeds of a factorization and of a product with a vector, and the overhead per row of a factorization.
 constexpr double factor_speed = 12.0;
 constexpr double factor_overhead = 60.0;
-/// With the factor of the system itself.
+/// Iterations with the factor of the system itself.
 constexpr Index fresh_iterations = 12;
 }  // namespace
 
 namespace {
 
-/// The same state, whatever the direction of slip.
+/// Returns whether the states are equal, up to the direction of slip.
 bool is_alike(const ContactUnknown& one, const ContactUnknown& other) {
   double product = 0.0;
   for (std::size_t k = 0; k < one.test.size(); ++k) product += one.test[k] * other.test[k];
@@ -41,7 +40,7 @@ void AlartCurnierStep::add(ContactUnknown unknown, const PaddedVector& trial, co
   unknowns_.push_back(unknown);
 }
 
-/// The unknowns of a point, by its state.
+/// Adds the unknowns of a point, according to its state.
 void AlartCurnierStep::choose(const ContactSystem& system, const ContactPoint& point, const ContactIterate& from) {
   const PaddedVector r = padded(point, from.reaction);
   const double c = 1.0 / point.diagonal;
@@ -79,13 +78,13 @@ double AlartCurnierStep::factor_work(double unknowns) {
   return unknowns * unknowns * (unknowns / factor_speed + factor_overhead);
 }
 
-/// The matrix, a factor in half the memory, and the vectors before.
+/// Counts the matrix, a factor in half the memory, and the earlier vectors.
 double AlartCurnierStep::iteration_work(double unknowns) {
   return 1.5 * unknowns * unknowns + 30.0 * unknowns;
 }
 
-/// A matrix singular to rounding belongs to conditions that depend on one another. With a small multiple of x −
-/// x_present added, whole steps stay defined and their limits are the solutions of the problem itself.
+/// A matrix singular to rounding belongs to conditions that depend on one another. With a small multiple of
+/// x − x_present added, full steps stay defined, and their limits are the solutions of the problem itself.
 void AlartCurnierStep::add_proximal_term() {
   factored_proximal_ = 0.0;
   const double count = static_cast<double>(unknowns_.size());
@@ -123,7 +122,7 @@ bool AlartCurnierStep::solve_directly() {
   return false;
 }
 
-/// GMRES on what is left of the system; adds the correction to the solution. Returns the reduction reached.
+/// Applies GMRES to the residual of the system and adds the correction to the solution. Returns the reduction reached.
 double AlartCurnierStep::correct(const Vector& left, double reduction, Index limit) {
   const auto multiply = [this](const Vector& x, Vector& y) { multiply_dense(matrix_, x, y); };
   const auto precondition = [this](const Vector& x, Vector& y) { reused_.apply(x, y); };

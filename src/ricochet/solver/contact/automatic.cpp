@@ -19,25 +19,25 @@ namespace ricochet {
 
 namespace {
 
-/// Accelerated sweeps, at most.
+/// Largest number of accelerated sweeps.
 constexpr int accelerated_limit = 500;
-/// Part of its residual to which an iteration in single precision can be trusted.
+/// Reduction of the residual up to which an iteration in single precision is reliable.
 constexpr double rough_digits = 1e-5;
-/// Sweeps after which the rounding of W r is left to Newton.
+/// Number of verdicts after which the rounding of W r is left to Newton's method.
 constexpr int verdict_limit = 6;
 /// Sweeps over which the progress of the accelerated ones is judged.
 constexpr std::size_t outlook = 5;
-/// A fourth sweep with more than this part of the second one's residual: W is ill conditioned, and Newton takes over at
-/// once if it costs no more than so many sweeps.
+/// If the fourth sweep leaves more than this part of the second one's residual, W is ill-conditioned, and Newton's
+/// method takes over at once if it costs no more than so many sweeps.
 constexpr double stall = 0.4;
 constexpr double affordable_newton = 1000.0;
 /// Plain sweeps between runs of Newton steps, the first time.
 constexpr int cold_sweeps = 20;
-/// Of sweeps and Newton in turn; the number of sweeps doubles every time.
+/// Alternations of sweeps and Newton's method; the number of sweeps doubles every time.
 constexpr int round_limit = 6;
-/// Part of a point's correction that is taken.
+/// Smallest part of a point's correction that is taken.
 constexpr double smallest_damping = 0.125;
-/// Of long runs of sweeps at the very end, and their length in entries of W.
+/// Number of long runs of sweeps at the very end, and their length in entries of W.
 constexpr int last_rounds = 20;
 constexpr double last_work = 2e7;
 
@@ -51,21 +51,21 @@ bool is_nearly_closed(const ContactSystem& system, const ContactIterate& iterate
   return 10 * closed >= 9 * static_cast<std::ptrdiff_t>(system.points().size());
 }
 
-/// Non-smooth Newton after accelerated projected Gauss–Seidel.
+/// Nonsmooth Newton method after accelerated projected Gauss–Seidel.
 ///
-/// 0. Without friction and with the entries of W: the primal–dual active set, or the dual one where conditions depend
-///    on one another. From the reactions of an earlier step, where the factor kept from it has proved cheaper than
-///    sweeps: Newton at once.
-/// 1. From the last r, accelerated sweeps: first order, robust; they find the contact and the directions of slip
-///    roughly, and where W is well conditioned they go on to the end.
-/// 2. Newton on the Alart–Curnier equations (GlobalizedNewton), each step cut back until the merit decreases; where no
-///    part of a step does, a run of whole steps from the best r so far.
-/// 3. Where that stalls, the same from r = 0; then another Newton method.
-/// 4. More sweeps from the best r so far, then Newton again, twice as many sweeps every time; the same from r = 0, with
-///    sweeps that take a half, a quarter, an eighth of each point's correction.
-/// 5. The other solvers. At last whole sweeps for as long as they come closer.
+/// 0. Without friction and with the entries of W: the primal–dual active set, or the dual one if conditions depend on
+/// one another. From the reactions of an earlier step, if the factor kept from it has proved cheaper than sweeps:
+/// Newton's method at once.
+/// 1. From the last r, accelerated sweeps: first order, robust; they determine the contact and the directions of slip
+/// roughly, and if W is well-conditioned they continue to the end.
+/// 2. Newton's method on the Alart–Curnier equations (GlobalizedNewton), each step cut back until the merit decreases;
+/// if no part of a step does, a run of full steps from the best r so far.
+/// 3. If that stalls, the same from r = 0; then another Newton method.
+/// 4. More sweeps from the best r so far, then Newton's method again, twice as many sweeps every time; then from r = 0,
+/// with sweeps that take a half, a quarter, an eighth of each point's correction.
+/// 5. The other solvers. Finally full sweeps for as long as they bring progress.
 ///
-/// Where points are nearly one (TwinPoints), 3 to 5 only come after the problem with one of them has been tried.
+/// If points are nearly identical (TwinPoints), 3 to 5 are tried only after the problem with one of them.
 class AutomaticSolver final : public IterativeContactSolver {
  public:
   std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
@@ -105,12 +105,12 @@ class AutomaticSolver final : public IterativeContactSolver {
   GaussSeidel sweeps_;
   AcceleratedGaussSeidel accelerated_;
   GlobalizedNewton newton_;
-  std::unique_ptr<IterativeContactSolver> products_;  ///< where there are no entries of W
-  OtherSolvers others_;                               ///< where all else has failed
+  std::unique_ptr<IterativeContactSolver> products_;  ///< used without entries of W
+  OtherSolvers others_;                               ///< fallback
   PrimalDualActiveSet frictionless_;
   DualActiveSet normals_;
   BestIterate best_;      ///< of a part of the iteration
-  BestIterate fallback_;  ///< of all
+  BestIterate fallback_;  ///< of the whole iteration
   ContactIterate on_law_;
   Vector begin_;
   bool stalled_ = false;
@@ -129,7 +129,7 @@ void AutomaticSolver::load_memory(const std::vector<Index>& row_offset, const Sn
   newton_.load_memory(row_offset, snapshot, name);
 }
 
-/// Accelerated sweeps for as long as they promise to arrive sooner than Newton would.
+/// Performs accelerated sweeps for as long as they promise to converge sooner than Newton's method.
 bool AutomaticSolver::accelerated(const ContactWork& work) {
   const ContactSystem& system = work.system;
   const double target = std::max(work.options.tolerance, 1e-14) * system.data();
@@ -145,7 +145,7 @@ bool AutomaticSolver::accelerated(const ContactWork& work) {
     unchanged = accelerated_.sweep(system, work.current) ? 0 : unchanged + 1;
     const double change = accelerated_.change();
     if (!std::isfinite(change)) break;
-    // The change of a sweep is a good guess of the residual, and costs nothing.
+    // The change of a sweep is a good estimate of the residual, and costs nothing.
     double residual = change * residual_per_change;
     if (residual <= 2.0 * target) {
       residual = system.residual(work.current);
@@ -178,7 +178,7 @@ bool AutomaticSolver::accelerated(const ContactWork& work) {
   return work.is_done(work.current);
 }
 
-/// True: solved. Ends early when two sweeps change no state, where Newton is to follow.
+/// Returns whether the problem is solved. Ends early if two sweeps change no state and Newton's method is to follow.
 bool AutomaticSolver::sweep(const ContactWork& work, int sweeps, double damping) {
   sweeps_.restart();
   const bool long_run = sweeps > cold_sweeps;
@@ -197,13 +197,13 @@ bool AutomaticSolver::sweep(const ContactWork& work, int sweeps, double damping)
   return work.is_done(work.current);
 }
 
-/// W by its product alone: a first-order method that needs no more.
+/// Solves with W known by its product alone, by a first-order method that needs no more.
 std::string AutomaticSolver::iterate_with_products(const ContactWork& work) {
   if (products_ == nullptr) products_ = make_iterative_contact_solver("accelerated-gradient");
   return products_->iterate(work.system, work.options, work.current, work.solution);
 }
 
-/// Newton from `current`, with the line search, then whole steps from the best r.
+/// Performs Newton steps from `current` with the line search, then full steps from the best r.
 bool AutomaticSolver::newton(const ContactWork& work) {
   best_.restart(work);
   if (newton_.run(work, true, best_)) return true;
@@ -213,10 +213,10 @@ bool AutomaticSolver::newton(const ContactWork& work) {
   return work.is_loosely_solved(best_.iterate, on_law_);
 }
 
-/// Sweeps and Newton in turn, from `current`.
+/// Alternates sweeps and Newton's method, from `current`.
 bool AutomaticSolver::alternate(const ContactWork& work, int sweeps, double damping) {
   best_.restart(work);
-  double tried = std::numeric_limits<double>::infinity();  // where whole steps from the best r have come to nothing
+  double tried = std::numeric_limits<double>::infinity();  // merit from which full steps have failed
   for (int round = 1; round <= round_limit; ++round) {
     if (sweeps > 0 && sweep(work, sweeps, damping)) return true;
     if (newton_.run(work, true, best_)) return true;
@@ -232,7 +232,7 @@ bool AutomaticSolver::alternate(const ContactWork& work, int sweeps, double damp
   return false;
 }
 
-/// Accelerated sweeps, then Newton if they do not arrive.
+/// Performs accelerated sweeps, then Newton steps if they do not converge.
 bool AutomaticSolver::sweeps_and_newton(const ContactWork& work) {
   begin_ = work.current.reaction;
   const int before = work.solution.iterations;
@@ -240,7 +240,7 @@ bool AutomaticSolver::sweeps_and_newton(const ContactWork& work) {
   ContactCosts::learn(costs_.of_sweeps, static_cast<double>(work.solution.iterations - before) * sweep_work(work));
   if (solved) return true;
   if (is_nearly_closed(work.system, work.current) && stalled_) {
-    // Newton knows better from the start than from what a few sweeps have made of it.
+    // Newton's method does better from the start than from the result of a few sweeps.
     work.current.reaction = begin_;
     work.system.evaluate(work.current);
     best_.restart(work);
@@ -252,7 +252,7 @@ bool AutomaticSolver::sweeps_and_newton(const ContactWork& work) {
 std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactOptions& options,
                                      ContactIterate& current, ContactSolution& solution) {
   const ContactWork work{system, options, current, solution};
-  // What an earlier problem leaves behind must not decide bits of this one.
+  // Data of an earlier problem must not decide bits of this one.
   sweeps_.restart();
   newton_.start();
   if (!system.has_entries()) return iterate_with_products(work);
@@ -289,7 +289,7 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
          "is not positive semi-definite";
 }
 
-/// Of the normal conditions among themselves: friction makes no room.
+/// Looks for a contradiction of the normal conditions among themselves: friction does not remove it.
 std::string AutomaticSolver::find_contradiction(const ContactWork& work) {
   if (work.system.dense() == nullptr) return "";
   work.current.reaction.setZero();
@@ -309,11 +309,11 @@ void AutomaticSolver::keep_fallback() {
   if (best_.merit < fallback_.merit) fallback_ = best_;
 }
 
-/// What is left to try where sweeps and Newton have failed, the cheapest first.
+/// Tries the fallbacks after sweeps and Newton's method have failed, the cheapest first.
 bool AutomaticSolver::fall_back(const ContactWork& work, bool was_cold) {
   fallback_ = best_;
   if (!was_cold) {
-    // Where contact comes and goes the last reactions can be a bad start.
+    // If contact comes and goes, the last reactions can be a bad start.
     begin_at_zero(work);
     best_.restart(work);
     best_.merit = std::numeric_limits<double>::infinity();
@@ -325,7 +325,7 @@ bool AutomaticSolver::fall_back(const ContactWork& work, bool was_cold) {
   work.current = fallback_.iterate;
   if (alternate(work, cold_sweeps, 1.0)) return true;
   keep_fallback();
-  // Strong friction can make whole corrections circle; parts of them, from zero, then often arrive.
+  // Strong friction can make full corrections cycle; parts of them, from zero, then often converge.
   for (double damping = 0.5; damping >= smallest_damping; damping *= 0.5) {
     begin_at_zero(work);
     if (alternate(work, 2 * cold_sweeps, damping)) return true;
@@ -336,8 +336,8 @@ bool AutomaticSolver::fall_back(const ContactWork& work, bool was_cold) {
   return sweep_on(work);
 }
 
-/// The last resort: Gauss–Seidel for as long as it comes closer, with Newton tried now and then. Where conditions
-/// depend on one another it may creep, and still arrive.
+/// The last resort: Gauss–Seidel for as long as it brings progress, with Newton's method tried now and then. If
+/// conditions depend on one another it may creep, and still converge.
 bool AutomaticSolver::sweep_on(const ContactWork& work) {
   const double rows = static_cast<double>(work.system.rows());
   const int sweeps = static_cast<int>(std::clamp(last_work / (rows * rows), 100.0, 4000.0));

@@ -6,14 +6,14 @@ namespace ricochet {
 
 namespace {
 
-/// What a point of a sweep costs in entries of W.
+/// Overhead of a point of a sweep, in entries of W.
 constexpr double point_work = 100.0;
-/// Part of a factorization that a step in time is charged before it is known how long a factor lasts.
+/// Part of a factorization charged to a time step before it is known how long a factor lasts.
 constexpr double amortized_factor = 0.125;
-/// Weight of the last step in the means of what steps have cost.
+/// Weight of the last step in the mean costs.
 constexpr double recent = 0.3;
 
-/// Of the Alart–Curnier equations.
+/// Number of unknowns of the Alart–Curnier equations.
 double unknown_count(const ContactWork& work) {
   double unknowns = 0.0;
   for (const ContactPoint& point : work.system.points()) {

@@ -2,20 +2,21 @@
 
 #include "ricochet/solver/contact/globalized_newton.hpp"
 
-/// @file What sweeps and Newton's method cost, in entries of matrices that are read: counted, never taken by a clock.
+/// @file Costs of sweeps and of Newton's method, in matrix entries that are read: counted, never measured.
 namespace ricochet {
 
-/// Of a sweep: what the points that are closed now read, and what they cost besides.
+/// Cost of a sweep: entries read for the points that are closed now, and overhead per point.
 [[nodiscard]] double sweep_work(const ContactWork& work);
-/// What Newton would cost from here, in sweeps; `settled`: the states of the points change no more.
+/// Cost of Newton's method from here, in sweeps; `settled`: the states of the points no longer change.
 [[nodiscard]] double newton_cost(const ContactWork& work, bool settled);
 
-/// What problems have cost, on the mean of recent ones: zero, not known yet.
+/// Costs of problems, averaged over recent ones: zero if not known yet.
 struct ContactCosts {
   double of_sweeps = 0.0, of_newton = 0.0;
 
   static void learn(double& mean, double value);
-  /// From the last reactions: Newton with the factor of an earlier step has cost less than sweeps, or promises to.
+  /// True if, from the last reactions, Newton's method with the factor of an earlier step has cost less than sweeps, or
+  /// promises to.
   [[nodiscard]] bool prefer_newton(const ContactWork& work) const;
 };
 

@@ -4,21 +4,21 @@
 
 #include "ricochet/solver/contact/contact_system.hpp"
 
-// How far an iterate is from solving a contact problem, and what of that is rounding: see the header.
+// Distance of an iterate from a solution of a contact problem, and the part of it that is rounding: see the header.
 namespace ricochet {
 
 namespace {
 
-/// Rounding of sums that is more than this part of q excuses nothing: an iteration on a problem without a solution
-/// could increase its reactions until rounding hides what it is short of.
+/// Rounding of sums above this part of q is no excuse: an iteration on a problem without a solution could increase its
+/// reactions until rounding hides the residual.
 constexpr double largest_excuse = 0.01;
 
-/// What an error of u of this size makes of the natural map: û = u + F |u_T|.
+/// Effect of an error of u of this size on the natural map: û = u + F |u_T|.
 double floor_of_map(const ContactPoint& point, const ContactSystem::Floor& floor) {
   return (std::max(floor.normal, floor.tangential) + point.coefficient * floor.tangential) / std::sqrt(point.diagonal);
 }
 
-/// In units of u, and without the factor F that cone and floor have.
+/// Violation of the law, in units of u, and without the factor F that cone and floor have.
 double violation(const ContactPoint& point, const ContactIterate& iterate) {
   return alart_curnier_residual(point, 1.0 / point.diagonal, padded(point, iterate.reaction),
                                 padded(point, iterate.motion));
@@ -63,7 +63,7 @@ ContactSystem::Measure ContactSystem::measure(const ContactIterate& iterate) con
     result.residual = std::max(result.residual, value);
     result.rounding_floor = std::max(result.rounding_floor, floor);
     const bool is_finite = std::isfinite(value) && std::isfinite(floor);
-    // What q is rounded to excuses all; what the sums are rounded to, only so much.
+    // The rounding of q excuses everything; that of the sums only so much.
     const double known = (1.0 + point.coefficient) * of_motion.of_offset / std::sqrt(point.diagonal);
     const bool is_hidden = is_finite && value <= floor && value > std::max(loosest_residual * data_, known);
     const bool is_steep = point.coefficient > steep_coefficient;
@@ -76,7 +76,7 @@ ContactSystem::Measure ContactSystem::measure(const ContactIterate& iterate) con
       result.beyond_floor = std::max(result.beyond_floor, value);
     }
     if (is_steep && is_violated) result.beyond_floor = std::max(result.beyond_floor, data_);
-    // Where W has a zero block, r is in no sum.
+    // If W has a zero block, r is in no sum.
     const double of_reaction = sum_rounding * point.diagonal * iterate.reaction[point.row];
     if (iterate.reaction[point.row] > 0.0 && std::max(of_motion.of_sums, of_reaction) > excused)
       result.beyond_floor = std::max({result.beyond_floor, value, floor, of_reaction});

@@ -17,7 +17,7 @@ Tangent to_axes(const PointOperator& block, const Tangent& t) {
   return {block.axis[0] * t[0] + block.axis[1] * t[1], -block.axis[1] * t[0] + block.axis[0] * t[1]};
 }
 
-/// The point with its normal eliminated: (diag(stiffness) + κ) r_T = right, r_N = normal − slope·r_T.
+/// Point with its normal eliminated: (diag(stiffness) + κ) r_T = right, r_N = normal − slope·r_T.
 struct ReducedPoint {
   const PointOperator& block;
   Tangent right;
@@ -26,7 +26,7 @@ struct ReducedPoint {
   [[nodiscard]] Tangent tangential(double kappa) const {
     Tangent result;
     for (Index k = 0; k < 2; ++k) {
-      // No stiffness and nothing to resist: the reaction of least size is zero.
+      // Neither stiffness nor motion to resist: the reaction of least size is zero.
       result[k] = right[k] == 0.0 ? 0.0 : right[k] / (block.stiffness[k] + kappa);
     }
     return result;
@@ -42,7 +42,7 @@ ReducedPoint reduce(const PointOperator& block, const PaddedVector& q) {
   const double normal = -q[0] / block.normal;
   ReducedPoint reduced{block, Tangent::Zero(), normal};
   reduced.right = to_axes(block, -(q.tail<2>() + block.coupling * normal));
-  // A direction without stiffness: what is rounding there asks for no friction.
+  // In a direction without stiffness, rounding requires no friction.
   const double negligible = 16.0 * machine_epsilon * q.lpNorm<Eigen::Infinity>();
   for (Index k = 0; k < 2; ++k) {
     if (block.stiffness[k] == 0.0 && std::abs(reduced.right[k]) <= negligible) reduced.right[k] = 0.0;
@@ -50,8 +50,8 @@ ReducedPoint reduce(const PointOperator& block, const PaddedVector& q) {
   return reduced;
 }
 
-/// A root of a function that is negative (or minus infinite) at zero and positive far away: regula falsi with the
-/// Illinois correction, whose bracket closes from both sides; halved where that is no number.
+/// Finds a root of a function that is negative (or minus infinite) at zero and positive far away: regula falsi with the
+/// Illinois correction, whose bracket closes from both sides; halved if the result is not finite.
 template <typename Function>
 double find_root(const Function& function, double start) {
   double low = 0.0;
@@ -85,8 +85,8 @@ double find_root(const Function& function, double start) {
   return high;
 }
 
-/// κ at which F r_N = |r_T|: Newton on F r_N/|r_T| − 1, which is nearly linear in κ; without coupling and with equal
-/// stiffnesses the start is the solution. Not finite or not positive where Newton leaves its way.
+/// Finds κ at which F r_N = |r_T|: Newton's method on F r_N/|r_T| − 1, which is nearly linear in κ; without coupling
+/// and with equal stiffnesses the start is the solution. Not finite or not positive if Newton's method fails.
 double slip_by_newton(const ReducedPoint& reduced, double coefficient, double guess) {
   const double enough = guess >= 0.0 ? 1e-5 : 1e-9;
   const Tangent& s = reduced.block.stiffness;
@@ -107,13 +107,13 @@ double slip_by_newton(const ReducedPoint& reduced, double coefficient, double gu
     const double step = excess * square / slope;
     kappa -= step;
     if (!(slope > 0.0) || !(kappa >= 0.0)) return -1.0;
-    // Quadratic convergence: the error is now the square of the step, and the next call goes on from here.
+    // Quadratic convergence: the error is now the square of the step, and the next call continues from here.
     if (std::abs(step) <= enough * (kappa + std::max(s[0], s[1]))) return kappa;
   }
   return -1.0;
 }
 
-/// Direction of slip under Coulomb's law without a bound, zero where it is not found.
+/// Direction of slip under Coulomb's law without a bound, zero if it is not found.
 Tangent slip_direction(const ReducedPoint& reduced, const ContactPoint& point, double& slip_stiffness) {
   const Tangent& right = reduced.right;
   const Tangent& s = reduced.block.stiffness;
@@ -168,7 +168,7 @@ double squared(double value) {
   return value * value;
 }
 
-/// To either side: against the slip there would be without friction.
+/// Slips to the side against the slip without friction.
 PaddedVector slip_in_two_dimensions(double coefficient, const PointOperator& block, const PaddedVector& q) {
   const double side = q[1] * block.normal > block.coupling[0] * q[0] ? -coefficient : coefficient;
   const double divisor = block.normal + side * block.coupling[0];
@@ -191,7 +191,7 @@ PaddedVector solve_tresca(const ReducedPoint& reduced, double bound) {
   }
   const double normal = reduced.normal_reaction(tangential);
   if (normal > 0.0 || reduced.normal <= 0.0) return reduced.reaction(normal, tangential);
-  // Friction alone carries the point: grazing, with as much friction as leaves r_N = 0.
+  // Friction alone carries the point: grazing, with the friction that leaves r_N = 0.
   const auto pressing = [&](double k) { return reduced.normal_reaction(reduced.tangential(kappa + k)); };
   const double start = kappa > 0.0 ? kappa : reduced.block.stiffness.maxCoeff();
   return reduced.reaction(0.0, reduced.tangential(kappa + find_root(pressing, start)));
@@ -208,7 +208,7 @@ double tangential_residual(double step, const Tangent& reaction, const Tangent& 
 
 }  // namespace
 
-/// Eigenvalues of the symmetric 2×2 matrix and the first axis.
+/// Computes the eigenvalues of the symmetric 2×2 matrix and the first axis.
 PointOperator make_point_operator(const PointMatrix& w) {
   PointOperator result;
   result.normal = w(0, 0);

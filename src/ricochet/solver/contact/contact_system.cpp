@@ -12,17 +12,17 @@ namespace ricochet {
 
 namespace {
 
-/// Up to this many rows the entries of a product operator are found by products with unit vectors.
+/// Number of rows up to which the entries of a product operator are computed by products with unit vectors.
 constexpr Index few_rows = 3000;
-/// Up to this many rows a dense matrix is always faster than a sparse one.
+/// Number of rows up to which a dense matrix is always faster than a sparse one.
 constexpr Index small = 150;
-/// From this many rows on, sweeps wait for memory.
+/// Number of rows from which on sweeps are limited by memory bandwidth.
 constexpr Index many_rows = 350;
 
-/// Data are brought into the middle of the range of numbers before they are squared.
+/// Exponent within which data are scaled to the middle of the range of numbers before they are squared.
 constexpr int largest_exponent = 960;
 
-/// The power of two at or below.
+/// Largest power of two that does not exceed a value.
 double power_of_two(double value) {
   return std::isnormal(value) ? std::ldexp(1.0, std::ilogb(value)) : 1.0;
 }
@@ -80,7 +80,7 @@ void ContactSystem::analyse(const ContactProblem& problem) {
     largest = std::max(largest, largest_of[at]);
   }
   operator_scale_ = 1.0;
-  if (!fault_.empty()) return;  // nothing is solved with such a W
+  if (!fault_.empty()) return;  // no solver runs with such a W
   // The root of a power of two is one only for even powers: W's largest diagonal is brought between one and two first.
   operator_scale_ = 1.0 / power_of_two(largest);
   // Even with respect to the first point: a scaling of other rows, the largest one's included, changes nothing.
@@ -199,7 +199,7 @@ Index ContactSystem::system_row(Index problem_row) const {
   return found != row_of_.end() && *found == problem_row ? found - row_of_.begin() : -1;
 }
 
-/// Rows come in runs of neighbours, copied together.
+/// Copies rows in runs of neighbours.
 void ContactSystem::copy_dense() {
   const Matrix& w = *operator_->dense();
   const auto count = static_cast<Index>(row_of_.size());
@@ -227,7 +227,7 @@ void ContactSystem::copy_dense() {
   if (count >= many_rows) single_ = matrix_.cast<float>();
 }
 
-/// Of the scaled entries, which are too small for the sum of finite ones to overflow.
+/// Checks the sum of the scaled entries, which are too small for a sum of finite ones to overflow.
 void ContactSystem::note_sum(double sum) {
   if (!std::isfinite(sum) && fault_.empty()) fault_ = "W has entries that are no finite numbers";
 }
@@ -308,8 +308,8 @@ void ContactSystem::evaluate(ContactIterate& iterate) const {
     Vector product;
     multiply(iterate.reaction, product);
     iterate.motion += product;
-    // Σ |W r| as far as it is known: the point's own part, and the others' together. The bound Σ_j 4 |r_j| would call
-    // residuals of 1e-8 rounding where there are thousands of points.
+    // Σ |W r| as far as it is known: the point's own part, and the sum of the others. The bound Σ_j 4 |r_j| would take
+    // residuals of 1e-8 for rounding with thousands of points.
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const Index first = points_[k].row;
       const PaddedVector r = padded(points_[k], iterate.reaction);

@@ -7,18 +7,18 @@
 namespace ricochet {
 
 namespace {
-/// A curvature of so many roundings of its terms is zero. It need not be sharp: a smaller one makes a long step, and
-/// the reaction that vanishes first ends it.
+/// Multiple of the rounding of its terms below which a curvature is zero. It need not be sharp: a smaller one makes a
+/// long step, which ends with the first reaction that vanishes.
 constexpr double vanishing = 8.0;
-/// The same where no reaction vanishes and a long step would be taken.
+/// Likewise if no reaction vanishes and a long step would be taken.
 constexpr double contradicting = 64.0;
-/// Rounding in d, beside its largest entry.
+/// Rounding in d, relative to its largest entry.
 constexpr double negligible = 1e-12;
-/// Corrections of the reactions for what rounding left over in u_P, at most.
+/// Largest number of corrections of the reactions for the rounding in u_P.
 constexpr int corrections = 3;
 }  // namespace
 
-/// d_P and s of a row that enters. The rounding of L Lᵀ is that of √W_ii √W_jj, entry by entry.
+/// Computes d_P and s of a row that enters. The rounding of L Lᵀ is that of √W_ii √W_jj, entry by entry.
 DualActiveSet::Entry DualActiveSet::look_at(Index entering) {
   const Matrix& w = *system_->dense();
   const auto count = static_cast<Index>(rows_.size());
@@ -36,7 +36,7 @@ DualActiveSet::Entry DualActiveSet::look_at(Index entering) {
   return {w(entering, entering) - forward_.squaredNorm(), machine_epsilon * terms * terms};
 }
 
-/// After look_at.
+/// Appends the point examined by look_at.
 void DualActiveSet::append(Index point, double curvature) {
   const auto count = static_cast<Index>(rows_.size());
   if (factor_.rows() <= count) {
@@ -49,7 +49,7 @@ void DualActiveSet::append(Index point, double curvature) {
   rows_.push_back(row_of(point));
 }
 
-/// Rotations take the row out of L and leave it triangular.
+/// Removes a row from L by rotations, which leave it triangular.
 void DualActiveSet::remove(std::size_t position) {
   const auto count = static_cast<Index>(rows_.size());
   for (auto i = static_cast<Index>(position); i + 1 < count; ++i) {
@@ -68,7 +68,7 @@ void DualActiveSet::remove(std::size_t position) {
   set_.erase(set_.begin() + static_cast<std::ptrdiff_t>(position));
 }
 
-/// The points that press, as far as they are independent, and of these as many as press without the others.
+/// Starts from the pressing points, as far as they are independent and press without the others.
 void DualActiveSet::start(const ContactIterate& current) {
   set_.clear();
   rows_.clear();
@@ -92,7 +92,7 @@ void DualActiveSet::start(const ContactIterate& current) {
   }
 }
 
-/// −W_PP⁻¹ u_P in `direction_`.
+/// Computes −W_PP⁻¹ u_P in `direction_`.
 void DualActiveSet::solve_set(const Vector& motion) {
   const auto count = static_cast<Index>(rows_.size());
   direction_.resize(count);
@@ -102,7 +102,7 @@ void DualActiveSet::solve_set(const Vector& motion) {
   lower.transpose().solveInPlace(direction_);
 }
 
-/// Makes u_P zero to rounding and evaluates. A point whose reaction would change its sign by that leaves.
+/// Makes u_P zero to rounding and evaluates. Points whose reaction would thereby change its sign leave.
 void DualActiveSet::correct(ContactIterate& current) {
   for (int k = 0; k < corrections; ++k) {
     system_->evaluate(current);
@@ -126,7 +126,7 @@ double DualActiveSet::floor_of(Index point, const ContactIterate& current) const
   return system_->floor_of(system_->points()[static_cast<std::size_t>(point)], current).normal;
 }
 
-/// −1: no point outside of P penetrates.
+/// Returns −1 if no point outside of P penetrates.
 Index DualActiveSet::most_violated(const ContactIterate& current) const {
   Index result = -1;
   double deepest = 0.0;
@@ -140,8 +140,9 @@ Index DualActiveSet::most_violated(const ContactIterate& current) const {
   return result;
 }
 
-/// The motion that these conditions ask for is out of reach by more than the rounding of all of them; and also where s
-/// is not zero but what its rounding hides, it would be larger than the data (both in the norm of the energy).
+/// Returns whether the motion that these conditions require is out of reach by more than the rounding of all of them;
+/// and, if s is not zero but hidden by its rounding, whether it would be larger than the data (both in the energy
+/// norm).
 bool DualActiveSet::is_contradiction(Index entering, const Entry& entry, const ContactIterate& current) const {
   const double lack = -current.motion[row_of(entering)];
   if (!(lack > std::sqrt(contradicting * entry.rounding) * system_->data())) return false;
@@ -162,7 +163,7 @@ void DualActiveSet::note_contradiction(Index entering) {
   std::sort(contradiction_.begin(), contradiction_.end());
 }
 
-/// False: the point contradicts others, or nothing more can be done for it.
+/// Returns false if the point contradicts others, or no further progress is possible.
 bool DualActiveSet::enter(Index entering, ContactIterate& current, int& iterations, int limit) {
   const Index at = row_of(entering);
   double motion = current.motion[at];

@@ -5,28 +5,28 @@
 
 #include "ricochet/solver/contact/contact_system.hpp"
 
-/// @file The frictionless contact problem where conditions depend on one another.
+/// @file Frictionless contact problems whose conditions depend on one another.
 namespace ricochet {
 
-/// The dual active set method of D. Goldfarb and A. Idnani (Math. Program. 27 (1983) 1–33) for
+/// Dual active set method of D. Goldfarb and A. Idnani (Math. Program. 27 (1983) 1–33) for
 ///   min ½ rᵀW r + qᵀr,  r ≥ 0,   W positive semi-definite,
-/// which has one motion u = q + W r wherever it has a solution, however many reactions give it. A set P of points with
-/// u_P = 0, r_P ≥ 0 and a positive definite W_PP is kept. The point j that penetrates most enters along
+/// which has one motion u = q + W r if it has a solution, however many reactions produce it. It keeps a set P of points
+/// with u_P = 0, r_P ≥ 0 and a positive definite W_PP. The point j with the deepest penetration enters along
 ///   d_P = −W_PP⁻¹ W_Pj,  d_j = 1,   on which u_P stays zero and u_j grows by s = W_jj + W_jP d_P per unit,
-/// until u_j = 0 or a reaction of P vanishes; that point leaves P. Where j depends on P, s is zero and u_j waits until
-/// enough points have left. Where s is zero and no reaction decreases, d ≥ 0 with W d = 0 proves that no motion meets
-/// all conditions: these points contradict one another.
+/// until u_j = 0 or a reaction of P vanishes; that point leaves P. If j depends on P, s is zero and u_j waits until
+/// enough points have left. If s is zero and no reaction decreases, d ≥ 0 with W d = 0 proves that no motion meets all
+/// conditions: these points contradict one another.
 class DualActiveSet {
  public:
-  /// Looks at the normal rows of the points only: friction is left out. Needs entries in dense form. Starts from the
-  /// points that press in `current`. Returns why it ended without a solution, or nothing: `current` is the solution,
+  /// Solves on the normal rows of the points only: friction is left out. Requires entries in dense form. Starts from
+  /// the points that press in `current`. Returns the reason of a failure, or nothing: `current` is the solution,
   /// evaluated. Counts the points that enter or leave in `iterations`.
   std::string solve(const ContactSystem& system, ContactIterate& current, int& iterations);
-  /// After `solve`: points of the problem that no motion satisfies together, ascending; empty: none were found.
+  /// Points of the problem that no motion satisfies together, ascending, after `solve`; empty: none were found.
   [[nodiscard]] const std::vector<Index>& contradiction() const { return contradiction_; }
 
  private:
-  /// What a point's entry does.
+  /// Effect of a point's entry.
   struct Entry {
     double curvature = 0.0;  ///< s
     double rounding = 0.0;   ///< size of the terms of s, times ε
@@ -52,7 +52,7 @@ class DualActiveSet {
   Matrix factor_;              ///< W_PP = L Lᵀ in its lower left corner
   Vector forward_;             ///< L⁻¹ W_Pj
   Vector direction_;           ///< d_P
-  std::vector<char> excused_;  ///< per point of the system: no room for it, but that may be rounding
+  std::vector<char> excused_;  ///< per point of the system: no room for it, possibly due to rounding
   std::vector<Index> contradiction_;
 };
 

@@ -10,16 +10,16 @@ namespace ricochet {
 namespace {
 
 constexpr int extragradient_iterations = 50000;
-/// Bounds of ρ |û(r̄) − û(r)|/|r̄ − r|: above the first the step is repeated, shorter; below the other the next is
+/// Bounds of ρ |û(r̄) − û(r)|/|r̄ − r|: above the first the step is repeated, shorter; below the second the next one is
 /// longer.
 constexpr double longest = 0.9, shortest = 0.3;
 constexpr double shortening = 2.0 / 3.0;
 
-/// Extragradient for the variational inequality of û on K:
+/// Extragradient method for the variational inequality of û on K:
 ///   r̄ = P_K(r − ρ û(r)/w),   r⁺ = P_K(r − ρ û(r̄)/w),   û = u + (F |u_T|, 0, 0),   u = q + W r.
 /// G. M. Korpelevich, Matecon 12 (1976) 747–756; ρ adapted as by E. N. Khobotov, USSR Comput. Math. Math. Phys. 27
 /// (1987) 120–127, and on contact problems by V. Acary, M. Brémond, O. Huber, in Advanced Topics in Nonsmooth Dynamics,
-/// Springer 2018, 375–457. Two products with W for each iteration, which see the whole of De Saxcé's correction.
+/// Springer 2018, 375–457. Two products with W per iteration, which include the whole of De Saxcé's correction.
 class Extragradient final : public IterativeContactSolver {
  protected:
   [[nodiscard]] std::string refuses(const ContactSystem& system) const override { return refuse_bounds(system); }
@@ -47,7 +47,7 @@ void Extragradient::step(const ContactSystem& system, const ContactIterate& from
   to.motion += system.offset();
 }
 
-/// ρ |û(r̄) − û(r)|/|r̄ − r|, of u in the dual metric.
+/// Computes ρ |û(r̄) − û(r)|/|r̄ − r|, with u in the dual metric.
 double Extragradient::ratio(const ContactSystem& system, const ContactIterate& current) const {
   double of_motion = 0.0;
   double of_reaction = 0.0;

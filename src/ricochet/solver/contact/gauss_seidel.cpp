@@ -44,7 +44,7 @@ bool GaussSeidel::sweep(const ContactSystem& system, double damping, ContactIter
 
 namespace {
 
-/// The sweeps alone, for comparison and as a fallback.
+/// Sweeps alone, for comparison and as a fallback.
 class GaussSeidelSolver final : public IterativeContactSolver {
  protected:
   [[nodiscard]] std::string refuses(const ContactSystem& system) const override {
@@ -59,7 +59,7 @@ class GaussSeidelSolver final : public IterativeContactSolver {
       const double residual = system.residual(current);
       note_iteration(system, options, "sweep", residual, current.reaction, solution);
       if (!std::isfinite(residual)) return "the sweeps diverged: W is not positive definite";
-      // u gathers the rounding of its updates; the verdict is on a fresh one.
+      // u accumulates the rounding of its updates; the verdict is on a fresh one.
       if (residual > options.tolerance * system.data() && k % 16 != 0) continue;
       system.evaluate(current);
       if (system.is_solved(current, options.tolerance)) return "";

@@ -11,18 +11,18 @@ namespace ricochet {
 
 namespace {
 
-/// Newton steps that the rounding of q covers before the last of them is taken for exact.
+/// Newton steps covered by the rounding of q before the last of them is taken as exact.
 constexpr int inexact_limit = 3;
 /// Newton steps in a row before the sweeps take over again.
 constexpr int newton_limit = 30;
-/// After a Newton step that has left more than this part of the merit (a square).
+/// Sweeps after a Newton step that has left more than this part of the merit (a square).
 constexpr int smoothing_sweeps = 8;
 constexpr double good_step = 1e-4;
 /// Halvings of a Newton step.
 constexpr int newton_step_cuts = 8;
 /// Part of the step's length by which the merit has to decrease.
 constexpr double sufficient_decrease = 1e-4;
-/// Of the residual of a linear system while the points still change their states.
+/// Reduction of the residual of a linear system while the points still change their states.
 constexpr double loose_reduction = 1e-3;
 
 }  // namespace
@@ -37,16 +37,16 @@ double contact_merit(const ContactSystem& system, const ContactIterate& iterate)
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
 }
 
-/// Where rounding is asked for, sweeps arrive as soon as the rounding of q covers what is left. Newton leaves much
-/// less, and a scheme that asks whether a gap is zero to rounding sees the difference: klr-conserving would open the
-/// point.
+/// If rounding is required, sweeps end as soon as the rounding of q covers the residual. Newton's method leaves much
+/// less, and a scheme that tests whether a gap is zero to rounding depends on the difference: klr-conserving would open
+/// the point.
 bool ContactWork::is_done(const ContactIterate& iterate) const {
   const ContactSystem::Measure measure = system.measure(iterate);
   if (options.tolerance > 0.0) return measure.beyond_floor <= options.tolerance * system.data();
   return measure.beyond_floor == 0.0 && measure.is_exact;
 }
 
-/// Where the rounding of q is larger than that of sums, friction may be beyond its limit by as much.
+/// If the rounding of q is larger than that of sums, friction may be beyond its limit by as much.
 bool ContactWork::is_solved_on_law(const ContactIterate& iterate, double tolerance, ContactIterate& on_law) const {
   on_law = iterate;
   IterativeContactSolver::put_on_law(system, iterate.motion, false, on_law.reaction);
@@ -82,14 +82,14 @@ void GlobalizedNewton::reset() {
   sparse_system_.reset();
 }
 
-/// Of the residual of the next linear system: while states change the step need not be exact.
+/// Reduction of the residual of the next linear system: while states change the step need not be exact.
 double GlobalizedNewton::next_reduction(const ContactWork& work) const {
   if (!step_.has_settled()) return loose_reduction;
   const double wanted = 0.1 * work.options.tolerance * work.system.data() / work.system.residual(work.current);
   return std::clamp(wanted, 1e-13, loose_reduction);
 }
 
-/// The whole Newton step, in `trial_`.
+/// Computes the full Newton step, in `trial_`.
 bool GlobalizedNewton::full_step(const ContactWork& work, double reduction) {
   if (work.system.dense() == nullptr) return sparse_step(work);
   if (!step_.step(work.system, work.current, trial_.reaction, reduction)) return false;
@@ -112,8 +112,8 @@ bool GlobalizedNewton::sparse_step(const ContactWork& work) {
   return true;
 }
 
-/// From the current iterate towards the full step: the whole, half, quarter, … of it with a smaller merit becomes the
-/// current one.
+/// Searches from the current iterate towards the full step: the whole, half, quarter, … of it with a smaller merit
+/// becomes the current one.
 bool GlobalizedNewton::search_line(const ContactWork& work) {
   double length = 1.0;
   for (int k = 0; k <= newton_step_cuts; ++k, length *= 0.5) {
@@ -131,8 +131,8 @@ bool GlobalizedNewton::search_line(const ContactWork& work) {
   return false;
 }
 
-/// Whole steps leave errors of short wave length at points that changed their state, which sweeps remove: replaces the
-/// step by what a few sweeps make of it where that is better.
+/// Full steps leave errors of short wavelength at points that changed their state, which sweeps remove: replaces the
+/// step by the result of a few sweeps if that is better.
 void GlobalizedNewton::smooth(const ContactWork& work) {
   cut_ = trial_;
   for (int k = 0; k < smoothing_sweeps; ++k) sweeps_.sweep(work.system, 1.0, cut_);

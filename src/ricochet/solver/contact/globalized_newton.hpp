@@ -7,13 +7,13 @@
 #include "ricochet/solver/contact/gauss_seidel.hpp"
 #include "ricochet/solver/contact/newton_iteration.hpp"
 
-/// @file The Newton steps of the automatic solver, and what they and its sweeps have in common.
+/// @file Newton steps of the automatic solver, and the data they share with its sweeps.
 namespace ricochet {
 
-/// Sum over the points of Alart and Curnier's residual, squared; infinite where it is not a number.
+/// Sum over the points of Alart and Curnier's residual, squared; infinite if it is not finite.
 [[nodiscard]] double contact_merit(const ContactSystem& system, const ContactIterate& iterate);
 
-/// What the parts of an iteration work on.
+/// Problem, options, iterate and solution that the parts of an iteration work on.
 struct ContactWork {
   const ContactSystem& system;
   const ContactOptions& options;
@@ -22,33 +22,34 @@ struct ContactWork {
 
   [[nodiscard]] double merit() const { return contact_merit(system, current); }
   [[nodiscard]] bool is_done(const ContactIterate& iterate) const;
-  /// Whether it is still solved when its reactions are put on their law, as it is handed over: then in `on_law`.
+  /// Returns whether it is still solved when its reactions are put on their law, as in the result: then in `on_law`.
   [[nodiscard]] bool is_solved_on_law(const ContactIterate& iterate, double tolerance, ContactIterate& on_law) const;
-  /// Where rounding is asked for and nothing improves any more: the same for the loosest residual that is accepted.
+  /// Likewise for the loosest residual that is accepted if rounding is required and nothing improves any more.
   [[nodiscard]] bool is_loosely_solved(const ContactIterate& iterate, ContactIterate& on_law) const;
 };
 
-/// The iterate of least merit so far.
+/// Iterate of least merit so far.
 struct BestIterate {
   ContactIterate iterate;
   double merit = 0.0;
 
-  /// From here on.
+  /// Restarts from the current iterate.
   void restart(const ContactWork& work);
-  /// Takes the current iterate where it is better; its merit.
+  /// Keeps the current iterate if it is better. Returns its merit.
   double keep(const ContactWork& work);
 };
 
-/// Newton steps (AlartCurnierStep; where W is sparse the same equations by a sparse factor), each cut back until the
-/// merit decreases, or whole ones.
+/// Newton steps (AlartCurnierStep; for a sparse W the same equations with a sparse factor), each cut back until the
+/// merit decreases, or full ones.
 class GlobalizedNewton {
  public:
-  /// From the current iterate. True: solved. Without the line search an active set may pass through a large residual:
-  /// where conditions depend on one another, two points have to be pressed against each other until one of them slips.
+  /// Runs from the current iterate. Returns whether it is solved. Without the line search an active set may pass
+  /// through a large residual: if conditions depend on one another, two points have to be pressed against each other
+  /// until one of them slips.
   bool run(const ContactWork& work, bool line_search, BestIterate& best);
-  /// Before a problem: what an earlier one leaves behind must not decide bits of this one.
+  /// To be called before a problem: data of an earlier one must not decide its bits.
   void start();
-  /// The factors are of another W.
+  /// Discards the factors, which are of another W.
   void reset();
   [[nodiscard]] const AlartCurnierStep& step() const { return step_; }
   void load_memory(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name) {

@@ -4,7 +4,7 @@ namespace ricochet {
 
 namespace {
 
-/// What a point does, by its reaction alone.
+/// Status of a point, by its reaction alone.
 ContactStatus status_of(const ContactPoint& point, const Vector& reaction) {
   if (!(reaction[point.row] > 0.0)) return ContactStatus::open;
   if (!point.has_friction()) return ContactStatus::closed;

@@ -13,7 +13,8 @@
 namespace ricochet {
 
 namespace {
-/// Where a solver stops just inside the tolerance, putting r on its law may leave it just outside: once more, closer.
+/// If a solver stops just inside the tolerance, putting r on its law may leave it just outside: repetitions with a
+/// tighter one.
 constexpr int tightenings = 4;
 /// Points that do not penetrate at r = 0 by more than this part of the data are left out at first.
 constexpr double margin = 0.1;
@@ -79,7 +80,7 @@ void ContactOptions::validate() const {
   }
 }
 
-/// r = 0 is a solution.
+/// Returns whether r = 0 is a solution.
 bool IterativeContactSolver::is_open(const ContactProblem& problem) const {
   for (Index i = 0; i < problem.points(); ++i) {
     if (!problem.is_eligible(i)) continue;
@@ -103,7 +104,7 @@ void IterativeContactSolver::choose_points(const ContactProblem& problem) {
   system_.select(problem, wanted_);
 }
 
-/// The last r where it is still admissible.
+/// Restricts the last r to its admissible part.
 void IterativeContactSolver::start(Vector& reaction) const {
   for (const ContactPoint& point : system_.points()) {
     auto r = reaction.segment(point.row, point.size);
@@ -127,7 +128,7 @@ void IterativeContactSolver::put_on_law(const ContactSystem& system, const Vecto
     if (point.size == 1) continue;
     auto friction = r.tail(point.size - 1);
     const double limit = point.friction_limit(r[0]);
-    // The measure knows of its direction, but weighs it by a force that may be small.
+    // The measure includes the direction, but weighted by a force that may be small.
     if (!exactly && std::abs(friction.norm() - limit) <= 4.0 * machine_epsilon * limit) continue;
     const PointVector u = motion.segment(point.row + 1, point.size - 1);
     const PointVector tau = friction - u / point.diagonal;
@@ -138,7 +139,7 @@ void IterativeContactSolver::put_on_law(const ContactSystem& system, const Vecto
   }
 }
 
-/// u of the problem from its own W, unless the system has all of its rows.
+/// Computes u of the problem from its own W, unless the system has all of its rows.
 void IterativeContactSolver::find_motion(const ContactProblem& problem, ContactSolution& solution) const {
   if (system_.rows() == problem.rows()) {
     system_.give_motion(finished_.motion, solution.motion);
@@ -160,7 +161,7 @@ void IterativeContactSolver::find_motion(const ContactProblem& problem, ContactS
   }
 }
 
-/// True: some point outside of the system penetrates; the system now has it.
+/// Returns whether some point outside of the system penetrates, which is then added to it.
 bool IterativeContactSolver::take_in_penetrating(const ContactProblem& problem, const ContactOptions& options,
                                                  const ContactSolution& solution) {
   bool found = false;
@@ -181,8 +182,8 @@ bool IterativeContactSolver::take_in_penetrating(const ContactProblem& problem, 
   return found;
 }
 
-/// r on its law, evaluated and measured, in `finished_`. Where rounding is asked for, turning friction against the slip
-/// to the last digits may itself leave more than rounding: then as it is.
+/// Puts r on its law, evaluated and measured, in `finished_`. If rounding is required, turning friction against the
+/// slip to the last digits may itself leave more than rounding: r then stays as it is.
 void IterativeContactSolver::finish(const ContactOptions& options) {
   for (const bool exactly : {true, false}) {
     if (exactly && options.tolerance > 0.0) continue;
@@ -275,8 +276,8 @@ void IterativeContactSolver::find_status(const ContactProblem& problem, ContactS
   }
 }
 
-/// On the points that are wanted, from the solution's reactions, until no other penetrates. `exchanges`: of points that
-/// are nearly one only one is there, which others may take the place of.
+/// Solves on the wanted points, from the solution's reactions, until no other penetrates. `exchanges`: of nearly
+/// identical points only one is included, which others may replace.
 void IterativeContactSolver::solve_on_wanted(const ContactProblem& problem, const ContactOptions& options,
                                              bool exchanges, ContactSolution& solution) {
   while (true) {
@@ -293,8 +294,8 @@ void IterativeContactSolver::solve_on_wanted(const ContactProblem& problem, cons
   }
 }
 
-/// Of points that are nearly one only one at a time, from the best r so far. Where that does not end with a solution,
-/// all of them again.
+/// Solves with one at a time of nearly identical points, from the best r so far. If that does not lead to a solution,
+/// with all of them again.
 void IterativeContactSolver::solve_without_twins(const ContactProblem& problem, const ContactOptions& options,
                                                  ContactSolution& solution) {
   has_all_points_ = false;

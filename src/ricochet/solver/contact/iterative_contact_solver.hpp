@@ -7,11 +7,11 @@
 #include "ricochet/solver/contact/contact_system.hpp"
 #include "ricochet/solver/contact/twin_points.hpp"
 
-/// @file What all solvers share: scaling, warm start, the choice of points, the verdict.
+/// @file Base of all solvers: scaling, warm start, the choice of points, the verdict.
 namespace ricochet {
 
-/// A solver writes `iterate`; everything it is given is scaled (ContactSystem), and what it returns is judged here by
-/// the one measure: no solver can declare a problem solved.
+/// A solver implements `iterate`; all its input is scaled (ContactSystem), and its result is judged here by the one
+/// measure: no solver can declare a problem solved.
 class IterativeContactSolver : public ContactSolver {
  public:
   void analyse(const ContactProblem& problem) override;
@@ -21,35 +21,35 @@ class IterativeContactSolver : public ContactSolver {
   void save(Snapshot& snapshot, const std::string& name) const override;
   void load(const Snapshot& snapshot, const std::string& name) override;
 
-  /// From `current`, which is evaluated and satisfies the signs and limits of its law, towards a solution: until
-  /// system.is_solved(current, tolerance), or for as long as it gets closer. Leaves the best r and its u in `current`.
-  /// Returns why it stopped without a solution, or nothing.
+  /// Iterates from `current`, which is evaluated and satisfies the signs and limits of its law, towards a solution:
+  /// until system.is_solved(current, tolerance), or for as long as there is progress. Leaves the best r and its u in
+  /// `current`. Returns the reason of a failure, or nothing.
   virtual std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
                               ContactSolution& solution) = 0;
 
-  /// r on the law: signs and limits hold exactly; where friction is at its limit it is against the slip, to the last
-  /// digits where `exactly` is asked for. u does not follow.
+  /// Puts r on the law: signs and limits hold exactly; friction at its limit is against the slip, to the last digits
+  /// with `exactly`. Leaves u unchanged.
   static void put_on_law(const ContactSystem& system, const Vector& motion, bool exactly, Vector& reaction);
 
  protected:
-  /// Why such a problem is not for this solver; empty: it is.
+  /// Reason why the solver does not treat such a problem; empty: it does.
   [[nodiscard]] virtual std::string refuses(const ContactSystem&) const { return {}; }
-  /// Another W, or another start: what was kept from earlier problems no longer holds.
+  /// Discards data kept from earlier problems, for another W or another start.
   virtual void forget() {}
-  /// What besides the reactions is kept from one problem to the next and decides bits (factors that are used again, by
-  /// what they were made of), and its return after `forget`, for points with these rows (ContactProblem::row_offset).
-  /// Throws as `load` does; the caller then forgets what may have been taken.
+  /// Save and load the data that besides the reactions are kept from one problem to the next and decide bits (factors
+  /// that are used again, by the data they were made of); loading follows `forget`, for points with these rows
+  /// (ContactProblem::row_offset). Throws as `load` does; the caller then discards partial data.
   virtual void save_memory(Snapshot&, const std::string& /* name */) const {}
   virtual void load_memory(const std::vector<Index>& /* row_offset */, const Snapshot&, const std::string& /* name */) {
   }
-  /// A point whose rows are wanted in the system though it may be open: something kept needs them.
+  /// True if kept data require the rows of a point in the system, though it may be open.
   [[nodiscard]] virtual bool keeps_row(Index /* of the problem, a point's first */) const { return false; }
-  /// Solve on the points that move into the obstacle or had a reaction, and take in others when they turn out to
+  /// True if the solver works on the points that move into the obstacle or had a reaction, and adds others if they
   /// penetrate, instead of on all points.
   [[nodiscard]] virtual bool works_on_candidates() const { return false; }
 
   /// True if `iterate` should give up before an expensive attempt: some points nearly coincide, and `solve` next tries
-  /// one of each group of them. It comes back with all of them if that fails.
+  /// one of each group of them. It returns to all of them if that fails.
   [[nodiscard]] bool may_leave_out_twins() { return has_all_points_ && twins_.any(*analysed_, analysed_row_offset_); }
 
  private:
@@ -74,13 +74,13 @@ class IterativeContactSolver : public ContactSolver {
   Vector warm_reaction_;
   std::vector<char> wanted_;
   TwinPoints twins_;
-  bool has_all_points_ = false;  ///< the system may have points that are nearly one, and nothing else was tried yet
+  bool has_all_points_ = false;  ///< the system may have nearly identical points, and nothing else has been tried yet
   ContactIterate current_, finished_;
   ContactIterate closest_;          ///< of several passes
   ContactSystem::Measure measure_;  ///< of `finished_`
 };
 
-/// As make_contact_solver.
+/// Makes a solver as make_contact_solver does.
 [[nodiscard]] std::unique_ptr<IterativeContactSolver> make_iterative_contact_solver(const std::string& name);
 
 }  // namespace ricochet

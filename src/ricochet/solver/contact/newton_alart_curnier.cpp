@@ -5,10 +5,11 @@ namespace ricochet {
 
 namespace {
 
-/// P. Alart and A. Curnier (Comput. Methods Appl. Mech. Engrg. 92 (1991) 353–375):
+/// Semismooth Newton method on the equations of P. Alart and A. Curnier (Comput. Methods Appl. Mech. Engrg. 92 (1991)
+/// 353–375):
 ///   f_N = r_N − max(0, τ_N),   f_T = r_T − P_b(τ_T),   τ = r − u/w,   b = F max(0, τ_N)
-/// (or the point's bound), P_b the projection on the disc |·| ≤ b. The step is AlartCurnierStep's where W is dense; the
-/// same one from (A W + B) Δr = −f where it is sparse.
+/// (or the point's bound), P_b the projection on the disc |·| ≤ b. The step is AlartCurnierStep's for a dense W, and
+/// follows from (A W + B) Δr = −f for a sparse one.
 class NewtonAlartCurnier final : public NewtonContactSolver {
  protected:
   [[nodiscard]] PointEquation equation(const ContactPoint& point, const PaddedVector& reaction,

@@ -12,7 +12,7 @@ namespace {
 /// Smallest eigenvalue of (x² + y²)^½ in the derivatives, relative to its largest.
 constexpr double smallest_root = 1e-6;
 
-/// Multiplication with x in the algebra of the cone: x∘y = (x·y, x_N y_T + y_N x_T).
+/// Multiplication by x in the algebra of the cone: x∘y = (x·y, x_N y_T + y_N x_T).
 Eigen::Matrix3d arrow(const PaddedVector& x) {
   Eigen::Matrix3d result = x[0] * Eigen::Matrix3d::Identity();
   result.block<1, 2>(0, 1) = x.tail<2>().transpose();
@@ -20,13 +20,13 @@ Eigen::Matrix3d arrow(const PaddedVector& x) {
   return result;
 }
 
-/// The function of A. Fischer and W. Burmeister on the second-order cone (M. Fukushima, Z.-Q. Luo, P. Tseng, SIAM J.
-/// Optim. 12 (2002) 436–460): with L the self-dual cone |x_T| ≤ x_N,
+/// Function of A. Fischer and W. Burmeister on the second-order cone (M. Fukushima, Z.-Q. Luo, P. Tseng, SIAM J. Optim.
+/// 12 (2002) 436–460): with L the self-dual cone |x_T| ≤ x_N,
 ///   f = x + y − (x² + y²)^½ = 0   ⟺   L ∋ x ⟂ y ∈ L,
-/// squares and roots those of the cone's algebra. K* ∋ û ⟂ r ∈ K is brought to it, with s = max(1, F), by
+/// squares and roots those of the cone's algebra. K* ∋ û ⟂ r ∈ K is transformed to it, with s = max(1, F), by
 ///   x = (û_N/s, F û_T/s)/w,   y = (s r_N, s r_T/F),   û = u + (F |u_T|, 0, 0).
-/// Where (x² + y²)^½ is singular, its derivatives are those with its small eigenvalue raised (smoothing of the
-/// derivatives only: X. Chen, L. Qi, D. Sun, Math. Comp. 67 (1998) 519–540).
+/// If (x² + y²)^½ is singular, its derivatives are those with its small eigenvalue raised (smoothing of the derivatives
+/// only: X. Chen, L. Qi, D. Sun, Math. Comp. 67 (1998) 519–540).
 class NewtonFischerBurmeister final : public NewtonContactSolver {
  protected:
   [[nodiscard]] std::string refuses(const ContactSystem& system) const override {

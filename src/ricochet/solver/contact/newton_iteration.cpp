@@ -12,9 +12,9 @@ namespace {
 constexpr int step_limit = 200;
 /// Halvings of a step.
 constexpr int cut_limit = 12;
-/// Whole steps in one solve that may be taken against the merit.
+/// Full steps in one solve that may be taken against the merit.
 constexpr int jump_limit = 12;
-/// Part of the decrease to first order that is asked for.
+/// Required part of the first-order decrease.
 constexpr double sufficient = 1e-4;
 constexpr auto none = static_cast<std::size_t>(-1);
 }  // namespace
@@ -91,7 +91,7 @@ bool NewtonSystem::solve_dense(const ContactSystem& system, const std::vector<Po
   return true;
 }
 
-/// W's pattern with whole blocks on the diagonal, so that A W + B fits in; kept for as long as it fits.
+/// Sets W's pattern with whole blocks on the diagonal, so that A W + B fits; kept for as long as it fits.
 void NewtonSystem::find_pattern(const ContactSystem& system) {
   const SparseMatrix& w = *system.sparse();
   const std::vector<ContactPoint>& points = system.points();
@@ -220,8 +220,8 @@ PointEquation projection_equation(const ContactPoint& point, const PaddedVector&
   return equation;
 }
 
-/// From `current` towards `trial_`: the whole, half, quarter, … of the step with a merit small enough becomes
-/// `current`.
+/// Searches from `current` towards `trial_`: the whole, half, quarter, … of the step with a sufficiently small merit
+/// becomes `current`.
 bool NewtonContactSolver::search_line(const ContactSystem& system, ContactIterate& current, double reference) {
   double length = 1.0;
   for (int k = 0; k <= cut_limit; ++k, length *= 0.5) {

@@ -8,30 +8,30 @@
 #include "ricochet/linear_algebra/sparse_lu.hpp"
 #include "ricochet/solver/contact/iterative_contact_solver.hpp"
 
-/// @file Semi-smooth Newton on an equation per point.
+/// @file Semismooth Newton method on an equation per point.
 namespace ricochet {
 
-/// f_i(u_i, r_i) = 0 says that point i satisfies its law. In units of r. What belongs to missing tangents is zero, but
-/// for ones on the diagonal of ∂f/∂r.
+/// Equation f_i(u_i, r_i) = 0, which states that point i satisfies its law. In units of r. Components of missing
+/// tangents are zero, except for ones on the diagonal of ∂f/∂r.
 struct PointEquation {
   PaddedVector value = PaddedVector::Zero();
   Eigen::Matrix3d by_motion = Eigen::Matrix3d::Zero();        ///< an element of ∂f/∂u
-  Eigen::Matrix3d by_reaction = Eigen::Matrix3d::Identity();  ///< the one of ∂f/∂r that goes with it
+  Eigen::Matrix3d by_reaction = Eigen::Matrix3d::Identity();  ///< the corresponding one of ∂f/∂r
 };
 
-/// The normal reaction that the friction limit b of the projection equations is taken of.
+/// Normal reaction that determines the friction limit b of the projection equations.
 enum class DiscRadius { of_trial, of_reaction };
-/// f_N = r_N − max(0, τ_N), f_T = r_T − P_b(τ_T) with τ = r − u/w, P_b the projection on the disc |·| ≤ b.
+/// Returns f_N = r_N − max(0, τ_N), f_T = r_T − P_b(τ_T) with τ = r − u/w, P_b the projection on the disc |·| ≤ b.
 [[nodiscard]] PointEquation projection_equation(const ContactPoint& point, const PaddedVector& reaction,
                                                 const PaddedVector& motion, DiscRadius radius, bool derivatives);
 
-/// The linear system of a step, (A W + B) Δr = −f with A and B block diagonal, W dense or sparse. Points with A_i = 0
-/// (open ones) are eliminated where W is dense.
+/// Linear system of a step, (A W + B) Δr = −f with A and B block diagonal, W dense or sparse. Points with A_i = 0 (open
+/// ones) are eliminated for a dense W.
 class NewtonSystem {
  public:
-  /// False: the matrix is singular.
+  /// Returns false if the matrix is singular.
   bool solve(const ContactSystem& system, const std::vector<PointEquation>& equations, Vector& change);
-  /// Another W.
+  /// To be called for another W.
   void reset() { pattern_ = nullptr; }
 
  private:
@@ -51,16 +51,16 @@ class NewtonSystem {
   SparseLu sparse_factor_;
 };
 
-/// Newton from the r it is given, each step cut back until ½ Σ w_i |f_i|² is below the largest of its last few values
+/// Newton's method from a given r, each step cut back until ½ Σ w_i |f_i|² is below the largest of its last few values
 /// (L. Grippo, F. Lampariello, S. Lucidi, SIAM J. Numer. Anal. 23 (1986) 707–716): the equations have kinks, at which a
-/// merit that must fall at every step gets stuck. Where no part of a step passes, the whole one is taken, a few times
-/// in a solve: an active set may have to pass through a large residual.
+/// merit that must fall at every step stagnates. If no part of a step passes, the full one is taken, a few times per
+/// solve: an active set may have to pass through a large residual.
 class NewtonContactSolver : public IterativeContactSolver {
  protected:
-  /// f of a point and, where asked for, its derivatives.
+  /// Returns f of a point and, with `derivatives`, its derivatives.
   [[nodiscard]] virtual PointEquation equation(const ContactPoint& point, const PaddedVector& reaction,
                                                const PaddedVector& motion, bool derivatives) const = 0;
-  /// The r of the full step from `from`. False: its system is singular.
+  /// Computes r of the full step from `from`. Returns false if its system is singular.
   virtual bool full_step(const ContactSystem& system, const ContactIterate& from, Vector& reaction,
                          ContactSolution& solution);
   [[nodiscard]] std::string refuses(const ContactSystem& system) const override;

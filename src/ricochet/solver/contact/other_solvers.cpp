@@ -7,7 +7,7 @@
 namespace ricochet {
 
 namespace {
-/// At most so many operations of a factor, or entries of W.
+/// Largest number of operations of factors, or of entries of W.
 constexpr double most_factor_work = 1e11;
 constexpr double most_sweep_work = 4e9;
 constexpr int fewest_worth_a_try = 5;

@@ -8,12 +8,11 @@
 #include "ricochet/solver/contact/globalized_newton.hpp"
 #include "ricochet/solver/contact/iterative_contact_solver.hpp"
 
-/// @file What the automatic solver asks where its own sweeps and Newton steps have failed.
+/// @file Fallbacks of the automatic solver after its own sweeps and Newton steps have failed.
 namespace ricochet {
 
-/// The other solvers from r = 0, then from the best r there is. They fail where the automatic one does not and the
-/// other way round: strong friction in wedges whose surfaces hardly give (hard_problems_test.cpp) is where they are
-/// needed.
+/// The other solvers, from r = 0, then from the best r so far. They fail on other problems than the automatic one does:
+/// they are needed for strong friction in wedges whose surfaces are hardly compliant (hard_problems_test.cpp).
 class OtherSolvers {
  public:
   struct Kind {
@@ -21,12 +20,12 @@ class OtherSolvers {
     bool factorizes;
     int iteration_limit;
   };
-  /// Where Newton has failed from the last reactions and from zero.
+  /// Solvers tried after Newton's method has failed from the last reactions and from zero.
   static const std::vector<Kind> first;
-  /// Before the very end.
+  /// Solvers tried before the very end.
   static const std::vector<Kind> last;
 
-  /// True: solved, with r and u in work.current. What comes nearer than `best` is kept in it.
+  /// Returns whether it is solved, with r and u in work.current. Better iterates than `best` are kept in it.
   bool solve(const ContactWork& work, const std::vector<Kind>& kinds, BestIterate& best);
   void forget() { solvers_.clear(); }
 

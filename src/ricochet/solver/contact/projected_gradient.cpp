@@ -10,22 +10,22 @@ namespace ricochet {
 namespace {
 
 constexpr int gradient_iterations = 50000;
-/// Iterations in which the residual must halve if the correction is to follow every iteration.
+/// Iterations in which the residual must halve if the correction is to be updated in every iteration.
 constexpr int halving_patience = 400;
-/// Part of its residual to which a problem with the correction held is solved before the correction follows.
+/// Part of its residual to which a problem with the correction held is solved before the correction is updated.
 constexpr double held_accuracy = 0.1;
-/// By which the estimate of W's largest eigenvalue falls after an iteration and rises where it was too small.
+/// Factors of the estimate of W's largest eigenvalue: its decrease after an iteration, and its increase if too small.
 constexpr double slackening = 0.97, tightening = 1.5;
 
-/// Accelerated projected gradient. For a given De Saxcé correction s = F |u_T| the problem is that of the least
+/// Accelerated projected gradient method. For a given De Saxcé correction s = F |u_T| the problem is to minimize
 ///   ½ rᵀ W r + (q + s n)ᵀ r   on   r ∈ K,
 /// which is solved by
 ///   r⁺ = P_K(y − (W y + q + s n)/(L w)),   y = r + β (r − r⁻),
-/// with Nesterov's β, begun again where it points uphill (B. O'Donoghue, E. Candès, Found. Comput. Math. 15 (2015)
-/// 715–732), and 1/L the longest step for which the quadratic is bounded by its value with L in the place of W (A.
-/// Beck, M. Teboulle, SIAM J. Imaging Sci. 2 (2009) 183–202). s follows y at every iteration; where that does not get
-/// closer any more (strong friction) it is held until the problem with it is nearly solved. One product with W for each
-/// iteration. On contact problems: H. Mazhar, T. Heyn, D. Negrut, A. Tasora, ACM Trans. Graph. 34 (2015) 32.
+/// with Nesterov's β, restarted if it points uphill (B. O'Donoghue, E. Candès, Found. Comput. Math. 15 (2015) 715–732),
+/// and 1/L the longest step for which the quadratic is bounded by its value with L in place of W (A. Beck, M. Teboulle,
+/// SIAM J. Imaging Sci. 2 (2009) 183–202). s follows y at every iteration; if that brings no more progress (strong
+/// friction) it is held until the problem with it is nearly solved. One product with W per iteration. On contact
+/// problems: H. Mazhar, T. Heyn, D. Negrut, A. Tasora, ACM Trans. Graph. 34 (2015) 32.
 class AcceleratedGradient final : public IterativeContactSolver {
  protected:
   [[nodiscard]] std::string refuses(const ContactSystem& system) const override { return refuse_bounds(system); }
@@ -51,7 +51,7 @@ class AcceleratedGradient final : public IterativeContactSolver {
   double theta_ = 1.0;       ///< of Nesterov's sequence
 };
 
-/// s of a point.
+/// Correction s of a point.
 double AcceleratedGradient::correction(const ContactSystem& system, std::size_t k, const PaddedVector& motion) const {
   if (holds_) return held_[static_cast<Index>(k)];
   return system.points()[k].coefficient * motion.tail<2>().norm();
@@ -78,7 +78,7 @@ bool AcceleratedGradient::is_held_problem_solved(const ContactSystem& system, co
   return true;
 }
 
-/// r⁺ and its u for the present L.
+/// Computes r⁺ and its u for the present L.
 void AcceleratedGradient::step(const ContactSystem& system) {
   next_.reaction.setZero(system.rows());
   for (std::size_t k = 0; k < system.points().size(); ++k) {

@@ -2,8 +2,7 @@
 
 namespace ricochet {
 
-// The solvers, each by the function of its own file that registers it. One line each, in the order of the
-// documentation.
+// Solvers, each by the registration function of its own file. One line each, in the order of the documentation.
 // clang-format off
 #define RICOCHET_CONTACT_SOLVERS(solver)   \
   solver(automatic_solver)                 \

@@ -33,7 +33,7 @@ bool ReusedFactor::compute(const Matrix& matrix, const std::vector<ContactUnknow
 bool ReusedFactor::place(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns) {
   for (ContactUnknown& unknown : unknowns_) {
     unknown.row = system.system_row(unknown.problem_row);
-    // Tangents are not there when a stage leaves friction out.
+    // There are no tangents if a stage leaves friction out.
     if (unknown.row < 0 || system.system_row(unknown.problem_row + unknown.size - 1) < 0) return false;
   }
   if (!is_factored_) {
@@ -90,7 +90,7 @@ void ReusedFactor::load(const std::vector<Index>& row_offset, const Snapshot& sn
   }
 }
 
-/// They are in the order of their points.
+/// Unknowns are in the order of their points.
 bool ReusedFactor::keeps_row(Index problem_row) const {
   const auto found =
       std::lower_bound(unknowns_.begin(), unknowns_.end(), problem_row,
@@ -115,7 +115,7 @@ void ReusedFactor::apply(const Vector& right, Vector& z) const {
     const ContactUnknown& unknown = unknowns_[j];
     earlier_right_[static_cast<Index>(j)] = test_motion(unknown, motion_.data());
   }
-  // The tests of a point are orthonormal: what they do not see is left.
+  // The tests of a point are orthonormal: the part orthogonal to them remains.
   for (std::size_t j = 0; j < unknowns_.size(); ++j) {
     add(unknowns_[j], unknowns_[j].test, -earlier_right_[static_cast<Index>(j)], motion_);
   }

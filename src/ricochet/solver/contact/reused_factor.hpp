@@ -8,17 +8,17 @@
 #include "ricochet/linear_algebra/dense_factor.hpp"
 #include "ricochet/solver/contact/contact_system.hpp"
 
-/// @file The factor of an earlier Newton system as a preconditioner of the present one.
+/// @file Factor of an earlier Newton system as a preconditioner of the present one.
 namespace ricochet {
 
-/// An unknown x of a Newton step: r = … + x trial, and the equation test·u + diagonal x = 0, on the rows of one point.
-/// The tests of a point are orthonormal, and test·trial = 1 for one and the same unknown, 0 for others.
+/// Unknown x of a Newton step: r = … + x trial, and the equation test·u + diagonal x = 0, on the rows of one point. The
+/// tests of a point are orthonormal, and test·trial = 1 for the same unknown, 0 for others.
 struct ContactUnknown {
-  Index problem_row = 0;  ///< the problem's row that is `row`
+  Index problem_row = 0;  ///< row of the problem that corresponds to `row`
   Index row = 0, size = 0;
   std::array<double, 3> trial{}, test{};
   double diagonal = 0.0;
-  /// In whatever system: what a factor depends on.
+  /// Compares the data on which a factor depends, independent of the system.
   bool operator==(const ContactUnknown& other) const {
     return problem_row == other.problem_row && size == other.size && trial == other.trial && test == other.test &&
            diagonal == other.diagonal;
@@ -33,26 +33,26 @@ struct ContactUnknown {
   return sum;
 }
 
-/// Between two Newton systems a few points change their state and directions of slip turn a little. What the earlier
-/// system says of u on the points that both have is solved with its factor (single precision); what it does not know (a
-/// point that came, a direction in which one now sticks) with the diagonal of W.
+/// Between two Newton systems a few points change their state and directions of slip turn slightly. The part of u on
+/// points that both systems have is solved with the factor of the earlier one (single precision); the remainder (a new
+/// point, a direction that now sticks) with the diagonal of W.
 class ReusedFactor {
  public:
   void reset() { unknowns_.clear(); }
   [[nodiscard]] bool empty() const { return unknowns_.empty(); }
-  /// Takes the matrix of the system for these unknowns. False: singular.
+  /// Factorizes the matrix of the system for these unknowns. Returns false if it is singular.
   bool compute(const Matrix& matrix, const std::vector<ContactUnknown>& unknowns);
-  /// Before `apply`: the rows of the earlier unknowns in this system. False: it does not have all of them, or (after
-  /// `load`) their matrix is singular.
+  /// Maps the rows of the earlier unknowns to this system, before `apply`. Returns false if the system does not have
+  /// all of them, or (after `load`) their matrix is singular.
   bool place(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns);
-  /// z ≈ (system of the unknowns given to `place`)⁻¹ b.
+  /// Computes z ≈ (system of the unknowns given to `place`)⁻¹ b.
   void apply(const Vector& right, Vector& z) const;
 
-  /// The unknowns, and back: the factor is then made again at the next `place`, with the same bits. Throws
-  /// Error(invalid_input) for what are no unknowns on points with these rows (ContactProblem::row_offset).
+  /// Save and load the unknowns: the factor is made again at the next `place`, with the same bits. Throws
+  /// Error(invalid_input) unless they are unknowns on points with these rows (ContactProblem::row_offset).
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name);
-  /// One of the unknowns is of the point that begins with this row of the problem.
+  /// True if one of the unknowns belongs to the point that begins with this row of the problem.
   [[nodiscard]] bool keeps_row(Index problem_row) const;
 
  private:
@@ -65,7 +65,7 @@ class ReusedFactor {
   mutable Vector motion_, reaction_, earlier_right_, earlier_solution_;
 };
 
-/// Rows test·(W trial) + diagonal of the unknowns; W dense.
+/// Assembles the rows test·(W trial) + diagonal of the unknowns; W dense.
 void assemble_contact_matrix(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns, Vector& column,
                              Matrix& matrix);
 

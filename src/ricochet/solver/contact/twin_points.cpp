@@ -14,7 +14,7 @@ namespace {
 constexpr double alike = 1e-12;
 constexpr int exchange_limit = 20;
 
-/// Where the law is the same one it does not matter which of the points takes the reaction.
+/// Returns whether the points have the same law: only then any of them may carry the reaction.
 bool have_one_law(const ContactProblem& problem, const std::vector<Index>& points) {
   const Index one = points.front();
   return std::all_of(points.begin(), points.end(), [&](Index other) {
@@ -74,7 +74,7 @@ bool TwinPoints::any(const ContactOperator& w, const std::vector<Index>& first) 
   return !groups_.empty();
 }
 
-/// The reactions of the group come together on the point.
+/// Moves the reactions of the group to one point.
 void TwinPoints::replace(const ContactProblem& problem, Group& group, Index point, std::vector<char>& wanted,
                          Vector& reaction) {
   const auto at = static_cast<std::size_t>(point);

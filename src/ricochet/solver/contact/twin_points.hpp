@@ -4,32 +4,32 @@
 
 #include "ricochet/solver/contact/contact_problem.hpp"
 
-/// @file Points of a contact problem that are nearly one.
+/// @file Nearly identical points of a contact problem.
 namespace ricochet {
 
-/// A node that meets several planes which are parallel but for a tiny angle has a contact point for each of them, with
-/// rows of W that are nearly the same. Which of them presses is decided by gaps that differ by little more than their
-/// rounding: all that makes use of W as a whole pushes reactions to and fro between them. One of them at a time makes a
-/// problem like any other; where another one of its group then penetrates, it takes its place.
+/// A node that meets several planes which are parallel except for a tiny angle has a contact point for each of them,
+/// with nearly identical rows of W. Gaps that differ by little more than their rounding decide which of them presses:
+/// everything that uses W as a whole makes the reactions oscillate between them. One of them at a time makes a regular
+/// problem; if another one of its group then penetrates, it takes over.
 class TwinPoints {
  public:
-  /// For another W.
+  /// Discards the groups, for another W.
   void forget() {
     groups_.clear();
     is_known_ = false;
   }
-  /// Whether there are any. Looks for them when it is asked for the first time: only a dense W is looked at.
+  /// Returns whether there are any. Searches for them at the first call, in a dense W only.
   bool any(const ContactOperator& w, const std::vector<Index>& first);
-  /// After `any`: leaves of each group only the deepest one in `wanted` and gives it the reactions of all.
+  /// Keeps of each group only the deepest point in `wanted`, with the reactions of all. To be called after `any`.
   void choose(const ContactProblem& problem, const Vector& motion, std::vector<char>& wanted, Vector& reaction);
-  /// After `choose`: where another one of a group penetrates, and deeper, it takes the place. True: somewhere it did.
-  /// No more than a few times.
+  /// Replaces, after `choose`, the point of a group by another one that penetrates deeper. Returns whether any was
+  /// replaced. Works only a few times.
   bool exchange(const ContactProblem& problem, const Vector& motion, std::vector<char>& wanted, Vector& reaction);
 
  private:
   struct Group {
     std::vector<Index> points;  ///< of the problem
-    Index chosen = -1;          ///< its point; −1: the group is as it was, for its points are under different laws
+    Index chosen = -1;          ///< its point; −1: the group is unchanged, as its points have different laws
   };
   static void replace(const ContactProblem& problem, Group& group, Index point, std::vector<char>& wanted,
                       Vector& reaction);

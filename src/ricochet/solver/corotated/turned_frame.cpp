@@ -32,7 +32,7 @@ void TurnedFrame::follow(const Vector& displacement) {
 
 namespace {
 
-/// v_a ← R_a v_a, or R_aᵀ v_a; nodes of no body stay.
+/// Computes v_a ← R_a v_a, or R_aᵀ v_a; nodes of no body are unchanged.
 template <int d, bool transposed>
 void turn_nodes(const BodyRotations& bodies, const std::vector<Tensor>& rotation, const Vector& from, Vector& to) {
   parallel_ranges(from.size() / d, [&](Index first, Index last) {
@@ -71,8 +71,8 @@ void TurnedFrame::turn(Vector& values) const {
                           : turn_nodes<3, false>(bodies_, rotation_, values, values);
 }
 
-/// Entries of a row come by ascending dof, those of a node together. Rows of a turned frame have all d of them.
-/// Calls entry(row, column, value) for all of H R, row by row, columns ascending.
+/// Calls visit(row, column, value) for all entries of H R, row by row, columns ascending. Entries of a row of H come by
+/// ascending dof, those of a node together; rows in the frame have all d of them.
 template <class Entry>
 void TurnedFrame::visit_turned(const SparseRowMatrix& rows, const Entry& visit) const {
   const int d = problem_.dimension;

@@ -8,29 +8,29 @@
 #include "ricochet/contact/contact_rows.hpp"
 #include "ricochet/problem/body_rotations.hpp"
 
-/// @file A factor that turns with the bodies. The tangent of a body that has turned by R is R K Rᵀ where its strains
-/// are those of before (for any law that sees no rotation), and M₀ = m₀ ⊗ I commutes with R. So with the factor of A₀
-/// at one displacement,
+/// @file Corotated frame: a factor that rotates with the bodies. The tangent of a body rotated by R is R K Rᵀ if its
+/// strains are unchanged (for any objective law), and M₀ = m₀ ⊗ I commutes with R. So with the factor of A₀ at one
+/// displacement,
 ///   A ≈ R A₀ Rᵀ:   A δ = b + Hᵀρ   is   A₀ (Rᵀδ) = Rᵀb + (H R)ᵀρ,
-/// R = diag(R of each node's body). Columns of contact rows stay what they are while R stays.
+/// R = diag(R of each node's body). Columns of contact rows are unchanged while R is.
 namespace ricochet {
 
 class TurnedFrame {
  public:
   explicit TurnedFrame(const SemidiscreteProblem& problem) : problem_(problem), bodies_(problem) { restart({}); }
 
-  /// R becomes that of the bodies at this displacement where they have turned by more than `slack` since it was fitted.
-  /// (A frame that is off by an angle costs iterations, about as many as strains of that size do.)
+  /// Sets R to that of the bodies at this displacement if they have rotated by more than `slack` since it was fitted.
+  /// (An angular error costs iterations, about as many as strains of that size do.)
   void follow(const Vector& displacement);
-  /// The factor has been made at this displacement (empty: the undeformed body): R = I there.
+  /// Sets R = I at this displacement, where the factor has been made (empty: the undeformed body).
   void restart(const Vector& displacement);
 
-  /// A number that changes with R.
+  /// Revision number, which changes with R.
   [[nodiscard]] long number() const { return number_; }
-  /// Rᵀ v and R v, per dof.
+  /// Compute Rᵀ v and R v, per dof.
   void turn_back(const Vector& values, Vector& result) const;
   void turn(Vector& values) const;
-  /// H R; `result` keeps its storage where the pattern is the same.
+  /// Computes H R; `result` keeps its storage if the pattern is unchanged.
   void turn_back(const SparseRowMatrix& rows, SparseRowMatrix& result) const;
 
   void save(Snapshot& snapshot, const std::string& name) const;
@@ -43,7 +43,7 @@ class TurnedFrame {
 
   const SemidiscreteProblem& problem_;
   BodyRotations bodies_;
-  std::vector<Tensor> start_;     ///< per body, at the factor's displacement
+  std::vector<Tensor> start_;     ///< per body, at the displacement of the factor
   std::vector<Tensor> rotation_;  ///< R
   std::vector<Tensor> fitted_;
   bool is_identity_ = true;

@@ -21,7 +21,7 @@ void TurnedRows::clear() {
   any_ = false;
 }
 
-/// From the entries at the node with the largest part in the trace: rows may be known by their values alone.
+/// Uses the entries at the node with the largest part in the trace: rows may be known by their values alone.
 void TurnedRows::take(const ContactRows& rows, Index point, std::size_t i) {
   if (!turns(i)) return;
   const Index d = rows.dimension();
@@ -40,7 +40,7 @@ void TurnedRows::take(const ContactRows& rows, Index point, std::size_t i) {
   for (Index j = 1; j < directions_[i].rows(); ++j) read(rows.tangential_trace, point * (d - 1) + j - 1, j);
 }
 
-/// D v of one point, from the rows of E into those of H.
+/// Computes D v of one point, from the rows of E to those of H.
 template <class From, class To>
 void TurnedRows::turn_point(std::size_t i, const From& v, To& result) const {
   const auto from = v.segment(first_[i], first_[i + 1] - first_[i]);

@@ -4,9 +4,10 @@
 
 #include "ricochet/contact/contact_rows.hpp"
 
-/// @file Rows H of candidates for contact whose directions turn with the motion while their trace does not change:
-/// H = D E, where E has for such a point the rows c ⊗ e_k, for every other one the rows of H themselves, and D the
-/// directions n and t. The columns of E outlast all turning, and with K = Y_E Y_Eᵀ of them W = D K Dᵀ.
+/// @file Rows H of contact candidates whose directions turn with the motion while their trace is constant: H = D E,
+/// where E has the rows c ⊗ e_k for such a point and the rows of H themselves for every other one, and D has the
+/// directions n and t. The columns of E are unaffected by rotation, and with K = Y_E Y_Eᵀ of them the Delassus operator
+/// is W = D K Dᵀ.
 namespace ricochet {
 
 class TurnedRows {
@@ -15,19 +16,19 @@ class TurnedRows {
   void append(const ContactRows& rows, Index point, Index row_count, bool turns);
   void clear();
 
-  /// Some point turns; else H = E.
+  /// True if some point turns; otherwise H = E.
   [[nodiscard]] bool any() const { return any_; }
-  /// Candidate i, in the order in which they were appended.
+  /// True if candidate i turns, in the order in which they were appended.
   [[nodiscard]] bool turns(std::size_t i) const { return directions_[i].size() > 0; }
-  /// Its first row of E; the number of all after the last.
+  /// First row of E of candidate i; the total number after the last.
   [[nodiscard]] Index first(std::size_t i) const { return first_[i]; }
   [[nodiscard]] Index size() const { return first_.back(); }
-  /// Reads D of candidate i from the rows, where it turns.
+  /// Reads D of candidate i from the rows, if it turns.
   void take(const ContactRows& rows, Index point, std::size_t i);
 
-  /// D K Dᵀ, symmetric to the bit.
+  /// Returns D K Dᵀ, symmetric to the bit.
   [[nodiscard]] Matrix product(const Matrix& k) const;
-  /// D v and Dᵀ r.
+  /// Compute D v and Dᵀ r.
   void turn(const Vector& v, Vector& result) const;
   void turn_back(const Vector& r, Vector& result) const;
 
@@ -37,8 +38,8 @@ class TurnedRows {
 
   using Directions = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
 
-  std::vector<Directions> directions_;  ///< rows × d; empty: 1
-  std::vector<Index> row_{0};           ///< the first row of H of each, and their number
+  std::vector<Directions> directions_;  ///< rows × d; empty: identity
+  std::vector<Index> row_{0};           ///< first row of H of each, and the total number
   std::vector<Index> first_{0};
   bool any_ = false;
 };

@@ -40,8 +40,8 @@ class TurnedStage final : public StageSolver {
   [[nodiscard]] FactoredStage* factored() override { return solver_->factored(); }
 
  private:
-  /// Rows are made anew where the frame has turned or the rows of the stage have another revision: all of them then,
-  /// and those that changed get another number.
+  /// Renews the rows if the frame has rotated or the rows of the stage have another revision: all of them, with a new
+  /// revision for those that changed.
   void take_rows(const ContactRows& rows) {
     const auto points = static_cast<std::size_t>(rows.size());
     const bool follows = !rows.revision.empty();

@@ -3,12 +3,11 @@
 #include "ricochet/solver/corotated/turned_frame.hpp"
 #include "ricochet/solver/stage/stage_solver.hpp"
 
-/// @file The stages of one operator in a frame that turns with the bodies.
+/// @file Stages of one operator in the corotated frame.
 namespace ricochet {
 
-/// Solves A₀ (Rᵀδ) = Rᵀb + (H R)ᵀρ in place of A δ = b + Hᵀρ; all else of the stage is the same in both frames: R
-/// leaves the components that supports hold as they are (problem/body_rotations.hpp). The frame is shared by the stages
-/// of a step.
+/// Solves A₀ (Rᵀδ) = Rᵀb + (H R)ᵀρ in place of A δ = b + Hᵀρ; everything else of the stage is equal in both frames: R
+/// leaves the components held by supports unchanged (problem/body_rotations.hpp). The stages of a step share the frame.
 [[nodiscard]] std::unique_ptr<StageSolver> make_turned_stage(std::unique_ptr<StageSolver> solver,
                                                              const TurnedFrame& frame);
 

@@ -36,7 +36,7 @@ Index CondensedContact::rows_of(Index point) const {
   return has_friction ? problem_.dimension : 1;
 }
 
-/// Columns of E, d for every point, cost a point without friction more than its one row does. They are worth it where
+/// Columns of E, d for every point, cost a point without friction more than its one row does. They are worthwhile if
 /// the factor lasts.
 bool CondensedContact::turns(Index point) const {
   if (rows_->turning_trace == nullptr || !SparseRowMatrix::InnerIterator(*rows_->turning_trace, point)) return false;
@@ -66,7 +66,7 @@ void CondensedContact::start_again_with(const std::vector<Index>& points) {
   if (!points.empty()) take_up(points);
 }
 
-/// The same for those of E.
+/// Calls enter(row of the point, dof, value) for the entries of E.
 template <class Enter>
 void CondensedContact::visit_columns(Index point, const Enter& enter) const {
   if (!turns(point)) return visit_rows(point, enter);
@@ -76,7 +76,8 @@ void CondensedContact::visit_columns(Index point, const Enter& enter) const {
   }
 }
 
-/// Points whose dofs lie close in the elimination tree have nearly the same columns.
+/// Sorts points by their position in the elimination tree: points whose dofs are close there have nearly the same
+/// columns.
 void CondensedContact::sort_by_place(std::vector<Index>& points) const {
   std::vector<Index> place(points.size(), 0);
   std::vector<std::size_t> order(points.size());
@@ -124,7 +125,7 @@ void CondensedContact::add_candidates(const std::vector<Index>& points) {
   give_condensed(std::move(w));
   if (solver_ == nullptr) solver_ = make_contact_solver();
   solver_->analyse(contact_);
-  // The reactions of those that were there already, and none on the others.
+  // Reactions of the former candidates, and none on the others.
   const Index before = start.size();
   start.conservativeResize(contact_.row_offset.back());
   start.tail(start.size() - before).setZero();
@@ -143,7 +144,7 @@ void CondensedContact::save(Snapshot& snapshot, const std::string& name) const {
 void CondensedContact::load(const Snapshot& snapshot, const std::string& name) {
   const std::vector<Index>& points = snapshot.integers(name + ".candidates", 0, problem_.contact.size() - 1);
   const auto count = static_cast<Index>(points.size());
-  // That of the factor which the state has: a solver whose reactions are scaled forgets what it has learnt.
+  // Scale of the factor that the state has: a solver whose reactions are rescaled loses its history.
   scale_ = contact_.reaction_scale = factor_.scale();
   start_again_with({});
   for (const Index end : snapshot.integers(name + ".taken_up", 1, count)) {
@@ -160,7 +161,7 @@ void CondensedContact::load(const Snapshot& snapshot, const std::string& name) {
   if (contact_solution_.reaction.size() == 0) contact_solution_.reaction.setZero(contact_.row_offset.back());
 }
 
-/// Eᵀ of some points, one after the other: unknowns × rows.
+/// Returns Eᵀ of some points, one after the other: unknowns × rows.
 SparseMatrix CondensedContact::transposed_columns(const std::vector<Index>& points, const std::vector<int>& number,
                                                   Index unknowns) const {
   std::vector<Eigen::Triplet<double>> entries;
@@ -235,7 +236,7 @@ void CondensedContact::solve(const Stage& stage, Vector& y, StageSolution& solut
   if (std::none_of(stage.eligible.begin(), stage.eligible.end(), [](char e) { return e != 0; })) return;
   take_starting_points(stage);
   if (!all_points_ && !choose_candidates(stage)) return;
-  take_starting_points(stage);  // those that were not worth keeping
+  take_starting_points(stage);  // candidates that were dropped
   find_offsets(stage, y);
   choose_friction(stage);
   const bool has_mean = layer_ && layer_->mean() != ReactionMean::end;
@@ -251,7 +252,7 @@ void CondensedContact::solve(const Stage& stage, Vector& y, StageSolution& solut
   give(stage, solution);
 }
 
-/// False: nothing can touch.
+/// Returns false if nothing can touch.
 bool CondensedContact::choose_candidates(const Stage& stage) {
   candidates_.look_at(stage);
   if (!must_ask_ && !candidates_.some_may_touch(stage)) return false;
@@ -296,7 +297,7 @@ std::size_t CondensedContact::closed_points() const {
   return count;
 }
 
-/// With friction in stages that have a slip rate, and at points where they do not leave it out.
+/// Sets friction in stages that have a slip rate, at points where these do not leave it out.
 void CondensedContact::choose_friction(const Stage& stage) {
   for (std::size_t i = 0; i < candidates_.points().size(); ++i)
     contact_.eligible[i] = stage.eligible[static_cast<std::size_t>(candidates_.points()[i])];
@@ -312,7 +313,7 @@ void CondensedContact::choose_friction(const Stage& stage) {
   }
 }
 
-/// False: not solved.
+/// Returns false if the problem was not solved.
 bool CondensedContact::try_contact() {
   const Timer timer;
   solver_->solve(contact_, {.record = log::enabled(log::Level::debug)}, contact_solution_);
@@ -328,7 +329,7 @@ void CondensedContact::solve_contact() {
   throw_not_solved();
 }
 
-/// A line per iteration, for those who want to see where a step spends its time or why it fails.
+/// Logs a line per iteration, which shows where a step spends its time or why it fails.
 void CondensedContact::log_iterations() const {
   if (contact_solution_.record.empty()) {
     log::debug(fmt::format("contact: {} points, none that iterations were needed for", contact_.points()));

@@ -12,45 +12,44 @@
 #include "ricochet/solver/delassus/contact_layer.hpp"
 #include "ricochet/solver/mean_reaction/mean_reaction.hpp"
 
-/// @file The contact conditions of a stage, condensed on its candidates for contact.
+/// @file Contact conditions of a stage, condensed on its candidates for contact.
 ///
 /// With 2ᵏA = PᵀLLᵀP, y = L⁻¹P 2ᵏb and, for the rows H = [G; B_T] of the candidates (those of a point together),
-/// Y = L⁻¹PHᵀ and W = YᵀY, a reaction ρ = 2ᵏ (r_N, −r_T) adds Yρ to y, and the contact problem is stated on
+/// Y = L⁻¹PHᵀ and the Delassus operator W = YᵀY, a reaction ρ = 2ᵏ (r_N, −r_T) adds Yρ to y, and the contact problem is
 ///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + W ρ.
-/// Where the stage has a layer, with U = (1 − ℓ/2) V and Z = W − V, V = 2⁻ᵏ H A_c⁻¹ Hᵀ, on
+/// For a stage with massless contact nodes, with U = (1 − ℓ/2) V and Z = W − V, V = 2⁻ᵏ H A_c⁻¹ Hᵀ, it is
 ///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + Z ρ̄ + U ρ.
-/// Where directions turn, columns are those of E with H = D E (turned_rows.hpp).
+/// If directions turn, columns are those of E with H = D E (turned_rows.hpp).
 namespace ricochet {
 
 class CondensedContact {
  public:
-  /// `unknown` is per dof: its number among the unknowns of the factor, or −1 where the stage does not solve for it.
-  /// Keeps references to the problem and the factor.
-  /// `all_points`: every contact point is a candidate from the start.
+  /// `unknown` is per dof: its number among the unknowns of the factor, or −1 if the stage does not solve for it.
+  /// `all_points`: every contact point is a candidate from the start. Keeps references to the problem and the factor.
   CondensedContact(const SemidiscreteProblem& problem, std::vector<int> unknown, const SparseCholesky& factor,
                    bool all_points = false, std::unique_ptr<ContactLayer> layer = nullptr);
 
-  /// Finds the reactions on the candidates, adds Yρ to y and the iterations to those of the solution. Throws
-  /// Error(not_converged), and Error(invalid_input) where no motion of linear bodies meets the conditions of contact.
+  /// Computes the reactions on the candidates, adds Yρ to y and the iterations to those of the solution. Throws
+  /// Error(not_converged), and Error(invalid_input) if no motion of linear bodies meets the conditions of contact.
   void solve(const Stage& stage, Vector& y, StageSolution& solution);
-  /// With the increment that followed: false when no other point penetrates. True: those that do are candidates now,
-  /// and the stage must be solved again. Completes the solution by m where the stage has a layer.
+  /// Checks the resulting increment: returns false if no other point penetrates. True: those that do are candidates
+  /// now, and the stage must be solved again. Completes the solution by m for a stage with massless contact nodes.
   bool take_up_penetrating(const Stage& stage, const Vector& increment, StageSolution& solution);
 
-  /// The factor has been made anew: so are columns and W, by the rows of the next stage.
+  /// Renews columns and W, with the rows of the next stage, after the factor has been made anew.
   void take_factor();
 
-  /// The candidates with the order in which they came, which decides the bits of W, and the contact solver's warm
-  /// start.
+  /// Save and load the candidates in the order in which they were added, which decides the bits of W, and the contact
+  /// solver's warm start.
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
-  /// Shows the contact problem of a stage that is solved, if it had one, to the observer (one that could not be solved
-  /// is shown at once).
+  /// Shows the contact problem of a solved stage, if it had one, to the observer (one that could not be solved is shown
+  /// at once).
   void report() const;
-  /// None if empty.
+  /// Sets the observer; none if empty.
   void observe(ContactObserver observer) { observer_ = std::move(observer); }
-  /// In the contact solver, all calls so far.
+  /// Time spent in the contact solver, in all calls so far.
   [[nodiscard]] double solver_seconds() const { return solver_seconds_; }
 
  private:
@@ -98,18 +97,19 @@ class CondensedContact {
   double scale_;
   bool friction_;
   bool all_points_;
-  bool must_ask_ = false;  ///< points have penetrated where none was thought to touch
+  bool must_ask_ = false;  ///< points have penetrated where none was expected to touch
   bool asked_ = false;     ///< the candidates took part in the last stage
   bool has_new_factor_ = false;
-  const ContactRows* rows_;     ///< those of the stage that is being solved
-  std::vector<long> revision_;  ///< of each candidate's rows in W; −1: of rows that never change
+  const ContactRows* rows_;     ///< of the stage being solved
+  std::vector<long> revision_;  ///< of each candidate's rows in W; −1 for rows that never change
   ContactCandidates candidates_;
-  std::vector<Index> taken_up_;  ///< how many candidates there were after each call of take_up
+  std::vector<Index> taken_up_;  ///< number of candidates after each call of take_up
   ContactColumns columns_;
   TurnedRows turned_;
   Vector of_columns_;                    ///< per row of E
-  std::unique_ptr<ContactLayer> layer_;  ///< null: the stage has none
-  Matrix condensed_;  ///< of columns, where there is a layer or rows turn; else it is the contact operator itself
+  std::unique_ptr<ContactLayer> layer_;  ///< null if the stage has no massless contact nodes
+  Matrix condensed_;  ///< of columns, with massless contact nodes or turning rows; else it is the contact operator
+                      ///< itself
   MeanReaction mean_;
   SparseRowMatrix supported_;   ///< H on supported dofs: rows × supports
   Vector coefficient_, bound_;  ///< of friction, per candidate; the bound in units of r
@@ -119,7 +119,7 @@ class CondensedContact {
   Vector motion_;  ///< G δ, per contact point
   ContactObserver observer_;
   double solver_seconds_ = 0.0;
-  int iterations_ = 0;  ///< of all contact problems of the last stage: a mean may need several
+  int iterations_ = 0;  ///< of all contact problems of the last stage: a mean may require several
 };
 
 }  // namespace ricochet

@@ -7,11 +7,11 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/solver/delassus/condensed_contact.hpp"
 
-// What is said where a contact problem has no solution, or none was found.
+// Errors of contact problems without a solution, or for which none was found.
 
 namespace ricochet {
 
-/// Where, and between which contacts, by their numbers in the case and the normals of their obstacles.
+/// Names the positions and the contacts, by their numbers in the case and the normals of their obstacles.
 void CondensedContact::throw_contradiction(const std::vector<Index>& contradiction) const {
   const auto as_text = [](const auto& vector) {
     std::string text;
@@ -37,7 +37,7 @@ void CondensedContact::throw_contradiction(const std::vector<Index>& contradicti
   const bool one = contacts.size() == 1;
   const std::string where =
       fmt::format("{}{}", fmt::join(some, ", "), more > 0 ? fmt::format(" and {} more places", more) : "");
-  // What is asked of an iteration may have no solution though the step has one.
+  // The conditions of an iteration may have no solution although the step has one.
   const ErrorKind kind = problem_.internal_force->is_linear() ? ErrorKind::invalid_input : ErrorKind::not_converged;
   if (between_bodies) {
     throw Error(

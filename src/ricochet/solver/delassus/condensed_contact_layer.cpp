@@ -6,12 +6,11 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/solver/delassus/condensed_contact.hpp"
 
-// The contact operator, from YᵀY and a layer where there is one, and the means of reactions that a layer allows.
+// Contact operator from YᵀY and massless contact nodes, if any, and the means of reactions that these permit.
 
 namespace ricochet {
 
-/// The rows of the stage: of candidates whose rows are others than the last time, W is made anew, and columns where
-/// rows do more than turn.
+/// Updates the rows of the stage: for candidates with changed rows, renews W, and columns if rows do more than turn.
 void CondensedContact::take_rows(const Stage& stage) {
   rows_ = stage.rows.get();
   const bool all_new = has_new_factor_;
@@ -42,7 +41,7 @@ void CondensedContact::take_factor() {
   has_new_factor_ = true;
 }
 
-/// Powers of two: nothing is rounded.
+/// Rescales by powers of two: nothing is rounded.
 void CondensedContact::take_scale(double scale) {
   const double ratio = scale / scale_;
   scale_ = contact_.reaction_scale = scale;
@@ -64,7 +63,7 @@ void CondensedContact::renew_columns(const std::vector<char>& is_new) {
   use_condensed(std::move(w));
 }
 
-/// For other rows of the same candidates: the contact solver starts where it was.
+/// Sets the operator for other rows of the same candidates; the contact solver keeps its memory.
 void CondensedContact::use_condensed(Matrix w) {
   append_supported();
   give_condensed(std::move(w));
@@ -74,7 +73,7 @@ void CondensedContact::use_condensed(Matrix w) {
   solver_->load(memory, "solver");
 }
 
-/// Where B_T has no trace in a direction (a support holds the body there), any positive diagonal keeps W definite and
+/// If B_T has no trace in a direction (a support holds the body there), any positive diagonal keeps W definite and
 /// makes the friction along it zero.
 void CondensedContact::hold_directions_without_trace(Matrix& w) const {
   for (std::size_t i = 0; i + 1 < contact_.row_offset.size(); ++i) {
@@ -85,13 +84,13 @@ void CondensedContact::hold_directions_without_trace(Matrix& w) const {
   }
 }
 
-/// YᵀY of the candidates so far, on rows of E.
+/// Returns YᵀY of the present candidates, on rows of E.
 Matrix CondensedContact::take_condensed() {
   if (layer_ || turned_.any()) return std::move(condensed_);
   return contact_.contact_operator != nullptr ? *contact_.contact_operator->dense() : Matrix();
 }
 
-/// The operator of the contact problem, from YᵀY of all candidates.
+/// Sets the operator of the contact problem from YᵀY of all candidates.
 void CondensedContact::give_condensed(Matrix w) {
   if (turned_.any()) {
     condensed_ = std::move(w);
@@ -109,7 +108,7 @@ void CondensedContact::give_condensed(Matrix w) {
   use_end_weight(mean_.theta());
 }
 
-/// U + θ Z.
+/// Sets the operator U + θ Z.
 void CondensedContact::use_end_weight(double theta) {
   Matrix w = mean_.combined(theta);
   hold_directions_without_trace(w);
@@ -137,7 +136,7 @@ void CondensedContact::solve_mean(const Stage& stage) {
   }
   const Vector offset = contact_.offset;
   const auto solve = [&] { return try_contact(); };
-  // The problem that is left, and exported, is the last that was solved.
+  // The problem that remains, and is exported, is the last one solved.
   if (mean_.solve(contact_, offset, start_gap, start, solve, contact_solution_)) return;
   contact_.offset = offset;
   if (layer_->mean() == ReactionMean::path) throw_no_mean();
@@ -146,10 +145,10 @@ void CondensedContact::solve_mean(const Stage& stage) {
     mean_.take_end(contact_solution_.reaction);
     return;
   }
-  // The end reaction alone is always right.
+  // The end reaction alone is always admissible.
   log::debug(
       fmt::format("contact: the mean of the reactions was not found ({}), the end reactions act", mean_.reason()));
-  const Vector last = solver_->warm_start();  // of the last problem that was solved
+  const Vector last = solver_->warm_start();  // of the last problem solved
   use_end_weight(1.0);
   solver_->analyse(contact_);
   solver_->set_warm_start(last);

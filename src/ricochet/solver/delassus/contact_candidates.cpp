@@ -8,21 +8,21 @@ namespace ricochet {
 
 namespace {
 
-/// A stage may move points this many times as far as the last one did.
+/// Factor by which a stage may move points farther than the last one did.
 constexpr double reserve = 2.0;
-/// Points within so many reaches are taken up together.
+/// Points within so many reaches are added together.
 constexpr double ahead = 8.0;
-/// Points are taken up before they are needed up to so many, or so many times those that carried a force in the last
-/// stage. The others are taken up when they penetrate.
+/// Largest number of points that are added in advance, and as a multiple of those that carried a force in the last
+/// stage. The others are added when they penetrate.
 constexpr std::size_t most_ahead = 512;
 constexpr std::size_t room_to_grow = 3;
-/// More candidates than so many times that are not kept for an instant.
+/// Multiple of that number beyond which candidates are dropped at once.
 constexpr std::size_t flood = 4;
-/// Of the points that penetrate, those by more than this part of the deepest are taken up at once, but not more than
+/// Among the points that penetrate, those by more than this part of the deepest are added at once, but not more than
 /// there are candidates: a body that nothing held has fallen through its obstacle with all points, and the deepest ones
-/// may be enough to hold it.
+/// may suffice to hold it.
 constexpr double deep = 0.5;
-/// Candidates are dropped when they are so many times those near the obstacle, and more than these, for so long.
+/// Candidates are dropped if they are so many times those near the obstacle, and more than these, for so many stages.
 constexpr std::size_t oversize = 3;
 constexpr std::size_t few_points = 32;
 constexpr int patience = 100;
@@ -54,7 +54,7 @@ void ContactCandidates::load_history(const Snapshot& snapshot, const std::string
   closed_ = static_cast<std::size_t>(snapshot.integers(name + ".closed", 0, static_cast<Index>(number_.size())).at(0));
 }
 
-/// What stages have moved points by, or what this one must, where points are inside at δ = 0.
+/// Uses the motion of earlier stages, or that which this one requires if points are inside at δ = 0.
 void ContactCandidates::look_at(const Stage& stage) {
   double deepest = 0.0;
   for (Index i = 0; i < stage.gap_offset.size(); ++i) {

@@ -13,12 +13,12 @@ namespace ricochet {
 
 namespace {
 
-/// Columns that are stored together: few enough for their paths to be alike, enough for dense products to be quick.
+/// Columns stored together: few enough for their paths to be similar, enough for dense products to be fast.
 constexpr Index block_size = 24;
-/// Seconds after which a user hears how far it is.
+/// Seconds between reports of progress.
 constexpr double silence = 5.0;
 
-/// The rows of a path gathered from a vector in factor order, into the first of `values`, which grows only.
+/// Gathers the rows of a path from a vector in factor order into the first of `values`, which only grows.
 void gather(const FactorPath& path, const Vector& y, Vector& values) {
   if (values.size() < path.rows()) values.resize(path.rows());
   for (std::size_t k = 0; k < path.supernodes.size(); ++k)
@@ -43,7 +43,7 @@ std::size_t ContactColumns::entries() const {
   return sum;
 }
 
-/// The columns of a block from the rows `begin`… of H.
+/// Computes the columns of a block from the rows `begin`… of H.
 void ContactColumns::fill(Block& block, const SparseMatrix& transposed, Index begin) const {
   const auto on_path = [&](Index place) {
     const auto& first = block.path.first;
@@ -58,7 +58,7 @@ void ContactColumns::fill(Block& block, const SparseMatrix& transposed, Index be
   factor_.supernodal().forward_on_path(block.path, block.columns);
 }
 
-/// That of all of its rows.
+/// Sets the path of a block to that of all of its rows.
 void ContactColumns::find_path(Block& block, const SparseMatrix& transposed, Index begin) const {
   std::vector<Index> reached;
   for (Index row = begin; row < begin + block.columns.cols(); ++row) {

@@ -4,12 +4,12 @@
 
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
 
-/// @file The contact rows of a stage in the coordinates of its factor.
+/// @file Columns of the Delassus operator: the contact rows of a stage in the coordinates of its factor.
 ///
-/// With 2ᵏA = PᵀLLᵀP and y = L⁻¹P 2ᵏ b, a row h of H = [G; B_T] sees A⁻¹b as (L⁻¹P hᵀ)·y. The column L⁻¹P hᵀ is zero
-/// but on the paths from the dofs of h to the root of the elimination tree: a few separators. So a contact point is
-/// known by short columns Y, and a few points in contact cost little whatever the number of points on the boundary and
-/// wherever their dofs lie in the factor.
+/// With 2ᵏA = PᵀLLᵀP and y = L⁻¹P 2ᵏ b, a row h of H = [G; B_T] has the motion h A⁻¹b = (L⁻¹P hᵀ)·y. The column L⁻¹P hᵀ
+/// is zero except on the paths from the dofs of h to the root of the elimination tree: a few separators. So a contact
+/// point is represented by short columns Y, and a few points in contact cost little, however many points are on the
+/// boundary and wherever their dofs lie in the factor.
 namespace ricochet {
 
 class ContactColumns {
@@ -20,25 +20,25 @@ class ContactColumns {
   [[nodiscard]] Index rows() const { return row_count_; }
   void clear();
   /// Appends rows of H. `transposed` holds them as columns, unknowns of the factor × rows. Extends `w` by the new rows
-  /// and columns of YᵀY, symmetric to the bit. Columns that lie close in the tree should follow each other.
+  /// and columns of YᵀY, symmetric to the bit. Columns that are close in the tree should follow each other.
   void append(const SparseMatrix& transposed, Matrix& w);
 
-  /// Makes columns anew where rows of H are others, which may reach other dofs: `transposed` holds all rows, `is_new`
-  /// marks those that changed. `w` is that of all rows. Paths are those of the rows that are there now, whatever was
-  /// before: the bits of products depend on them.
+  /// Renews the columns of changed rows of H, which may reach other dofs: `transposed` holds all rows, `is_new` marks
+  /// the changed ones. `w` is that of all rows. Paths are those of the present rows, independent of earlier ones: the
+  /// bits of products depend on them.
   void renew(const SparseMatrix& transposed, const std::vector<char>& is_new, Matrix& w);
 
-  /// Yᵀ y, per row.
+  /// Computes Yᵀ y, per row.
   void motion(const Vector& y, Vector& result);
-  /// y += Y r: columns of rows with r = 0 are not read.
+  /// Adds Y r to y; columns of rows with r = 0 are not read.
   void add_reaction(const Vector& r, Vector& y);
-  /// Entries of Y.
+  /// Number of entries of Y.
   [[nodiscard]] std::size_t entries() const;
 
  private:
   /// Columns with nearly the same path, stored on the union of their paths.
   struct Block {
-    Index row = 0;  ///< of H, its first
+    Index row = 0;  ///< its first row of H
     FactorPath path;
     Matrix columns;
   };

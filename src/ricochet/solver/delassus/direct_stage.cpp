@@ -8,7 +8,7 @@ namespace ricochet {
 
 namespace {
 
-/// A on some dofs; empties `matrix` where these are all.
+/// Restricts A to some dofs; empties `matrix` if these are all.
 SparseMatrix on_dofs(const SemidiscreteProblem& problem, const std::vector<int>& dofs, SparseMatrix& matrix) {
   const auto count = static_cast<Index>(dofs.size());
   SparseMatrix result;
@@ -21,7 +21,7 @@ SparseMatrix on_dofs(const SemidiscreteProblem& problem, const std::vector<int>&
   return result;
 }
 
-/// A factor of the whole operator. Supports are on the right-hand side.
+/// Stage with a factor of the whole operator. Supports are on the right-hand side.
 class DirectStage final : public StageSolver {
  public:
   DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, AnalysedOperator analysed,
@@ -60,7 +60,7 @@ void DirectStage::refactorize(const Vector& displacement) {
   stage_.refactorize(problem_, coefficients_, on_dofs(problem_, solved_dofs(problem_, coefficients_.dofs), matrix));
 }
 
-/// b − A_fs δ_s.
+/// Computes b − A_fs δ_s.
 const Vector& DirectStage::right_hand_side(const Stage& stage) {
   if (problem_.supports.size() == 0 || stage.prescribed.isZero(0.0)) return stage.right_hand_side;
   right_hand_side_ = stage.right_hand_side;

@@ -9,7 +9,7 @@
 /// @file Stages that are solved with a factor of the whole operator.
 namespace ricochet {
 
-/// A on the dofs that a stage solves for, and what its factorization would take.
+/// A on the dofs that a stage solves for, and the predicted cost of its factorization.
 struct AnalysedOperator {
   std::vector<int> dofs;      ///< ascending
   SparseRowMatrix supported;  ///< A's rows of supported dofs: supports × all dofs
@@ -18,8 +18,8 @@ struct AnalysedOperator {
 [[nodiscard]] AnalysedOperator analyse_operator(const SemidiscreteProblem& problem,
                                                 const OperatorCoefficients& coefficients);
 
-/// Forward solve, condensed contact, back solve. `layer`: of A_c, where the coefficients name one; kept. Throws
-/// Error(invalid_input) when A is not positive definite.
+/// Forward solve, condensed contact problem, back solve. `layer` is the stage of A_c, if the coefficients name one;
+/// keeps a reference to it. Throws Error(invalid_input) if A is not positive definite.
 [[nodiscard]] std::unique_ptr<StageSolver> make_direct_stage(const SemidiscreteProblem& problem,
                                                              const OperatorCoefficients& coefficients,
                                                              AnalysedOperator analysed,

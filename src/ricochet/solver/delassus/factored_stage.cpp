@@ -8,7 +8,7 @@ namespace ricochet {
 
 namespace {
 
-/// The factor, once it is one.
+/// Returns the completed factor.
 SparseCholesky factorized(SparseCholesky factor, const SemidiscreteProblem& problem,
                           const OperatorCoefficients& coefficients, const std::vector<int>& dofs) {
   factor.factorize();
@@ -41,7 +41,7 @@ void FactoredStage::refactorize(const SemidiscreteProblem& problem, const Operat
   contact_.take_factor();
 }
 
-/// y = L⁻¹P 2ᵏ b, y += Yρ, δ = Pᵀ L⁻ᵀ y; again with more contact points where others have penetrated.
+/// Computes y = L⁻¹P 2ᵏ b, y += Yρ, δ = Pᵀ L⁻ᵀ y; repeated with more contact points if others have penetrated.
 void FactoredStage::solve(const Stage& stage, const Vector& right_hand_side, StageSolution& solution,
                           Vector& increment) {
   if (!factor_.positive_definite()) throw std::logic_error("a stage is solved after its operator has been refused");

@@ -12,25 +12,26 @@ namespace ricochet {
 class FactoredStage {
  public:
   /// Factorizes. `dofs` are those of the unknowns of `factor`, which has been analysed; `coefficients` are those of A,
-  /// for the error. Keeps a reference to the problem. Throws Error(invalid_input) when A is not positive definite.
-  /// `layer`: the stage of the operator A_c, where these coefficients name one; kept, and solved with.
+  /// for the error. `layer` is the stage of the operator A_c, if these coefficients name one, whose factor is used.
+  /// Keeps references to the problem and to `layer`. Throws Error(invalid_input) if A is not positive definite.
   FactoredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                 const std::vector<int>& dofs, SparseCholesky factor, bool all_points, FactoredStage* layer = nullptr);
   FactoredStage(const FactoredStage&) = delete;
   FactoredStage& operator=(const FactoredStage&) = delete;
 
-  /// With b per dof of the problem: the reactions, and δ on the dofs of the factor. The other entries of `increment`
-  /// stay as they are, and are part of the motion that the gaps of points outside the contact problem are judged by.
+  /// Computes, from b per dof of the problem, the reactions, and δ on the dofs of the factor. The other entries of
+  /// `increment` are unchanged, and are part of the motion by which the gaps of points outside the contact problem are
+  /// judged.
   void solve(const Stage& stage, const Vector& right_hand_side, StageSolution& solution, Vector& increment);
 
-  /// With other values of A on the dofs of the factor, of the same pattern.
+  /// Refactorizes with other values of A on the dofs of the factor, of the same pattern.
   void refactorize(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                    const SparseMatrix& matrix);
 
-  /// In the order of the factor.
+  /// Dofs in the order of the factor.
   [[nodiscard]] const std::vector<int>& dofs() const { return dof_at_; }
   [[nodiscard]] SparseCholesky& factor() { return factor_; }
-  /// What the contact conditions leave for later stages.
+  /// Save and load the data that the contact conditions leave for later stages.
   void save(Snapshot& snapshot, const std::string& name) const { contact_.save(snapshot, name); }
   void load(const Snapshot& snapshot, const std::string& name) { contact_.load(snapshot, name); }
   void report() const { contact_.report(); }
@@ -40,7 +41,7 @@ class FactoredStage {
 
  private:
   SparseCholesky factor_;
-  std::vector<int> dof_at_;  ///< per place in the factor
+  std::vector<int> dof_at_;  ///< per row of the factor
   CondensedContact contact_;
   Vector factor_vector_;
 };

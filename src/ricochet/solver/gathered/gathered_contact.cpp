@@ -11,7 +11,7 @@ namespace ricochet {
 
 namespace {
 
-/// A body at the nodes of which nothing is asked for but where they are.
+/// Body of which only the positions of the nodes are used.
 class NoForce final : public InternalForce {
  public:
   void evaluate(const Vector&, Vector&) const override { refuse(); }
@@ -50,7 +50,7 @@ void keep_row(const SparseRowMatrix& matrix, Index row, Triplets& entries) {
     entries.emplace_back(static_cast<int>(row), static_cast<int>(entry.col()), entry.value());
 }
 
-/// All that a point has in rows.
+/// Appends all row data of a point.
 void append_point(const ContactRows& rows, Index point, Index d, const Ranks& ranks, std::vector<double>& message) {
   const auto append = [&message](const auto& values) {
     message.insert(message.end(), values.data(), values.data() + values.size());
@@ -107,7 +107,7 @@ std::vector<Index> GatheredContact::named_by_all(const std::vector<Index>& nodes
   return result;
 }
 
-/// All but the rows, and space for these.
+/// Gathers everything except the rows, and allocates these.
 void GatheredContact::gather_boundary() {
   const Ranks& ranks = *problem_.ranks;
   const ContactBoundary& own = problem_.contact;
@@ -168,7 +168,7 @@ std::shared_ptr<ContactRows> GatheredContact::empty_rows() const {
   return rows;
 }
 
-/// Those that have changed.
+/// Gathers the changed rows.
 void GatheredContact::gather_rows(const ContactRows& rows) {
   const Ranks& ranks = *problem_.ranks;
   const bool is_first = changes_++ == 0;
@@ -186,7 +186,7 @@ void GatheredContact::gather_rows(const ContactRows& rows) {
   if (is_home()) rows_ = read_rows();
 }
 
-/// With those that have not changed. Others may keep those of earlier stages.
+/// Merges the received rows with the unchanged ones, in new storage: others may keep those of earlier stages.
 std::shared_ptr<ContactRows> GatheredContact::read_rows() const {
   auto rows = std::make_shared<ContactRows>(*rows_);
   std::vector<char> is_new(static_cast<std::size_t>(point_count()), 0);

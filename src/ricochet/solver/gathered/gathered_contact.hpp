@@ -7,34 +7,35 @@
 #include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/gathered/gathered_nodes.hpp"
 
-/// @file The contact points of a body that is divided among ranks, gathered on one of them, their home: contact
-/// problems are solved there. All functions are called by all ranks together.
+/// @file Contact points of a body that is divided among ranks, gathered on one of them, their root, which solves the
+/// contact problems. All functions are collective over the ranks.
 namespace ricochet {
 
 class GatheredContact {
  public:
-  /// `home`: 0 is the rank with most contact points, 1 the next one, and so on. Keeps a reference to the problem.
+  /// `home` selects the root: 0 is the rank with most contact points, 1 the next one, and so on. Keeps a reference to
+  /// the problem.
   explicit GatheredContact(const SemidiscreteProblem& problem, std::size_t home = 0);
 
   [[nodiscard]] bool is_home() const { return nodes_.is_home(); }
-  /// The contact nodes.
+  /// Gathered contact nodes.
   [[nodiscard]] const GatheredNodes& nodes() const { return nodes_; }
-  /// Nodes that some rank names, named by all that have them; ascending.
+  /// Nodes that some rank names, extended to all ranks that have them; ascending.
   [[nodiscard]] std::vector<Index> named_by_all(const std::vector<Index>& nodes) const;
 
-  /// At home: a problem of nodes that are gathered there (contact nodes come first), with all contact points and no
-  /// forces. Supported dofs are not among its contact dofs. Its rows are those of the last stage that was gathered.
+  /// Makes, at the root, a problem of gathered nodes (contact nodes come first), with all contact points and no forces.
+  /// Supported dofs are not among its contact dofs. Its rows are those of the last gathered stage.
   [[nodiscard]] std::unique_ptr<SemidiscreteProblem> make_problem(const GatheredNodes& nodes) const;
-  /// Rows of a stage at home, on so many dofs of such a problem in place of those of the contact nodes.
+  /// Rows of a stage at the root, on so many dofs of such a problem instead of those of the contact nodes.
   [[nodiscard]] static std::shared_ptr<const ContactRows> rows_on(const ContactRows& rows, Index dofs);
 
-  /// A stage at home, of these points of this rank (others are not eligible there), with the gaps and slips that it has
-  /// at a motion x: the stage on a correction of x. `points` is the same as that of spread().
+  /// Gathers a stage at the root, with these points of this rank (others are not eligible there), with the gaps and
+  /// slips that it has at a motion x: the stage for a correction of x. `points` is the same as that of spread().
   void gather(const Stage& stage, const Vector& x, const std::vector<Index>& points, Stage& at_home);
-  /// Adds what a solution at home says of these points: reactions, status and iterations.
+  /// Adds the solution at the root on these points: reactions, status and iterations.
   void spread(const StageSolution& at_home, const std::vector<Index>& points, StageSolution& solution) const;
 
-  /// At home, of a point of a rank.
+  /// Number, at the root, of a point of a rank.
   [[nodiscard]] Index number(int rank, Index point) const { return first_[static_cast<std::size_t>(rank)] + point; }
   [[nodiscard]] Index point_count() const { return first_.back(); }
 
@@ -53,13 +54,13 @@ class GatheredContact {
 
   const SemidiscreteProblem& problem_;
   int d_;
-  std::vector<Index> first_;  ///< number at home of the first point of each rank, and of all
+  std::vector<Index> first_;  ///< number at the root of the first point of each rank, and of all
   GatheredNodes nodes_;
-  ContactBoundary boundary_;           ///< at home, on the contact nodes
-  std::vector<Index> contact_dofs_;    ///< at home
-  std::shared_ptr<ContactRows> rows_;  ///< at home: those of the last stage
+  ContactBoundary boundary_;           ///< at the root, on the contact nodes
+  std::vector<Index> contact_dofs_;    ///< at the root
+  std::shared_ptr<ContactRows> rows_;  ///< at the root: those of the last stage
   std::vector<long> revision_;         ///< of rows of this rank when they were sent
-  long changes_ = 0;                   ///< of rows; no two that differ have the same revision at home
+  long changes_ = 0;                   ///< of rows; different rows have different revisions at the root
   Vector motion_, slip_;
   Ranks::ForEach<double> known_;
 };

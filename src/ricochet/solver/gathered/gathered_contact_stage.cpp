@@ -4,16 +4,16 @@
 #include "ricochet/solver/gathered/gathered_contact.hpp"
 #include "ricochet/solver/gathered/number_reader.hpp"
 
-/// @file Stages and their solutions, point by point, between the ranks and the home of their contact.
+/// @file Transfer of stages and their solutions, point by point, between the ranks and the root of their contact.
 namespace ricochet {
 
 namespace {
 
-/// Which vectors a stage has.
+/// Vectors that a stage may have.
 constexpr std::size_t stage_parts = 4;
 enum StagePart : std::size_t { with_slip, with_frictionless, with_start, with_start_friction };
 
-/// A number per point of some vector; 0 where it is not part of a stage.
+/// Entry of a vector per point; 0 if it is not part of the stage.
 double value_of(const Vector& values, Index i) {
   return values.size() > 0 ? values[i] : 0.0;
 }
@@ -114,7 +114,7 @@ void GatheredContact::spread(const StageSolution& at_home, const std::vector<Ind
     tell_solution(at_home, static_cast<int>(rank), wanted[rank], told[rank]);
   const Ranks::ForEach<double> known = ranks.exchange(std::move(told));
   read_solution(known[static_cast<std::size_t>(nodes_.home())], points, solution);
-  // Works of the path are sums over points, like those of any rank.
+  // Works of the path are sums over points, as those of any rank.
   if (!is_home()) return;
   solution.path_contact_work = at_home.path_contact_work;
   solution.path_friction_work = at_home.path_friction_work;

@@ -14,7 +14,7 @@ namespace ricochet {
 
 namespace {
 
-/// A stage on the dofs of contact nodes: all of it is solved at home. Supports are on the right-hand side, and in the
+/// Stage on the dofs of contact nodes, solved entirely at the root. Supports are on the right-hand side, and in the
 /// gaps.
 class GatheredStage final : public StageSolver {
  public:
@@ -47,16 +47,16 @@ class GatheredStage final : public StageSolver {
   const SemidiscreteProblem& problem_;
   GatheredContact& contact_;
   SparseRowMatrix supported_;  ///< this rank's part of A's rows of supported dofs: supports × dofs
-  std::vector<Index> points_;  ///< that take part
+  std::vector<Index> points_;  ///< that take part in the stage
   Vector right_hand_side_, held_, contact_force_;
-  // At home:
+  // At the root:
   std::unique_ptr<SemidiscreteProblem> near_;
   std::unique_ptr<StageSolver> stage_;
   Stage near_stage_;
   StageSolution near_solution_;
 };
 
-/// A's rows of supported dofs, without making the whole of A.
+/// Extracts A's rows of supported dofs without assembling the whole of A.
 SparseRowMatrix supported_part(const SemidiscreteProblem& problem, const StageTerms& terms) {
   const int d = problem.dimension;
   std::vector<Index> nodes;
@@ -122,7 +122,7 @@ void GatheredStage::solve(const Stage& stage, StageSolution& solution) {
   solution.open_all(problem_.contact.size(), problem_.contact.has_friction() ? d - 1 : 0);
   solution.increment = held_;
   contact_.nodes().spread(near_solution_.increment, d, solution.increment);
-  // What is held at a contact node is no part of what is solved for.
+  // Supported dofs of contact nodes are not solved for.
   prescribe(problem_, stage, solution.increment);
   contact_.spread(near_solution_, points_, solution);
   find_support_reaction(problem_, stage, supported_, contact_force_, solution);

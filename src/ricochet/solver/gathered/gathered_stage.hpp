@@ -9,7 +9,7 @@ namespace ricochet {
 
 class GatheredContact;
 
-/// Several ranks: a stage on the dofs of contact nodes, by a factor on one of them. Keeps a reference to `gathered`.
+/// Stage on the dofs of contact nodes on several ranks, with a factor on one of them. Keeps a reference to `gathered`.
 [[nodiscard]] std::unique_ptr<StageSolver> make_gathered_stage(const SemidiscreteProblem& problem,
                                                                const OperatorCoefficients& coefficients,
                                                                const StepSolverOptions& options,

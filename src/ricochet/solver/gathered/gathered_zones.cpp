@@ -8,7 +8,8 @@ namespace ricochet {
 
 namespace {
 
-/// Each home has all contact points and what is near them, and hears of all in every round.
+/// Largest number of roots: each has all contact points and everything near them, and receives all data in every
+/// iteration.
 constexpr std::size_t most_homes = 16;
 
 class GatheredZones final : public NearContact {
@@ -57,10 +58,10 @@ class GatheredZones final : public NearContact {
 
  private:
   struct Home {
-    std::unique_ptr<GatheredContact> contact;  ///< null of the first, which others keep
+    std::unique_ptr<GatheredContact> contact;  ///< null for the first, whose contact others keep
     std::unique_ptr<ZonesAtHome> zones;
   };
-  /// Those of this rank.
+  /// Visits the subdomains of this rank.
   template <class Visit>
   void visit(const Visit& visit) const {
     for (std::size_t i = 0; i < active_; ++i) {
@@ -72,13 +73,13 @@ class GatheredZones final : public NearContact {
   NearBody body_;
   bool all_points_;
   std::vector<Home> homes_;
-  std::size_t active_ = 0;     ///< homes that have zones
+  std::size_t active_ = 0;     ///< roots with subdomains
   std::vector<Index> points_;  ///< of this rank
-  std::vector<Index> nodes_;   ///< of this rank, near the points of all
+  std::vector<Index> nodes_;   ///< of this rank, near the points of all ranks
   ContactObserver observer_;
 };
 
-/// For so many zones.
+/// Chooses the roots of so many subdomains.
 void GatheredZones::find_homes(std::size_t zones) {
   const auto ranks = static_cast<std::size_t>(body_.problem.ranks->size());
   active_ = std::min({zones, ranks, most_homes});

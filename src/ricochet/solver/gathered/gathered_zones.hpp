@@ -7,16 +7,16 @@
 #include "ricochet/solver/subdomain/near_contact.hpp"
 #include "ricochet/solver/subdomain/points_nearby.hpp"
 
-/// @file The contact zones of a body that is divided among ranks.
+/// @file Contact subdomains of a body that is divided among ranks.
 namespace ricochet {
 
 class FactoredStage;
 
-/// Zones have homes, the ranks that solve them: the first one has `contact`, and where there are several zones others,
-/// those with most contact points first, take their share. The ranks send what A has near the contact, once for each
-/// set of zones, and in every round the residual there and the gaps of their points; back come the motion and the
-/// reactions. `layer`: at the first home, of `contact.nodes()`; all is one zone then. Keeps references to all but the
-/// coefficients.
+/// Subdomains have roots, the ranks that solve them: the first one has `contact`; with several subdomains others take
+/// their share, those with most contact points first. The ranks send A near the contact, once for each set of
+/// subdomains, and in every iteration the residual there and the gaps of their points; they receive the motion and the
+/// reactions. `layer` is at the first root, on `contact.nodes()`; there is a single subdomain then. Keeps references to
+/// everything except the coefficients.
 [[nodiscard]] std::unique_ptr<NearContact> make_gathered_zones(
     const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, const std::vector<char>& solved,
     const StageProduct& product, PointsNearby& nearby, bool all_points, GatheredContact& contact, FactoredStage* layer);

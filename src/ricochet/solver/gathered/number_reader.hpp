@@ -7,7 +7,7 @@
 /// @file Messages of numbers. Not part of the public interface.
 namespace ricochet {
 
-/// Numbers, one after the other.
+/// Reads numbers one after the other.
 class NumberReader {
  public:
   explicit NumberReader(const std::vector<double>& numbers) : at_(numbers.data()), end_(at_ + numbers.size()) {}

@@ -23,7 +23,7 @@ std::vector<Index> ZonesAtHome::gather_points(const std::vector<Index>& points) 
   return result;
 }
 
-/// Who is a neighbour of whom by the cells of all ranks.
+/// Gathers the graph of neighbouring nodes by the cells of all ranks.
 MatrixGraph ZonesAtHome::gather_graph(const std::vector<Index>& nodes) {
   const Ranks& ranks = *body_.problem.ranks;
   Ranks::ForEach<std::int64_t> told(static_cast<std::size_t>(ranks.size()));
@@ -81,7 +81,8 @@ void ZonesAtHome::make_here(std::size_t number, std::size_t count) {
   if (zones_) zones_->make_share(number, count);
 }
 
-/// The rows of the stage come on the contact nodes; once for many stages where the obstacle is flat.
+/// Extends the rows of the stage, received on the contact nodes, to all nodes; once for many stages if the obstacle is
+/// flat.
 void ZonesAtHome::widen_rows() {
   if (rows_ != stage_.rows) {
     rows_ = stage_.rows;

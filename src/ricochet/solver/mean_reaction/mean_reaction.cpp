@@ -13,16 +13,16 @@ namespace ricochet {
 
 namespace {
 
-/// Part of the largest reaction that the mean may be off by; and what is left where rounding stops the rounds.
+/// Error of the mean relative to the largest reaction: the tolerance, and the limit if rounding stops the iterations.
 constexpr double tolerance = 1e-13, rounding_of_rounds = 1e-10;
 constexpr int rounds_before_settling = 2, most_mean_rounds = 60, most_newton_steps = 60, patience_of_mean = 12;
-/// Of the power iteration for λ, whose value is a lower bound.
+/// Steps of the power iteration for λ, whose value is a lower bound, and its reserve.
 constexpr int power_steps = 30;
 constexpr double power_reserve = 1.05;
-/// Of the largest diagonal of U, where U is not definite: added to it for λ.
+/// Part of the largest diagonal entry of U that is added to U, if it is not definite, for λ.
 constexpr double own_compliance = 1e-10;
 
-/// The largest eigenvalue λ of U⁻¹Z; not finite where U is not positive definite.
+/// Returns the largest eigenvalue λ of U⁻¹Z; not finite if U is not positive definite.
 double largest_ratio(const Matrix& u, const Matrix& z) {
   const SmallCholesky factor(u);
   const bool definite =
@@ -42,7 +42,7 @@ double largest_ratio(const Matrix& u, const Matrix& z) {
   return power_reserve * ratio;
 }
 
-/// The least μ = 2θ − 1 with (1 − (1−θ)λ)/(1 + θλ) ≥ −ratio.
+/// Returns the least μ = 2θ − 1 with (1 − (1−θ)λ)/(1 + θλ) ≥ −ratio.
 double least_end_weight(double lambda, double ratio) {
   if (!(lambda > 0.0)) return 0.0;
   return std::clamp(2.0 * (lambda - 1.0 - ratio) / (lambda * (1.0 + ratio)) - 1.0, 0.0, 1.0);
@@ -85,7 +85,7 @@ Vector MeanReaction::normals(const Vector& rows) const {
 
 bool MeanReaction::find_mean(const Vector& acting, const Vector& offset, const Vector& reaction, Vector& mean) {
   has_path_ = !(start_.isZero(0.0) && reaction.isZero(0.0) && acting.isZero(0.0));
-  if (!has_path_) {  // open at both ends: straight gaps are open in between, whatever their rounding
+  if (!has_path_) {  // open at both ends: straight gaps are open in between, regardless of rounding
     mean.setZero(reaction.size());
     path_work_ = 0.0;
     return true;
@@ -101,7 +101,7 @@ bool MeanReaction::find_mean(const Vector& acting, const Vector& offset, const V
   return true;
 }
 
-/// The largest, as the motion of the contact points sees it where different reactions may be the same force.
+/// Largest difference, measured by the motion of contact points if different reactions may be the same force.
 double MeanReaction::difference_of(const Vector& mean, const Vector& acting) const {
   const Vector difference = mean - acting;
   if (!is_dependent_) return difference.lpNorm<Eigen::Infinity>();
@@ -109,8 +109,8 @@ double MeanReaction::difference_of(const Vector& mean, const Vector& acting) con
   return (u_ * difference + z_ * difference).lpNorm<Eigen::Infinity>() / compliance;
 }
 
-/// Solves with ρ̄ − θρ = difference_: ρ̄ is then right for y; `error` says how far it is from the mean of the path, and
-/// acting_ is ρ̄.
+/// Solves with ρ̄ − θρ = difference_, for which ρ̄ is consistent with y; `error` is its distance from the mean of the
+/// path, and acting_ is ρ̄.
 bool MeanReaction::solve_with(ContactProblem& contact, const Vector& offset, const std::function<bool()>& solve_contact,
                               ContactSolution& solution, double& error) {
   contact.offset = offset + z_ * difference_;
@@ -129,13 +129,13 @@ bool MeanReaction::solve_with(ContactProblem& contact, const Vector& offset, con
   return true;
 }
 
-/// Without changes of status along the path the first round is right.
+/// Iterates on the difference. Without changes of status along the path the first iteration is exact.
 bool MeanReaction::rounds(ContactProblem& contact, const Vector& offset, const std::function<bool()>& solve_contact,
                           ContactSolution& solution) {
   acceleration_.restart();
   double least = std::numeric_limits<double>::infinity();
   int last_progress = 0;
-  const int patience = has_friction_ ? patience_of_mean : 5;  // Newton's steps come after it
+  const int patience = has_friction_ ? patience_of_mean : 5;  // followed by Newton's method
   for (int round = 0; round < most_mean_rounds; ++round) {
     const Vector asked = difference_;
     double error = 0.0;
@@ -156,8 +156,8 @@ bool MeanReaction::rounds(ContactProblem& contact, const Vector& offset, const s
   return false;
 }
 
-/// Without friction ρ̄ − mean(o + Zρ̄) is, times Z, the gradient of a convex function: Newton's steps on it, shortened
-/// where the gradient along them changes sign.
+/// Without friction ρ̄ − mean(o + Zρ̄), multiplied by Z, is the gradient of a convex function: Newton's method for it,
+/// with steps shortened if the gradient along them changes sign.
 bool MeanReaction::newton(ContactProblem& contact, const Vector& offset, const std::function<bool()>& solve_contact,
                           ContactSolution& solution) {
   NormalPath& path = path_.normal();
@@ -187,7 +187,7 @@ bool MeanReaction::newton(ContactProblem& contact, const Vector& offset, const s
       return solve_with(contact, offset, solve_contact, solution, left) && left <= 10.0 * rounding_of_rounds;
     }
     const Matrix derivative = (1.0 - mu_) * path.mean_derivative() + mu_ * path.end_derivative();
-    // Where nothing presses on the path, rows of I + DZ are those of the identity.
+    // If nothing presses on the path, rows of I + DZ are those of the identity.
     pressed_.clear();
     for (Index i = 0; i < derivative.cols(); ++i) {
       if (derivative(i, i) != 0.0) pressed_.push_back(i);

@@ -7,18 +7,18 @@ namespace ricochet {
 
 namespace {
 
-/// The set of a piece is looked for so far behind its beginning: what changes in between is of the square of it.
+/// Distance behind the beginning of a piece at which its set is determined: changes in between are of its square.
 constexpr double behind_change = 1e-9;
-/// A reaction below this part of the largest, or a gap below it of those without reactions, is rounding.
+/// Part of the largest reaction, or of the largest gap without reactions, below which values are rounding.
 constexpr double path_rounding = 1e-13;
-/// Of what reactions move: what may be left of a gap that U_AA⁻¹ has closed.
+/// Part of the motion due to reactions that may remain of a gap closed by U_AA⁻¹.
 constexpr double closed_gap = 1e-12;
-/// Exchanges of all points that are wrong, without progress, before points are taken in one by one.
+/// Exchanges of all wrong points without progress, before points are added one by one.
 constexpr int patience_of_exchange = 10;
 
 }  // namespace
 
-/// r and y at q with the points of the set. False: the inverse is worth nothing.
+/// Computes r and y at q with the points of the set. Returns false if the inverse is useless.
 bool NormalPath::evaluate(const Vector& q) {
   for (const bool is_new : {false, true}) {
     if (is_new && !set_.renew()) return false;
@@ -32,8 +32,8 @@ bool NormalPath::evaluate(const Vector& q) {
   return false;
 }
 
-/// Exchanges all points that are wrong (J. J. Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587–596). False: they
-/// do not become fewer.
+/// Exchanges all wrong points (J. J. Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587–596). Returns false if their
+/// number does not fall.
 bool NormalPath::exchange_all(const Vector& q, std::vector<char>& active) {
   const auto count = static_cast<std::size_t>(q.size());
   std::size_t least = count + 1;
@@ -58,7 +58,7 @@ bool NormalPath::exchange_all(const Vector& q, std::vector<char>& active) {
   return false;
 }
 
-/// The points that press at q.
+/// Determines the pressing points at q.
 bool NormalPath::find_set(const Vector& q, std::vector<char>& active) {
   if (kind_ != PathMatrix::semidefinite) {
     guess_ = active;
@@ -69,12 +69,12 @@ bool NormalPath::find_set(const Vector& q, std::vector<char>& active) {
   return one_by_one_.find(*u_, q, eligible_, gap_rounding_, active) && set_.take(active) && evaluate(q);
 }
 
-/// Where the next point begins or ceases to press.
+/// Returns the position on the path at which the next point begins or ceases to press.
 double NormalPath::piece_end(const std::vector<char>& active, double begin) {
   set_.solve(change_, rate_);
   y_rate_ = change_;
   set_.add_motion(rate_, y_rate_);
-  // Where the sign is that of rounding, sets are the same on both sides.
+  // If signs are those of rounding, sets are the same on both sides.
   const double force = 2.0 * path_rounding * r_.lpNorm<Eigen::Infinity>(), gap = 2.0 * gap_rounding_;
   double end = 1.0;
   for (std::size_t i = 0; i < active.size(); ++i) {

@@ -8,12 +8,12 @@ namespace ricochet {
 
 namespace {
 
-/// Of U_pp: what is left of it beside the set, at which p depends on the set.
+/// Part of U_pp that remains after elimination of the set, at which p depends on the set.
 constexpr double dependent = 1e-11;
 
 }  // namespace
 
-/// x = U⁻¹x on the set.
+/// Computes x = U⁻¹x on the set.
 void PathActiveSet::solve(Vector& x) const {
   const auto count = static_cast<Index>(set_.size());
   const auto lower = factor_.topLeftCorner(count, count).triangularView<Eigen::Lower>();
@@ -21,7 +21,7 @@ void PathActiveSet::solve(Vector& x) const {
   lower.transpose().solveInPlace(x);
 }
 
-/// False: it depends on those that are there.
+/// Appends a point. Returns false if it depends on those of the set.
 bool PathActiveSet::append(const Matrix& u, Index point, double least) {
   const auto count = static_cast<Index>(set_.size());
   if (factor_.rows() <= count) factor_.conservativeResize(u.rows(), u.cols());
@@ -35,7 +35,7 @@ bool PathActiveSet::append(const Matrix& u, Index point, double least) {
   return true;
 }
 
-/// Of those asked for, as many as are independent.
+/// Factorizes as many of the requested points as are independent.
 void PathActiveSet::factorize(const Matrix& u) {
   set_.clear();
   for (const Index point : asked_) (void)append(u, point, dependent);
@@ -50,7 +50,7 @@ void PathActiveSet::remove(const Matrix& u, std::size_t place) {
   factorize(u);
 }
 
-/// The guess, without dependent points and those that would pull.
+/// Starts from the guess, without dependent points and those that would pull.
 void PathActiveSet::start(const Matrix& u, const Vector& q) {
   factorize(u);
   for (;;) {
@@ -65,7 +65,7 @@ void PathActiveSet::start(const Matrix& u, const Vector& q) {
   }
 }
 
-/// Raises the reaction of a point until its gap closes; those that would pull leave the set on the way.
+/// Raises the reaction of a point until its gap closes; points that would pull leave the set on the way.
 bool PathActiveSet::take_in(const Matrix& u, Index point, double gap) {
   double own = 0.0;
   for (;;) {
@@ -91,7 +91,7 @@ bool PathActiveSet::take_in(const Matrix& u, Index point, double gap) {
       remove(u, leaves);
       continue;
     }
-    if (!append(u, point, 0.1 * dependent)) return false;  // found independent above, by another way
+    if (!append(u, point, 0.1 * dependent)) return false;  // found independent above, in another way
     reaction_.conservativeResize(reaction_.size() + 1);
     reaction_[reaction_.size() - 1] = own;
     return true;
@@ -121,7 +121,7 @@ bool PathActiveSet::find(const Matrix& u, const Vector& q, const std::vector<cha
       return true;
     }
     if (!take_in(u, deepest, gap_[deepest])) return false;
-    // What rounding has left in the reactions of the way is gone.
+    // Discards the rounding accumulated in the reactions on the way.
     row_ = -q(set_);
     solve(row_);
     reaction_ = row_.cwiseMax(0.0);

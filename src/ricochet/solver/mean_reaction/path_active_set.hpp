@@ -4,17 +4,17 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file Points that press, one after the other: the dual method of D. Goldfarb and A. Idnani (Math. Program. 27 (1983)
-/// 1–33) for
+/// @file Set of pressing points, found one after the other: the dual method of D. Goldfarb and A. Idnani (Math.
+/// Program. 27 (1983) 1–33) for
 ///   0 ≤ r ⟂ q + U r ≥ 0,
-/// U symmetric and positive semi-definite. The points that it finds are independent: U is definite on them, also where
-/// other points could press instead.
+/// U symmetric and positive semi-definite. The points found are independent: U is definite on them, even if other
+/// points could press instead.
 namespace ricochet {
 
 class PathActiveSet {
  public:
-  /// Of points that are eligible. `pressing`: a guess, then the answer. False where no reactions meet the conditions.
-  /// A gap above −gap_rounding is none.
+  /// Searches the eligible points. `pressing` is a guess on input, and the result on output. Returns false if no
+  /// reactions meet the conditions. A gap above −gap_rounding is no penetration.
   [[nodiscard]] bool find(const Matrix& u, const Vector& q, const std::vector<char>& eligible, double gap_rounding,
                           std::vector<char>& pressing);
 

@@ -9,7 +9,7 @@ namespace ricochet {
 
 namespace {
 
-/// Of U_pp: what a point must have of its own beside the set.
+/// Part of U_pp that must remain after elimination of the set.
 constexpr double singular = 1e-13;
 
 }  // namespace
@@ -35,7 +35,7 @@ bool PressingSet::take(const std::vector<char>& marks) {
     if (wanted && !is_in) added_.push_back(static_cast<Index>(i));
     if (!wanted && is_in) removed_.push_back(static_cast<Index>(i));
   }
-  // Each change costs about three squares, all anew about two cubes.
+  // A change costs about three squares, a new inverse about two cubes.
   if (2 * (added_.size() + removed_.size()) < points_.size() + 2) {
     const auto remove_one = [&](Index point) { return remove(point); };
     const auto add_one = [&](Index point) { return add(point); };
@@ -65,7 +65,7 @@ bool PressingSet::add(Index point) {
   return true;
 }
 
-/// The last takes its place.
+/// Moves the last point to the position of the removed one.
 bool PressingSet::remove(Index point) {
   const Index last = count() - 1, place = places_[static_cast<std::size_t>(point)];
   if (place != last) {
@@ -90,7 +90,7 @@ void PressingSet::solve(const Vector& q, Vector& r) {
   on_set_ = -q(points_);
   result_.noalias() = inverse() * on_set_;
   r(points_) = result_;
-  // Once more with what is left: the inverse of points that nearly depend on one another has few digits.
+  // Refines with the residual: the inverse of points that nearly depend on one another has few digits.
   motion_ = q;
   add_motion(r, motion_);
   on_set_ = -motion_(points_);

@@ -4,24 +4,24 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file The inverse of a matrix on a set of points that changes by one point after the other. A change costs the
-/// square of the number of points.
+/// @file Inverse of a matrix on a set of points that changes by one point at a time. A change costs the square of the
+/// number of points.
 namespace ricochet {
 
 class PressingSet {
  public:
-  /// Of U, to which a reference is kept. Forgets what is known of another one.
+  /// Sets U, to which a reference is kept. Discards the data of another one.
   void prepare(const Matrix& u);
-  /// The set of the marked points. False where U is singular on it.
+  /// Changes the set to the marked points. Returns false if U is singular on it.
   [[nodiscard]] bool take(const std::vector<char>& marks);
   [[nodiscard]] const std::vector<Index>& points() const { return points_; }
-  /// r_A = −U_AA⁻¹ q_A, zero elsewhere.
+  /// Computes r_A = −U_AA⁻¹ q_A, zero elsewhere.
   void solve(const Vector& q, Vector& r);
-  /// y += U r for an r that is zero outside of the set.
+  /// Adds U r to y, for an r that is zero outside of the set.
   void add_motion(const Vector& r, Vector& y) const;
-  /// sum += factor · U_AA⁻¹ on the set.
+  /// Adds factor · U_AA⁻¹ on the set to the sum.
   void add_inverse(double factor, Matrix& sum) const;
-  /// Computes the inverse anew: after many changes it has gathered rounding errors. False: singular.
+  /// Recomputes the inverse, which accumulates rounding errors over many changes. Returns false if U_AA is singular.
   [[nodiscard]] bool renew();
 
  private:
@@ -31,7 +31,7 @@ class PressingSet {
   [[nodiscard]] bool remove(Index point);
 
   const Matrix* u_ = nullptr;
-  std::vector<Index> points_, places_;  ///< in the order of the inverse; place of each point or −1
+  std::vector<Index> points_, places_;  ///< in the order of the inverse; index of each point, or −1
   std::vector<Index> added_, removed_;
   Matrix inverse_;  ///< of U_AA, in its leading rows and columns
   Vector column_, row_, on_set_, result_, motion_;

@@ -7,15 +7,15 @@ namespace ricochet {
 
 namespace {
 
-/// In place of κ: the tangential reaction goes with the normal one.
+/// Value in place of κ: the tangential reaction is proportional to the normal one.
 constexpr double on_cone = 2.0;
-/// How near to the cone a reaction is that slips.
+/// Relative distance from the cone up to which a reaction slips.
 constexpr double cone_tolerance = 1e-8;
-/// Of reactions times motions: a work below it has the sign of rounding.
+/// Part of reactions times motions below which a work has the sign of rounding.
 constexpr double work_rounding = 1e-13;
-/// Of the largest reaction: a jump above it is none of rounding.
+/// Part of the largest reaction above which a jump is not rounding.
 constexpr double path_continuity = 1e-6;
-/// After these κ = 0 wherever friction creates energy.
+/// Number of iterations after which κ = 0 wherever friction creates energy.
 constexpr int most_share_rounds = 4;
 
 }  // namespace
@@ -36,7 +36,7 @@ void ReactionPath::begin_step() {
   settles_ = false;
 }
 
-/// On the cone where the point slips at the end, or did at the start and is open at the end.
+/// Puts a point on the cone if it slips at the end, or did at the start and is open at the end.
 void ReactionPath::choose_friction(const Step& step) {
   share_.assign(normal_rows_.size(), 0.0);
   for (std::size_t i = 0; i < share_.size(); ++i) {
@@ -53,7 +53,7 @@ void ReactionPath::choose_friction(const Step& step) {
   }
 }
 
-/// What does not go with normal reactions; none on normal rows.
+/// Sets the friction that is not proportional to normal reactions; zero on normal rows.
 void ReactionPath::set_friction(const Step& step) {
   friction_start_.setZero(step.end.size());
   friction_end_.setZero(step.end.size());
@@ -105,7 +105,7 @@ bool ReactionPath::leads_to_end(const Step& step) const {
   return true;
 }
 
-/// ρ and y at a time of the path.
+/// Computes ρ and y at a position on the path.
 void ReactionPath::take_state(const Step& step, double time, const Vector& normal, Vector& reaction,
                               Vector& motion) const {
   reaction = (1.0 - time) * friction_start_ + time * friction_end_;
@@ -119,7 +119,7 @@ void ReactionPath::take_state(const Step& step, double time, const Vector& norma
   motion.noalias() += *u_ * reaction;
 }
 
-/// The mean, and per row the work; both reactions and motions are linear in a piece.
+/// Computes the mean, and the work per row; both reactions and motions are linear in a piece.
 void ReactionPath::find_works(const Step& step) {
   mean_.setZero(step.end.size());
   for (std::size_t k = 0; k < taken_->pieces(); ++k) {
@@ -132,7 +132,7 @@ void ReactionPath::find_works(const Step& step) {
   }
 }
 
-/// Takes a share from points at which friction creates energy.
+/// Reduces the shares of points at which friction creates energy.
 bool ReactionPath::dissipates(const Step& step, bool is_last) {
   const double size = step.end.lpNorm<Eigen::Infinity>() + step.start.lpNorm<Eigen::Infinity>();
   const double rounding =
@@ -150,7 +150,7 @@ bool ReactionPath::dissipates(const Step& step, bool is_last) {
     double& share = share_[i];
     const bool turns = share != on_cone && turned > rounding;
     if (share == 0.0 || (work <= rounding && !turns)) continue;
-    // The work is that of κ = 0 and a part that grows with κ.
+    // The work is that of κ = 0 plus a part proportional to κ.
     const bool can_shrink = share != on_cone && !turns && !is_last && at_end < -rounding && work > at_end;
     share = can_shrink ? std::min(0.9 * share, share * at_end / (at_end - work)) : 0.0;
     all = false;

@@ -4,7 +4,7 @@ namespace ricochet {
 
 namespace {
 
-/// Columns are stored whole, two thirds dearer than A: of more than one in so many nodes they are not kept.
+/// Stored columns are whole, and cost two thirds more than A: more than one per so many nodes are not stored.
 constexpr Index nodes_per_column = 16;
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace ricochet {
 
 namespace {
 
-/// Of a pattern stored whole, blocks.
+/// Number of blocks of a pattern stored whole.
 double count_blocks(const NodePattern& pattern) {
   double result = 0.0;
   for (const RowGroup& group : pattern.groups)
@@ -21,7 +21,7 @@ bool keeps_mass_apart(const SemidiscreteProblem& problem, const NodeMatrix& stif
   const NodeMatrix& mass = problem.mass;
   const double own = count_blocks(stiffness.pattern());
   const double joined = count_blocks(joined_pattern({&stiffness.pattern(), &mass.pattern()}));
-  // Of a pair of nodes that the mass alone couples, entries are those of m ⊗ I.
+  // A pair of nodes coupled by the mass alone has the entries of m ⊗ I.
   const double per_pair = mass.is_scalar() ? 1.0 / problem.dimension : 1.0;
   const double more = problem.ranks->sum(per_pair * (joined - own));
   return more > (most_growth_by_mass - 1.0) * problem.ranks->sum(own);

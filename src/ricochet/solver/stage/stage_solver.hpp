@@ -7,8 +7,8 @@
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "ricochet/solver/stage/solver_options.hpp"
 
-/// @file Interface of the solvers of the stages of one operator. Everything that is constant is computed when they are
-/// made.
+/// @file Interface of the solvers of the stages of one operator. Everything that is constant is computed in their
+/// constructors.
 namespace ricochet {
 
 class FactoredStage;
@@ -16,21 +16,21 @@ class FactoredStage;
 class StageSolver {
  public:
   virtual ~StageSolver() = default;
-  /// Throws Error(not_converged) which says what failed.
+  /// Throws Error(not_converged), which names the failed part.
   virtual void solve(const Stage& stage, StageSolution& solution) = 0;
-  /// Shows the contact problem of the last solution to the observer, if it had one: where rows follow the motion, only
-  /// that of the last round is one of the step.
+  /// Shows the contact problem of the last solution to the observer, if it had one: for rows that follow the motion,
+  /// only that of the last iteration belongs to the step.
   virtual void show_contact() const = 0;
-  /// As of StepSolver.
+  /// Refactorizes as StepSolver does.
   virtual void refactorize(const Vector& displacement) = 0;
   virtual void observe_contact(const ContactObserver& observer) = 0;
-  /// As of StepSolver.
+  /// Save and load as StepSolver does.
   virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
   virtual void load(const Snapshot& snapshot, const std::string& name) = 0;
   [[nodiscard]] virtual double contact_seconds() const = 0;
   [[nodiscard]] virtual std::size_t factor_entries() const = 0;
   [[nodiscard]] virtual IterationCounts iteration_counts() const { return {}; }
-  /// The factor of the whole operator, where there is one: what a later stage's layer is solved with.
+  /// Factor of the whole operator, if there is one, for later stages with massless contact nodes.
   [[nodiscard]] virtual FactoredStage* factored() { return nullptr; }
 };
 

@@ -9,13 +9,13 @@ namespace ricochet {
 
 namespace {
 
-/// Points that must stay together: their places in the list, and where they are.
+/// Points that must stay together: their indices in the list, and their position.
 struct Bundle {
   std::vector<std::size_t> members;
   SpaceVector centre;
 };
 
-/// Bundles of points that see a node in common, in the order of their first points.
+/// Bundles points with a common node, in the order of their first points.
 std::vector<Bundle> bundle_points(const SemidiscreteProblem& problem, const std::vector<Index>& points) {
   DisjointSets together(static_cast<Index>(points.size()));
   std::map<Index, Index> first_at;

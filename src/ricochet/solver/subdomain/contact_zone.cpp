@@ -17,7 +17,7 @@ std::vector<int> solved_dofs_of(const std::vector<Index>& nodes, const std::vect
   return dofs;
 }
 
-/// A on the dofs of the zone that are solved for.
+/// Analyses A on the dofs of the subdomain that are solved for.
 SparseCholesky analysed_zone(const std::vector<Index>& nodes, const std::vector<char>& solved, int d,
                              const StageProduct& product) {
   std::vector<int> number(nodes.size() * static_cast<std::size_t>(d), -1);
@@ -39,7 +39,8 @@ ContactZone::ContactZone(const SemidiscreteProblem& problem, const OperatorCoeff
     : has_(static_cast<std::size_t>(problem.contact.size()), 0), own_points_(extent.own_points) {
   for (const Index point : extent.points) has_[static_cast<std::size_t>(point)] = 1;
   own_dofs_ = solved_dofs_of(extent.own_nodes, solved, problem.dimension);
-  // A principal block of a positive definite matrix is one; where A is not, conjugate gradients say so too.
+  // A principal block of a positive definite matrix is positive definite; if A is not, conjugate gradients report it,
+  // too.
   zone_ = std::make_unique<FactoredStage>(
       problem, coefficients, solved_dofs_of(extent.nodes, solved, problem.dimension),
       analysed_zone(extent.nodes, solved, problem.dimension, product), all_candidates, layer);

@@ -14,10 +14,10 @@ namespace ricochet {
 
 namespace {
 
-/// Contact points of the smallest clusters that are tried: fewer are no work.
+/// Contact points of the smallest clusters that are tried: smaller ones save no work.
 constexpr std::size_t least_cluster = 256;
-/// Of the contact problems, which are dense: their entries. Where layers are many and points few, clusters have nearly
-/// the same points around them, and one zone is less.
+/// Entries of the contact problems, which are dense. With many layers and few points, clusters have nearly the same
+/// points around them, and a single subdomain is cheaper.
 double dense_work(const std::vector<ContactZone::Extent>& zones) {
   double sum = 0.0;
   for (const ContactZone::Extent& zone : zones)
@@ -46,7 +46,7 @@ void ContactZones::clear() {
   zones_.clear();
 }
 
-/// Clusters of at most so many points with the layers around them, as zones.
+/// Returns clusters of at most so many points with the layers around them, as subdomains.
 std::vector<ContactZone::Extent> ContactZones::zones_of(const std::vector<Index>& points, std::size_t most) {
   std::vector<ContactZone::Extent> zones;
   struct Owner {
@@ -82,7 +82,7 @@ std::size_t ContactZones::divide(const std::vector<Index>& points) {
   clear();
   if (layers_ == 0) layers_ = nearby_.layers_to_solve(points, coefficients_, product_);
   nodes_ = nearby_.nodes_around(points, layers_);
-  // A layer of the stage makes the motion of a contact node depend on all reactions near it.
+  // With massless contact nodes the motion of a contact node depends on all reactions near it.
   extents_ = zones_of(points, points.size());
   if (layer_ == nullptr) {
     for (std::size_t most = least_cluster; most < points.size(); most *= 2) {
@@ -103,9 +103,9 @@ void ContactZones::make_share(std::size_t number, std::size_t count) {
   extents_.clear();
 }
 
-/// The stage on the correction: q and p at x instead of at δ = 0. All zones begin from the same residual.
+/// Solves the stage on the correction: q and p at x instead of at δ = 0. All subdomains start from the same residual.
 void ContactZones::solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) {
-  stage_ = stage;  // its right-hand side is not looked at; members that come later are not forgotten
+  stage_ = stage;  // its right-hand side is not used; a copy does not omit later members
   stage_.rows_in_store.clear();
   stage_.prescribed.setZero(stage.prescribed.size());
   stage.rows->normal_motion(x, motion_);

@@ -8,18 +8,17 @@
 #include "ricochet/solver/subdomain/near_contact.hpp"
 #include "ricochet/solver/subdomain/points_nearby.hpp"
 
-/// @file The parts of a body near its contact, each solved directly, all from the same residual.
+/// @file Subdomains of a body near its contact, each solved directly, all from the same residual.
 namespace ricochet {
 
-/// A zone is a cluster of contact points with some layers of nodes around them, the points of other clusters that it
-/// contains included. Of its solution only the reactions of its own points are kept, and the motion of the nodes that
-/// are nearer to its own points than to those of other zones: a restricted additive Schwarz method. All nodes of a
-/// point are moved by its zone, so contact and friction hold to rounding. Many points are then no large dense problem,
-/// and the price of contact grows as their number.
+/// A subdomain is a cluster of contact points with some layers of nodes around them, including the points of other
+/// clusters that it contains. From its solution only the reactions of its own points are kept, and the motion of the
+/// nodes that are nearer to its own points than to those of other subdomains: a restricted additive Schwarz method. All
+/// nodes of a point are moved by its subdomain, so contact and friction hold to rounding. Many points then do not form
+/// a large dense problem, and the cost of contact grows in proportion to their number.
 class ContactZones final : public NearContact {
  public:
-  /// Keeps references to the problem, the product and the graph; `solved` tells per dof whether the stage solves for
-  /// it.
+  /// Keeps references to the problem, the product and the graph; `solved`, per dof: the stage solves for it.
   ContactZones(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                const std::vector<char>& solved, const StageProduct& product, PointsNearby& nearby, bool all_points,
                FactoredStage* layer);
@@ -28,7 +27,8 @@ class ContactZones final : public NearContact {
     divide(points);
     make_share(0, 1);
   }
-  /// In two parts, where others make zones, too: how many there are, and every `count`-th one from `number` on.
+  /// Performs make() in two parts, if others make subdomains, too: returns their number, and makes every `count`-th one
+  /// from `number` on.
   std::size_t divide(const std::vector<Index>& points);
   void make_share(std::size_t number, std::size_t count);
   void clear() override;
@@ -40,14 +40,15 @@ class ContactZones final : public NearContact {
     motion_layer_->find_motion(rows, solution, increment, motion);
   }
 
-  /// Of nodes around the points of a zone, from now on; 0: as many as the wave crosses cells, found with the next ones.
+  /// Sets the number of layers of nodes around the points of a subdomain; 0: the number of cells that a wave crosses,
+  /// computed with the next subdomains.
   void set_layers(int layers) { layers_ = layers; }
   [[nodiscard]] int layers() const { return layers_; }
   [[nodiscard]] std::size_t count() const { return zones_.size(); }
 
   void save(Snapshot& snapshot, const std::string& name) const override;
   void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) override;
-  /// The same of zones that are made.
+  /// Loads the data of subdomains that are made.
   void load_made(const Snapshot& snapshot, const std::string& name);
   void report() const override;
   void observe(const ContactObserver& observer) override;
@@ -64,17 +65,17 @@ class ContactZones final : public NearContact {
   PointsNearby& nearby_;
   bool all_points_;
   FactoredStage* layer_;
-  std::unique_ptr<ContactLayer> motion_layer_;  ///< null: the stage has none
-  int layers_ = 0;                              ///< 0: not known yet
-  std::vector<Index> nodes_;                    ///< of all zones
-  std::vector<ContactZone::Extent> extents_;    ///< of all zones, until they are made
-  bool is_one_ = false;                         ///< there is no other zone, here or elsewhere
+  std::unique_ptr<ContactLayer> motion_layer_;  ///< null if the stage has no massless contact nodes
+  int layers_ = 0;                              ///< 0 if not known yet
+  std::vector<Index> nodes_;                    ///< of all subdomains
+  std::vector<ContactZone::Extent> extents_;    ///< of all subdomains, until they are made
+  bool is_one_ = false;                         ///< there is no other subdomain, here or elsewhere
   std::vector<std::unique_ptr<ContactZone>> zones_;
   ContactObserver observer_;
   double earlier_contact_seconds_ = 0.0;
   Stage stage_;                        ///< on the correction
-  Vector correction_, motion_, slip_;  ///< and G x and B_T x of the start
-  StageSolution solution_;             ///< of one zone
+  Vector correction_, motion_, slip_;  ///< correction; G x and B_T x at the start
+  StageSolution solution_;             ///< of one subdomain
 };
 
 }  // namespace ricochet

@@ -6,29 +6,29 @@
 #include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 
-/// @file What a stage that is solved by iterations solves directly: the body near its contact.
+/// @file Part of a stage solved by iterations that is solved directly: the body near its contact.
 namespace ricochet {
 
-/// All ranks call these functions together, each with the contact points that are its own.
+/// All functions are collective over the ranks, each with its own contact points.
 class NearContact {
  public:
   virtual ~NearContact() = default;
-  /// For these points, and no others. Throws Error(invalid_input) where A is not positive definite.
+  /// Makes subdomains for these points only. Throws Error(invalid_input) if A is not positive definite.
   virtual void make(const std::vector<Index>& points) = 0;
   virtual void clear() = 0;
   [[nodiscard]] virtual bool are_made() const = 0;
   /// Nodes of this rank that solve() may move, ascending.
   [[nodiscard]] virtual const std::vector<Index>& nodes() const = 0;
 
-  /// With the residual b − A x of the whole body, reactions left out: x near the contact, and the reactions.
+  /// Solves, from the residual b − A x of the whole body without reactions, for x near the contact and the reactions.
   virtual void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) = 0;
-  /// Where the stage has a layer: the contact motion m of the last solution (stage.hpp) on contact nodes, from δ per
-  /// dof.
+  /// For a stage with massless contact nodes: computes the contact motion m of the last solution (stage.hpp) on contact
+  /// nodes, from δ per dof.
   virtual void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
                            Vector& motion) = 0;
 
   virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
-  /// Zones for these points, as they were saved.
+  /// Makes subdomains for these points, as they were saved.
   virtual void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) = 0;
   virtual void report() const = 0;
   virtual void observe(const ContactObserver& observer) = 0;

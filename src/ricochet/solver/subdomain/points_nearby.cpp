@@ -8,10 +8,10 @@ namespace ricochet {
 
 namespace {
 
-/// Of nodes around the points that asked for zones.
+/// Layers of nodes around the points that required subdomains.
 constexpr int reserve_layers = 3;
-/// What the rest of the body does to the contact has decayed to a tenth behind so many cells that a wave crosses in a
-/// step.
+/// Layers per cell that a wave crosses in a step, behind which the influence of the rest of the body on the contact has
+/// decayed to a tenth.
 constexpr double layers_per_cell_crossed = 1.2;
 constexpr int least_layers = 2;
 
@@ -20,7 +20,7 @@ constexpr int least_layers = 2;
 double cells_crossed(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                      const StageProduct& product, const std::vector<Index>& nodes) {
   if (coefficients.mass == 0.0) return std::numeric_limits<double>::infinity();
-  // Of inertia and stiffness each rank has a part.
+  // Ranks have parts of inertia and stiffness.
   Vector inertia, whole;
   problem.mass.multiply(Vector::Ones(problem.dof_count()), inertia);
   whole = inertia;

@@ -18,14 +18,14 @@ namespace ricochet {
 
 namespace {
 
-/// A name for a directory.
+/// Returns a name for a directory.
 std::string folder_name(const std::string& benchmark, const std::string& method) {
   std::string name = benchmark + (method.empty() ? "" : "-" + method);
   std::replace(name.begin(), name.end(), '/', '-');
   return name;
 }
 
-/// With this method and what became of it, benchmark by benchmark.
+/// A method and, per benchmark, its choices.
 struct MethodRow {
   AskedMethod method;
   std::vector<MethodChoice> chosen;
@@ -33,7 +33,7 @@ struct MethodRow {
   [[nodiscard]] bool is_always_refused() const {
     return std::all_of(chosen.begin(), chosen.end(), [](const MethodChoice& c) { return c.is_refused(); });
   }
-  /// The mass that it takes most often, or "".
+  /// Returns the mass that is chosen most often, or "".
   [[nodiscard]] std::string usual_mass() const;
 };
 
@@ -47,7 +47,7 @@ std::string MethodRow::usual_mass() const {
   return usual;
 }
 
-/// Of all reasons against a case that of the mass that the scheme takes elsewhere; of one that it never takes, any.
+/// Returns the reason for a refusal that concerns the usual mass of the scheme; if there is none, any of the reasons.
 std::string reason_of(const MethodChoice& chosen, const std::string& usual_mass) {
   const auto usual = chosen.refusals.find(usual_mass);
   return usual != chosen.refusals.end() ? usual->second : chosen.refusals.begin()->second;
@@ -57,8 +57,8 @@ bool lacks_contact_inertia(const std::string& mass) {
   return !mass.empty() && make_mass(mass)->removes_contact_inertia();
 }
 
-/// A row with the mass "consistent" behind each that asks for no mass and got one without inertia on contact nodes;
-/// left out where it is never taken.
+/// Inserts a row with the mass "consistent" after each row whose method states no mass and usually gets one without
+/// inertia on contact nodes, unless the scheme never accepts it.
 void add_consistent_rows(std::vector<MethodRow>& rows, std::vector<std::unique_ptr<MethodChooser>>& choosers) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (!rows[i].method.mass.empty() || !lacks_contact_inertia(rows[i].usual_mass())) continue;
@@ -81,7 +81,7 @@ void refuse_what_is_there(const std::string& directory, const BenchmarkOptions& 
                           directory));
 }
 
-/// What is there and cannot be kept: the runs of other plans, and of cases that have changed since.
+/// Removes runs that cannot be kept: those of other plans, and of cases that have changed since.
 void remove_old_runs(const BenchmarkPlan& plan, const BenchmarkOptions& options) {
   if (!holds_benchmarks(plan.directory)) return;
   const auto is_kept = [&](const BenchmarkRun& old) {

@@ -13,21 +13,22 @@ namespace ricochet {
 
 struct BenchmarkOptions {
   RunPoolOptions pool = {};
-  bool resume = false;  ///< keep the runs that are there and done
-  bool force = false;   ///< start anew over benchmarks that are there
+  bool resume = false;  ///< keep completed runs
+  bool force = false;   ///< replace existing benchmarks
 };
 
-/// Every benchmark as its case has it.
+/// Plans every benchmark with the method of its case.
 [[nodiscard]] BenchmarkPlan plan_benchmarks(const std::vector<Benchmark>& benchmarks, const std::string& directory);
-/// Every benchmark with every method, which takes a while: meshes are read and models are built. A scheme without a
-/// mass that takes one without inertia on contact nodes gets a second line with the mass "consistent", where
-/// `also_consistent` asks for that and it takes it.
+/// Plans every benchmark with every method. This takes a while, as meshes are read and models are built. If
+/// `also_consistent` is set, a scheme given without a mass that gets one without inertia on contact nodes has a second
+/// row with the mass "consistent", if it accepts that.
 [[nodiscard]] BenchmarkPlan plan_scorecard(const std::vector<Benchmark>& benchmarks,
                                            const std::vector<AskedMethod>& methods, bool also_consistent,
                                            const std::string& directory);
 
-/// Runs what is still to be run and writes the tables; `signal` gets what has stopped it, or 0. Throws
-/// Error(file_access) where the directory holds something else, or benchmarks, and nothing says what to do with them.
+/// Computes the runs that are not complete and writes the tables; `signal` receives the signal that has stopped it, or
+/// 0. Throws Error(file_access) if the directory holds something else, or benchmarks without an option that says how to
+/// treat them.
 [[nodiscard]] BenchmarkResults conduct_benchmarks(const BenchmarkPlan& plan, const BenchmarkOptions& options,
                                                   int& signal);
 

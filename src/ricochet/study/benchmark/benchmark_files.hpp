@@ -5,26 +5,25 @@
 
 #include "ricochet/study/benchmark/manifest.hpp"
 
-/// @file The directory of benchmarks that are run: benchmark.json, which says what they are, their runs in runs/, and
-/// the tables.
+/// @file The directory of benchmarks: benchmark.json with their plan, their runs in runs/, and the tables.
 namespace ricochet {
 
-/// One benchmark with one method.
+/// Run of one benchmark with one method.
 struct BenchmarkRun {
   Benchmark benchmark;
-  std::string method;                 ///< as it was asked for; empty: that of the case
-  std::string scheme, mass;           ///< no mass: the scheme takes none of those tried
+  std::string method;                 ///< as requested; empty: the method of the case
+  std::string scheme, mass;           ///< no mass if the scheme accepts none of those tried
   bool is_own_method = true;          ///< the scheme is that of the case
   std::vector<std::string> settings;  ///< "key.path=value"
-  std::string folder;                 ///< its name in runs/
-  std::string refusal;                ///< why it cannot be run; empty: it can
+  std::string folder;                 ///< name of its folder in runs/
+  std::string refusal;                ///< reason why it cannot be run; empty if it can
 
   bool operator==(const BenchmarkRun&) const;
 };
 
 struct BenchmarkPlan {
   std::string directory;
-  bool is_scorecard = false;  ///< methods were asked for
+  bool is_scorecard = false;  ///< methods were requested
   std::vector<BenchmarkRun> runs;
 
   [[nodiscard]] std::string path(const std::string& file) const;
@@ -32,7 +31,7 @@ struct BenchmarkPlan {
 };
 
 [[nodiscard]] bool holds_benchmarks(const std::string& directory);
-/// Throws Error(file_access) where there are none, Error(invalid_input) where benchmark.json is damaged.
+/// Throws Error(file_access) if there are no benchmarks, Error(invalid_input) if benchmark.json is damaged.
 [[nodiscard]] BenchmarkPlan read_benchmark_plan(const std::string& directory);
 void write_benchmark_plan(const BenchmarkPlan& plan);
 

@@ -7,11 +7,11 @@
 /// @file The page of benchmarks: an HTML file with their tables.
 namespace ricochet {
 
-/// Links go to the runs as seen from `folder`, where the page is.
+/// Makes the page. Links to the runs are relative to `folder`, which contains the page.
 [[nodiscard]] std::string make_benchmark_page(const BenchmarkPlan& plan, const BenchmarkResults& results,
                                               const std::string& folder);
 
-/// Is this file one that make_benchmark_page has made?
+/// Returns true if make_benchmark_page has made this file.
 [[nodiscard]] bool is_benchmark_page(const std::string& path);
 
 }  // namespace ricochet

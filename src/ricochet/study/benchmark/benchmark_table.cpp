@@ -19,10 +19,10 @@ namespace {
 
 constexpr int not_held = static_cast<int>(ErrorKind::expectation), refused = static_cast<int>(ErrorKind::invalid_input);
 
-/// What the case expects of this run, as far as its case can be read.
+/// Returns the results of the expectations that apply to this run, if its case can be read.
 std::vector<ExpectationResult> expectations_of(const BenchmarkRun& run, const std::string& directory,
                                                const BenchmarkOutcome& outcome) {
-  const log::Silence silence;  // the run has said what there is to say
+  const log::Silence silence;  // the run has issued the warnings
   std::vector<ExpectationResult> all;
   try {
     const Case input = read_case(run.benchmark.case_path, run.settings);
@@ -42,7 +42,7 @@ int status_of(const BenchmarkRun& run, const BenchmarkOutcome& outcome) {
   return status == refused && !run.is_own_method ? 0 : status;
 }
 
-/// "≥ 1 and ≤ 2".
+/// Returns a text such as "≥ 1 and ≤ 2".
 std::string bounds_text(const ExpectationResult& e) {
   std::string text;
   if (e.minimum) text = fmt::format("≥ {}", *e.minimum);
@@ -125,7 +125,7 @@ ResultTable benchmark_table(const BenchmarkPlan& plan, const BenchmarkResults& r
                     {},
                     2};
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
-    // What a method does not take it does not get wrong.
+    // A refusal does not count against a method.
     if (results.outcomes[i].state.word() == "refused" && !plan.runs[i].is_own_method) continue;
     for (const ExpectationResult& e : results.outcomes[i].expectations) table.rows.push_back(cells_of(plan.runs[i], e));
   }

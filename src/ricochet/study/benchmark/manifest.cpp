@@ -37,7 +37,7 @@ void add_unknown(const TomlNode& node, const std::vector<std::string>& known, Pr
                            meant.empty() ? "" : fmt::format(" (is \"{}\" meant?)", meant), join_names(known)));
 }
 
-/// A name becomes a part of the names of directories.
+/// Returns true if a text can be a name, which becomes part of the names of directories.
 bool is_name(const std::string& text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';

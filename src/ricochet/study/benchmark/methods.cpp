@@ -17,9 +17,9 @@ namespace ricochet {
 
 namespace {
 
-/// Of the step that is stable.
+/// Ratio of the step to the largest stable one.
 constexpr double part_of_critical_step = 0.9;
-/// Of a run. More would take minutes, and tell no more.
+/// Steps of a run; more would take minutes without further insight.
 constexpr long most_steps = 50'000;
 
 void require_known(const std::string& noun, const std::string& name, const std::vector<std::string>& known) {
@@ -38,7 +38,7 @@ AskedMethod parse_method(const std::string& text) {
   return method;
 }
 
-/// Keys that a scheme cannot do without, by a name for all of them.
+/// Returns the setting of a preset for a scheme that needs one.
 std::vector<std::string> preset_setting(const std::string& scheme) {
   for (const Key& key : scheme_registry().find(scheme).keys) {
     if (key.name == "preset" && !key.choices.empty()) return {fmt::format("time.preset=\"{}\"", key.choices.front())};
@@ -46,7 +46,7 @@ std::vector<std::string> preset_setting(const std::string& scheme) {
   return {};
 }
 
-/// Masses in the order in which they are tried.
+/// Returns the masses in the order in which they are tried.
 std::vector<std::string> masses_to_try(const AskedMethod& method, const std::string& mass_of_case) {
   if (!method.mass.empty()) return {method.mass};
   std::vector<std::string> masses{mass_of_case};

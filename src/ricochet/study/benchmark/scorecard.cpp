@@ -10,10 +10,10 @@ namespace ricochet {
 
 namespace {
 
-/// Percent of the largest energy; less is nothing.
+/// Percentage of the largest energy below which nothing is shown.
 constexpr double shown_percent = 0.05;
 
-/// Two digits, and no more than there are before the point.
+/// Returns the percentage with two digits, or with all digits before the decimal point.
 std::string percent_text(double percent) {
   if (percent < shown_percent) return "0";
   return percent < 9.95 ? fmt::format("{:.1f}", percent) : fmt::format("{:.0f}", percent);
@@ -23,7 +23,7 @@ bool is_done(const BenchmarkOutcome& outcome) {
   return outcome.state.word() == "done";
 }
 
-/// "14/15 +0.1 −3 %": what it has created and lost, where that is worth showing.
+/// Returns a text such as "14/15 +0.1 −3 %", with the energy created and lost if large enough to show.
 std::string done_text(const BenchmarkOutcome& outcome) {
   std::string text = fmt::format("{}/{}", outcome.holds(), outcome.applies());
   const double created = 100.0 * outcome.state.summary->creation_by_method();
@@ -39,7 +39,7 @@ class MatrixMaker {
   ScorecardMatrix make();
 
  private:
-  /// Numbers of the runs of a method.
+  /// Returns the indices of the runs of a method.
   [[nodiscard]] std::vector<std::size_t> runs_of(const std::string& method) const;
   [[nodiscard]] std::string masses_of(const std::string& method) const;
   [[nodiscard]] std::string cell_of(std::size_t run);

@@ -5,11 +5,11 @@
 
 #include "ricochet/study/benchmark/benchmark_table.hpp"
 
-/// @file Methods against benchmarks: how many reference values each gets right.
+/// @file Methods against benchmarks: how many reference values each reproduces.
 namespace ricochet {
 
-/// For programs, a row for each method and benchmark: scheme, mass, benchmark, holds, applies,
-/// created_percent, lost_percent (energy, of the largest), status, processor_seconds, steps, time_step, message.
+/// Makes the table for programs, with a row for each method and benchmark: scheme, mass, benchmark, holds, applies,
+/// created_percent, lost_percent (of the largest energy), status, processor_seconds, steps, time_step, message.
 [[nodiscard]] ResultTable scorecard_table(const BenchmarkPlan& plan, const BenchmarkResults& results);
 
 /// A part of the matrix for readers: a row for each method, a column for each benchmark of a group.
@@ -20,11 +20,11 @@ struct ScorecardPart {
 struct ScorecardMatrix {
   ResultTable totals;  ///< a row for each method: sums over all benchmarks
   std::vector<ScorecardPart> parts;
-  std::vector<std::string> reasons;  ///< numbered from 1, as cells refer to them: why cases were refused
+  std::vector<std::string> reasons;  ///< of refusals, numbered from 1 as in the cells
 };
 [[nodiscard]] ScorecardMatrix scorecard_matrix(const BenchmarkPlan& plan, const BenchmarkResults& results);
 
-/// All of the matrix; without a heading above it.
+/// Returns the whole matrix, without a heading.
 [[nodiscard]] std::string scorecard_in_markdown(const BenchmarkPlan& plan, const BenchmarkResults& results);
 [[nodiscard]] std::string scorecard_in_aligned_text(const BenchmarkPlan& plan, const BenchmarkResults& results);
 
