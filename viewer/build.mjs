@@ -1,5 +1,5 @@
-// Bundles the viewer into one HTML file, dist/viewer.html, into which `ricochet report` puts the data of runs. The same
-// sources and the same package-lock.json give the same bytes on any machine: nothing of the machine is in the page.
+// Bundles the viewer into one HTML file, dist/viewer.html, in which `ricochet report` inserts the data of runs. The same
+// sources and the same package-lock.json produce the same bytes on any machine.
 import { build } from "esbuild";
 import { createHash } from "node:crypto";
 import { mkdir, readdir, readFile, writeFile } from "node:fs/promises";
@@ -17,8 +17,8 @@ const licences = await Promise.all(["three", "uplot"].map(async (name) => {
   return `${name} ${version}\n${await readFile(`node_modules/${name}/LICENSE`, "utf8")}`;
 }));
 /**
- * What the page is made from, as one number: a test without Node.js sees by it that the committed page is that of the
- * sources (tests/end_to_end/report_test.py).
+ * Checksum of the sources. With it a test without Node.js verifies that the committed page was built from them
+ * (tests/end_to_end/report_test.py).
  */
 const sources = async () => {
   const files = (await readdir("src", { recursive: true })).filter((name) => /\.\w+$/.test(name)).map((name) => `src/${name}`);
@@ -27,7 +27,7 @@ const sources = async () => {
   return hash.digest("hex");
 };
 
-// A replacement is given as a function: "$&" in the script must stay what it is.
+// Replacements are functions, so that "$&" in the script is not interpreted.
 const page = (await readFile("src/index.html", "utf8"))
   .replace("/*STYLE*/", () => style)
   .replace("/*SCRIPT*/", () => script.replaceAll("</script", "<\\/script"))

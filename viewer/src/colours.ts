@@ -1,7 +1,7 @@
 /** Colours of runs, of fields and of contact. */
 import { furtherColour } from "./palette";
 
-// Okabe and Ito's, which people with any kind of colour vision tell apart; the third darker to be read on white.
+// The colours of Okabe and Ito, distinct for any kind of colour vision; the third is darker, to be readable on white.
 const runsLight = ["#c8460a", "#0068b0", "#00785a", "#a8519a", "#8a6d00", "#2a8fbf", "#6b4c9a", "#5b5b5b"];
 const runsDark = ["#ff8a4c", "#5cb3ff", "#3fd6a5", "#e08ad0", "#e6c229", "#8fd6f5", "#b79cf0", "#bdbdbd"];
 
@@ -10,7 +10,7 @@ let chosen = false;
 
 export const isDark = (): boolean => root.dataset.theme === "dark";
 
-/** Dark or light as the system is, until someone chooses. */
+/** Follows the theme of the system until the reader chooses one. */
 export function followSystem(changed: () => void): void {
   const system = matchMedia("(prefers-color-scheme: dark)");
   const follow = () => {
@@ -41,7 +41,7 @@ type Rgb = [number, number, number];
 
 const parse = (hex: string): Rgb => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16)) as Rgb;
 
-// Viridis at nine places.
+// Viridis at nine equidistant points.
 const viridis = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"].map(parse);
 
 /** 256 colours from the least to the largest value. */

@@ -6,7 +6,7 @@ import { reactionsWords } from "./glance";
 import { impactTable } from "./results/outcomes";
 import type { Store } from "./store";
 
-/** Inputs, sizes, timings, warnings: what a run was, in tables with a column for each run. */
+/** Inputs, sizes, timings and warnings, in tables with a column for each run. */
 
 type Row = [name: string, ...values: (string | HTMLElement)[]];
 
@@ -29,7 +29,7 @@ function sizes(runs: Run[]): HTMLElement {
   return table(runs, rowsOf(runs, [
     ["scheme", ({ summary }) => summary.scheme],
     ["mass", ({ summary }) => summary.mass],
-    ["reactions that act over a step", ({ summary }) => reactionsWords(summary) || "–"],
+    ["acting reactions", ({ summary }) => reactionsWords(summary) || "–"],
     ["time step", ({ summary }) => summary.adaptive_steps ? `${number(summary.adaptive_steps.shortest, 4)} to ${number(summary.adaptive_steps.longest, 4)}, ${count(summary.adaptive_steps.refused)} refused` : number(summary.time_step, 6)],
     ["steps", ({ summary }) => count(summary.steps) + (summary.steps < summary.steps_asked_for ? ` of ${count(summary.steps_asked_for)}` : "")],
     ["dimension, degree", ({ summary }) => `${summary.dimension}, ${summary.degree}`],
@@ -40,8 +40,8 @@ function sizes(runs: Run[]): HTMLElement {
     ["solver", ({ summary }) => summary.solver],
     ["entries of the factor", ({ summary }) => count(summary.factor_entries)],
     ["frames", ({ summary }) => count(summary.frames)],
-    ["energies are those at", ({ summary }) => summary.instants.energy.replace("+0 time_step", "").replace("time_step", "time steps")],
-    ["forces are those at", ({ summary }) => summary.instants.force.replace("+0 time_step", "").replace("time_step", "time steps")],
+    ["instant of the energies", ({ summary }) => summary.instants.energy.replace("+0 time_step", "").replace("time_step", "time steps")],
+    ["instant of the forces", ({ summary }) => summary.instants.force.replace("+0 time_step", "").replace("time_step", "time steps")],
     ["Ricochet", ({ summary }) => summary.ricochet_version],
     ["libraries", ({ summary }) => summary.libraries],
   ]));
@@ -76,7 +76,7 @@ function timings(runs: Run[]): HTMLElement {
       const value = run.summary.timings_seconds[phase] ?? 0;
       return el("span.timing", {}, el("i", { style: `width:${(60 * value) / most}px;background:${runColour(run.number)}` }), seconds(value));
     })]),
-    ["a step", ...runs.map((run) => seconds(run.summary.seconds_per_step))],
+    ["per step", ...runs.map((run) => seconds(run.summary.seconds_per_step))],
   ]);
 }
 
@@ -87,9 +87,9 @@ function messages(runs: Run[]): HTMLElement {
     if (summary.message) list.push([summary.status, summary.message]);
     for (const warning of summary.warnings) list.push(["warning", warning]);
     for (const [name, check] of Object.entries(summary.checks))
-      if (check.limit > 0 && check.largest > check.limit) list.push(["check failed", `${name} reaches ${number(check.largest, 2)}, more than ${number(check.limit, 2)}`]);
+      if (check.limit > 0 && check.largest > check.limit) list.push(["check failed", `${name} reaches ${number(check.largest, 2)}, above its limit ${number(check.limit, 2)}`]);
     for (const expected of summary.expectations)
-      if (expected.checked && !expected.holds) list.push(["expectation does not hold", `${expected.quantity} is ${number(expected.value)}, wanted ${expected.wanted}`]);
+      if (expected.checked && !expected.holds) list.push(["expectation does not hold", `${expected.quantity} is ${number(expected.value)}, expected ${expected.wanted}`]);
     for (const sentence of run.data.thinned) list.push(["note", sentence]);
     return list.map(([kind, text]) => el("li", {}, el("b", { style: `color:${runColour(run.number)}` }, run.name), ` ${kind}: `, text));
   });
@@ -110,7 +110,7 @@ function outcomes(runs: Run[]): HTMLElement {
     return checked.length === 0 ? "none" : `${checked.filter((e) => e.holds).length} of ${checked.length}`;
   })]);
   for (const name of [...new Set(runs.flatMap((run) => run.summary.probes.map((probe) => probe.name)))])
-    rows.push([`probe ${name} at`, ...runs.map((run) => {
+    rows.push([`position of probe ${name}`, ...runs.map((run) => {
       const probe = run.summary.probes.find((p) => p.name === name);
       return probe ? `(${probe.position.map((x) => number(x)).join(", ")})` : "–";
     })]);
@@ -125,7 +125,7 @@ export function details(store: Store): HTMLElement {
     const several = runs.reduce((sum, run) => sum + run.summary.warnings.length + run.data.thinned.length, 0);
     place.replaceChildren(
       section(`Warnings and messages${several > 0 ? ` (${several})` : ""}`, open[0] ?? true, messages(runs)),
-      section("Impacts", open[1] ?? runs.length === 1, impactTable(runs) ?? el("p.note", {}, "None are known.")),
+      section("Impacts", open[1] ?? runs.length === 1, impactTable(runs) ?? el("p.note", {}, "No impact is recorded.")),
       section("Inputs", open[2] ?? true, inputs(runs)),
       section("Sizes", open[3] ?? false, sizes(runs)),
       section("Timings by phase", open[4] ?? false, timings(runs)),

@@ -1,4 +1,4 @@
-/** HTML elements in one expression: el("button.small", { title: "…", onclick }, "text", child). */
+/** Creates an HTML element in one expression: el("button.small", { title: "…", onclick }, "text", child). */
 type Child = Node | string | null | undefined | false;
 type Properties = Record<string, unknown>;
 

@@ -1,6 +1,6 @@
-/** Numbers and names as people read them. */
+/** Numbers and names as readable text. */
 
-/** JSON has no infinity and no NaN: what is neither is null there, or a word. */
+/** Text of a number; JSON has no infinity and no NaN, so these are null or words there. */
 export function number(value: number | string | null, digits = 4): string {
   if (value === null) return "–";
   if (typeof value === "string") return value;
@@ -14,7 +14,7 @@ export function number(value: number | string | null, digits = 4): string {
   return `${short}·10${superscript(Number(exponent))}`.replace("-", "−");
 }
 
-/** Numbers that are no numbers (words, nulls) as NaN or infinity. */
+/** Converts the words and nulls of JSON to infinity and NaN. */
 export function toNumber(value: number | string | null | undefined): number {
   if (typeof value === "number") return value;
   return value === "inf" ? Infinity : value === "-inf" ? -Infinity : NaN;
@@ -26,10 +26,10 @@ function superscript(exponent: number): string {
 }
 
 type Sides = { group: string; against?: string };
-/** What contacts between bodies are between, by number. */
+/** The two groups of each contact between bodies, by its number. */
 const pairs = new Map<number, string>();
 
-/** Contacts of all runs: their numbers have names where all runs have the same. */
+/** Names the contacts between bodies, from those of all runs; a number whose groups differ between runs stays a number. */
 export function namePairs(contactsOfRuns: Sides[][]): void {
   pairs.clear();
   contactsOfRuns[0]?.forEach(({ group, against }, number) => {
@@ -61,7 +61,7 @@ export function fieldName(field: string): string {
   const known: Record<string, string> = {
     von_mises: "von Mises stress",
     velocity: "speed",
-    displacement: "displacement, size",
+    displacement: "displacement magnitude",
     displacement_x: "displacement x",
     displacement_y: "displacement y",
     displacement_z: "displacement z",

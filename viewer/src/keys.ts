@@ -5,21 +5,21 @@ import type { Store } from "./store";
 
 const keys: [string, string][] = [
   ["space", "play or pause"],
-  ["← →", "the frame before, the next one (with shift ten)"],
-  ["home, end", "start and end of the run"],
-  ["1 … 9", "show or hide a run (a click on its name with shift: it alone)"],
-  ["a", "all runs"],
+  ["← →", "previous, next frame (with shift: ten frames)"],
+  ["home, end", "start, end of the run"],
+  ["1 … 9", "show or hide a run (shift-click on its name: show it alone)"],
+  ["a", "show all runs"],
   ["f", "next field"],
-  ["+ −", "more, less deformation"],
-  ["p", "contact pressures"],
+  ["+ −", "increase, decrease the scale of deformation"],
+  ["p", "contact pressures as bars"],
   ["m", "edges of the cells"],
-  ["w", "axisymmetric bodies whole, or their section"],
-  ["c", "the same colours for all runs"],
-  ["r", "the whole body, from the front"],
-  ["k", "where it touches"],
-  ["x", "cut solids across x, y, z, not at all"],
-  ["z", "the whole time (also a double click on a plot)"],
-  ["t", "dark or light"],
+  ["w", "whole axisymmetric bodies, or their sections"],
+  ["c", "one range of colours for all runs"],
+  ["r", "whole body, from the front"],
+  ["k", "contact zone"],
+  ["x", "cut solids across x, y, z, or not at all"],
+  ["z", "whole time (or double-click on a plot)"],
+  ["t", "dark or light theme"],
   ["?", "this list"],
 ];
 
@@ -27,7 +27,7 @@ export function helpDialog(): HTMLDialogElement {
   const dialog = el("dialog.help", {},
     el("h2", {}, "Keys"),
     el("dl", {}, ...keys.flatMap(([key, what]) => [el("dt", {}, el("kbd", {}, key)), el("dd", {}, what)])),
-    el("p.note", {}, "Move over a plot or a map: everything shows that time. Drag over a plot to see a part of it closer. Click on a body, then the wheel comes nearer; drag to turn or move it."),
+    el("p.note", {}, "Move over a plot or a map to show that time everywhere. Drag over a plot to zoom into an interval of time. Click on a body to zoom with the wheel; drag to rotate or move it."),
     el("button.small", { type: "button", onclick: () => dialog.close() }, "close"));
   return dialog;
 }
@@ -77,7 +77,7 @@ export function connectKeys(store: Store, player: Player, help: HTMLDialogElemen
     const target = event.target as HTMLElement;
     if (event.ctrlKey || event.metaKey || event.altKey || help.open) return;
     if (target instanceof HTMLSelectElement) return;
-    // A button that has the focus is pressed by the space bar, a slider moved by arrows.
+    // The space bar presses a button that has the focus; arrows move a slider.
     if (event.key === " " && (target instanceof HTMLButtonElement || target.tagName === "SUMMARY")) return;
     if (target instanceof HTMLInputElement && /^(Arrow|Home|End)/.test(event.key)) return;
     const digit = Number(event.key);

@@ -20,7 +20,7 @@ import { ResultsChart } from "./results/results_chart";
 import { runTable } from "./results/run_table";
 import { Store, type Axis } from "./store";
 
-/** What tests reach the page by. */
+/** Access of tests to the page. */
 export interface Handle {
   store: Store;
   charts: TimeChart[];
@@ -37,7 +37,7 @@ declare global {
   }
 }
 
-/** More runs than these have a row each instead. */
+/** Largest number of runs with a card each; more runs have a row each in a table. */
 const mostCards = 6;
 
 function title(runs: Run[]): string {
@@ -45,10 +45,10 @@ function title(runs: Run[]): string {
   return titles.slice(0, 3).join(" · ") + (titles.length > 3 ? ` and ${titles.length - 3} more` : "");
 }
 
-/** The card of a run: its name switches it, in all plots. */
+/** The card of a run; a click on its name shows or hides the run in all plots. */
 function card(store: Store, run: Run, stage: () => Stage | null): HTMLElement {
   const swatch = el("i");
-  const button = el("button.toggle", { type: "button", title: `Show or hide ${run.name}${run.number < 9 ? ` (key ${run.number + 1})` : ""}; with shift this run alone`, onclick: (event: MouseEvent) => (event.shiftKey ? store.only(run.number) : store.toggle(run.number)) }, swatch, run.name);
+  const button = el("button.toggle", { type: "button", title: `Show or hide ${run.name}${run.number < 9 ? ` (key ${run.number + 1})` : ""}. Shift-click shows this run alone.`, onclick: (event: MouseEvent) => (event.shiftKey ? store.only(run.number) : store.toggle(run.number)) }, swatch, run.name);
   const warnings = run.summary.warnings.length;
   const status = run.summary.status === "done" ? null : el("span.status", {}, run.summary.status);
   const findings = findingsElement(run);
@@ -100,17 +100,17 @@ function toggleButton(store: Store, key: "showMesh" | "showForces" | "sharedColo
   return button;
 }
 
-/** Which plane cuts solids. */
+/** Choice of the plane that cuts solids. */
 function cutTools(store: Store, stage: Stage, runs: Run[]): HTMLElement {
   const choice = select("cut", [["", "none"], ["x", "across x"], ["y", "across y"], ["z", "across z"]], store.cut, (value) => {
     store.set("cut", value as Axis | "", "body");
     if (value !== "") stage.look(value as Axis);
   });
   choice.control.id = "cut";
-  const at = el("input", { type: "range", min: "0", max: "1", step: "0.005", value: String(store.cutAt), "aria-label": "Place of the cut" });
+  const at = el("input", { type: "range", min: "0", max: "1", step: "0.005", value: String(store.cutAt), "aria-label": "Position of the cut" });
   at.addEventListener("input", () => store.set("cutAt", Number(at.value), "body"));
   const place = el("output");
-  const other = el("button.small", { type: "button", title: "Take off the other side", onclick: () => store.set("cutFlipped", !store.cutFlipped, "body") }, "other side");
+  const other = el("button.small", { type: "button", title: "Show the removed side instead", onclick: () => store.set("cutFlipped", !store.cutFlipped, "body") }, "other side");
   const rest = el("span.control", {}, at, place, other);
   const show = () => {
     choice.control.value = store.cut;
@@ -124,7 +124,7 @@ function cutTools(store: Store, stage: Stage, runs: Run[]): HTMLElement {
   store.on("body", show);
   store.on("runs", show);
   show();
-  choice.element.title = `A section through ${runs.length > 1 ? "solids" : "the solid"} at the start, which moves with it (key x)`;
+  choice.element.title = `Section through the undeformed ${runs.length > 1 ? "solids" : "solid"}; it moves and deforms with ${runs.length > 1 ? "them" : "it"} (key x)`;
   return el("span.tools", {}, choice.element, rest);
 }
 
@@ -143,7 +143,7 @@ function bodySection(store: Store, stage: Stage, runs: Run[]): HTMLElement {
     scale.value = String(Math.log10(store.deformation));
   });
   const space = runs.some((run) => run.summary.dimension === 3);
-  store.showForces = !space; // there they hide the pressures that the surface shows
+  store.showForces = !space; // in space, bars hide the pressures on the surface
   const view = (name: View, text: string = name, title = "") =>
     el("button.small", { type: "button", title, onclick: () => stage.look(name) }, text);
   const contact = runs.some((run) => run.contact !== null);
@@ -153,29 +153,29 @@ function bodySection(store: Store, stage: Stage, runs: Run[]): HTMLElement {
   store.on("body", () => (colours.control.value = store.scale));
   const several = runs.some((run) => run.body !== null && bodiesOf(run.body) !== null);
   return el("section.panel", { id: "bodies" },
-    el("header", {}, el("h3", {}, several ? "The bodies" : "The body"),
+    el("header", {}, el("h3", {}, several ? "Bodies" : "Body"),
       el("div.tools", {}, field.element, colours.element,
-        el("label.control", { title: "Deformation relative to the mean displacement, which is never scaled" }, el("span", {}, "deformation"), scale, scaleText),
-        toggleButton(store, "showForces", "pressures", "Contact pressures as bars (key p)"),
-        toggleButton(store, "showMesh", "mesh", "Edges of the cells (key m)"),
-        runs.some((run) => run.isAxisymmetric) && toggleButton(store, "whole", "whole", "Axisymmetric bodies with the other half of their section (key w)"),
-        runs.length > 1 && toggleButton(store, "sharedColours", "same colours", "The same range of colours for all runs, in bodies and maps (key c)"))),
+        el("label.control", { title: "Scale of the deformation relative to the mean displacement, which is never scaled" }, el("span", {}, "deformation"), scale, scaleText),
+        toggleButton(store, "showForces", "pressures", "Show contact pressures as bars (key p)"),
+        toggleButton(store, "showMesh", "mesh", "Show the edges of the cells (key m)"),
+        runs.some((run) => run.isAxisymmetric) && toggleButton(store, "whole", "whole", "Show axisymmetric bodies with the mirror image of their section (key w)"),
+        runs.length > 1 && toggleButton(store, "sharedColours", "same colours", "Use one range of colours for all runs, in bodies and maps (key c)"))),
     el("div.tools", {},
       ...(space ? (["front", "side", "top", "below"] as const).map((name) => view(name)) : [view("front", "fit")]),
-      contact && view("contact", "contact zone", `Where the body touches${space ? ", from behind the obstacle" : ""} (key k)`),
-      contact && space && view("contact-side", "contact, from the side", "Where the body touches, along the obstacle"),
+      contact && view("contact", "contact zone", `Show the contact zone${space ? ", seen from behind the obstacle" : ""} (key k)`),
+      contact && space && view("contact-side", "contact, from the side", "Show the contact zone, seen along the obstacle"),
       runs.some((run) => run.body!.volume !== null) && cutTools(store, stage, runs)),
     perRun(store, runs, (run) => stage.add(run).element, "bodies"));
 }
 
 function contactSection(store: Store, runs: Run[], maps: ContactMap[]): HTMLElement {
   const names = [...new Set(runs.flatMap((run) => run.contact!.quantities.map(({ name }) => name)))];
-  const quantity = select("shows", names.map((name): [string, string] => [name, fieldName(name)]), store.quantity,
+  const quantity = select("quantity", names.map((name): [string, string] => [name, fieldName(name)]), store.quantity,
     (value) => store.set("quantity", value, "contact"));
   quantity.control.id = "quantity";
   store.on("contact", () => (quantity.control.value = store.quantity));
   return el("section.panel", { id: "maps" },
-    el("header", {}, el("h3", {}, "The contact boundary over time"), el("div.tools", {}, quantity.element)),
+    el("header", {}, el("h3", {}, "Contact boundary over time"), el("div.tools", {}, quantity.element)),
     perRun(store, runs, (run) => {
       const map = new ContactMap(store, run);
       maps.push(map);
@@ -183,7 +183,7 @@ function contactSection(store: Store, runs: Run[], maps: ContactMap[]): HTMLElem
     }, "maps"));
 }
 
-/** Where there is something to see: the time of the largest contact force of all runs. */
+/** Time at which the page opens: that of the largest contact force of all runs. */
 function interestingTime(runs: Run[]): number {
   const most = (run: Run) => run.data.judgement.force_largest;
   const judged = runs.filter((run) => run.data.judgement.force_broken_at === null && most(run) > 0);
@@ -219,8 +219,8 @@ async function start(): Promise<void> {
       el("div", {}, el("h1", {}, title(runs)), sentence !== "" && el("p.conclusion", {}, sentence)),
       el("div.tools", {},
         runs.length > 2 && el("button.small", { type: "button", onclick: () => store.all() }, "all runs"),
-        el("button.small", { type: "button", title: "Keys (?)", onclick: () => help.showModal() }, "keys"),
-        el("button.small", { type: "button", title: "Dark or light (t)", onclick: switchTheme }, "dark / light"))),
+        el("button.small", { type: "button", title: "List of the keys (key ?)", onclick: () => help.showModal() }, "keys"),
+        el("button.small", { type: "button", title: "Switch between the dark and the light theme (key t)", onclick: switchTheme }, "dark / light"))),
     runs.length > mostCards ? runTable(store, runs) : el("div.cards", {}, ...runs.map((run) => card(store, run, () => window.ricochet?.stage ?? null))),
     results?.isTrend ? el("div.results-first", {}, results.element) : "",
     el("div.charts", {}, chart("force"), chart("energy")),
@@ -249,7 +249,7 @@ async function start(): Promise<void> {
     handle.stage = new Stage(store);
     moving.append(bodySection(store, handle.stage, bodies));
   } else {
-    moving.append(el("p.note", {}, "The runs wrote no fields: there is nothing to animate."));
+    moving.append(el("p.note", {}, "The runs wrote no fields, so there is nothing to animate."));
   }
   if (plane.length > 0) moving.append(contactSection(store, plane, handle.maps));
   profile.rebuild();

@@ -1,8 +1,8 @@
-/** Colours for more runs than have been given one by hand: each as far as can be from all before it. */
+/** Colours for further runs than those with a colour chosen by hand: each as distinct as possible from all before it. */
 
 type Three = [number, number, number];
 
-/** Oklab (Björn Ottosson): distances are about those that people see. */
+/** Oklab (Björn Ottosson): distances approximate perceived differences. */
 function oklab(red: number, green: number, blue: number): Three {
   const linear = [red, green, blue].map((value) => {
     const part = value / 255;
@@ -22,11 +22,11 @@ const rgbOf = (text: string) => [1, 3, 5].map((at) => parseInt(text.slice(at, at
 interface Candidate {
   colour: string;
   lab: Three;
-  /** To the nearest of those that are taken. */
+  /** Distance to the nearest colour in use. */
   distance: number;
 }
 
-/** What can be read on a light panel, or on a dark one. */
+/** Colours that are readable on a light panel, or on a dark one. */
 function candidates(dark: boolean): Candidate[] {
   const result: Candidate[] = [];
   for (let red = 0; red < 256; red += 15)

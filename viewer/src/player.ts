@@ -3,7 +3,7 @@ import { el, select } from "./elements";
 import { number } from "./format";
 import type { Store } from "./store";
 
-/** Play, pause and scrub: the bar at the foot of the page. */
+/** The bar at the foot of the page: play, pause and scrub. */
 export class Player {
   readonly element: HTMLElement;
   private readonly button = el("button.play", { type: "button", onclick: () => this.toggle() });
@@ -16,23 +16,23 @@ export class Player {
       this.pause();
       store.setTime(store.start + (Number(this.slider.value) / 10000) * (store.end - store.start), this);
     });
-    const speed = select("run takes", [["4", "4 s"], ["10", "10 s"], ["20", "20 s"], ["60", "1 min"]], String(store.duration),
+    const speed = select("playing time", [["4", "4 s"], ["10", "10 s"], ["20", "20 s"], ["60", "1 min"]], String(store.duration),
       (value) => store.set("duration", Number(value), "player"));
-    speed.control.title = "How long the whole run takes when it is played";
+    speed.control.title = "Time in which the whole run is played";
     this.element = el("footer.player", {}, this.button, this.slider, this.label, this.chips(), speed.element);
     store.on("time", () => this.show());
     store.on("player", () => this.show());
     this.show();
   }
 
-  /** The runs, to be switched from wherever one is on the page. */
+  /** Buttons that show and hide runs, visible at every scroll position. */
   private chips(): HTMLElement {
     const { store } = this;
     const place = el("div.chips", { role: "group", "aria-label": "Runs" });
     if (store.runs.length < 2) return place;
     const all = store.runs.map((run) => {
       const swatch = el("i");
-      const chip = el("button.chip", { type: "button", title: `Show or hide ${run.name}; with shift this run alone`, onclick: (event: MouseEvent) => (event.shiftKey ? store.only(run.number) : store.toggle(run.number)) },
+      const chip = el("button.chip", { type: "button", title: `Show or hide ${run.name}. Shift-click shows this run alone.`, onclick: (event: MouseEvent) => (event.shiftKey ? store.only(run.number) : store.toggle(run.number)) },
         swatch, el("span", {}, run.name));
       place.append(chip);
       return { run, swatch, chip };
@@ -66,7 +66,7 @@ export class Player {
     this.store.set("playing", false, "player");
   }
 
-  /** To the next frame or the one before. */
+  /** Moves by this number of frames. */
   step(by: number): void {
     this.pause();
     const { store, frames } = this;

@@ -1,4 +1,4 @@
-/** Files that the page hands out. */
+/** Files that the page saves. */
 
 export function saveBlob(blob: Blob, name: string): void {
   const url = URL.createObjectURL(blob);
@@ -9,7 +9,7 @@ export function saveBlob(blob: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-/** Columns of numbers, written so that they are read back exactly; NaN is an empty field. */
+/** Saves columns of numbers that can be read back exactly; NaN is an empty field. */
 export function saveCsv(names: string[], columns: ArrayLike<number | string | null | undefined>[], name: string): void {
   const quoted = (text: string) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   const lines = [names.map(quoted).join(",")];
@@ -29,7 +29,7 @@ export function saveCanvas(canvas: HTMLCanvasElement, name: string): void {
   canvas.toBlob((blob) => blob && saveBlob(blob, name), "image/png");
 }
 
-/** What the colours of a picture mean. */
+/** Colour scale of a picture. */
 export interface ColourKey {
   name: string;
   low: string;
@@ -37,7 +37,7 @@ export interface ColourKey {
   colours: string[];
 }
 
-/** A picture under a title and a line of coloured names. */
+/** Returns a picture below a title and a line of coloured names. */
 export function withCaption(picture: HTMLCanvasElement, title: string, names: { text: string; colour: string }[],
                             background: string, foreground: string, bar?: ColourKey | null): HTMLCanvasElement {
   const scale = devicePixelRatio;
@@ -76,5 +76,5 @@ export function withCaption(picture: HTMLCanvasElement, title: string, names: { 
   return canvas;
 }
 
-/** Letters and digits of any script stay. */
+/** File name of a title; letters and digits of any script are kept. */
 export const fileName = (title: string) => title.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-|-$/g, "") || "run";

@@ -1,20 +1,20 @@
 import type { Run } from "./data/run";
 import type { ColourScale } from "./maps/colour_range";
 
-/** What all parts of the page have in common, and who wants to know when it changes. */
+/** Parts of the state that all sections of the page share; listeners are notified of changes by topic. */
 export type Topic = "highlight" | "time" | "runs" | "zoom" | "body" | "contact" | "theme" | "player";
 
 export type Axis = "x" | "y" | "z";
 
 export class Store {
   time = 0;
-  /** Who moves the time; its own cursor need not follow. */
+  /** Sender of the last change of time; its own cursor need not follow. */
   timeSource: unknown = null;
   playing = false;
-  /** Seconds that the whole run takes when it is played. */
+  /** Seconds in which the whole run is played. */
   duration = 10;
   visible: boolean[];
-  /** The run that is pointed at: the others are drawn faintly. */
+  /** The run under the pointer; the others are drawn faintly. */
   highlight: number | null = null;
   zoom: [number, number] | null = null;
   deformation = 1;
@@ -25,10 +25,10 @@ export class Store {
   /** Axisymmetric bodies are shown with the mirror image of their section. */
   whole = true;
   scale: ColourScale = "automatic";
-  /** Solids are cut across this axis; what is beyond so much of their extent at the start is taken off. */
+  /** Solids are cut across this axis; the part beyond the fraction `cutAt` of their initial extent is removed. */
   cut: Axis | "" = "";
   cutAt = 0.5;
-  /** The other side is taken off. */
+  /** The other side is removed. */
   cutFlipped = false;
   quantity = "contact_pressure";
   readonly start: number;
@@ -37,7 +37,7 @@ export class Store {
   private readonly waiting = new Set<Topic>();
 
   constructor(readonly runs: Run[]) {
-    // Of very many the first ones, as many as there can be bodies in a page.
+    // At most as many as the page can draw bodies.
     this.visible = runs.map((_, i) => i < 12);
     let start = Infinity;
     let end = -Infinity;
@@ -61,7 +61,7 @@ export class Store {
     set.add(listener);
   }
 
-  /** Listeners are called once before the next picture is drawn, however often something changed. */
+  /** Notifies the listeners once before the next picture is drawn, however many changes there are. */
   changed(topic: Topic): void {
     if (this.waiting.size === 0) requestAnimationFrame(() => this.tell());
     this.waiting.add(topic);
@@ -83,11 +83,11 @@ export class Store {
 
   toggle(run: number): void {
     this.visible[run] = !this.visible[run];
-    if (!this.visible.includes(true)) this.visible[run] = true; // one stays
+    if (!this.visible.includes(true)) this.visible[run] = true; // one run stays visible
     this.changed("runs");
   }
 
-  /** This run alone. */
+  /** Shows this run alone. */
   only(run: number): void {
     this.visible = this.runs.map((_, i) => i === run);
     this.changed("runs");

@@ -1,4 +1,4 @@
-// Two bodies that touch each other: both are named, coloured apart, and show the pressure between them.
+// Two bodies in contact: both are named, have their own colours, and show the pressure between them.
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -19,7 +19,7 @@ function square() {
     "$Nodes", nodes.length, ...nodes, "$EndNodes", "$Elements", elements.length, ...elements, "$EndElements", ""].join("\n");
 }
 
-test("two bodies in contact are told apart, and both show its pressure", async () => {
+test("two bodies in contact are distinguished, and both show the pressure", async () => {
   const place = join(folder, "squares");
   mkdirSync(place);
   writeFileSync(join(place, "square.msh"), square());
@@ -32,7 +32,7 @@ test("two bodies in contact are told apart, and both show its pressure", async (
   const { page } = view;
   assert.match(await page.textContent("#impacts"), /body "two".*body "one"/s);
   assert.match(await page.getAttribute("dd.outcome", "title"), /^body "one" and body "two", from/);
-  assert.match(await page.textContent("#force, .panel"), /between one\.right and two\.left, x/, "forces are called by what they are between");
+  assert.match(await page.textContent("#force, .panel"), /between one\.right and two\.left, x/, "forces are named after the two groups");
   const found = await page.evaluate(() => {
     const { store, stage } = window.ricochet;
     const [run] = store.runs;

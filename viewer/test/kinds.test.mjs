@@ -7,7 +7,7 @@ import { assertNear, ballRun, closeBrowser, fingerprint, folder, frictionRun, op
 
 after(closeBrowser);
 
-test("a ball in space is turned, coloured, and asked for values", async () => {
+test("a ball in space can be rotated and coloured, and shows values at the pointer", async () => {
   const view = await open(report("ball", ballRun()));
   const { page } = view;
   await page.evaluate(() => window.ricochet.store.setTime(0.0365));
@@ -24,7 +24,7 @@ test("a ball in space is turned, coloured, and asked for values", async () => {
   await page.mouse.move(middle[0] + 80, middle[1] - 20, { steps: 4 });
   await page.mouse.up();
   await settle(page);
-  assert.notEqual(await fingerprint(page, picture), before, "turned");
+  assert.notEqual(await fingerprint(page, picture), before, "rotated");
   await page.click("text=below");
   await page.selectOption("#field", "contact_pressure");
   await settle(page);
@@ -35,12 +35,12 @@ test("a ball in space is turned, coloured, and asked for values", async () => {
   });
   assert.ok(pressures.some > 5 && pressures.some < pressures.all / 4, JSON.stringify(pressures));
   assert.ok(pressures.most > 0 && pressures.range.high > 0);
-  assert.equal(await page.$("#maps"), null, "there is no line to plot along");
+  assert.equal(await page.$("#maps"), null, "no line for a map");
   assert.deepEqual(view.complaints, []);
   await view.close();
 });
 
-test("a plane in space is shown as far as the body goes over it", async () => {
+test("a plane in space is drawn over the extent of the body", async () => {
   const view = await open(report("ball", ballRun()));
   const { low, high, box } = await view.page.evaluate(() => {
     const own = window.ricochet.stage.panels[0].view;
@@ -54,14 +54,14 @@ test("a plane in space is shown as far as the body goes over it", async () => {
     assert.ok(low[k] < box.low[k] && low[k] > box.low[k] - 0.3 * size, `${low[k]} beside ${box.low[k]}`);
     assert.ok(high[k] > box.high[k] && high[k] < box.high[k] + 0.3 * size, `${high[k]} beside ${box.high[k]}`);
   }
-  assert.deepEqual([low[2], high[2]], [0, 0], "it stays in its plane");
+  assert.deepEqual([low[2], high[2]], [0, 0], "it lies in its plane");
   await view.close();
 });
 
-test("an axisymmetric body is whole, and its section alone where that is wanted", async () => {
+test("an axisymmetric body is shown whole, or as its section", async () => {
   const run = simulate("cases/ball-axisymmetric/ball-axisymmetric.toml", "axisymmetric", { "time.end": 5e-4, "output.fields_every": 5 });
   const view = await open(report("axisymmetric", run));
-  /** Parts of each half of the picture, above the plane, that are not the background; and that differ from the other half. */
+  /** Numbers of pixels above the plane that are not background, in each half of the picture, and that differ between the halves. */
   const halves = () => view.page.evaluate(() => {
     const { stage } = window.ricochet;
     stage.draw();
@@ -118,7 +118,7 @@ test("stick and slip have colours of their own", async () => {
   await view.close();
 });
 
-test("the card tells the impulse of normal forces from that with friction, and a restitution above 1 that may be", async () => {
+test("the card shows the impulse without and with friction, and a restitution above 1 that is possible", async () => {
   const run = simulate("cases/oblique/oblique.toml", "coarse", { "time.scheme": "newmark", "time.preset": "trapezoidal", "time.step": 5e-4, "mass.type": "consistent" });
   const [impact] = JSON.parse(readFileSync(join(run, "summary.json"), "utf8")).impacts;
   assert.ok(impact.restitution > 1.001);
@@ -127,12 +127,12 @@ test("the card tells the impulse of normal forces from that with friction, and a
   const [, normal, whole] = /normal impulse ([\d.]+) \(with friction ([\d.]+)\)/.exec(card);
   assertNear(Number(normal), impact.normal_impulse, 5e-3 * impact.normal_impulse);
   assertNear(Number(whole), Math.hypot(...impact.impulse), 5e-3 * Math.hypot(...impact.impulse));
-  // Friction has taken energy from the motion along the plane, which was as fast as that towards it.
+  // Friction extracts energy from the motion along the plane, which is as fast as that towards it.
   assert.match(card, /restitution 1\.00\d ~\(above 1: fed by sliding, spin or vibration, or newmark creates energy\)/);
   await view.close();
 });
 
-test("the card says why there is no restitution, and that a contact zone is too coarse", async () => {
+test("the card states why there is no restitution, and that a contact zone is too coarse", async () => {
   const run = simulate("cases/disc/disc.toml", "grazing", { "initial.velocity": "[200.0, -0.02]", "load.gravity": "[0.0, 0.0]", "time.end": 0.15, "output.fields_every": 0 });
   const [impact] = JSON.parse(readFileSync(join(run, "summary.json"), "utf8")).impacts;
   assert.equal(impact.restitution, null);
@@ -140,12 +140,12 @@ test("the card says why there is no restitution, and that a contact zone is too 
   const view = await open(report("grazing", run));
   const card = await view.page.textContent(".card");
   assert.ok(card.includes(`no restitution (${impact.why_no_restitution})`), card);
-  assert.ok(card.includes(`(only ${impact.contact_points} of ${impact.all_contact_points} contact points at once: too coarse)`), card);
+  assert.ok(card.includes(`(at most ${impact.contact_points} of ${impact.all_contact_points} contact points at once: too coarse)`), card);
   assert.deepEqual(view.complaints, []);
   await view.close();
 });
 
-test("an obstacle that moves may throw a body back faster", async () => {
+test("a moving obstacle may return a body faster", async () => {
   const run = simulate("cases/disc/disc.toml", "driven", { "time.scheme": "midpoint", "mass.type": "consistent", "obstacle.foundation.velocity": "[0.0, 0.02]", "output.fields_every": 0 });
   const [impact] = JSON.parse(readFileSync(join(run, "summary.json"), "utf8")).impacts;
   assert.ok(impact.restitution > 1.001);
@@ -156,7 +156,7 @@ test("an obstacle that moves may throw a body back faster", async () => {
   await view.close();
 });
 
-test("a run without fields has its plots", async () => {
+test("a run without fields has plots", async () => {
   const run = simulate("cases/disc/disc.toml", "plain", { "time.end": 0.01, "output.fields_every": 0 });
   const view = await open(report("plain", run));
   assert.match(await view.page.textContent("#moving"), /nothing to animate/);
@@ -167,7 +167,7 @@ test("a run without fields has its plots", async () => {
 
 const shortDisc = (name, settings = {}) => simulate("cases/disc/disc.toml", name, { "time.end": 0.01, "output.fields_every": 20, ...settings });
 
-test("every plot of every kind of run can be logarithmic, relative, and of any curve", async () => {
+test("plots of all kinds of runs support logarithmic and relative scales and all curves", async () => {
   for (const run of [ballRun(), shortDisc("short"), frictionRun()]) {
     const view = await open(report("log", run));
     const { page } = view;
@@ -187,7 +187,7 @@ test("every plot of every kind of run can be logarithmic, relative, and of any c
   }
 });
 
-test("runs of the plane and of space, of other sizes and ends, stand side by side", async () => {
+test("runs in the plane and in space, of different sizes and durations, are shown side by side", async () => {
   const runs = [shortDisc("small"), ballRun(), simulate("cases/rod/rod.toml", "rod")];
   const view = await open(report("mixed", ...runs));
   const { page } = view;
@@ -198,18 +198,18 @@ test("runs of the plane and of space, of other sizes and ends, stand side by sid
   await page.selectOption("#field", "von_mises");
   await page.evaluate(() => window.ricochet.store.setTime(0.05));
   await settle(page);
-  // Each body is in its panel: its corners are inside of what the camera sees.
+  // Each body fits its panel: the camera sees the corners of its box.
   const extents = await page.evaluate(() => window.ricochet.stage.panels.map(({ view }) => {
     const { low, high } = view.box;
     return [low, high].map((corner) => corner.map((x, k) => Math.abs(x / view.content.scale.x ** -1 + view.content.position.getComponent(k))));
   }));
   for (const corner of extents.flat(2)) assert.ok(corner < 0.7, String(corner));
-  // Forces of all runs are drawn, though their probes have other names; what has ended has no value.
+  // Forces of all runs are drawn, though their probes have different names; a run has no value after its end.
   const drawn = await page.evaluate(() => window.ricochet.charts.find((chart) => chart.id === "force").curves.map((curve) => curve.values.length));
   assert.equal(drawn.length, 3);
   assert.ok(drawn.every((rows) => rows > 50));
   assert.match(await page.textContent("#chart-energy .legend"), /small –/);
-  assert.equal(await page.locator(".conclusion").count(), 0, "they answer different questions");
+  assert.equal(await page.locator(".conclusion").count(), 0, "the runs solve different problems");
   assert.deepEqual(view.complaints, []);
   await view.close();
 });
@@ -232,7 +232,7 @@ test("more runs than a browser can draw", async () => {
   await view.close();
 });
 
-test("a run that failed is not recommended, nor one that nothing touched", async () => {
+test("runs that failed or without contact are not recommended", async () => {
   const bad = join(folder, "failed");
   try {
     ricochet("run", join(source, "cases/disc/disc.toml"), "-o", bad, "--quiet", "--set", "time.scheme=midpoint", "--set", "mass.type=consistent",
@@ -245,7 +245,7 @@ test("a run that failed is not recommended, nor one that nothing touched", async
   await view.close();
 });
 
-test("what is infinite is said to be, and is never none", async () => {
+test("an infinite depth is reported, not shown as none", async () => {
   const run = shortDisc("infinite");
   const file = join(run, "summary.json");
   const summary = JSON.parse(readFileSync(file, "utf8"));
@@ -255,13 +255,13 @@ test("what is infinite is said to be, and is never none", async () => {
   const view = await open(report("infinite", run));
   const words = await view.page.$$eval(".findings dt", (all) => Object.fromEntries(all.map((dt) => [dt.textContent, dt.nextElementSibling])
     .map(([what, dd]) => [what, `${dd.className}: ${dd.textContent} (${dd.title})`])));
-  assert.match(words.Interpenetration, /^poor: .*infinitely deep \(body 0 in "floor", where no contact prevents it; infinite/);
+  assert.match(words.Interpenetration, /^poor: .*infinitely deep \(body 0 in "floor", where no contact prevents it; infinite or NaN\)/);
   assert.match(words["Contact force"], /up to/);
   assert.deepEqual(view.complaints, []);
   await view.close();
 });
 
-test("a force on points that held steps have left at a gap is in doubt", async () => {
+test("a force is in doubt where held steps have left gaps", async () => {
   for (const [share, grade] of [[0.43, "poor"], [0.005, ""]]) {
     const run = shortDisc(`doubt${share}`);
     const file = join(run, "summary.json");
@@ -272,14 +272,14 @@ test("a force on points that held steps have left at a gap is in doubt", async (
     const view = await open(report(`doubt${share}`, run));
     const force = await view.page.$$eval(".findings dt", (all) => all.filter((dt) => dt.textContent === "Contact force")
       .map((dt) => `${dt.nextElementSibling.className}: ${dt.nextElementSibling.textContent}`)[0]);
-    if (grade) assert.match(force, /^poor: .*in doubt: up to 43 % of that of contact 1 is at stake where held steps have left gaps/);
+    if (grade) assert.match(force, /^poor: .*in doubt: up to 43 % of the force of contact 1 is at stake where held steps have left gaps/);
     else assert.doesNotMatch(force, /in doubt/);
     assert.deepEqual(view.complaints, []);
     await view.close();
   }
 });
 
-test("what was not watched is not called fine", async () => {
+test("unchecked penetration has no good mark", async () => {
   const run = shortDisc("unwatched");
   const file = join(run, "summary.json");
   const summary = JSON.parse(readFileSync(file, "utf8"));
@@ -294,12 +294,12 @@ test("what was not watched is not called fine", async () => {
   };
   assert.match(await words("watched", {}), /^good: .?none$/);
   assert.match(await words("unwatched", { not_watched: ["bodies against themselves"] }),
-    /^none: .?none where it was watched; not watched: bodies against themselves$/);
+    /^none: .?none where checked; not checked: bodies against themselves$/);
   const found = { obstacle: null, bodies: ["the body"], depth: 0.01, relative_depth: 0.125, time: 0.005, place: [0, 0], first_time: 0.005, groups: [] };
   assert.match(await words("itself", { depth: 0.01, relative_depth: 0.125, found: [found] }), /^poor: .?12.5 % of the body's size/);
 });
 
-test("a file that was cut off says so", async () => {
+test("a truncated file is reported", async () => {
   const whole = readFileSync(report("whole", simulate("cases/disc/disc.toml", "plain2", { "time.end": 0.01 })), "utf8");
   const file = join(folder, "cut.html");
   writeFileSync(file, whole.replace(/<script type="text\/plain" id="ricochet-blob-0">.*?<\/script>/s, ""));
@@ -307,6 +307,6 @@ test("a file that was cut off says so", async () => {
   const page = await (await openBrowser()).newPage();
   await page.goto(`file://${file}`);
   await page.waitForSelector(".warning");
-  assert.match(await page.textContent(".warning"), /cannot be shown: this file is cut off/);
+  assert.match(await page.textContent(".warning"), /cannot be shown: this file is truncated/);
   await page.close();
 });

@@ -1,4 +1,4 @@
-// A study of twelve runs: colours, a row for each run, results against what varies.
+// A study of twelve runs: colours, a row for each run, results against the entries that vary.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -13,14 +13,14 @@ before(async () => {
   for (const mu of moduli)
     for (const speed of speeds)
       runs.push({ speed, mu, directory: simulate("cases/disc/disc.toml", `study/mu${mu}-v${speed}`, { "initial.velocity": `[0.0, -${speed}]`, "material.0.mu": mu,
-        // With this weight the forces that act, which impacts tell, are those of the history.
+        // With this weight the acting forces, from which impacts are computed, are those of the history.
         "time.reaction_weight": "end", "time.end": 0.02, "time.step": 2e-4, "output.fields_every": 50 }) });
   view = await open(report("study", ...runs.map(({ directory }) => directory)));
   ({ page } = view);
 });
 after(closeBrowser);
 
-/** CIE Lab under D65, to judge colours by another formula than the one that chose them. */
+/** CIE Lab under D65, a formula independent of the one that chooses the colours. */
 function lab(rgb) {
   const [r, g, b] = rgb.map((value) => value / 255).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
   const f = (t) => (t > (6 / 29) ** 3 ? Math.cbrt(t) : (t * (29 / 6) ** 2) / 3 + 4 / 29);
@@ -28,7 +28,7 @@ function lab(rgb) {
   return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
 }
 
-test("every run has a colour that no other one comes near", async () => {
+test("the colours of all runs are distinct", async () => {
   for (const theme of ["light", "dark"]) {
     if (theme === "dark") await page.keyboard.press("t");
     await settle(page);
@@ -36,12 +36,12 @@ test("every run has a colour that no other one comes near", async () => {
     assert.equal(colours.length, 12);
     const all = colours.map(lab);
     const nearest = Math.min(...all.flatMap((a, i) => all.slice(i + 1).map((b) => Math.hypot(...a.map((value, k) => value - b[k])))));
-    assert.ok(nearest > 15, `${theme}: two colours are only ${nearest} apart`); // 2.3 is a difference that is just seen
+    assert.ok(nearest > 15, `${theme}: two colours are only ${nearest} apart`); // 2.3 is a just noticeable difference
   }
   await page.keyboard.press("t");
 });
 
-test("each run has a row with what varies and what came out", async () => {
+test("each run has a row with the entries that vary and with results", async () => {
   const head = await page.$$eval(".runs thead th", (all) => all.map((each) => each.textContent));
   assert.deepEqual(head.slice(0, 3), ["run", "initial.velocity y", "material.0.mu"]);
   const rows = await page.$$eval(".runs tbody tr", (all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
@@ -59,7 +59,7 @@ test("each run has a row with what varies and what came out", async () => {
   });
 });
 
-test("results are on the screen without scrolling", async () => {
+test("results fit the screen without scrolling", async () => {
   await page.setViewportSize({ width: 1300, height: 900 });
   await settle(page);
   const { right, ends } = await page.evaluate(() => {
@@ -71,7 +71,7 @@ test("results are on the screen without scrolling", async () => {
   await settle(page);
 });
 
-test("results stand against what varies, a line for each value of what else does", async () => {
+test("results are drawn against one entry, with a line for each value of the others", async () => {
   const lines = () => page.evaluate(() => window.ricochet.results.lines.map(({ name, points }) => ({ name, points: points.map(({ run, x, y }) => [run.name, x, y]) })));
   const found = await lines();
   assert.deepEqual(found.map(({ name }) => name).sort(), ["material.0.mu = 20000", "material.0.mu = 5000"]);
@@ -104,7 +104,7 @@ test("results stand against what varies, a line for each value of what else does
   assert.ok((await painted(page, "#results canvas")) > 0.1, "bars");
 });
 
-test("pointing at a run leaves the others faint, and the legend keeps its place", async () => {
+test("pointing at a run fades the others, and the legend keeps its size", async () => {
   await page.hover(".runs tbody tr:nth-child(11) td:nth-child(2)");
   await settle(page);
   const alphas = () => page.evaluate(() => {
@@ -132,7 +132,7 @@ test("a phone shows the rows and the results", async () => {
   await phone.close();
 });
 
-test("nothing was said on the console", async () => {
+test("the console is empty", async () => {
   assert.deepEqual(view.complaints, []);
   await view.close();
 });

@@ -61,7 +61,7 @@ for (const colorScheme of ["light", "dark"])
     window.ricochet.store.setTime(0.05);
     if (${colorScheme === "dark"}) document.querySelector("#maps").scrollIntoView();`);
 
-// The animation: the three bodies, without what is around them.
+// The animation: the three bodies, without their surroundings.
 const view = await open(disc, { width: 840, height: 900 });
 const { page } = view;
 await page.addStyleTag({ content: ".player, .body-foot, .bodies .colour-bar { display: none !important } .body-area { height: 230px !important } #bodies { scroll-margin: 0 }" });

@@ -22,7 +22,7 @@ both.paste(dark, (light.width + 20, 0))
 save(both, "report-phone.png")
 
 frames = [Image.open(path).convert("RGB") for path in sorted((taken / "frames").iterdir())]
-# One palette for all frames, from some of them side by side.
+# One palette for all frames, from six of them side by side.
 sample = Image.new("RGB", (frames[0].width, 6 * frames[0].height))
 for k in range(6):
     sample.paste(frames[k * (len(frames) - 1) // 5], (0, k * frames[0].height))

@@ -1,4 +1,4 @@
-// What is inside a solid, where it touches, and colours that show a few large values.
+// The inside of a solid, its contact zone, and colours for a few large values.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -18,7 +18,7 @@ before(async () => {
 });
 after(closeBrowser);
 
-/** Area, centre and normal of the section as it is drawn. */
+/** Area, centre and visibility of the drawn section. */
 const section = () => page.evaluate(() => {
   const { mesh } = window.ricochet.stage.panels[0].view.section;
   const at = mesh.geometry.attributes.position.array;
@@ -34,10 +34,10 @@ const section = () => page.evaluate(() => {
   return { area, centre: centre.map((value) => value / area), visible: mesh.visible };
 });
 
-test("a cut shows all that lies in its plane", async () => {
+test("a cut shows the whole section in its plane", async () => {
   const whole = await fingerprint(page, picture);
   await page.evaluate(() => window.ricochet.store.setTime(0));
-  // A disc of radius sqrt(r² − d²), the polyhedron's a little less.
+  // A disc of radius sqrt(r² − d²); that of the polyhedron is slightly smaller.
   for (const axis of ["x", "y", "z"]) {
     await page.selectOption("#cut", axis);
     for (const part of [0.5, 0.25]) {
@@ -57,7 +57,7 @@ test("a cut shows all that lies in its plane", async () => {
   assert.notEqual(await fingerprint(page, picture), whole);
 });
 
-test("the section has the values of the cells it cuts, and tells them", async () => {
+test("the section has the values of the cells it cuts, and shows them at the pointer", async () => {
   await page.selectOption("#cut", "y");
   await page.selectOption("#field", "von_mises");
   await page.evaluate(() => {
@@ -85,7 +85,7 @@ test("the section has the values of the cells it cuts, and tells them", async ()
   await settle(page);
   const tip = await page.textContent(".body-area .tip");
   const place = /at \((.*), (.*), (.*)\)/.exec(tip).slice(1).map((text) => (/[·]10/.test(text) ? 0 : Number(text.replace("−", "-"))));
-  assertNear(place[1], 0, 0.02 * radius, "under the pointer is the section, not the skin before it");
+  assertNear(place[1], 0, 0.02 * radius, "the pointer is on the section, not on the removed surface in front of it");
   assert.ok(Math.hypot(place[0], place[2] - radius) < 0.6 * radius, tip);
 });
 
@@ -104,7 +104,7 @@ test("the other side, the slider and the key move the cut", async () => {
   await page.selectOption("#cut", "");
 });
 
-test("the contact zone is seen from where the obstacle is, and followed", async () => {
+test("the contact zone is seen from behind the obstacle, and followed", async () => {
   await page.click("text=contact zone");
   const look = () => page.evaluate(() => {
     const { lenses, panels } = window.ricochet.stage;
@@ -119,9 +119,9 @@ test("the contact zone is seen from where the obstacle is, and followed", async 
   assert.ok(at.eye[2] < -0.5 * Math.hypot(...at.eye), `from below: ${at.eye}`);
   assertNear(at.middle[0], 0, 0.1 * radius);
   assertNear(at.middle[2], 0, 0.02 * radius, "on the plane");
-  assertNear(at.lowest, 0, 1e-4 * radius, "what touches lies on the plane");
+  assertNear(at.lowest, 0, 1e-4 * radius, "nodes in contact lie on the plane");
   assert.ok(at.touching > 5 && at.seen < 0.6 * at.size, JSON.stringify(at));
-  // In flight it follows the nodes that touched, up with the ball.
+  // In flight the view follows the nodes of the last contact, up with the ball.
   await page.evaluate(() => window.ricochet.store.setTime(0.07));
   await settle(page);
   const later = await look();
@@ -135,11 +135,11 @@ test("the contact zone is seen from where the obstacle is, and followed", async 
   assert.ok((await look()).seen > 0.9 * at.size);
 });
 
-test("colours reach the largest value, in a scale that shows the others, too", async () => {
+test("colours reach the largest value, in a scale that also shows the others", async () => {
   const range = () => page.evaluate(() => {
     const { view } = window.ricochet.stage.panels[0];
     const levels = [view.body, view.body.volume].map((part) => part.fields.find(({ name }) => name === "von_mises").values);
-    // Between frames it was larger.
+    // It was larger between frames.
     const most = Math.max(...levels.map(({ low, step, none }) => low + step * (none - 1)), view.run.summary.peak_stress.von_mises);
     return { ...view.range, most };
   });
@@ -161,14 +161,14 @@ test("colours reach the largest value, in a scale that shows the others, too", a
   await page.selectOption("#scale", "automatic");
 });
 
-test("the card tells the impacts, and goes to them", async () => {
+test("the card lists the impacts, and its links go to them", async () => {
   const { impacts, peak_stress: peak } = JSON.parse(readFileSync(join(run, "summary.json"), "utf8"));
   assert.equal(impacts.length, 2);
   const card = await page.textContent(".card");
   for (const { restitution, restitution_inexact: inexact, normal_impulse, largest_force } of impacts) {
     const remark = restitution > 1.001 ? "above 1: fed by loads, sliding, spin or vibration"
       : inexact ? "inexact: the method lost [\\d.]+ %, the body lost [\\d.]+ %" : null;
-    const words = new RegExp(`restitution ${restitution.toFixed(3)}${remark ? ` ~\\(${remark}\\)` : ""}, lasts [\\d.]+, normal impulse ([\\d.]+), force up to ([\\d.]+)`).exec(card);
+    const words = new RegExp(`restitution ${restitution.toFixed(3)}${remark ? ` ~\\(${remark}\\)` : ""}, duration [\\d.]+, normal impulse ([\\d.]+), largest force ([\\d.]+)`).exec(card);
     assert.ok(words, card);
     assertNear(Number(words[1]), normal_impulse, 2e-3 * normal_impulse);
     assertNear(Number(words[2]), largest_force, 2e-3 * largest_force);
@@ -181,7 +181,7 @@ test("the card tells the impacts, and goes to them", async () => {
   assertNear(peak.von_mises, 6e5, 1e5); // 0.6 of Hertz' pressure under 92.5 N, which is 1.0e6
 });
 
-test("the largest stress is marked where it is, and colours reach it", async () => {
+test("the largest stress is marked at its position, and colours reach it", async () => {
   const { peak_stress: peak } = JSON.parse(readFileSync(join(run, "summary.json"), "utf8"));
   await page.locator(".outcome .link").last().click();
   await settle(page);
@@ -200,7 +200,7 @@ test("the largest stress is marked where it is, and colours reach it", async () 
   });
   assertNear(found.time, peak.time, 1e-12);
   assert.deepEqual([found.field, found.cut, found.visible, found.opacity], ["von_mises", "y", true, 1]);
-  // The frame is beside the peak in time, and its largest stress is in the same cell or beside it.
+  // The frame is close to the peak in time, and its largest stress is in the same cell or an adjacent one.
   assert.ok(found.most <= 1.001 * peak.von_mises && found.most > 0.9 * peak.von_mises, JSON.stringify([found.most, peak]));
   assert.ok(Math.hypot(...found.place.map((x, k) => x - found.centre[k])) < 0.2 * radius, JSON.stringify(found));
   assert.ok(found.high >= peak.von_mises);
@@ -213,7 +213,7 @@ test("the largest stress is marked where it is, and colours reach it", async () 
   assert.equal(await fingerprint(page, picture), hidden);
 });
 
-test("nothing was said on the console", async () => {
+test("the console is empty", async () => {
   assert.deepEqual(view.complaints, []);
   await view.close();
 });

@@ -1,4 +1,4 @@
-// What the tests in the browser share: runs made by the program, their reports, a page that must not complain.
+// Shared by the tests in the browser: runs made by the program, their reports, and a page whose console must be empty.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
@@ -34,16 +34,16 @@ export function report(name, ...runs) {
   return file;
 }
 
-/** The source's three runs of the demo, at more frames than it would write. */
+/** The three runs of the demo under the schemes of the source, with more frames than usual. */
 export function discRuns() {
   return [["midpoint", "consistent"], ["klr-conserving", "consistent"], ["newmark", "equivalent"]].map(([scheme, mass]) =>
     simulate("cases/disc/disc.toml", `disc/${scheme}`, { "time.scheme": scheme, "mass.type": mass, "output.fields_every": 5,
       ...(scheme === "newmark" ? { "time.preset": "textbook-half" } : {}) }));
 }
 
-/** A disc thrown obliquely: its nodes slip, stick and slip again. */
+/** A disc thrown obliquely, whose nodes slip, stick and slip again. */
 export const frictionRun = () => simulate("cases/oblique/oblique.toml", "oblique", { "output.fields_every": 2 });
-/** A ball on a block: two bodies, and the pressure on both. */
+/** A ball on a block, two bodies with the pressure on both. */
 export const pairRun = () => simulate("cases/ball-block/ball-block.toml", "pair", { "output.fields_every": 6 });
 export const ballRun = () => simulate("cases/ball/ball.toml", "ball", { "output.fields_every": 8 });
 
@@ -60,7 +60,7 @@ export function readHistory(directory) {
 }
 
 let browser;
-/** Debian's Chromium; pictures are drawn without a graphics card. */
+/** Opens Debian's Chromium, which draws pictures without a graphics card. */
 export async function openBrowser() {
   browser ??= await chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
@@ -70,13 +70,13 @@ export async function openBrowser() {
 }
 export const closeBrowser = async () => browser?.close();
 
-/** A report, ready; `complaints` has everything that a reader with an open console would see, and every request. */
+/** Opens a report and waits until it is ready; `complaints` lists all messages of the console and all requests. */
 export async function open(file, { width = 1400, height = 900, colorScheme = "light", touch = false } = {}) {
   const context = await (await openBrowser()).newContext({ viewport: { width, height }, colorScheme, hasTouch: touch, acceptDownloads: true });
   const page = await context.newPage();
   const complaints = [];
   page.on("console", (message) => {
-    // Chromium says so of every page with WebGL where it puts pictures together without a graphics card.
+    // Chromium reports this for every page with WebGL if it has no graphics card.
     if (/GL Driver Message .* GPU stall due to ReadPixels/.test(message.text())) return;
     complaints.push(`${message.type()}: ${message.text()}`);
   });
@@ -90,7 +90,7 @@ export async function open(file, { width = 1400, height = 900, colorScheme = "li
   return { page, complaints, close: () => context.close() };
 }
 
-/** Two pictures later everything that was asked for is drawn. */
+/** Waits until all requested drawing is done. */
 export async function settle(page) {
   await page.evaluate(() => new Promise((done) => {
     let left = 4;
@@ -99,7 +99,7 @@ export async function settle(page) {
   }));
 }
 
-/** Colours of a plane canvas that differ from its commonest one, as a fraction. */
+/** Fraction of the pixels of a 2D canvas that differ from its most frequent colour. */
 export const painted = (page, selector) => page.evaluate((which) => {
   const canvas = document.querySelector(which);
   const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
@@ -113,9 +113,9 @@ export const painted = (page, selector) => page.evaluate((which) => {
   return 1 - Math.max(...counts.values()) / (data.length / 4);
 }, selector);
 
-/** What is seen of an element, as a number that changes with every pixel. */
+/** Checksum of the picture of an element. */
 export async function fingerprint(page, selector) {
-  // Not under the bar at the foot.
+  // Keep it clear of the bar at the foot.
   await page.locator(selector).first().evaluate((element) => element.scrollIntoView({ block: "center" }));
   return createHash("sha256").update(await page.locator(selector).first().screenshot()).digest("hex");
 }

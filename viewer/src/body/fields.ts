@@ -4,12 +4,12 @@ import { toNumber } from "../format";
 import type { Moving } from "./geometry";
 import { colourRange, type ColourRange, type ColourScale } from "../maps/colour_range";
 
-/** Fields that bodies can be coloured by. */
+/** Fields for the colours of bodies. */
 
 const axes = ["x", "y", "z"];
 const contactOrder = ["contact_pressure", "contact_status", "friction_traction", "gap", "nominal_contact_pressure", "nominal_friction_traction"];
 
-/** Names of the fields of some run, the body's own first. */
+/** Names of the fields of all runs, first those of the body. */
 export function fieldNames(runs: Run[]): string[] {
   const names = new Set<string>();
   for (const run of runs) {
@@ -18,17 +18,17 @@ export function fieldNames(runs: Run[]): string[] {
     if (run.body.deviations.length > 0) names.add("displacement");
     for (let k = 0; k < run.body.deviations.length; ++k) names.add(`displacement_${axes[k]}`);
   }
-  // In the plane the boundary is a line, without a colour of its own: maps and bars show these.
+  // In the plane the boundary is a line without colours; maps and bars show its fields.
   for (const name of contactOrder)
     if (runs.some((run) => run.summary.dimension === 3 && run.contact?.quantities.some((quantity) => quantity.name === name))) names.add(name);
   return [...names];
 }
 
-/** Values of a field at nodes or at cells. NaN: there is none (off the contact boundary). */
+/** Values of a field at nodes or cells; NaN if there is none (off the contact boundary). */
 export interface FieldValues {
   onNodes: boolean;
   values: Float32Array;
-  /** Whole numbers with names, not to be interpolated. */
+  /** Whether the values are integers with names, which must not be interpolated. */
   isStatus: boolean;
 }
 
@@ -36,7 +36,7 @@ export function contactQuantity(run: Run, name: string): Levels | undefined {
   return run.contact?.quantities.find((quantity) => quantity.name === name)?.values;
 }
 
-/** A field of the body's own, on its surface or inside it. `out` is written over where it has the right size. */
+/** A field of the body, on its surface or inside it. Reuses `out` if it has the right size. */
 export function ownFieldAt(part: Moving & { fields: Field[] }, means: Float64Array, name: string, frame: number, out?: Float32Array): FieldValues | null {
   const room = (size: number) => (out?.length === size ? out : new Float32Array(size));
   if (name.startsWith("displacement")) {
@@ -86,7 +86,7 @@ function fillDisplacement(part: Moving, means: Float64Array, axis: number, frame
   }
 }
 
-/** What colours cover, over all frames. null: the field has names instead of numbers, or is not there. */
+/** Range of the colours over all frames; null if the field has names instead of numbers or does not exist. */
 export function fieldRange(run: Run, name: string, scale: ColourScale): ColourRange | null {
   const body = run.body;
   if (!body || name === "" || name === "contact_status") return null;

@@ -1,16 +1,16 @@
 import { valueAt, type Levels } from "../data/decode";
 import type { Body } from "../data/run";
 
-/** Where the nodes of a body are, and what encloses it. */
+/** Positions of the nodes of a body, its boxes, outline and normals. */
 
-/** What moves: a body, or the inside of one. */
+/** Nodes that move: those of a body's surface, or of its inside. */
 export interface Moving {
   nodes: number;
   positions: Levels;
   deviations: Levels[];
 }
 
-/** Reference positions, 3 for each node. */
+/** Reference positions, three numbers for each node. */
 export function referencePositions({ nodes, positions }: Moving): Float32Array {
   const result = new Float32Array(3 * nodes);
   for (let k = 0; k < positions.rows; ++k)
@@ -18,7 +18,7 @@ export function referencePositions({ nodes, positions }: Moving): Float32Array {
   return result;
 }
 
-/** X + ū + scale · (u − ū): the mean displacement ū is never scaled, so that the body stays where it is. */
+/** Computes X + ū + scale · (u − ū); the mean displacement ū is never scaled, so that the body keeps its position. */
 export function placeNodes({ deviations }: Moving, means: Float64Array, reference: Float32Array, frame: number, scale: number, out: Float32Array): void {
   out.set(reference);
   deviations.forEach(({ levels, columns, low, step, none }, k) => {
@@ -51,7 +51,7 @@ export const join = (a: Box, b: Box): Box => ({
   high: a.high.map((value, k) => Math.max(value, b.high[k])) as Box["high"],
 });
 
-/** The box around the body in all its frames (some forty of them). */
+/** The box around the body in all frames, sampled at some forty of them. */
 export function boxOverTime(body: Body, reference: Float32Array): Box {
   const positions = new Float32Array(reference.length);
   const box = emptyBox();
@@ -63,7 +63,7 @@ export function boxOverTime(body: Body, reference: Float32Array): Box {
   return box;
 }
 
-/** Sides of triangles that belong to one triangle alone and are edges of cells: the outline of a plane body. */
+/** The outline of a plane body: the sides that belong to one triangle only. */
 export function outlineOf(body: Body): Int32Array {
   const seen = new Map<number, number>();
   const key = (a: number, b: number) => (a < b ? a * body.nodes + b : b * body.nodes + a);
@@ -78,10 +78,10 @@ export function outlineOf(body: Body): Int32Array {
   return Int32Array.from(result);
 }
 
-/** Unit normals out of the body at its nodes, from the sides (in space triangles) of its surface around them. */
+/** Outward unit normals at the nodes of a body, from the adjacent sides (in space triangles) of its surface. */
 export class OutwardNormals {
   readonly values: Float32Array;
-  /** In the plane: the node opposite to each side of the outline, which is inside. */
+  /** In the plane: the node opposite to each side of the outline, on its inner side. */
   private readonly opposite: Int32Array;
 
   constructor(
@@ -145,7 +145,7 @@ export class OutwardNormals {
   }
 }
 
-/** Of each triangle the number of its body, by the order of first triangles; null where there is one body. */
+/** Number of the body of each triangle, in the order of the bodies' first triangles; null if there is one body. */
 export function bodiesOf(body: Body): Float32Array | null {
   const root = Int32Array.from({ length: body.corners.reduce((most, node) => Math.max(most, node), -1) + 1 }, (_, node) => node);
   const find = (node: number): number => {

@@ -1,7 +1,7 @@
 import * as three from "three";
 import { fieldColours } from "../colours";
 
-/** Colours triangles by a field, shades them in space, and draws the edges of cells. */
+/** Material that colours triangles by a field, shades them in space, and draws the edges of cells. */
 export function bodyMaterial(shaded: boolean): three.ShaderMaterial {
   const colours = new three.DataTexture(fieldColours, 256, 1, three.RGBAFormat);
   colours.minFilter = colours.magFilter = three.LinearFilter;
@@ -9,7 +9,7 @@ export function bodyMaterial(shaded: boolean): three.ShaderMaterial {
   return new three.ShaderMaterial({
     glslVersion: three.GLSL3,
     side: three.DoubleSide,
-    // Outlines and edges lie in front of the faces they belong to.
+    // Outlines and edges are drawn in front of their faces.
     polygonOffset: true,
     polygonOffsetFactor: 1,
     polygonOffsetUnits: 1,
@@ -19,18 +19,18 @@ export function bodyMaterial(shaded: boolean): three.ShaderMaterial {
       high: { value: 1 },
       logarithmic: { value: false },
       cuts: { value: false },
-      cut: { value: new three.Vector4() }, // what is above w along xyz, at the start, is cut off
+      cut: { value: new three.Vector4() }, // the part that is initially above w along xyz is cut off
       kind: { value: 0 }, // 0 plain, 1 numbers, 2 statuses, 3 numbers of bodies
       plain: { value: new three.Color() },
       line: { value: new three.Color() },
-      lines: { value: 0 }, // how dark the edges of cells are
+      lines: { value: 0 }, // darkness of the edges of cells
       statuses: { value: Array.from({ length: 5 }, () => new three.Color()) },
       shaded: { value: shaded },
     },
     vertexShader: `
-      in vec3 values;   // of the three corners
+      in vec3 values;   // values at the three corners
       in float edges;   // bit k: the side from corner k is an edge of a cell
-      in vec3 origin;   // where the corner was at the start
+      in vec3 origin;   // initial position of the corner
       uniform vec4 cut;
       out float above;
       out vec3 place;   // barycentric
@@ -43,7 +43,7 @@ export function bodyMaterial(shaded: boolean): three.ShaderMaterial {
         corners = values;
         above = dot(cut.xyz, origin) - cut.w;
         int bits = int(edges + 0.5);
-        // Opposite to corner k is the side from corner k + 1.
+        // The side from corner k + 1 is opposite to corner k.
         hidden = vec3((bits & 2) == 0, (bits & 4) == 0, (bits & 1) == 0);
         vec4 at = modelViewMatrix * vec4(position, 1.0);
         view = at.xyz;
@@ -72,7 +72,7 @@ export function bodyMaterial(shaded: boolean): three.ShaderMaterial {
                                           : (place.y > place.z ? corners.y : corners.z);
           if (value == value) c = statuses[int(clamp(value + 1.5, 0.0, 4.0))];
         } else if (kind == 3) {
-          c = mix(plain, line, 0.22 * mod(corners.x, 3.0)); // three shades: neighbours can be told apart
+          c = mix(plain, line, 0.22 * mod(corners.x, 3.0)); // three shades distinguish neighbours
         }
         if (shaded) {
           vec3 normal = normalize(cross(dFdx(view), dFdy(view)));

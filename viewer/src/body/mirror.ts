@@ -2,12 +2,12 @@ import * as three from "three";
 
 type Drawn = three.Mesh | three.LineSegments;
 
-/** What is drawn of the section through an axisymmetric body once more, beyond the axis x = 0: with it the body is whole. */
+/** Mirror image of the section through an axisymmetric body, beyond the axis x = 0; with it the body is whole. */
 export class MirrorImage {
   private readonly group = new three.Group();
   private readonly images = new Map<Drawn, Drawn>();
 
-  /** Of all that is drawn in `content` now. */
+  /** Mirrors all meshes and lines that `content` has now. */
   constructor(content: three.Object3D) {
     for (const own of [...content.children]) {
       if (!(own instanceof three.Mesh) && !(own instanceof three.LineSegments)) continue;
@@ -20,7 +20,7 @@ export class MirrorImage {
     content.add(this.group);
   }
 
-  /** Where the originals are, as they are seen. */
+  /** Adopts the positions and the visibility of the originals. */
   update(isShown: boolean): void {
     this.group.visible = isShown;
     for (const [own, image] of this.images) {
@@ -29,7 +29,7 @@ export class MirrorImage {
     }
   }
 
-  /** undefined: it is not shown. */
+  /** The image of an object; undefined if it is not shown. */
   of(own: Drawn): Drawn | undefined {
     return this.group.visible ? this.images.get(own) : undefined;
   }

@@ -3,14 +3,14 @@ import { themeColour } from "../colours";
 import { indexAt, type Obstacles } from "../data/run";
 import { diagonal, type Box } from "./geometry";
 
-/** The surfaces of obstacles: in the plane lines with what is behind them, in space sheets, from behind only their borders. */
+/** The surfaces of obstacles: in the plane lines with the area behind them; in space sheets, of which only the borders are seen from behind. */
 export class ObstacleView {
   private readonly faces: three.MeshBasicMaterial;
   private readonly lines = new three.LineBasicMaterial();
   private readonly sheets: Sheet[];
   private row = -1;
 
-  /** `box` around the body at all times, `size` of the body at the start. */
+  /** `box`: around the body at all times; `size`: of the body at the start. */
   constructor(
     private readonly obstacles: Obstacles,
     box: Box,
@@ -25,7 +25,7 @@ export class ObstacleView {
     this.sheets = Array.from(groups, (own) => new Sheet(own ?? [], obstacle.length === 1, box, size, this.faces, this.lines, scene));
   }
 
-  /** 1: as it is drawn at first, less: so much of that. */
+  /** Draws the faces with this fraction of their usual opacity. */
   fade(part: number): void {
     const plane = this.obstacles.corners === 2;
     this.faces.opacity = part * (plane ? 1 : 0.35);
@@ -57,13 +57,13 @@ export class ObstacleView {
 class Sheet {
   private readonly faces: three.Mesh<three.BufferGeometry, three.MeshBasicMaterial>;
   private readonly lines: three.LineSegments<three.BufferGeometry, three.LineBasicMaterial>;
-  /** In the plane what is behind the line is behind the body, too. */
+  /** Depth of the faces: in the plane the area behind the line is drawn behind the body. */
   private readonly back: number;
   private bends: boolean[] | null = null;
-  /** Of a plane in space: the part of its picture that is shown, along its first and its last side. */
+  /** The part of a plane in space that is shown, along its first and its last side. */
   private part: { from: [number, number]; to: [number, number] } | null = null;
 
-  /** `isAlone`: there is no other cell in the picture. */
+  /** `isAlone`: the picture has no other cell. */
   constructor(
     private readonly cells: number[][],
     private readonly isAlone: boolean,
@@ -85,13 +85,13 @@ class Sheet {
       object.frustumCulled = false;
       scene.add(object);
     }
-    // The body is in front of what is behind an obstacle's line; sheets come last.
+    // The body is drawn in front of the area behind an obstacle's line; sheets are drawn last.
     this.back = plane ? -0.001 * size : 0;
     this.faces.position.z = this.back;
     this.faces.renderOrder = plane ? -1 : 2;
   }
 
-  /** From where it is drawn. */
+  /** Moves the sheet by this offset from its drawn position. */
   move(offset: ArrayLike<number>): void {
     this.lines.position.set(offset[0], offset[1], offset[2]);
     this.faces.position.set(offset[0], offset[1], offset[2] + this.back);
@@ -109,7 +109,7 @@ class Sheet {
     cells.forEach((cell, c) => {
       let at = cell.map(point);
       if (cells.length === 1 && cell.length === 4 && cell[2] !== cell[3]) at = this.besideBody(at);
-      if (cell.length === 2 && this.isAlone) at = longer(at[0], at[1]); // a plane goes on beyond the picture
+      if (cell.length === 2 && this.isAlone) at = longer(at[0], at[1]); // a plane extends beyond the picture
       if (cell.length === 2) {
         const before = c > 0 && cells[c - 1][1] === cell[0] ? cells[c - 1].map(point) : at;
         const after = c + 1 < cells.length && cells[c + 1][0] === cell[1] ? cells[c + 1].map(point) : at;
@@ -119,7 +119,7 @@ class Sheet {
           faces.setXYZ(face++, at[corner][0] + depth * behind[corner][0], at[corner][1] + depth * behind[corner][1], 0);
         for (const corner of [0, 1]) lines.setXYZ(line++, at[corner][0], at[corner][1], 0);
       } else {
-        // Counterclockwise from the free side, from which alone it is seen: from behind one looks at what touches.
+        // Counterclockwise seen from the free side. From behind the sheet is invisible, and the contact zone is seen.
         const shade = light(normalOf(at));
         for (const corner of [0, 1, 2, 0, 2, 3]) {
           shades?.setXYZ(face, shade, shade, shade);
@@ -134,7 +134,7 @@ class Sheet {
     lines.needsUpdate = true;
   }
 
-  /** Of each side of each cell whether a line is drawn: all of a grid; of triangles from a file those at which the surface bends, or ends. */
+  /** Whether a line is drawn on each side of each cell: on all sides of a grid; on sides of triangles from a file where the surface bends or ends. */
   private findBends(point: (i: number) => Float64Array): boolean[] {
     const sides = new Map<string, three.Vector3[]>();
     const keyOf = (cell: number[], k: number) => [cell[k], cell[(k + 1) % 4]].sort((a, b) => a - b).join();
@@ -149,7 +149,7 @@ class Sheet {
     }));
   }
 
-  /** A plane has no end, and its picture is as large as all that the body goes over, with a margin. */
+  /** The shown part of an infinite plane: the extent of the body over time, with a margin. */
   private besideBody([a, b, , d]: Float64Array[]): Float64Array[] {
     const sides = [b, d].map((corner) => corner.map((value, k) => value - a[k]));
     this.part ??= this.partOf(a, sides);
@@ -173,7 +173,7 @@ class Sheet {
     return { from: [ranges[0][0], ranges[1][0]], to: [ranges[0][1], ranges[1][1]] };
   }
 
-  /** How far an obstacle's line is shown into the obstacle, which is to its right: not beyond the middle of a round one. */
+  /** Width of the area shown behind an obstacle's line, to its right; it does not exceed the radius of a round obstacle. */
   private depth(piece: Float64Array[], other: Float64Array[]): number {
     const [own, next] = [rightOf(piece), rightOf(other)];
     const apart = [other[0][0] - piece[0][0], other[0][1] - piece[0][1]];
@@ -183,15 +183,15 @@ class Sheet {
   }
 }
 
-/** Of the body. */
+/** Margin of a plane, relative to the size of the body. */
 const planeMargin = 0.2;
-/** Cosine of the angle from which an edge is drawn. */
+/** Cosine of the angle above which an edge is drawn. */
 const sharp = Math.cos((25 * Math.PI) / 180);
 const lightFrom = new three.Vector3(0.3, -0.5, 0.8).normalize();
 
 const isTriangle = (cell: number[]) => cell.length === 4 && cell[2] === cell[3];
 
-/** By the diagonals: at a pole, and of a triangle, two corners are the same. */
+/** Normal from the diagonals, because two corners coincide at a pole and in a triangle. */
 function normalOf([a, b, c, d]: Float64Array[]): three.Vector3 {
   const at = (p: Float64Array) => new three.Vector3(p[0], p[1], p[2]);
   return at(c).sub(at(a)).cross(at(d).sub(at(b))).normalize();
@@ -201,7 +201,7 @@ const light = (normal: three.Vector3) => 0.55 + 0.45 * Math.max(normal.dot(light
 
 const dot = (a: Float64Array, b: Float64Array) => a.reduce((sum, value, k) => sum + value * b[k], 0);
 
-/** Into the obstacle where two pieces meet, so that both end on the same line. */
+/** Vector into the obstacle where two pieces meet, the same for both. */
 function between(piece: Float64Array[], other: Float64Array[], depth: number): [number, number] {
   const [own, next] = [rightOf(piece), rightOf(other)];
   return [0.5 * depth * (own[0] + next[0]), 0.5 * depth * (own[1] + next[1])];

@@ -1,12 +1,12 @@
 import * as three from "three";
 import type { Run } from "../data/run";
 
-/** A ring around the place of the largest stress, drawn over everything. */
+/** A ring around the position of the largest stress, drawn over everything. */
 export class PeakMarker {
   readonly sprite: three.Sprite;
   private readonly node: number;
 
-  /** `reference`: positions at the start of the nodes whose motion it follows. */
+  /** `reference`: initial positions of the nodes; the ring follows the nearest one. */
   constructor(run: Run, private readonly reference: Float32Array) {
     const place = run.summary.peak_stress!.place;
     this.place = [0, 1, 2].map((k) => place[k] ?? 0);
@@ -16,14 +16,14 @@ export class PeakMarker {
   }
   readonly place: number[];
 
-  /** Where it is now: it moves as the node nearest to it. `faint` at other times than its own. */
+  /** Moves the ring with its node. `faint`: at times other than that of the largest stress. */
   update(positions: Float32Array, content: three.Object3D, faint: boolean): void {
     const now = this.place.map((x, k) => x + positions[3 * this.node + k] - this.reference[3 * this.node + k]);
     content.localToWorld(this.sprite.position.fromArray(now));
     this.sprite.material.opacity = faint ? 0.35 : 1;
   }
 
-  /** As large in every picture. */
+  /** Keeps the size of the ring on the screen. */
   scaleFor(camera: three.OrthographicCamera | three.PerspectiveCamera): void {
     const height = camera instanceof three.OrthographicCamera ? (camera.top - camera.bottom) / camera.zoom : 2 * Math.tan((camera.fov * Math.PI) / 360) / camera.zoom;
     this.sprite.scale.setScalar(0.09 * height);
@@ -40,7 +40,7 @@ function nearest(positions: Float32Array, place: number[]): number {
   return best;
 }
 
-/** Dark between two light ones: seen on every colour. */
+/** A dark ring between two light ones, visible on every colour. */
 function ring(): three.CanvasTexture {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 96;

@@ -1,19 +1,19 @@
 import type { Volume } from "../data/run";
 
-/** A section through tetrahedra by a plane, at the start: it moves with the body. */
+/** A plane section through tetrahedra in their initial positions, which then moves with the body. */
 
 export interface Section {
   triangles: number;
-  /** Of each corner the two nodes of the edge it lies on, and how far it is from the first to the second. */
+  /** For each corner the two nodes of its edge, and its position between them, from 0 to 1. */
   from: Int32Array;
   to: Int32Array;
   part: Float32Array;
-  /** Of each triangle its tetrahedron, and in bit k whether the side from its corner k lies in a facet of the cell. */
+  /** For each triangle its tetrahedron, and in bit k whether the side from its corner k lies in a facet of the cell. */
   tetrahedra: Int32Array;
   edges: Uint8Array;
 }
 
-/** What of each tetrahedron lies in the plane, a triangle or a quadrilateral. */
+/** The intersection of each tetrahedron with the plane, a triangle or a quadrilateral. */
 export function sectionOf(volume: Volume, reference: Float32Array, axis: number, at: number): Section {
   const from: number[] = [];
   const to: number[] = [];
@@ -27,7 +27,7 @@ export function sectionOf(volume: Volume, reference: Float32Array, axis: number,
     to.push(corners[4 * t + b]);
     part.push(above[a] / (above[a] - above[b]));
   };
-  /** Corners on the edges a–b; `sides[k]` is opposite to the face that the side from corner k lies in, −1: in none. */
+  /** Adds a triangle with corners on the edges a–b. The side from corner k lies in the face opposite to `sides[k]`, or in none if that is −1. */
   const triangle = (t: number, points: [number, number][], sides: number[]) => {
     for (const [a, b] of points) corner(t, a, b);
     tetrahedra.push(t);

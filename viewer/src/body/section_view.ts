@@ -6,7 +6,7 @@ import { placeNodes, referencePositions, type Box } from "./geometry";
 import { bodyMaterial } from "./material";
 import { sectionOf, type Section } from "./section";
 
-/** Where the store's plane cuts a body that has this box at the start: what is above `at` along `sign` is taken off. */
+/** The store's plane in a body with this initial box; the part above `at` along `sign` is removed. */
 export interface Cut {
   axis: number;
   at: number;
@@ -16,13 +16,13 @@ export interface Cut {
 export function cutOf(store: Store, box: Box): Cut | null {
   if (store.cut === "") return null;
   const axis = ["x", "y", "z"].indexOf(store.cut);
-  // Seen from the front, what lies before the plane is taken off.
+  // The part in front of the plane, seen from the front, is removed.
   const sign = (axis === 1) !== store.cutFlipped ? -1 : 1;
   const part = Math.min(Math.max(store.cutAt, 1e-3), 1 - 1e-3);
   return { axis, at: box.low[axis] + part * (box.high[axis] - box.low[axis]), sign };
 }
 
-/** The inside of a solid where a plane cuts it. */
+/** The section of a solid by a plane. */
 export class SectionView {
   readonly mesh: three.Mesh<three.BufferGeometry, three.ShaderMaterial>;
   section: Section | null = null;
@@ -80,7 +80,7 @@ export class SectionView {
     values.needsUpdate = true;
   }
 
-  /** What the section shows at a place of one of its triangles. */
+  /** Value of the field in one of the section's triangles, at these barycentric coordinates. */
   valueAt(triangle: number, weights: number[]): number {
     const values = this.mesh.geometry.attributes.values.array;
     return this.values ? weights.reduce((sum, weight, k) => sum + weight * values[9 * triangle + k], 0) : NaN;

@@ -10,7 +10,7 @@ import type { Store } from "../store";
 import { diagonal, emptyBox, join, type Box } from "./geometry";
 import { BodyView } from "./view";
 
-/** The panel in which one run's body is seen. */
+/** The panel that shows the body of one run. */
 export interface BodyPanel {
   element: HTMLElement;
   view: BodyView;
@@ -19,33 +19,33 @@ export interface BodyPanel {
   message: HTMLElement;
   tip: HTMLElement;
   lens: Lens;
-  /** What it shows of space, in the middle; its size, width and height (as parts of the size). */
+  /** The part of space that it shows: its centre, size, and width and height as fractions of the size. */
   home: { centre: three.Vector3; size: number; sides: [number, number] };
   caption: () => void;
 }
 
 export type View = keyof typeof directions | "contact" | "contact-side";
 
-/** From where cameras look at solids; "x", "y" and "z" at a cut across that axis. */
+/** Directions from solids to the camera; "x", "y" and "z" for a cut across that axis. */
 const directions = {
   front: [0.5, -1, 0.28], side: [1, 0, 0.05], top: [0.001, -0.01, 1], below: [0.25, -0.5, -1],
   x: [1, -0.45, 0.3], y: [0.4, -1, 0.3], z: [0.3, -0.6, 1],
 } satisfies Record<string, [number, number, number]>;
 
-/** In degrees. */
+/** Vertical field of view in degrees. */
 const fieldOfView = 32;
 
-/** Boxes of about one size at about one place. */
+/** Whether two boxes have about the same size and position. */
 function sameBody(a: Box, b: Box): boolean {
   const sizes = [diagonal(a), diagonal(b)];
   const apart = Math.hypot(...a.low.map((low, k) => (low + a.high[k] - b.low[k] - b.high[k]) / 2));
   return Math.max(...sizes) <= 1.5 * Math.min(...sizes) && apart <= 0.5 * Math.min(...sizes);
 }
 
-/** Browsers have no more than 16 drawings with WebGL in a page. */
+/** Largest number of WebGL contexts; browsers allow 16 in a page. */
 const mostRenderers = 12;
 
-/** What plane bodies are seen by, and what those in space are: panels of one kind show the same part of space. */
+/** The camera of all plane bodies, or of all bodies in space, and its controls. */
 interface Lens {
   camera: three.OrthographicCamera | three.PerspectiveCamera;
   target: three.Vector3;
@@ -65,7 +65,7 @@ export class Stage {
   pictures = 0;
   private readonly antialias: boolean;
   private readonly lenses = { plane: makeLens(true), space: makeLens(false) };
-  /** Bodies are seen where they touch. */
+  /** Whether panels show the contact zones. */
   private onZone = false;
   private zoneLength = 0;
   private waiting = false;
@@ -74,14 +74,14 @@ export class Stage {
   constructor(private readonly store: Store) {
     for (const topic of ["time", "runs", "body", "theme", "contact"] as const) store.on(topic, () => this.redraw(true));
     const triangles = store.runs.reduce((sum, run) => sum + (run.body?.triangles ?? 0), 0);
-    // Without a graphics card smooth edges take two thirds of the time.
+    // Without a graphics card, antialiasing would need two thirds of the time.
     this.antialias = triangles < 20_000 || !drawsInSoftware();
   }
 
   add(run: Run): BodyPanel {
     const view = new BodyView(run, this.store);
     const lens = run.summary.dimension === 2 ? this.lenses.plane : this.lenses.space;
-    const canvas = el("canvas", { tabIndex: 0, role: "img", "aria-label": `The body of ${run.name}` });
+    const canvas = el("canvas", { tabIndex: 0, role: "img", "aria-label": `Body of ${run.name}` });
     const tip = el("div.tip", { hidden: true });
     const message = el("p.note", { hidden: true });
     const time = el("span.muted");
@@ -136,8 +136,8 @@ export class Stage {
   }
 
   /**
-   * The part of space that a panel shows, made to have the size 1. Runs of one body show the same part: what all of them
-   * need but those that fly far away. Other bodies have parts of their own.
+   * Chooses the part of space that each panel shows, scaled to size 1. Runs of one body show the same part, which contains
+   * the motion of all of them except those that fly far away. Other bodies have parts of their own.
    */
   private fit(): void {
     const groups: BodyPanel[][] = [];
@@ -151,7 +151,7 @@ export class Stage {
       const smallest = Math.min(...boxes.map(diagonal));
       const box = boxes.filter((each) => diagonal(each) <= 1.5 * smallest).reduce(join, emptyBox());
       const size = diagonal(box) || 1;
-      // Room for the pressures' bars below.
+      // Room for the bars of pressure below.
       if (group[0].lens === this.lenses.plane) box.low[1] -= 0.16 * size;
       const centre = new three.Vector3(...(box.low.map((low, k) => (low + box.high[k]) / 2) as [number, number, number]));
       for (const panel of group) {
@@ -161,10 +161,10 @@ export class Stage {
     this.look("front");
   }
 
-  /** "contact": at the contact zone, from out of the obstacle; "contact-side": along the obstacle. */
+  /** Sets the view; "contact" shows the contact zone from inside the obstacle, "contact-side" along the obstacle. */
   look(from: View): void {
     this.onZone = from.startsWith("contact");
-    // As large as the largest zone of those seen, so that they can be compared.
+    // One scale for all zones, that of the largest one, so that they can be compared.
     this.zoneLength = 2.6 * Math.max(0, ...this.panels.map(({ view }) => view.zone?.radius ?? 0));
     for (const { view, home } of this.panels) {
       view.place(home.centre, home.size);
@@ -173,7 +173,7 @@ export class Stage {
     for (const lens of [this.lenses.plane, this.lenses.space]) {
       const plane = lens === this.lenses.plane;
       const direction = plane ? new three.Vector3(0, 0, 1) : this.directionOf(from).normalize();
-      // In space the ball around what is to be seen just fits.
+      // In space the ball around the part of size 1 just fits.
       const distance = plane ? 2 : 0.52 / Math.sin((0.5 * fieldOfView * Math.PI) / 180);
       lens.target.set(0, 0, 0);
       lens.camera.position.copy(direction).multiplyScalar(distance);
@@ -186,7 +186,7 @@ export class Stage {
     this.redraw(false);
   }
 
-  /** To the time and the place of a run's largest stress; solids are cut there. */
+  /** Goes to the time of a run's largest stress and cuts solids at its position. */
   showPeak(run: Run): void {
     const { store } = this;
     const peak = run.summary.peak_stress;
@@ -258,25 +258,25 @@ export class Stage {
 
   private makeRenderer(panel: BodyPanel): three.WebGLRenderer | null {
     const there = this.panels.filter(({ renderer }) => renderer !== null).length;
-    let problem = there < mostRenderers ? "" : "Too many bodies at once: hide some runs.";
+    let problem = there < mostRenderers ? "" : "Too many bodies at once. Hide some runs.";
     let renderer: three.WebGLRenderer | null = null;
     try {
       if (problem === "") renderer = new three.WebGLRenderer({ canvas: panel.canvas, antialias: this.antialias });
     } catch {
-      problem = "This browser shows no WebGL, which the animation needs.";
+      problem = "The animation needs WebGL, which this browser does not support.";
     }
     panel.message.textContent = problem;
     panel.message.hidden = problem === "";
     return renderer;
   }
 
-  /** What a hidden panel holds of the graphics card. */
+  /** Frees the WebGL context of a hidden panel. */
   private release(panel: BodyPanel): void {
     if (!panel.renderer || this.panels.length <= mostRenderers) return;
     panel.renderer.dispose();
     panel.renderer.forceContextLoss();
     panel.renderer = null;
-    // A canvas keeps its first context for good.
+    // A canvas keeps its first context forever, so it is replaced.
     const fresh = panel.canvas.cloneNode() as HTMLCanvasElement;
     panel.canvas.replaceWith(fresh);
     panel.canvas = fresh;

@@ -13,26 +13,26 @@ import { PeakMarker } from "./peak";
 import { cutOf, SectionView, type Cut } from "./section_view";
 import { ContactZone } from "./zone";
 
-/** One run's body with its obstacles and contact forces, as three.js draws it. */
+/** The body of one run with its obstacles and contact forces, drawn with three.js. */
 export class BodyView {
   readonly scene = new three.Scene();
-  /** What is drawn; placed and scaled so that its panel shows it. */
+  /** All drawn objects, moved and scaled to fit the panel. */
   private readonly content = new three.Group();
-  /** Around the body in all its frames, and at the start. */
+  /** The boxes around the body in all frames, and at the start. */
   readonly box: Box;
   readonly start: Box;
   frame = -1;
   range: ColourRange | null = null;
   values: FieldValues | null = null;
-  /** null: the run has no contact boundary. */
+  /** null if the run has no contact boundary. */
   readonly zone: ContactZone | null;
-  /** null: in the plane, and where the page has no room for it. */
+  /** null in the plane, and if the page had no room for it. */
   readonly section: SectionView | null;
-  /** null: the summary has no largest stress. */
+  /** null if the summary has no largest stress. */
   readonly peak: PeakMarker | null;
   private cut: Cut | null = null;
   private readonly body: Body;
-  /** Of each triangle, the number of its body; null: there is one. */
+  /** Number of the body of each triangle; null if there is one body. */
   private readonly bodies: Float32Array | null;
   private readonly reference: Float32Array;
   private readonly positions: Float32Array;
@@ -42,7 +42,7 @@ export class BodyView {
   private readonly outline: three.LineSegments<three.BufferGeometry, three.LineBasicMaterial>;
   private readonly bars: three.Mesh<three.BufferGeometry, three.MeshBasicMaterial>;
   private readonly obstacles: ObstacleView | null;
-  /** null: the run is not axisymmetric. */
+  /** null if the run is not axisymmetric. */
   private readonly image: MirrorImage | null;
   private readonly size: number;
   private drawnField = "";
@@ -87,7 +87,7 @@ export class BodyView {
     bars.setAttribute("color", dynamic(6 * count, 3));
     this.bars = new three.Mesh(bars, new three.MeshBasicMaterial({ vertexColors: true, side: three.DoubleSide }));
     for (const object of [this.mesh, this.outline, this.bars]) {
-      object.frustumCulled = false; // what is drawn moves
+      object.frustumCulled = false; // drawn objects move
       this.content.add(object);
     }
     this.scene.add(this.content);
@@ -97,18 +97,18 @@ export class BodyView {
     if (this.peak) this.scene.add(this.peak.sprite);
     this.obstacles = run.obstacles ? new ObstacleView(run.obstacles, this.box, this.size, this.content) : null;
     this.image = run.isAxisymmetric ? new MirrorImage(this.content) : null;
-    // The axis is in the middle of the picture.
+    // The axis is at the centre of the picture.
     if (this.image) this.box.low[0] = Math.min(this.box.low[0], -this.box.high[0]);
   }
 
-  /** Puts this point of space into the middle and makes this length 1. */
+  /** Moves this point of space to the centre and scales this length to 1. */
   place(centre: three.Vector3, length: number): void {
     this.content.scale.setScalar(1 / length);
     this.content.position.copy(centre).multiplyScalar(-1 / length);
     this.content.updateMatrixWorld(true);
   }
 
-  /** Everything that depends on time and choices. Returns whether anything has to be drawn again. */
+  /** Updates everything that depends on the time and on the reader's choices. */
   update(): void {
     const { store, body } = this;
     this.frame = indexAt(body.times, store.time);
@@ -159,7 +159,7 @@ export class BodyView {
     }
   }
 
-  /** Of the corners of each triangle. */
+  /** Sets the values at the corners of each triangle. */
   private setValues(of: (triangle: number) => [number, number, number]): void {
     const target = this.mesh.geometry.attributes.values as three.BufferAttribute;
     const array = target.array as Float32Array;
@@ -187,7 +187,7 @@ export class BodyView {
     this.range = joinRanges(runs.map((run) => fieldRange(run, store.field, store.scale)).filter((range) => range !== null));
   }
 
-  /** Contact pressures as bars out of the body at the contact nodes, in the colour of what the node does. */
+  /** Draws contact pressures as bars out of the body at the contact nodes, in the colour of the contact status. */
   private updateBars(): void {
     const contact = this.run.contact;
     const pressure = contactQuantity(this.run, "contact_pressure");
@@ -198,7 +198,7 @@ export class BodyView {
     const row = indexAt(contact.times, this.body.times[this.frame]);
     const places = this.bars.geometry.attributes.position as three.BufferAttribute;
     const colours = this.bars.geometry.attributes.color as three.BufferAttribute;
-    if (this.body.dimension === 2) this.normals.update(this.positions); // in space those of the start do
+    if (this.body.dimension === 2) this.normals.update(this.positions); // in space the initial normals suffice
     const half = Math.min(0.006 * this.size, (0.3 * this.size) / Math.max(contact.nodes.length, 1));
     const ofStatus = [-1, 0, 1, 2, 3].map((each) => new three.Color(statusColour(each)).toArray());
     contact.nodes.forEach((node, i) => {
@@ -213,7 +213,7 @@ export class BodyView {
           continue;
         }
         const [nx, ny, nz] = this.normals.values.subarray(3 * node, 3 * node + 3);
-        // Across the bar: in the plane along the boundary, in space some direction that is across it.
+        // Direction across the bar: in the plane along the boundary, in space any perpendicular direction.
         const [tx, ty, tz] = this.body.dimension === 2 ? [-ny, nx, 0] : Math.abs(nz) > 0.7 ? [1, 0, 0] : [-ny, nx, 0];
         places.setXYZ(6 * i + corner,
           this.positions[3 * node] + out * value * nx + side * half * tx,
@@ -230,7 +230,7 @@ export class BodyView {
     const key = `${isDark()} ${this.store.field} ${this.store.showMesh}`;
     if (key === this.drawnField) return;
     this.drawnField = key;
-    // The shader writes what the screen shows.
+    // The shader writes the colours of the screen, without conversion.
     const colour = (css: string) => new three.Color().setStyle(css, three.LinearSRGBColorSpace);
     for (const { uniforms } of this.materials) {
       uniforms.plain.value = colour(themeColour("body"));
@@ -242,7 +242,7 @@ export class BodyView {
     this.obstacles?.recolour();
   }
 
-  /** After the body has its place in the picture. */
+  /** Shows the ring at the largest stress; called after the body was moved into the picture. */
   markPeak(camera: three.OrthographicCamera | three.PerspectiveCamera): void {
     if (!this.peak) return;
     const { times } = this.body;
@@ -253,12 +253,12 @@ export class BodyView {
     this.peak.scaleFor(camera);
   }
 
-  /** Into the middle of the contact zone, as large as it is; follows it from frame to frame. */
+  /** Centres the contact zone and scales this length to 1; the view follows the zone from frame to frame. */
   placeOnZone(length: number): void {
     if (this.zone) this.place(new three.Vector3(...this.zone.centre(this.body.times[this.frame], this.positions)), length);
   }
 
-  /** Out of the body where it touches. */
+  /** Normal out of the body at the contact zone. */
   zoneNormal(): three.Vector3 {
     this.normals.update(this.positions);
     return this.zone ? new three.Vector3(...this.zone.normal(this.store.time, this.normals)) : new three.Vector3(0, 0, -1);
@@ -268,7 +268,7 @@ export class BodyView {
     this.obstacles?.fade(opacity);
   }
 
-  /** What is under a ray: the value of the field and where it is. */
+  /** Value of the field and position where a ray meets the body; null if it misses. */
   pick(ray: three.Raycaster): { value: number; place: three.Vector3 } | null {
     const image = this.image?.of(this.mesh);
     const meshes = [this.mesh, ...(this.section?.mesh.visible ? [this.section.mesh] : []), ...(image ? [image] : [])];
@@ -314,7 +314,7 @@ function weightsOf(hit: three.Intersection, mesh: three.Mesh): number[] {
   return three.Triangle.getBarycoord(place, corner(0), corner(1), corner(2), new three.Vector3())?.toArray() ?? [1, 0, 0];
 }
 
-/** Sides on the axis x = 0 are inside of the body. */
+/** Removes sides on the axis x = 0, which are inside the body. */
 function offAxis(outline: Int32Array, reference: Float32Array): Int32Array {
   const sides: number[] = [];
   for (let i = 0; i < outline.length; i += 2)
@@ -322,7 +322,7 @@ function offAxis(outline: Int32Array, reference: Float32Array): Int32Array {
   return Int32Array.from(sides);
 }
 
-/** Of an outline the sides between nodes of the contact boundary: at its ends no others take part. */
+/** The sides of an outline between nodes of the contact boundary, so that normals at its ends do not depend on other sides. */
 function contactSides(outline: Int32Array, run: Run): Int32Array {
   const nodes = new Set(run.contact?.nodes);
   const sides: number[] = [];

@@ -3,16 +3,16 @@ import { indexAt, type Run } from "../data/run";
 import { contactQuantity } from "./fields";
 import type { OutwardNormals } from "./geometry";
 
-/** Where a body touches: what a view of the contact zone shows. */
+/** The contact zone of a body, shown by the views of it. */
 export class ContactZone {
   /** Half the extent of the nodes in contact, the largest of all frames. */
   readonly radius: number;
-  /** Of each frame of the contact boundary the numbers of the nodes that touch. */
+  /** Nodes in contact in each frame of the contact boundary. */
   private readonly touching: number[][] = [];
   private readonly rows: number[];
   private readonly times: number[];
 
-  /** `size` of the body. */
+  /** `size`: of the body. */
   constructor(run: Run, reference: Float32Array, size: number) {
     const contact = run.contact!;
     const nodes = Array.from(contact.nodes);
@@ -26,11 +26,11 @@ export class ContactZone {
     const radius = Math.max(0, ...this.touching.map((list) => extent(list, reference) / 2));
     this.radius = Math.min(Math.max(radius, 0.03 * size), 0.5 * size);
     if (this.rows.length > 0) return;
-    this.touching = [nodes.filter((node) => node >= 0)]; // nothing ever touches: the whole contact boundary
+    this.touching = [nodes.filter((node) => node >= 0)]; // without any contact: the whole contact boundary
     this.radius = Math.max(extent(this.touching[0], reference) / 2, 0.03 * size);
   }
 
-  /** The nodes that touch, at the frame nearest to a time at which some do. */
+  /** Nodes in contact at the nearest frame with contact. */
   nodesAt(time: number): number[] {
     if (this.rows.length === 0) return this.touching[0];
     return this.touching[this.rows[indexAt(this.rows.map((row) => this.times[row]), time)]];
@@ -40,7 +40,7 @@ export class ContactZone {
     return mean(this.nodesAt(time), positions);
   }
 
-  /** Out of the body. */
+  /** Mean outward normal. */
   normal(time: number, normals: OutwardNormals): [number, number, number] {
     return mean(this.nodesAt(time), normals.values);
   }

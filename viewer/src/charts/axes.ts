@@ -2,15 +2,15 @@ import type uPlot from "uplot";
 import { themeColour } from "../colours";
 import { number } from "../format";
 
-/** Numbers at the ticks of an axis, of any size. */
+/** Texts at the ticks of an axis, for numbers of any magnitude. */
 export const tickTexts = (_: uPlot, ticks: (number | null)[]): string[] =>
   ticks.map((tick) => (tick === null ? "" : number(tick, 6)));
 
-/** Of an upright axis: wide enough for its numbers. */
+/** Width of a vertical axis for its numbers. */
 export const axisWidth = (_: uPlot, texts: string[] | null): number =>
   Math.max(50, 22 + 6.8 * Math.max(...(texts ?? []).map((text) => text?.length ?? 0)));
 
-/** What all axes have in common, in the colours of the theme. */
+/** Style of all axes, in the colours of the theme. */
 export const axisStyle = (): uPlot.Axis => ({
   stroke: themeColour("muted"),
   grid: { stroke: themeColour("grid"), width: 1 },

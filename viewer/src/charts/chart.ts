@@ -20,7 +20,7 @@ interface Series extends Curve {
 
 const dashes = [[], [7, 4], [2, 3], [10, 3, 2, 3], [14, 5], [4, 2, 1, 2]];
 
-/** Curves of the history over time, those of all visible runs in one picture. */
+/** Curves of the history over time, of all visible runs in one plot. */
 export class TimeChart {
   readonly element: HTMLElement;
   private readonly plotArea = el("div.plot");
@@ -53,7 +53,7 @@ export class TimeChart {
     const relative = el("button.small", {
       type: "button",
       "aria-pressed": "false",
-      title: "The change since the start, as a part of the value at the start",
+      title: "Show the change since the start, relative to the initial value",
       onclick: () => {
         this.relative = !this.relative;
         relative.setAttribute("aria-pressed", String(this.relative));
@@ -66,8 +66,8 @@ export class TimeChart {
         el("div.tools", {},
           definition.relative === true && relative,
           scale.element,
-          el("button.small", { type: "button", title: "Save the picture", onclick: () => this.savePicture() }, "PNG"),
-          el("button.small", { type: "button", title: "Save the numbers", onclick: () => this.saveNumbers() }, "CSV"),
+          el("button.small", { type: "button", title: "Save the picture as PNG", onclick: () => this.savePicture() }, "PNG"),
+          el("button.small", { type: "button", title: "Save the numbers as CSV", onclick: () => this.saveNumbers() }, "CSV"),
         ),
       ),
       definition.note !== "" && el("p.note", {}, definition.note),
@@ -90,7 +90,7 @@ export class TimeChart {
     new ResizeObserver(() => this.resize()).observe(this.plotArea);
   }
 
-  /** What is drawn, for those who test it. */
+  /** The drawn curves, for tests. */
   get curves(): { run: string; column: string; times: Float64Array; values: Float64Array }[] {
     return this.series.map(({ run, column, times, values }) => ({ run: run.name, column, times, values }));
   }
@@ -130,7 +130,7 @@ export class TimeChart {
   }
 
   private collect(): void {
-    // A smooth curve lies upon those that rattle.
+    // Smooth curves are drawn above rattling ones.
     const runs = [...this.store.visibleRuns].sort((a, b) => b.data.judgement.roughness - a.data.judgement.roughness);
     const columns = this.definition.columns.filter((column) => this.shown.has(column));
     this.series = [];
@@ -180,7 +180,7 @@ export class TimeChart {
     this.outside.replaceChildren(
       ...range.outside.map((e) => {
         const far = Math.abs(e.high) >= Math.abs(e.low) ? e.high : e.low;
-        const text = `${e.name} leaves this scale: it reaches ${number(far)}${this.relative ? " %" : ""} — `;
+        const text = `${e.name} exceeds this scale and reaches ${number(far)}${this.relative ? " %" : ""} — `;
         return el("span", {}, text, el("button.link", { type: "button", onclick: () => this.setMode("all") }, "fit all"));
       }),
     );
@@ -201,14 +201,14 @@ export class TimeChart {
       series: [
         {},
         ...this.series.map((series, i) => ({
-          // What a list of times has not is undefined and no gap; what a logarithm does not show is null and one.
+          // Values at times of other curves are undefined and no gap; values that a logarithm excludes are null and a gap.
           label: series.label, stroke: series.colour, dash: series.dash, spanGaps: false, width: this.widthOf(i),
           points: { show: series.times.length < 60 },
         })),
       ],
       axes: [
         { ...axis, label: "time", labelSize: 18, labelFont: "12px system-ui, sans-serif", size: 34, space: 80, values: tickTexts },
-        // uPlot's own ticks do not end where numbers are very small.
+        // uPlot's own ticks do not terminate for very small numbers.
         logarithmic ? { ...axis, size: axisWidth, values: tickTexts, splits: () => powersOfTen(decades), filter: (_, splits) => splits }
           : { ...axis, size: axisWidth, values: tickTexts },
       ],
@@ -226,7 +226,7 @@ export class TimeChart {
     this.showValues();
   }
 
-  /** Of smooth curves that may lie upon one another those below are wider; those that rattle are thin. */
+  /** Width of a curve: of smooth curves that may coincide the lower ones are wider; rattling curves are thin. */
   private widthOf(i: number): number {
     if (this.store.runs.length === 1 || this.series.length > 4) return 1.6;
     const rattles = (series: Series) => !this.definition.nested && series.run.data.judgement.roughness > 2;
@@ -332,7 +332,7 @@ export class TimeChart {
       `${fileName(this.definition.title)}.png`);
   }
 
-  /** Each curve with its own times: energies and forces of a scheme may be those of different instants. */
+  /** Saves each curve with its own times, as energies and forces of a scheme may hold at different instants. */
   private saveNumbers(): void {
     const names = this.series.flatMap(({ run, column }) => [`${run.name}: time of ${column}`, `${run.name}: ${column}`]);
     const columns = this.series.flatMap(({ times, values }) => [times, values]);
@@ -340,7 +340,7 @@ export class TimeChart {
   }
 }
 
-/** The value of the row nearest in time; none after the end of the run. */
+/** The value of the row nearest in time; NaN after the end of the run. */
 function valueNear({ times, values }: Curve, time: number): number {
   const last = times.length - 1;
   if (time > times[last] + 1.5 * (times[last] - times[Math.max(last - 2, 0)])) return NaN;

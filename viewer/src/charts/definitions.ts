@@ -1,20 +1,20 @@
 import type { Run } from "../data/run";
 import { extentOf } from "./scale";
 
-/** Which columns of the history make up which chart. */
+/** A chart, with the columns of the history that it shows. */
 export interface ChartDefinition {
   id: string;
   title: string;
   note: string;
-  /** Columns that can be shown, in this order. */
+  /** Columns that can be shown, in their order. */
   columns: string[];
   /** Columns shown at first. */
   shown: string[];
-  /** Zero belongs into the picture. */
+  /** Whether the vertical axis contains zero. */
   fromZero?: boolean;
-  /** Curves of runs may lie upon one another: those below are drawn wider. */
+  /** Whether curves of runs may coincide; lower ones are then drawn wider. */
   nested?: boolean;
-  /** Offers the change since the start, as a part of the start. */
+  /** Whether the change since the start, relative to the initial value, can be chosen. */
   relative?: boolean;
 }
 
@@ -34,7 +34,7 @@ export function chartDefinitions(runs: Run[]): ChartDefinition[] {
       return column.some((value) => value !== column[0]);
     });
   const active = (names: string[]) => names.filter(moves);
-  /** The one that changes most: of components the others may be rounding. */
+  /** The column that changes most; the other components may be rounding. */
   const largest = (names: string[]) => {
     const change = (name: string) =>
       Math.min(...runs.filter((run) => run.has(name)).map((run) => {
@@ -54,7 +54,7 @@ export function chartDefinitions(runs: Run[]): ChartDefinition[] {
     {
       id: "energy",
       title: "Energy",
-      note: runs.every((run) => run.data.judgement.is_isolated) ? "Nothing adds energy here: it must not rise." : "",
+      note: runs.every((run) => run.data.judgement.is_isolated) ? "Nothing adds energy, so it must not rise." : "",
       columns: present(energies),
       shown: runs.length > 1 ? ["total_energy"] : some(active(energies.slice(0, 4)), energies),
       fromZero: true,
@@ -64,7 +64,7 @@ export function chartDefinitions(runs: Run[]): ChartDefinition[] {
     {
       id: "force",
       title: "Contact force",
-      note: `${force.startsWith("pair_force.") ? "Between two bodies: on that of the contact's group." : "On the body, of all contacts together."} A force that jumps from step to step is the scheme's, not the body's.`,
+      note: `${force.startsWith("pair_force.") ? "Between two bodies, on the body of the contact's group." : "On the body, of all contacts together."} Jumps from step to step come from the scheme, not from the body.`,
       columns: [...new Set(forces)],
       shown: [oneForce ? force : "@force"],
       fromZero: true,
@@ -72,14 +72,14 @@ export function chartDefinitions(runs: Run[]): ChartDefinition[] {
     {
       id: "works",
       title: "Energy account",
-      note: "Work done on the body since the start; the residual is what is missing in the balance: rounding.",
+      note: "Work done on the body since the start. The residual is the error of the balance, at the size of rounding.",
       columns: present(works),
       shown: runs.length > 1 ? ["contact_work"] : some(active(works.slice(0, 7)), works.slice(1)),
     },
     {
       id: "residual",
       title: "Energy residual",
-      note: "What is missing in the balance of all energies and works.",
+      note: "Error of the balance of all energies and works.",
       columns: present(["energy_residual"]),
       shown: ["energy_residual"],
     },
@@ -87,7 +87,7 @@ export function chartDefinitions(runs: Run[]): ChartDefinition[] {
     {
       id: "counts",
       title: "Contact points",
-      note: "How many carry a force, and of those with friction how many stick and slip.",
+      note: "Numbers of points that carry a force and, with friction, of those that stick and slip.",
       columns: present(counts),
       shown: some(active(counts), counts),
       fromZero: true,

@@ -11,16 +11,16 @@ export interface Extent {
 export interface Range {
   low: number;
   high: number;
-  /** What leaves the chart. */
+  /** The extents that exceed the chart. */
   outside: Extent[];
 }
 
-/** So many times the range of the others is too much. */
+/** A run is left out if it reaches farther than this many times the median. */
 const outlying = 8;
 
 /**
- * With "most", runs whose values reach many times as far as those of the others do not hide them: the chart shows the
- * others, zero and as much again. What reaches less than `small` is no scale for others.
+ * Chooses the range of a chart. With "most", runs whose values reach many times as far as those of the others are left
+ * out: the chart shows the others, zero, and as much again. Values below `small` are no scale for the others.
  */
 export function chooseRange(extents: Extent[], mode: ScaleMode, small = 0): Range {
   const finite = extents.filter((e) => e.low <= e.high);
@@ -63,7 +63,7 @@ export function extentOf(name: string, values: ArrayLike<number>): Extent {
   return { name, low, high };
 }
 
-/** Whole decades around all that is positive, sixteen at most. */
+/** Whole decades around all positive values, at most sixteen. */
 export function logarithmicRange(columns: ArrayLike<number>[]): [number, number] {
   let low = Infinity;
   let high = 0;
@@ -81,7 +81,7 @@ export function logarithmicRange(columns: ArrayLike<number>[]): [number, number]
   return [10 ** bottom, 10 ** Math.max(top, bottom + 1)];
 }
 
-/** Six of them at most. */
+/** Powers of ten for the ticks, at most six. */
 export function powersOfTen([low, high]: [number, number]): number[] {
   const [first, last] = [Math.round(Math.log10(low)), Math.round(Math.log10(high))];
   const step = Math.max(1, Math.ceil((last - first) / 5));

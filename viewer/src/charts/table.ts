@@ -1,4 +1,4 @@
-/** Curves with times of their own as uPlot wants them: one ascending list of times, a column for each curve. */
+/** Joins curves with times of their own into a table for uPlot: one ascending list of times, a column for each curve. */
 
 export interface Curve {
   times: Float64Array;
@@ -13,7 +13,7 @@ const equal = (a: Float64Array, b: Float64Array) =>
 export function joined(curves: Curve[]): Table {
   const times = curves[0]?.times ?? new Float64Array(0);
   if (curves.every((curve) => equal(curve.times, times))) return { times, columns: curves.map((c) => c.values) };
-  // Distinct lists of times, merged; a time that a list has twice stays twice.
+  // Distinct lists of times are merged; a time that occurs twice in a list is kept twice.
   const lists = [...new Set(curves.map((curve) => curve.times))];
   const all = new Float64Array(lists.reduce((sum, list) => sum + list.length, 0));
   let at = 0;

@@ -1,8 +1,8 @@
 import type { PackedArray } from "./types";
 
-/** Undoes src/ricochet/report/packed_array.cpp. */
+/** Decodes the arrays that src/ricochet/report/packed_array.cpp encodes. */
 
-/** Levels with what turns them into values. */
+/** Levels, with the parameters that convert them to values. */
 export interface Levels {
   rows: number;
   columns: number;
@@ -26,11 +26,11 @@ export async function inflated(base64: string): Promise<Uint8Array> {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** Doubles, each xor the one before it, byte by byte. */
+/** Decodes doubles: each xor the previous one, stored by byte planes. */
 export function reals(bytes: Uint8Array): Float64Array {
   const count = bytes.length / 8;
   const result = new Float64Array(count);
-  const raw = new Uint8Array(result.buffer); // every browser's machine is little-endian, as typed arrays show it
+  const raw = new Uint8Array(result.buffer); // typed arrays are little-endian in every browser
   for (let k = 0; k < 8; ++k) {
     let before = 0;
     for (let i = 0; i < count; ++i) {
@@ -41,7 +41,7 @@ export function reals(bytes: Uint8Array): Float64Array {
   return result;
 }
 
-/** 32-bit whole numbers: differences, zigzag, byte by byte. */
+/** Decodes 32-bit integers: zigzag codes of differences, stored by byte planes. */
 export function indices(bytes: Uint8Array): Int32Array {
   const count = bytes.length / 4;
   const result = new Int32Array(count);

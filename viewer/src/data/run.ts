@@ -2,7 +2,7 @@ import { indices, inflated, levels, reals, type Levels } from "./decode";
 import { toNumber } from "../format";
 import { judgementTexts, type BodyData, type Judgement, type PackedArray, type PageData, type RunData, type Summary, type VolumeData } from "./types";
 
-/** Bytes of the page's blobs, each unpacked once for all who ask. */
+/** Bytes of the page's blobs, each unpacked once. */
 class Blobs {
   private readonly unpacked = new Map<number, Promise<Uint8Array>>();
 
@@ -10,7 +10,7 @@ class Blobs {
     let bytes = this.unpacked.get(number);
     if (!bytes) {
       const element = document.getElementById(`ricochet-blob-${number}`);
-      if (!element) throw new Error(`this file is cut off: block ${number} is missing`);
+      if (!element) throw new Error(`this file is truncated: block ${number} is missing`);
       bytes = inflated(element.textContent ?? "");
       this.unpacked.set(number, bytes);
     }
@@ -27,7 +27,7 @@ export interface Quantity {
 export interface Contact {
   times: number[];
   nodes: Int32Array;
-  /** In the plane: arc length of each node and where each piece begins; empty in space. */
+  /** In the plane: arc length of each node, and first node of each piece; empty in space. */
   position: Float64Array;
   pieces: number[];
   quantities: Quantity[];
@@ -42,7 +42,7 @@ export interface Body {
   positions: Levels;
   corners: Int32Array;
   triangleCells: Int32Array;
-  /** Of each triangle: bit k where the side from its corner k is an edge of a cell. */
+  /** For each triangle: bit k is set if the side from its corner k is an edge of a cell. */
   edges: Uint8Array;
   mean: Float64Array;
   deviations: Levels[];
@@ -56,7 +56,7 @@ export type Field = Quantity & { onNodes: boolean };
 export interface Volume {
   nodes: number;
   positions: Levels;
-  /** Of each tetrahedron its four nodes, its cell, and in bit k whether the face opposite to corner k is one of the cell's. */
+  /** For each tetrahedron its four nodes, its cell, and in bit k whether the face opposite to corner k is a face of the cell. */
   corners: Int32Array;
   cells: Int32Array;
   faces: Uint8Array;
@@ -67,11 +67,11 @@ export interface Volume {
 export interface Obstacles {
   corners: number;
   cells: Int32Array;
-  /** Of each cell, from 0. */
+  /** Number of the obstacle of each cell, from 0. */
   obstacle: Int32Array;
   times: number[];
   positions: Float64Array;
-  /** Three numbers for each obstacle and time, where obstacles only translate: there is one row of positions then. */
+  /** Three numbers for each obstacle and time if obstacles only translate; `positions` then has one row. */
   offsets: Float64Array | null;
 }
 
@@ -79,7 +79,7 @@ export class Run {
   readonly name: string;
   readonly summary: Summary;
   history: Map<string, Float64Array> = new Map();
-  /** Of columns that are not in history.csv, but in a file with rows of its own. */
+  /** Times of columns that are in a file with rows of its own instead of history.csv. */
   private readonly ownTimes = new Map<string, Float64Array>();
   contact: Contact | null = null;
   body: Body | null = null;
@@ -91,16 +91,16 @@ export class Run {
     private readonly blobs: Blobs,
   ) {
     this.name = data.name;
-    // What older versions did not write.
+    // Defaults for entries that older versions did not write.
     this.summary = { ...{ checks: {}, expectations: [], parameters: {}, warnings: [], solver: "–", libraries: "–", factor_entries: 0, bodies: [], impacts: [], impacts_left_out: 0, peak_stress: null }, ...data.summary };
   }
 
-  /** The run's own name of a column: "@force" is what its contact force is judged by. */
+  /** The run's own name of a column: "@force" is the column by which its contact force is judged. */
   private own(name: string): string {
     return name === "@force" ? this.data.judgement.force : name;
   }
 
-  /** Times of the rows at which a column's numbers hold: energies and forces have their own instants. */
+  /** Times at which the numbers of a column hold; energies and forces have their own instants. */
   timesOf(name: string): Float64Array {
     const column = this.own(name);
     const times = this.ownTimes.get(column) ?? this.column("time");
@@ -108,7 +108,7 @@ export class Run {
     return shift === 0 ? times : times.map((time) => time + shift);
   }
 
-  /** Its body is the section of one that is the same all round the axis x = 0. */
+  /** Whether the body is the section of a body of revolution about the axis x = 0. */
   get isAxisymmetric(): boolean {
     return this.summary.parameters["mesh.plane"] === "axisymmetric";
   }
@@ -117,7 +117,7 @@ export class Run {
     return this.history.get(this.own(name)) ?? new Float64Array(0);
   }
 
-  /** Length of the contact force that is judged: of all obstacles together, or between two bodies; in the rows of the history. */
+  /** Magnitude of the judged contact force, of all obstacles together or between two bodies, in each row of the history. */
   get resultant(): Float64Array {
     const vector = this.own("@force").replace(/_[xyz]$/, "");
     this.resultant_ ??= lengths(["x", "y", "z"].map((axis) => this.history.get(`${vector}_${axis}`)).filter((column) => column !== undefined));
@@ -125,12 +125,12 @@ export class Run {
   }
   private resultant_: Float64Array | undefined;
 
-  /** At the row nearest to a time. */
+  /** Magnitude at the row nearest to a time. */
   resultantAt(time: number): number {
     return this.resultant[indexAt(this.timesOf("@force"), time)] ?? NaN;
   }
 
-  /** When the contact force is largest, at the scheme's own instant. */
+  /** Time of the largest contact force, at the scheme's own instant. */
   get largestForceTime(): number {
     return this.data.judgement.force_largest_at + this.shiftOf(this.own("@force")) * this.summary.time_step;
   }
@@ -239,22 +239,22 @@ function lengths(components: Float64Array[]): Float64Array {
   return Float64Array.from({ length: components[0]?.length ?? 0 }, (_, i) => Math.hypot(...components.map((column) => column[i])));
 }
 
-/** The page has words for numbers that are not finite. */
+/** Converts the words for numbers that are not finite. */
 const withNumbers = (judgement: Judgement): Judgement =>
   Object.fromEntries(Object.entries(judgement).map(([key, value]) => [key, typeof value === "string" && !judgementTexts.has(key) ? toNumber(value) : value])) as unknown as Judgement;
 
 export function readPage(): Run[] {
   if (!("DecompressionStream" in window))
-    throw new Error("this browser is too old for it: Chrome 80, Firefox 113 or Safari 16.4 and later show it");
+    throw new Error("this browser is too old. Use Chrome 80, Firefox 113, Safari 16.4 or later");
   const text = document.getElementById("ricochet-runs")?.textContent;
-  if (!text) throw new Error("this is the empty viewer: `ricochet report` puts runs into it");
+  if (!text) throw new Error("this page is the viewer without data. Run `ricochet report` to write a page with runs");
   const page = JSON.parse(text) as PageData;
-  if (page.format !== 5) throw new Error(`this viewer does not read format ${page.format}`);
+  if (page.format !== 5) throw new Error(`this viewer does not support data format ${page.format}`);
   const blobs = new Blobs();
   return page.runs.map((run, number) => new Run(number, { ...run, judgement: withNumbers(run.judgement) }, blobs));
 }
 
-/** The largest index whose entry is at most `value` plus a rounding; the nearest one when `nearest`. */
+/** The index of the entry nearest to `value`; without `nearest` the largest index whose entry is at most `value`. */
 export function indexAt(sorted: ArrayLike<number>, value: number, nearest = true): number {
   let low = 0;
   let high = sorted.length - 1;

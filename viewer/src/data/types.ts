@@ -1,11 +1,11 @@
-/** The data of a report as src/ricochet/report/page.cpp writes them. */
+/** The data of a report, written by src/ricochet/report/page.cpp. */
 
 export interface PackedArray {
   blob: number;
   rows: number;
   columns: number;
   coding: "reals" | "indices" | "levels";
-  /** Of levels: value = low + level · step; the largest level of so many bits stands for "no number". */
+  /** For levels: value = low + level · step; the largest level of `bits` bits means "no number". */
   bits?: number;
   prediction?: 1 | 2;
   low?: number;
@@ -13,7 +13,7 @@ export interface PackedArray {
 }
 
 export interface Judgement {
-  /** When a number is not finite for the first time: the others say nothing then. */
+  /** Time of the first number that is not finite, or null; the related numbers are then meaningless. */
   energy_broken_at: number | null;
   force_broken_at: number | null;
   penetration_broken_at: number | null;
@@ -29,34 +29,33 @@ export interface Judgement {
   force_variation: number;
   trend_variation: number;
   roughness: number;
-  /** Of the first probe on the contact boundary; "": there is none. */
+  /** Column of the first probe on the contact boundary; "" if there is none. */
   node_force: string;
   node_roughness: number;
   penetration: number;
-  /** null: the body's size is not known. */
+  /** null if the size of the body is unknown. */
   relative_penetration: number | null;
-  /** Whether the boundary outside of contact groups, and bodies against each other, were looked at. */
+  /** Whether the boundary outside of contact groups, and bodies against each other, were checked. */
   penetration_checked: boolean;
-  /** What else was not looked at, in words; empty: nothing. */
+  /** Other parts that were not checked, in words; empty if none. */
   penetration_not_watched: string;
-  /** Where no contact prevents it: which body in which obstacle or in itself, or which bodies; empty: nowhere. */
+  /** Penetration that no contact prevents: the body and the obstacle, or the bodies; empty if there is none. */
   unwatched_penetration: string;
-  /** The group of a contact that goes on beyond it; empty: none. */
+  /** The group of a contact that extends beyond the group; empty if none. */
   contact_beyond_rim: string;
-  /** The largest of a cell, in rad. */
+  /** Largest rotation of a cell, in rad. */
   rotation: number;
-  /** In rad: above it small strain no longer holds. */
-  /** Above it small strain does not hold; null: the laws hold for any rotation. */
+  /** Rotation in rad above which small strain does not hold; null if the laws hold for any rotation. */
   rotation_limit: number | null;
-  /** Whether cells turn too far for small strain only after the last impact. */
+  /** Whether cells exceed this limit only after the last impact. */
   rotation_after_impacts: boolean;
 }
 
 export interface ContactData {
   times: number[];
-  /** Numbers of the contact nodes in the body's surface; −1 where it does not show the node. */
+  /** Numbers of the contact nodes in the body's surface; −1 if the surface does not contain the node. */
   nodes: PackedArray;
-  /** In the plane: arc length, and where each piece of the boundary begins. */
+  /** In the plane: arc length of each node, and first node of each piece of the boundary. */
   position?: PackedArray;
   pieces?: number[];
   quantities: { name: string; values: PackedArray }[];
@@ -73,7 +72,7 @@ export interface BodyData {
   mean: PackedArray;
   deviations: PackedArray[];
   fields: { name: string; on_nodes: boolean; values: PackedArray }[];
-  /** The inside of a solid, where there was room for it. */
+  /** The inside of a solid, if there was room for it. */
   volume: VolumeData | null;
 }
 
@@ -91,12 +90,12 @@ export interface VolumeData {
 export interface ObstacleData {
   corners: number;
   cells: PackedArray;
-  /** Of each cell, from 0. */
+  /** Number of the obstacle of each cell, from 0. */
   obstacle: PackedArray;
   times: number[];
-  /** One row where obstacles stand or only translate, else one for each time. */
+  /** One row if obstacles are at rest or only translate, otherwise one for each time. */
   positions: PackedArray;
-  /** From the one row of positions, three numbers for each obstacle; null: nothing moves, or something turns. */
+  /** Offsets from the one row of positions, three numbers for each obstacle; null if no obstacle moves, or one rotates. */
   offsets: PackedArray | null;
 }
 
@@ -114,11 +113,10 @@ export interface Expectation {
   note: string;
 }
 
-/** A number that is not finite is a word in JSON: "inf", "-inf", "nan"; what is not known is null. */
+/** A number that is not finite is a word in JSON, "inf", "-inf" or "nan"; an unknown one is null. */
 export type Value = number | string | null;
 
-/** A body's collision with an obstacle; see docs/results.md. */
-/** The other body of an impact of two. */
+/** The other body of an impact between two bodies. */
 export interface OtherBody {
   body: number;
   velocity_before: Value[];
@@ -128,9 +126,10 @@ export interface OtherBody {
   kinetic_energy_before: Value;
 }
 
+/** A collision of a body with an obstacle or another body; see docs/impacts.md. */
 export interface Impact {
   body: number;
-  /** null where two bodies met. */
+  /** null if two bodies met. */
   obstacle: string | null;
   against?: OtherBody;
   begin: number;
@@ -139,17 +138,17 @@ export interface Impact {
   ended: boolean;
   from_start: boolean;
   restitution: Value;
-  /** A sentence, where the restitution is null. */
+  /** A sentence, if the restitution is null. */
   why_no_restitution?: string | null;
-  /** What the method put into the bodies meanwhile, and whether that spoils the restitution; not in older results. */
+  /** Energy that the method added to the bodies during the impact, and whether it makes the restitution inexact; not in older results. */
   method_energy?: Value;
   restitution_inexact?: boolean;
-  /** That carried a force at once, at most, and how many there are; not in results of older versions. */
+  /** Largest number of contact points that carried a force at once, and number of all; not in results of older versions. */
   contact_points?: number;
   all_contact_points?: number;
-  /** So few of them that the largest force and the duration cannot be trusted. */
+  /** Whether these are too few for a reliable largest force and duration. */
   coarse?: boolean;
-  /** Of all contact forces; friction included. */
+  /** Impulse of all contact forces, including friction. */
   impulse: Value[];
   normal_impulse: Value;
   largest_force: Value;
@@ -158,29 +157,29 @@ export interface Impact {
   normal_velocity_after: Value;
   tangential_velocity_before: Value[] | null;
   tangential_velocity_after: Value[] | null;
-  /** In the plane one number, about z. */
+  /** One number in the plane, about z. */
   spin_before: Value | Value[];
   spin_after: Value | Value[];
   kinetic_energy_before: Value;
   kinetic_energy_ratio: Value;
 }
 
-/** The largest von Mises stress of a run, between frames, too. */
+/** The largest von Mises stress of a run, also between frames. */
 export interface PeakStress {
   von_mises: Value;
   time: number;
   step: number;
-  /** Centre of the cell at the start. */
+  /** Initial centre of the cell. */
   place: number[];
   material: string;
   cell: number;
   states_looked_at: number;
   states: number;
-  /** What makes it grow with refinement, as "a re-entrant edge of the body"; null or absent: nothing that is known. */
+  /** The reason why it grows with refinement, such as "a re-entrant edge of the body"; null or absent if none is known. */
   sits_on?: string | null;
 }
 
-/** Of the largest energy; what the method itself did, apart from what acts on the body. */
+/** Changes of the energy by the method itself, as fractions of the largest energy. */
 export interface EnergyBudget {
   largest_energy: Value;
   lost_by_method: Value;
@@ -191,7 +190,7 @@ export interface EnergyBudget {
 /** Which reactions acted over the steps. */
 export interface Reactions {
   acting: "end" | "mean" | "adaptive";
-  /** null: no mean acted. */
+  /** null if no mean acted. */
   least_end_weight: Value;
   largest_end_weight: Value;
   steps_of_means: number;
@@ -218,7 +217,7 @@ export interface Summary {
   solver: string;
   factor_entries: number;
   time_step: number;
-  /** Null where all steps are of one length. */
+  /** null if all steps have one length. */
   adaptive_steps?: { shortest: number; longest: number; refused: number } | null;
   end_time: number;
   steps: number;
@@ -227,18 +226,18 @@ export interface Summary {
   instants: { energy: string; force: string };
   timings_seconds: Record<string, number>;
   seconds_per_step: number;
-  /** Not in results of older versions; of schemes without a choice the reactions are null. */
+  /** Not in results of older versions; the reactions of schemes without a choice are null. */
   energy_budget?: EnergyBudget | null;
   reactions?: Reactions | null;
   contacts: { group: string; obstacle?: string; against?: string; multipliers: string; friction: number; friction_bound: number }[];
   probes: { name: string; position: number[]; distance: number; in_contact_boundary: boolean }[];
   checks: Record<string, CheckOutcome>;
   warnings: string[];
-  /** `held`: supports at rest hold it; not in results of older versions. */
+  /** `held`: held by supports at rest; not in results of older versions. */
   bodies: { mass: Value; name?: string; held?: boolean }[];
   impacts: Impact[];
   impacts_left_out: number;
-  /** Contacts between bodies that slide far, where held steps have left points at a gap; not in results of older versions. */
+  /** Contacts with large sliding in which held steps have left gaps; not in results of older versions. */
   unsettled_contacts?: { contact: number; share_of_force: Value; steps: number; first_time: Value; time: Value; gap: Value }[];
   peak_stress: PeakStress | null;
   expectations: Expectation[];
@@ -253,9 +252,9 @@ export interface RunData {
   judgement: Judgement;
   columns: string[];
   history: PackedArray;
-  /** Probes that write rows of their own, each so many steps. */
+  /** Histories of probes that write rows of their own. */
   tables: { file: string; columns: string[]; values: PackedArray }[];
-  /** 0: all rows; else of how many rows each pair stands for the least and the largest value. */
+  /** 0 if all rows are stored; otherwise the number of rows whose least and largest value each pair of rows has. */
   rows_per_pair: number;
   obstacles: ObstacleData | null;
   body: BodyData | null;
@@ -268,5 +267,5 @@ export interface PageData {
   runs: RunData[];
 }
 
-/** Of a judgement, what is text and no number. */
+/** The entries of a judgement that are text. */
 export const judgementTexts = new Set(["force", "node_force", "penetration_not_watched", "unwatched_penetration", "contact_beyond_rim"]);

@@ -4,7 +4,7 @@ import { number, statusNames } from "../format";
 import type { ColourKey } from "../save";
 import { valueOfFraction, type ColourRange } from "./colour_range";
 
-/** What colours mean: a bar with its range, or the names of what contact points do. */
+/** Legend of the colours: a bar with its range, or the names of the contact statuses. */
 export function colourBar(name: string, range: ColourRange | null, statuses: number[] = [0, 1, 2, 3]): HTMLElement {
   if (!range) {
     return el("div.colour-names", {}, ...statuses.map((status) =>
@@ -22,7 +22,7 @@ export function colourBar(name: string, range: ColourRange | null, statuses: num
 const highest = (range: ColourRange) =>
   range.clipped ? `≥ ${number(range.high, 3)}, up to ${number(range.largest, 3)}` : number(range.high, 3);
 
-/** The same for a picture that is saved. */
+/** Legend for a saved picture. */
 export function colourKey(name: string, range: ColourRange | null): ColourKey {
   if (!range) return { name: statusNames.slice(1).join(", "), low: "", high: "", colours: [0, 1, 2, 3].map(statusColour) };
   return { name: `${name}${range.logarithmic ? ", logarithmic" : ""}`, low: number(range.low, 3), high: highest(range), colours: Array.from({ length: 64 }, (_, i) => fieldCss(i / 63)) };

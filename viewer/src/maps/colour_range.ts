@@ -1,34 +1,34 @@
 import { valueAt, type Levels } from "../data/decode";
 
-/** The range that colours cover; values beyond have the last colour. */
+/** The range of the colours; values above it have the last colour. */
 export interface ColourRange {
   low: number;
   high: number;
-  /** Some values lie above. */
+  /** Whether some values lie above `high`. */
   clipped: boolean;
   /** The largest value of all. */
   largest: number;
-  /** Equal steps of colour are equal ratios; what is below `low` has the first colour. */
+  /** Whether equal steps of colour are equal ratios; values below `low` then have the first colour. */
   logarithmic: boolean;
 }
 
-/** "automatic": all values, in a logarithmic scale where a few are many times as large as the others. */
+/** "automatic": all values, in a logarithmic scale if a few of them are many times as large as the others. */
 export type ColourScale = "automatic" | "most" | "all" | "logarithmic";
 
-/** A largest value so many times what 95 of 100 stay below would leave the others one colour. */
+/** Ratio of the largest value to the 95th percentile above which "automatic" is logarithmic. */
 const farAbove = 3;
 
-/** Where a value is between the first and the last colour. */
+/** Fraction of a value between the first and the last colour. */
 export function colourFraction(value: number, { low, high, logarithmic }: ColourRange): number {
   return logarithmic ? Math.log(Math.max(value, low) / low) / Math.log(high / low) : (value - low) / (high - low);
 }
 
-/** The value that a colour stands for. */
+/** The value at a fraction between the first and the last colour. */
 export function valueOfFraction(part: number, { low, high, logarithmic }: ColourRange): number {
   return logarithmic ? low * (high / low) ** part : low + part * (high - low);
 }
 
-/** Of several runs one range for all. */
+/** One range for several runs. */
 export function joinRanges(ranges: ColourRange[]): ColourRange | null {
   if (ranges.length === 0) return null;
   const logarithmic = ranges.some((range) => range.logarithmic);
@@ -40,8 +40,8 @@ export function joinRanges(ranges: ColourRange[]): ColourRange | null {
 }
 
 /**
- * With "most", from zero (or the least value) to what 99 of 100 values that are not zero stay below: a few peaks hide
- * nothing. With "all" up to the largest, at least to `reached`, which may be known from elsewhere.
+ * The range of the colours of these values. With "most", from zero (or the least value) to the 99th percentile of the
+ * values that are not zero. With "all", up to the largest value and at least to `reached`, which may come from elsewhere.
  */
 export function colourRange(arrays: Levels[], scale: ColourScale = "most", reached = 0): ColourRange {
   const sample: number[] = [];
@@ -55,7 +55,7 @@ export function colourRange(arrays: Levels[], scale: ColourScale = "most", reach
       if (Number.isNaN(value)) continue;
       low = Math.min(low, value);
       high = Math.max(high, value);
-      // Levels of a value that is zero are zero to half a step.
+      // The level of a zero value is zero up to half a step.
       if (Math.abs(value) > array.step) sample.push(value);
     }
   }
@@ -73,7 +73,7 @@ export function colourRange(arrays: Levels[], scale: ColourScale = "most", reach
   return { low: largest / 10 ** decades, high: largest, clipped: false, largest, logarithmic: true };
 }
 
-/** A sample may miss it. */
+/** The largest value of an array, which a sample may miss. */
 function largestOf({ levels, low, step, none }: Levels): number {
   let most = -1;
   for (const level of levels) if (level > most && level !== none) most = level;

@@ -10,7 +10,7 @@ import { colourRange, type ColourRange } from "./colour_range";
 
 const margin = { left: 66, right: 8, top: 6, bottom: 24 };
 
-/** What the contact boundary of one run does: time from left to right, the place on the boundary upwards. */
+/** Map of a quantity on the contact boundary of one run: time to the right, position on the boundary upwards. */
 export class ContactMap {
   readonly element: HTMLElement;
   private readonly canvas = el("canvas", { tabIndex: 0, role: "img" });
@@ -29,8 +29,8 @@ export class ContactMap {
     this.area = el("div.map-area", {}, this.canvas, this.cursor, this.tip);
     this.element = el("div.map", {}, this.area, this.colours,
       el("div.tools", {},
-        el("button.small", { type: "button", title: "Save the picture", onclick: () => this.savePicture() }, "PNG"),
-        el("button.small", { type: "button", title: "Save the numbers", onclick: () => this.saveNumbers() }, "CSV")));
+        el("button.small", { type: "button", title: "Save the picture as PNG", onclick: () => this.savePicture() }, "PNG"),
+        el("button.small", { type: "button", title: "Save the numbers as CSV", onclick: () => this.saveNumbers() }, "CSV")));
     for (const topic of ["contact", "zoom", "theme", "runs"] as const) store.on(topic, () => this.draw());
     store.on("time", () => this.showTime());
     this.canvas.addEventListener("pointermove", (event) => this.pointed(event));
@@ -49,7 +49,7 @@ export class ContactMap {
     return this.store.zoom ?? [this.store.start, this.store.end];
   }
 
-  /** Value drawn at a fraction of the picture's inside, for those who test it. */
+  /** Value drawn at fractions of the width and height of the map. */
   valueAtFraction(x: number, y: number): number {
     const contact = this.run.contact;
     const values = this.values;
@@ -74,12 +74,12 @@ export class ContactMap {
     const context = this.canvas.getContext("2d")!;
     context.setTransform(scale, 0, 0, scale, 0, 0);
     context.clearRect(0, 0, width, height);
-    this.canvas.setAttribute("aria-label", `${fieldName(this.store.quantity)} of ${this.run.name} over time and place`);
+    this.canvas.setAttribute("aria-label", `${fieldName(this.store.quantity)} of ${this.run.name} over time and position`);
     const inner = { width: width - margin.left - margin.right, height: height - margin.top - margin.bottom };
     if (!values) {
       context.fillStyle = themeColour("muted");
       context.font = "12px system-ui, sans-serif";
-      context.fillText("this run has no such field", margin.left, 40);
+      context.fillText("This run did not write the field.", margin.left, 40);
       this.colours.replaceChildren();
       return;
     }
@@ -97,7 +97,7 @@ export class ContactMap {
     this.showTime();
   }
 
-  /** −1 after the end of the run. */
+  /** The frame nearest to a time; −1 after the end of the run. */
   private frameAt(time: number): number {
     const { times } = this.run.contact!;
     const last = times.length - 1;
@@ -209,7 +209,7 @@ export class ContactMap {
       `${fileName(this.run.name)}-${fileName(this.store.quantity)}.png`);
   }
 
-  /** A row for each frame, a column for each node, named by its place. */
+  /** Saves a row for each frame and a column for each node, named by its position. */
   private saveNumbers(): void {
     const values = this.values;
     const contact = this.run.contact;

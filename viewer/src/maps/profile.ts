@@ -17,7 +17,7 @@ interface Profile {
   values: number[];
 }
 
-/** A quantity along the contact boundary at the time of the cursor, all visible runs in one picture. */
+/** A quantity along the contact boundary at the time of the cursor, of all visible runs in one plot. */
 export class ProfileChart {
   readonly element: HTMLElement;
   private readonly plotArea = el("div.plot");
@@ -25,16 +25,16 @@ export class ProfileChart {
   private readonly legend = el("div.legend");
   private plot: uPlot | null = null;
   private width = 0;
-  /** Where the pointer is on the boundary. */
+  /** Position of the pointer on the boundary. */
   private place: number | null = null;
 
   constructor(private readonly store: Store) {
     this.element = el("section.chart.panel", { id: "profile" },
       el("header", {}, this.title,
         el("div.tools", {},
-          el("button.small", { type: "button", title: "Save the picture", onclick: () => this.savePicture() }, "PNG"),
-          el("button.small", { type: "button", title: "Save the numbers", onclick: () => this.saveNumbers() }, "CSV"))),
-      el("p.note", {}, "At the time of the cursor, over the place on the contact boundary."),
+          el("button.small", { type: "button", title: "Save the picture as PNG", onclick: () => this.savePicture() }, "PNG"),
+          el("button.small", { type: "button", title: "Save the numbers as CSV", onclick: () => this.saveNumbers() }, "CSV"))),
+      el("p.note", {}, "At the time of the cursor, over the position on the contact boundary."),
       this.plotArea, this.legend);
     for (const topic of ["runs", "theme", "contact"] as const) store.on(topic, () => this.rebuild());
     store.on("time", () => this.update());
@@ -112,7 +112,7 @@ export class ProfileChart {
     this.showValues();
   }
 
-  /** Time of the frame; under the pointer also the value of the node nearest to it. */
+  /** Shows the time of the frame, and with a pointer on the plot the value at the nearest node. */
   private showValues(): void {
     const isStatus = this.store.quantity === "contact_status";
     this.legend.replaceChildren(...this.profiles.map((p) => {

@@ -3,16 +3,16 @@ import type { Run } from "../data/run";
 /** Entries of the case in which runs differ. */
 export interface Parameter {
   name: string;
-  /** Of each run as it is written in the case; "–" where it has none. */
+  /** Value of each run as written in the case; "–" if the run does not have the entry. */
   texts: string[];
-  /** The same as numbers; null: not all are. */
+  /** The values as numbers; null if some are not numbers. */
   numbers: number[] | null;
 }
 
-/** What makes no other result. */
+/** Entries that do not change results. */
 const idle = /^(expect|output|check|title$|probe\.|solver\.)/;
 
-/** Components of vectors are entries of their own: "initial.velocity y". */
+/** Entries of the case; components of vectors are entries of their own: "initial.velocity y". */
 function entries(run: Run): Map<string, string> {
   const result = new Map<string, string>();
   for (const [key, value] of Object.entries(run.summary.parameters)) {
@@ -24,7 +24,7 @@ function entries(run: Run): Map<string, string> {
   return result;
 }
 
-/** Numbers first, those with most values first. */
+/** Entries in which the runs differ: numbers first, and those with most values first. */
 export function differingParameters(runs: Run[]): Parameter[] {
   const all = runs.map(entries);
   const names = [...new Set(all.flatMap((each) => [...each.keys()]))];

@@ -4,7 +4,7 @@ import type { Impact, Value } from "../data/types";
 import { columnName, toNumber } from "../format";
 import { spin } from "./outcomes";
 
-/** What a run came to, in one number. */
+/** A result of a run, one number. */
 export interface Quantity {
   id: string;
   title: string;
@@ -18,7 +18,7 @@ const largest = (values: Float64Array) => {
 };
 const ratio = (values: Float64Array) => (values.length > 0 && values[0] !== 0 ? last(values) / values[0] : NaN);
 
-/** How long something touched. Unknown where the page has not all rows. */
+/** Time with contact; NaN if the page does not have all rows. */
 function timeInContact(run: Run): number {
   if (run.data.rows_per_pair > 0) return NaN;
   const times = run.column("time");
@@ -28,7 +28,7 @@ function timeInContact(run: Run): number {
   return sum;
 }
 
-/** Those that some run has, the most telling ones first. */
+/** The results that at least one run has, the most significant ones first. */
 export function quantities(runs: Run[]): Quantity[] {
   const first = (of: (impact: Impact) => Value | Value[]) => (run: Run) => (run.summary.impacts.length > 0 ? spin(of(run.summary.impacts[0])) : NaN);
   const list: Quantity[] = [
@@ -46,14 +46,14 @@ export function quantities(runs: Run[]): Quantity[] {
     { id: "energy-change", title: "change of the total energy", value: (run) => last(run.column("total_energy")) - run.column("total_energy")[0] },
     { id: "method-loss", title: "energy lost by the method", value: (run) => toNumber(run.summary.energy_budget?.lost_by_method ?? null) },
     { id: "method-gain", title: "energy created by the method", value: (run) => toNumber(run.summary.energy_budget?.created_by_method ?? null) },
-    { id: "friction-work", title: "work of friction", value: (run) => last(run.column("friction_work")) },
+    { id: "friction-work", title: "friction work", value: (run) => last(run.column("friction_work")) },
     { id: "penetration", title: "deepest interpenetration", value: (run) => run.data.judgement.penetration },
     { id: "rotation", title: "largest rotation", value: (run) => largest(run.column("max_rotation")) },
-    { id: "step-seconds", title: "seconds of computing a step", value: (run) => run.summary.seconds_per_step },
+    { id: "step-seconds", title: "computing time per step in seconds", value: (run) => run.summary.seconds_per_step },
   ];
   const columns = [...new Set(runs.flatMap((run) => [...run.history.keys()]))].filter((name) => name !== "step" && name !== "time");
   for (const column of columns) {
-    list.push({ id: `largest ${column}`, title: `${columnName(column)}, largest size`, value: (run) => (run.has(column) ? largest(run.column(column)) : NaN) });
+    list.push({ id: `largest ${column}`, title: `largest |${columnName(column)}|`, value: (run) => (run.has(column) ? largest(run.column(column)) : NaN) });
     list.push({ id: `last ${column}`, title: `${columnName(column)} at the end`, value: (run) => (run.has(column) ? last(run.column(column)) : NaN) });
   }
   return list.filter(({ value }) => runs.some((run) => Number.isFinite(value(run))));

@@ -16,7 +16,7 @@ interface Point {
   y: number;
 }
 
-/** Runs that differ in nothing but what the chart is against. */
+/** Runs that differ only in the entry on the abscissa. */
 interface Line {
   name: string;
   points: Point[];
@@ -25,10 +25,10 @@ interface Line {
 /** "run": a bar for each run. */
 const byRun = "run";
 
-/** A result of each run against what varies between the runs: points and lines over a number, bars otherwise. */
+/** A result of each run against an entry that varies between the runs: points and lines over numbers, bars otherwise. */
 export class ResultsChart {
   readonly element: HTMLElement;
-  /** There is a number to draw results over. */
+  /** Whether a number varies, with more than two values. */
   readonly isTrend: boolean;
   readonly parameters: Parameter[];
   private readonly all: Quantity[];
@@ -48,7 +48,7 @@ export class ResultsChart {
     const first = this.parameters[0];
     this.isTrend = first !== undefined && first.numbers !== null && new Set(first.numbers).size > 2;
     this.against = this.isTrend ? first.name : byRun;
-    const what = select("shows", this.all.map(({ id, title }) => [id, title]), this.quantity.id, (id) => this.show(id, this.against));
+    const what = select("result", this.all.map(({ id, title }) => [id, title]), this.quantity.id, (id) => this.show(id, this.against));
     what.control.id = "result";
     const over = select("against", [[byRun, "run"], ...this.parameters.map(({ name }): [string, string] => [name, name])], this.against,
       (name) => this.show(this.quantity.id, name));
@@ -61,8 +61,8 @@ export class ResultsChart {
     this.element = el("section.chart.panel", { id: "results" },
       el("header", {}, el("h3", {}, "Results of the runs"),
         el("div.tools", {}, what.element, over.element, log,
-          el("button.small", { type: "button", title: "Save the picture", onclick: () => this.savePicture() }, "PNG"),
-          el("button.small", { type: "button", title: "Save the numbers", onclick: () => this.saveNumbers() }, "CSV"))),
+          el("button.small", { type: "button", title: "Save the picture as PNG", onclick: () => this.savePicture() }, "PNG"),
+          el("button.small", { type: "button", title: "Save the numbers as CSV", onclick: () => this.saveNumbers() }, "CSV"))),
       el("div.results-area", {}, this.plotArea, this.tip), this.without);
     for (const topic of ["runs", "theme", "highlight"] as const) store.on(topic, () => this.rebuild());
     this.plotArea.addEventListener("pointermove", (event) => this.pointed(event));
@@ -89,16 +89,16 @@ export class ResultsChart {
     return this.parameters.find(({ name }) => name === this.against);
   }
 
-  /** The texts at the foot where there are no numbers: of runs or of the values of an entry. */
+  /** Texts on the abscissa if it has no numbers: names of runs, or values of an entry. */
   private get categories(): string[] | null {
     if (this.parameter?.numbers) return null;
     return this.parameter ? [...new Set(this.parameter.texts)] : this.runs.map(({ name }) => name);
   }
 
-  /** What is drawn. */
+  /** The drawn lines. */
   get lines(): Line[] {
     const parameter = this.parameter;
-    // What the abscissa fixes, such as another component of the same vector, makes no line of its own.
+    // An entry that follows from the abscissa, such as another component of the same vector, makes no lines of its own.
     const others = parameter ? this.parameters.filter((each) => !follows(each, parameter)) : [];
     const lines = new Map<string, Point[]>();
     this.runs.forEach((run, i) => {
@@ -124,14 +124,14 @@ export class ResultsChart {
     if (this.width === 0) return;
     const { points, categories } = this;
     const without = this.runs.length - points.length;
-    this.without.textContent = without > 0 ? `${without} of ${this.runs.length} runs have no such result.` : "";
+    this.without.textContent = without > 0 ? `${without} of ${this.runs.length} runs do not have this result.` : "";
     const axis = axisStyle();
     const [low, high] = this.rangeOfY(points.map(({ y }) => y));
     const xs = points.map(({ x }) => x);
     const wide = !categories && Math.min(...xs) > 0 && Math.max(...xs) > 50 * Math.min(...xs);
     const xRange = categories ? [-0.6, categories.length - 0.4] : wide ? [Math.min(...xs) / 1.3, Math.max(...xs) * 1.3] : padded(xs);
     const decades: [number, number] = [low, high];
-    // Only as many names as there is room for.
+    // Only as many names as fit.
     const step = categories ? Math.ceil((categories.length * 90) / Math.max(this.width - 80, 90)) : 1;
     this.plot = new uPlot({
       width: this.width,
@@ -155,7 +155,7 @@ export class ResultsChart {
 
   private rangeOfY(values: number[]): [number, number] {
     if (this.logarithmic) return logarithmicRange([values]);
-    // Bars begin at zero; so does what is not far from it.
+    // Bars begin at zero, and so do values close to it.
     const low = Math.min(...values);
     const high = Math.max(...values);
     if (this.categories || (low > 0 && low < 0.5 * high) || low * high <= 0) return padded([0, ...values]);
@@ -173,7 +173,7 @@ export class ResultsChart {
     const at = ({ x, y }: Point): [number, number] => [plot.valToPos(x, "x", true), plot.valToPos(y, "y", true)];
     const lines = this.lines.map(({ name, points }) => ({ name, points: points.filter(({ y }) => Number.isFinite(y) && (!this.logarithmic || y > 0)) }));
     ctx.font = `${11 * scale}px system-ui, sans-serif`;
-    // Names stand where lines are farther apart.
+    // Names are written at the end where lines are farther apart.
     const spread = (end: number) => {
       const ends = lines.flatMap(({ points }) => points.slice(end).slice(0, 1)).map((point) => at(point)[1]);
       return Math.max(...ends) - Math.min(...ends);
@@ -186,7 +186,7 @@ export class ResultsChart {
       ctx.beginPath();
       points.forEach((point, i) => (i === 0 ? ctx.moveTo(...at(point)) : ctx.lineTo(...at(point))));
       ctx.stroke();
-      if (lines.length < 2 || lines.length > 8) continue; // the tip tells
+      if (lines.length < 2 || lines.length > 8) continue; // the tooltip has the names
       const [x, y] = at(points[atStart ? 0 : points.length - 1]);
       ctx.textAlign = atStart ? "left" : "right";
       const place = [x + (atStart ? 9 : -9) * scale, y < top + 22 * scale ? y + 15 * scale : y - 8 * scale] as const;
@@ -206,7 +206,7 @@ export class ResultsChart {
       ctx.beginPath();
       if (this.against === byRun) ctx.rect(x - bar / 2, Math.min(y, foot), bar, Math.abs(foot - y));
       else ctx.arc(x, y, 5 * scale, 0, 2 * Math.PI);
-      if (this.store.visible[run.number]) ctx.fill(); // of runs that are hidden elsewhere only the outline
+      if (this.store.visible[run.number]) ctx.fill(); // hidden runs have only an outline
       ctx.stroke();
     }
     ctx.restore();
@@ -243,7 +243,7 @@ export class ResultsChart {
       `${fileName(this.quantity.title)}.png`);
   }
 
-  /** A row for each run: its name, what varies, the result. */
+  /** Saves a row for each run: its name, the entries that vary, the result. */
   private saveNumbers(): void {
     saveCsv(["run", ...this.parameters.map(({ name }) => name), this.quantity.title],
       [this.runs.map(({ name }) => name), ...this.parameters.map(({ numbers, texts }) => numbers ?? texts), this.runs.map((run) => this.quantity.value(run))],
@@ -259,7 +259,7 @@ function padded(values: number[]): [number, number] {
   return [low === 0 ? 0 : low - margin, high === 0 ? 0 : high + margin];
 }
 
-/** Equal values of one entry always come with equal values of the other. */
+/** Whether equal values of `other` imply equal values of `each`. */
 function follows(each: Parameter, other: Parameter): boolean {
   const seen = new Map<string, string>();
   return other.texts.every((text, i) => {

@@ -20,26 +20,26 @@ const largestForce = (run: Run): string => {
   return brokenAt === null ? number(most, 4) : "–";
 };
 
-/** "≥": not every step was looked at. */
+/** The largest stress, with "≥" if not every step was evaluated. */
 function stressCell(run: Run): HTMLElement {
   const peak = run.summary.peak_stress;
   if (!peak || !Number.isFinite(toNumber(peak.von_mises))) return el("td", {}, number(peak?.von_mises ?? null));
   const all = peak.states_looked_at >= peak.states;
-  return el("td", { title: `von Mises; ${all ? "of all steps" : "not every step was looked at"}` }, `${all ? "" : "≥ "}${number(peak.von_mises, 4)}`);
+  return el("td", { title: `von Mises stress${all ? " of all steps" : "; not every step was evaluated"}` }, `${all ? "" : "≥ "}${number(peak.von_mises, 4)}`);
 }
 
-/** Many runs: a row for each instead of a card, with what varies, what came out, and what is thought of it. */
+/** Table for many runs: a row for each, with the entries that vary, results and verdicts. */
 export function runTable(store: Store, runs: Run[]): HTMLElement {
   const parameters = differingParameters(runs).slice(0, 4);
   const impacts = runs.some((run) => run.summary.impacts.length > 0);
   const stress = runs.some((run) => run.summary.peak_stress);
   const titles = [...new Set(runs.flatMap((run) => findings(run).map(({ what }) => what)))];
-  // Results before words: a screen is not as wide as all of them.
+  // Results precede words, because a screen is narrower than the table.
   const head = el("tr", {}, ...["run", ...parameters.map(({ name }) => name), ...(impacts ? ["restitution"] : []), "largest force", ...(stress ? ["largest stress"] : []), ...titles, ...(impacts ? ["first impact"] : []), ""]
     .map((text) => el("th", { scope: "col", title: text === "restitution" ? "of the first impact" : "" }, text)));
   const rows = runs.map((run, i) => {
     const swatch = el("i");
-    const button = el("button.toggle", { type: "button", title: `Show or hide ${run.name}; with shift this run alone`, onclick: (event: MouseEvent) => (event.shiftKey ? store.only(run.number) : store.toggle(run.number)) }, swatch, run.name);
+    const button = el("button.toggle", { type: "button", title: `Show or hide ${run.name}. Shift-click shows this run alone.`, onclick: (event: MouseEvent) => (event.shiftKey ? store.only(run.number) : store.toggle(run.number)) }, swatch, run.name);
     const found = findings(run);
     const cells = titles.map((title) => {
       const finding = found.find(({ what }) => what === title);
