@@ -12,9 +12,9 @@
 #include "ricochet/base/contact_status.hpp"
 #include "ricochet/base/types.hpp"
 
-/// @file The module ricochet._core: what the Python package takes from the library. Names and checks that users meet
-/// are in the package's own files; here are the numbers, without copies. Whatever may take time lets go of Python's
-/// lock.
+/// @file The module ricochet._core: the interface of the library for the Python package. Names and checks for users are
+/// in the package's own files; this module provides the numbers, without copies. Functions that may take time release
+/// Python's lock.
 namespace ricochet::python {
 
 namespace py = pybind11;
@@ -28,37 +28,37 @@ void bind_contact(py::module_& module);
 void bind_mass(py::module_& module);
 void bind_study(py::module_& module);
 
-/// Lets go of Python's lock and takes the library's. HDF5 is for one thread at a time, and no thread can write to a
-/// file that another one has open to read. Sessions that step at once would have other bits, too.
+/// Releases Python's lock and acquires the library's. HDF5 supports one thread at a time, and no thread can write to a
+/// file that another has open for reading. Simultaneous steps of several sessions would also have different bits.
 class LibraryLock {
  public:
   LibraryLock() : lock_(mutex()) {}
 
  private:
-  /// What is said to a handler of messages may read a run.
+  /// Recursive, as a handler of messages may read a run.
   static std::recursive_mutex& mutex();
 
   py::gil_scoped_release unlocked_;
   std::lock_guard<std::recursive_mutex> lock_;
 };
 
-/// Asks whether Python wants to stop (Ctrl-C): after every step, but not more often than Python can answer without
-/// being felt. Remembers the exception that a signal's handler has raised.
+/// Checks whether Python requests a stop (Ctrl-C), after every step but not so often that the checks become noticeable.
+/// Stores the exception raised by the signal handler.
 class SignalCheck {
  public:
-  /// 0, or the number of a signal that is to end the work.
+  /// Returns 0, or the number of the signal that requests the end.
   int operator()();
-  /// Throws what has been raised, if anything. With the lock.
+  /// Throws the stored exception, if any. Must be called with Python's lock.
   void raise();
 
  private:
   double last_asked_ = 0.0;
-  int signal_ = 0;  ///< that has raised it
+  int signal_ = 0;  ///< signal that raised the exception
   std::optional<py::error_already_set> raised_;
 };
 
-/// A numpy array that shows numbers of `owner`, which lives as long as it: rows × columns (0: one dimension), row by
-/// row. It cannot be written to.
+/// Returns a read-only numpy array that views numbers of `owner`, which it keeps alive: rows × columns (0: one
+/// dimension), row by row.
 template <class Number>
 [[nodiscard]] py::array_t<Number> view(const Number* numbers, Index rows, Index columns, py::handle owner) {
   py::array_t<Number> result = columns > 0 ? py::array_t<Number>({rows, columns}, numbers, owner)
@@ -67,7 +67,7 @@ template <class Number>
   return result;
 }
 
-/// The same of numbers that nobody else has any more.
+/// Returns an array that takes over the ownership of its numbers.
 template <class Container>
 [[nodiscard]] auto give(Container numbers, Index rows, Index columns = 0) {
   auto* kept = new Container(std::move(numbers));
@@ -77,7 +77,7 @@ template <class Container>
                      : py::array_t<Number>(std::vector<py::ssize_t>{rows}, kept->data(), owner);
 }
 
-/// As whole numbers.
+/// Returns the statuses as integers.
 [[nodiscard]] inline py::array_t<int> numbers_of(const std::vector<ContactStatus>& status) {
   std::vector<int> numbers;
   for (const ContactStatus one : status) numbers.push_back(static_cast<int>(one));
@@ -85,15 +85,15 @@ template <class Container>
   return give(std::move(numbers), count);
 }
 
-/// A copy of numpy's numbers, or of whatever numpy makes an array of, row by row.
+/// Copy of a numpy array, or of any object that numpy converts to one, row by row.
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 [[nodiscard]] inline Vector vector_of(const Numbers& numbers) {
   return Eigen::Map<const Vector>(numbers.data(), numbers.size());
 }
 
-/// (data, indices, indptr, size) of a symmetric matrix in compressed columns, for scipy.sparse.
+/// Returns (data, indices, indptr, size) of a symmetric matrix in compressed columns, for scipy.sparse.
 [[nodiscard]] py::tuple parts_of(SparseMatrix matrix);
-/// The other way; the columns are sorted and without duplicates.
+/// Makes a matrix from these parts; the columns must be sorted and without duplicates.
 using Indices = py::array_t<int, py::array::c_style | py::array::forcecast>;
 [[nodiscard]] SparseMatrix sparse_matrix(const Numbers& data, const Indices& indices, const Indices& starts,
                                          Index size);

@@ -11,7 +11,7 @@ namespace ricochet::python {
 
 namespace {
 
-/// A case with the warnings that reading it said.
+/// A case with the warnings issued while reading it.
 struct ReadCase {
   Case input;
   std::vector<std::string> warnings;

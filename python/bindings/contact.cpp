@@ -38,12 +38,13 @@ const char* word(ContactOutcome outcome) {
 }
 
 std::shared_ptr<const ContactOperator> dense(const Numbers& w) {
-  if (w.ndim() != 2 || w.shape(0) != w.shape(1)) throw Error(ErrorKind::invalid_input, "contact: W is a square matrix");
+  if (w.ndim() != 2 || w.shape(0) != w.shape(1))
+    throw Error(ErrorKind::invalid_input, "contact: W must be a square matrix");
   return make_dense_operator(Eigen::Map<const Matrix>(w.data(), w.shape(0), w.shape(0)));
 }
 
 std::shared_ptr<const ContactOperator> known_by_product(Index rows, py::function product) {
-  // What Python has made is given back with its lock.
+  // Python objects are released with Python's lock held.
   const std::shared_ptr<py::function> kept(new py::function(std::move(product)), [](py::function* object) {
     const py::gil_scoped_acquire lock;
     delete object;

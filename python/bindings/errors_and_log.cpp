@@ -8,12 +8,12 @@ namespace ricochet::python {
 
 namespace {
 
-/// A function of the package, by module and name. The module is loaded: the package has loaded this one.
+/// Returns a function of the package, by module and name. The module is loaded, as the package has loaded this one.
 py::object function(const char* module, const char* name) {
   return py::module_::import(module).attr(name);
 }
 
-/// Messages quote what damaged files hold, which may be no UTF-8.
+/// Decodes a message, which may quote invalid UTF-8 from damaged files.
 py::object readable(const std::string& text) {
   return py::reinterpret_steal<py::object>(
       PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace"));
@@ -34,7 +34,7 @@ void hand_to_python(log::Level level, const std::string& message) {
   try {
     function("ricochet.messages", "from_core")(static_cast<int>(level), readable(message));
   } catch (py::error_already_set& problem) {
-    // Ctrl-C while a handler writes: what is asked after the step must hear of it.
+    // Ctrl-C while a handler writes: the check after the step must see it.
     if (problem.matches(PyExc_KeyboardInterrupt))
       PyErr_SetInterrupt();
     else
@@ -52,7 +52,7 @@ void bind_log(py::module_& module) {
   log::set_sink(hand_to_python);
   module.def(
       "set_log_level", [](const std::string& level) { log::set_level(log::parse_level(level)); }, py::arg("level"));
-  // What Python knows is gone before what the library keeps.
+  // Python's objects are gone before the library's static data.
   py::module_::import("atexit").attr("register")(py::cpp_function([] { log::set_sink({}); }));
 }
 

@@ -8,7 +8,7 @@ namespace ricochet::python {
 
 namespace {
 
-/// (name of the construction that was taken, its reason, parts of the matrix).
+/// Returns (name of the construction used, its reason, parts of the matrix).
 py::tuple build(const std::string& type, const Numbers& data, const Indices& indices, const Indices& starts, Index size,
                 const Numbers& nodes, std::vector<Index> contact_nodes,
                 const std::map<std::string, double>& parameters) {

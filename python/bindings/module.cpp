@@ -9,10 +9,11 @@ namespace ricochet::python {
 
 namespace {
 
-/// Seconds between looks at Python's signals.
+/// Seconds between checks of Python's signals.
 constexpr double signal_interval = 0.05;
 
-/// ricochet/stopping.py ends Python with the status 128 + N; all else is as Ctrl-C.
+/// Returns the number of a signal: ricochet/stopping.py ends Python with the status 128 + N; other exceptions count as
+/// Ctrl-C.
 int number_of(const py::error_already_set& raised) {
   constexpr int first_status = 128;
   if (!raised.matches(PyExc_SystemExit)) return SIGINT;
@@ -68,7 +69,7 @@ SparseMatrix sparse_matrix(const Numbers& data, const Indices& indices, const In
 
 PYBIND11_MODULE(_core, module) {
   using namespace ricochet::python;
-  module.doc() = "The library of Ricochet, for the package ricochet.";
+  module.doc() = "Bindings of the library of Ricochet, for the package ricochet.";
   module.attr("version") = ricochet::version;
   bind_errors(module);
   bind_log(module);

@@ -37,7 +37,7 @@ const ResultField& field_of(const RunData& run, const std::string& name) {
   std::string names;
   for (const ResultField& field : results_of(run).fields()) names += (names.empty() ? "" : ", ") + field.name;
   throw Error(ErrorKind::invalid_input,
-              fmt::format("{}: there is no field \"{}\"; there are {}", run.directory, name, names));
+              fmt::format("{}: there is no field \"{}\"; choose from {}", run.directory, name, names));
 }
 
 py::array read_field(const RunData& run, Index frame, const std::string& name) {
@@ -56,7 +56,7 @@ py::array read_field(const RunData& run, Index frame, const std::string& name) {
   return give(std::move(values), rows, field.components > 1 ? field.components : 0);
 }
 
-/// meshio's name of a shape.
+/// Returns meshio's name of a shape.
 std::string kind_of(const CellBlock& block) {
   switch (block.shape) {
     case CellShape::interval:
@@ -73,7 +73,7 @@ std::string kind_of(const CellBlock& block) {
   return "";
 }
 
-/// (meshio's name, cells × nodes in VTK's order) of each block.
+/// Returns (meshio's name, cells × nodes in VTK's order) for each block.
 py::list cells_of(const std::vector<CellBlock>& blocks, int degree) {
   py::list result;
   for (const CellBlock& block : blocks) {
@@ -89,7 +89,7 @@ py::list cells_of(const std::vector<CellBlock>& blocks, int degree) {
   return result;
 }
 
-/// (nodes of the body, triangles × 3, cell of each triangle) of what can be seen.
+/// Returns (nodes of the body, triangles × 3, cell of each triangle) of the visible surface.
 py::tuple surface_of(const RunData& run, Index most) {
   const ResultsReader& results = results_of(run);
   Surface surface;
@@ -103,7 +103,8 @@ py::tuple surface_of(const RunData& run, Index most) {
                         give(std::move(surface.cells), triangles));
 }
 
-/// (cells × corners, points × 3, number of the obstacle of each cell) of the obstacles in a frame; None without any.
+/// Returns (cells × corners, points × 3, number of the obstacle of each cell) of the obstacles in a frame; None if
+/// there are none.
 py::object obstacles_of(const RunData& run, std::size_t frame) {
   if (frame >= run.obstacles.size()) return py::none();
   const ObstacleFrame& shown = run.obstacles[frame];

@@ -16,16 +16,16 @@ namespace ricochet::python {
 
 namespace {
 
-/// Seconds between two looks at the progress.
+/// Seconds between two updates of the progress.
 constexpr double progress_interval = 0.1;
 
-/// A session, and what Python wants of it meanwhile.
+/// A session, and its state in Python.
 class OpenSession {
  public:
   OpenSession(Case input, std::vector<std::string> remarks) : session(std::move(input), std::move(remarks)) {}
 
-  /// Calls what may take time without Python's lock. Sessions of several threads work one after the other. Throws
-  /// Error(usage) where another thread is in such a call of this session.
+  /// Calls functions that may take time without Python's lock. Sessions on several threads run one after the other.
+  /// Throws Error(usage) if another thread is in such a call of this session.
   template <class Work>
   auto alone(const Work& work) {
     if (is_busy_.exchange(true)) refuse_other_thread();
@@ -50,10 +50,10 @@ class OpenSession {
   }
   [[nodiscard]] const State& state() { return simulation().state(); }
 
-  /// Throws where a step was not taken although the run has not come to its end: a loop until the end must not go on.
+  /// Throws if a step was refused before the end of the run: a loop until the end must not continue for ever.
   void explain_end() {
     if (!writes || session.is_complete_already() || session.at_end()) return signals.raise();
-    finished = finish();  // throws what has ended the steps; a signal has not
+    finished = finish();  // throws the error that ended the steps; a signal is no error
     signals.raise();
     throw Error(ErrorKind::not_converged, "session: the run has ended");
   }
@@ -64,7 +64,7 @@ class OpenSession {
     return false;
   }
 
-  /// All steps that are left, or until `each` says False.
+  /// Computes all remaining steps, or until `each` returns False.
   void run(const py::object& each, const py::object& progress) {
     const Timer clock;
     double shown = 0.0;
@@ -77,12 +77,12 @@ class OpenSession {
         const py::object answer = each();
         if (py::isinstance<py::bool_>(answer) && !answer.cast<bool>()) return;
       }
-      // A session that writes asks by itself, and leaves a checkpoint.
+      // A session that writes checks for signals itself, and leaves a checkpoint.
       if (!writes && signals() != 0) signals.raise();
     }
   }
 
-  /// So many steps, for measuring what Python costs.
+  /// Computes so many steps, to measure the overhead of Python.
   void take_steps(long count) {
     alone([this, count] {
       for (long k = 0; k < count; ++k) (void)session.step();
@@ -103,7 +103,7 @@ class OpenSession {
 
  private:
   [[noreturn]] static void refuse_other_thread() {
-    throw Error(ErrorKind::usage, "session: another thread is using it; ask when that has come back");
+    throw Error(ErrorKind::usage, "session: another thread is using it; wait until its call has returned");
   }
   void check_thread() const {
     if (is_busy_) refuse_other_thread();
@@ -112,12 +112,12 @@ class OpenSession {
   std::atomic<bool> is_busy_ = false;
 };
 
-/// Of the nodes of cells: those of rigid bodies, which come after them, are shown as obstacles.
+/// Returns the number of nodes of cells; those of rigid bodies follow them and are shown as obstacles.
 Index nodes_of(const SemidiscreteProblem& problem) {
   return problem.cell_node_count();
 }
 
-/// A vector of the state as nodes × dimension.
+/// Returns a vector of the state as nodes × dimension.
 template <class Choose>
 auto nodal(const Choose& choose) {
   return [choose](const py::object& self) {
@@ -127,7 +127,8 @@ auto nodal(const Choose& choose) {
   };
 }
 
-/// Values per dof of nodes × dimension numbers, or of one vector for all nodes; of the other dofs those of `others`.
+/// Returns values per dof from nodes × dimension numbers, or from one vector for all nodes; the other dofs keep those
+/// of `others`.
 Vector dofs_of(OpenSession& open, const Numbers& numbers, Vector others, const char* what) {
   const SemidiscreteProblem& problem = open.problem();
   const Index nodes = nodes_of(problem), d = problem.dimension;
@@ -137,8 +138,8 @@ Vector dofs_of(OpenSession& open, const Numbers& numbers, Vector others, const c
     others.head(nodes * d) = vector_of(numbers);
   } else {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("session: a {} is an array of {} nodes x {} numbers, or {} numbers for all nodes", what,
-                            nodes, d, d));
+                fmt::format("session: a {} must be an array of {} nodes x {} numbers, or {} numbers for every node",
+                            what, nodes, d, d));
   }
   return others;
 }
@@ -225,18 +226,18 @@ template <class Class>
 void bind_looks(Class& session) {
   session
       .def_property_readonly("displacement", nodal([](const State& s) -> const Vector& { return s.displacement; }),
-                             "Of the nodes, nodes x dimension; a view.")
+                             "Displacements of the nodes, nodes x dimension; a view.")
       .def_property_readonly("velocity", nodal([](const State& s) -> const Vector& { return s.velocity; }),
-                             "Of the nodes, nodes x dimension; a view.")
+                             "Velocities of the nodes, nodes x dimension; a view.")
       .def_property_readonly("acceleration", nodal([](const State& s) -> const Vector& { return s.acceleration; }),
-                             "Of the nodes, nodes x dimension; a view.")
+                             "Accelerations of the nodes, nodes x dimension; a view.")
       .def_property_readonly(
           "reactions",
           [](const py::object& self) {
             const Vector& r = self.cast<OpenSession&>().state().forces.normal_reaction;
             return view(r.data(), r.size(), 0, self);
           },
-          "Normal forces of the contact points at the instants of the history (0 where open); a view.")
+          "Normal forces of the contact points at the instants of the history (0 if open); a view.")
       .def_property_readonly(
           "friction_reactions",
           [](const py::object& self) {
@@ -248,7 +249,7 @@ void bind_looks(Class& session) {
           "Friction forces of the contact points along their tangents; a view.")
       .def_property_readonly(
           "contact_status", [](OpenSession& open) { return numbers_of(open.state().contact_status); },
-          "Of the contact points: 0 open, 1 closed without friction, 2 sticking, 3 slipping.")
+          "Status of the contact points: 0 open, 1 closed without friction, 2 sticking, 3 slipping.")
       .def_property_readonly(
           "gaps",
           [](OpenSession& open) {
@@ -258,20 +259,20 @@ void bind_looks(Class& session) {
             const Index count = gaps.size();
             return give(std::move(gaps), count);
           },
-          "Of the contact points, positive where they are apart.")
+          "Gaps of the contact points, positive if open.")
       .def_property_readonly(
           "contact_force", &contact_force,
-          "The force on each node that acted over the last step, nodes x dimension: times the step it is\n"
-          "the change of the momentum. `reactions` are those of the end of the step.")
+          "Force on each node that acted over the last step, nodes x dimension: multiplied by the step it is\n"
+          "the change of the momentum. `reactions` are those at the end of the step.")
       .def_property_readonly("energies", &energies,
-                             "Parts of the energy account, by the names of the columns of the history.")
+                             "Parts of the energy account, with the names of the columns of the history.")
       .def_property_readonly(
-          "time", [](OpenSession& open) { return open.state().time; }, "Of the state.")
+          "time", [](OpenSession& open) { return open.state().time; }, "Time of the state.")
       .def_property_readonly(
-          "step_number", [](OpenSession& open) { return open.state().step; }, "Steps that were taken.")
+          "step_number", [](OpenSession& open) { return open.state().step; }, "Number of completed steps.")
       .def_property_readonly(
           "iterations", [](OpenSession& open) { return open.state().iterations; },
-          "Of the contact solver in the last step.")
+          "Iterations of the contact solver in the last step.")
       .def_property_readonly(
           "at_end",
           [](OpenSession& open) {
@@ -301,7 +302,7 @@ void bind_problem(Class& session) {
             const auto count = static_cast<Index>(numbers.size());
             return give(std::move(numbers), count);
           },
-          "Of the nodes in the mesh.")
+          "Numbers of the nodes in the mesh.")
       .def_property_readonly("contact_points", &contact_places, "Reference positions of the contact points.")
       .def_property_readonly("mass_parts", [](OpenSession& open) { return parts_of(open.problem().mass.whole()); })
       .def_property_readonly("mass_built",
@@ -321,9 +322,8 @@ void bind_session(py::module_& module) {
   py::class_<OpenSession> session(module, "Session");
   session.def(py::init<Case, std::vector<std::string>>(), py::arg("case"), py::arg("remarks"))
       .def("step", &OpenSession::step,
-           "One step. False, and nothing done: the run is at its end; further calls are warned of. Raises "
-           "NotConvergedError; the state is then that\n"
-           "before the step.")
+           "Computes one step. Returns False, without any effect, at the end of the run; further calls cause a\n"
+           "warning. Raises NotConvergedError; the state is then the one before the step.")
       .def("_run", &OpenSession::run, py::arg("each"), py::arg("progress"))
       .def("_run_steps", &OpenSession::take_steps)
       .def("_write_to", &write_to)
@@ -340,7 +340,7 @@ void bind_session(py::module_& module) {
       .def("build", [](OpenSession& open) { (void)open.problem(); })
       .def(
           "start", [](OpenSession& open) { (void)open.simulation(); },
-          "Finds the state at t = 0 and factorizes, unless that is done.")
+          "Computes the state at t = 0 and factorizes, unless this is already done.")
       .def(
           "set_load",
           [](OpenSession& open, const Numbers& force) {
@@ -360,19 +360,20 @@ void bind_session(py::module_& module) {
           [](OpenSession& open, const std::string& obstacle, const Numbers& velocity,
              const std::optional<Numbers>& rotation_rate) {
             const Vector v = vector_of(velocity), w = rotation_rate ? vector_of(*rotation_rate) : Vector();
-            open.has_problem = false;  // the first time it is built anew
+            open.has_problem = false;  // the first call builds it anew
             open.alone([&] { open.session.set_obstacle_velocity(obstacle, v, w); });
           },
           py::arg("obstacle"), py::arg("velocity"), py::arg("rotation_rate") = py::none(),
-          "From now on this obstacle moves with a constant velocity, and a constant rate of its rotation vector where\n"
-          "the case gives it a rotation, from where it is. The first call comes before the session starts.")
+          "Moves an obstacle from its present position, with a constant velocity and, if the case defines a rotation\n"
+          "for it, a constant rate of its rotation vector. The first call must precede the start of the session.")
       .def_property_readonly(
-          "warnings", [](const OpenSession& open) { return open.session.warnings(); }, "What was warned of so far.")
+          "warnings", [](const OpenSession& open) { return open.session.warnings(); }, "Warnings so far.")
       .def_property_readonly(
-          "steps", [](const OpenSession& open) { return open.session.steps(); }, "Steps from the start to the end.")
+          "steps", [](const OpenSession& open) { return open.session.steps(); },
+          "Number of steps from the start to the end.")
       .def_property_readonly("end", [](OpenSession& open) {
         const double end = open.session.end();
-        // The last step ends at or after it, but for rounding: a loop until the end must come there.
+        // The last step ends at or after the end, except for rounding: a loop until the end must terminate.
         if (open.session.is_complete_already()) return end;
         (void)open.simulation();
         return open.session.at_end() ? std::min(end, open.session.time()) : end;

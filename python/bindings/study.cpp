@@ -8,7 +8,7 @@ namespace ricochet::python {
 
 namespace {
 
-/// (names of the columns, rows, notes, warnings, runs that are done).
+/// Returns (names of the columns, rows, notes, warnings, number of completed runs).
 py::tuple parts_of_results(const StudyResults& results) {
   return py::make_tuple(results.table.names(), results.table.rows, results.notes, results.warnings, results.done);
 }

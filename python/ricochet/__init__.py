@@ -1,4 +1,4 @@
-"""Ricochet: elastic bodies that strike, rest on, slide along and leave obstacles.
+"""Ricochet: dynamics of elastic bodies that strike, rest on, slide along and leave obstacles.
 
     import ricochet as rc
     run = rc.run("case.toml", "out/a", {"time.step": 1e-4})

@@ -1,4 +1,4 @@
-"""`python3 -m ricochet` is the program."""
+"""Runs the program `ricochet`, for `python3 -m ricochet`."""
 
 import os
 import sys

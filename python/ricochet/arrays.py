@@ -1,4 +1,5 @@
-"""Arrays of what callers give. What is no number is refused by name: numpy would make one of None, masks and complex numbers."""
+"""Conversion of arguments to arrays. Values that are not real numbers cause an error that names the argument; numpy would convert
+None, masks and complex numbers."""
 
 from numbers import Real
 
@@ -11,17 +12,17 @@ def _array(values, what):
     try:
         array = numpy.asarray(values)
     except (TypeError, ValueError, OverflowError) as problem:
-        raise InputError(f"{what}: this is no array: {problem}") from None
+        raise InputError(f"{what}: the values do not form an array: {problem}") from None
     if numpy.ma.is_masked(values):
-        raise InputError(f"{what}: some numbers are masked; fill them in, or leave them out")
+        raise InputError(f"{what}: some numbers are masked; fill them in or leave them out")
     return array
 
 
 def numbers(values, what):
-    """As floats."""
+    """Returns values as an array of floats."""
     array = _array(values, what)
     if array.dtype.kind not in "biuf" and not (array.dtype.kind == "O" and all(isinstance(one, Real) for one in array.flat)):
-        raise InputError(f"{what}: real numbers are needed, not {array.dtype}")
+        raise InputError(f"{what}: real numbers are required, not {array.dtype}")
     try:
         return array.astype(float, copy=False)
     except (TypeError, ValueError, OverflowError) as problem:
@@ -29,12 +30,12 @@ def numbers(values, what):
 
 
 def whole_numbers(values, what, counted):
-    """As a copy. `counted`: what they are numbers of."""
+    """Returns a copy of the values as an array of integers. `counted`: name of the things that they number, for messages."""
     array = _array(values, what)
     if array.size == 0:
         return numpy.zeros(array.shape, dtype=numpy.int64)
     if array.dtype.kind == "b":
-        raise InputError(f"{what}: numbers of {counted} are whole numbers, not bool; numpy.flatnonzero(mask) has those of a mask")
+        raise InputError(f"{what}: numbers of {counted} must be integers, not bool; convert a mask with numpy.flatnonzero(mask)")
     if array.dtype.kind not in "iu":
-        raise InputError(f"{what}: numbers of {counted} are whole numbers, not {array.dtype}")
+        raise InputError(f"{what}: numbers of {counted} must be integers, not {array.dtype}")
     return numpy.array(array)

@@ -1,4 +1,4 @@
-"""Cases: from a file, or made in Python from dictionaries, with the same checks and messages."""
+"""Cases: read from a file or made from dictionaries, with the same checks and messages."""
 
 import contextlib
 import json
@@ -15,17 +15,17 @@ from .mesh import Mesh
 
 FIRST_LINE = "# A case of a program in Python."
 
-# Keys that name files. In a dictionary they are relative to the folder in which Python works.
+# Keys that name files. Paths in a dictionary are relative to Python's working directory.
 FILE_KEYS = ("file", "table")
 
 
 def toml_value(value, path):
-    """A value as TOML writes it."""
+    """Returns a value in the notation of TOML."""
     if isinstance(value, (bool, numpy.bool_)):
         return "true" if value else "false"
     if isinstance(value, (int, numpy.integer)):
         if not -2**63 <= value < 2**63:
-            raise InputError(f"{places.entry(path)}: whole numbers in a case have 64 bits; this one is larger")
+            raise InputError(f"{places.entry(path)}: integers in a case are limited to 64 bits; this one is larger")
         return str(int(value))
     if isinstance(value, (float, numpy.floating)):
         number = float(value)
@@ -40,8 +40,8 @@ def toml_value(value, path):
         return "[" + ", ".join(toml_value(entry, path) for entry in value) + "]"
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{toml_key(key)} = {toml_value(entry, path)}" for key, entry in value.items()) + " }"
-    raise InputError(f"{places.entry(path)}: a value of type {type(value).__name__} cannot be in a case; numbers, texts, "
-                     "booleans, lists, arrays and dictionaries can")
+    raise InputError(f"{places.entry(path)}: a value of type {type(value).__name__} is not allowed in a case; use numbers, "
+                     "strings, booleans, lists, arrays or dictionaries")
 
 
 def toml_text(text):
@@ -51,7 +51,7 @@ def toml_text(text):
 
 def toml_key(key):
     if not isinstance(key, str):
-        raise InputError(f"the key {key!r} of a case is no text")
+        raise InputError(f"the key {key!r} of a case is not a string")
     return key if key and all(c.isascii() and (c.isalnum() or c in "-_") for c in key) else toml_text(key)
 
 
@@ -60,7 +60,7 @@ def is_list_of_tables(value):
 
 
 class Writer:
-    """Writes nested dictionaries as TOML, a line per entry, and remembers which."""
+    """Writes nested dictionaries as TOML, one line per entry, and records the entry of each line."""
 
     def __init__(self):
         self.lines, self.entries = [], []
@@ -85,7 +85,7 @@ class Writer:
 
 
 def with_whole_paths(table, folder):
-    """The same with paths of files that hold in any folder."""
+    """Returns a copy of a table whose file paths are absolute."""
     result = {}
     for key, value in table.items():
         if isinstance(value, Mapping):
@@ -99,22 +99,22 @@ def with_whole_paths(table, folder):
 
 
 def change_texts(changes):
-    """Changes of a case ({"time.step": 1e-4}, or texts as --set takes them) as the program has them."""
+    """Returns changes of a case ({"time.step": 1e-4}, or strings in the form of --set) as strings in the form of --set."""
     if changes is None:
         return []
     if isinstance(changes, str):
-        raise UsageError(f'changes are a dictionary, {{"time.step": 1e-4}}, or a list of texts; not the text {changes!r}')
+        raise UsageError(f'changes must be a dictionary, {{"time.step": 1e-4}}, or a list of strings, not the string {changes!r}')
     if not isinstance(changes, Mapping):
         return [str(change) for change in changes]
     return [f"{key}={toml_value(value, (key,))}" for key, value in changes.items()]
 
 
 class Case:
-    """What is to be simulated.
+    """Definition of a simulation.
 
-    `source` is the path of a case file or a dictionary of its sections. `mesh`: the body, in place of a file. `changes`:
-    values by key path, as --set takes them: {"time.step": 1e-4, "contact.0.friction": 0.2}. The case is checked as a whole;
-    InputError has every problem that was found.
+    `source` is the path of a case file or a dictionary of its sections. `mesh` is the body, instead of a mesh file.
+    `changes` are values by key path, as for --set: {"time.step": 1e-4, "contact.0.friction": 0.2}. The case is checked as a
+    whole; InputError lists every problem found.
     """
 
     def __init__(self, source, changes=None, *, mesh=None):
@@ -129,27 +129,27 @@ class Case:
             try:
                 self._read_dictionary(source)
             except RecursionError:
-                raise InputError("case: a dictionary, or a list, contains itself or is too deep") from None
+                raise InputError("case: a dictionary or list contains itself or is nested too deeply") from None
         elif isinstance(source, (str, os.PathLike)):
             if mesh is not None:
-                raise UsageError("a case from a file names its mesh; give `mesh` with a dictionary, or change mesh.file")
+                raise UsageError("a case file names its own mesh; use `mesh` with a dictionary, or change mesh.file")
             self._core, self.warnings = _core.read_case(library_path(source, "case"), self.changes)
         else:
-            raise UsageError(f"a case is a path or a dictionary, not a {type(source).__name__}")
+            raise UsageError(f"a case must be a path or a dictionary, not a {type(source).__name__}")
 
     def _read_dictionary(self, source):
         table = with_whole_paths(source, os.getcwd())
         if self.mesh is not None:
             if not isinstance(self.mesh, Mesh):
-                raise UsageError("mesh: a ricochet.Mesh is needed; Mesh.from_meshio and Mesh.from_gmsh make one")
+                raise UsageError("mesh: a ricochet.Mesh is required; make one with Mesh.from_meshio or Mesh.from_gmsh")
             section = dict(table.get("mesh", {}))
             if "file" in section:
-                raise UsageError('case["mesh"]["file"]: the mesh is given already, as `mesh`')
+                raise UsageError('case["mesh"]["file"]: the argument `mesh` already defines the mesh; remove one of the two')
             table["mesh"] = {"file": self.mesh.path, **section}
         self.dictionary = source
         self._table = table
         writer = Writer()
-        writer.line(FIRST_LINE, ())  # what is said of the whole case stands here
+        writer.line(FIRST_LINE, ())  # the line of messages about the whole case
         writer.table((), table, ())
         self._lines = places.Lines(writer.entries)
         self.text = "\n".join(writer.lines) + "\n"
@@ -157,7 +157,7 @@ class Case:
 
     @property
     def path(self):
-        """Of its file; of a dictionary, the name that messages have for it."""
+        """Path of the case file; for a dictionary, its name in messages."""
         return self._core.path
 
     @property
@@ -166,13 +166,13 @@ class Case:
 
     @property
     def values(self):
-        """All values that hold, defaults and changes included, as texts by key path."""
+        """All values in effect, including defaults and changes, as strings by key path."""
         return self._core.values
 
     def write(self, folder, name="case.toml"):
-        """Writes the case, and a mesh that was given as arrays, into a folder. Returns the path of the case file."""
+        """Writes the case, and a mesh made from arrays, to a folder. Returns the path of the case file."""
         if self.text is None:
-            raise UsageError(f"{self.path} is a file already")
+            raise UsageError(f"{self.path} is already a file; only cases from dictionaries can be written")
         with file_access():
             os.makedirs(folder, exist_ok=True)
         path = os.path.join(path_of(folder, "write"), name)
@@ -185,21 +185,21 @@ class Case:
         return path
 
     def refuse_to_replace(self, folder):
-        """Raises FileAccessError where a file of somebody else has the name of one that write() would write."""
+        """Raises FileAccessError if write() would replace a file that no earlier run has written."""
         own = os.path.join(folder, "case.toml")
         with file_access():
             if os.path.isfile(own):
                 with open(own, encoding="utf-8", errors="replace") as file:
                     if file.readline().rstrip() == FIRST_LINE:
                         return
-        # A program may have been ended before it had written its case.
+        # An earlier program may have been stopped before it wrote its case.
         with contextlib.suppress(OSError, ValueError, AttributeError):
             with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
                 if json.load(file).get("case_path") == os.path.abspath(own):
                     return
         for name in ("case.toml",) if self.mesh is None else ("case.toml", "case.msh"):
             if os.path.isfile(os.path.join(folder, name)):
-                raise FileAccessError(f"{os.path.join(folder, name)}: no program has written this file, and the case of this run "
+                raise FileAccessError(f"{os.path.join(folder, name)}: no earlier run has written this file, and the case of this run "
                                       "would replace it; choose another directory, or rename the file")
 
     def check(self):

@@ -1,4 +1,4 @@
-"""Exceptions. Their texts say what is wrong, where (file:line:column, or the entry of a dictionary), and what to do."""
+"""Exceptions. Their messages state the problem, its position (file:line:column, or the entry of a dictionary) and a remedy."""
 
 import difflib
 import re
@@ -8,7 +8,7 @@ from . import places
 
 
 class Place(NamedTuple):
-    """Where something stands in a file. Columns count from 1."""
+    """Position in a file. Columns count from 1."""
 
     file: str
     line: int
@@ -16,7 +16,7 @@ class Place(NamedTuple):
 
 
 class Error(Exception):
-    """What a user can meet. `exit_status` is that of the program for the same problem."""
+    """Base class of all errors of Ricochet. `exit_status` is the exit status of the program for the same problem."""
 
     exit_status = 1
 
@@ -26,25 +26,25 @@ class Error(Exception):
 
     @property
     def places(self) -> List[Place]:
-        """The places in files that the message names."""
+        """Positions in files that the message names."""
         found = re.finditer(r"^(.*?\.[A-Za-z0-9]+):(\d+):(\d+): ", self.message, re.MULTILINE)
         return [Place(match.group(1), int(match.group(2)), int(match.group(3))) for match in found]
 
 
 class UsageError(Error, ValueError):
-    """Wrong use of a function: what does not fit together."""
+    """Wrong use of a function: arguments or calls that do not fit together."""
 
     exit_status = 1
 
 
 class InputError(Error, ValueError):
-    """A case, a mesh or a file of results that is not valid."""
+    """An invalid case, mesh or file of results."""
 
     exit_status = 2
 
 
 class NotConvergedError(Error, ArithmeticError):
-    """A step found no solution. The state is that before the step."""
+    """No solution of a step was found. The state is the one before the step."""
 
     exit_status = 3
 
@@ -68,11 +68,11 @@ KINDS = {kind.exit_status: kind for kind in (UsageError, InputError, NotConverge
 
 
 def from_core(status, message):
-    """The exception for an error of the library."""
+    """Returns the exception for an error of the library."""
     return KINDS.get(status, Error)(places.translate(message))
 
 
 def unknown_name(what, name, known):
-    """The KeyError of a column or a field that is not there: it lists the nearest of those that are, or all."""
+    """Returns the KeyError for an unknown column or field, which lists similar names, or all names if none is similar."""
     near = difflib.get_close_matches(str(name), known, 3) or known
-    return KeyError(f'there is no {what} "{name}"; there is {", ".join(near)}')
+    return KeyError(f'there is no {what} "{name}"; choose from {", ".join(near)}')

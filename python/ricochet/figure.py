@@ -1,7 +1,7 @@
-"""Draws the figures that the program and the Python package describe. Needs matplotlib.
+"""Draws the figures that the program and the Python package describe. Requires matplotlib.
 
-As a script: figure.py FORMAT OUTPUT < DESCRIPTION. It ends with status 3 where matplotlib is missing, and with 5 where ffmpeg
-is, which makes films. The same description gives the same bytes.
+As a script: figure.py FORMAT OUTPUT < DESCRIPTION. It ends with status 3 if matplotlib is missing, and with status 5 if ffmpeg,
+which makes .mp4 files, is missing. The same description produces the same bytes.
 """
 
 import json
@@ -21,10 +21,10 @@ except ImportError as problem:
     sys.exit(3)
 
 CENTIMETRE = 1 / 2.54
-# Okabe and Ito's, which people with any kind of colour vision tell apart; the same as in reports.
+# Colours of Okabe and Ito, distinguishable with any kind of colour vision; the same as in reports.
 ALONE = "#1b1f24"
 COLOURS = ["#c8460a", "#0068b0", "#00785a", "#a8519a", "#8a6d00", "#2a8fbf", "#6b4c9a", "#5b5b5b"]
-# More runs than colours: each time the colours come again the lines have another pattern.
+# With more runs than colours, the colours repeat with another pattern of the lines.
 PATTERNS = ["-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (7, 2, 1.5, 2)), (0, (7, 2, 1.5, 2, 1.5, 2)), (0, (12, 3)), (0, (3, 3)), (0, (1.5, 4))]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
 
@@ -37,8 +37,8 @@ STYLE = {
 
 
 def widths(panel):
-    """Of smooth curves that may lie upon one another those below are wider, and those that rattle are thin. More than
-    three are alike: no width tells which lies below, and one that differs would look as if it meant something."""
+    """Returns the line widths. Smooth curves, which may coincide, are wider the further below they lie; rattling curves are thin.
+    More than three curves have one width: it could not show which lies below, and differences would seem to have a meaning."""
     if len(panel["curves"]) > 3:
         return [1.2] * len(panel["curves"])
     result, above = [], 0
@@ -46,12 +46,12 @@ def widths(panel):
         result.append(0.6 if curve["rattles"] else 0.9 + 0.9 * above)
         above += not curve["rattles"]
     if panel["y_label"] == "total energy":
-        return [1.4 if len(result) > 1 else 0.8] * len(result)  # and the one on top is dashed
+        return [1.4 if len(result) > 1 else 0.8] * len(result)  # and the top curve is dashed
     return result[::-1] if len(result) > 1 else [0.8]
 
 
 def literal(text):
-    """A name or title as it is: no mathematics, and shown in a legend also where it is empty or begins with "_"."""
+    """Returns a name or title for literal display: without mathematics, and in a legend even if empty or with a leading "_"."""
     text = text.replace("$", r"\$")
     return f" {text}" if not text or text.startswith("_") else text
 
@@ -64,14 +64,14 @@ def in_powers(value):
 
 
 def handle_length(count):
-    """Long enough for a pattern to be told from the others."""
+    """Returns a length that suffices to distinguish the patterns."""
     return 2.0 if count <= len(COLOURS) else 3.5
 
 
 def draw_curves(axes, panel, several):
     count = len(panel["curves"])
     for i, (curve, width) in enumerate(zip(panel["curves"], widths(panel))):
-        # The one on top lets that below be seen, where they are the same.
+        # Where curves coincide, the one below shows through the dashes of the top curve.
         dashed = 1 < count <= 3 and i == count - 1 and panel["y_label"] == "total energy"
         colour = COLOURS[curve["run"] % len(COLOURS)] if several else ALONE
         pattern = PATTERNS[curve["run"] // len(COLOURS) % len(PATTERNS)]
@@ -97,7 +97,7 @@ def draw_curves(axes, panel, several):
 
 
 def draw_legend(axes, panel):
-    """Inside of the axes, where the curves leave room for short names."""
+    """Draws the legend inside the axes, where the curves leave room for short names."""
     handles, labels = axes.get_legend_handles_labels()
     order = sorted(range(len(handles)), key=lambda i: panel["curves"][i]["run"])
     legend = axes.legend([handles[i] for i in order], [labels[i] for i in order], frameon=False, handlelength=handle_length(len(order)))
@@ -105,7 +105,7 @@ def draw_legend(axes, panel):
 
 
 def borders(places):
-    """Half way between places, and as far beyond the ends."""
+    """Returns the midpoints between positions, and one point as far beyond each end."""
     between = [(a + b) / 2 for a, b in zip(places, places[1:])]
     return [2 * places[0] - between[0], *between, 2 * places[-1] - between[-1]]
 
@@ -136,10 +136,10 @@ def draw_map(figure, axes, panel, is_first):
 
 
 def draw_slopes(axes, panel):
-    """Guides of whole orders that begin in one place, below all curves."""
+    """Draws guides of integer orders from a common point, below all curves."""
     points = [point for curve in panel["curves"] for point in zip(curve["x"], curve["y"])]
     left, right = min(x for x, _ in points), max(x for x, _ in points)
-    right = left * (right / left) ** 0.5  # so that they leave the curves most of the panel
+    right = left * (right / left) ** 0.5  # leaves most of the panel to the curves
     start = 0.5 * min(y * (left / min(x, right)) ** order for x, y in points if x <= 2.5 * right for order in panel["slopes"])
     for order in panel["slopes"]:
         end = start * (right / left) ** order
@@ -149,7 +149,7 @@ def draw_slopes(axes, panel):
 
 
 def name_steps(axes, panel):
-    """On a logarithmic scale the values themselves are the ticks, as far as there is room for them."""
+    """Uses the values themselves as ticks of a logarithmic scale, if there is room for them."""
     values = sorted({x for curve in panel["curves"] for x in curve["x"]})
     axes.xaxis.set_minor_locator(NullLocator())
     if len(values) <= 8 and all(b / a > 1.3 for a, b in zip(values, values[1:])):
@@ -162,7 +162,7 @@ def name_steps(axes, panel):
 
 
 def name_decades(axis):
-    """Of less than two decades 1, 2 and 5 of each."""
+    """Labels the decades of an axis, and 2 and 5 times each if there are at most two."""
     low, high = axis.get_view_interval()
     axis.set_major_locator(LogLocator(subs=(1.0,) if high > 100 * low else (1.0, 2.0, 5.0)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: in_powers(value)))
@@ -170,7 +170,7 @@ def name_decades(axis):
 
 
 def folded(label):
-    """A long name on two lines."""
+    """Returns a label, on two lines if it is long."""
     if len(label) < 26:
         return literal(label)
     middle = len(label) // 2
@@ -188,11 +188,11 @@ def labels_of(panels):
 
 
 def draw_lines(axes, panel, labels):
-    """`labels`: of the lines of all panels, whose places give colours and signs."""
+    """Draws the lines of a panel. `labels`: labels of the lines of all panels; their order determines colours and markers."""
     curves = panel["curves"]
     for curve in curves:
         i = labels.index(curve["label"])
-        # What has no order is not joined, and what has the same place stands side by side.
+        # Categories have no order: their points are not joined, and those of one category are side by side.
         x = [x + 0.08 * (i - (len(labels) - 1) / 2) for x in curve["x"]] if panel["categories"] else curve["x"]
         axes.plot(x, curve["y"], zorder=2, **look(i, labels, panel))
     axes.set_xlabel(literal(panel["x_label"]))
@@ -217,19 +217,19 @@ def draw_lines(axes, panel, labels):
 
 
 def legend_width(labels):
-    """Of one column, cm."""
+    """Returns the width of one column of a legend in cm."""
     return 1.4 + 0.16 * max(map(len, labels))
 
 
 def curve_lines(panels):
-    """The lines of runs, by their names, in the order of the runs."""
+    """Returns the lines and labels of runs for a legend, in the order of the runs."""
     runs = sorted({(curve["run"], curve["label"]) for panel in panels for curve in panel.get("curves", [])})
     return [Line2D([], [], color=COLOURS[run % len(COLOURS)], ls=PATTERNS[run // len(COLOURS) % len(PATTERNS)], lw=1.2) for run, _ in runs], \
         [label for _, label in runs]
 
 
 def common_legend(panels, panel_width):
-    """Lines and names of a legend for all panels: of studies always, of runs where their names would hide the curves."""
+    """Returns lines and labels of a legend for all panels: for studies always, for runs if their names would hide the curves."""
     if panels[0]["kind"] == "lines":
         labels = labels_of(panels)
         return [Line2D([], [], **look(i, labels, panels[0])) for i in range(len(labels))], labels
@@ -239,8 +239,8 @@ def common_legend(panels, panel_width):
 
 
 def add_head(figure, handles, labels, title, width, height, may_grow):
-    """Title and legend above all panels: there is no room in them that is free for sure. The figure grows by it, unless
-    somebody has said how large it is."""
+    """Adds title and legend above all panels, since no space inside them is certainly free. The figure grows by their height,
+    unless its size is prescribed."""
     if labels == [""]:
         labels = []
     columns = max(1, min(len(labels), int((width - 0.5) / legend_width(labels)))) if labels else 1
@@ -258,14 +258,14 @@ def add_head(figure, handles, labels, title, width, height, may_grow):
 
 
 def overlap(axes, renderer):
-    """Whether the names of ticks below the axes touch each other."""
+    """Returns whether labels of ticks below the axes touch each other."""
     boxes = sorted((label.get_window_extent(renderer) for label in axes.get_xticklabels() if label.get_text() and label.get_visible()),
                    key=lambda box: box.x0)
     return any(a.x1 + 0.3 * a.height > b.x0 for a, b in zip(boxes, boxes[1:]))
 
 
 def spread_ticks(figure, grid):
-    """What has no room side by side is left out, or stands aslant where it is a word."""
+    """Reduces the number of tick labels that overlap, or rotates them if they are words."""
     canvas = figure.canvas if hasattr(figure.canvas, "get_renderer") else FigureCanvasAgg(figure)
     renderer = canvas.get_renderer()
     for bins in (3, 2):
@@ -281,7 +281,7 @@ def spread_ticks(figure, grid):
 
 
 def draw(description):
-    """The figure of a description (a dictionary). Settings that a user has for other figures change nothing, and stay."""
+    """Returns the figure of a description (a dictionary). A user's settings for other figures have no effect on it, and stay."""
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         plt.rcParams.update(STYLE)
@@ -317,7 +317,7 @@ def draw_panels(description):
 
 
 def draw_scene(description, form, output):
-    """A body as it moves; scene.py is beside this script. Ends with status 5 where a program is missing for the format."""
+    """Draws a moving body with scene.py, which is beside this script. Exits with status 5 if the format requires a missing program."""
     import scene
 
     try:
@@ -335,7 +335,7 @@ def main(form, output):
     if "frames" in description:
         return draw_scene(description, form, output)
     figure = draw_panels(description)
-    # What a file says about itself must not change from day to day.
+    # Metadata must not change from day to day.
     metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[form]
     figure.savefig(output, format=form, metadata=metadata)
 

@@ -1,4 +1,4 @@
-"""Figures and reports of runs, drawn by the code that `ricochet plot` and `ricochet report` have."""
+"""Figures and reports of runs, drawn by the code of `ricochet plot` and `ricochet report`."""
 
 import json
 import os
@@ -14,19 +14,19 @@ from .program import shared_file
 def directories_of(runs):
     runs = [runs] if isinstance(runs, (str, bytes, os.PathLike)) or hasattr(runs, "directory") else runs
     if not isinstance(runs, Iterable):
-        raise UsageError(f"runs, or their directories, are needed, not {runs!r}")
-    directories = [library_path(getattr(run, "directory", run), "a run") for run in runs]
+        raise UsageError(f"runs or their directories are required, not {runs!r}")
+    directories = [library_path(getattr(run, "directory", run), "run") for run in runs]
     if not directories:
-        raise UsageError("there is no run to be shown")
+        raise UsageError("the list of runs is empty; name at least one run")
     return directories
 
 
 def plot(runs, *what, labels=None, title="", time=None, logarithmic=False, size=None):
-    """A matplotlib figure of one run or several, or of one study.
+    """Returns a matplotlib figure of one or more runs, or of one study.
 
-    `what`, a panel for each: "energy", "force", "momentum", "pressure", "pressure-map", "probe:NAME.COLUMN" or any column of
-    the history (of a study "COLUMN-against-KEY", "order", "work-precision"). Without any: energy and force. `labels`: of the
-    runs. `time`: the part that is shown, (first, last). `size`: width and height in cm.
+    Each argument in `what` is one panel: "energy", "force", "momentum", "pressure", "pressure-map", "probe:NAME.COLUMN" or any
+    column of the history; for a study "COLUMN-against-KEY", "order" or "work-precision". The default is energy and force.
+    `labels`: names of the runs. `time`: the interval shown, (first, last). `size`: width and height in cm.
     """
     from . import figure
 
@@ -34,7 +34,7 @@ def plot(runs, *what, labels=None, title="", time=None, logarithmic=False, size=
     width, height = size or (0.0, 0.0)
     if any(_core.holds_study(directory) for directory in directories):
         if len(directories) > 1 or labels or time:
-            raise UsageError("plot: a figure of a study shows this study alone, without labels and time")
+            raise UsageError("plot: a figure of a study shows one study alone; omit other runs, `labels` and `time`")
         return figure.draw(json.loads(_core.describe_study(directories[0], list(what), title, logarithmic, width, height)))
     text = _core.describe_runs(directories, list(what) or ["energy", "force"], list(labels or []), title, time, logarithmic, width,
                                height)
@@ -42,7 +42,7 @@ def plot(runs, *what, labels=None, title="", time=None, logarithmic=False, size=
 
 
 def write_report(runs, path):
-    """Writes the report of one run or several for a browser: one file with all that it needs. Returns its path."""
+    """Writes the report of one or more runs for a browser, a single self-contained file. Returns its path."""
     html, thinned = _core.make_report(directories_of(runs), shared_file("viewer.html"))
     for sentence in thinned:
         logger.info("%s", sentence)

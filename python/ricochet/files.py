@@ -1,4 +1,4 @@
-"""Files that Python writes and reads itself."""
+"""Files that the package reads and writes in Python."""
 
 import os
 from contextlib import contextmanager
@@ -15,7 +15,7 @@ def _error_of(problem, path):
 
 @contextmanager
 def file_access(path=None):
-    """Within it, what Python says of files that cannot be read or written is a FileAccessError."""
+    """Context in which an OSError, for a file that cannot be read or written, becomes a FileAccessError."""
     try:
         yield
     except OSError as problem:
@@ -25,28 +25,28 @@ def file_access(path=None):
 
 
 def path_of(path, what):
-    """A path as text. Raises UsageError where it is none."""
+    """Returns a path as a string. Raises UsageError if it is not a path."""
     try:
         text = os.fsdecode(path)
     except TypeError:
-        raise UsageError(f"{what}: a path is needed, not {path!r}") from None
+        raise UsageError(f"{what}: a path is required, not {path!r}") from None
     if not text or "\0" in text:
-        raise UsageError(f"{what}: {text!r} is no path")
+        raise UsageError(f"{what}: {text!r} is not a path")
     return text
 
 
 def library_path(path, what):
-    """One that the library is given, whose messages are UTF-8."""
+    """Returns a path for the library, whose messages are UTF-8. Raises UsageError if the path is not UTF-8."""
     text = path_of(path, what)
     try:
         text.encode()
     except UnicodeEncodeError:
-        raise UsageError(f"{what}: the name {text!r} is not UTF-8; choose another one") from None
+        raise UsageError(f"{what}: the name {text!r} is not UTF-8; choose another name") from None
     return text
 
 
 def write_whole(path, content):
-    """Writes bytes: the file is there whole or as it was. A device, or a pipe, is written to; it is not replaced."""
+    """Writes bytes to a file, which on failure stays as it was. A device or a pipe is written to, not replaced."""
     with file_access(path):
         path = os.path.realpath(path)
         if os.path.exists(path) and not os.path.isfile(path):

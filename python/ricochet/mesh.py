@@ -1,4 +1,4 @@
-"""Meshes from arrays: for users of gmsh's and meshio's Python interfaces, who then need no file."""
+"""Meshes from arrays, for example those of the Python interfaces of Gmsh and meshio, without a file."""
 
 import os
 import shutil
@@ -18,7 +18,7 @@ GMSH_KINDS = {kind.gmsh: name for name, kind in TYPES.items()}
 
 
 def in_our_order(kind, nodes):
-    """From Gmsh's order of a cell's nodes to meshio's."""
+    """Reorders the nodes of cells from Gmsh's order to meshio's."""
     result = numpy.empty_like(nodes)
     result[:, TYPES[kind].order] = nodes
     return result
@@ -28,20 +28,20 @@ class Mesh:
     """Nodes, cells and named groups.
 
     `points`: nodes x 2 or 3. `cells`: a list of (kind, cells x nodes) with meshio's names of kinds ("triangle", "tetra10",
-    ...) and VTK's order of nodes, or a dictionary of these. `groups`: by name, one of
+    ...) and VTK's order of nodes, or a dictionary of these. `groups`: a dictionary with one of the following for each name:
 
     - {kind: cells x nodes}: facets (or cells), by their nodes;
-    - an array of numbers of nodes: all boundary facets whose nodes are among them;
+    - an array of node numbers: all boundary facets whose nodes are among them;
     - {number of a block of `cells`: numbers of its cells}.
 
-    The mesh is checked when a case uses it, as one from a file is.
+    The mesh is checked when a case uses it, like a mesh from a file.
     """
 
     def __init__(self, points, cells, groups=None):
         mesh = FileMesh()
         points = numbers(points, "mesh: points")
         if points.ndim != 2 or points.shape[1] not in (2, 3) or len(points) == 0:
-            raise InputError(f"mesh: points are an array of nodes x 2 or 3, not of shape {points.shape}")
+            raise InputError(f"mesh: points must be an array of nodes x 2 or 3, not of shape {points.shape}")
         if not numpy.isfinite(points).all():
             first = int(numpy.argwhere(~numpy.isfinite(points).all(axis=1))[0, 0])
             raise InputError(f"mesh: point {first} is not finite: {points[first]}")
@@ -52,20 +52,20 @@ class Mesh:
         try:
             listed = [(kind, nodes) for kind, nodes in (cells.items() if isinstance(cells, Mapping) else cells)]
         except (TypeError, ValueError):
-            raise InputError("mesh: cells are a dictionary, {kind: cells x nodes}, or a list of (kind, cells x nodes)") from None
+            raise InputError("mesh: cells must be a dictionary, {kind: cells x nodes}, or a list of (kind, cells x nodes)") from None
         for kind, nodes in listed:
             self._add_block(kind, nodes, "cells")
         if not any(len(block.ids) and block.dimension >= 2 for block in mesh.blocks):
             raise InputError("mesh: there are no cells of dimension 2 or 3")
         if not isinstance(groups or {}, Mapping):
-            raise InputError("mesh: groups are a dictionary of what belongs to each name")
+            raise InputError("mesh: groups must be a dictionary, {name: members}")
         count = len(mesh.blocks)
         for name, members in (groups or {}).items():
             self._add_group(str(name), members, count)
 
     def _add_block(self, kind, nodes, what):
         if not isinstance(kind, str):
-            raise InputError(f"mesh: {what}: the kind {kind!r} is no name; kinds are {', '.join(TYPES)}")
+            raise InputError(f"mesh: {what}: the kind {kind!r} is not a name; kinds are {', '.join(TYPES)}")
         nodes = whole_numbers(nodes, f"mesh: {what}", "nodes")
         wanted = len(TYPES[kind].places) if kind in TYPES else None
         if nodes.size == 0:
@@ -86,11 +86,11 @@ class Mesh:
 
     def _add_group(self, name, members, blocks):
         if any(not c.isprintable() and not "\udc80" <= c <= "\udcff" for c in name):
-            raise InputError(f"mesh: the name of the group {name!r} has characters that files of meshes cannot have")
+            raise InputError(f"mesh: the name of the group {name!r} has characters that mesh files cannot contain; rename the group")
         if not isinstance(members, Mapping):
             nodes = whole_numbers(members, f'mesh: group "{name}"', "nodes")
             if nodes.ndim != 1:
-                raise InputError(f'mesh: group "{name}": numbers of nodes, or a dictionary, are needed')
+                raise InputError(f'mesh: group "{name}": a one-dimensional array of node numbers, or a dictionary, is required')
             if nodes.size and (nodes.min() < 0 or nodes.max() >= len(self._mesh.points)):
                 raise InputError(f'mesh: group "{name}": there is no node {nodes.max() if nodes.min() >= 0 else nodes.min()}')
             self._mesh.node_groups.append((name, nodes.astype(numpy.int64)))
@@ -111,9 +111,9 @@ class Mesh:
 
     @classmethod
     def from_meshio(cls, source):
-        """Of a meshio.Mesh: its cell sets, point sets, and the names that gmsh's physical groups have there."""
+        """Makes a Mesh from a meshio.Mesh. Its cell sets, its point sets and Gmsh's physical groups, by name, become groups."""
         if not all(hasattr(source, name) for name in ("points", "cells", "cell_data", "cell_sets", "point_sets")):
-            raise UsageError(f"mesh: a meshio.Mesh is needed, not a {type(source).__name__}")
+            raise UsageError(f"mesh: a meshio.Mesh is required, not a {type(source).__name__}")
         groups = {}
         names = {(int(tag), int(dimension)): name for name, (tag, dimension) in (getattr(source, "field_data", None) or {}).items()}
         tags = (source.cell_data or {}).get("gmsh:physical")
@@ -138,14 +138,14 @@ class Mesh:
 
     @classmethod
     def from_gmsh(cls, model=None):
-        """Of the current model of the gmsh module: its physical groups become groups."""
+        """Makes a Mesh from the current model of the gmsh module. Its physical groups become groups."""
         if model is None:
             import gmsh
 
             model = gmsh.model
         tags, coordinates, _ = model.mesh.getNodes()
         if len(tags) == 0:
-            raise InputError("mesh: Gmsh's current model has no nodes: gmsh.model.mesh.generate() makes them")
+            raise InputError("mesh: Gmsh's current model has no nodes; generate them with gmsh.model.mesh.generate()")
         number = numpy.full(int(tags.max()) + 1, -1, dtype=numpy.int64)
         number[tags.astype(numpy.int64)] = numpy.arange(len(tags))
         cells, groups, placed = [], {}, {}
@@ -185,11 +185,11 @@ class Mesh:
 
     @property
     def groups(self):
-        """The names of the groups."""
+        """Names of the groups."""
         return [name for name, _ in self._mesh.cell_groups + self._mesh.node_groups]
 
     def write(self, path):
-        """Writes a .msh file (4.1, binary)."""
+        """Writes a .msh file (version 4.1, binary). Returns its path."""
         try:
             with file_access(path):
                 write_msh(self._mesh, path_of(path, "mesh"))
@@ -199,7 +199,7 @@ class Mesh:
 
     @property
     def path(self):
-        """Of a file that exists as long as this mesh: sessions read it."""
+        """Path of a file with this mesh, for sessions to read. The file exists as long as the mesh."""
         if self._file is None:
             with file_access():
                 folder = tempfile.mkdtemp(prefix="ricochet-mesh-")

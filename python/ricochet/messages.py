@@ -1,12 +1,12 @@
-"""What the library says goes to Python's logger "ricochet": warnings are shown unless a program decides otherwise, notes are
-not. `logging.getLogger("ricochet").setLevel("INFO")` (with a handler, as logging.basicConfig() makes one) shows them."""
+"""Messages of the library, for Python's logger "ricochet". Unless a program changes this, warnings are shown and notes are not.
+`logging.getLogger("ricochet").setLevel("INFO")`, with a handler such as that of logging.basicConfig(), shows the notes."""
 
 import logging
 
 from . import places
 
 logger = logging.getLogger("ricochet")
-# In the order of the library's levels.
+# Python's levels in the order of the library's.
 LEVELS = (logging.DEBUG, logging.DEBUG, logging.INFO, logging.WARNING, logging.ERROR)
 
 

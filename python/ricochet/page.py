@@ -1,4 +1,4 @@
-"""How a run shows itself in a notebook: what came out, its warnings, and a picture."""
+"""View of a run in a notebook: its results, warnings and a picture."""
 
 import base64
 import html
@@ -8,7 +8,7 @@ from .messages import logger
 
 
 def rows_of(run):
-    """(what, value) of the answers that users look for."""
+    """Yields (name, value) of the main results."""
     summary = run.summary
     yield "status", run.status + (f": {summary['message']}" if summary["message"] else "")
     yield "scheme, mass", f"{summary['scheme']}, {summary['mass']}"
@@ -27,20 +27,20 @@ def rows_of(run):
         yield f"impact {number + 1}", (f"t = {impact['begin']:.4g}, for {impact['duration']:.4g}; restitution {restitution}; largest "
                                        f"force {impact['largest_force']:.4g}")
     if len(run.impacts) > 3:
-        yield "", f"and {len(run.impacts) - 3} impacts more: run.impacts"
+        yield "", f"and {len(run.impacts) - 3} more impacts: run.impacts"
     yield "interpenetration", penetration_of(summary)
     peak = summary.get("peak_stress")
     if peak:
         place = ", ".join(f"{x:.4g}" for x in peak["place"])
         remark = f"; grows with refinement: it sits on {peak['sits_on']}" if peak.get("sits_on") else ""
-        yield "largest von Mises stress", f"{peak['von_mises']:.4g} at t = {peak['time']:.4g}, place ({place}){remark}"
+        yield "largest von Mises stress", f"{peak['von_mises']:.4g} at t = {peak['time']:.4g}, position ({place}){remark}"
     for entry in run._broken_expectations():
         yield "expectation", run._text_of(entry)
 
 
 def penetration_of(summary):
-    """The deepest one, where no contact prevents it before all else, and what was not watched."""
-    watched = summary.get("unwatched_penetration", {"found": [], "not_watched": ["all but contact nodes"]})
+    """Returns the deepest penetration of contact nodes, penetrations that no contact prevents, and the checks left out."""
+    watched = summary.get("unwatched_penetration", {"found": [], "not_watched": ["everything except contact nodes"]})
     of_contacts = f"{summary['extrema'].get('max_penetration', {'maximum': 0.0})['maximum']:.3g} of contact nodes"
     texts = [of_contacts] + [f"{' and '.join(found['bodies'])}{_where(found)}, {found['depth']:.3g} at t = {found['time']:.4g}"
                              for found in watched["found"]]
@@ -55,7 +55,7 @@ def _where(found):
 
 
 def image_of(run):
-    """The body at the frame of the largest stress, as a PNG in base64; None where there is nothing to be shown."""
+    """Returns the body in the frame closest to the largest stress, as PNG in base64; None if nothing can be shown."""
     try:
         import matplotlib
         from matplotlib import pyplot
@@ -80,8 +80,8 @@ def page_of(run):
     warnings = "".join(f"<li>{html.escape(text)}</li>" for text in run.warnings)
     try:
         image = image_of(run)
-    except Exception as problem:  # what was to be shown is in the table
-        logger.warning("no picture of %s: %s", run.directory, problem)
+    except Exception as problem:  # the table still shows the results
+        logger.warning("the picture of %s cannot be drawn: %s", run.directory, problem)
         image = None
     picture = f"<img alt='the body' src='data:image/png;base64,{image}'>" if image else ""
     return (f"<div><b>{html.escape(run.summary['title'] or run.directory)}</b><table>{rows}</table>"

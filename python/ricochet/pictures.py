@@ -13,7 +13,7 @@ MOST_TRIANGLES = 20000
 
 
 def on_triangles(run, frame, field, cells, nodes, triangles):
-    """The values of a field for triangles: those of their cells, or means of their corners."""
+    """Returns the values of a field on triangles: those of their cells, or the means of their corners."""
     values = frame[field]
     if values.ndim == 2:
         values = numpy.linalg.norm(values, axis=1) if values.shape[1] <= 3 else values[:, 0]
@@ -21,7 +21,7 @@ def on_triangles(run, frame, field, cells, nodes, triangles):
 
 
 def scene_of(frames, field, scale=1.0):
-    """The scene of some frames of a run, and their shots."""
+    """Returns the scene of some frames of a run, and their shots."""
     run = frames[0]._run
     nodes, triangles, cells = run._data.surface(MOST_TRIANGLES)
     reference = numpy.array(run._data.points)[nodes]
@@ -44,11 +44,12 @@ def scene_of(frames, field, scale=1.0):
 
 def picture(frame, field="von_mises", *, axes=None, limits=None, scale=1.0, colours=None, view=None, bar=True, zoom=False,
             half=False):
-    """A matplotlib figure of the body at the time of a frame, coloured by a field.
+    """Returns a matplotlib figure of the body at the time of a frame, coloured by a field.
 
-    `limits`: of the colours; without them the scale is logarithmic where a few values would leave all others in one colour.
-    `scale`: of the displacement. `view`: azimuth and elevation in degrees, in space. `zoom`: the contact from near, in space
-    from behind the obstacle. `half`: of an axisymmetric body the section alone. `axes`: where to draw; else in a new figure.
+    `limits`: range of the colours; by default the scale is logarithmic if a few values would leave all others in one colour.
+    `scale`: factor of the displacement. `view`: azimuth and elevation in degrees, in space. `zoom`: shows the contact closely,
+    in space from behind the obstacle. `half`: shows only the section of an axisymmetric body. `axes`: axes to draw in; by
+    default those of a new figure.
     """
     from matplotlib import pyplot
 
@@ -64,14 +65,14 @@ def picture(frame, field="von_mises", *, axes=None, limits=None, scale=1.0, colo
 
 def animate_run(run, path, field="von_mises", *, time=None, title="", size=None, view=None, limits=None, zoom=False, half=False,
                 most=200):
-    """Writes the frames of a run as an animation; `path` ends with .gif or .mp4."""
+    """Writes the frames of a run as an animation to `path`, which ends with .gif or .mp4. Returns the path."""
     path = path_of(path, "animation")
     form = os.path.splitext(path)[1].lower()[1:]
     if form not in ("gif", "mp4"):
-        raise UsageError(f"{path}: an animation is a .gif or .mp4 file")
+        raise UsageError(f"{path}: an animation must be a .gif or .mp4 file")
     frames = [frame for frame in run.frames if time is None or time[0] <= frame.time <= time[1]]
     if len(frames) < 2:
-        raise UsageError(f"{run.directory}: there are fewer than two frames to be shown (output.fields_every)")
+        raise UsageError(f"{run.directory}: there are fewer than two frames to show; set output.fields_every")
     scene, shots = shown(*scene_of(frames[::-(-len(frames) // most)], field), half)
     with tempfile.TemporaryDirectory() as folder:
         made = os.path.join(folder, f"animation.{form}")

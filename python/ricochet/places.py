@@ -1,5 +1,5 @@
-"""Cases that were made of dictionaries are read as texts under names that no file has. Where a message names a line of such a
-text, users see the entry of the dictionary."""
+"""Positions in cases made from dictionaries. Such a case is read as a text, under a name that no file has; messages about a line
+of the text show the entry of the dictionary."""
 
 import itertools
 import re
@@ -10,7 +10,7 @@ _known: "weakref.WeakValueDictionary[str, Lines]" = weakref.WeakValueDictionary(
 
 
 class Lines:
-    """Of the lines of a text the entries that they are made from."""
+    """The entries from which the lines of a text are made."""
 
     def __init__(self, entries):
         self.entries = entries
@@ -19,17 +19,17 @@ class Lines:
 
 
 def entry(path):
-    """A path of keys and numbers as Python would write it: case["contact"][0]["group"]."""
+    """Returns a path of keys and numbers in Python's notation: case["contact"][0]["group"]."""
     return "case" + "".join(f"[{key!r}]" if isinstance(key, int) else f'["{key}"]' for key in path)
 
 
-# What messages call options of the program are arguments here.
+# Options of the program in messages, and the corresponding arguments.
 ARGUMENTS = (("with --force", "with force=True"), ("(--force)", "(force=True)"), ("with --resume", "with resume=True"),
               (" with -o", ""), (" (-o)", ""))
 
 
 def translate(message):
-    """The message with entries in the place of lines, and arguments in that of options."""
+    """Returns the message with entries instead of lines and arguments instead of options."""
     for option, argument in ARGUMENTS:
         message = message.replace(option, argument)
 

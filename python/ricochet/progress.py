@@ -1,4 +1,4 @@
-"""How far a run is: on a terminal a line, in a notebook a bar, elsewhere nothing."""
+"""Progress of a run: a line on a terminal, a bar in a notebook, nothing elsewhere."""
 
 import sys
 import time
@@ -20,7 +20,7 @@ def duration(seconds):
 
 
 class Progress:
-    """Of a session, from where it is."""
+    """Progress of a session from its present time."""
 
     def __init__(self, session):
         self.session, self.began, self.start = session, time.monotonic(), None
@@ -39,7 +39,7 @@ class Progress:
         self.show(*self.line(step, at))
 
     def say(self, text):
-        """Where nobody listens any more (a terminal, or a reader of a pipe, that is gone) the run goes on in silence."""
+        """Writes to stderr. If its terminal or the reader of its pipe is gone, the run continues silently."""
         if self.silent or sys.stderr is None:
             return
         try:
@@ -82,13 +82,13 @@ class NotebookProgress(Progress):
 def is_terminal(stream):
     try:
         return stream is not None and stream.isatty()
-    except ValueError:  # it is closed
+    except ValueError:  # the stream is closed
         return False
 
 
 @contextmanager
 def progress_of(wanted, session):
-    """What Session.run calls with step and time, or None."""
+    """Yields the function that Session.run calls with step and time, or None."""
     notebook = in_notebook()
     if wanted is None:
         wanted = notebook or is_terminal(sys.stderr)

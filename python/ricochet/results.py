@@ -1,4 +1,4 @@
-"""Runs that are finished or going on, read from their directories."""
+"""Runs, finished or in progress, read from their directories."""
 
 import json
 import os
@@ -14,8 +14,9 @@ from .messages import logger
 
 
 class Maximum(NamedTuple):
-    """The largest value of a field, its time, and its place in the undeformed body: of a cell the centre. `among` says what
-    was looked at: "every state" that the run has looked at, or "frames"."""
+    """The largest value of a field or column, its time, and its position in the undeformed body: for a cell its centre, for a
+    column of the history None. `among` names the range of the search: "every state" of the run, "N of M states", "frames" or
+    "rows of the history"."""
 
     value: float
     time: float
@@ -24,7 +25,7 @@ class Maximum(NamedTuple):
 
 
 class History(Mapping):
-    """The columns of a run's history, and of its probes that have rows of their own, as numpy arrays without copies."""
+    """Columns of a run's history, and of its probes that have rows of their own, as numpy arrays without copies."""
 
     def __init__(self, data):
         self._data, self._names = data, list(data.column_names)
@@ -38,7 +39,7 @@ class History(Mapping):
         return self._data.column(name)
 
     def times_of(self, name):
-        """The times of a column's rows: those of probes with an interval of their own are fewer, or more."""
+        """Returns the times of a column's rows. Probes with an interval of their own have fewer or more rows than the history."""
         self._check(name)
         return self._data.times_of(name)
 
@@ -49,7 +50,7 @@ class History(Mapping):
         return len(self._names)
 
     def to_pandas(self):
-        """A pandas.DataFrame of the columns of history.csv, by time."""
+        """Returns a pandas.DataFrame of the columns of history.csv, indexed by time."""
         import pandas
 
         times = self["time"]
@@ -61,7 +62,7 @@ class History(Mapping):
 
 
 class Frame(Mapping):
-    """The fields at one time: frame["von_mises"] is a numpy array, of points (points x components) or of cells."""
+    """Fields at one time. frame["von_mises"] is a numpy array, on points (points x components) or on cells."""
 
     def __init__(self, run, number):
         self._run, self.number, self.time = run, number, run._data.frame_times[number]
@@ -79,21 +80,21 @@ class Frame(Mapping):
 
     @property
     def points(self):
-        """Places of the points in the undeformed body, points x dimension."""
+        """Positions of the points in the undeformed body, points x dimension."""
         return self._run.points
 
     @property
     def positions(self):
-        """Where the points are, points x dimension."""
+        """Current positions of the points, points x dimension."""
         return self.points + self["displacement"][:, :self._run.dimension]
 
     @property
     def cells(self):
-        """(kind, cells x points) of each block, with meshio's names and VTK's order."""
+        """List of (kind, cells x points), one for each block, with meshio's names and VTK's order."""
         return self._run.cells
 
     def to_meshio(self):
-        """A meshio.Mesh of this frame."""
+        """Returns a meshio.Mesh of this frame."""
         import meshio
 
         run = self._run
@@ -105,7 +106,7 @@ class Frame(Mapping):
         return meshio.Mesh(points, list(self.cells), point_data=at_points, cell_data=at_cells)
 
     def plot(self, field="von_mises", **options):
-        """A matplotlib figure of the body as it is now, coloured by a field. The options are those of the function
+        """Returns a matplotlib figure of the deformed body, coloured by a field. The options are those of the function
         ricochet.picture: axes, limits, scale, colours, view, bar, zoom, half."""
         from .pictures import picture
 
@@ -116,7 +117,7 @@ class Frame(Mapping):
 
 
 class Frames:
-    """All frames, as a sequence."""
+    """Sequence of all frames of a run."""
 
     def __init__(self, run):
         self._run = run
@@ -128,7 +129,7 @@ class Frames:
         if isinstance(number, slice):
             return [Frame(self._run, k) for k in range(*number.indices(len(self)))]
         if not -len(self) <= number < len(self):
-            raise IndexError(f"frame {number}: the run has {len(self)} frames")
+            raise IndexError(f"frame {number} does not exist: the run has {len(self)} frames")
         return Frame(self._run, int(number) % len(self))
 
     @property
@@ -140,14 +141,14 @@ class Frames:
 
 
 class Run:
-    """What a run has left in its directory so far."""
+    """Results of a run, finished or in progress, in its directory."""
 
     def __init__(self, directory):
         self.directory = library_path(directory, "open")
         self.reload()
 
     def reload(self):
-        """Reads again what a run that goes on has written meanwhile. Arrays that were taken before stay what they are."""
+        """Reads the results of a run in progress again. Arrays obtained before do not change. Returns this run."""
         self._data = _core.read_run(self.directory)
         self.summary = json.loads(self._data.summary_json)
         self.history = History(self._data)
@@ -155,13 +156,13 @@ class Run:
 
     @property
     def status(self):
-        """"done", "running", "failed" or "interrupted"; also of a run that was killed, or whose session was dropped."""
+        """One of "done", "running", "failed" and "interrupted"; the last also if the run was killed or its session dropped."""
         status = self.summary["status"]
         return "interrupted" if status == "running" and not _core.is_in_use(self.directory) else status
 
     @property
     def time(self):
-        """The times of the history's rows."""
+        """Times of the rows of the history."""
         return self.history["time"]
 
     @property
@@ -178,22 +179,22 @@ class Run:
         return [name for name, _, _ in self._data.fields]
 
     def is_on_points(self, field):
-        """Whether a field has values on points; else on cells."""
+        """Returns whether a field has values on points, not on cells."""
         return next(on_points for name, on_points, _ in self._data.fields if name == field)
 
     @property
     def points(self):
-        """Places of the points in the undeformed body, points x dimension."""
+        """Positions of the points in the undeformed body, points x dimension."""
         return self._data.points[:, :self.dimension]
 
     @property
     def cells(self):
-        """(kind, cells x points) of each block, with meshio's names and VTK's order."""
+        """List of (kind, cells x points), one for each block, with meshio's names and VTK's order."""
         return self._data.cells
 
     @property
     def contact_facets(self):
-        """The contact boundary, as cells has it."""
+        """Facets of the contact boundary, in the form of `cells`."""
         return self._data.contact_facets
 
     @property
@@ -201,25 +202,25 @@ class Run:
         return Frames(self)
 
     def frame(self, t=None, *, number=None):
-        """The frame nearest to a time, or by its number (-1: the last)."""
+        """Returns the frame nearest to the time `t`, or the frame with a number (-1: the last)."""
         frames = self.frames
         if len(frames) == 0:
-            raise InputError(f"{self.directory}: the run has written no fields (output.fields_every)")
+            raise InputError(f"{self.directory}: the run has written no fields; set output.fields_every")
         if (t is None) == (number is None):
-            raise UsageError("frame: give a time or a number")
+            raise UsageError("frame: pass either a time or a number")
         if number is not None:
             return frames[number]
         if not isinstance(t, (int, float, numpy.number)):
-            raise UsageError(f"frame: {t!r} is no time; a field is taken from a frame: run.frame(t=0.1)[{t!r}]")
+            raise UsageError(f"frame: {t!r} is not a time; select a field from a frame: run.frame(t=0.1)[{t!r}]")
         times = frames.times
         if not numpy.isfinite(t) or t < times[0] - 1e-9 * abs(times[-1]) or t > times[-1] * (1 + 1e-9):
-            raise UsageError(f"frame: the time {t} is outside of the frames, from {times[0]:.9g} to {times[-1]:.9g}")
+            raise UsageError(f"frame: the time {t} is outside the range of the frames, from {times[0]:.9g} to {times[-1]:.9g}")
         return frames[int(numpy.abs(times - t).argmin())]
 
     def maximum(self, name):
-        """The largest value of a field, with its time and place, or of a column of the history, with its time. The von Mises
-        stress is that of all states that the run has looked at; other fields are known in the frames only, and of vectors
-        the lengths are compared."""
+        """Returns the largest value of a field, with its time and position, or of a column of the history, with its time. The
+        search covers all states that the run evaluated for the von Mises stress, and only the frames for other fields. Vectors
+        are compared by their lengths."""
         if name == "von_mises" and self.summary.get("peak_stress"):
             peak = self.summary["peak_stress"]
             return Maximum(peak["von_mises"], peak["time"], tuple(peak["place"]), "every state" if peak["states_looked_at"] ==
@@ -236,7 +237,7 @@ class Run:
             values = frame[name]
             if values.ndim == 2:
                 if values.shape[1] > 3:
-                    raise UsageError(f'maximum: the field "{name}" is a tensor; take one of its components from the frames')
+                    raise UsageError(f'maximum: the field "{name}" is a tensor; use one of its components from the frames')
                 values = numpy.linalg.norm(values, axis=1)
             if values.size == 0 or numpy.isnan(values).all():
                 continue
@@ -259,12 +260,12 @@ class Run:
 
     @property
     def impacts(self):
-        """A dictionary for each impact: begin, duration, restitution, largest_force, normal_velocity_before, ..."""
+        """List of dictionaries, one for each impact: begin, duration, restitution, largest_force, normal_velocity_before, ..."""
         return self.summary["impacts"]
 
     @property
     def expectations(self):
-        """A dictionary for each [[expect]] entry: quantity, value, wanted, checked, holds, note."""
+        """List of dictionaries, one for each [[expect]] entry: quantity, value, wanted, checked, holds, note."""
         return self.summary["expectations"]
 
     def _broken_expectations(self):
@@ -279,8 +280,8 @@ class Run:
         return f"{entry['location']}: expected {entry['name'] or entry['quantity']} to be {entry['wanted']}, {found}"
 
     def check(self):
-        """Raises ExpectationError where an [[expect]] entry that applies does not hold, and Error with the run's own message
-        where the run has failed. Returns this run."""
+        """Raises ExpectationError if an applicable [[expect]] entry does not hold, and Error with the message of the run if the
+        run has failed. Returns this run."""
         if self.status == "failed":
             raise Error(f"{self.directory}: the run has failed: {self.summary['message']}")
         broken = self._broken_expectations()
@@ -289,20 +290,20 @@ class Run:
         return self
 
     def plot(self, *what, **options):
-        """A matplotlib figure of this run; see ricochet.plot."""
+        """Returns a matplotlib figure of this run; see ricochet.plot."""
         from .figures import plot
 
         return plot([self], *what, **options)
 
     def animate(self, path, field="von_mises", **options):
-        """Writes the frames as an animation, a .gif or, where ffmpeg is there, an .mp4 file; its path. Options: `time` (first,
-        last), `title`, `size` in cm, `view`, `limits`, `zoom` and `half`, as those of a frame's plot."""
+        """Writes the frames as an animation, a .gif file or, if ffmpeg is installed, an .mp4 file. Returns its path. Options:
+        `time` (first, last), `title`, `size` in cm, and `view`, `limits`, `zoom` and `half` as for the plot of a frame."""
         from .pictures import animate_run
 
         return animate_run(self, path, field, **options)
 
     def report(self, path=None):
-        """Writes the report for a browser, one file; its path. Without `path`: report.html in the directory."""
+        """Writes the report for a browser, a single file, by default report.html in the directory of the run. Returns its path."""
         from .figures import write_report
 
         return write_report([self], path or os.path.join(self.directory, "report.html"))
@@ -317,5 +318,5 @@ class Run:
 
 
 def open(directory):
-    """The Run in a directory, finished or going on."""
+    """Returns the Run in a directory, finished or in progress."""
     return Run(directory)

@@ -1,5 +1,5 @@
-"""Draws a body and its obstacles: in the plane as they are, in space what can be seen of them. Knows nothing of the rest of
-the package: figure.py draws the animations of `ricochet plot` with it."""
+"""Draws a body and its obstacles: completely in the plane, their visible parts in space. Independent of the rest of the package,
+since figure.py draws the animations of `ricochet plot` with it."""
 
 import math
 import os
@@ -7,21 +7,21 @@ import os
 import numpy
 
 COLOURS = "viridis"
-# Of white, in space: the dark end of a scale has no light and shade.
+# Fraction of white in the colours in space, since shading is invisible at the dark end of a scale.
 PALE = 0.22
 NAMES = {"von_mises": "von Mises stress", "nodal_von_mises": "von Mises stress", "velocity": "speed"}
-# Part of the body's size by which a plane is shown beyond it, room around the picture in the plane and in space, and how far
-# around what touches.
+# Extent of a plane beyond the body, margins of the picture in the plane and in space, as fractions of the body's size; size of
+# the window of a zoom relative to the touching points.
 MARGIN, ROOM, ROOM_IN_SPACE, ZONE = 0.1, 0.06, 0.16, 1.3
-# A scale is logarithmic where the largest value is so many times what 95 % of the area, or half of it, stay below; and so
-# many decades.
+# A scale is logarithmic if the largest value exceeds the value below which 95 % of the area, or half of it, lies by one of these
+# factors; number of its decades.
 OUTLYING, FAR_OUTLYING, DECADES = 3.0, 8.0, 3.0
 FRAMES_PER_SECOND = 20
 
 
 class Shot:
-    """The body at one time: `points` (m x 3), `values` of the triangles, places of the obstacles' corners (or None), and
-    numbers of the points that are pressed (or None)."""
+    """The body at one time: `points` (m x 3), `values` of the triangles, positions of the obstacles' corners (or None), and
+    indices of the points under contact pressure (or None)."""
 
     def __init__(self, time, points, values, obstacles=None, touching=None):
         self.time, self.points, self.values = time, points, values
@@ -29,8 +29,8 @@ class Shot:
 
 
 class Scene:
-    """What does not change: triangles (n x 3), the undeformed points (m x 3), and cells of the obstacles with the number of
-    the obstacle of each (or None)."""
+    """Constant data of all shots: triangles (n x 3), the undeformed points (m x 3), and cells of the obstacles with the number
+    of the obstacle of each (or None)."""
 
     def __init__(self, dimension, field, triangles, reference, obstacles=None, axisymmetric=False):
         self.dimension, self.triangles, self.reference = dimension, triangles, reference
@@ -39,12 +39,12 @@ class Scene:
         self.axisymmetric = axisymmetric
 
     def mirrored(self):
-        """Bodies of which the section is known, whole: the same scene with its image beyond the axis x = 0."""
+        """Returns the scene of whole axisymmetric bodies: the section with its mirror image across the axis x = 0."""
         scene = Scene(self.dimension, "", numpy.concatenate([self.triangles, self.triangles + len(self.reference)]),
                       with_image(self.reference))
         scene.label = self.label
         if self.cells is not None:
-            # The image of a line has the obstacle on its other side.
+            # A mirrored line has the obstacle on its other side: reverse it.
             count = 1 + self.cells.max()
             scene.cells = numpy.concatenate([self.cells, self.cells[:, ::-1] + count])
             scene.obstacle = numpy.concatenate([self.obstacle, self.obstacle + 1 + self.obstacle.max()])
@@ -63,7 +63,7 @@ def mirrored(shot):
 
 
 def view_axes(azimuth, elevation):
-    """To the right, up, and towards who looks."""
+    """Returns the directions to the right, upwards and towards the viewer."""
     a, e = numpy.radians([azimuth, elevation])
     towards = numpy.array([numpy.cos(e) * numpy.cos(a), numpy.cos(e) * numpy.sin(a), numpy.sin(e)])
     right = numpy.array([-numpy.sin(a), numpy.cos(a), 0.0])
@@ -71,7 +71,7 @@ def view_axes(azimuth, elevation):
 
 
 def view_of_contact(scene, shots):
-    """From behind what touches, a little from the side."""
+    """Returns the directions of a view from behind the touching facets, slightly from the side."""
     normals = numpy.zeros(3)
     for shot in shots:
         corners = shot.points[scene.triangles]
@@ -95,7 +95,7 @@ def view_of_contact(scene, shots):
 
 
 def norm_of(scene, shots, limits=None):
-    """Of the colours: what the values need. Logarithmic where a few of them would leave all others in one colour."""
+    """Returns the norm of the colours for the values: logarithmic if a few of them would leave all others in one colour."""
     from matplotlib.colors import LogNorm, Normalize
 
     if limits is not None:
@@ -118,7 +118,7 @@ def norm_of(scene, shots, limits=None):
 
 
 def map_of(scene, colours):
-    """The colours of a name; without one those of reports, paler in space."""
+    """Returns the colour map of a name; without a name that of reports, paler in space."""
     from matplotlib import pyplot
     from matplotlib.colors import ListedColormap
 
@@ -128,8 +128,7 @@ def map_of(scene, colours):
 
 
 class Camera:
-    """The directions of a picture, and the part of the plane that it shows: that of the body in all shots, or of what
-    touches."""
+    """Directions of a picture, and the window that it shows: around the body in all shots, or around the touching points."""
 
     def __init__(self, scene, shots, view=None, zoom=False):
         self.zoom = zoom
@@ -158,7 +157,7 @@ class Camera:
             self.look_at_contact(scene, shots)
 
     def look_at_contact(self, scene, shots):
-        """The window is as large for all shots and follows what touches; where nothing does, it stays."""
+        """Chooses a window of one size for all shots. It follows the touching points, and stays where it is if there are none."""
         zones = [shot.points[shot.touching] for shot in shots if shot.touching is not None and len(shot.touching)]
         if not zones:
             return
@@ -172,7 +171,7 @@ class Camera:
                 middle = shot.points[shot.touching].mean(axis=0)
             inwards = (shot.points.mean(axis=0) - middle) if scene.dimension == 2 else numpy.zeros(3)
             length = numpy.linalg.norm(inwards)
-            # More of the body than of the obstacle.
+            # The window shows more of the body than of the obstacle.
             self.middles[id(shot)] = (middle + 0.5 * radius * inwards / (length or 1.0)) @ self.project
 
     def window(self, shot):
@@ -181,13 +180,13 @@ class Camera:
 
 
 def is_plane(shapes):
-    """One quadrilateral is the picture of a plane; a triangle has its last corner twice."""
+    """Returns whether the cells represent a plane, which is one quadrilateral. A triangle repeats its last corner."""
     return len(shapes) == 1 and bool(numpy.any(shapes[0, 2] != shapes[0, -1]))
 
 
 def resized_plane(corners, box, margin):
-    """The corners (4 x 3) of a plane's picture, which are a rectangle, moved to where the body is: as far as the corners of
-    its box, and a margin."""
+    """Returns the corners (4 x 3) of a rectangle that represents a plane, moved to the body: to the extent of the corners of its
+    box, and a margin."""
     low, high = box
     points = numpy.array([[(low, high)[i][0], (low, high)[j][1], (low, high)[k][2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
     first, second = corners[1] - corners[0], corners[3] - corners[0]
@@ -199,7 +198,7 @@ def resized_plane(corners, box, margin):
 
 
 def draw_plane(axes, a, b, low, high):
-    """The line through two points, as far as the picture goes; the obstacle is to the right of it."""
+    """Draws the line through two points across the picture; the obstacle is on its right."""
     along = (b - a) / numpy.linalg.norm(b - a)
     middle = a + along * (((low + high) / 2 - a) @ along)
     far = 2 * along * (numpy.linalg.norm(high - low) + numpy.linalg.norm(middle - (low + high) / 2))
@@ -209,8 +208,8 @@ def draw_plane(axes, a, b, low, high):
 
 
 def draw_obstacles(axes, scene, shot, camera):
-    """Lines in the plane. In space what is seen from the side of the bodies: planes as far as the body goes, all else as it
-    is; the camera that looks at the contact looks through them."""
+    """Draws obstacles: in the plane lines, in space the faces visible from the side of the bodies. Planes extend as far as the
+    body, other obstacles are complete. The camera of a zoom sees through them."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     if scene.dimension == 2:
@@ -231,7 +230,7 @@ def draw_obstacles(axes, scene, shot, camera):
         lengths = numpy.linalg.norm(normals, axis=1)
         facing = (normals @ towards) / numpy.maximum(lengths, 1e-300)
         if cells.shape[1] == 4 and numpy.all(cells[:, 2] == cells[:, 3]):
-            facing = abs(facing)  # triangles of a file, of which some of a coarse picture are turned over
+            facing = abs(facing)  # triangles of a file, some of which may be inverted in a coarsened picture
         order = numpy.argsort(shapes.mean(axis=1) @ towards)
         seen = order[facing[order] > 0.0]
         if len(seen):
@@ -291,22 +290,22 @@ def draw_bar(axes, scene, norm, colours):
 
 
 def shown(scene, shots, half):
-    """Axisymmetric bodies whole, unless only the section is wanted."""
+    """Returns the scene and shots to draw: of whole axisymmetric bodies, unless only the section is requested."""
     if not scene.axisymmetric or half:
         return scene, shots
     return scene.mirrored(), [mirrored(shot) for shot in shots]
 
 
 class NoFfmpeg(Exception):
-    """An .mp4 file needs a program that is not there."""
+    """The program that makes .mp4 files is not installed."""
 
     def __init__(self):
-        super().__init__("an .mp4 file is made by ffmpeg, which is not here: apt-get install ffmpeg, or write a .gif")
+        super().__init__("an .mp4 file requires ffmpeg, which is not installed: apt-get install ffmpeg, or write a .gif")
 
 
 def axes_of_animation(figure, dimension, title):
-    """Axes of the body and of the colours, which stay where they are in every frame. Room for words is in centimetres, as
-    their size does not depend on that of the figure."""
+    """Returns the axes of the body and of the colours, the same in every frame. Space for text is in centimetres, as its size
+    does not depend on that of the figure."""
     width, height = (2.54 * side for side in figure.get_size_inches())
     left, bottom = (0.3, 0.3) if dimension == 3 else (1.7, 1.2)
     top, right = 1.4 if title else 0.8, 2.2
@@ -321,7 +320,7 @@ def axes_of_animation(figure, dimension, title):
 
 
 def animate(scene, shots, path, form, *, title="", size=None, view=None, limits=None, zoom=False):
-    """Writes shots one after the other: "gif" by Pillow, "mp4" by ffmpeg. The same shots give the same .gif."""
+    """Writes the shots as an animation: "gif" by Pillow, "mp4" by ffmpeg. The same shots produce the same .gif."""
     from matplotlib import animation, pyplot
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -329,14 +328,14 @@ def animate(scene, shots, path, form, *, title="", size=None, view=None, limits=
         raise NoFfmpeg()
     camera, norm, colours = Camera(scene, shots, view, zoom), norm_of(scene, shots, limits), map_of(scene, None)
     dpi = 100
-    # Films have an even number of points.
+    # The sides of an .mp4 picture have an even number of pixels.
     figure = pyplot.figure(figsize=[2 * math.ceil(side / 2.54 * dpi / 2) / dpi for side in size or (15.0, 12.0)], dpi=dpi)
     FigureCanvasAgg(figure)
     axes, bar = axes_of_animation(figure, scene.dimension, title)
     figure.colorbar(pyplot.cm.ScalarMappable(norm=norm, cmap=colours), cax=bar, label=scene.label)
     writer = animation.PillowWriter(fps=FRAMES_PER_SECOND) if form == "gif" else \
         animation.FFMpegWriter(fps=FRAMES_PER_SECOND, extra_args=["-pix_fmt", "yuv420p"])
-    made = f"{path}.{form}"  # writers go by the name
+    made = f"{path}.{form}"  # writers choose the format by the extension
     with writer.saving(figure, made, dpi):
         for shot in shots:
             axes.clear()
@@ -362,7 +361,7 @@ def scene_of_description(description):
 
 
 def write_described(description, form, output):
-    """The animation that a description of the program asks for, or the picture of its only frame."""
+    """Writes the animation that a description of the program requests, or the picture of its only frame."""
     from matplotlib import pyplot
 
     scene, shots = shown(*scene_of_description(description), description["half"])

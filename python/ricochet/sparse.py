@@ -1,4 +1,4 @@
-"""Sparse matrices between scipy and the library, which has symmetric ones in compressed columns."""
+"""Conversion of sparse matrices between scipy and the library, whose matrices are symmetric, in compressed columns."""
 
 import numpy
 
@@ -6,7 +6,7 @@ from .errors import InputError
 
 
 def csc(parts):
-    """A scipy.sparse.csc_matrix of the library's numbers, without copies."""
+    """Returns a scipy.sparse.csc_matrix of the library's numbers, without copies."""
     from scipy.sparse import csc_matrix
 
     data, indices, starts, size = parts
@@ -14,25 +14,25 @@ def csc(parts):
 
 
 def parts(matrix, name):
-    """(data, indices, indptr, size) of a symmetric scipy matrix. Raises InputError where it is not square or symmetric."""
+    """Returns (data, indices, indptr, size) of a symmetric scipy matrix. Raises InputError if it is not square or symmetric."""
     matrix = matrix.tocsc(copy=True)
     matrix.sum_duplicates()
     matrix.sort_indices()
     if matrix.dtype.kind not in "biuf":
-        raise InputError(f"{name}: real numbers are needed, not {matrix.dtype}")
+        raise InputError(f"{name}: real numbers are required, not {matrix.dtype}")
     if matrix.shape[0] != matrix.shape[1]:
-        raise InputError(f"{name} is a square matrix, not one of {matrix.shape[0]} x {matrix.shape[1]}")
+        raise InputError(f"{name} must be a square matrix, not one of {matrix.shape[0]} x {matrix.shape[1]}")
     if matrix.nnz > numpy.iinfo(numpy.int32).max:
-        raise InputError(f"{name} has {matrix.nnz} entries; at most {numpy.iinfo(numpy.int32).max} are possible")
+        raise InputError(f"{name} has {matrix.nnz} entries; at most {numpy.iinfo(numpy.int32).max} are supported")
     require_symmetry(abs(matrix - matrix.T).max() if matrix.nnz else 0.0, abs(matrix).max() if matrix.nnz else 0.0, name)
     return matrix.data, matrix.indices, matrix.indptr, matrix.shape[0]
 
 
 def require_symmetry(difference, largest, name):
-    """To rounding: what is not, is another problem."""
+    """Raises InputError if a matrix is not symmetric up to rounding, since the library would solve another problem."""
     if difference > 1e-10 * largest:
-        raise InputError(f"{name} is not symmetric: entries differ from those across the diagonal by up to {difference:.3g}, where "
-                         f"the largest is {largest:.3g}")
+        raise InputError(f"{name} is not symmetric: entries differ from those across the diagonal by up to {difference:.3g}; the "
+                         f"largest entry is {largest:.3g}")
 
 
 def is_sparse(matrix):

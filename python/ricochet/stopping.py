@@ -1,5 +1,5 @@
-"""SIGTERM and SIGHUP, which would end Python at once, end a run that a session writes as they end the program's: with a
-checkpoint, and with the status 128 + their number."""
+"""SIGTERM and SIGHUP, which would end Python at once, end a run that a session writes in the same way as a run of the program:
+with a checkpoint, and with the status 128 + their number."""
 
 import os
 import signal
@@ -12,8 +12,8 @@ _writing: weakref.WeakSet = weakref.WeakSet()
 
 
 def attend(session):
-    """From here on a signal ends what this session writes with a checkpoint. Handlers of the program's own stay, and only
-    Python's main thread may have some."""
+    """From now on a signal ends the run that this session writes with a checkpoint. Handlers that a program has set stay in effect;
+    only Python's main thread may set handlers."""
     _writing.add(session)
     if threading.current_thread() is threading.main_thread():
         for number in SIGNALS:
@@ -22,7 +22,7 @@ def attend(session):
 
 
 def forget(session):
-    """The session writes no more. After the last one signals do again what they did."""
+    """Called when the session has ended its writing. After the last such session, signals have their former effect."""
     _writing.discard(session)
     if not _writing and threading.current_thread() is threading.main_thread():
         for number in SIGNALS:
@@ -35,7 +35,7 @@ def _stop(number, _frame):
         signal.signal(number, signal.SIG_DFL)
         os.kill(os.getpid(), number)
         return
-    # One that is in the middle of a step writes its checkpoint after it, as after Ctrl-C.
+    # A session in the middle of a step writes its checkpoint after the step, as after Ctrl-C.
     for session in list(_writing):
         session._keep_if_idle()
     raise SystemExit(128 + number)

@@ -1,4 +1,4 @@
-"""Studies: one case with other values, several runs at a time, and their table."""
+"""Studies: runs of one case with different values, several at a time, and their table."""
 
 import html
 import os
@@ -14,7 +14,7 @@ from .program import program
 
 
 def as_numbers(texts):
-    """Values that keys take, which the table has as texts: as numbers where all of them are."""
+    """Returns the values of a key, which are strings in the table, as numbers if all of them are numbers."""
     try:
         return [float(text) for text in texts]
     except (TypeError, ValueError):
@@ -22,7 +22,7 @@ def as_numbers(texts):
 
 
 class Study(Mapping):
-    """The table of a study: study["restitution"] is a column as a numpy array. `notes` say what the columns mean and why runs
+    """The table of a study: study["restitution"] is a column as a numpy array. `notes` state the meaning of columns and why runs
     failed; `warnings` are those of the runs."""
 
     def __init__(self, directory, parts):
@@ -48,7 +48,7 @@ class Study(Mapping):
 
     @property
     def runs(self):
-        """The runs that can be read, in the order of the rows."""
+        """List of the runs that can be read, in the order of the rows."""
         from .results import Run
 
         return [Run(os.path.join(self.directory, "runs", str(name))) for name in self["run"]
@@ -61,14 +61,14 @@ class Study(Mapping):
 
     @property
     def table(self):
-        """A pandas.DataFrame where pandas is there; else this study, whose columns are numpy arrays."""
+        """A pandas.DataFrame if pandas is installed; otherwise this study, whose columns are numpy arrays."""
         try:
             return self.to_pandas()
         except ImportError:
             return self
 
     def plot(self, *what, **options):
-        """A figure of the study; see ricochet.plot."""
+        """Returns a matplotlib figure of this study; see ricochet.plot."""
         from .figures import plot
 
         return plot([self], *what, **options)
@@ -84,39 +84,39 @@ class Study(Mapping):
 
 
 def axis_of(key, values):
-    """A key (or several that change together, as a tuple) and its values, as the library has them."""
+    """Returns a key (or a tuple of keys that change together) and its values in the form of the library."""
     keys = [key] if isinstance(key, str) else list(key)
     if isinstance(values, str) or not hasattr(values, "__iter__"):
-        raise UsageError(f"study: the values of {key} are a list, not {values!r}")
+        raise UsageError(f"study: the values of {key} must be a list, not {values!r}")
     rows = [[value] if isinstance(key, str) or not isinstance(value, (list, tuple)) else list(value) for value in values]
     for row in rows:
         if len(row) != len(keys):
-            raise UsageError(f"study: {', '.join(keys)} change together: each of their values is a tuple of {len(keys)}, not {row!r}")
+            raise UsageError(f"study: {', '.join(keys)} change together: each value must be a tuple of {len(keys)}, not {row!r}")
     return keys, [["-" if value is None else toml_value(value, (key,)) for key, value in zip(keys, row)] for row in rows]
 
 
 def study(source, vary, directory, changes=None, *, mesh=None, jobs=0, threads=1, quantities=(), exact=None, reference="", compare=(),
           order="", resume=False, force=False):
-    """Runs all combinations of values of a case, some at a time, each in a process of its own, and returns the Study.
+    """Runs a case with all combinations of values, several at a time, each in its own process, and returns the Study.
 
     `vary`: {"time.step": [1e-3, 5e-4], ("mesh.file", "time.step"): [("a.msh", 1e-3), ("b.msh", 5e-4)]}; None stands for the value
-    that the case has. `jobs`: runs at a time; 0: as many as there are cores for. `quantities`, `exact`, `reference`, `compare`,
-    `order`: what the table says besides, as the options of `ricochet study`. `resume` goes on with the study in the directory,
+    in the case. `jobs`: number of simultaneous runs; 0: as many as the cores allow. `quantities`, `exact`, `reference`, `compare`,
+    `order`: additional contents of the table, as the options of `ricochet study`. `resume` continues the study in the directory,
     also with more values; `force` starts anew.
     """
     directory = library_path(directory, "study")
     for name, value, least in (("jobs", jobs, 0), ("threads", threads, 1)):
         if not isinstance(value, (int, numpy.integer)) or not least <= value <= 1024:
-            raise UsageError(f"study: {name} is a whole number from {least} to 1024, not {value!r}")
+            raise UsageError(f"study: {name} must be an integer from {least} to 1024, not {value!r}")
     if not isinstance(vary, Mapping):
-        raise UsageError(f"study: what varies is a dictionary of keys and lists of values, not {vary!r}")
+        raise UsageError(f"study: vary must be a dictionary of keys and lists of values, not {vary!r}")
     case = source if isinstance(source, Case) and changes is None and mesh is None else Case(source, changes, mesh=mesh)
     axes = [axis_of(key, values) for key, values in vary.items()]
     if case.text is None:
         path = os.path.abspath(case.path)
     else:
         path = os.path.join(os.path.abspath(directory), "case.toml")
-        # A study that is there and is to stay keeps its case; the library refuses what comes now.
+        # Without force or resume an existing study keeps its case; the library then refuses the new one.
         if resume or force or not (_core.holds_study(directory) or _core.holds_run(directory)):
             case.write(directory)
     questions = {"quantities": list(quantities), "exact": list((exact or {}).items()), "reference": reference, "compare": list(compare),
@@ -126,6 +126,6 @@ def study(source, vary, directory, changes=None, *, mesh=None, jobs=0, threads=1
 
 
 def open_study(directory):
-    """The Study in a directory, as far as its runs are."""
+    """Returns the Study in a directory, as far as its runs have come."""
     directory = library_path(directory, "open_study")
     return Study(directory, _core.read_study(directory))

@@ -23,7 +23,7 @@ def program():
 
 @pytest.fixture
 def puck(tmp_path):
-    """A small case of one's own: a copy of cases/puck."""
+    """A copy of the small case cases/puck, to be changed by a test."""
     shutil.copytree(ROOT / "cases" / "puck", tmp_path / "puck")
     os.chdir(tmp_path)
     return str(tmp_path / "puck" / "puck.toml")

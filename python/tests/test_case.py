@@ -1,4 +1,4 @@
-"""Cases made in Python: the same checks and messages as those from files."""
+"""Cases made in Python have the same checks and messages as those from files."""
 
 import tomllib
 
@@ -78,7 +78,7 @@ def test_values_that_no_case_has(puck, monkeypatch, tmp_path):
     for wrong in (2**63, -10**30, 10**5000, numpy.uint64(2**64 - 1)):
         table = dictionary(puck)
         table["mesh"]["degree"] = wrong
-        with pytest.raises(rc.InputError, match=r'case\["mesh"\]\["degree"\]: whole numbers'):
+        with pytest.raises(rc.InputError, match=r'case\["mesh"\]\["degree"\]: integers'):
             rc.Case(table)
     table = dictionary(puck)
     around = []

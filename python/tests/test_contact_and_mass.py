@@ -1,4 +1,4 @@
-"""The contact solvers and the masses alone, on matrices of numpy and scipy."""
+"""The contact solvers and the masses without a simulation, for matrices of numpy and scipy."""
 
 import threading
 
@@ -22,7 +22,7 @@ def problem(points, seed):
 
 
 def require_laws(w, q, friction, found):
-    """Signorini's conditions and Coulomb's law, written down again."""
+    """Checks Signorini's conditions and Coulomb's law, independently of the library."""
     u = (q + w @ found.reaction.reshape(-1)).reshape(-1, 3)
     r = found.reaction
     size = abs(q).max()
@@ -32,7 +32,7 @@ def require_laws(w, q, friction, found):
     assert abs(normal * u[:, 0]).max() < 1e-8 * size * abs(r).max()
     assert (tangential <= friction * normal * (1 + 1e-12)).all()
     slip = numpy.linalg.norm(u[:, 1:], axis=1)
-    # Dissipation is as large as it can be: -r_T . u_T = F r_N |u_T|.
+    # The dissipation is maximal: -r_T . u_T = F r_N |u_T|.
     assert (r[:, 1:] * u[:, 1:]).sum(axis=1) == pytest.approx(-friction * normal * slip, abs=1e-7 * size * abs(r).max())
 
 
@@ -57,7 +57,7 @@ def test_every_solver_and_friction_per_point():
     for name in rc.contact.solver_names():
         found = rc.contact.solve(w, q, friction, solver=name, tolerance=1e-10, check=False)
         if found.outcome == "not applicable":
-            assert name == "active-set" and found.reason  # it knows no friction
+            assert name == "active-set" and found.reason  # it does not support friction
             continue
         assert found.solved, f"{name}: {found.reason}"
         assert found.reaction == pytest.approx(reference.reaction, rel=1e-5, abs=1e-6), name
@@ -73,7 +73,7 @@ def test_a_solver_goes_on_from_its_last_solution():
     assert again.iterations <= first.iterations
     assert again.reaction == pytest.approx(first.reaction)
     assert solver.solve(2 * q).reaction == pytest.approx(2 * first.reaction)
-    assert first.reaction == pytest.approx(again.reaction), "a solution stays what it was"
+    assert first.reaction == pytest.approx(again.reaction), "a solution does not change later"
 
 
 def test_two_and_one_rows_per_point():
@@ -103,7 +103,7 @@ def test_what_is_not_solved_is_raised():
     for q in (numpy.array([numpy.nan, 0, 0]), numpy.array([numpy.inf, 0, 0])):
         with pytest.raises(rc.NotConvergedError):
             rc.contact.solve(numpy.eye(3), q, 0.3)
-    # No motion: W is zero and the point is pressed.
+    # W is zero, so no reaction changes the motion of the pressed point.
     found = rc.contact.solve(numpy.zeros((3, 3)), [-1.0, 0, 0], 0.3, check=False)
     assert not found.solved and found.reason
     with pytest.raises(rc.InputError, match="unknown"):
@@ -129,7 +129,7 @@ def test_what_is_no_number_is_refused():
         rc.contact.solve(scipy.sparse.linalg.LinearOperator((3, 3), matvec=lambda x: x * (1 + 1j), dtype=complex), [-1.0, 0, 0], 0.3)
     with pytest.raises(rc.InputError, match="scipy.sparse, not a ndarray"):
         rc.mass.build(eye, numpy.zeros((3, 2)), [0])
-    with pytest.raises(rc.InputError, match="contact nodes: numbers of nodes are whole numbers, not float64"):
+    with pytest.raises(rc.InputError, match="contact nodes: numbers of nodes must be integers, not float64"):
         rc.mass.build(scipy.sparse.identity(3), numpy.random.rand(3, 2), [0.5])
 
 
@@ -178,7 +178,7 @@ def test_masses_without_inertia_on_contact_nodes(cases):
         matrix = built.matrix
         assert abs(matrix - matrix.T).max() == 0
         ones, places = numpy.ones(len(consistent.points)), consistent.points
-        # Mass, centre and moments of inertia are those of the body.
+        # Mass, centre of mass and moments of inertia are those of the body.
         for a in (ones, places[:, 0], places[:, 1]):
             for b in (ones, places[:, 0], places[:, 1]):
                 if name == "lumped" and not (a is ones or b is ones):

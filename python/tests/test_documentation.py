@@ -1,4 +1,4 @@
-"""Every block of Python in the pages runs, in the folder of the case that it speaks of."""
+"""Every block of Python in the pages runs in the folder of the case that it uses."""
 
 import os
 import re

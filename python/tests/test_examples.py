@@ -1,4 +1,4 @@
-"""Every example runs, its own assertions hold, and a picture comes out."""
+"""Every example runs, its own assertions hold, and it writes a picture."""
 
 import os
 import subprocess
@@ -14,7 +14,7 @@ ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "MPLBACKEN
 
 
 def is_a_picture(path):
-    """A PNG of some size on which something is drawn: at least a hundredth of it is not white."""
+    """Returns whether a file is a PNG of sufficient size with a drawing: at least one per cent of it is not white."""
     pixels = imread(path)
     return path.read_bytes().startswith(b"\x89PNG") and min(pixels.shape[:2]) > 150 and (pixels[..., :3].min(axis=2) < 0.9).mean() > 0.01
 
@@ -36,7 +36,7 @@ def test_a_script_runs(script, tmp_path):
     assert outcome.returncode == 0, outcome.stderr
     assert len(outcome.stdout.splitlines()) >= 2  # numbers
     assert is_a_picture(tmp_path / "made/picture.png")
-    assert [path.name for path in tmp_path.iterdir()] == ["made"]  # and nothing anywhere else
+    assert [path.name for path in tmp_path.iterdir()] == ["made"]  # and nothing elsewhere
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

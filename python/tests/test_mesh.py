@@ -1,4 +1,4 @@
-"""Meshes from arrays: the bits of the same mesh from a file."""
+"""Meshes from arrays yield the results of the same mesh from a file."""
 
 import os
 
@@ -61,7 +61,7 @@ def test_the_same_mesh_three_ways(tmp_path, cases):
 
 @pytest.mark.parametrize("case", ["disc/degree2.toml", "hertz/sphere.toml", "ball/ball.toml", "rod/quadrilaterals.toml"])
 def test_meshes_of_every_kind_of_cell(cases, case):
-    """Their order of nodes: a wrong one gives another stiffness, or cells that are inside out."""
+    """The order of their nodes is right: a wrong order yields another stiffness, or inverted cells."""
     import tomllib
 
     path = cases / case
@@ -120,29 +120,29 @@ def test_files_of_meshes_go_with_them():
         ([[0], [1]], {"triangle": [[0, 1, 2]]}, {}, "nodes x 2 or 3"),
         ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1]]}, {}, "a triangle has 3 nodes"),
         ([[0, 0], [1, 0], [0, 1]], {"tringle": [[0, 1, 2]]}, {}, "kinds are line"),
-        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2.5]]}, {}, "whole numbers"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2.5]]}, {}, "must be integers"),
         ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": [5]}, "there is no node 5"),
         ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {3: [0]}}, "there is no block 3"),
         ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {0: [4]}}, "block 0 has 1 cells"),
         ([[0, 0], [1, 0], [0, 1j]], {"triangle": [[0, 1, 2]]}, {}, "points: real numbers"),
         ([[0, 0], [1, 0], [0, None]], {"triangle": [[0, 1, 2]]}, {}, "points: real numbers"),
         ([["a", "b"]], {"triangle": [[0, 1, 2]]}, {}, "points: real numbers"),
-        ([[0, 0], [1]], {"triangle": [[0, 1, 2]]}, {}, "points: this is no array"),
-        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1], [0, 1, 2]]}, {}, "cells: this is no array"),
+        ([[0, 0], [1]], {"triangle": [[0, 1, 2]]}, {}, "points: the values do not form an array"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1], [0, 1, 2]]}, {}, "cells: the values do not form an array"),
         ([[0, 0], [1, 0], [0, 1]], {"triangle": []}, {}, "no cells of dimension 2 or 3"),
         ([[0, 0], [1, 0], [0, 1]], {"line": [[0, 1]]}, {}, "no cells of dimension 2 or 3"),
-        ([[0, 0], [1, 0], [0, 1]], None, {}, "cells are a dictionary"),
-        ([[0, 0], [1, 0], [0, 1]], [1, 2], {}, "cells are a dictionary"),
-        ([[0, 0], [1, 0], [0, 1]], {3: [[0, 1, 2]]}, {}, "the kind 3 is no name"),
-        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, [1], "groups are a dictionary"),
+        ([[0, 0], [1, 0], [0, 1]], None, {}, "cells must be a dictionary"),
+        ([[0, 0], [1, 0], [0, 1]], [1, 2], {}, "cells must be a dictionary"),
+        ([[0, 0], [1, 0], [0, 1]], {3: [[0, 1, 2]]}, {}, "the kind 3 is not a name"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, [1], "groups must be a dictionary"),
         ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {None: [0]}}, "there is no block None"),
-        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {0: [0.7]}}, "block 0: numbers of cells are whole numbers, not float64"),
-        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {0: [2**70]}}, "numbers of cells are whole numbers"),
-        # As numbers a mask would be those of the cells 0 and 1.
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {0: [0.7]}}, "block 0: numbers of cells must be integers, not float64"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {0: [2**70]}}, "numbers of cells must be integers"),
+        # Converted to integers, a mask would select the cells 0 and 1.
         ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {0: [True]}}, "numpy.flatnonzero"),
         ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": [True, True, False]}, "numpy.flatnonzero"),
-        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a\nb": [0]}, "characters that files of meshes cannot have"),
-        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a\ud800b": [0]}, "characters that files of meshes cannot have"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a\nb": [0]}, "characters that mesh files cannot contain"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a\ud800b": [0]}, "characters that mesh files cannot contain"),
     ],
 )
 def test_what_is_wrong_is_said(points, cells, groups, message):
@@ -159,7 +159,7 @@ def test_arrays_that_change_later_leave_the_mesh_alone(tmp_path):
 
 
 def test_what_is_no_mesh_of_another_library():
-    with pytest.raises(rc.UsageError, match="a meshio.Mesh is needed, not a int"):
+    with pytest.raises(rc.UsageError, match="a meshio.Mesh is required, not a int"):
         rc.Mesh.from_meshio(3)
     import gmsh
 
@@ -177,5 +177,5 @@ def test_a_case_with_a_file_takes_no_mesh(cases):
     mesh = rc.Mesh(points, {"quad": quads})
     with pytest.raises(rc.UsageError):
         rc.Case(cases / "puck/puck.toml", mesh=mesh)
-    with pytest.raises(rc.UsageError, match="given already"):
+    with pytest.raises(rc.UsageError, match="already defines the mesh"):
         rc.Case({**CASE, "mesh": {"file": "a.msh"}}, mesh=mesh)

@@ -1,11 +1,11 @@
-"""What Python costs: a step of a Session, and nothing of it grows."""
+"""Overhead of Python in a step of a Session, which does not grow."""
 
 import statistics
 import time
 
 import ricochet as rc
 
-# One square of two triangles: its steps take a few microseconds, so that what is around them can be seen.
+# A square of two triangles: its steps take a few microseconds, so that the overhead can be measured.
 SQUARE = rc.Mesh([[0, 1], [1, 1], [1, 2], [0, 2]], {"triangle": [[0, 1, 2], [0, 2, 3]]}, {"bottom": [0, 1]})
 CASE = {
     "material": [{"group": "all", "density": 1.0, "young": 100.0, "poisson": 0.3}],
@@ -40,7 +40,7 @@ def test_a_step_costs_at_most_two_microseconds_more():
         differences.append(python - library)
     overhead = statistics.median(differences)
     print(f"{1e6 * overhead:.2f} microseconds")
-    # Measured: 0.7. The bound is that of the promise, and the clock is this thread's own: a busy machine does not matter.
+    # Measured: 0.7 microseconds. The clock is that of this thread, so a busy machine has no effect.
     assert overhead < 2e-6
 
 

@@ -1,4 +1,4 @@
-"""Runs that are read: histories, fields, answers, and what a notebook shows."""
+"""Reading of runs: histories, fields, results, and the view in a notebook."""
 
 import pickle
 import tomllib
@@ -35,7 +35,7 @@ def test_history_is_what_is_in_the_file(run):
 
 def test_columns_share_the_memory_that_was_read(run):
     column, once_more = run.history["time"], run.history["time"]
-    # Both are kept: a copy that is gone would give its place to the next one.
+    # Both are kept: the memory of a discarded copy could be reused for the next one.
     assert column.ctypes.data == once_more.ctypes.data
     again = rc.open(run.directory)
     kept = again.history["time"]
@@ -150,7 +150,7 @@ def test_a_run_that_goes_on_can_be_read(puck, tmp_path, file_format):
     session = rc.Session(puck, {"time.end": 1e-4, "output.fields_every": 10, "output.format": file_format})
     session.write_to(tmp_path / "out")
     session.run(lambda s: s.step_number < 50)
-    # What has been written may be waiting in memory; what is there fits together.
+    # Recent data may still be in memory; the data in the files are consistent.
     run = rc.open(tmp_path / "out")
     assert run.status == "running"
     assert len(run.time) >= 1
@@ -172,7 +172,7 @@ def test_a_session_that_is_dropped_leaves_an_interrupted_run(puck, tmp_path):
 
 
 def test_a_loop_that_ends_early_leaves_its_last_state(puck, tmp_path):
-    """Also where no frame was due; a run that goes on from there has the bytes of one that was never stopped."""
+    """Also if no frame was due; a run that continues from there has the bytes of one that was never stopped."""
     changes = {"time.end": 1e-4, "output.fields_every": 40, "output.history_every": 20}
     session = rc.Session(puck, changes)
     session.write_to(tmp_path / "out")
@@ -205,7 +205,7 @@ def test_messages_speak_of_arguments(run, puck):
 
 
 def test_a_frame_is_found_by_a_time(run):
-    with pytest.raises(rc.UsageError, match="is no time"):
+    with pytest.raises(rc.UsageError, match="is not a time"):
         run.frame("von_mises")
 
 
@@ -216,7 +216,7 @@ def test_errors_can_be_pickled():
 
 @pytest.mark.parametrize("file_format", ["xdmf", "vtkhdf"])
 def test_damaged_fields_are_errors(tmp_path, file_format):
-    """And no end of this process, which HDF5 itself would make of some."""
+    """They do not end the process, as HDF5 itself would on some of them."""
     made = run_puck(tmp_path, file_format)
     path = tmp_path / file_format / ("results.h5" if file_format == "xdmf" else "results.vtkhdf")
     whole, field = path.read_bytes(), made.frame(number=0)["von_mises"]

@@ -1,4 +1,4 @@
-"""Python and the program give the same bits, on every shipped case."""
+"""Python and the program compute the same bits, on every shipped case."""
 
 import subprocess
 
@@ -14,7 +14,7 @@ CASES = sorted(str(path.relative_to(ROOT)) for path in (ROOT / "cases").glob("*/
 
 
 def shortened(path):
-    """Changes after which a case takes a dozen steps."""
+    """Returns changes that shorten a case to a dozen steps."""
     values = rc.Case(path).values
     step = values["time.step"]
     length = float(values["time.largest"]) if step == "adaptive" else float(step)
@@ -41,7 +41,7 @@ def test_a_run_of_python_has_the_bits_of_the_program(name, tmp_path, program):
     assert of_program.keys() == of_python.keys() and len(of_program) > 2
     for key, values in of_program.items():
         assert values.tobytes() == of_python[key].tobytes(), key
-    # And what Python reads back is what is there.
+    # Python also reads back the content of the files.
     frames = sorted(key for key in of_program if key.startswith("frames/"))
     for field in run.fields:
         last = [key for key in frames if key.endswith("/" + field)][-1]

@@ -1,4 +1,4 @@
-"""Sessions: steps, what they show, and what is changed on the way."""
+"""Sessions: steps, their state, and changes between steps."""
 
 import logging
 import os
@@ -34,7 +34,7 @@ def test_matrices_give_the_energies(puck):
     energies = session.energies
     assert 0.5 * v @ (session.mass @ v) == pytest.approx(energies["kinetic_energy"], rel=1e-12)
     stiffness = session.stiffness()
-    # The puck has moved as a whole: the sum is one of large terms that cancel.
+    # The puck has moved as a whole, so the sum consists of large terms that cancel.
     rounding = 8 * numpy.finfo(float).eps * 0.5 * abs(u) @ (abs(stiffness) @ abs(u))
     assert rounding < 1e-5 * energies["kinetic_energy"]
     assert 0.5 * u @ (stiffness @ u) == pytest.approx(energies["elastic_energy"], rel=1e-6, abs=rounding)
@@ -122,7 +122,7 @@ def test_errors_in_callbacks_end_the_run_cleanly(puck, tmp_path):
 
 
 def test_a_failing_step_ends_loops_that_wait_for_the_end(puck, tmp_path):
-    # No iteration can find what this asks for.
+    # No iteration can solve this case.
     session = rc.Session(puck, {"time.step": 1e-6, "material.0.law": "neo-hookean", "time.end": 5e-3, "initial.velocity": [0, -2000.0]})
     session.write_to(tmp_path / "out")
     with pytest.raises(rc.NotConvergedError) as caught:
@@ -167,7 +167,7 @@ def test_a_case_of_somebody_else_is_not_replaced(tmp_path):
         folder.mkdir()
         (folder / name).write_text("mine\n")
         for force in (False, True):
-            with pytest.raises(rc.FileAccessError, match=f"{name}: no program has written this file"):
+            with pytest.raises(rc.FileAccessError, match=f"{name}: no earlier run has written this file"):
                 rc.run(CASE, folder, mesh=mesh, force=force)
         assert [path.name for path in folder.iterdir()] == [name] and (folder / name).read_text() == "mine\n"
     assert rc.run(CASE, tmp_path / "out", mesh=mesh).status == "done"

@@ -1,4 +1,4 @@
-"""How sessions end: interruptions, signals and exceptions leave a checkpoint to go on from."""
+"""Ends of sessions: interruptions, signals and exceptions leave a checkpoint from which a run can continue."""
 
 import logging
 import os
@@ -32,7 +32,7 @@ def test_ctrl_c_leaves_a_run_to_go_on_with(puck, tmp_path):
 
 
 def interrupted_by(number, script, output):
-    """What a script leaves that a signal ends while its run goes on: the status of the process, and the run."""
+    """Ends a script by a signal during its run. Returns the status of the process, and the run."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     child = subprocess.Popen([sys.executable, "-c", script], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert child.stdout.readline() == "going\n", child.stderr.read()
@@ -57,7 +57,7 @@ print("going", flush=True)
     assert status == 128 + number
     assert run.status == "interrupted" and run.summary["checkpoint_step"] > 0
     assert run.summary["checkpoint_step"] == run.summary["steps"]
-    if loop == "session.run()":  # else it may come between two steps
+    if loop == "session.run()":  # in other loops it may arrive between two steps
         assert f"stopped by {signal.Signals(number).name}" in run.summary["message"]
     assert rc.Session(puck, {"time.end": 10.0}).write_to(tmp_path / "out", resume=True) is None
 
@@ -92,14 +92,14 @@ def test_an_exception_leaves_a_checkpoint_also_of_a_session_without_a_context(pu
     with pytest.raises(ValueError, match="seven"):
         session.run(each)
     assert [path.name for path in (tmp_path / "out").glob("*.ckpt")] == ["checkpoint-000000007.ckpt"]
-    session.run()  # and the session can go on
+    session.run()  # and the session can continue
     session.finish()
     whole = rc.run(puck, tmp_path / "whole", SHORT)
     assert (tmp_path / "out/history.csv").read_bytes() == (tmp_path / "whole/history.csv").read_bytes() and whole.status == "done"
 
 
 def test_ctrl_c_within_a_message_ends_the_run(puck, tmp_path, caplog):
-    """A handler of messages is Python, too, where the interruption may fall."""
+    """A handler of messages is Python code, too, in which the interruption may occur."""
     class Interrupted(logging.Handler):
         def emit(self, record):
             if "rotated" in record.getMessage():

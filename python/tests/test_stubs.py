@@ -1,4 +1,4 @@
-"""Types: what mypy is told of the module is what is there, and the package keeps to it."""
+"""Types: the stubs for mypy agree with the module, and the package with the stubs."""
 
 import os
 import pathlib

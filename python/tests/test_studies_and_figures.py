@@ -1,4 +1,4 @@
-"""Studies and figures: what the program makes of them."""
+"""Studies and figures have the results of the program."""
 
 import csv
 import subprocess
@@ -61,12 +61,12 @@ def test_reports_go_where_paths_say(puck, tmp_path):
 
 
 def test_wrong_studies(puck, tmp_path):
-    with pytest.raises(rc.UsageError, match="are a list"):
+    with pytest.raises(rc.UsageError, match="must be a list"):
         rc.study(puck, {"time.step": 1e-6}, tmp_path / "study")
     with pytest.raises(rc.UsageError, match="change together"):
         rc.study(puck, {("time.step", "time.end"): [1e-6]}, tmp_path / "study")
     for wrong in ({"threads": 0}, {"threads": -1}, {"threads": 1.5}, {"jobs": -1}, {"jobs": "2"}, {"jobs": 2000}):
-        with pytest.raises(rc.UsageError, match="whole number"):
+        with pytest.raises(rc.UsageError, match="must be an integer"):
             rc.study(puck, {"time.step": [1e-6]}, tmp_path / "study", **wrong)
     with pytest.raises(rc.UsageError, match="a dictionary of keys"):
         rc.study(puck, ["time.step"], tmp_path / "study")

@@ -1,4 +1,4 @@
-"""A wheel of the build that is there, installed into a folder of its own, is complete."""
+"""A wheel of the existing build, installed into a folder of its own, is complete."""
 
 import importlib.util
 import os
@@ -19,7 +19,7 @@ print(rc.__version__, len(run.time))
 """
 
 
-@pytest.mark.skipif(importlib.util.find_spec("pip") is None, reason="pip is not here")
+@pytest.mark.skipif(importlib.util.find_spec("pip") is None, reason="pip is not installed")
 def test_a_wheel_is_complete(tmp_path, program):
     environment = {**os.environ, "RICOCHET_BUILD": os.path.dirname(program), "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
     environment.pop("PYTHONPATH", None)
@@ -34,7 +34,7 @@ def test_a_wheel_is_complete(tmp_path, program):
     outcome = subprocess.run(command, env=environment, capture_output=True, text=True, cwd=tmp_path)
     assert outcome.returncode == 0, outcome.stderr
     assert outcome.stdout.split()[1] == "101"
-    # Nothing of it is looked for in the folder of the build.
+    # Its libraries are not those in the folder of the build.
     (module,) = (tmp_path / "site/ricochet").glob("_core.*.so")
     libraries = subprocess.run(["ldd", module], capture_output=True, text=True, check=True).stdout
     assert str(tmp_path / "site/ricochet/lib/libricochet.so.0") in libraries
