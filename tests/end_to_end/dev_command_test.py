@@ -1,5 +1,5 @@
-"""`./dev`: what its help lists is there, its benchmarks refuse wrong options before anything is compiled, and its gate for
-bits finds a change of one rounding."""
+"""`./dev`: its help and docs/developers/commands.md list the commands that there are, its benchmarks refuse wrong options before
+anything is compiled, and its gate for bits finds a change of one rounding."""
 
 import math
 import re
@@ -25,6 +25,10 @@ class Commands(TestCase):
         self.assertEqual(sorted(called), sorted(re.findall(r"^command_(\w+)\(\) \{", text, re.MULTILINE)))
         shown = subprocess.run([SOURCE / "dev", "--help"], check=True, capture_output=True, text=True).stdout
         self.assertEqual(sorted(called), sorted(re.findall(r"^  (\w+) +[a-z]", shown, re.MULTILINE)))
+        page = (SOURCE / "docs" / "developers" / "commands.md").read_text(encoding="utf-8")
+        self.assertEqual(set(called), set(re.findall(r"^\| `\./dev (\w+)", page, re.MULTILINE)))
+        benches = {script.parent.name for script in (SOURCE / "bench").glob("*/run.py")} - {"step"}
+        self.assertEqual(benches, set(re.findall(r"^\| `\./dev bench (\w+)", page, re.MULTILINE)))
 
     def test_benchmarks(self):
         text = (SOURCE / "dev").read_text()

@@ -1,0 +1,76 @@
+"""The rules of the house that can be counted: how comments begin, how long lines, files and pages are."""
+
+import re
+import unittest
+
+from harness import SOURCE
+
+CODE = ("src", "apps", "tests", "bench", "python/bindings")
+# A documentation comment names what it stands over, or says what that does.
+BEGINNING = re.compile(r"^\s*(?:[^/\"]*?\s)?///<? +(?:@file +)?(Of|What|Where|The same|Those|That)\b")
+# Files that were longer before there was a limit: to be divided, none to be added.
+LONG_FILES = {"benchmarks/closed_forms.py", "tests/verification/published_schemes_test.cpp"}
+
+
+def files(folders, *suffixes):
+    found = [path for folder in folders for path in sorted((SOURCE / folder).rglob("*"))
+             if path.suffix in suffixes and "node_modules" not in path.parts and path.is_file()]
+    return [path for path in found if not any(part.startswith("build") for part in path.relative_to(SOURCE).parts)]
+
+
+def lines(path):
+    return path.read_text(encoding="utf-8").splitlines()
+
+
+def named(path, number):
+    return f"{path.relative_to(SOURCE)}:{number}"
+
+
+class Comments(unittest.TestCase):
+    def test_documentation_comments_begin_with_a_noun_or_a_verb(self):
+        sources = files(CODE, ".hpp", ".cpp")
+        self.assertGreater(len(sources), 900)
+        wrong = [f"{named(path, number)}: {line.strip()}" for path in sources
+                 for number, line in enumerate(lines(path), 1) if BEGINNING.match(line)]
+        self.assertEqual(wrong, [])
+
+    def test_such_beginnings_are_found(self):
+        for line in ("  /// What is here.", "int x;  ///< of which", "double y;  ///< Of the body.", "/// @file The same"):
+            found = BEGINNING.match(line) is not None
+            self.assertEqual(found, "of which" not in line, line)
+
+
+class Sizes(unittest.TestCase):
+    def test_no_file_has_more_than_400_lines(self):
+        folders = (*CODE, "python/ricochet", "benchmarks", "cases", "viewer/src", "cmake")
+        long = {str(path.relative_to(SOURCE)) for path in files(folders, ".hpp", ".cpp", ".py", ".ts", ".cmake")
+                if len(lines(path)) > 400}
+        self.assertEqual(long - LONG_FILES, set())
+
+    def test_pages_have_their_limits(self):
+        self.assertLessEqual(len(lines(SOURCE / "README.md")), 150)
+        self.assertLessEqual((SOURCE / "CONTRIBUTING.md").stat().st_size, 6000)
+        recipes = sorted((SOURCE / "docs/developers").glob("add-*.md"))
+        self.assertGreater(len(recipes), 10)
+        self.assertEqual([path.name for path in recipes if len(lines(path)) > 40], [])
+
+    def test_lines_of_pages_fit_a_screen(self):
+        """160 characters, except tables, code, formulas, pictures and pages that programs write."""
+        written = {"docs/case-file.md", "docs/performance.md", "docs/scorecard.md", "docs/distributed.md"}
+        pages = [SOURCE / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+        pages += files(("docs", "cases", "benchmarks", "examples", "bench"), ".md")
+        self.assertGreater(len(pages), 80)
+        wrong = []
+        for path in pages:
+            if str(path.relative_to(SOURCE)) in written:
+                continue
+            is_code = False
+            for number, line in enumerate(lines(path), 1):
+                is_code ^= line.lstrip().startswith(("```", "$$"))
+                if len(line) > 160 and not is_code and not line.startswith(("|", "![")):
+                    wrong.append(named(path, number))
+        self.assertEqual(wrong, [])
+
+
+if __name__ == "__main__":
+    unittest.main()
