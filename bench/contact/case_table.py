@@ -1,5 +1,5 @@
-"""The cases from which the benchmark's problems are exported: bodies of rubber, 20 cm or less, that strike, are pressed on,
-dragged along and pushed over rough planes. Units: m, kg, s."""
+"""The cases from which the problems of the benchmark are exported: rubber bodies of at most 20 cm that strike, are
+pressed, are dragged, and are pushed over rough planes. Units: m, kg, s."""
 
 from dataclasses import dataclass, field
 
@@ -43,16 +43,16 @@ Physical Surface("body") = {{1}}; Physical Curve("left") = {{1}}; Physical Curve
 class Case:
     name: str
     dimension: int
-    mesh: str  # of MESHES
+    mesh: str  # key of MESHES
     time: dict
-    steps: list  # exported for the set
+    steps: list  # steps exported for the set
     friction: float = 0.3
     mass: str = "equivalent"
     degree: int = 1
     multipliers: str = "nodal"
-    contacts: list = field(default_factory=list)  # (group, obstacle); by default base or lower on the floor
+    contacts: list = field(default_factory=list)  # (group, obstacle); default: base or lower on the floor
     top: list = None  # traction on "top"
-    velocity: list = None  # at the start
+    velocity: list = None  # initial velocity
     displacement: str = None  # "static"
     gravity: list = None
     belt: list = None  # velocity of the floor
@@ -61,7 +61,7 @@ class Case:
     rescaled: dict = field(default_factory=dict)  # suffix: (factor of q, factor of W)
 
 
-# Meshes: a .geo made from a template, or one of the cases'.
+# Meshes: a .geo file made from a template, or one of the cases.
 MESHES = {
     "block-20": (BLOCK_2D, 2, {"n": 20, "m": 10}),
     "block-60": (BLOCK_2D, 2, {"n": 60, "m": 30}),
@@ -82,7 +82,7 @@ MESHES = {
     "ball-fine": ("cases/ball/ball.geo", 3, {"fine": 0.0011}),
 }
 
-SHORT = 0.1 / WAVE_SPEED / 60  # of the blocks' height's transit time
+SHORT = 0.1 / WAVE_SPEED / 60  # fraction of the transit time over the blocks' height
 TRANSIT = 0.1 / WAVE_SPEED
 
 
@@ -91,12 +91,12 @@ def newmark(step, **more):
 
 
 def damped(step):
-    """For steps of many transit times."""
+    """Time section for steps of many transit times."""
     return {"scheme": "newmark", "beta": 0.6, "gamma": 1.0, "step": step}
 
 
 def pushed_2d(name, mesh, friction, time, steps, push=1.4, **more):
-    """Pressed from above, more on one side, and pushed along harder and harder until it slides."""
+    """A block pressed from above, more strongly on one side, and pushed with increasing force until it slides."""
     duration = time["step"] * max(max(steps), (more.get("sequence") or (0, 0))[1])
     traction = [f"{push * max(friction, 0.05)}*1e4*t/{duration!r}", "-1e4*(1 + 0.7*sin(25*x))"]
     return Case(name, 2, mesh, time, steps, friction, top=traction, displacement="static", **more)
@@ -118,7 +118,7 @@ def thrown_ball(name, friction, time, steps, mesh="ball", velocity=("4", "3", "-
 
 
 def struck_block(name, mesh, dimension, friction, time, steps, **more):
-    """Flies into the floor, spinning and bent: contact spreads, opens and closes."""
+    """A block that flies into the floor, spinning and bent: contact spreads, opens and closes."""
     if dimension == 2:
         velocity = ["1 - 4*y", "-1 + 8*x"]
     else:

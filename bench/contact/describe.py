@@ -1,4 +1,4 @@
-"""What the problems are: sizes, conditioning and states."""
+"""Sizes, conditioning and states of the problems."""
 
 import h5py
 import numpy as np
@@ -13,7 +13,7 @@ def stored_solution(path):
 
 
 def condition(problem):
-    """Of W brought to unit size at every point."""
+    """Condition number of W scaled to unit size at every point."""
     diagonal = problem.operator.diagonal().reshape(problem.points, problem.dimension).mean(axis=1)
     factor = np.repeat(diagonal**-0.5, problem.dimension)
     values = np.linalg.eigvalsh(factor[:, None] * problem.operator * factor)

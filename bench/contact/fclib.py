@@ -1,4 +1,4 @@
-"""FCLib's local problems in HDF5: what the benchmark needs of them, read independently of Ricochet's own reader."""
+"""FCLib's local problems in HDF5, as far as the benchmark needs them, read independently of Ricochet's own reader."""
 
 from dataclasses import dataclass
 
@@ -60,7 +60,7 @@ def read(path):
 
 
 def write(path, problem, title=""):
-    """For rescaled copies of exported problems. W as compressed columns, every entry stored."""
+    """Writes rescaled copies of exported problems, with W as compressed columns and every entry stored."""
     rows = problem.offset.size
     with h5py.File(path, "w") as file:
         root = file.create_group("fclib_local")

@@ -1,7 +1,7 @@
-"""For run.py: makes the benchmark's problems: meshes, case files, runs with --export-contact, rescaled copies.
+"""Makes the benchmark's problems for run.py: meshes, case files, runs with --export-contact, rescaled copies.
 
-DIRECTORY/problems/NAME-sSTEP.hdf5 are the problems, DIRECTORY/sequences/NAME/step-*.hdf5 the time sequences. A case whose
-file and program have not changed is not run again.
+DIRECTORY/problems/NAME-sSTEP.hdf5 are the problems, DIRECTORY/sequences/NAME/step-*.hdf5 the time sequences. A case is
+run again only if its file or the program has changed.
 """
 
 import hashlib
@@ -46,7 +46,7 @@ def vector(values):
 
 
 def case_text(case, mesh, steps):
-    """The case file. Written by hand, so that the set does not depend on a TOML writer."""
+    """Returns the case file, written by hand so that the set does not depend on a TOML writer."""
     dimension = case.dimension
     lines = [f'title = "{case.name}"', "[mesh]", f'file = "{mesh}"', f"degree = {case.degree}", "[[material]]"]
     group = "ball" if case.mesh.startswith("ball") else "body"
@@ -55,7 +55,7 @@ def case_text(case, mesh, steps):
     for obstacle in sorted({obstacle for _, obstacle in contacts}):
         up = [0.0] * (dimension - 1) + [1.0]
         point, normal = [0.0] * dimension, up
-        if obstacle in ("left", "right"):  # of the groove, 0.1 mm off the disc
+        if obstacle in ("left", "right"):  # planes of the groove, 0.1 mm from the disc
             side = -1.0 if obstacle == "left" else 1.0
             point, normal = [side * 0.0201 / 2**0.5, -0.0201 / 2**0.5], [-side, 1.0]
         lines += [f"[obstacle.{obstacle}]", 'type = "plane"', f"point = {vector(point)}", f"normal = {vector(normal)}"]
@@ -83,7 +83,7 @@ def case_text(case, mesh, steps):
 
 
 def run_case(case, program, directory, stamp):
-    """Returns what went wrong, or an empty text."""
+    """Returns the error, or an empty text."""
     mesh = make_mesh(case.mesh, directory / "meshes")
     wanted = list(case.steps) + (list(range(case.sequence[0], case.sequence[1] + 1)) if case.sequence else [])
     text = case_text(case, mesh, max(wanted))
@@ -99,7 +99,7 @@ def run_case(case, program, directory, stamp):
     (runs / "case.toml").write_text(text)
     ranges = ",".join(map(str, case.steps)) + (f",{case.sequence[0]}:{case.sequence[1]}" if case.sequence else "")
     command = [program, "run", str(runs / "case.toml"), "-o", str(runs / "out"), "--force", "--quiet", "--log-level", "error",
-               "--export-contact", ranges, "--set", "solver.contact_points=all"]  # problems of one size
+               "--export-contact", ranges, "--set", "solver.contact_points=all"]  # all problems of one size
     result = subprocess.run(command, capture_output=True, text=True)
     for step in case.steps:
         source = runs / "out" / "contact" / f"step-{step:06d}.hdf5"
@@ -127,7 +127,7 @@ def run_case(case, program, directory, stamp):
 
 
 def make(program, directory, only=""):
-    """All that is not there yet of the cases with `only` in their name."""
+    """Makes all missing problems of the cases with `only` in their name."""
     for name in ("meshes", "runs", "problems", "sequences"):
         (directory / name).mkdir(parents=True, exist_ok=True)
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout

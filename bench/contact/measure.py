@@ -1,8 +1,9 @@
-"""The one measure of the benchmark, computed here and not by the programs it judges. Sums in long double.
+"""The single measure of the benchmark, computed independently of the programs that it judges. Sums in long double.
 
-With w_i = trace(W_ii)/d (W_NN where F = 0) and û = u + (F |u_T|, 0, 0), a point's residual is
+With w_i = trace(W_ii)/d (W_NN if F = 0) and û = u + (F |u_T|, 0, 0), the residual of a point is
     e_i = sqrt(w_i) (r_i − P_K(r_i − û_i / w_i)),      K = {|r_T| <= F r_N},
-and the problem's is max |e_i| over its value at r = 0. It has no unit and does not change with scalings of q and W.
+and that of the problem is max |e_i| relative to its value at r = 0. It has no unit and is invariant to scalings of q
+and W.
 """
 
 import numpy as np
@@ -11,7 +12,7 @@ EPSILON = np.finfo(float).eps
 
 
 def multiply(problem, reaction):
-    """W r in long double, rows in pieces: as long doubles the whole of W would be twice its size."""
+    """Returns W r in long double, processed by rows, as the whole of W in long double would take twice its size."""
     reaction = np.asarray(reaction, dtype=np.longdouble)
     columns = np.flatnonzero(reaction)
     result = np.zeros(reaction.size, dtype=np.longdouble)
@@ -23,13 +24,13 @@ def multiply(problem, reaction):
 
 
 def weights(problem):
-    """w_i, per point."""
+    """Returns w_i per point."""
     diagonal = problem.operator.diagonal().reshape(problem.points, problem.dimension)
     return np.where(problem.coefficient > 0.0, diagonal.mean(axis=1), diagonal[:, 0])
 
 
 def project(coefficient, vectors):
-    """The point of K nearest to each row of `vectors`."""
+    """Returns the point of K nearest to each row of `vectors`."""
     normal, tangential = vectors[:, 0], vectors[:, 1:]
     length = np.sqrt((tangential**2).sum(axis=1))
     on_cone = np.maximum((normal + coefficient * length) / (1 + coefficient**2), 0)
@@ -53,7 +54,7 @@ def point_residuals(problem, reaction, motion):
 
 
 class Measure:
-    """Of one problem; keeps what does not depend on the reaction."""
+    """Measure of one problem; stores the data that do not depend on the reaction."""
 
     def __init__(self, problem):
         self.problem = problem
@@ -71,16 +72,17 @@ class Measure:
         return float(errors.max(initial=0.0)) / self.scale if self.scale > 0 else float(errors.max(initial=0.0))
 
     def rounding_floor(self, reaction):
-        """Residual that the rounding of r, q and W to doubles may leave: nothing below it can be asked for."""
+        """Residual that the rounding of r, q and W to doubles may leave: no solver can be expected to fall below it."""
         shape = (self.problem.points, self.problem.dimension)
         size = np.abs(self.problem.operator) @ np.abs(np.asarray(reaction, dtype=float)) + np.abs(self.problem.offset)
         per_point = np.sqrt((size.reshape(shape) ** 2).sum(axis=1)) / np.sqrt(self.weights)
         return float(EPSILON * per_point.max(initial=0.0) / self.scale) if self.scale > 0 else 0.0
 
     def distance(self, reaction, reference, reference_motion=None):
-        """Of reactions and of motions to those of a reference: largest of a point over the largest of the reference.
+        """Distances of reactions and of motions from those of a reference: largest over the points, relative to the
+        largest of the reference.
 
-        Where everything sticks the motion is zero: then over that which the natural map has at r = 0.
+        If everything sticks, the motion is zero; its distance is then relative to the natural map at r = 0.
         """
         shape = (self.problem.points, self.problem.dimension)
         reaction = np.asarray(reaction, dtype=np.longdouble)

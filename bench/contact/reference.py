@@ -1,5 +1,5 @@
-"""A solution converged to rounding, independent of the programs that are judged: Newton on Alart and Curnier's function from
-an approximate solution, r and the function in long double, the linear systems in double."""
+"""A solution converged to rounding, independent of the programs that are judged: Newton's method on Alart and Curnier's
+function from an approximate solution, with r and the function in long double and the linear systems in double."""
 
 import numpy as np
 
@@ -7,7 +7,8 @@ import measure
 
 
 def _function(problem, w, reaction, motion):
-    """Values per point and row, and what the Jacobian needs: pressed, slipping, direction and length of the predictor."""
+    """Returns the values per point and row, and the data of the Jacobian: pressed, slipping, direction and length of
+    the predictor."""
     shape = (problem.points, problem.dimension)
     r, u = reaction.reshape(shape), motion.reshape(shape)
     normal = w * r[:, 0] - u[:, 0]
@@ -25,7 +26,7 @@ def _function(problem, w, reaction, motion):
 
 
 def _step(problem, w, reaction, parts):
-    """Newton's correction. Open points have r = 0, exactly; the others' equations are solved."""
+    """Returns Newton's correction. Open points have r = 0 exactly; the equations of the others are solved."""
     value, pressed, slipping, direction, length, limit = parts
     dimension = problem.dimension
     frictional = pressed & (problem.coefficient > 0)
@@ -62,7 +63,7 @@ def _step(problem, w, reaction, parts):
 
 
 def solve(problem, start, steps=30):
-    """r in long double and its residual; None where Newton's method does not get below the start's residual."""
+    """Returns r in long double and its residual; None if Newton's method does not reduce the initial residual."""
     judge = measure.Measure(problem)
     w = judge.weights.astype(np.longdouble)
     reaction = np.array(start, dtype=np.longdouble)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tables and plots of what run.py found, into docs/contact-solvers.md (between its markers) and docs/figures.
+"""Writes tables and plots of the results of run.py into docs/contact-solvers.md (between its markers) and docs/figures.
 
     report.py [--directory build/bench-contact] [--print]
 """
@@ -58,7 +58,7 @@ class Results:
         return record["seconds"] if record and record["solved"] else INFINITE
 
     def run(self, names, key, tolerance):
-        """Those of the problems on which this solver was run."""
+        """Returns the problems on which this solver was run."""
         return [name for name in names if (name, key, tolerance) in self.cells]
 
     def best_of_theirs(self, name, tolerance):
@@ -157,7 +157,7 @@ def group_table(results, tolerance=1e-8):
 
 
 def claims_table(results):
-    """What unscaled solvers claim, asked for the tolerance as it is."""
+    """Table of the claims of solvers without scaling, which use the tolerance unchanged."""
     lines = ["| solver, W and q as they come | tolerance | claims it solved | of these not so | largest true residual | largest distance |",
              "|---|---|---|---|---|---|"]
     for dimension in (2, 3):
@@ -269,7 +269,7 @@ def report(directory, results="results.json", sequences="sequences.json", only_p
 
 
 def machine(libraries):
-    """Of the last run: what was compared, where and when."""
+    """Describes the last run: programs, machine and date."""
     commit = subprocess.run(["git", "-C", str(ROOT), "log", "-1", "--format=%h"], capture_output=True, text=True).stdout.strip()
     text = (f"Measured {datetime.date.today()} with Ricochet at commit {commit or 'unknown'} on one core of a shared machine ({processor()}), "
             f"with {libraries or 'libraries that were not noted'}.")

@@ -37,15 +37,15 @@ from page import blas_kernels, libraries, with_kernels
 
 TOLERANCES = (1e-4, 1e-8, 1e-12)
 LIMIT = 20.0  # seconds for one call
-SMALL, SMALL_LIMIT = 450, 5.0  # points, and seconds for them: hundreds of times what the good solvers take
-MANY = 1500  # points, above which only these of Siconos' solvers are run: the others would take minutes each
+SMALL, SMALL_LIMIT = 450, 5.0  # points, and seconds for these: hundreds of times the time of good solvers
+MANY = 1500  # points above which only these of Siconos' solvers are run: the others would take minutes each
 FOR_MANY = ("NSGS-newton-blocks", "NSGS-newton-freeze", "NSGS-projection-blocks", "VI_EG")
 SLACK = 10.0  # a true residual of so many tolerances still counts as solved
 REPEAT = 5
 
 
 class Siconos:
-    """The serving process; killed when a call takes too long, started again when it crashes."""
+    """The serving process; killed if a call takes too long, and restarted after a crash."""
 
     def __init__(self, directory, kernels):
         self.process, self.kernels = None, kernels
@@ -86,7 +86,7 @@ class Siconos:
 
 
 class Judge:
-    """Of one problem: its reference and what an answer is worth."""
+    """Reference solution of one problem, and the assessment of answers."""
 
     def __init__(self, problem):
         self.measure = measure.Measure(problem)
@@ -105,14 +105,14 @@ class Judge:
         solved = residual <= max(SLACK * tolerance, 10 * self.floor)
         answer = {**answer, "residual": residual, "distance_r": of_reaction, "distance_u": of_motion, "solved": bool(solved)}
         if not solved:
-            # Claimed: the program itself says that it is solved.
+            # Claimed: the program itself reports success.
             claims = answer.get("outcome") == "solved" or answer.get("status") == 0
             answer["failure"] = "claimed, but not solved" if claims else "says so"
         return answer
 
 
 def expand(problem, reaction):
-    """r of all rows, where the solver was given only the normal ones of points without friction."""
+    """Returns r of all rows if the solver was given only the normal rows of points without friction."""
     if reaction.size == problem.offset.size:
         return reaction
     full = np.zeros(problem.offset.size)
@@ -123,12 +123,12 @@ def expand(problem, reaction):
 
 
 def limit_of(problem):
-    """Seconds for one call."""
+    """Returns the time limit of one call in seconds."""
     return SMALL_LIMIT if problem.points <= SMALL else LIMIT
 
 
 def run_ours(bench, directory, path, problem, solver, tolerance, repeat, more=()):
-    """(answer, reaction) for one problem; for a sequence `path` is a list and so is the answer."""
+    """Returns (answer, reaction) for one problem; for a sequence, `path` and the answer are lists."""
     paths = [path] if isinstance(path, pathlib.Path) else path
     reactions = directory / "ours"
     reactions.mkdir(exist_ok=True)
@@ -155,19 +155,19 @@ def their_solvers(problem):
 
 
 def solve_theirs(siconos, path, judge, solver, raw, tolerance):
-    """The loosest of three settings of their tolerance with which the answer is accurate enough; their best chance."""
+    """Returns the loosest of three settings of their tolerance with which the answer is accurate enough."""
     answer = {}
     for tighten in (1.0, 0.1, 0.01) if not raw else (1.0,):
         request = {"problem": str(path), "solver": solver, "raw": raw, "tolerance": tolerance, "tighten": tighten, "repeat": REPEAT}
         reply, reaction = siconos.ask(request, limit_of(judge.problem))
         answer = judge.assess({**reply, "tighten": tighten}, reaction, tolerance)
-        if answer["solved"] or answer.get("status") != 0:  # it says no itself: asked for more it would say so again
+        if answer["solved"] or answer.get("status") != 0:  # a smaller tolerance would fail as well
             break
     return answer
 
 
 def forget_fastest(cache, count, solvers):
-    """Takes their `count` fastest answers of each problem and tolerance, and all of `solvers`, out of the cache."""
+    """Removes their `count` fastest answers of each problem and tolerance, and all of `solvers`, from the cache."""
     answers = {}
     for key, answer in cache.items():
         stamp, solver, _, tolerance = key.split("|")
@@ -217,7 +217,7 @@ def run_problems(arguments, directory, our_solvers):
                                 **{key: answer[key] for key in answer if key not in ("problem", "solver", "tolerance")}})
         if not arguments.ours_only:
             for solver, raw in their_solvers(problem):
-                if not raw and "-in-" in path.stem:  # scaled to unit size it is the problem itself
+                if not raw and "-in-" in path.stem:  # identical to the problem scaled to unit size
                     continue
                 hopeless = False
                 for tolerance in arguments.tolerances:
@@ -247,7 +247,7 @@ WARM = {2: ("NSGS", "NSGS-shuffle", "CPG"), 3: ("NSGS-newton-blocks", "NSGS-proj
 
 
 def run_sequences(arguments, directory):
-    """Consecutive steps: ours from its last reactions, theirs from their own last reactions."""
+    """Runs consecutive steps: each program starts from its own last reactions."""
     siconos = Siconos(directory, blas_kernels(arguments.libraries))
     results = []
     for folder in sorted((directory / "sequences").iterdir()):
@@ -290,7 +290,8 @@ def run_sequences(arguments, directory):
 
 
 def product_seconds(problem):
-    """Of one W r of all rows, W dense and in double precision: what any solver needs to know that it has arrived."""
+    """Returns the seconds of one product W r with all rows, W dense and in double precision, which any solver needs to
+    verify its result."""
     matrix, vector = problem.operator, np.ones(problem.offset.size)
     others = np.zeros(4_000_000)  # as after the linear algebra of a step: W is in no cache
     seconds = []
@@ -335,7 +336,7 @@ def parse():
     if not any(arguments.only in case.name for case in CASES):
         parser.error(f"--only {arguments.only}: no case has this in its name; there are {', '.join(case.name for case in CASES)}")
     arguments.bench, arguments.program = str(arguments.build / "ricochet_contact_bench"), str(arguments.build / "ricochet")
-    # A part must not take the place of the whole.
+    # A partial run must not overwrite the complete results.
     arguments.results, arguments.sequences = (("part.json", "part-sequences.json") if arguments.only
                                               else ("results.json", "sequences.json"))
     return arguments

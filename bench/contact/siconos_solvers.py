@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 """Siconos' solvers of the contact problem, each with the settings that served it best.
 
-    siconos_solvers.py PROBLEM.hdf5 [--solver NAME] [--tolerance T] [--raw]     # one look, by hand
-    siconos_solvers.py --serve                                                  # what run.py talks to
+    siconos_solvers.py PROBLEM.hdf5 [--solver NAME] [--tolerance T] [--raw]     # a single run
+    siconos_solvers.py --serve                                                  # the server of run.py
 
-What is done for them. W is brought to unit size at every point first (r = S r', W' = S W S, q' = S q with one number
-S_i = w_i^(-1/2) per point, which leaves the cones as they are): with that their residual, a natural map with unit step,
-is ours but for its norm, and the fixed steps of their defaults fit. `--raw` leaves it out. Only the driver's call is
-timed, not the setting-up; each call starts from zero (or from what it is given) with fresh options.
+Preparation. W is first scaled to unit size at every point (r = S r', W' = S W S, q' = S q with one number S_i =
+w_i^(-1/2) per point, which leaves the cones unchanged): their residual, a natural map with unit step, then differs from
+ours only by its norm, and the fixed steps of their defaults are suitable. `--raw` omits the scaling. Only the call of
+the driver is timed, not the preparation; each call starts from zero (or from a given reaction) with fresh options.
 """
 
 import argparse
@@ -26,12 +26,15 @@ import scipy.sparse
 import fclib
 import measure
 
-warnings.simplefilter("ignore")  # of index widths
-import siconos.numerics as sn
+warnings.simplefilter("ignore")  # about index widths
+try:
+    import siconos.numerics as sn
+except ModuleNotFoundError:  # the tables of solvers can be read without it, which is all that a check of options needs
+    sn = None
 
 
 class Setting:
-    """A driver's solver with options: iparam and dparam by index or by name, those of its inner solver likewise."""
+    """A driver's solver with options: iparam and dparam by index or by name, and those of its inner solver likewise."""
 
     def __init__(self, text, name, iparam=None, dparam=None, inner=None, inner_iparam=None, storage="dense"):
         self.text, self.name, self.inner, self.storage = text, name, inner, storage
@@ -62,12 +65,12 @@ FREEZE = {0: 100000, "NSGS_FREEZING_CONTACT": 10}
 EXTRAGRADIENT = {0: 1000, "NSN_HYBRID_STRATEGY": "NSN_HYBRID_STRATEGY_VI_EG_NSN"}
 NEWTON, PROJECTION = "ONECONTACT_NSN", "ONECONTACT_ProjectionOnCone"
 
-# Error evaluation: NSGS keeps its default, the cheap one while sweeping and the full one at the end (LIGHT_WITH_FULL_FINAL):
-# FULL at every sweep gives the same answers later; the other solvers evaluate the full error at every iteration.
-# Tried and not faster anywhere: relaxation and shuffling in 3D, filtering, adaptive inner tolerances, the other three
-# formulations and line searches of NSN_AC, sparse storage (W is dense). Crash or do not converge: the quartic and
-# diagonalized local solvers, NSN_AC's adaptive rho and its loops with projections, ADMM with rho from eigenvalues or
-# without acceleration, PFP, NSGSV, DSFP, and in 2D the enumerative solver and relaxed NSGS on blocks.
+# Error evaluation: NSGS keeps its default, the cheap error while sweeping and the full one at the end
+# (LIGHT_WITH_FULL_FINAL): FULL at every sweep gives the same answers later; the other solvers evaluate the full error
+# at every iteration. Tried and nowhere faster: relaxation and shuffling in 3D, filtering, adaptive inner tolerances,
+# the other three formulations and line searches of NSN_AC, sparse storage (W is dense). Crashes or no convergence: the
+# quartic and diagonalized local solvers, NSN_AC's adaptive rho and its loops with projections, ADMM with rho from
+# eigenvalues or without acceleration, PFP, NSGSV, DSFP, and in 2D the enumerative solver and relaxed NSGS on blocks.
 SOLVERS = {
     3: {
         "NSGS": Setting("Gauss-Seidel, local solver by default (Newton, hybrid)", "NSGS", SWEEPS),
@@ -110,12 +113,12 @@ SOLVERS = {
         "CPG": Setting("conjugate projected gradient", "CPG", SWEEPS),
     },
 }
-# The ones shown without the scaling to unit size as well.
+# Solvers that are also shown without the scaling to unit size.
 RAW = {3: ("NSGS-newton-blocks", "NSN_AC", "NSN_AC-extragradient", "PROX", "ADMM", "ADMM-norm", "VI_EG"), 2: ("NSGS", "LEMKE", "CPG")}
 
 
 class Loaded:
-    """A problem in the storages its solvers ask for."""
+    """A problem in the storages that its solvers need."""
 
     def __init__(self, path):
         self.problem = fclib.read(path)
@@ -137,9 +140,10 @@ class Loaded:
         return self.matrices[key]
 
     def own_tolerance(self, tolerance, raw):
-        """What to ask for so that an answer as evenly accurate as they go meets `tolerance` in our measure.
+        """Returns the tolerance with which an evenly accurate answer meets `tolerance` in our measure.
 
-        Theirs is the 2-norm over all points relative to |q|, ours the largest relative to the largest at r = 0.
+        Theirs is the 2-norm over all points relative to |q|, ours the largest over the points relative to the largest
+        at r = 0.
         """
         norm = np.linalg.norm(self.factors[raw] * self.problem.offset)
         if raw or norm == 0.0:
@@ -147,7 +151,8 @@ class Loaded:
         return tolerance * self.measure.scale * self.problem.points**0.5 / norm
 
     def solve(self, name, tolerance, raw=False, start=None, repeat=1, budget=0.3):
-        """Times of `repeat` calls, fewer when together they take longer than `budget` seconds, and the reactions."""
+        """Returns the times of `repeat` calls, fewer if together they take longer than `budget` seconds, and the
+        reactions."""
         problem, factor = self.problem, self.factors[raw]
         setting = SOLVERS[problem.dimension][name]
         siconos = sn.FrictionContactProblem(
@@ -173,7 +178,7 @@ class Loaded:
 
 
 def serve():
-    """One JSON request per line on standard input, one JSON answer per line; the problem stays loaded between them."""
+    """Serves one JSON request per line on standard input with one JSON answer per line; the problem stays loaded."""
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # Siconos prints
     loaded, path = None, None
@@ -201,6 +206,8 @@ def main():
     parser.add_argument("--raw", action="store_true", help="without the scaling to unit size")
     parser.add_argument("--serve", action="store_true")
     arguments = parser.parse_args()
+    if sn is None:
+        sys.exit("siconos_solvers.py: Siconos is missing: apt-get install python3-siconos")
     sn.numerics_set_verbose(0)
     if arguments.serve:
         serve()
