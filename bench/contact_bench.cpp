@@ -8,9 +8,9 @@
 #include "ricochet/fclib/fclib_file.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 
-// Times a contact solver on problems in FCLib's layout; one line of JSON per problem. Cold: analysis and solution from
-// r = 0. With --sequence the files are consecutive steps with one W: analysed once, each solved from the last
-// reactions.
+// Times a contact solver on problems in FCLib's format; prints one line of JSON per problem. Cold: analysis and
+// solution from r = 0. With --sequence the files are consecutive steps with the same W: analysed once, each solved from
+// the last reactions.
 
 namespace {
 
@@ -19,7 +19,7 @@ using namespace ricochet;
 struct Arguments {
   std::vector<std::string> files;
   std::string solver = "automatic";
-  std::string reactions;  ///< folder: r of each problem as text
+  std::string reactions;  ///< folder for r of each problem, as text
   double tolerance = 1e-8;
   int repeat = 1;
   bool sequence = false;

@@ -1,11 +1,11 @@
-/// The contact solvers on random problems that are hard by their nature (tests/support/hard_contact_problems.hpp):
+/// Tests the contact solvers on random problems that are hard by nature (tests/support/hard_contact_problems.hpp):
 ///
 ///     ricochet_hard_contact_bench [SEEDS [SEEDS-OF-OTHERS]]
 ///
 /// Prints a table in Markdown: for each kind of problem and each solver the percentage not solved at 1e-8 and at 1e-12,
-/// and the median time at 1e-8 in milliseconds. The default solver has SEEDS problems of each generator (500), the
-/// others SEEDS-OF-OTHERS (30). At the end the number of answers that are called solved and are not: the exit status is
-/// 1 unless it is zero.
+/// and the median time at 1e-8 in milliseconds. The default solver gets SEEDS problems of each generator (500), the
+/// others SEEDS-OF-OTHERS (30). The last line is the number of answers that a solver wrongly reports as solved: the
+/// exit status is 1 unless it is zero.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -64,7 +64,7 @@ Generator elastic_twice(Index dimension) {
   };
 }
 
-/// `push` 1: in, -1: out; `preload`: how far it was pressed in before.
+/// `push` 1: in, -1: out; `preload`: depth of an earlier push.
 Generator wedge(Index dimension, double push, double softness, double preload) {
   return [=](unsigned seed) {
     std::mt19937 random(seed);
@@ -85,7 +85,7 @@ Generator unequal(Index dimension, double power) {
   };
 }
 
-/// D W D, D q.
+/// Returns the problem with D W D and D q.
 FrictionProblem scaled(FrictionProblem problem, const Vector& scales) {
   problem.w = scales.asDiagonal() * problem.w * scales.asDiagonal();
   problem.q = scales.cwiseProduct(problem.q);
@@ -127,10 +127,10 @@ std::vector<Kind> kinds(Index d) {
 constexpr std::array tolerances{1e-8, 1e-12};
 
 struct Tally {
-  long problems = 0;  ///< that the solver does not refuse
+  long problems = 0;  ///< number of problems that the solver does not refuse
   std::array<long, tolerances.size()> unsolved{};
   std::vector<double> seconds;  ///< at the first tolerance
-  long wrong = 0;               ///< called solved, and not so
+  long wrong = 0;               ///< number of answers reported as solved that are not
 
   void add(const Tally& other) {
     problems += other.problems;
@@ -170,7 +170,7 @@ Tally solve(const std::string& name, const Generator& generate, unsigned seeds) 
         ++tally.unsolved[k];
         continue;
       }
-      // The judge's rounding is that of each point; half of the solution's own floor is allowed besides.
+      // The judge allows for the rounding at each point, and in addition for half of the solution's own floor.
       const Judgement judgement = judge(problem, solution.reaction);
       const bool good = judgement.beyond_rounding <= tolerances[k] * (1.0 + 1e-6) + 0.5 * solution.rounding_floor;
       if (good && judgement.outside_cone <= 1e-15) continue;

@@ -1,4 +1,4 @@
-"""Tables of pages of docs/ that benchmarks write, and the kernels of OpenBLAS, without which times cannot be compared."""
+"""Tables of pages of docs/ that benchmarks write, and the kernels of OpenBLAS, on which times depend."""
 
 import os
 import re
@@ -17,20 +17,20 @@ def write_parts(page, parts):
 
 
 def libraries(program):
-    """What `ricochet --version` tells below the version: libraries, and the kernels of OpenBLAS and of ours."""
+    """Returns the second line of `ricochet --version`: libraries, and the kernels of OpenBLAS and of ours."""
     return subprocess.run([str(program), "--version"], capture_output=True, text=True, check=True).stdout.splitlines()[1]
 
 
 def blas_kernels(text):
-    """OpenBLAS' kernels in what `libraries` returns."""
+    """Returns OpenBLAS' kernels from the text of `libraries`."""
     return re.match(r"OpenBLAS \S+ \((\w+)\)", text)[1]
 
 
 def with_kernels(kernels):
-    """The environment in which another program's OpenBLAS takes these."""
+    """Returns the environment in which another program's OpenBLAS uses these kernels."""
     return os.environ | {"OPENBLAS_CORETYPE": kernels}
 
 
 def processor():
-    """Of this machine."""
+    """Returns the name of this machine's processor."""
     return next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown processor")

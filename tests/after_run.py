@@ -14,14 +14,14 @@ SKIPPED = re.compile(r"^\[  SKIPPED \] (\S+) \(\d+ ms\)$|\b(skipped=\d+)\b|\b(\d
 
 
 def entries(build):
-    """Name, seconds and output of each entry."""
+    """Returns name, seconds and output of each entry."""
     log = build / "Testing" / "Temporary" / "LastTest.log"
     text = log.read_text(errors="replace") if log.exists() else ""
     return [(each["name"], float(each["seconds"]), each["output"]) for each in ENTRY.finditer(text)]
 
 
 def skipped(output):
-    """What an entry skipped: names, or how many."""
+    """Returns the names of the tests that an entry skipped, or their number."""
     return ["".join(groups) for groups in SKIPPED.findall(output)]
 
 

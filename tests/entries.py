@@ -15,7 +15,7 @@ import tempfile
 
 
 def tests_by_file(program, excluded):
-    """The names of the tests of each source file, as --gtest_filter knows them."""
+    """Returns the names of the tests of each source file, in the format of --gtest_filter."""
     with tempfile.TemporaryDirectory() as folder:
         listing = pathlib.Path(folder) / "tests.json"
         chosen = [f"--gtest_filter=-{':'.join(excluded)}"] if excluded else []
@@ -31,7 +31,7 @@ def tests_by_file(program, excluded):
 
 
 def filters(files, excluded):
-    """A filter for each file: by suites where these are in no other file."""
+    """Returns a filter for each file: by suites if these are in no other file."""
     owners = {}
     for path, suites in files.items():
         for suite in suites:

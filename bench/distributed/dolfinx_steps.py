@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Steps of elastodynamics without contact in dolfinx (Debian package python3-dolfinx-real), by several processes.
+"""Steps of elastodynamics without contact in dolfinx (Debian package python3-dolfinx-real), on several processes.
 
   mpirun -n N dolfinx_steps.py MESH --step H --steps N --solver gamg|jacobi --tolerance T
 
-MESH is a Gmsh file of tetrahedra. Linear functions, consistent mass, Newmark's rule with beta 1/4 and gamma 1/2, the matrix put together
-once, PETSc's conjugate gradients from the increment of the last step. `gamg` has the rigid motions; `jacobi` is the diagonal blocks (PBJACOBI on
-BAIJ), what Ricochet has by default. The first process prints one JSON object.
+MESH is a Gmsh file of tetrahedra. Linear functions, consistent mass, Newmark's rule with beta 1/4 and gamma 1/2, the
+matrix assembled once, PETSc's conjugate gradients starting from the increment of the last step. `gamg` is given the
+rigid motions; `jacobi` consists of the diagonal blocks (PBJACOBI on BAIJ), Ricochet's default. The first process prints
+one JSON object.
 """
 
 import argparse
@@ -29,12 +30,12 @@ GRAVITY = (0.0, 0.0, -9.81)
 
 
 def start_velocity(x):
-    """Smooth, with all wave lengths of the body."""
+    """Smooth velocity with all wave lengths of the body."""
     return np.vstack([np.sin(9 * x[0]), 0 * x[0], np.cos(7 * x[1])])
 
 
 def rigid_motions(space):
-    """As a null space for multigrid."""
+    """Rigid motions as a null space for multigrid."""
     index_map, size = space.dofmap.index_map, space.dofmap.index_map_bs
     vectors = [la.create_petsc_vector(index_map, size) for _ in range(6)]
     x = space.tabulate_dof_coordinates()[:index_map.size_local]

@@ -1,28 +1,29 @@
-"""What a step should cost on more cores than there are here: a model whose numbers are measured or guessed, and marked as such."""
+"""Model of the cost of a step on more cores than this machine has; its numbers are measured or estimated, and marked as
+such."""
 
 import math
 
-# Guessed: what is not here to be measured.
+# Estimates that cannot be measured here.
 LATENCY = 1e-6          # s per message
 NEIGHBOURS = 14         # of a part
-OFF_MACHINE = 0.25      # of what lies on a part's boundary
+OFF_MACHINE = 0.25      # of the boundary of a part
 LINK = 0.2e9            # bytes/s per core between machines
-CORES_PER_MACHINE, MACHINE_MEMORY = 64, 200e9  # bytes/s, which its cores share
-SUM = (5e-6, 2.5e-6)    # s of a sum over all: first, and for each doubling
-GATHER = 16.0 / 1e9     # s more of a sum for each process: all have the numbers of all
-EXCHANGES = 12          # of a round of contact, each with a barrier at its end
-HOMES = 16              # processes at most that solve zones
+CORES_PER_MACHINE, MACHINE_MEMORY = 64, 200e9  # bytes/s, shared by its cores
+SUM = (5e-6, 2.5e-6)    # s of a global sum: first, and for each doubling
+GATHER = 16.0 / 1e9     # additional s of a sum per process: each gathers the values of all
+EXCHANGES = 12          # per iteration of contact, each with a barrier at its end
+HOMES = 16              # largest number of processes that solve subdomains
 PRESSED = 0.03          # of one face
 
 
 def shared_nodes(dofs):
-    """On the boundary of a part of so many dofs in three dimensions (docs/distributed.md: 3 n^(2/3) nodes)."""
+    """Nodes on the boundary of a part of so many dofs in three dimensions (docs/distributed.md: 3 n^(2/3) nodes)."""
     return 3.0 * (dofs / 3.0) ** (2.0 / 3.0)
 
 
 class Step:
-    """`measured`: of one process: seconds per dof and iteration (of one core that has the memory for itself), bytes of it, iterations and rounds
-    of a step, and seconds of a zone of 256 points in a round."""
+    """`measured` on one process: seconds per dof and iteration (on one core with the memory to itself), the bytes of
+    these, gradient and contact iterations of a step, and seconds of a subdomain of 256 points per contact iteration."""
 
     def __init__(self, measured):
         self.measured = measured
@@ -42,7 +43,7 @@ class Step:
         return SUM[0] + SUM[1] * math.log2(max(cores, 2)) + GATHER * cores
 
     def zones(self, dofs, cores):
-        """Each home solves its share one after another."""
+        """Each of these processes solves its share of subdomains one after another."""
         nodes_of_face = (dofs / 3.0) ** (2.0 / 3.0)
         zones = max(1, math.ceil(PRESSED * nodes_of_face / 256.0))
         return math.ceil(zones / min(HOMES, cores, zones)) * self.measured["zone"] + EXCHANGES * self.sum_over_all(cores)

@@ -38,7 +38,7 @@ class Bench:
         directory.mkdir(parents=True, exist_ok=True)
 
     def case(self, size, cells, contact, scheme="newmark"):
-        """A ball that lies nearly on the floor and slides over it, or flies and vibrates."""
+        """Case of a ball that lies nearly on the floor and slides over it, or flies and vibrates."""
         step = CROSSING * size * cells
         rule = "textbook-half" if contact else "trapezoidal"
         preset = f'preset = "{rule}"\n' if scheme == "newmark" else ""
@@ -56,13 +56,13 @@ class Bench:
         return path, step
 
     def two_at_once(self, case):
-        """The slower of two runs that have nothing to do with each other but the machine: no division of a body can be faster."""
+        """Returns the slower of two independent runs that share the machine: no division of a body can be faster."""
         with concurrent.futures.ThreadPoolExecutor() as pool:
             runs = list(pool.map(lambda name: self.run(case, 1, name=name), ("first", "second")))
         return max(runs, key=lambda run: run["ms"])
 
     def run(self, case, processes, *more, name="out"):
-        """The summary of a run, with the peak memory of a process."""
+        """Returns the summary of a run, with the peak memory of a process."""
         out = self.directory / name
         command = [sys.executable, "-c", PEAK, str(BUILD / "ricochet-mpi"), "run", str(case), "-o", str(out), "--force", "--quiet", *more]
         # Two runs of one process each would be bound to the same core.
@@ -76,7 +76,7 @@ class Bench:
         return summary
 
     def timed(self, variants):
-        """The median run of each of some calls, which take turns."""
+        """Returns the median run of each of several calls, which take turns."""
         runs = [[] for _ in variants]
         for _ in range(self.repeat):
             for made, variant in zip(runs, variants):
@@ -85,7 +85,8 @@ class Bench:
 
 
 def scaling(bench, sizes, small):
-    """Strong scaling of the larger of two bodies, and weak from the smaller one, of half as many dofs, to it."""
+    """Strong scaling of the larger of two bodies, and weak scaling from the smaller one, of half as many dofs, to
+    it."""
     lines = ["| scheme | cells crossed | dofs | processes | ms per step | of one process | memory of a process | of one | rounds | iterations |",
              "|---|---|---|---|---|---|---|---|---|---|"]
     measured, shared = {}, []
@@ -109,7 +110,7 @@ def scaling(bench, sizes, small):
 
 
 def traffic(bench, size):
-    """What is sent on 2 to 8 processes, beside the formula of 3 n^(2/3) nodes on the boundary of a part."""
+    """Messages on 2 to 8 processes, compared with the formula of 3 n^(2/3) nodes on the boundary of a part."""
     lines = ["| processes | dofs of each | rounds | iterations | messages in a step, at most | sums | MB in a step, at most | by the formula |",
              "|---|---|---|---|---|---|---|---|"]
     case = bench.case(size, 1, True)[0]
@@ -119,7 +120,8 @@ def traffic(bench, size):
         if sent is None:
             lines.append(f"| 1 | {run['dofs']:,} | {count['rounds_per_step']:.1f} | {count['gradients_per_step']:.0f} | | | | |")
             continue
-        # An iteration exchanges single numbers at shared nodes, a round six times double ones.
+        # An iteration exchanges single-precision numbers at shared nodes; a contact iteration exchanges doubles six
+        # times.
         nodes = model.shared_nodes(sent["most_dofs"])
         expected = nodes * (12 * count["gradients_per_step"] + 6 * 24 * count["rounds_per_step"])
         lines.append(f"| {processes} | {sent['most_dofs']:,} | {count['rounds_per_step']:.1f} | {count['gradients_per_step']:.0f} | "
@@ -129,7 +131,7 @@ def traffic(bench, size):
 
 
 def peers(bench, size):
-    """The step without contact."""
+    """Compares the step without contact."""
     case, step = bench.case(size, 1, False)
     mesh = bodies.mesh(bench.directory, "ball", 3, size)
 
@@ -157,13 +159,13 @@ def peers(bench, size):
 
 
 def beyond(measured):
-    """The model, from what one process was measured at."""
+    """Extrapolates by the model, from measurements on one process."""
     steps = []
     for (scheme, cells), runs in measured.items():
         if scheme != "newmark":
             continue
         one, count = runs["one"], runs["one"]["iterations"]
-        seconds = 1e-3 * one["ms"]  # a zone has a few points here, and takes little of it
+        seconds = 1e-3 * one["ms"]  # its subdomain has few points and takes little of this time
         steps.append((f"{cells} cell" + ("s" if cells > 1 else ""), model.Step({
             "seconds": seconds / count["gradients_per_step"] / one["dofs"], "bytes": 150.0,
             "iterations": count["gradients_per_step"], "rounds": count["rounds_per_step"], "zone": 0.030 if cells == 1 else 0.048})))

@@ -25,9 +25,9 @@ import numpy as np
 
 from problems import DENSITY, LAMBDA, MU, gap
 
-LOWER, TOP = 2, 3  # the groups of the meshes, as Gmsh counts them
+LOWER, TOP = 2, 3  # groups of the meshes, as numbered by Gmsh
 RESIDUAL, MOST_ITERATIONS = 1e-8, 30  # of forces of 10 to 10^4
-# Where contact begins GetFEM's line search, by default, takes 74 iterations for what full steps do in 4.
+# When contact begins, GetFEM's default line search takes 74 iterations for a solution that full steps find in 4.
 FULL_STEPS = ("lsearch", "simplest", "alpha max ratio", 1e6, "alpha min", 0.5)
 
 
@@ -36,7 +36,7 @@ class NotConverged(Exception):
 
 
 class Body:
-    """A model whose unknown u is the displacement at which forces are taken, with contact at it."""
+    """A model whose unknown u is the displacement at which forces are evaluated, with contact conditions at it."""
 
     def __init__(self, path, dimension, friction, lift):
         self.dimension, self.up, self.friction = dimension, dimension - 1, friction
@@ -51,11 +51,12 @@ class Body:
         model.add_fem_variable("u", self.space)
         model.add_initialized_data("la", [LAMBDA])
         model.add_initialized_data("mu", [MU])
-        # With friction u is measured from the displacement `before`, so that the contact brick sees the slip from there on.
+        # With friction, u is measured from the displacement `before`, so that the contact brick sees the slip from
+        # there on.
         if friction > 0.0:
             model.add_fem_data("before", self.space)
         model.add_macro("F", "(Id(meshdim)+Grad_u)" if friction == 0.0 else "(Id(meshdim)+Grad_before+Grad_u)")
-        # In plane strain tr C has a 1 more, which is a constant.
+        # In plane strain tr C contains an additional constant 1.
         model.add_nonlinear_term(self.once, "mu/2*(Norm_sqr(F)-2*log(Det(F)))+la/4*(sqr(Det(F))-2*log(Det(F)))")
         self.add_contact(lift)
 
@@ -82,14 +83,14 @@ class Body:
         return matrix
 
     def solve(self):
-        """Newton's iterations."""
+        """Performs Newton iterations."""
         iterations, converged = self.model.solve("max_res", RESIDUAL, "max_iter", MOST_ITERATIONS, "lsolver", "mumps", *FULL_STEPS)
         if not converged:
             raise NotConverged
         return int(iterations)
 
     def forces(self):
-        """On the contact nodes: the normal one, and where there is friction the tangential ones."""
+        """Returns the normal forces on the contact nodes and, with friction, the tangential ones."""
         forces = -self.model.variable("lambda_n")[:, None]
         if self.friction > 0.0:
             forces = np.hstack([forces, self.model.variable("lambda_t").reshape(-1, self.up)])
@@ -97,14 +98,14 @@ class Body:
 
 
 def static(arguments):
-    """The displacement of the top as a whole: slips are those from the start. Where Newton's method does not find that at once it starts from the
-    solutions of halves, quarters, …, which change nothing but the place where it starts."""
+    """Displaces the top as a whole, with slips measured from the start. If Newton's method fails, it starts from the
+    solutions of halves, quarters, … of the displacement, which only provide initial values."""
     body = Body(arguments.mesh, arguments.dimension, arguments.friction, 0.0)
     model, d, up = body.model, body.dimension, body.up
     value = np.zeros(d)
     model.add_initialized_data("pressed", value)
     model.add_Dirichlet_condition_with_simplification("u", TOP, "pressed")
-    squeezed = np.zeros(body.dofs)  # evenly, as the top alone would turn cells inside out
+    squeezed = np.zeros(body.dofs)  # uniformly, as moving only the top would turn cells inside out
     squeezed[up::d] = -arguments.press * body.points[up] / body.points[up].max()
     begin, iterations, parts = time.process_time(), [], 1
     while True:
@@ -134,7 +135,7 @@ def dynamic(arguments):
     factor = 4.0 / h**2 if beta is None else 1.0 / (beta * h**2)
     model.add_explicit_matrix("u", "u", mass, 1, 1)
     right = model.add_explicit_rhs("u", np.zeros(body.dofs))
-    # u is measured from the place at which the falling body starts.
+    # u is measured from the initial position of the falling body.
     displacement, velocity, acceleration = (np.zeros(body.dofs) for _ in range(3))
     velocity[up::d] = -arguments.speed
     if arguments.friction > 0.0:
@@ -168,7 +169,7 @@ def dynamic(arguments):
 
 
 def kernels():
-    """Those of the OpenBLAS that GetFEM's MUMPS and numpy use."""
+    """Returns the kernels of the OpenBLAS that GetFEM's MUMPS and numpy use."""
     function = ctypes.CDLL("libopenblas.so.0").openblas_get_corename
     function.restype = ctypes.c_char_p
     return function().decode()
@@ -191,7 +192,7 @@ def main():
     nodes = body.points.shape[1]
     one = getfem.MeshFem(body.mesh, 1)
     one.set_classical_fem(1)
-    weights = getfem.asm_boundary_source(LOWER, body.twice, one, one, np.ones((1, one.nbdof())))  # by which forces are pressures
+    weights = getfem.asm_boundary_source(LOWER, body.twice, one, one, np.ones((1, one.nbdof())))  # force over pressure
     np.savez(arguments.arrays, points=body.points.T, weights=weights[body.normal // body.dimension], displacement=np.array(displacements).reshape(-1, nodes, body.dimension),
              contact_points=body.points.T[body.normal // body.dimension], force=np.array(forces))
     json.dump(record | {"dofs": body.dofs, "contact_points": len(body.normal), "kernels": kernels()}, sys.stdout)

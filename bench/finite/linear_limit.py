@@ -29,7 +29,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 AGREEMENT = 1e-6
 LAWS = ("saint-venant-kirchhoff", "neo-hookean")
-# Parts that start at a distance: what moves them back by (1 - factor) of the gap.
+# Parts that start at a distance, with the motion that closes (1 - factor) of the gap.
 GAPS_OF_PARTS = {"bars-pair/pair": ("two", 0, 0.0005), "bars-pair/hammer": ("pile", 0, 0.0005), "balls/balls": ("upper", 2, 4.76e-8),
                  "balls/unequal": ("upper", 2, 3.57e-8), "ball-block/ball-block": ("ball", 2, 6.418e-8)}
 
@@ -41,7 +41,7 @@ def scaled(value, factor):
 
 
 def closest(path, case, contact, obstacle):
-    """Smallest distance of a contact boundary from a plane, and whether that is the distance of all of it."""
+    """Returns the smallest distance of a contact boundary from a plane, and whether all of it has that distance."""
     import meshio  # python3-meshio
 
     names = [contact["group"]] if isinstance(contact["group"], str) else contact["group"]
@@ -61,7 +61,7 @@ def closest(path, case, contact, obstacle):
 
 
 def overrides(path, case, factor):
-    """Settings that scale the case, and what could not be scaled."""
+    """Returns settings that scale the case, and the quantities that could not be scaled."""
     settings, notes = {}, []
     for section, keys in (("load", ("gravity", "body_force")), ("initial", ("displacement", "velocity"))):
         for key in keys:
@@ -125,7 +125,8 @@ def run(path, settings, directory, seconds, program):
 
 
 def differences(linear, other):
-    """The largest difference of forces and of displacements, relative to the largest of the run; the steps that were compared."""
+    """Returns the largest difference of forces and of displacements, relative to the largest of the run, and the number
+    of steps compared."""
     rows = min(len(linear["step"]), len(other["step"]))
     found = {}
     for kind, words in (("force", ("force", "reaction")), ("displacement", (".displacement",))):
@@ -145,7 +146,7 @@ def compare(path, factor, seconds, output, program):
     text = path.read_text(encoding="utf-8").split("[[expect]]")[0]
     path = output / name / path.name
     path.parent.mkdir(parents=True, exist_ok=True)
-    # Some cases look at nodes that touch alone: something has to move.
+    # Some cases watch only nodes that touch; something must move.
     path.write_text(text + '\n[[probe]]\nname = "whole-body"\ngroup = "all"\n', encoding="utf-8")
     linear = run(path, settings, output / name / "linear", seconds, program)
     cells, worst = [], 0.0
@@ -164,7 +165,7 @@ def compare(path, factor, seconds, output, program):
 
 
 def best(path, factors, *arguments):
-    """The first factor at which laws agree, or else the one at which they do so best."""
+    """Returns the first factor at which the laws agree, or else the one with the best agreement."""
     found = []
     for factor in factors:
         result = compare(path, factor, *arguments)

@@ -1,4 +1,4 @@
-"""Runs Ricochet and GetFEM on one problem, and compares what comes out."""
+"""Runs Ricochet and GetFEM on one problem, and compares their results."""
 
 import json
 import pathlib
@@ -18,13 +18,15 @@ FIELDS = '["displacement", "contact_pressure", "friction_traction"]'
 
 
 def numbers(points, of):
-    """Where each of `points` stands among those `of`: by place, as both programs number nodes by themselves."""
+    """Returns the index of each of `points` among those `of`, found by position, as the programs number nodes
+    differently."""
     places = {tuple(key): k for k, key in enumerate(np.round(of * 1e8).astype(int))}
     return np.array([places[tuple(key)] for key in np.round(points * 1e8).astype(int)])
 
 
 def arrays(case, directory, dimension):
-    """Points and cells, and per frame displacement, pressure, friction traction, of a run that writes all steps."""
+    """Returns points and cells, and per frame displacement, pressure, friction traction, of a run that writes all
+    steps."""
     ours.run(case, directory, {"output.fields": FIELDS})
     with h5py.File(directory / "results.h5") as file:
         points, cells = file["mesh/nodes"][:, :dimension], file["mesh/cells"][:]
@@ -34,19 +36,19 @@ def arrays(case, directory, dimension):
 
 
 def largest_stretch(points, cells, displacement):
-    """The largest of |principal stretch - 1| of any linear cell in any frame."""
+    """Returns the largest |principal stretch - 1| of any linear cell in any frame."""
     d, largest = points.shape[1], 0.0
     corner = points[cells[:, :d + 1]]
     inverse = np.linalg.inv(corner[:, 1:] - corner[:, :1])
     for frame in displacement:
         moved = corner + frame[cells[:, :d + 1]]
-        gradient = inverse @ (moved[:, 1:] - moved[:, :1])  # the transpose of F
+        gradient = inverse @ (moved[:, 1:] - moved[:, :1])  # transpose of F
         largest = max(largest, float(abs(np.linalg.svd(gradient, compute_uv=False) - 1.0).max()))
     return largest
 
 
 def getfem(action, mesh, dimension, friction, file, kernels, **options):
-    """The record that getfem_finite.py prints, or {"failed": why}; arrays are in `file`."""
+    """Returns the record that getfem_finite.py prints, or {"failed": why}; arrays are in `file`."""
     command = [sys.executable, str(HERE / "getfem_finite.py"), action, str(mesh), str(dimension), "--friction", repr(friction), "--arrays", str(file)]
     for name, value in options.items():
         command += [f"--{name}", repr(value)]
@@ -60,8 +62,8 @@ def getfem(action, mesh, dimension, friction, file, kernels, **options):
 
 
 def differences(mine, file, first, bound):
-    """The largest ones of displacement and forces, of all steps and nodes, relative to the largest value. `first`: our frame that is
-    GetFEM's first one. `bound`: the coefficient of friction."""
+    """Returns the largest differences of displacement and forces, over all steps and nodes, relative to the largest
+    value. `first`: the frame of ours that is GetFEM's first one. `bound`: the coefficient of friction."""
     points, _, displacement, pressure, traction = mine
     with np.load(file) as theirs:
         moved = displacement[first:] - (displacement[0] if first else 0.0)
@@ -81,7 +83,7 @@ def differences(mine, file, first, bound):
 
 
 def beyond(moved, other, force, theirs):
-    """The step from which differences are above 10^-8 of the largest value so far; 0: never."""
+    """Returns the step from which differences exceed 10^-8 of the largest value so far; 0 if none."""
     for k in range(len(moved)):
         if abs(moved[k] - other[k]).max() > 1e-8 * abs(moved[:k + 1]).max() or abs(force[k] - theirs[k]).max() > 1e-8 * force[:k + 1].max():
             return k + 1
@@ -89,7 +91,7 @@ def beyond(moved, other, force, theirs):
 
 
 def at_bound(force, friction, bound):
-    """How many of the pressed nodes have as much friction as there can be."""
+    """Returns the number of pressed nodes whose friction is at its limit."""
     pressed = force > 1e-9 * force.max(initial=0.0)
     return int((np.linalg.norm(friction[pressed], axis=1) > bound * force[pressed] * (1.0 - 1e-6)).sum())
 
@@ -102,21 +104,23 @@ def processor_seconds(case, directory, settings):
 
 
 def step_seconds(case, directory, steps):
-    """Processor time of a step with contact: of a run of all steps less one of those before contact. With rows of the history only at the end."""
+    """Returns the processor time of a step with contact: a run of all steps less one of the steps before contact, with
+    rows of the history only at the end."""
     settings = {"output.history_every": 1000000}
     short = processor_seconds(case, directory, settings | {"time.end": repr(problems.FLIGHT * problems.STEP)})
     return (processor_seconds(case, directory, settings) - short) / (steps - problems.FLIGHT)
 
 
 def newton_rounds(directory):
-    """Of the steps with contact of a run with all rows."""
+    """Returns the Newton iterations of the steps with contact of a run with all rows."""
     with open(directory / "history.csv", newline="") as file:
         names = file.readline().strip().split(",")
         return [int(row) for row in np.loadtxt(file, delimiter=",", usecols=names.index("newton_rounds"), ndmin=1)[problems.FLIGHT + 1:]]
 
 
 def rounds_by_phase(directory):
-    """The same, by whether contact is open, changes or stays as it is, as ricochet_step_bench tells steps apart."""
+    """Returns the iterations by whether contact is open, changes or is unchanged, as ricochet_step_bench classifies
+    steps."""
     with open(directory / "history.csv", newline="") as file:
         names = file.readline().strip().split(",")
         rows = np.loadtxt(file, delimiter=",", usecols=(names.index("newton_rounds"), names.index("active_contacts")), ndmin=2).astype(int)

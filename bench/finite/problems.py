@@ -1,4 +1,4 @@
-"""Problems of finite strain that two programs are to solve: meshes and case files."""
+"""Problems of finite strain for both programs: meshes and case files."""
 
 import pathlib
 import subprocess
@@ -10,18 +10,18 @@ LAMBDA, MU, DENSITY = 1e4, 5e3, 1.0  # Poisson's ratio 1/3
 STEP = bodies.STEP
 FLIGHT = 2  # steps
 
-# What a time scheme is in the case file, and what getfem_finite.py calls it.
+# Time schemes: their section of the case file, by their name in getfem_finite.py.
 SCHEMES = {"newmark": 'scheme = "newmark"\npreset = "textbook-half"', "trapezoidal": 'scheme = "newmark"\npreset = "trapezoidal"',
            "midpoint": 'scheme = "midpoint"', "reduced-kane": 'scheme = "reduced-kane"', "mean-reaction": 'scheme = "mean-reaction"'}
 
 
 def gap(speed):
-    """Of falling bodies at the start: they touch in the third step."""
+    """Returns the initial gap of falling bodies: they touch in the third step."""
     return (FLIGHT + 0.5) * STEP * speed
 
 
 def pressed_mesh(directory, name, dimension, size):
-    """Of block.geo or half.geo."""
+    """Makes a mesh of block.geo or half.geo."""
     path = directory / f"{name}-{dimension}d-{size:g}.msh"
     if not path.exists():
         subprocess.run(["gmsh", str(HERE / f"{name}.geo"), f"-{dimension}", "-setnumber", "dimension", str(dimension), "-setnumber", "size",
@@ -30,7 +30,7 @@ def pressed_mesh(directory, name, dimension, size):
 
 
 def sections(mesh, dimension, friction, mass, time, law):
-    """What all cases have."""
+    """Returns the common sections of all cases."""
     zeros = ", ".join(["0.0"] * (dimension - 1))
     dilatation = 'dilatation = "pointwise"\n' if law != "linear" else ""
     return (f'[mesh]\nfile = "{mesh}"\n[[material]]\ngroup = "body"\ndensity = {DENSITY}\nlaw = "{law}"\nlambda = {LAMBDA}\nmu = {MU}\n{dilatation}'
@@ -40,7 +40,8 @@ def sections(mesh, dimension, friction, mass, time, law):
 
 
 def pressed(directory, body, press, friction):
-    """A body whose top is held and pressed down by a part of its height: equilibrium. The path of the case file."""
+    """Writes the case of a body whose top is held and pressed down by a fraction of its height, in equilibrium. Returns
+    its path."""
     name, dimension, size = body
     mesh = pressed_mesh(directory, name, dimension, size)
     text = sections(mesh, dimension, friction, "consistent", f'{SCHEMES["newmark"]}\nstep = {STEP}\nend = {STEP}\n', "neo-hookean")
@@ -53,12 +54,12 @@ def pressed(directory, body, press, friction):
 
 
 def falling_mesh(directory, body):
-    """The disc or the ball of bench/step; their lowest point is 0.1 above the floor."""
+    """Makes the mesh of the disc or the ball of bench/step; their lowest point is 0.1 above the floor."""
     return bodies.mesh(directory, *body)
 
 
 def falling(directory, body, speed, friction, scheme, steps, mass=None, law="neo-hookean", step=STEP):
-    """A disc or ball that falls at this speed, `gap` above the floor. The path of the case file."""
+    """Writes the case of a disc or ball that falls at this speed, `gap` above the floor. Returns its path."""
     name, dimension, size = body
     mass = mass or ("equivalent" if scheme in ("reduced-kane", "mean-reaction") else "consistent")
     zeros = ["0.0"] * (dimension - 1)

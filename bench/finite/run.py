@@ -27,7 +27,7 @@ import peer
 import problems
 import where
 
-# (name, dimension, size of cells), pressed by this part of the height.
+# (name, dimension, size of cells), pressed by this fraction of the height.
 PRESSED = [(("block", 2, 0.03), 0.1), (("block", 3, 0.1), 0.1), (("half", 2, 0.03), 0.1), (("half", 2, 0.03), 0.3), (("half", 3, 0.1), 0.1)]
 FRICTIONS = (0.0, 0.1, 0.3)
 # Falling: body, speed, friction, scheme, steps. From 0.2 to 10 % of strain.
@@ -41,8 +41,8 @@ TIMED = [(("ball", 3, 0.101), 0.0, (0.1, 1.0, 5.0), 8), (("ball", 3, 0.101), 0.3
          (("disc", 2, 0.0202), 0.0, (0.1, 1.0, 5.0), 12), (("disc", 2, 0.0202), 0.3, (1.0,), 12), (("disc", 2, 0.0101), 0.0, (1.0,), 8)]
 COSTS = [(("disc", 2, 0.0202), "reduced-kane", SPEEDS, 30), (("disc", 2, 0.0101), "reduced-kane", SPEEDS, 20),
          (("ball", 3, 0.101), "reduced-kane", SPEEDS, 20), (("ball", 3, 0.101), "newmark", SPEEDS, 20), (("ball", 3, 0.0475), "newmark", SPEEDS, 10)]
-LIMIT = 600  # seconds, of runs that may hang
-# Of the samples of a profile.
+LIMIT = 600  # seconds, for runs that may hang
+# For sampling profiles.
 WHERE = [(("disc", 2, 0.0202), "newmark", 12), (("disc", 2, 0.0202), "reduced-kane", 12), (("ball", 3, 0.101), "newmark", 8)]
 
 
@@ -73,7 +73,8 @@ def measure_dynamics(arguments, directory):
 
 
 def measure_times(arguments, directory):
-    """Newmark's scheme in both, which makes the same steps; besides our default scheme from the same start."""
+    """Measures Newmark's scheme in both programs, which compute the same steps; also our default scheme from the same
+    start."""
     for body, friction, speeds, steps in TIMED:
         for speed in speeds:
             yield time_of_steps(arguments, directory, body, friction, speed, steps)
@@ -117,7 +118,8 @@ def step_bench(arguments, case, steps):
 
 
 def measure_costs(arguments, directory):
-    """Steps with the equivalent mass over plain triangular solves of their operator; the law of small strain beside it."""
+    """Measures steps with the equivalent mass relative to plain triangular solves of their operator, and the law of
+    small strain for comparison."""
     for body, scheme, speeds, steps in COSTS:
         for law, speed in [("linear", 1.0)] + [("neo-hookean", speed) for speed in speeds]:
             yield cost_of_steps(arguments, directory, body, scheme, law, speed, steps)

@@ -77,7 +77,8 @@ def middle(runs, phase, name):
 
 
 def phase_rounds(record, phase):
-    """Newton's iterations per step in the steps of a phase of ricochet_step_bench, by the history of the same run."""
+    """Returns the Newton iterations per step in the steps of a phase of ricochet_step_bench, from the history of the
+    same run."""
     rounds = record.get("rounds_by_phase", {}).get(phase)
     return f"{statistics.median(rounds):.0f}" if rounds else "1"
 
@@ -112,7 +113,8 @@ def where_table(records):
 
 
 def forces_agree(everything):
-    """Where steps coincide. The trapezoidal rule and the midpoint scheme amplify rounding with this mass: theirs until then."""
+    """Returns whether forces agree where steps coincide. The trapezoidal rule and the midpoint scheme amplify rounding
+    with this mass: they count up to that step."""
     agree = True
     for part in ("statics", "dynamics"):
         for record in everything.get(part, {}).get("records", []):

@@ -1,4 +1,4 @@
-"""Where the processor time of a run goes, by perf's samples."""
+"""Distribution of the processor time of a run, from perf's samples."""
 
 import re
 import shutil
@@ -6,7 +6,7 @@ import subprocess
 
 import problems
 
-# The first that matches a line "library symbol" counts.
+# The first pattern that matches a line "library symbol" counts.
 GROUPS = [("triangular solves", r"supernode_(for|back)ward|panels_(for|back)ward|SupernodalFactor::(gather|forward|backward)"),
           ("internal forces and energies: cells, law", r"run_in_packs|CellPacks|for_each_part|find_strains|find_gradients|add_forces|libm\.so|libm-"),
           ("factors and tangents", r"multiply_avx|subtract_panel|factor|metis|amd|camd|tangent|add_rows|matrix_on_graph|CellKernel|PointLaw|NeoHookean|Elastic|"
@@ -16,7 +16,7 @@ GROUPS = [("triangular solves", r"supernode_(for|back)ward|panels_(for|back)ward
 
 
 def samples(program, case, directory, until):
-    """{group: samples}, or None where there is no perf."""
+    """Returns {group: samples}, or None if perf is not installed."""
     if not shutil.which("perf"):
         return None
     data = directory / "perf.data"
@@ -35,7 +35,7 @@ def samples(program, case, directory, until):
 
 
 def of_steps(program, case, directory, steps):
-    """Of the steps with contact: samples of a run less those of one that ends before contact."""
+    """Returns the samples of the steps with contact: those of a run less those of one that ends before contact."""
     long = samples(program, case, directory, steps * problems.STEP)
     short = samples(program, case, directory, problems.FLIGHT * problems.STEP)
     return long and short and {name: max(0, long[name] - short[name]) for name in long}

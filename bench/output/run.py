@@ -41,7 +41,7 @@ def seconds(program, path, output, settings):
 
 
 def measure(program, path, directory, repeat):
-    """Per variant: the ratios to the run without fields, the sizes of results.h5."""
+    """Returns, per variant, the ratios to the run without fields and the sizes of results.h5."""
     ratios, sizes, plain = {name: [] for name in VARIANTS}, {}, []
     for k in range(repeat):
         times = {}

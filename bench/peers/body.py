@@ -1,4 +1,4 @@
-"""A body of plane P1 triangles, assembled here and nowhere else: neither Ricochet nor its peers have a part in it."""
+"""A body of plane P1 triangles, assembled independently of Ricochet and its peers."""
 
 import pathlib
 import tomllib
@@ -57,14 +57,14 @@ class Body:
         self.stiffness, self.mass = matrix(stiffness), matrix(mass)
 
     def field(self, vector):
-        """The same vector at each node, as dofs."""
+        """Returns the same vector at each node, as dofs."""
         return np.tile(np.asarray(vector, dtype=float), len(self.points))
 
     def nodes(self, group):
         return np.unique(self.groups[group])
 
     def lengths(self, group):
-        """Of each node of the group: the integral of its hat function over the group."""
+        """Returns, for each node of the group, the integral of its hat function over the group."""
         edges = self.groups[group]
         length = np.linalg.norm(self.points[edges[:, 1]] - self.points[edges[:, 0]], axis=1)
         result = np.zeros(len(self.points))

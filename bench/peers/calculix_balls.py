@@ -25,9 +25,9 @@ import ours
 
 CASE = ours.ROOT / "cases" / "balls" / "balls.toml"
 RADIUS, YOUNG, POISSON, DENSITY, SPEED = 10.0, 2.1e5, 0.3, 7.8e-9, 1000.0  # mm, N, s, t
-END, LOW = 6.5e-5, 2.0  # s; N: contact ends for the table where the force falls below it, 0.2 % of the largest
+END, LOW = 6.5e-5, 2.0  # s; N: contact ends for the table when the force falls below it, 0.2 % of the largest
 FACES = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0))  # S1 to S4 of CalculiX' tetrahedra
-FORCE, DURATION, LOSS = 0.02, 0.02, 0.005  # the agreement with Hertz, and the change of energy, that are asked for
+FORCE, DURATION, LOSS = 0.02, 0.02, 0.005  # required agreement with Hertz, and the tolerated change of energy
 
 
 class Ball:
@@ -52,7 +52,8 @@ class Ball:
 
 
 def deck(ball, penalty, dynamic, contact="SURFACE TO SURFACE"):
-    """The input file; `penalty` in MPa/mm. The lower ball is the upper one, turned by half a turn about (1, 1, 0): x and y change places, z its sign."""
+    """Returns the input file; `penalty` in MPa/mm. The lower ball is the upper one rotated by 180 degrees about (1, 1,
+    0): x and y are exchanged, z changes its sign."""
     count, cells = len(ball.points), len(ball.cells)
     upper, lower = ball.points, np.stack([ball.points[:, 1], ball.points[:, 0], -ball.points[:, 2]], axis=1)
     lines = ["*NODE, NSET=NALL"]
@@ -103,7 +104,8 @@ def processor_seconds(action):
 
 
 class Run:
-    """Force, elastic and kinetic energy and that of the penalty of whole balls at every step; N, s, mJ. `start`: the energy then."""
+    """Force and energies (elastic, kinetic and of the penalty) of whole balls at every step; N, s, mJ. `start`: the
+    initial energy."""
 
     def __init__(self, seconds, iterations, rows, start):
         self.seconds, self.iterations, self.steps, self.start = seconds, iterations, len(rows), start
@@ -111,11 +113,11 @@ class Run:
         self.energy = elastic + kinetic + self.penalty
         last = np.flatnonzero(self.force > LOW)[-1]
         self.peak, self.end = self.force.max(), np.interp(-LOW, -self.force[last:last + 2], self.time[last:last + 2])
-        self.impulse = np.trapz(self.force, self.time) / (2 * start / SPEED)  # over the momentum at the start
+        self.impulse = np.trapz(self.force, self.time) / (2 * start / SPEED)  # relative to the initial momentum
 
 
 def calculix(ball, directory, penalty, dynamic, start):
-    """A run, or the one that --keep left in the directory."""
+    """Returns a run, or the one that --keep left in the directory."""
     directory.mkdir(parents=True, exist_ok=True)
     if not (directory / "seconds").exists():
         (directory / "balls.inp").write_text(deck(ball, penalty, dynamic))
@@ -129,7 +131,7 @@ def calculix(ball, directory, penalty, dynamic, start):
     energies = [re.findall(rf"{text} and time\s+{number}\s+{number}", printed)
                 for text in ("total internal energy for set EALL", "total kinetic energy for set EALL")]
     springs = re.findall(rf"total contact spring energy for time\s+{number}\s+{number}", printed)
-    force, spring = dict(forces), dict(springs)  # of each instant; neither is printed while the balls are apart
+    force, spring = dict(forces), dict(springs)  # at each instant; neither is printed while the balls are apart
     rows = [[float(instant)] + [4 * float(each) for each in (force.get(instant, 0), elastic, kinetic, spring.get(instant, 0))]
             for (instant, elastic), (_, kinetic) in zip(*energies)]
     iterations = [line for line in (directory / "balls.cvg").read_text().split("\n") if re.match(r"\s+\d", line)]
@@ -147,7 +149,7 @@ def ricochet(directory, step):
 
 
 def hertz():
-    """Largest force, duration, the instant at which the force falls below LOW."""
+    """Returns the largest force, the duration, and the instant at which the force falls below LOW."""
     modulus, radius, mass = YOUNG / (2 * (1 - POISSON**2)), RADIUS / 2, 2 * math.pi / 3 * RADIUS**3 * DENSITY
     compression = (15 * mass * SPEED**2 / (16 * modulus * math.sqrt(radius))) ** 0.4
     duration = 4 * math.sqrt(math.pi) / 5 * math.gamma(0.4) / math.gamma(0.9) * compression / SPEED

@@ -46,7 +46,7 @@ class Disc:
         mass = getfem.asm_mass_matrix(integration, self.space)
         mass.scale(material["density"])
         stiffness = getfem.asm_linear_elasticity(integration, self.space, data, material["lambda"] * one, material["mu"] * one)
-        # Their dof of each of the file's nodes; a component after the other in both.
+        # Their dof of each of the file's nodes; the components of a node are adjacent in both.
         places = self.space.basic_dof_nodes()[:, ::2].T
         order = [int(np.argmin(((places - point) ** 2).sum(axis=1))) for point in body.points]
         self.numbers = (2 * np.array(order)[:, None] + np.arange(2)).ravel()
@@ -90,7 +90,7 @@ class Disc:
         return scipy.sparse.kron(0.5 * (scalar + scalar.T), scipy.sparse.identity(2)).tocsr()
 
     def moments(self, mass):
-        """1, x, y with each other, of the first component."""
+        """Returns the products of 1, x, y with each other, for the first component."""
         monomials = np.vstack([np.ones(len(self.body.points)), self.body.points.T])
         return monomials @ mass[::2, ::2] @ monomials.T
 
@@ -131,7 +131,7 @@ class Stage:
 
 
 class Theirs:
-    """Displacement and force of the contact nodes at every step, energies."""
+    """Displacement and force of the contact nodes at every step, and the energies."""
 
     def __init__(self, disc, mass, load):
         self.disc, self.mass, self.load = disc, mass, load
@@ -154,7 +154,8 @@ def start(disc, mass, load):
 
 
 def midpoint(disc, mass, load, steps, persistent=False, states=None):
-    """SCHEME 2; persistent: SCHEME 8, Laursen and Chawla's condition. Each step from its own end, or from one of `states`."""
+    """SCHEME 2; persistent: SCHEME 8, Laursen and Chawla's condition. Each step starts from the end of the previous
+    one, or from one of `states`."""
     h, (result, U, V) = STEP, start(disc, mass, load)
     stage = Stage(disc, 4 / h**2 * mass + disc.stiffness)
     for n in range(steps):
@@ -253,7 +254,7 @@ def velocity_form(disc, mass, load, steps):
     return result.arrays()
 
 
-# U^1 = U^0 + h V^0 in their program, U^0 + h V^0 + h^2/2 A^0 in ours: so ours starts a little slower.
+# U^1 = U^0 + h V^0 in their program, U^0 + h V^0 + h^2/2 A^0 in ours, which therefore starts slightly slower.
 SLOWER = {"initial.velocity": [0.0, VELOCITY[1] - 0.5 * STEP * GRAVITY[1]]}
 TRAPEZOIDAL = {"time.scheme": "newmark", "time.preset": "trapezoidal"}
 CENTRAL = {"time.scheme": "paoli-schatzman", **SLOWER}
@@ -263,7 +264,8 @@ ALL = None
 
 
 class Row:
-    """`agrees`: for how many steps at least; 0 where the two are not the same scheme. from_ours: each step from our state."""
+    """`agrees`: minimum number of steps that agree; 0 if the schemes differ. from_ours: each step starts from our
+    state."""
 
     def __init__(self, name, mass, theirs, settings, agrees=ALL, load="mass", from_ours=False):
         self.name, self.mass, self.theirs, self.settings = name, mass, theirs, settings
@@ -329,7 +331,7 @@ def main():
                 continue
             mass = masses[row.mass]
             load = disc.consistent_load if row.load == "consistent" else mass @ body.field(GRAVITY)
-            if row.settings is None:  # ours has no such scheme
+            if row.settings is None:  # Ricochet has no such scheme
                 theirs, mine = row.theirs(disc, mass, load, steps), None
                 results.append((row, theirs, mine))
                 continue

@@ -33,8 +33,8 @@ CELLS, STEP, END, HEIGHT = 50, 0.005, 6.0, 0.1
 
 EXPLICIT = {"time.scheme": "paoli-schatzman", "time.stiffness": "explicit", "mass.type": "lumped"}
 ALL = None
-# Name, settings of the demo, settings of ours, for how many steps they agree at least (0: not the same scheme), steps by which
-# our row of the force is earlier.
+# Name, settings of the demo, settings of ours, minimum number of steps that agree (0: different schemes), number of
+# steps by which our row of the force is earlier.
 ROWS = [
     ("newmark, consistent mass", "version = 0; beta = 0.25",
      {"time.scheme": "newmark", "time.preset": "trapezoidal", "mass.type": "consistent"}, 250, 0),

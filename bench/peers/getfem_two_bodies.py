@@ -30,9 +30,9 @@ import ours
 YOUNG, POISSON, DENSITY, SPEED = 2e3, 0.3, 1e-9, 5e3  # mm, N, s, t: a plastic, at 5 m/s
 LAMBDA, MU = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON)), YOUNG / (2 * (1 + POISSON))
 STEP = 2e-6
-RADII, CELLS = (20.0, 30.0), (0.1, 0.17)  # of each disc; the size of its cells where they touch
-CONTACT = 2  # the region of GetFEM's meshes that is the curve "contact"
-FORCE, IMPULSE = 0.02, 0.002  # the agreement that is asked for, relative to the largest force and the whole impulse
+RADII, CELLS = (20.0, 30.0), (0.1, 0.17)  # of each disc; the size of its cells near the contact
+CONTACT = 2  # region of GetFEM's meshes that is the curve "contact"
+FORCE, IMPULSE = 0.02, 0.002  # required agreement, relative to the largest force and the whole impulse
 
 GEOMETRY = """// A disc of radius R that touches y = 0 at the origin from above (S = 1) or from below (S = -1), with cells of H there.
 SetFactory("OpenCASCADE");
@@ -86,7 +86,7 @@ contact = 0
 
 
 def write_case(directory, size=1.0):
-    """The case and its meshes, whose cells are `size` times as large; for GetFEM in Gmsh's older format, too."""
+    """Writes the case and its meshes, whose cells are scaled by `size`; for GetFEM also in Gmsh's older format."""
     for k, (radius, cell) in enumerate(zip(RADII, CELLS)):
         path = directory / f"disc-{k}.geo"
         # The cells far from the contact are R/30 at size 1.
@@ -105,13 +105,13 @@ def processor_seconds(case, steps, settings):
 
 
 def times(case, steps, settings):
-    """Processor time of a run of one step, and of a step: the difference of that run and a longer one."""
+    """Returns the processor time of a run of one step, and of a step: the difference of that run and a longer one."""
     set_up = processor_seconds(case, 1, settings)
     return set_up, (processor_seconds(case, steps + 1, settings) - set_up) / steps
 
 
 def ricochet(case, steps, settings=None):
-    """The force after every step."""
+    """Returns the force after every step."""
     processor_seconds(case, steps + 1, settings or {})
     with open(case.parent / "run" / "history.csv", newline="") as file:
         names = file.readline().strip().split(",")
@@ -120,13 +120,14 @@ def ricochet(case, steps, settings=None):
 
 
 def nodal(model, integration, space):
-    """Nodes of the small disc against the large one's boundary; matrices of the gaps are made once."""
+    """Nodes of the small disc against the large one's boundary; matrices of the gaps are assembled once."""
     model.add_initialized_data("r", [YOUNG])
     model.add_nodal_contact_between_nonmatching_meshes_brick(*integration, "u0", "u1", "lambda", "r", CONTACT, CONTACT)
 
 
 def integral(model, integration, space):
-    """The gap in the mean, by projection of the undeformed boundaries on each other: of points nearer than 0.05 of a cell only."""
+    """Mean gap, by projection of the undeformed boundaries on each other, only for points closer than 0.05 of a
+    cell."""
     space(1)
     model.add_initialized_data("r", [YOUNG / CELLS[0]])
     model.add_integral_contact_between_nonmatching_meshes_brick(integration[0], "u0", "u1", "lambda", "r", CONTACT, CONTACT)
@@ -146,7 +147,8 @@ BRICKS = {"nodal": (nodal, True), "large sliding, raytracing": (raytracing, True
 
 
 def getfem_run(directory, brick, steps):
-    """Processor time before the first step and of a step, the force after every step, Newton's iterations."""
+    """Returns the processor time before the first step and of a step, the force after every step, and the Newton
+    iterations."""
     begin = time.process_time()
     model = getfem.Model("real")
     for name, value in (("lame", LAMBDA), ("mu", MU), ("rho", DENSITY)):
@@ -229,7 +231,7 @@ def main():
         force = ricochet(case, steps)
         peak, impulse = force.max(), force.sum()
         forces = {"Ricochet": force}
-        # A run takes a second: five times as many of them, since their differences are small.
+        # A run takes a second: five times as many, as their differences are small.
         set_up, step_with_row = medians([times(case, steps, {}) for _ in range(5 * arguments.runs)])
         step = medians([times(case, steps, coarse) for _ in range(5 * arguments.runs)])[1]
         print(f"Ricochet: largest force {peak:.5g} N/mm, impulse {STEP * impulse:.5g} Ns/mm; set-up {set_up:.2f} s, a step {step:.2f} ms, "

@@ -1,4 +1,4 @@
-"""Runs Ricochet and reads what it wrote."""
+"""Runs Ricochet and reads its results."""
 
 import os
 import pathlib
@@ -13,7 +13,8 @@ PROGRAM = pathlib.Path(os.environ.get("RICOCHET", ROOT / "build" / "ricochet"))
 
 
 def run(case, directory, settings, fields=True, limit=None):
-    """A run of the case with `settings` (key: value) that writes the fields of every step, or none; of at most `limit` seconds."""
+    """Runs the case with `settings` (key: value), writing the fields of every step, or none; for at most `limit`
+    seconds."""
     settings = {"output.fields_every": 1 if fields else 0, **settings}
     if fields:
         settings["output.fields"] = '["displacement", "velocity", "acceleration", "contact_pressure", "friction_traction"]'
@@ -24,7 +25,7 @@ def run(case, directory, settings, fields=True, limit=None):
         result = subprocess.run(command, capture_output=True, text=True, timeout=limit)
     except subprocess.TimeoutExpired:
         sys.exit(f"{' '.join(command)}: no end after {limit} s")
-    if result.returncode not in (0, 5):  # 5: what the case expects is of its own scheme
+    if result.returncode not in (0, 5):  # 5: expectations of the case refer to its own scheme
         sys.exit(f"{' '.join(command)}: {result.stderr.strip()}")
 
 
@@ -46,7 +47,7 @@ class Steps:
 
 
 def states(directory):
-    """Displacement, velocity and acceleration of all dofs at every step."""
+    """Returns displacement, velocity and acceleration of all dofs at every step."""
     with h5py.File(pathlib.Path(directory) / "results.h5") as file:
         frames = [file["frames"][name] for name in sorted(file["frames"])]
         return [tuple(frame[name][:, :2].ravel() for name in ("displacement", "velocity", "acceleration")) for frame in frames]

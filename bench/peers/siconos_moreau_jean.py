@@ -25,7 +25,7 @@ from body import Body
 
 
 class Problem:
-    """A case of Ricochet with some of its keys changed; what is not here is as in the file."""
+    """A case of Ricochet with some of its keys changed; all others are as in the file."""
 
     def __init__(self, case, group, obstacle, point, normal, velocity, gravity, friction, step, steps,
                  damping=(0.0, 0.0)):
@@ -47,18 +47,19 @@ class Problem:
 
 # The bar of cases/bar falls 0.01 at the speed 2 and bounces: contact in the steps 3 to 569, flight, contact from 713 on.
 BAR = Problem("bar/bounce.toml", "bottom", "floor", [0.0, 4.99], [0.0, 1.0], [0.0, -2.0], [0.0, -10.0], 0.0, 0.002, 1000)
-# The disc of cases/oblique, 0.02 mm above a plane that leans by 16 degrees: it slips, sticks, slips back and leaves.
+# The disc of cases/oblique, 0.02 mm above a plane inclined by 16 degrees: it slips, sticks, slips back and leaves.
 THROWN = ("oblique/oblique.toml", "lower", "foundation", [0.28 * 0.02002, 0.0205 - 0.96 * 0.02002], [-0.28, 0.96],
           [0.1, -0.1], [0.0, 0.0], 0.3, 2e-5, 700)
 DISC, DAMPED = Problem(*THROWN), Problem(*THROWN, damping=(10.0, 1e-5))
 
 
 def siconos(problem, body, theta, restitution, slip, tolerance=1e-14):
-    """Displacements, velocities and impulses (normal; along the tangent) of the contact nodes after every step."""
+    """Returns displacements, velocities and impulses (normal; along the tangent) of the contact nodes after every
+    step."""
     free, h = body.free_dofs(), problem.step
     nodes, interactions = body.nodes(problem.group), []
-    # Siconos 4.4.0 ends with an assertion where e_T > 0 in two dimensions. In three it does not: each contact node then has a
-    # third component, with a mass of its own and nothing that moves it.
+    # Siconos 4.4.0 ends with an assertion if e_T > 0 in two dimensions, but not in three: each contact node then has a
+    # third component, with a mass of its own and no load.
     space = slip == "theta" and problem.friction > 0.0
     beside = len(nodes) if space else 0
     mass, stiffness = (matrix[free][:, free].toarray() for matrix in (body.mass, body.stiffness))
@@ -71,7 +72,8 @@ def siconos(problem, body, theta, restitution, slip, tolerance=1e-14):
     system.setFExtPtr(np.append((body.mass @ body.field(problem.gravity))[free], rest))
     model = sk.NonSmoothDynamicalSystem(0.0, h * (problem.steps + 1))
     model.insertDynamicalSystem(system)
-    # Its slip rate is that at the end plus e_T times that at the start: with this e_T, 1/theta times the one at theta.
+    # Its slip rate is the one at the end plus e_T times the one at the start: with this e_T, 1/theta times the one at
+    # theta.
     tangential = (1.0 - theta) / theta if slip == "theta" else 0.0
     tangent = np.array([problem.normal[1], -problem.normal[0]])
     for k, node in enumerate(nodes):
@@ -121,7 +123,7 @@ def ricochet(problem, body, mass, theta, restitution, slip, directory):
 
 
 def events(impulse, velocity, friction):
-    """Touches and releases of nodes, and steps of nodes that slip and that stick."""
+    """Counts touches and releases of nodes, and steps of nodes that slip and that stick."""
     pressed = impulse[:, :, 0] > 0.0
     touches, releases = (~pressed[:-1] & pressed[1:]).sum(), (pressed[:-1] & ~pressed[1:]).sum()
     if friction == 0.0:

@@ -14,7 +14,7 @@ LAWS = ("neo-hookean", "neo-hookean", "mooney-rivlin", "saint-venant-kirchhoff")
 
 
 class Draw:
-    """Everything of a scene that its seed decides."""
+    """All random properties of a scene, decided by its seed."""
 
     def __init__(self, seed):
         self.random = random = random_module.Random(seed)
@@ -27,13 +27,13 @@ class Draw:
         self.friction = 0.0 if random.random() < 0.3 else random.uniform(0, 1)
         self.kinds = ("triangle", "quadrilateral") if self.d == 2 else ("tetrahedron", "hexahedron")
         self.density, self.young = 10**random.uniform(-0.5, 0.5), 10**random.uniform(1, 3)
-        self.poisson = random.choice((0.0, 0.2, 0.3, 0.38, 0.45))  # 0.4 is where the mean dilatation begins
+        self.poisson = random.choice((0.0, 0.2, 0.3, 0.38, 0.45))  # the mean dilatation begins at 0.4
         self.wave = math.sqrt(self.young / self.density)
         self.speed = self.wave * 10**random.uniform(-2.5, -1.3)
         self.crossings, self.steps = 10**random.uniform(-1, 0.5), random.randint(24, 50)
         self.sections, self.tail, self.facts = [], [], {}
         self.law = random.choice(LAWS) if self.finite else "linear"
-        if self.law == "saint-venant-kirchhoff":  # which gives way under compression
+        if self.law == "saint-venant-kirchhoff":  # which softens under compression
             self.speed *= 0.3
 
     def set_step(self, cell):
@@ -42,7 +42,7 @@ class Draw:
         self.cell = cell
 
     def cells(self, low, high):
-        """Counts of cells and their size."""
+        """Returns counts of cells and their size."""
         most = (4, 8) if self.d == 2 else (3, 4)
         if self.degree == 2:
             most = (3, 5) if self.d == 2 else (2, 3)
@@ -103,7 +103,7 @@ class Draw:
         self.facts["loads"] = self.facts.get("loads") or kind < 0.3
 
     def velocity_field(self, centre, speed):
-        """A motion down and aside, with a spin."""
+        """Returns a motion downwards and sideways, with a spin."""
         random, d = self.random, self.d
         if self.axisymmetric:
             return VelocityField((0.0, -speed), ((0.0, 0.0), (0.0, 0.0)), tuple(centre))
@@ -148,7 +148,7 @@ class Relaxation:
 
 
 def one_body(draw, held):
-    """A body above one obstacle or two; held, it is moved down by a support at its top."""
+    """Draws a body above one obstacle or two; if held, a support at its top moves it down."""
     random, d = draw.random, draw.d
     low, high = [-0.5] * d, [0.5] * d
     draw.size = 1.0
@@ -203,7 +203,7 @@ def add_obstacle(draw, mesh, kind, name, gap, sides):
 
 
 def two_bodies(draw):
-    """A body that strikes another one, which is free, held, or on a floor."""
+    """Draws a body that strikes another one, which is free, held, or on a floor."""
     random, d = draw.random, draw.d
     draw.size = 1.0
     sliding, flat = draw.family == "sliding", random.random() < 0.5
@@ -223,7 +223,7 @@ def two_bodies(draw):
     draw.material("up.body", 10**random.uniform(-0.5, 0.5) if random.random() < 0.5 else 1.0)
     draw.material("low.body")
     how = {"sliding": "large"} if sliding else {"multipliers": random.choice(("p1", "p1", "dual", "nodal"))}
-    # Of bodies that are alike rounding would decide.
+    # With equal bodies, rounding would decide.
     how["multipliers_on"] = random.choice(("group", "against") if matching else ("automatic", "group", "against"))
     draw.contact("up.bottom", against="low.top", **how)
     draw.facts |= {"matching": matching, "pair": True}
@@ -244,14 +244,14 @@ def two_bodies(draw):
 
 
 def clamp(draw):
-    """A strip that is bent to an open ring, whose ends are thrown against each other."""
+    """Draws a strip bent to an open ring, whose ends are thrown against each other."""
     random = draw.random
     draw.size, half = 1.0, random.uniform(2.88, 3.02)
     across, along = random.randint(3, 4) if draw.degree == 1 else 3, random.randint(14, 18)
     inner, outer = 0.35, 0.55
     mesh = draw.body("ring", [-1.0, -1.0], [1.0, 1.0], [along, across])
-    # Round the ring from one end to the other; angle 0 is on the left, the ends are on the right. A uniform ring would be its own mirror
-    # image, and rounding would choose which of two points that see each other counts.
+    # Along the ring from one end to the other; angle 0 is on the left, the ends are on the right. A uniform ring would
+    # be its own mirror image, and rounding would choose which of two facing points counts.
     angle = lambda s: half * (s + 0.04 * (1 - s * s)) + 0.1
     bend = lambda p: (-(inner + (1 - p[1]) / 2 * (outer - inner)) * math.cos(angle(p[0])),
                       (inner + (1 - p[1]) / 2 * (outer - inner)) * math.sin(angle(p[0])))
@@ -264,7 +264,7 @@ def clamp(draw):
     draw.steps = min(120, max(draw.steps, int(1.3 * gap / (2 * draw.speed * draw.step)) + 10))
     draw.contact(["left", "right"], against=["left", "right"], sliding="large")
     draw.facts |= {"pair": True, "itself": True}
-    # Upper and lower half go to the line between them, in proportion to the distance on the right.
+    # The upper and lower halves move to the line between them, in proportion to the distance on the right.
     rows = ((0.0, 0.0), (0.0, -2 * draw.speed / gap))
     draw.sections.append(Section("initial", {"velocity": VelocityField((0.0, 0.0), rows, (0.0, 0.0))}))
     draw.probes([inner * math.cos(math.pi - half), inner * math.sin(half)])

@@ -1,12 +1,13 @@
-"""What must hold in every run under the default scheme, row by row: account, signs of works, no interpenetration, momentum.
+"""Properties of every run under the default scheme, row by row: account, signs of works, no interpenetration, momentum.
 
-Tolerances are parts of the largest energy of the run. With the linear law a step is solved to rounding, some 1e-12 after a
-few hundred operations per step; at finite strain Newton's method may leave 1e-8 of a step's energy (docs/finite-strain.md).
+Tolerances are relative to the largest energy of the run. With the linear law a step is solved up to rounding, some
+1e-12 after a few hundred operations per step; at finite strain Newton's method may leave 1e-8 of a step's energy
+(docs/finite-strain.md).
 """
 
 import math
 
-ACCOUNT = {False: 1e-10, True: 1e-8}  # by whether strains are finite: closing of the account, and energy that is created
+ACCOUNT = {False: 1e-10, True: 1e-8}  # by whether strains are finite: residual of the account, and energy created
 STICKING = 1e-9  # work of friction while all points stick, in a run
 DEPTH = 1e-9  # of the body, at contact points
 PROPERTIES = ("account", "created by the method", "contact work", "friction work", "damping work", "relaxation", "sticking", "penetration",
@@ -14,7 +15,7 @@ PROPERTIES = ("account", "created by the method", "contact work", "friction work
 
 
 def rises(column):
-    """The largest rise over all that came before."""
+    """Returns the largest rise above any earlier value."""
     lowest, most = math.inf, 0.0
     for value in column:
         lowest = min(lowest, value)
@@ -27,8 +28,9 @@ def largest_step(column):
 
 
 def all_stick(run, k):
-    """Whether no point slips in the step to a row. A mean of the reactions acts on the way, too, on which a point may slip before it
-    sticks, and which it may go without friction before it touches: then only where both ends are alike (docs/energy.md)."""
+    """Returns whether no point slips in the step that leads to a row. A mean of the reactions also acts during the
+    step, in which a point may slip before it sticks, and may move without friction before it touches: it then counts
+    only if both ends are alike (docs/energy.md)."""
     slipping, pressed = run.columns["slipping"], run.columns["active_contacts"]
     if (run.summary.get("reactions") or {}).get("acting") == "end":
         return slipping[k] == 0
@@ -36,7 +38,7 @@ def all_stick(run, k):
 
 
 def findings(scene, run):
-    """[(property, size, text)] of what does not hold."""
+    """Returns [(property, size, text)] of the violations."""
     found, c, finite = [], run.columns, scene.facts["finite"]
     scale = run.energy_scale()
     if not run.finite():
@@ -66,7 +68,7 @@ def findings(scene, run):
     check("friction work", rises(c["friction_work"]), tolerance, "friction has given energy")
     check("damping work", rises(c["damping_work"]), tolerance, "damping has given energy")
     check("relaxation", rises([-v for v in relaxed]), tolerance, "stress that relaxes has given energy")
-    # In a step that is taken in parts points may slip in one and stick in the last.
+    # In a step that is divided, points may slip in one part and stick in the last.
     rows = min(len(zero), run.first_makeshift)
     stuck = [abs(c["friction_work"][k] - c["friction_work"][k - 1]) for k in range(1, rows) if all_stick(run, k)]
     check("sticking", sum(stuck), max(STICKING, tolerance), "friction has worked while all points stuck")
@@ -78,10 +80,11 @@ def findings(scene, run):
 
 
 def momentum_findings(scene, run):
-    """The impulses of gravity and obstacles are the change of the momentum where the reactions of the end act all of a step."""
+    """Impulses of gravity and obstacles equal the change of momentum if the reactions of the end act during the whole
+    step."""
     facts, c, d = scene.facts, run.columns, scene.dimension
     acting = (run.summary.get("reactions") or {}).get("acting")
-    # Of a step in parts the forces are those of its last part.
+    # The forces of a divided step are those of its last part.
     if acting != "end" or math.isfinite(run.first_makeshift) or scene.family == "free" or any(facts.get(k) for k in ("supported", "loads", "mass damping")):
         return []
     load, mass = scene.section("load"), sum(body["mass"] for body in run.summary["bodies"])

@@ -1,4 +1,4 @@
-"""Runs of the program, their histories, and how far two of them are from each other."""
+"""Runs of the program, their histories, and the differences of two histories."""
 
 import json
 import math
@@ -9,11 +9,11 @@ import subprocess
 from quantities import LENGTH
 
 TIME_LIMIT = 300  # seconds
-OUT_OF_SIGHT = 100  # sizes of the model: a gap above stands for none
+OUT_OF_SIGHT = 100  # sizes of the model: a larger gap stands for none
 ENERGIES = ("kinetic_energy", "elastic_energy", "load_potential", "algorithmic_energy", "total_energy", "load_work", "contact_work",
             "friction_work", "support_work", "obstacle_work", "damping_work", "numerical_dissipation", "re_pairing_work",
             "viscous_dissipation")
-# Columns by the last part of their names: (what is compared with what, kind of the quantity, dimensions).
+# Columns by the last part of their names: (class of quantities that are compared, kind, dimensions).
 VECTORS = {"contact_force": ("force", "vector", "force"), "force": ("force", "vector", "force"), "support": ("force", "vector", "force"),
            "reaction_tangential": ("force", "vector", "force"), "momentum": ("momentum", "vector", "momentum"),
            "angular_momentum": ("angular momentum", "axial", "angular momentum"), "moment": ("moment", "axial", "energy"),
@@ -23,7 +23,7 @@ SCALARS = {"reaction_normal": ("force", "force"), "pressure": ("pressure", "stre
 
 
 class Run:
-    """A finished run: `status`, `messages`, and the history by columns where there is one."""
+    """A finished run: `status`, `messages`, and the columns of its history if there is one."""
 
     def __init__(self, program, case, output, *arguments, resume=False):
         command = [program, "run", *(["--resume", output] if resume else [case, "-o", output, "--force"]), "--log-level", "info"]
@@ -48,8 +48,8 @@ class Run:
             self.summary = json.loads((self.output / "summary.json").read_text(encoding="utf-8"))
 
     def alike_until(self, other):
-        """The first row from which on the method itself may differ between two runs: a step that one of them takes in parts, or holds,
-        as it found no solution of the whole step, or that adaptive steps make of another length."""
+        """Returns the first row from which the method itself may differ between two runs: a step that one of them
+        divides, or holds, as it found no solution of the whole step, or whose adaptive length differs."""
         times, theirs = self.columns["time"], other.columns["time"]
         rows = min(len(times), len(theirs))
         scale = theirs[-1] / times[-1] if len(times) == len(theirs) and times[-1] > 0 else None
@@ -62,12 +62,12 @@ class Run:
         return min(rows, self.first_makeshift, other.first_makeshift)
 
     def first_choice(self):
-        """The first row in which points of a surface that touches itself stand for others."""
+        """Returns the first row in which points of a surface that touches itself represent others."""
         return next((k for k, count in enumerate(self.columns.get("left_out_points", [])) if count > 0), len(self.columns["time"]))
 
     @property
     def first_makeshift(self):
-        """The first row of a step that was taken in parts or held; infinite where none was."""
+        """Returns the first row of a step that was divided or held; infinite if none was."""
         rows = [int(number) for number in re.findall(r"step (\d+) is taken in parts", self.messages)]
         times = [float(time) for time in re.findall(r"at t = (\S+) what faces what", self.messages)]
         rows += [next((k for k, t in enumerate(self.columns["time"]) if t >= 0.999 * time), 0) for time in times]
@@ -85,7 +85,7 @@ class Run:
 
 
 def quantities_of(names, dimension):
-    """[(class, kind, dimensions, names of the columns)] of what is compared."""
+    """Returns [(class, kind, dimensions, names of the columns)] of the quantities compared."""
     result, used = [], set()
     for name in names:
         tail = name.split(".")[-1]
@@ -108,7 +108,7 @@ def quantities_of(names, dimension):
 
 
 def floors(scene, run):
-    """Sizes below which differences of a class say nothing: what rounding of positions and forces leaves."""
+    """Returns the sizes below which differences of a class are meaningless: the rounding of positions and forces."""
     energy, mass, size = run.energy_scale(), scene.mass(), scene.size()
     momentum = math.sqrt(2 * mass * energy)
     return {"energy": energy, "force": 0.1 * energy / size, "moment": 0.1 * energy, "momentum": momentum,
@@ -124,10 +124,11 @@ def as_seen(values, kind, dims, frame):
 
 
 def deviations(scene, run, other, frame, keep=lambda family, columns: True, adjust=None, until=math.inf):
-    """Largest difference per row of `run`, seen in `frame`, from `other`, relative to the largest of its class; and the worst column.
+    """Returns the largest difference per row of `run`, seen in `frame`, from `other`, relative to the largest of its
+    class; and the worst column.
 
-    `adjust(columns, values, time)` may change the values of `run` before they are seen, as by the motion of an observer; rows are those
-    before `until`.
+    `adjust(columns, values, time)` may change the values of `run` before they are transformed, as by the motion of an
+    observer; only rows before `until` are compared.
     """
     dims_of, d = scene.dims, scene.dimension
     chosen = [q for q in quantities_of(run.columns, d) if keep(q[0], q[3]) and all(c in other.columns for c in q[3])]
@@ -157,7 +158,8 @@ def deviations(scene, run, other, frame, keep=lambda family, columns: True, adju
 
 
 def moved_moment(run, k, columns, seen, frame, dims_of):
-    """Angular momentum about the origin of the other frame: that of the momentum at the shift besides."""
+    """Returns the angular momentum about the origin of the other frame, which adds the moment of the momentum at the
+    shift."""
     d = len(frame.shift)
     p = frame.apply(tuple(run.columns[f"momentum_{a}"][k] for a in "xyz"[:d]), "vector", dims_of["momentum"])
     s = [frame.length * x for x in frame.shift]

@@ -1,4 +1,4 @@
-"""Small structured or distorted meshes of triangles, quadrilaterals, tetrahedra and hexahedra, and Gmsh's files of them."""
+"""Small structured or distorted meshes of triangles, quadrilaterals, tetrahedra and hexahedra, and their Gmsh files."""
 
 import dataclasses
 import itertools
@@ -7,7 +7,7 @@ from quantities import LENGTH
 
 TYPES = {("line", 2): 1, ("triangle", 3): 2, ("quadrilateral", 4): 3, ("tetrahedron", 4): 4, ("hexahedron", 8): 5}
 FACET_OF = {"triangle": "line", "quadrilateral": "line", "tetrahedron": "triangle", "hexahedron": "quadrilateral"}
-# The order of nodes that turns a cell inside out, as a reflection does, and one that is a rotation of the cell.
+# An order of nodes that turns a cell inside out, as a reflection does, and one that rotates the cell.
 MIRRORED = {"triangle": (0, 2, 1), "quadrilateral": (0, 3, 2, 1), "tetrahedron": (0, 2, 1, 3),
             "hexahedron": (0, 3, 2, 1, 4, 7, 6, 5)}
 ROTATED = {"triangle": (1, 2, 0), "quadrilateral": (1, 2, 3, 0), "tetrahedron": (1, 2, 0, 3),
@@ -34,7 +34,7 @@ class Mesh:
         return dataclasses.replace(self, points=points, cells=[tuple(cell[k] for k in order) for cell in self.cells])
 
     def renumbered(self, random):
-        """The same mesh with other numbers of nodes, cells and facets, and cells that begin with another node."""
+        """Returns the same mesh with other numbers of nodes, cells and facets, and other first nodes of cells."""
         order = list(range(len(self.points)))
         random.shuffle(order)
         place = {node: k for k, node in enumerate(order)}
@@ -46,7 +46,7 @@ class Mesh:
         return dataclasses.replace(self, points=[self.points[n] for n in order], cells=cells, facets=facets)
 
     def perturbed(self, random, size, on_axis):
-        """Each node moved by about that much, but for coordinates that are zero on an axis."""
+        """Returns the mesh with each node moved by about that much, except for coordinates that are zero on an axis."""
         moved = [tuple(x if k == 0 and on_axis and x == 0 else x + size * random.uniform(-1, 1) for k, x in enumerate(p))
                  for p in self.points]
         return dataclasses.replace(self, points=moved)
@@ -56,7 +56,7 @@ class Mesh:
 
 
 def box(name, random, counts, low, high, kind, distortion=0.0, form=None):
-    """A box of counts cells, perhaps distorted inside, mapped by `form`."""
+    """Returns a box of counts cells, possibly distorted inside, mapped by `form`."""
     d = len(counts)
     strides = [1]
     for count in counts[:-1]:
@@ -84,7 +84,8 @@ def box(name, random, counts, low, high, kind, distortion=0.0, form=None):
 
 
 def cut(corners, kind):
-    """Cells of a box by its corners in the order of itertools.product((0, 1), repeat=d), positive."""
+    """Returns the cells of a box, given by its corners in the order of itertools.product((0, 1), repeat=d), with
+    positive volume."""
     if kind == "quadrilateral":
         return [tuple(corners[k] for k in (0, 2, 3, 1))]
     if kind == "triangle":
@@ -92,7 +93,7 @@ def cut(corners, kind):
     if kind == "hexahedron":
         return [tuple(corners[k] for k in (0, 4, 6, 2, 1, 5, 7, 3))]
     cells = []
-    for axes in itertools.permutations((4, 2, 1)):  # Kuhn's six: a way from corner 0 to corner 7 along the axes in turn
+    for axes in itertools.permutations((4, 2, 1)):  # Kuhn's six: paths from corner 0 to corner 7 along the axes
         way = (0, axes[0], axes[0] + axes[1], 7)
         odd = axes in ((4, 1, 2), (2, 4, 1), (1, 2, 4))
         way = (way[0], way[2], way[1], way[3]) if odd else way
@@ -101,7 +102,7 @@ def cut(corners, kind):
 
 
 def cut_facet(corners, kind):
-    """Facets of cells on the side of a box, on the diagonals that Kuhn's tetrahedra have."""
+    """Returns the facets of cells on the side of a box, with the diagonals of Kuhn's tetrahedra."""
     if kind in ("triangle", "quadrilateral"):
         return [tuple(corners)]
     if kind == "hexahedron":
@@ -110,7 +111,7 @@ def cut_facet(corners, kind):
 
 
 def rounded(share):
-    """The map of a cube that takes it a part of the way to a ball."""
+    """Returns the map of a cube that moves it a fraction of the way to a ball."""
     def form(u):
         squares = [x * x for x in u]
         result = []
@@ -123,7 +124,8 @@ def rounded(share):
 
 
 def gathered(meshes):
-    """Points, cells and facets of several meshes, which share no nodes, with the groups that their parts have in a case."""
+    """Returns points, cells and facets of several meshes without shared nodes, with the groups of their parts in a
+    case."""
     points, cells, facets, shift = [], [], [], 0
     for mesh in meshes:
         points += mesh.points
@@ -134,7 +136,8 @@ def gathered(meshes):
 
 
 def groups_of(meshes):
-    """All nodes, and physical groups by name: (dimension, number, [(type of the element, nodes)]), facets first."""
+    """Returns all nodes, and physical groups by name: (dimension, number, [(type of the element, nodes)]), facets
+    first."""
     d = meshes[0].dimension
     if len(meshes) == 1:
         mesh = meshes[0]

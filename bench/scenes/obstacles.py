@@ -1,4 +1,4 @@
-"""Random obstacles below a body: where their surface begins, how they move, and that a body is a given gap away at the start."""
+"""Random obstacles below a body: their shape, their motion, and a position with a given gap at the start."""
 
 import math
 import pathlib
@@ -25,7 +25,7 @@ def dot(a, b):
 
 
 class Shape:
-    """Keys of an obstacle's shape, the distance of a place from it where it stands at the origin, and its own centre."""
+    """Keys of an obstacle's shape, its distance function in a standard position at the origin, and its own centre."""
 
     def __init__(self, random, kind, dimension, size):
         self.random, self.kind, self.d, self.size = random, kind, dimension, size
@@ -41,7 +41,8 @@ class Shape:
             self.vertices, self.facets = self.polygon() if dimension == 2 else self.rock()
 
     def distance(self, x):
-        """Of x from the shape that stands at the origin; of a polyhedron its height over the highest corner."""
+        """Returns the distance of x from the shape at the origin; for a polyhedron the height above its highest
+        corner."""
         if self.kind in ("circle", "hollow", "ball as expression"):
             return self.sign * (math.hypot(*x) - self.radius)
         if self.kind in ("cylinder", "bore"):
@@ -55,7 +56,8 @@ class Shape:
         return dot(self.tilt, x)
 
     def place(self, points, gap):
-        """Moves the shape up or down until the nearest of the points is the gap away; sideways it is near their middle."""
+        """Moves the shape vertically until the nearest of the points has the gap; sideways it is close to their
+        middle."""
         d, random = self.d, self.random
         middle = [0.5 * (min(p[k] for p in points) + max(p[k] for p in points)) for k in range(d)]
         side = [m + 0.1 * self.size * random.uniform(-1, 1) for m in middle[:-1]]
@@ -63,7 +65,7 @@ class Shape:
             side[0] += self.ring
         nearest = lambda height: min(self.distance([x - s for x, s in zip(p, (*side, height))]) for p in points)
         far, near = (middle[-1] - 20 * self.size * self.sign, middle[-1])
-        if self.sign < 0:  # the body is inside, above the lowest place
+        if self.sign < 0:  # the body is inside, above the lowest position
             far, near = middle[-1], middle[-1] + 20 * self.size
         for _ in range(100):
             half = 0.5 * (far + near)
@@ -106,7 +108,8 @@ class Shape:
 
 
 def motion(random, shape, speed, time, axisymmetric):
-    """Keys of a motion: none, a velocity, a course, a rotation, its own rotation, a table. The way is that of `speed` in `time`."""
+    """Returns the keys of a motion: none, a velocity, a course, a rotation, its own rotation, a table. Its path is that
+    of `speed` in `time`."""
     d, kind = shape.d, random.choice(("rest", "velocity", "course", "turning", "turning", "turning", "table", "rate"))
     rate = random.uniform(0.5, 4) / time
     velocity = [speed * random.uniform(-0.5, 0.5) for _ in range(d)]
@@ -140,7 +143,8 @@ def motion(random, shape, speed, time, axisymmetric):
 
 
 class Turn(Quantity):
-    """A rate about an axis that the obstacle has: right-handed, so that a reflection, which keeps the axis as a vector, turns it round."""
+    """A rate about an axis of the obstacle: right-handed, so that a reflection, which keeps the axis as a vector,
+    reverses it."""
 
     def __init__(self, value):
         super().__init__(value, "scalar", RATE)
@@ -150,7 +154,7 @@ class Turn(Quantity):
 
 
 def freedom(random, shape, speed, mass):
-    """Keys of a rigid body that moves freely and comes nearer."""
+    """Returns the keys of a rigid body that moves freely and approaches."""
     d = shape.d
     spin = [speed / shape.radius * random.uniform(-1, 1) for _ in range(3)]
     velocity = [speed * random.uniform(-0.3, 0.3) for _ in range(d - 1)] + [0.5 * speed * random.random()]

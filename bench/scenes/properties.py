@@ -1,14 +1,16 @@
-"""What another observer, another description or another machine must find of the same scene: each property makes a twin.
+"""Properties that another observer, another description or another machine must find of the same scene: each makes a
+twin.
 
-A twin has the same history as the scene, seen in its frame, to TOLERANCE of the largest number of each class of columns. With the
-linear law and planes that is rounding of matrices and solutions (1e-16 times condition numbers of up to 1e6) over some fifty steps.
-Where contact follows the motion (finite strain, large sliding, obstacles that are no planes) rounds of a step end where gaps are
-right to rounding, which leaves the root of it to directions and forces, and one round more or less makes a difference of that size.
-Where a difference is larger, twins whose nodes are moved by NUDGE of the body say how far rounding carries in this scene: a point that
-is just about to touch or to slip does so in one of two runs. A difference counts where it is more than SPREAD times those of NUDGED
-twins up to the next row. Rows from a step on that one of the runs takes in parts, or holds, as it finds no solution, say nothing. Which
-points of a surface that touches itself stand for others begins with one of them (docs/sliding.md), which numbers and axes decide: frames
-and numbers are compared until then.
+A twin has the same history as the scene, seen in its frame, up to TOLERANCE of the largest number of each class of
+columns. With the linear law and planes the differences are rounding of matrices and solutions (1e-16 times condition
+numbers of up to 1e6) over some fifty steps. If contact follows the motion (finite strain, large sliding, obstacles
+other than planes), the iterations of a step end when gaps are correct up to rounding, which leaves its root to
+directions and forces, and one iteration more or less makes a difference of that size. If a difference is larger, twins
+whose nodes are moved by NUDGE of the body show how far rounding is amplified in this scene: a point that is about to
+touch or to slip does so in one of two runs. A difference counts if it exceeds SPREAD times those of NUDGED twins up to
+the next row. Rows from a step on that one of the runs divides, or holds, as it finds no solution, are not compared.
+Which points of a surface that touches itself represent others depends on the first of them (docs/sliding.md), which
+numbers and axes decide: frames and numbers are compared until then.
 """
 
 import math
@@ -20,13 +22,14 @@ from scene import Section, Table
 
 TOLERANCE = {False: 1e-9, True: 1e-5}  # by whether contact follows the motion
 NUDGE, SPREAD, NUDGED = 1e-12, 100.0, 8
-# Of flat meshes that match at the start. Strained ones no longer do, and both sides are discretizations: up to 5e-3 apart in 1,000 scenes.
+# For flat meshes that match at the start. Deformed ones no longer do, and both sides are discretizations: up to 5e-3
+# apart in 1,000 scenes.
 OTHER_SIDE = {False: 0.0, True: 1e-2}
-HEAVY = 1e9  # mass of a free body over that of what it meets
+HEAVY = 1e9  # ratio of the mass of a free body to that of the body it meets
 
 
 def random_rotation(random, d):
-    """Rows of a rotation by any angle."""
+    """Returns the rows of a rotation by any angle."""
     if d == 2:
         a = random.uniform(0.1, 2 * math.pi)
         return ((math.cos(a), -math.sin(a)), (math.sin(a), math.cos(a)))
@@ -58,7 +61,7 @@ def frame_of(name, random, scene):
 
 
 class Twins:
-    """Runs a scene and its twins in a folder, and says what does not agree."""
+    """Runs a scene and its twins in a folder, and reports disagreements."""
 
     def __init__(self, scene, program, folder):
         self.scene, self.program, self.folder = scene, program, folder
@@ -75,7 +78,7 @@ class Twins:
         return TOLERANCE[scene.facts["finite"] or curved or scene.family in ("sliding", "itself")]
 
     def compare(self, name, twin_scene, frame, tolerance=0.0, **how):
-        """[(property, size, text)] where the twin does not agree, and the twin's run."""
+        """Returns [(property, size, text)] of the disagreements of the twin, and the twin's run."""
         twin = self.run(twin_scene, name)
         return self.judge(name, twin, twin_scene, frame, max(tolerance, self.tolerance(twin_scene)), **how), twin
 
@@ -102,7 +105,8 @@ class Twins:
         return one.status == other.status == 0 and one.alike_until(other) < len(one.columns["time"])
 
     def nudge(self, k, scene, run, spread, ends, how):
-        """Enters how far a move of the nodes by rounding carries, by rows, of the twin or of the scene, and how that run ended."""
+        """Records, by rows, the effect of moving the nodes of the twin or of the scene by rounding, and how that run
+        ended."""
         of, reference = ((scene, run), (self.scene, self.base))[k % 2]
         meshes = [m.perturbed(self.random, NUDGE * of.size(), of.plane == "axisymmetric") for m in of.meshes]
         other = self.run(of.replace(meshes=meshes), f"nudged{k}")
@@ -121,7 +125,7 @@ class Twins:
         return self.compare("renumbered", scene, identity(scene.dimension))
 
     def described(self):
-        """The other version of the file; bodies in files of their own or in one."""
+        """Uses the other version of the file format; bodies in files of their own or in one."""
         scene = self.scene
         for mesh in scene.meshes:
             mesh.version = "2.2" if mesh.version == "4.1" else "4.1"
@@ -134,7 +138,7 @@ class Twins:
     def ordered(self):
         sections = list(self.scene.sections)
         self.random.shuffle(sections)
-        # A probe at a node of two contacts is of the first of them.
+        # A probe at a node of two contacts refers to the first of them.
         return self.compare("order", self.scene.replace(sections=sections), identity(self.scene.dimension), keep=without_points)
 
     def threads(self):
@@ -143,14 +147,14 @@ class Twins:
         return ([] if same else [("threads", math.inf, f"histories differ; status {self.base.status} and {twin.status}")]), twin
 
     def resumed(self):
-        """A run to a part of the steps, and from there on to the end."""
+        """Runs a fraction of the steps, and resumes from there to the end."""
         step, steps = self.scene.facts["step"], round(self.scene.section("time").keys["end"].values / self.scene.facts["step"])
         case = self.scene.write(self.folder, "resumed")
         half = self.random.randint(2, steps - 1) * step
         end = self.scene.section("time").keys["end"].text()
         twin = Run(self.program, case, self.folder / "resumed", "--set", f"time.end={half:.17g}")
         if twin.status == 0:
-            before = twin.messages  # what they say of steps counts for the whole
+            before = twin.messages  # its messages about steps count for the whole run
             twin = Run(self.program, case, self.folder / "resumed", "--set", f"time.end={end}", resume=True)
             twin.messages = before + twin.messages
         twin.scene = self.scene
@@ -158,7 +162,7 @@ class Twins:
         return ([] if same else [("resumed", math.inf, f"histories differ; status {self.base.status} and {twin.status} {twin.error()[:200]}")]), twin
 
     def thrown(self):
-        """Galilei: all bodies, obstacles and supports move with a constant velocity besides."""
+        """Galilei: all bodies, obstacles and supports have an additional constant velocity."""
         d, ring = self.scene.dimension, self.scene.plane == "axisymmetric"
         size = self.scene.size() / self.scene.section("time").keys["end"].values * self.random.uniform(0.1, 1)
         w = tuple(0.0 if ring and k == 0 else size * self.random.uniform(-1, 1) for k in range(d))
@@ -176,7 +180,7 @@ class Twins:
         return self.compare("thrown", self.scene.replace(sections=sections), identity(d), keep=keep, adjust=adjust)
 
     def heavy(self):
-        """An obstacle that turns steadily as given, and a free body of a very large mass and inertia with that spin."""
+        """An obstacle with a given steady rotation, and a free body of very large mass and inertia with that spin."""
         scene, section = self.scene, turning_steadily(self.scene)
         keys, d, mass = dict(section.keys), scene.dimension, HEAVY * scene.mass()
         amplitude, _, rate = keys.pop("rotation").terms[0]
@@ -195,12 +199,13 @@ class Twins:
         kept = ("elastic_energy", "friction_work", "contact_work")
         keep = lambda family, columns: columns[0] in kept or family in ("force", "displacement")
         size = math.hypot(*spin) if isinstance(spin, tuple) else abs(spin)
-        # Motions within a step differ: the angle of a step is given, or that of the middle of it. This is of first order.
+        # Motions within a step differ: the given angle of a step, or the angle of its middle. The difference is of
+        # first order.
         tolerance = 0.1 * size * scene.facts["step"]
         return self.compare("heavy", twin, identity(d), tolerance, keep=keep)
 
     def expressed(self):
-        """A plane, a circle or ball, or a cylinder as an expression."""
+        """A plane, a circle or ball, or a cylinder, given by an expression."""
         scene = self.scene
         section = next(s for s in scene.obstacles() if can_be_expressed(scene, s))
         k = section.keys
@@ -217,7 +222,7 @@ class Twins:
         return self.compare("expressed", twin, identity(scene.dimension))
 
     def other_side(self):
-        """Matching flat meshes: multipliers on the one side and on the other."""
+        """Matching flat meshes, with the multipliers on either side."""
         scene = self.scene
         section = first_contact(scene)
         side = {"group": "against", "against": "group"}[section.keys["multipliers_on"]]
@@ -226,7 +231,7 @@ class Twins:
 
 
 def without_points(family, columns):
-    """Not what a probe reads off a contact point."""
+    """Excludes quantities that a probe reads from a contact point."""
     return columns[0].split(".")[-1].rpartition("_")[0] != "reaction_tangential" and family not in ("gap", "pressure") and (
         not columns[0].endswith("reaction_normal"))
 
@@ -236,7 +241,7 @@ def first_contact(scene):
 
 
 def boosted(section, w):
-    """A section for an observer to whom all moves with the velocity w besides."""
+    """Returns a section for an observer in whose frame everything has the additional velocity w."""
     keys, d = dict(section.keys), len(w)
     if section.name.startswith("obstacle."):
         if "motion" in keys:
@@ -269,7 +274,7 @@ def turning_steadily(scene):
 
 
 def can_be_expressed(scene, section):
-    """Of planes alone the default takes a mean of the reactions without friction."""
+    """The default uses a mean of the reactions without friction only for planes."""
     k = section.keys
     if k["type"] == "plane" and (scene.facts["friction"] == 0 or "reaction_weight" in scene.section("time").keys):
         return False
@@ -277,7 +282,7 @@ def can_be_expressed(scene, section):
 
 
 def properties_of(scene):
-    """Names of what applies to the scene."""
+    """Returns the names of the properties that apply to the scene."""
     facts, adaptive = scene.facts, scene.facts.get("adaptive")
     names = ["mirrored", "moved", "units", "renumbered", "described", "order", "threads"]
     if scene.plane != "axisymmetric":
@@ -296,7 +301,7 @@ def properties_of(scene):
 
 
 def check(twins, name):
-    """Findings of one property, and the twin's run."""
+    """Returns the findings of one property, and the twin's run."""
     methods = {"renumbered": twins.renumbered, "described": twins.described, "order": twins.ordered, "threads": twins.threads,
                "resumed": twins.resumed, "thrown": twins.thrown, "heavy": twins.heavy, "expressed": twins.expressed,
                "other side": twins.other_side}

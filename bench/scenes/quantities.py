@@ -1,7 +1,8 @@
-"""Quantities of a case that know how another observer sees them: from a turned, mirrored or moved frame, in other units.
+"""Quantities of a case that can be transformed to another observer: a rotated, mirrored or moved frame, or other units.
 
-A quantity has a kind (scalar, point, vector, or axial vector, which a reflection turns round once more) and dimensions, the
-exponents of mass, length and time. `seen(frame)` is the quantity in that frame, `text(dimension)` its value in TOML.
+A quantity has a kind (scalar, point, vector, or axial vector, which a reflection reverses in addition) and dimensions,
+the exponents of mass, length and time. `seen(frame)` is the quantity in that frame, `text(dimension)` its value in
+TOML.
 """
 
 import dataclasses
@@ -12,7 +13,7 @@ STRESS, DENSITY = (1, -1, -2), (1, -3, 0)
 
 
 def mechanical(per_length):
-    """Dimensions of what a plane body has per length of thickness."""
+    """Returns the dimensions of quantities that a plane body has per unit thickness."""
     e = -1 if per_length else 0
     return {"mass": (1, e, 0), "inertia": (1, 2 + e, 0), "force": (1, 1 + e, -2), "energy": (1, 2 + e, -2),
             "momentum": (1, 1 + e, -1), "angular momentum": (1, 2 + e, -1), "stress": STRESS, "length": LENGTH,
@@ -24,7 +25,7 @@ def number(value):
 
 
 def plain(value):
-    """A dimensionless value of a case in TOML."""
+    """Returns a dimensionless value of a case in TOML."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
@@ -36,7 +37,7 @@ def plain(value):
 
 @dataclasses.dataclass(frozen=True)
 class Frame:
-    """x -> length (R x + shift) with orthogonal rows R; the factors are those of the numbers, which other units give."""
+    """x -> length (R x + shift) with orthogonal rows R; the factors are those of the numbers in other units."""
     rows: tuple
     shift: tuple
     mass: float = 1.0
@@ -122,7 +123,7 @@ class Course:
         return Course(tuple((a.seen(frame), name, rate * frame.factor(RATE)) for a, name, rate in self.terms))
 
     def component(self, k):
-        """Expression of component k, of all of a number where k is None."""
+        """Returns the expression of component k, or of a scalar if k is None."""
         parts = []
         for amplitude, name, rate in self.terms:
             value = amplitude.values if k is None else amplitude.values[k]
@@ -130,7 +131,7 @@ class Course:
         return " + ".join(parts)
 
     def at(self, time):
-        """Value at that time."""
+        """Returns the value at that time."""
         factors = [VALUES[name](rate * time) for _, name, rate in self.terms]
         amplitudes = [a.values for a, _, _ in self.terms]
         if not isinstance(amplitudes[0], tuple):
@@ -144,14 +145,14 @@ class Course:
         return plain([self.component(k) for k in range(len(first))])
 
     def with_velocity(self, velocity):
-        """This course, and a constant velocity besides."""
+        """Returns this course with an additional constant velocity."""
         rate = self.terms[0][2]
         drift = Quantity(tuple(v / rate for v in velocity), "vector", self.terms[0][0].dims)
         return Course((*self.terms, (drift, "linear", rate)))
 
 
 def steady(velocity, rate, kind="vector"):
-    """A course with a constant velocity; the rate only sets the form of the expression."""
+    """Returns a course with a constant velocity; the rate only affects the form of the expression."""
     values = tuple(v / rate for v in velocity) if isinstance(velocity, (tuple, list)) else velocity / rate
     return Course(((Quantity(values, kind, LENGTH if kind == "vector" else NONE), "linear", rate),))
 

@@ -34,7 +34,7 @@ DOCUMENTED = (0, 2, 3)  # statuses in which a run may end
 
 
 def judge_run(scene, run, name):
-    """Findings of one run by itself."""
+    """Returns the findings of one run by itself."""
     found = []
     if run.status not in DOCUMENTED or run.status != 0 and not run.error():
         found.append(("status", float("inf"), f"{run.status}: {run.error()[:300]}"))
@@ -44,7 +44,7 @@ def judge_run(scene, run, name):
 
 
 def draw_names(choices, seed):
-    """Of properties, some of which stand there several times so that they are drawn more often: each at most once."""
+    """Draws properties, each at most once; those that are listed several times are drawn more often."""
     names, chosen = [], random.Random(seed + 1)
     while choices and len(names) < TWINS:
         name = chosen.choice(choices)
@@ -54,7 +54,7 @@ def draw_names(choices, seed):
 
 
 def examine(seed, folder, wanted=None):
-    """(scene, its run, whether it touches, [(run, property, size, text)], properties, seconds of processors)."""
+    """Returns (scene, its run, whether it touches, [(run, property, size, text)], properties, processor seconds)."""
     scene = scene_of(seed)
     folder.mkdir(parents=True, exist_ok=True)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -68,7 +68,7 @@ def examine(seed, folder, wanted=None):
     for name in names:
         differences, twin = properties.check(twins, name)
         found += [("twin", *d) for d in differences]
-        # Units of a twin are others, and what is said of it is relative.
+        # The twin's units differ, and its findings are relative.
         if twin.columns and name not in ("units", "heavy"):
             found += judge_run(twin.scene, twin, name)
         elif twin.status not in DOCUMENTED:
@@ -80,7 +80,7 @@ def examine(seed, folder, wanted=None):
 
 
 def report_of(seed, folder, keep, wanted):
-    """What main prints and counts of a scene; its files stay where something is found, or where they are asked for."""
+    """Returns the output and counts of a scene; its files are kept if something is found, or on request."""
     scene, base, touches, found, names, seconds = examine(seed, folder, wanted)
     if not keep and not found:
         shutil.rmtree(folder, ignore_errors=True)
@@ -92,7 +92,7 @@ def report_of(seed, folder, keep, wanted):
 
 
 def seeds_of(options):
-    """The first seeds whose scenes are of the wanted families."""
+    """Returns the first seeds whose scenes belong to the wanted families."""
     if options.seed is not None:
         return [options.seed]
     seeds, seed = [], options.first
@@ -144,7 +144,7 @@ def main():
     print(f"\n{total:.0f} s of processors, {time.monotonic() - begin:.0f} s")
     if not bad and not options.keep:
         shutil.rmtree(folder, ignore_errors=True)
-    # Tables of other scenes would not be those of the page's text.
+    # Tables of other scenes would not match the text of the page.
     if options.count >= 1000 and options.first == 1 and options.seed is None and not options.only and not options.properties:
         write_parts(ROOT / "docs" / "energy.md", {"random-scenes": tables[0], "random-scenes-properties": tables[1]})
     return 1 if bad else 0

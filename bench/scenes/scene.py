@@ -1,4 +1,5 @@
-"""A scene: meshes and the sections of a case, as quantities that know how another observer sees them, and its files."""
+"""A scene: meshes and the sections of a case, as quantities that can be transformed to another observer, and its
+files."""
 
 import dataclasses
 import math
@@ -28,7 +29,7 @@ class Surface:
 
 @dataclasses.dataclass(frozen=True)
 class Table:
-    """Motion by rows of a file: time, displacement and rotation."""
+    """Motion given by rows of a file: time, displacement and rotation."""
     times: tuple
     displacements: tuple
     rotations: tuple
@@ -46,7 +47,8 @@ class Table:
 
 @dataclasses.dataclass
 class Section:
-    """[NAME] or [[NAME]] with its keys; a [[support]] may have a vector of courses, which is a section per component."""
+    """[NAME] or [[NAME]] with its keys; a [[support]] may have a vector of courses, which makes a section per
+    component."""
     name: str
     keys: dict
     many: bool = False
@@ -86,7 +88,7 @@ class Scene:
     plane: str = "strain"
     degree: int = 1
     as_parts: bool = False
-    facts: dict = dataclasses.field(default_factory=dict)  # of the draw: what properties need to know
+    facts: dict = dataclasses.field(default_factory=dict)  # of the draw, for the properties
 
     @property
     def dimension(self):
@@ -112,18 +114,18 @@ class Scene:
         return self.replace(sections=[new if s is old else s for s in self.sections])
 
     def size(self):
-        """Largest extent of the meshes along an axis."""
+        """Returns the largest extent of the meshes along an axis."""
         points = [p for m in self.meshes for p in m.points]
         return max(max(p[k] for p in points) - min(p[k] for p in points) for k in range(self.dimension))
 
     def mass(self):
-        """Of the bodies, about: the density times the box around them."""
+        """Returns the approximate mass of the bodies: the density times their bounding box."""
         points = [p for m in self.meshes for p in m.points]
         box = math.prod(max(p[k] for p in points) - min(p[k] for p in points) for k in range(self.dimension))
         return box * max(s.keys["density"].values for s in self.sections if s.name == "material")
 
     def write(self, folder, stem):
-        """Writes all files of the case; its path."""
+        """Writes all files of the case. Returns its path."""
         files = {}
         more = (f"degree = {self.degree}\n" if self.degree != 1 else "") + (f'plane = "{self.plane}"\n' if self.dimension == 2 else "")
         if self.as_parts:

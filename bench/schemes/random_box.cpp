@@ -67,7 +67,7 @@ std::string box_mesh(Random& random, int d, bool simplices, const std::array<int
             add(5, 1, {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7]});
             continue;
           }
-          // Six tetrahedra around the diagonal 0–6; facets of all cubes are cut alike.
+          // Six tetrahedra around the diagonal 0–6; the facets of all cubes are divided alike.
           for (const auto& [p, q] : {std::pair{1, 2}, {2, 3}, {3, 7}, {7, 4}, {4, 5}, {5, 1}}) {
             add(4, 1, {v[0], v[static_cast<std::size_t>(p)], v[static_cast<std::size_t>(q)], v[6]});
           }

@@ -22,8 +22,8 @@ class Random {
   std::mt19937 engine_;  // the same numbers everywhere, unlike the library's distributions
 };
 
-/// A box of cells, a little distorted, as a mesh of Gmsh's format 2.2. Facets of the lower side are group "bottom", of
-/// the upper side "top"; the cells are "body".
+/// Returns a box of slightly distorted cells as a mesh in Gmsh's format 2.2. Facets of the lower side are group
+/// "bottom", of the upper side "top"; the cells are "body".
 std::string box_mesh(Random& random, int d, bool simplices, const std::array<int, 3>& counts,
                      const std::array<double, 3>& lengths);
 
@@ -36,8 +36,8 @@ struct RandomCase {
 std::string vector_text(int d, const std::array<double, 3>& of);
 
 enum class ObstacleKind { plane, sphere, turning };
-/// A box against a plane or a sphere, or against one of them that turns.
+/// Makes a box against a plane or a sphere, or against one of them that rotates.
 RandomCase make_obstacle_case(unsigned seed, ObstacleKind kind, const std::filesystem::path& folder);
-/// A box against another one: meshes, sizes, stiffnesses and places that do not match. `sliding`: the upper one slides
-/// along the lower one and over its ends, at small or at finite strain, and pairs follow.
+/// Makes a box against another one: meshes, sizes, stiffnesses and positions do not match. `sliding`: the upper one
+/// slides along the lower one and over its ends, at small or at finite strain, and pairs follow.
 RandomCase make_pair_case(unsigned seed, bool sliding, const std::filesystem::path& folder);

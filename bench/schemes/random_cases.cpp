@@ -1,11 +1,11 @@
-// Random cases of every kind under every scheme, and what became of their energy: a line of CSV per case and method.
+// Random cases of every kind under every scheme, and the change of their energy: a line of CSV per case and method.
 //
 //   ricochet_random_cases plane|sphere|turn|pair|slide FIRST COUNT [METHOD [FOLDER]]
 //
-// runs the cases of these numbers on one kind of obstacle, or of pairs of bodies; METHOD: only methods whose name
-// contains it; FOLDER receives the cases' files.
+// runs the cases with these numbers on one kind of obstacle, or of pairs of bodies; METHOD selects methods whose name
+// contains it; FOLDER receives the files of the cases.
 //
-// run.py makes the tables of docs/energy.md from it.
+// run.py makes the tables of docs/energy.md from the output.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -74,7 +74,8 @@ RandomCase make_case(const std::string& kind, unsigned number, const std::filesy
       folder);
 }
 
-/// Energy less what loads, supports and obstacles have put in: it must not grow. All relative to the largest energy.
+/// Runs a case. Energy less the work of loads, supports and obstacles must not grow. All results are relative to the
+/// largest energy.
 Outcome run_case_with(const RandomCase& random_case, const Method& method) {
   Outcome result;
   const std::string text =

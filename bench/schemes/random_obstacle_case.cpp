@@ -14,7 +14,7 @@ std::string vector_text(int d, const std::array<double, 3>& of) {
 
 namespace {
 
-/// A ball under the middle of a box, or a hollow that its lower corners touch first; 0.3 to 100 times as large.
+/// Returns a ball under the middle of a box, or a hollow that its lower corners touch first; 0.3 to 100 times as large.
 std::string sphere_text(Random& random, int d, double size, double gap) {
   const bool hollow = random.chance(0.5);
   const double radius = size * (hollow ? random.power(0.2, 2.0) : random.power(-0.5, 2.0));
@@ -26,8 +26,8 @@ std::string sphere_text(Random& random, int d, double size, double gap) {
                      hollow ? "inside" : "outside");
 }
 
-/// By half a radian at most over the run, about a point within the size of the body, or in itself: a circle or, in
-/// space, a plane.
+/// Returns a rotation by at most half a radian over the run, about a point within the size of the body, or about the
+/// obstacle's own axis for a circle or, in space, a plane.
 std::string rotation_text(Random& random, int d, bool sphere, double size, double rate) {
   rate *= random.between(-1.0, 1.0);
   if (random.chance(0.4) && sphere == (d == 2)) return fmt::format("rotation_rate = {:.9g}\n", rate);

@@ -24,8 +24,8 @@ Box make_box(Random& random, int d, double size) {
   return box;
 }
 
-/// The corner of a box from the origin on that is lowest after a turn in the plane of x and the last axis: where it is
-/// along both.
+/// Returns the position, along x and the last axis, of the lowest corner of a box that is rotated about the origin in
+/// the plane of these axes.
 std::array<double, 2> lowest_corner(const Box& box, int d, double degrees) {
   const double angle = degrees * M_PI / 180.0, sign = d == 2 ? 1.0 : -1.0;
   std::array<double, 2> lowest{0.0, 1e300};
@@ -80,7 +80,7 @@ RandomCase make_pair_case(unsigned seed, bool sliding, const std::filesystem::pa
   const double tilt = gap > 0.0 ? random.between(-20.0, 20.0) : 0.0;
   const std::array<double, 2> lowest = lowest_corner(upper, d, tilt);
   for (std::size_t k = 0; k < up; ++k) {
-    // From hanging over one end to hanging over the other.
+    // From overhanging one end to overhanging the other.
     const double place = random.between(0.0, 1.0), overhang = 0.5 * upper.lengths[k];
     move[k] = tilt != 0.0 && k == 0 ? place * lower.lengths[0] - lowest[0] : place * lower.lengths[k] - overhang;
     velocity[k] = speed * random.between(-1.0, 1.0);
@@ -110,7 +110,7 @@ RandomCase make_pair_case(unsigned seed, bool sliding, const std::filesystem::pa
   text = fmt::format("[mesh]\ndegree = {}\n", degree) + part("lower", lower_mesh, {}, other, 0.0) +
          part("upper", upper_mesh, move, velocity, tilt) + material("lower", young, density) +
          material("upper", young * ratio, density * heaviness);
-  // Those that are stable, which are all that a case takes by default.
+  // The stable spaces, which are the only ones that a case accepts by default.
   constexpr std::array<const char*, 3> spaces{"p1", "dual", "nodal"};
   constexpr std::array<const char*, 3> sides{"automatic", "group", "against"};
   const bool may_be_constant = degree == 2 && (d == 2 || !(lower_simplices || upper_simplices));
@@ -119,7 +119,7 @@ RandomCase make_pair_case(unsigned seed, bool sliding, const std::filesystem::pa
                                 : spaces[sliding ? 0 : static_cast<std::size_t>(random.integer(0, 2))];
   const std::string pairing = sliding ? "sliding = \"large\"\n" : "";
   const std::string law = fmt::format("friction = {:.9g}\nmultipliers = \"{}\"\n", result.friction, space);
-  // Tilted, so that facets see each other where the bodies will meet.
+  // Tilted, so that facets face each other where the bodies will meet.
   text += fmt::format("[[contact]]\ngroup = \"upper.bottom\"\nagainst = \"lower.top\"\nmultipliers_on = \"{}\"\n",
                       sides[static_cast<std::size_t>(random.integer(0, 2))]) +
           pairing + law;

@@ -27,12 +27,12 @@ BINS = ((0.1, 1), (1, 3), (3, 10), (10, 30), (30, 1000))
 
 
 def measure(program, kind, first, count):
-    """Rows of all cases on one kind of obstacle."""
+    """Returns the rows of all cases on one kind of obstacle."""
     parts = min(os.cpu_count() or 1, count)
     begins = [first + count * k // parts for k in range(parts + 1)]
     rows = []
     with contextlib.ExitStack() as stack:
-        # Files: a pipe that nobody reads yet stops its process.
+        # Files, as a process stops at a pipe that is not read yet.
         outputs = [stack.enter_context(tempfile.TemporaryFile("w+", encoding="utf-8")) for _ in range(parts)]
         processes = [subprocess.Popen([program, kind, str(a), str(b - a)], stdout=output)
                      for a, b, output in zip(begins, begins[1:], outputs)]
@@ -45,7 +45,7 @@ def measure(program, kind, first, count):
 
 
 def is_refusal(failure):
-    """Said before the first step: the method does not take such a case."""
+    """Returns whether the method refused the case before the first step."""
     return failure and not failure.startswith("step ")
 
 
@@ -58,7 +58,7 @@ def part(values):
 
 
 def summary(rows):
-    """A line per method: runs, refusals, failures, and over those that ended: energy, penetration, variation."""
+    """Returns a line per method: runs, refusals, failures, and for completed runs energy, penetration, variation."""
     by_method = collections.defaultdict(list)
     for row in rows:
         by_method[row["method"]].append(row)

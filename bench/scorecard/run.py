@@ -16,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
 from page import write_parts
 
-# Some values do not hold, or some runs fail: that is what the scorecard says.
+# Some values do not hold, or some runs fail: the scorecard reports this.
 STATUSES = (0, 3, 5)
 
 

@@ -1,4 +1,4 @@
-"""The disc and the ball that benchmarks let fall, onto a floor or onto another one: their meshes and case files."""
+"""The disc and the ball that benchmarks drop onto a floor or onto another one: their meshes and case files."""
 
 import pathlib
 import subprocess
@@ -20,7 +20,8 @@ NEWMARK = f'scheme = "newmark"\npreset = "textbook-half"\nstep = {STEP}\nend = {
 
 
 def case(directory, body, mass="equivalent", friction=0.0, method="direct", time=NEWMARK, down=0.0, output="fields_every = 0\n"):
-    """The path of a case file; `time` and `output` are its sections, `down` how far the body starts nearer to the floor."""
+    """Returns the path of a case file; `time` and `output` are its sections, `down` is the distance by which the body
+    starts closer to the floor."""
     name, dimension, size = body
     zeros = ", ".join(["0.0"] * (dimension - 1))
     path = directory / f"{name}-{size:g}-{mass}-{friction:g}{'-' if method else ''}{method}.toml"
@@ -36,8 +37,8 @@ def case(directory, body, mass="equivalent", friction=0.0, method="direct", time
 
 
 def pair_case(directory, pair, friction=0.0):
-    """The path of a case file: two of them, of unlike cells, of which one strikes the other, which is free, at step 20. They leave each other
-    at about step 110. The scheme is the default one."""
+    """Returns the path of a case file with two bodies of different cells, one of which strikes the other, free one at
+    step 20. They separate at about step 110. The scheme is the default one."""
     name, dimension, size, other = pair
     below = [0.0] * (dimension - 1)
     path = directory / f"two-{name}s-{size:g}-{friction:g}.toml"

@@ -13,9 +13,8 @@
 #include "ricochet/linear_algebra/library_versions.hpp"
 #include "ricochet/run/session.hpp"
 
-// What the factorization of a case's operator takes, and the solves with it: ours on one thread and on several,
-// CHOLMOD's on one, and reading as much memory. They take turns, so that all see the same machine. Prints one JSON
-// object.
+// Measures the factorization of a case's operator and its solves: ours on one thread and on several, CHOLMOD's on one,
+// and the time to read as much memory. They take turns, so that all see the same machine. Prints one JSON object.
 
 namespace {
 
@@ -29,7 +28,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Processor time on one thread, else time.
+/// Returns processor time on one thread, else wall-clock time.
 template <class Work>
 double seconds(const Work& work) {
   const StepTimer timer;

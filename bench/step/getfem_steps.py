@@ -48,7 +48,7 @@ class Body:
         self.inertia = getfem.Spmat("copy", self.mass)  # 2 M / h^2
         self.inertia.scale(2 / step**2)
         self.operator = getfem.Spmat("add", self.inertia, self.stiffness)
-        # The lower half of the surface, as "lower" of the .geo file: on the sphere, not above its centre.
+        # The lower half of the surface, as "lower" of the .geo file: nodes on the sphere not above its centre.
         points = self.space.basic_dof_nodes()
         outside = mesh.outer_faces()
         mesh.set_region(1, outside)
@@ -73,7 +73,7 @@ class Body:
 
 
 class Model:
-    """As its users run it. The unknown is the displacement's increment, so that friction sees the slip of the step."""
+    """As its users run it. The unknown is the increment of displacement, so that friction sees the slip of the step."""
 
     def __init__(self, body, friction):
         self.body = body
@@ -102,7 +102,7 @@ class Model:
 
 
 class Expert:
-    """The factor is kept; the contact operator W = B A^-1 B^T is computed once; an active set solves it."""
+    """Keeps the factor; computes the Delassus operator W = B A^-1 B^T once; solves it by an active set."""
 
     def __init__(self, body):
         self.body = body
@@ -138,7 +138,7 @@ class Expert:
 
 
 def kernels():
-    """Those of the OpenBLAS that GetFEM's MUMPS and numpy use."""
+    """Returns the kernels of the OpenBLAS that GetFEM's MUMPS and numpy use."""
     function = ctypes.CDLL("libopenblas.so.0").openblas_get_corename
     function.restype = ctypes.c_char_p
     return function().decode()

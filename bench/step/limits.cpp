@@ -10,7 +10,7 @@ namespace ricochet::bench {
 
 namespace {
 
-/// The processor fetches ahead in each of several places: one core then gets more from memory than from one stream.
+/// Number of streams: the processor prefetches several at a time, so that one core gets more from memory than with one.
 constexpr std::size_t places = 4, at_once = 16;
 
 RICOCHET_EACH_INSTRUCTION_SET(double, sum_of, (const double* values, std::size_t count), (values, count)) {
@@ -65,7 +65,7 @@ void DirectLimits::measure(LimitTimes& times) {
   times.memory.push_back(2.0 * memory_.seconds());
 }
 
-/// The second of two: the caches are then as they are in a run of solves.
+/// Returns the time of the second of two solves, when the caches are as in a sequence of solves.
 double DirectLimits::solve(SparseCholesky& factor) {
   double seconds = 0.0;
   for (int k = 0; k < 2; ++k) {

@@ -9,10 +9,10 @@
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 
-/// @file What a time step cannot be much quicker than, measured between the steps.
+/// @file Lower limits of the time of a step, measured between the steps.
 namespace ricochet::bench {
 
-/// Processor time of one thread is not disturbed by other programs; of several it would be a sum.
+/// Measures processor time on one thread, which other programs do not disturb; on several threads it would be a sum.
 class StepTimer {
  public:
   [[nodiscard]] double seconds() const {
@@ -25,11 +25,11 @@ class StepTimer {
   Clock::time_point start_ = Clock::now();
 };
 
-/// Reads memory as fast as the threads that there are can in plain loops.
+/// Reads memory as fast as the available threads can in plain loops.
 class MemoryReader {
  public:
   explicit MemoryReader(std::size_t bytes);
-  /// To read all of it once.
+  /// Returns the seconds to read all of it once.
   [[nodiscard]] double seconds();
 
  private:
@@ -46,14 +46,14 @@ class Limits {
  public:
   virtual ~Limits() = default;
   virtual void measure(LimitTimes& times) = 0;
-  /// Of what has to be read once in a step, or twice.
+  /// Returns the number of bytes that a step must read once, or twice.
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 };
 
 /// For a step with a factor: the plain triangular solve, CHOLMOD's and ours, and reading the factor twice.
 class DirectLimits final : public Limits {
  public:
-  /// With the operator of a step.
+  /// Takes the operator of a step.
   explicit DirectLimits(const SparseMatrix& matrix);
   void measure(LimitTimes& times) override;
   [[nodiscard]] std::size_t bytes() const override { return own_.factor_bytes(); }
@@ -66,9 +66,9 @@ class DirectLimits final : public Limits {
   Vector right_, y_, x_;
 };
 
-/// For an explicit step: reading the blocks of K; of the contact nodes' own system their rows of K, which are needed
+/// For an explicit step: reading the blocks of K; for the system of the contact nodes their rows of K, which are needed
 /// before these nodes have moved, and the factor twice; and nine vectors: U, V and A read and written, M⁻¹, the loads
-/// and ΔU, which is what central differences need when all of these are kept and nothing is touched twice.
+/// and ΔU, as central differences require if all of these are kept and nothing is accessed twice.
 class ExplicitLimits final : public Limits {
  public:
   ExplicitLimits(const SemidiscreteProblem& problem, std::size_t factor_entries);

@@ -1,4 +1,4 @@
-"""The tables and plots of docs/performance.md from what run.py measured."""
+"""The tables and plots of docs/performance.md from the measurements of run.py."""
 
 import datetime
 import math
@@ -78,7 +78,7 @@ def in_contact(force):
 
 
 def peer_times(entry):
-    """Milliseconds per step in contact, and how far the forces are apart."""
+    """Returns milliseconds per step in contact, and the differences of the forces."""
     ours, result = entry["ours"], {}
     steps = in_contact(ours["force"])
     result["ours"] = statistics.median(ours["steps_ms"][k] for k in steps)
@@ -120,7 +120,7 @@ def scaling_groups(records):
 
 
 def exponent(records, value):
-    """Of the power law between the two halves of the sizes that matter: above 5,000 dofs."""
+    """Returns the exponent of the power law between the two halves of the relevant sizes: above 5,000 dofs."""
     large = [r for r in records if r["dofs"] > 5000]
     if len(large) < 2:
         return None
@@ -212,7 +212,7 @@ def plot_scaling(records, path):
 
 
 def libraries(everything):
-    """All that parts were measured with."""
+    """Returns all libraries with which parts were measured."""
     records = [entry.get("ours", entry) for part in everything.values() for entry in part]
     return sorted({record["libraries"] for record in records if "libraries" in record})
 

@@ -22,9 +22,9 @@ from page import blas_kernels, with_kernels
 
 # (name, dimension, size of cells): about 18,000, 74,000 and 200,000 dofs in 2D, 12,000 and 100,000 in 3D.
 RATIO_BODIES = [("disc", 2, 0.0202), ("disc", 2, 0.0101), ("disc", 2, 0.00605), ("ball", 3, 0.101), ("ball", 3, 0.0475)]
-# (name, dimension, sizes of the cells of the two): about 36,000 dofs each in 2D, 6,000 and 50,000 each in 3D.
+# (name, dimension, sizes of the cells of both): about 36,000 dofs each in 2D, 6,000 and 50,000 each in 3D.
 PAIRS = [("disc", 2, 0.0141, 0.0145), ("ball", 3, 0.126, 0.13), ("ball", 3, 0.0588, 0.0602)]
-# Of bodies against bodies, under cases/, and the pair of balls above.
+# Bodies against bodies, under cases/, and the pair of balls above.
 PAIRING_CASES = ["balls/balls", "balls/unequal", "ball-block/ball-block", "stack/stack", "bars-pair/pair", "tied/tied"]
 PEER_BODIES = [("disc", 2, 0.0202), ("disc", 2, 0.0101), ("ball", 3, 0.101)]
 SCALING_BODIES = ([("disc", 2, size) for size in (0.09, 0.05, 0.0275, 0.0155, 0.0086, 0.0048, 0.0027)]
@@ -33,7 +33,7 @@ SCALING_STEPS = 112
 # About 287,000 and 976,000 dofs.
 ITERATIVE_BODIES = [("ball", 3, 0.0325), ("ball", 3, 0.0213)]
 ITERATIVE_STEPS = 70  # from just above the floor to past the largest force
-FACTOR_BODIES = RATIO_BODIES[:4] + [("ball", 3, 0.0648), ("ball", 3, 0.0475)]  # the ball of 41,000 dofs besides
+FACTOR_BODIES = RATIO_BODIES[:4] + [("ball", 3, 0.0648), ("ball", 3, 0.0475)]  # also the ball of 41,000 dofs
 
 
 def output_of(command):
@@ -50,7 +50,7 @@ def ours(arguments, path, *options):
 
 
 def theirs(kernels, directory, body, steps, friction, *options):
-    """GetFEM, whose OpenBLAS takes the same kernels as ours: a comparison counts only so."""
+    """Runs GetFEM with OpenBLAS on the same kernels as ours, as required for a comparison."""
     command = [sys.executable, str(HERE / "getfem_steps.py"), str(mesh(directory, *body)), str(body[1]), repr(STEP), str(steps),
                "--friction", repr(friction), *options]
     result = subprocess.run(command, capture_output=True, text=True, env=with_kernels(kernels))
@@ -79,7 +79,7 @@ def measure_pairs(arguments, directory):
 
 
 def measure_pairing(arguments, directory):
-    """The pairing of surfaces, and the whole run: both of processors, medians of three."""
+    """Measures the pairing of surfaces and the whole run: both in processor time, medians of three."""
     root, records = HERE.parents[1], []
     paths = [(name, root / "cases" / f"{name}.toml") for name in PAIRING_CASES]
     paths += [(f"two {pair[0]}s", pair_case(directory, pair)) for pair in PAIRS]
@@ -101,7 +101,7 @@ def measure_pairing(arguments, directory):
 
 
 def measure_peer(arguments, directory):
-    """The same steps by both: forces are compared before times are."""
+    """Measures the same steps in both programs: forces are compared before times."""
     records = []
     for body in PEER_BODIES:
         for friction in (0.0, 0.3):
@@ -127,7 +127,7 @@ def measure_scaling(arguments, directory):
 
 
 def measure_threads(arguments, directory):
-    """The iterative path in 3D, where it is chosen."""
+    """Measures by threads; the iterative path in 3D, where it is chosen."""
     return [dict(ours(arguments, case(directory, body, method=method), "--alone", "--steps", SCALING_STEPS, "--threads", threads),
                  body=body, method=method)
             for body in RATIO_BODIES for method in ("direct", "iterative") if method == "direct" or body[1] == 3 for threads in (1, 2)]
@@ -140,12 +140,12 @@ def measure_iterative(arguments, directory):
 
 
 def measure_factor(arguments, directory):
-    """Factorization and solves: ours on one and two threads, CHOLMOD's."""
+    """Measures factorization and solves: ours on one and two threads, CHOLMOD's."""
     return [dict(output_of([str(arguments.build / "ricochet_factor_bench"), str(case(directory, body)), "2"]), body=body) for body in FACTOR_BODIES]
 
 
 def measure_explicit(arguments, directory):
-    """From just above the floor, in steps of about a tenth of the stable one."""
+    """Measures from just above the floor, in steps of about a tenth of the stable one."""
     records = []
     for body in RATIO_BODIES:
         step = 0.05 * body[2] / 141.0  # by the speed of pressure waves

@@ -22,7 +22,7 @@
 #include "ricochet/run/session.hpp"
 #include "ricochet/simulation/history/history.hpp"
 
-// What the time steps of a case cost, next to the limits that a step with contact should approach (limits.hpp). Steps
+// Measures the time steps of a case, next to the limits that a step with contact should approach (limits.hpp). Steps
 // and limits take turns, so that both see the same machine. Prints one JSON object.
 
 namespace {
@@ -36,7 +36,7 @@ struct Options {
   int threads = 1;
   bool compare = true;       ///< with the limits
   bool forces = false;       ///< print the contact force and the time of every step
-  double largest_ratio = 0;  ///< of a step to the plain solve; above it the program fails
+  double largest_ratio = 0;  ///< largest ratio of a step to the plain solve; above it the program fails
 };
 
 double median(std::vector<double> values) {
@@ -45,7 +45,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Peak of the process so far, in MB.
+/// Returns the peak memory of the process so far, in MB.
 double peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -65,8 +65,8 @@ std::unique_ptr<Limits> make_limits(const SemidiscreteProblem& problem, const Sc
                                         a.mass * problem.mass.whole());
 }
 
-/// Of processors, for what building the model does with surfaces: it chooses their sides, ties them, and finds contact
-/// points and their rows. Done once more, for it alone.
+/// Returns the processor time of the surface operations in building a model: choice of sides, ties, and contact points
+/// with their rows. They are repeated for this measurement alone.
 double pairing_seconds(const Model& model) {
   const int d = model.mesh.dimension;
   const auto is_free = [&](Index node, int component) {
@@ -106,7 +106,7 @@ void print_phase(const std::string& name, const Phase& phase) {
   fmt::print("}}");
 }
 
-/// Steps in groups, each followed by the limits.
+/// Runs steps in groups, each followed by the limits.
 double run(const Options& options) {
   Session session(options.path);
   BuildTimes build;
@@ -139,7 +139,7 @@ double run(const Options& options) {
     milliseconds.push_back(1e3 * step);
     Phase& phase = phases[phase_name(active, before)];
     before = active;
-    // The first step after the limits have been through the caches would not be typical.
+    // The first step after the limits, which have flushed the caches, would not be typical.
     if (limits && k % 6 == 0) limits->measure(phase.limits);
     if (limits && k % 6 == 1) continue;
     phase.step.push_back(step);

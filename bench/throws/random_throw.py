@@ -1,4 +1,4 @@
-"""Random throws: an elastic body, one or two obstacles of any kind, at rest, moving as given or freely."""
+"""Random throws: an elastic body, and one or two obstacles of any kind, at rest, with a given motion, or free."""
 
 import math
 import random as random_module
@@ -21,7 +21,7 @@ def numbers(values):
 
 
 class Throw:
-    """`text` is the case, with its files in `folder`; `kinds` the obstacles."""
+    """A throw: `text` is the case, with its files in `folder`; `kinds` are the obstacles."""
 
     def __init__(self, seed, folder):
         self.random, self.seed, self.folder = random_module.Random(seed), seed, folder
@@ -48,7 +48,8 @@ class Throw:
             f'Mesh.MeshSizeMin = {self.size};\nPhysical {what}("body") = {{1}};\nPhysical {sides}("skin") = {boundary};\n')
 
     def material_and_time(self):
-        """Impacts of up to a tenth of the wave speed, after a fall, too; steps of up to ten crossings of a cell, or a tenth of the body."""
+        """Draws impacts of up to a tenth of the wave speed, including after a fall; steps of up to ten crossings of a
+        cell, or a tenth of the body."""
         random, speed = self.random, self.random.uniform(0.3, 3)
         young = 10**random.uniform(1.5, 3.5)
         crossings = random.choice([0.5, 1, 3, 10])

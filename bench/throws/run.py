@@ -23,14 +23,14 @@ from random_throw import Throw
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(os.environ.get("RICOCHET_PROGRAM") or ROOT / "build" / "ricochet")
-ENERGY, DEPTH = 1e-10, 1e-9  # of the largest energy; of the body, which is of the size 1
-# Of the largest energy; at finite strain what a step may leave (docs/finite-strain.md).
+ENERGY, DEPTH = 1e-10, 1e-9  # of the largest energy; of the body, whose size is 1
+# Relative to the largest energy; at finite strain a step may leave more (docs/finite-strain.md).
 ACCOUNT = {"linear": 1e-10, "neo-hookean": 1e-8}
 TIME_LIMIT = 900  # seconds
 
 
 def judge(output, law):
-    """What is wrong with a run that has ended, as texts."""
+    """Returns the errors of a run that has ended, as texts."""
     summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
     with open(output / "history.csv", newline="", encoding="utf-8") as file:
         rows = csv.DictReader(file)
@@ -49,8 +49,8 @@ def judge(output, law):
     depth = max(columns["max_penetration"])
     if depth > DEPTH:
         wrong.append(f"a node is {depth:.1e} inside")
-    # All of the boundary is contact boundary: a node inside of the body that an edge reaches between its nodes is none of
-    # these.
+    # All of the boundary is contact boundary; only a node inside the body that an edge reaches between its nodes is
+    # exempt.
     if any("gone through" in warning for warning in summary["warnings"]):
         wrong.append("a node has gone through in one step")
     return wrong, max(columns["active_contacts"]) > 0

@@ -14,7 +14,7 @@ def write_stl(path, vertices, triangles):
 
 
 def write_polygon(random, path, middle):
-    """A closed one with corners at random distances; its top is some 0.35 below zero."""
+    """Writes a closed polygon with corners at random distances; its top is some 0.35 below zero."""
     corners, radius, phase = random.choice([3, 4, 5, 8]), random.uniform(0.4, 1.2), random.uniform(0, 2 * math.pi)
     points = []
     for k in range(corners):
@@ -25,7 +25,7 @@ def write_polygon(random, path, middle):
 
 
 def write_rough_ground(random, path, cells=10):
-    """An open surface of triangles at random heights below -0.6."""
+    """Writes an open surface of triangles at random heights below -0.6."""
     roughness = random.uniform(0.02, 0.3)
     vertices = [(-3 + 7 * i / cells, -3 + 7 * j / cells, -0.6 - roughness * random.random())
                 for j in range(cells + 1) for i in range(cells + 1)]
@@ -75,7 +75,7 @@ def refine(vertices, triangles):
 
 
 def write_rock(random, path):
-    """A closed body around a point: an icosahedron, or 80 triangles, with corners at random distances."""
+    """Writes a closed surface around a point: an icosahedron, or 80 triangles, with corners at random distances."""
     vertices, triangles = icosahedron()
     if random.random() < 0.5:
         vertices, triangles = refine(vertices, triangles)

@@ -22,7 +22,7 @@
 #include "support/grid_matrix.hpp"
 #include "support/thrown_body.hpp"
 
-// A time step allocates nothing once its work space has grown to what the contact needs.
+// A time step allocates no memory once its work space has the size that the contact needs.
 
 namespace ricochet {
 namespace {
@@ -65,7 +65,7 @@ std::vector<Variant> variants() {
           {"Midpoint", "scheme = \"midpoint\"\n", "lumped", "", {}, false},
           {"SemiExplicit", "scheme = \"semi-explicit\"\n", "equivalent-lumped", "friction = 0.3\n", {}},
           {"ReducedKane", ends, "equivalent", "friction = 0.3\n", {}},
-          // Paths of a mean come and go with the points that press.
+          // The paths of the mean reaction appear and vanish with the active points.
           {"ReducedKaneMean", "scheme = \"reduced-kane\"\n", "equivalent", "friction = 0.3\n", {}, false},
           {"ReducedKaneIterative", ends, "equivalent", "friction = 0.3\n", {"solver.method=iterative"}},
           // Its contact at the middle of a step changes where that at the end does not.
@@ -73,7 +73,7 @@ std::vector<Variant> variants() {
           {"Kane", "scheme = \"kane\"\n", "consistent", "friction = 0.3\n", {}, false},
           {"GeneralizedAlpha", "scheme = \"generalized-alpha\"\n", "equivalent", "friction = 0.3\n", {}, false},
           {"Bathe", "scheme = \"bathe\"\n", "equivalent", "friction = 0.3\n", {}, false},
-          // It bounces: points come near again where nothing touches.
+          // It bounces: points become candidates again while nothing touches.
           {"LaursenLove",
            "scheme = \"laursen-love\"\n",
            "lumped",
@@ -110,7 +110,7 @@ std::string motion_of_obstacle(int dimension) {
 
 class StepAllocations : public testing::TestWithParam<Variant> {};
 
-/// Steps in which something was allocated, out of those that were looked at.
+/// Number of steps with allocations, out of those that were examined.
 struct Tally {
   long steps = 0, allocating = 0;
   void add(long count) {
@@ -119,13 +119,13 @@ struct Tally {
   }
 };
 
-/// A run with all that looks at every step.
+/// A run with everything that monitors every step.
 class WatchedRun {
  public:
   WatchedRun(const std::string& text, const std::vector<std::string>& overrides) : run_(text, overrides) {}
 
   [[nodiscard]] const State& state() const { return run_.state(); }
-  /// Returns how often something was allocated; 0 where something was told, which takes texts.
+  /// Returns the number of allocations; 0 if a message was logged, which needs strings.
   long advance() {
     const std::size_t told = warnings_.size();
     const long before = allocation_count();
@@ -154,9 +154,9 @@ class WatchedRun {
   log::CollectWarnings collect_{warnings_};
 };
 
-/// None at all while nothing touches. In contact, work space grows with the points that may touch and with those that
-/// press, which come and go; where the same points press, stick and slip as in the two steps before, steps that
-/// allocate are the exception (new points come near).
+/// No allocations while nothing touches. In contact, the work space grows with the candidates and with the active
+/// points, which change; while the same points press, stick and slip as in the two preceding steps, steps that allocate
+/// are the exception (new candidates).
 TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
   const auto bodies = thrown_bodies();
   for (const std::size_t body : {0u, 3u}) {
@@ -189,8 +189,8 @@ TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
   set_thread_count(1);
 }
 
-/// Iterations, cells in packs, branches that relax, momenta about places that change. (Beside an obstacle the columns
-/// of contact points turn with the body, and take new storage where there are others.)
+/// Iterations, cells in packs, viscoelastic branches, momenta about moving positions. (Near an obstacle the columns of
+/// the Delassus operator rotate with the body and need new storage for new points.)
 TEST(FiniteStrainAllocations, AreNoneInFlight) {
   struct Flight {
     std::string time, mass, law = "neo-hookean";
@@ -217,7 +217,7 @@ TEST(FiniteStrainAllocations, AreNoneInFlight) {
                                                         : "obstacle.plane.point=[0, 0, -50]");
         WatchedRun run(thrown_case(bodies[body], flight.mass, flight.time), overrides);
         for (int step = 0; step < 5; ++step) run.advance();
-        // Now and then the critical step is found anew (semi-explicit).
+        // The critical step is recomputed now and then (semi-explicit).
         Tally tally;
         for (int step = 0; step < 100; ++step) tally.add(run.advance());
         EXPECT_LE(tally.allocating, flight.mass == "equivalent-lumped" ? 5 : 0)
@@ -228,14 +228,14 @@ TEST(FiniteStrainAllocations, AreNoneInFlight) {
   set_thread_count(1);
 }
 
-/// The report is rewritten while a run goes on, under a lock: finding the same takes the same work in a finer mesh.
+/// The report is rewritten during a run, under a lock: the same findings must need the same work in a finer mesh.
 TEST(PenetrationReports, CostTheSameInAFinerMesh) {
   std::vector<long> counts;
   for (const double size : {0.3, 0.05}) {
     const std::string disc = "Disk(1)={0,1.02,0,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};";
     const ThrownBody body{"disc", 2, 1, mesh_geometry("disc", disc, size, 1)};
     CaseRun run(thrown_case(body, "equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"));
-    // The disc is about the middle of the wall, which no contact names.
+    // The disc is at the middle of the wall, which no contact names.
     const std::unique_ptr<Obstacle> obstacle = make_plane(Eigen::Vector2d(0.0, 1.0), Eigen::Vector2d(1.0, 0.0));
     PenetrationWatch watch(run.model().body, run.problem(), run.model().contact_pairs, {{"wall", obstacle.get()}});
     watch.look(run.state());
@@ -251,7 +251,7 @@ TEST(PenetrationReports, CostTheSameInAFinerMesh) {
   EXPECT_EQ(counts[0], counts[1]);
 }
 
-/// On one thread and on several: whatever may be kept is there after the first time.
+/// On one thread and on several: all storage that may be kept exists after the first factorization.
 TEST(FactorizationAllocations, AMatrixOfTheSamePatternIsFactorizedWithoutAny) {
   const SparseMatrix matrix = test_support::grid_matrix(3, 14, 3, 7);
   SparseCholesky factor(matrix);

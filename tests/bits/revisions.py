@@ -1,4 +1,4 @@
-"""Revisions of the project: which two are compared, and the worktree in which the earlier one is built."""
+"""Revisions of the project: the two that are compared, and the worktree in which the earlier one is built."""
 
 import pathlib
 import subprocess
@@ -17,23 +17,24 @@ def git(*arguments, root=ROOT):
 
 
 def is_dirty():
-    """New files count: CMake compiles them."""
+    """Returns whether the working tree has changes. New files count, as CMake compiles them."""
     return bool(git("status", "--porcelain"))
 
 
 def commit(revision):
-    """The hash of a revision; without one, of the commit that the working tree changes: HEAD, or the one before."""
+    """Returns the hash of a revision; by default of the commit that the working tree changes: HEAD, or the one
+    before."""
     return git("rev-parse", "--verify", f"{revision or ('HEAD' if is_dirty() else 'HEAD~')}^{{commit}}")
 
 
 def cases(revision):
-    """The case files of a commit."""
+    """Returns the case files of a commit."""
     paths = git("ls-tree", "-r", "--name-only", revision, "cases").splitlines()
     return {path for path in paths if path.count("/") == 2 and path.endswith(".toml")}
 
 
 def check_out(revision):
-    """The worktree at this commit. Files that are the same keep their times, so that little is compiled again."""
+    """Checks out this commit in the worktree. Identical files keep their times, so that little is recompiled."""
     if not (SOURCE / ".git").exists():
         git("worktree", "prune")
         git("worktree", "add", "--detach", "--force", str(SOURCE), revision)
@@ -42,7 +43,7 @@ def check_out(revision):
 
 
 def compile_programs(root, with_ranks):
-    """build/ricochet and, where PETSc is there, build/ricochet-mpi."""
+    """Compiles build/ricochet and, if PETSc is available, build/ricochet-mpi."""
     options = ["-DRICOCHET_WITH_PETSC=ON"] if with_ranks else []
     targets = ["ricochet_program", *(["ricochet_mpi"] if with_ranks else [])]
     for command in (["cmake", "--preset", "release", *options],

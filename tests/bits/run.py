@@ -33,7 +33,8 @@ def has_petsc():
 
 
 def kept(revision, name):
-    """Where the results of a commit are kept: they hold for the processor that computed them, and for these runs."""
+    """Returns the file of the results of a commit: they are valid for the processor that computed them, and for these
+    runs."""
     processor = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8")
                       if line.startswith("model name")), platform.processor())
     definition = hashlib.sha256((HERE / "runs.py").read_bytes() + processor.encode()).hexdigest()[:16]
@@ -52,7 +53,8 @@ def earlier(revision):
 
 
 def results(side, path, runs):
-    """What the runs of a side, which is made if need be, compute; kept in the file of this path, if there is one."""
+    """Returns the results of the runs of a side, which is built if necessary; they are stored in the file of this path,
+    if given."""
     found = json.loads(path.read_text()) if path and path.exists() else {}
     if missing := [run for run in runs if str(run) not in found]:
         found.update(side().results(missing))
@@ -63,7 +65,7 @@ def results(side, path, runs):
 
 
 def chosen(runs, texts):
-    """Those runs whose names have one of these texts, at least one."""
+    """Returns the runs whose names contain one of these texts, at least one."""
     found = [run for run in runs if any(text in str(run) for text in texts)]
     if not found:
         raise SystemExit("./dev bits: there is no run to compare")
@@ -71,7 +73,7 @@ def chosen(runs, texts):
 
 
 def differences(runs, old, new):
-    """A line for each run that is not the same."""
+    """Returns a line for each run that differs."""
     def shown(value):
         return "-" if value in ("", None) else value
 

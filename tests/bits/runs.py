@@ -1,5 +1,5 @@
-"""The runs that two revisions are compared on, and what is compared of each: its exit status, and checksums of its history
-and of its last frame."""
+"""The runs on which two revisions are compared, and the results compared for each: its exit status, and checksums of
+its history and of its last frame."""
 
 import concurrent.futures
 import csv
@@ -14,8 +14,8 @@ import tomllib
 
 import h5py
 
-# The settings of a method that are tried in turn, until a case is not refused: those of the case, then masses with inertia
-# on contact nodes, then the diagonal mass without.
+# Settings of a method, tried in turn until a case is accepted: those of the case, then masses with inertia on contact
+# nodes, then the diagonal mass without it.
 DIAGONAL = (("mass.type=lumped",), ("mass.type=equivalent-lumped",))
 METHODS = ((), ("mass.type=consistent",), *DIAGONAL, ("mass.type=equivalent", "time.preset=textbook-half"))
 REFUSED = 2
@@ -37,7 +37,7 @@ class Run:
 
 @dataclasses.dataclass(frozen=True)
 class Plan:
-    """How a run is made: its time steps, and settings of the method."""
+    """Time steps of a run, and settings of the method."""
     step: float
     count: int
     method: tuple
@@ -56,14 +56,14 @@ def cases(root):
 
 
 def all_runs(of_cases, program, kinds, steps):
-    """Every case under every scheme in so many steps at most."""
+    """Returns every case under every scheme, with at most so many steps."""
     names = schemes(program)
     return [Run(case, scheme, kind, steps) for case in sorted(of_cases) for scheme in names for kind in kinds]
 
 
 def plans(case, steps):
-    """The steps cover the time of the case, so that there is contact. Where they are refused as too long, they are the case's
-    own, and then those of explicit schemes, which end earlier."""
+    """Returns the plans of a case. The steps cover its time, so that there is contact. If they are refused as too long,
+    the case's own steps follow, and then those of explicit schemes, which end earlier."""
     time = tomllib.loads(case.read_text())["time"]
     own = max(round(time["end"] / time["step"]), 1)
     grids = [(time["step"], own)] if own <= steps else [(time["end"] / steps, steps), (time["step"], steps)]
@@ -80,7 +80,8 @@ class Side:
         self.mpi_program = self.root / "build" / "ricochet-mpi"
 
     def results(self, runs):
-        """{name of the run: what is compared}. All runs of a case and scheme are made as the first of them is accepted."""
+        """Returns {name of the run: results compared}. All runs of a case and scheme use the plan with which the first
+        of them is accepted."""
         groups = {}
         for run in runs:
             groups.setdefault((run.case, run.scheme), []).append(run)
@@ -128,7 +129,7 @@ def checksum(path):
 
 
 def has_contact(path):
-    """Was there contact in any step?"""
+    """Returns whether any step had contact."""
     if not path.exists():
         return False
     with path.open(newline="", encoding="utf-8") as file:
@@ -136,7 +137,7 @@ def has_contact(path):
 
 
 def frame_checksum(path):
-    """Of all fields of the last frame, with their names."""
+    """Returns the checksum of all fields of the last frame, with their names."""
     if not path.exists():
         return ""
     total = hashlib.sha256()

@@ -16,12 +16,12 @@ struct ContactCase {
   const char* name;
   int dimension;
   const char* contact;   ///< more keys of [[contact]]
-  const char* obstacle;  ///< of type, place and motion
+  const char* obstacle;  ///< type, position and motion
   const char* rest;      ///< [mass], [time] and what else there is
   double allowed;        ///< relative to the largest value of a column
   const char* preconditioner = "auto";
   bool is_static = false;  ///< lies on the floor in equilibrium, and is pushed
-  bool is_long = false;    ///< so many points touch that they are several zones, of which each home has some
+  bool is_long = false;    ///< so many points touch that there are several subdomains, some on each rank
 };
 
 constexpr const char* floor_2d = "type = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.05, 1.0]\n";

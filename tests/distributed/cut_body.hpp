@@ -47,7 +47,7 @@ class CutBody {
   }
 
  protected:
-  /// Of a vector on the whole body, what this rank has.
+  /// Returns the part of a vector on the whole body that this rank has.
   [[nodiscard]] Vector part_of(const Vector& whole) const { return cut_values(whole, piece_, d_); }
 
   Communicator world_;

@@ -1,4 +1,4 @@
-"""How ricochet-mpi ends: errors and kills of one process, signals, full disks, and what it refuses."""
+"""Ends of ricochet-mpi: errors and kills of one process, signals, full disks, and refusals."""
 
 import os
 import resource
@@ -21,7 +21,7 @@ class Ends(Distributed):
         self.assertEqual(self.summary(name)["status"], "done")
 
     def test_of_one_process_are_those_of_all(self):
-        """kill -9 of any rank ends all within seconds, and the run goes on to the same bits."""
+        """kill -9 of any rank ends all within seconds, and the run resumes to the same bits."""
         self.assertEqual(self.bounce(3, "whole", values=self.LONG).returncode, 0)
         for victim in range(3):
             name = f"killed-{victim}"
@@ -39,7 +39,7 @@ class Ends(Distributed):
             self.expect_same_files("whole", name)
 
     def test_of_an_error_that_one_process_finds(self):
-        """A load that has no value at a place where one of them has cells: all end within seconds, with one message."""
+        """A load without a value where one process has cells: all end within seconds, with one message."""
         begin = time.monotonic()
         values = {**BOUNCE, "load.body_force": '["x > 0.0195 && t > 0.01 ? sqrt(-1) : 0", "0"]'}
         finished = self.bounce(3, "lost", values=values)
@@ -49,7 +49,7 @@ class Ends(Distributed):
         self.assertIn("step ", finished.stderr)
 
     def test_of_an_expected_result_that_does_not_come(self):
-        """The first process alone compares: all end with its status, and one message."""
+        """Only the first process compares: all end with its status, and one message."""
         case = self.write("wrong.toml", with_more(DISC, '[[expect]]\nquantity = "max(history.total_energy)"\nmaximum = 0.0\n')
                           .replace("end = 0.15", "end = 0.001"))
         finished = several(2, "run", case, "-o", self.folder / "wrong", "--quiet")
@@ -63,7 +63,7 @@ class Ends(Distributed):
         process = self.start(2, "stopped", self.LONG | {"output.checkpoint_every": 1000000})
         history = self.folder / "stopped" / "history.csv"
         wait_for(lambda: (history.exists() and history.stat().st_size > 20000) or process.poll() is not None)
-        # The step that it comes in is a long one.
+        # It arrives in a long step.
         one, other = processes_of(process)
         os.kill(one, signal.SIGSTOP)
         os.kill(other, signal.SIGTERM)
@@ -77,14 +77,14 @@ class Ends(Distributed):
         described = run("info", self.folder / "stopped").stdout
         self.assertIn(f"checkpoint of step {self.summary('stopped')['checkpoint_step']}: ", described)
         self.assertIn("`mpirun -n 2 ricochet-mpi run` with --resume goes on with it", described)
-        (self.folder / "stopped" / "summary.json").unlink()  # checkpoints know the case, too
+        (self.folder / "stopped" / "summary.json").unlink()  # checkpoints state the case as well
         self.assertIn("summary.json is missing", run("info", self.folder / "stopped").stdout)
         finished = several(2, "run", "--resume", self.folder / "stopped", "--quiet")
         self.assertEqual(finished.returncode, 0, finished.stderr)
         self.assertEqual((self.folder / "whole" / "history.csv").read_bytes(), history.read_bytes())
 
     def test_at_a_full_disk(self):
-        """Results that cannot grow: one message within seconds, and what was there goes on."""
+        """Results that cannot grow: one message within seconds, and the earlier results can be resumed."""
         process = self.start(2, "full", self.LONG)
         manifests = lambda: list((self.folder / "full" / "ranks").glob("*.manifest"))  # noqa: E731
         wait_for(lambda: manifests() or process.poll() is not None)
@@ -106,7 +106,7 @@ class Ends(Distributed):
         self.assertEqual(finished.returncode, 0, finished.stderr)
         self.assertEqual(finished.stderr.count(f"{newest.name}: it is not the file of the manifest"), 1, finished.stderr)
         self.expect_same_files("whole", "damaged")
-        # With none that can be read nothing is begun anew.
+        # If no checkpoint can be read, the run is not started anew.
         for damaged in (self.folder / "damaged" / "ranks" / "0001").glob("*.ckpt"):
             damaged.write_bytes(damaged.read_bytes()[:-100])
         summary.write_text(summary.read_text().replace('"status": "done"', '"status": "running"'))
@@ -160,7 +160,7 @@ class Refusals(Distributed):
         self.assertEqual(self.summary("three")["warnings"], self.summary("one")["warnings"])
 
     def test_of_cases_that_processes_do_not_share(self):
-        """Every other process is in a folder of its own."""
+        """Each process is in a folder of its own."""
         case = self.disc.read_text().replace('file = "', f'file = "{self.disc.parent}/')
         for name in ("a", "b"):
             (self.folder / name).mkdir()

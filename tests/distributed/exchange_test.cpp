@@ -41,7 +41,7 @@ std::vector<std::vector<std::int64_t>> nodes_of_ranks(const Mesh& mesh, const st
   return result;
 }
 
-/// What a rank has at a component of a node: numbers whose sum depends on the order in which they are added.
+/// Contribution of a rank to a component of a node: numbers whose sum depends on the order of the additions.
 double part_of(int rank, std::int64_t node, Index component) {
   return std::sin(1.0 + 3.7 * rank + 0.9 * static_cast<double>(node) + static_cast<double>(component)) *
          std::pow(10.0, rank % 3);

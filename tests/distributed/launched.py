@@ -20,7 +20,7 @@ name = "wall"
 boundary = "boundary"
 """
 
-# A fast disc that bounces once, with friction; few steps, a checkpoint often.
+# A fast disc that bounces once, with friction; few steps, frequent checkpoints.
 BOUNCE = {"contact.0.friction": 0.3, "initial.velocity": "[0.03,-0.1]", "output.checkpoint_every": 40,
           "output.fields_every": 20, "time.end": 0.06, "solver.tolerance": 1e-12}
 
@@ -35,12 +35,12 @@ def several(ranks, *arguments, directory=None):
 
 
 def own_lines(text):
-    """Without what mpirun says."""
+    """Returns the lines of ricochet, without those of mpirun."""
     return [line for line in text.splitlines() if line.startswith("ricochet")]
 
 
 def processes_of(process):
-    """Those that a mpirun has begun, in the order of their ranks."""
+    """Returns the processes started by mpirun, in the order of their ranks."""
     found = []
     for folder in pathlib.Path("/proc").iterdir():
         with contextlib.suppress(OSError):

@@ -37,13 +37,13 @@ TEST_P(Pieces, AreTheWhole) {
     EXPECT_EQ(piece_.mesh.groups[g].name, mesh.groups[g].name);
     EXPECT_EQ(ranks_.sum(static_cast<double>(piece_.mesh.groups[g].members.size())), mesh.groups[g].members.size());
   }
-  // Nodes are where they were, and known to people as before.
+  // Nodes keep their positions and the numbers of the file.
   for (std::size_t i = 0; i < piece_.node_number.size(); ++i) {
     const auto node = static_cast<Index>(i);
     EXPECT_EQ(piece_.space.nodes.col(node), whole_->space.nodes.col(piece_.node_number[i]));
     EXPECT_EQ(piece_.space.number[i], whole_->space.number[static_cast<std::size_t>(piece_.node_number[i])]);
   }
-  // Elements keep their tags, their nodes and their places in mesh and space.
+  // Elements keep their tags, their nodes and their positions in mesh and space.
   for (std::size_t i = 0; i < piece_.cell_number.size(); ++i) {
     const PlaceInBlocks here = place_in_blocks(piece_.mesh.cells, static_cast<Index>(i));
     const PlaceInBlocks there = place_in_blocks(mesh.cells, piece_.cell_number[i]);
@@ -125,7 +125,7 @@ TEST_P(Pieces, HavePreconditionersOfTheWhole) {
   }
 }
 
-/// Nodes that are held are in the matrix of a preconditioner, too: the units of its numbers must not matter.
+/// Supported nodes are also in the matrix of a preconditioner: the result must not depend on the units of its entries.
 TEST_P(Pieces, ArePreconditionedInAnyUnits) {
   const SparseMatrix part = operator_of(own_);
   std::vector<char> solved;

@@ -1,4 +1,4 @@
-"""What ricochet-mpi writes: the numbers of one process, and the same bits for as many."""
+"""Results of ricochet-mpi: the numbers of one process, and the same bits for equal numbers of processes."""
 
 import subprocess
 import unittest
@@ -9,7 +9,7 @@ import numpy
 from launched import BOUNCE, Distributed, several
 from harness import History, run
 
-# A column that stands on the floor, of which the probe watches the top alone.
+# A column that stands on the floor; the probe watches only its top.
 STRIP_GEOMETRY = """
 Rectangle(1) = {0, 0, 0, 0.2, 1}; Rectangle(2) = {0, 1, 0, 0.2, 0.1};
 Coherence;
@@ -90,7 +90,7 @@ class Results(Distributed):
             with h5py.File(self.folder / name / "results.h5") as results:
                 self.assertEqual(results["mesh"]["element"][own["peak_stress"]["cell"]], own["peak_stress"]["element"])
             self.expect_same_fields("one", name)
-            # Others read it as ever.
+            # Other commands read it as usual.
             described = run("info", self.folder / name)
             self.assertEqual(described.returncode, 0, described.stderr)
 
@@ -100,7 +100,7 @@ class Results(Distributed):
             for data in ("nodes", "cells", "element", "contact_facets"):
                 self.assertTrue(numpy.array_equal(expected["mesh"][data], found["mesh"][data]), data)
             self.assertEqual(list(expected["frames"]), list(found["frames"]))
-            scale = {}  # of all frames: in free flight stresses are rounding
+            scale = {}  # over all frames: in free flight stresses are rounding
             for frame in expected["frames"].values():
                 for field, values in frame.items():
                     scale[field] = max(scale.get(field, 0.0), numpy.nanmax(numpy.abs(numpy.array(values, float))))
@@ -111,7 +111,7 @@ class Results(Distributed):
                     self.assertTrue(near, f"{frame} {field}")
 
     def test_at_nodes_between_two_points_are_those_of_one_process(self):
-        """Of degree 2 the pressure of a node is made of contact points that several processes have."""
+        """With degree 2 the pressure of a node is recovered from contact points of several processes."""
         values = {**BOUNCE, "mesh.degree": 2, "time.end": 0.03, "output.fields_every": 10}
         self.assertEqual(self.bounce(0, "one", values=values).returncode, 0)
         self.assertEqual(self.bounce(3, "three", values=values).returncode, 0)
@@ -128,7 +128,7 @@ class Results(Distributed):
 
 class PeakStress(Distributed):
     def test_is_looked_for_in_the_same_states(self):
-        """Frames aside, of which there are none here."""
+        """Apart from frames, of which there are none here."""
         values = BOUNCE | {"output.fields_every": 0}
         for ranks, name in ((0, "one"), (2, "two"), (4, "four")):
             self.assertEqual(self.bounce(ranks, name, values=values).returncode, 0)
@@ -142,7 +142,7 @@ class PeakStress(Distributed):
 
 class Groups(Distributed):
     def test_may_have_nothing_on_a_process(self):
-        """A probe of cells, and an axisymmetric contact, of which some processes have none."""
+        """A probe of cells and an axisymmetric contact that some processes do not have."""
         case = self.write("strip.toml", STRIP)
         geometry = self.write("strip.geo", STRIP_GEOMETRY)
         mesh = self.folder / "strip.msh"

@@ -1,4 +1,5 @@
-"""Runs with `time.step = "adaptive"` through every command: what is true of fixed steps holds of steps of many lengths."""
+"""Runs with `time.step = "adaptive"` through every command: properties of fixed steps also hold for steps of varying
+lengths."""
 
 import csv
 import json
@@ -24,7 +25,7 @@ def summary(output):
 class AdaptiveSteps(TestCase):
     @classmethod
     def setUpClass(cls):
-        """One run, which nothing has interrupted, for all tests."""
+        """One uninterrupted run for all tests."""
         folder = tempfile.TemporaryDirectory(prefix="ricochet-test-")
         cls.addClassCleanup(folder.cleanup)
         cls.whole = pathlib.Path(folder.name) / "whole"
@@ -33,7 +34,7 @@ class AdaptiveSteps(TestCase):
             raise RuntimeError(process.stderr)
 
     def interrupted(self, name, number):
-        """A run that a signal has ended on the way."""
+        """Makes a run that a signal has ended before its end."""
         output = self.folder / name
         command = [str(PROGRAM), "run", str(BAR), "-o", str(output), "--quiet", *settings(RUN)]
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -44,7 +45,7 @@ class AdaptiveSteps(TestCase):
         return output
 
     def test_the_run_says_which_steps_it_took(self):
-        """Each is the longest times a power of 1/2, and their sum is the end."""
+        """Each is the longest step times a power of 1/2, and their sum is the end."""
         said = summary(self.whole)
         history = History(self.whole / "history.csv")
         lengths = [after - before for before, after in zip(history["time"], history["time"][1:])]
@@ -59,7 +60,7 @@ class AdaptiveSteps(TestCase):
         self.assertLess(steps["shortest"], LARGEST / 8, "the impact has shortened none")
         self.assertEqual(steps["above_tolerance"], 0)
         self.assertLessEqual(steps["largest_error"], 1.0)
-        # Where nothing touches yet the bar flies, and steps are long.
+        # Before contact the bar flies, and steps are long.
         self.assertAlmostEqual(max(lengths), LARGEST, delta=1e-9 * LARGEST)
         text = self.expect_status(0, run("info", self.whole)).stdout
         self.assertIn(f'{len(lengths)} steps of {steps["shortest"]:.4g} to {LARGEST} ({steps["refused"]} refused)', text)
@@ -74,13 +75,13 @@ class AdaptiveSteps(TestCase):
             self.assertTrue(summary(output)["resumed_at"])
             for entry in ("adaptive_steps", "extrema", "impacts", "energy_budget"):
                 self.assertEqual(summary(output)[entry], summary(self.whole)[entry], entry)
-        # A complete run has nothing to do, and one to a later end goes on from before the steps that its end has shortened.
+        # A complete run has nothing to do, and one to a later end resumes before the steps that its end has shortened.
         self.expect_status(0, run("run", "--resume", output, "--quiet"))
         self.assertEqual((output / "history.csv").read_bytes(), expected)
         later = self.simulate(BAR, "later", RUN | {"time.end": 0.3})
         self.expect_status(0, run("run", BAR, "-o", later, "--resume", "--quiet", *settings(RUN)))
         self.assertEqual((later / "history.csv").read_bytes(), expected)
-        # To an end between two long steps, with checkpoints after each step, too, and on from there twice.
+        # To an end between two long steps, also with checkpoints after each step, and resumed twice from there.
         for name, options in (("often", {"output.checkpoint_every": 1}), ("seldom", {"output.checkpoint_every": 1000})):
             later = self.simulate(BAR, name, RUN | {"time.end": 0.2341} | options)
             self.assertFalse(History(later / "history.csv")["time"][-1] in History(self.whole / "history.csv")["time"])
@@ -102,7 +103,7 @@ class AdaptiveSteps(TestCase):
         self.assertIn(summary(self.whole)["title"], page.read_text())
 
     def test_a_study_of_tolerances(self):
-        """A smaller tolerance takes more steps, and comes nearer to a run with a much smaller one."""
+        """A smaller tolerance takes more steps and comes closer to a run with a much smaller one."""
         reference = self.simulate(BAR, "reference", ADAPTIVE | {"time.tolerance": 1e-4})
         output = self.folder / "study"
         self.expect_status(0, run("study", BAR, "--vary", "time.tolerance=3e-2,1e-2,3e-3", *settings(ADAPTIVE), "--reference",
@@ -119,7 +120,7 @@ class AdaptiveSteps(TestCase):
                                   self.folder / "figure.svg"))
         self.expect_status(0, run("report", output))
         self.assertTrue((output / "runs.html").exists())
-        # Without anything left to do the table is the same but for times.
+        # With nothing left to do, the table is the same except for times.
         self.expect_status(0, run("study", "--resume", output, "--quiet"))
 
 

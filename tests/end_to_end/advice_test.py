@@ -1,4 +1,5 @@
-"""`ricochet info` and `validate` on meshes and cases: sizes, places, times, a step to begin with, and what was not checked."""
+"""`ricochet info` and `validate` on meshes and cases: sizes, positions, times, a suggested step, and items that were
+not checked."""
 
 import math
 import os
@@ -16,14 +17,14 @@ class Advice(TestCase):
         return self.expect_status(0, run("info", *arguments)).stdout
 
     def test_groups_have_a_size_and_a_place(self):
-        """The parallelogram with the bottom from (0.1, 0.2) to (1.3, 0.1), of which the length and the normal are known."""
+        """The parallelogram with the bottom from (0.1, 0.2) to (1.3, 0.1), whose length and normal are known."""
         line = re.search(r'group "bottom": .*', self.said(MESHES / "quadrilateral_o1_msh41_ascii.msh"))[0]
         length = math.hypot(1.2, 0.1)
         self.assertIn(f"length {length:.5g}, centre (0.7, 0.15), from (0.1, 0.1) to (1.3, 0.2)", line)
         self.assertIn(f"flat, normal ({-0.1 / length:.4g}, {-1.2 / length:.4g})", line)
 
     def test_the_built_in_groups_are_listed(self):
-        """All cells have the area of the whole, and the boundary closes: the sum over the groups that it consists of."""
+        """All cells have the area of the whole, and the boundary closes: it is the sum over its groups."""
         text = self.said(MESHES / "quadrilateral_o1_msh41_ascii.msh")
         def measure(name):
             return float(re.search(rf'group "{name}": .*?, (?:area|length) ([^,]+),', text)[1])
@@ -34,7 +35,7 @@ class Advice(TestCase):
         corners = [points[numpy.argmin(points @ direction)] for direction in ((1, 0.01), (-0.01, 1), (-1, -0.01), (0.01, -1))]
         around = sum(math.dist(a, b) for a, b in zip(corners, corners[1:] + corners[:1]))
         self.assertAlmostEqual(measure("boundary"), around, delta=1e-4 * around)
-        # A case lists them, too.
+        # A case lists them as well.
         case = self.said(self.write("case.toml", block_case()))
         self.assertIn('group "all": ', case)
         self.assertIn('group "boundary": ', case)
@@ -71,7 +72,7 @@ class Advice(TestCase):
             self.assertIn(f'at the start the mesh {said} obstacle "floor"', self.said(low))
 
     def test_a_geometry_is_meshed_when_asked_for(self):
-        """Until then what needs the mesh is said not to be checked; later the mesh is there, and it is."""
+        """Until then, checks that need the mesh are reported as omitted; afterwards the mesh exists and is checked."""
         cache = self.folder / "cache"
         environment = dict(os.environ, RICOCHET_CACHE=str(cache))
         for name in ("quadrilateral.geo", "box.step"):
@@ -93,13 +94,13 @@ class Advice(TestCase):
                 self.assertIn(f"`ricochet validate {wrong} --mesh`", before)
                 self.assertEqual(list(cache.glob(f"{(MESHES / name).stem}-*.msh")), [])
                 self.assertIn("bodi", validate(wrong, "--mesh", status=2).stderr)
-                # From now on nothing has to be meshed.
+                # From now on nothing must be meshed.
                 self.assertIn("bodi", validate(wrong, status=2).stderr)
                 after = validate(case).stdout
                 self.assertRegex(after, r"valid: \d+ nodes")
                 self.assertNotIn("not checked", after)
                 self.assertIn('group "body": ', self.expect_status(0, run("info", case, environment=environment)).stdout)
-                # A mesh of another size is another one.
+                # A mesh of another size is a different mesh.
                 self.assertIn("not checked", validate(case, "--set", "mesh.size=0.3").stdout)
         described = self.expect_status(0, run("info", MESHES / "quadrilateral.geo", environment=environment)).stdout
         self.assertIn("validate CASE.toml --mesh", described)
@@ -126,16 +127,17 @@ class Advice(TestCase):
         self.assertIn("and does not come nearer", text)
 
     def test_an_obstacle_that_comes(self):
-        """The body rests, 0.1 above a plane that rises by 0.4 t², and so meets it at t = 0.5; one that sinks it never meets."""
+        """The body rests 0.1 above a plane that rises by 0.4 t² and meets it at t = 0.5; a sinking plane never meets
+        it."""
         rests = block_case().replace("gravity = [0.0, -10.0]", "gravity = [0.0, 0.0]").replace("end = 0.3", "end = 1.0")
         for motion, said in (("0.4*t^2", "and would reach it at t = 0.5 (the run ends at 1)"),
                              ("-0.4*t^2", "and does not reach it by the end of the run"),
-                             # Away first: its velocity at the start tells nothing.
+                             # It first moves away: its initial velocity implies nothing.
                              ("0.4*(2*t)^2-0.3*sin(pi*t)^2*(t<0.25)", "and would reach it at t = 0.25 (the run ends at 1)")):
             moving = rests.replace("normal = [0.0, 1.0]", f'normal = [0.0, 1.0]\nmotion = ["0", "{motion}"]')
             self.assertIn(said, self.said(self.write("moving.toml", moving)))
         for angle in (0.5, -0.5):
-            # About a point far to the left the surface under the block rises at the rate of that distance.
+            # About a point far to the left, the surface under the block rises at the rate times that distance.
             turning = rests.replace("normal = [0.0, 1.0]", f'normal = [0.0, 1.0]\nrotation = "{angle}*t"\nabout = [-2.0, 0.0]')
             said = self.said(self.write("turning.toml", turning))
             if angle < 0:

@@ -1,4 +1,5 @@
-"""The messages in the sources that advise a setting: literals of C++ with a clause that begins with a verb such as "set"."""
+"""The messages in the sources that advise a setting: C++ literals with a clause that begins with a verb such as
+"set"."""
 
 import re
 
@@ -7,17 +8,17 @@ from harness import SOURCE
 TOKEN = re.compile(r'R"(?P<d>\w*)\((?P<raw>.*?)\)(?P=d)"|"(?P<text>(?:[^"\\\n]|\\.)*)"|//[^\n]*|\'(?:[^\'\\]|\\.)\'|[^\s"]', re.S)
 VERBS = "set|use|try|take|give|choose|refine|make|add|extend|pair|let|leave|move|lower|raise|apply|support|separate|mesh|improve|start"
 ADVICE = re.compile(rf"(?:^|[;:,.(]|\bor|\band|\{{\}})\s*\b(?:{VERBS})\s[^;]*|smaller (?:time.step|cells|facets)[^;]*|finer mesh[^;]*", re.I)
-# Settings of the method and of the mesh; that a key is missing, or is there beside another one, is no advice.
+# Settings of the method and of the mesh; a missing or conflicting key is not advice.
 SETTING = re.compile(r"time\.|degree|refine|cells there|mass\b|scheme|multipliers?\b|sliding =|solver\.|law\b|steps?\b|pair_at|restitution|"
                      r"damping|edge_radius|initial_gap|saint-venant|\"p1\"|friction|smallest|expressions|side facets|set it to 0|to the group\b|extend the groups|\[\[support")
-# Of files, directories, processes and programs: what a case says has no part in them.
+# Messages about files, directories, processes and programs, which no case affects.
 OTHER = re.compile(r" -o\b|--|directory|another file|RICOCHET|ulimit|processes|ricochet::|file back|No |/fclib|this process|other threads|stop that run")
-# What is written about keys and commands beforehand, and no message.
+# Descriptions of keys and commands, which are not messages.
 LEFT_OUT = {"reference.cpp", "manual_page.cpp", "main.cpp", "completion_scripts.cpp", "command_info.cpp", "plan.cpp", "command_validate.cpp"}
 
 
 def literals(text):
-    """Those that stand beside each other are one."""
+    """Returns the literals of a text; adjacent literals count as one."""
     result, current = [], None
     for token in TOKEN.finditer(text):
         if token[0].startswith("//"):
@@ -33,7 +34,7 @@ def literals(text):
 
 
 def advising_messages():
-    """(file, message) of all."""
+    """Returns (file, message) for all of them."""
     result = []
     for folder in ("src", "apps"):
         for path in sorted((SOURCE / folder).rglob("*.[ch]pp")):

@@ -1,4 +1,4 @@
-"""[[contact]] of every body against every other: the same as a contact for each pair, whatever is far apart."""
+"""[[contact]] of every body with every other: the same as a contact for each pair, at any distance."""
 
 import json
 import math
@@ -11,7 +11,7 @@ RINGS, SECTORS = 3, 20
 
 
 def disc_text():
-    """A disc of radius 0.5 in triangles."""
+    """Returns a disc of radius 0.5 in triangles."""
     nodes = [(0.0, 0.0)]
     for ring in range(1, RINGS + 1):
         for k in range(SECTORS):
@@ -25,7 +25,7 @@ def disc_text():
     elements += [f"2 2 2 1 1 {number(1, k)} {number(1, k + 1)}" for k in range(SECTORS)]
     for ring in range(1, RINGS):
         for k in range(SECTORS):
-            ahead = k + ring % 2  # of the outer ring, the node that lies between this one and the next
+            ahead = k + ring % 2  # on the outer ring, the node between this one and the next
             elements.append(f"2 2 2 1 {number(ring, k)} {number(ring + 1, ahead)} {number(ring, k + 1)}")
             elements.append(f"2 2 2 1 {number(ring, k + 1)} {number(ring + 1, ahead)} {number(ring + 1, ahead + 1)}")
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "2", '1 1 "skin"', '2 2 "disc"', "$EndPhysicalNames"]
@@ -40,7 +40,7 @@ def part(name, x, y, velocity):
 
 MATERIAL = '[[material]]\ngroup = "all"\ndensity = 1.0\nyoung = 200.0\npoisson = 0.3\nlaw = "neo-hookean"\n'
 TIME = '[time]\nscheme = "reduced-kane"\nstep = 5e-3\nend = 0.25\n[output]\nfields_every = 0\ncheckpoint_every = 20\n'
-# One disc strikes the second, which goes on to a third; a fourth is far away.
+# One disc strikes the second, which moves on to a third; a fourth is far away.
 ROW = (part("disc-1", 0.0, 0.0, [2.0, 0.1]) + part("disc-2", 1.02, 0.2, [0.0, 0.0]) + part("disc-3", 2.07, 0.0, [0.0, 0.0])
        + part("other", 9.0, 0.0, [0.0, 0.0]))
 PAIRS = [("disc-1", "disc-2"), ("disc-1", "disc-3"), ("disc-2", "disc-3")]
@@ -68,14 +68,14 @@ class AllPairs(TestCase):
 
     def test_the_same_as_a_contact_for_each_pair(self):
         explicit = self.history("explicit", EXPLICIT)
-        self.assertGreater(max(map(abs, explicit["pair_force.2_x"])), 0.0)  # the third disc is struck, too
+        self.assertGreater(max(map(abs, explicit["pair_force.2_x"])), 0.0)  # the third disc is struck as well
         for name, group in (("pattern", '"disc-*"'), ("skins", '"disc-*.skin"'), ("list", '["disc-1.skin", "disc-2.skin", "*-3"]')):
             found = self.history(name, f"[[contact]]\ngroup = {group}\nfriction = 0.3\n", PROBE)
             self.expect_alike(explicit, found)
             for number in range(3):
                 for a, b in zip(explicit[f"pair_force.{number}_x"], found[f"pair_force.{number}_x"]):
                     self.assertAlmostEqual(a, b, delta=1e-6)
-            # A probe of the contact is the sum over its pairs, of the forces on the first body of each.
+            # A probe of the contact is the sum over its pairs of the forces on the first body of each.
             for row in range(len(found.rows)):
                 total = sum(found[f"pair_force.{number}_x"][row] for number in range(3))
                 self.assertAlmostEqual(found["all.force_x"][row], total, delta=1e-9)
@@ -105,7 +105,7 @@ class AllPairs(TestCase):
     def test_a_run_that_goes_on_has_the_same_bits(self):
         case = self.case("row", '[[contact]]\ngroup = "all"\nfriction = 0.3\n')
         whole = self.simulate(case, "whole")
-        # The first pair has met by then, the second has not.
+        # By then the first pair has met, but not the second.
         part = self.simulate(case, "part", {"time.end": 0.15})
         shutil.copytree(part, self.folder / "longer")
         self.expect_status(0, run("run", "--resume", self.folder / "longer", "--quiet", *settings({"time.end": 0.25})))

@@ -1,4 +1,4 @@
-"""`ricochet plot --what animation`: pictures of a body show it where the results have it; files, formats, refusals."""
+"""`ricochet plot --what animation`: pictures show the body at its position in the results; files, formats, refusals."""
 
 import os
 import re
@@ -16,7 +16,7 @@ AXISYMMETRIC = SOURCE / "cases/ball-axisymmetric/ball-axisymmetric.toml"
 
 
 def triangles(path):
-    """The polygons of three corners in an SVG: count x 3 x 2, upwards."""
+    """Returns the polygons with three corners in an SVG: count x 3 x 2, upwards."""
     result = []
     for element in xml.etree.ElementTree.parse(path).iter(f"{SVG}path"):
         points = re.findall(r"[ML] (-?[\d.]+) (-?[\d.]+)", element.get("d", ""))
@@ -53,7 +53,7 @@ class Animation(TestCase):
         scale, high = extents(drawn) / extents(places)
         self.assertAlmostEqual(high / scale, 1.0, delta=1e-4)  # as wide as it is high
         offset = drawn.reshape(-1, 2).min(axis=0) - scale * places.reshape(-1, 2).min(axis=0)
-        # Every triangle is there, in hundredths of a point; which comes first is the surface's own business.
+        # Every triangle is present, in hundredths of a point; their order is up to the surface.
         wanted, found = ((scale * places + offset).mean(axis=1), drawn.mean(axis=1))
         distances = numpy.abs(wanted[:, None, :] - found[None, :, :]).max(axis=2)
         self.assertLess(distances.min(axis=0).max(), 1e-2)
@@ -72,7 +72,8 @@ class Animation(TestCase):
             for frame in range(image.n_frames):
                 image.seek(frame)
                 pictures.append(numpy.asarray(image.convert("RGB"), dtype=int))
-        # It falls: its middle is lower in each picture than in the one before. All but the body is black, grey or white.
+        # It falls: its middle is lower in each picture than in the one before. Everything except the body is black,
+        # grey or white.
         coloured = [numpy.ptp(picture[:, :int(0.7 * picture.shape[1])], axis=2) > 40 for picture in pictures]
         middles = [numpy.nonzero(picture)[0].mean() for picture in coloured]
         self.assertEqual(middles, sorted(middles))
@@ -100,7 +101,7 @@ class Animation(TestCase):
         message = self.plot(results, "--what", "animation", "-o", "run.mp4", status=4, environment=bare).stderr
         self.assertIn("apt-get install ffmpeg, or write a .gif", message)
         self.assertFalse((self.folder / "run.mp4").exists())
-        # One that keeps what it is given: six pictures of four bytes for each point.
+        # A stand-in that stores its input: six pictures of four bytes for each point.
         self.write("ffmpeg", '#!/bin/sh\nfor last; do :; done\nexec /bin/cat > "$last"\n').chmod(0o755)
         self.plot(results, "--what", "animation", "-o", "run.mp4", "--size", "8x7", environment=bare)
         self.assertEqual((self.folder / "run.mp4").stat().st_size, 6 * 316 * 276 * 4)

@@ -1,4 +1,4 @@
-"""`ricochet benchmark`: its table says what the runs say, what does not hold is marked, methods are compared."""
+"""`ricochet benchmark`: its table agrees with the runs, failed expectations are marked, methods are compared."""
 
 import csv
 import json
@@ -19,7 +19,7 @@ class Benchmark(TestCase):
         return self.expect_status(status, run("benchmark", *arguments, "--quiet"))
 
     def folder_with(self, *expectations, more=""):
-        """A folder of benchmarks with the rod, which expects something else, and the block on a slope."""
+        """Makes a folder of benchmarks with the rod, which has another expectation, and the block on a slope."""
         folder = self.folder / "own"
         folder.mkdir()
         rod = SOURCE / "cases" / "rod" / "rod.toml"
@@ -59,7 +59,7 @@ class Benchmark(TestCase):
         self.assertIn(f"{len(rows)} of {len(rows)} expected values hold", process.stdout)
         self.assertNotIn("DOES NOT HOLD", process.stdout)
         self.assertIn("| rod |", (output / "benchmark.md").read_text(encoding="utf-8"))
-        # Printed again, and kept; not written over by accident.
+        # Printed again, and kept; not overwritten by accident.
         self.assertEqual(self.expect_status(0, run("info", output)).stdout, process.stdout)
         self.expect_status(0, run("report", output))
         self.assertIn('href="runs/rod"', (output / "report.html").read_text(encoding="utf-8"))
@@ -81,7 +81,7 @@ class Benchmark(TestCase):
         self.assertIn("DOES NOT HOLD", (self.folder / "out" / "benchmark.md").read_text(encoding="utf-8"))
 
     def test_runs_that_fail_or_are_refused(self):
-        """A limit below 0 is none, and an account that cannot close so well stops a run."""
+        """A limit below 0 is invalid, and an account that cannot close so well stops a run."""
         folder = self.folder_with('quantity = "summary.steps"\nminimum = 1',
                                   more='[[benchmark]]\nname = "stops"\ncase = "stops.toml"\n')
         text = (folder / "rod.toml").read_text(encoding="utf-8")
@@ -109,8 +109,8 @@ class Benchmark(TestCase):
             self.assertIn(f'case = "{path.parent.name}/{path.name}"', manifest)
 
     def test_scorecard(self):
-        """The default keeps energy and gets all right; central differences take a step of their own; a scheme without
-        friction is refused where there is friction, which fails nothing."""
+        """The default keeps energy and reproduces all values; central differences take a step of their own; a scheme
+        without friction is refused for cases with friction, which does not count as failure."""
         output = self.folder / "out"
         process = self.benchmark("rod", "incline-held", "-o", output, "--scheme",
                                  "reduced-kane,mean-reaction,taylor-flanagan,newmark/consistent", status=5)
@@ -140,7 +140,7 @@ class Benchmark(TestCase):
         card = (output / "scorecard.md").read_text(encoding="utf-8")
         self.assertIn("| mean-reaction | equivalent | refused (1) |", card)
         self.assertIn('1. scheme "mean-reaction" takes no friction', process.stdout)
-        # What is refused does not count.
+        # Refusals do not count.
         self.benchmark("incline-held", "-o", self.folder / "refused", "--scheme", "mean-reaction")
 
 

@@ -1,5 +1,5 @@
-"""A case of benchmarks/ holds: it is valid, its run succeeds with all its [[expect]] entries and without a warning, and its
-energy account closes. The case file is the first argument."""
+"""A case of benchmarks/ holds: it is valid, its run succeeds with all its [[expect]] entries and without a warning, and
+its energy account closes. The case file is the first argument."""
 
 import json
 import pathlib

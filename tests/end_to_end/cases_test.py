@@ -19,7 +19,7 @@ def vector_columns(name, dimension):
 
 
 def boundary_groups(case):
-    """The groups of facets that a case names, where it says what happens there."""
+    """Returns the groups of facets to which a case refers."""
     entries = [entry[key] for section in ("contact", "support", "traction") for entry in case.get(section, [])
                for key in ("group", "against") if key in entry]
     return {name for entry in entries for name in ([entry] if isinstance(entry, str) else entry)}
@@ -34,7 +34,7 @@ def boundary_columns(name, dimension):
 
 
 def probe_columns(probe, dimension, on_contact_boundary, of_facets, finite):
-    """The columns of an entry [[probe]]: of a contact, of a boundary, of a group, or of a point."""
+    """Returns the columns of a [[probe]] entry: of a contact, of a boundary, of a group, or of a point."""
     name = probe["name"]
     if "contact" in probe:
         areas = ["area", "nominal_area"] if finite else ["area"]
@@ -62,7 +62,7 @@ def documented_columns(dimension, case, points):
     columns += ["angular_momentum_z"] if dimension == 2 else vector_columns("angular_momentum", 3)
     columns += ["max_rotation", "active_contacts", "sticking", "slipping", "max_penetration", "iterations"]
     bodies = list(case.get("part", {}))
-    tied = any(contact.get("tied", False) for contact in case.get("contact", []))  # the cases that have ties are one body
+    tied = any(contact.get("tied", False) for contact in case.get("contact", []))  # the cases with ties are one body
     if len(bodies) > 1 and not tied:
         for body in bodies:
             columns += vector_columns(f"momentum.{body}", dimension)
@@ -106,8 +106,8 @@ class CaseTest(TestCase):
             self.assertNotRegex(expectation["quantity"], OTHER_ROW)
 
     def check_warnings(self, summary):
-        """A case shows what is recommended: of its scheme and its step, of losses and of energy from nowhere nothing is to be
-        said. Some leave small strain, on purpose, and their runs must say so: nothing else."""
+        """Cases show the recommended settings: there must be no warnings about scheme and step, losses or gains of
+        energy. Some exceed small strain on purpose; their runs must warn of that, and of nothing else."""
         for warning in summary["warnings"]:
             self.assertIn("small strain", warning)
 

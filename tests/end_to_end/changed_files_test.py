@@ -1,4 +1,4 @@
-"""Another program changes what a run is writing: the run stops and says so, and nothing is lost without a word."""
+"""Another program changes a file that a run is writing: the run stops with a message, and nothing is lost silently."""
 
 import json
 import subprocess
@@ -27,7 +27,7 @@ def replace(path):
 
 class ChangedFiles(TestCase):
     def changed(self, name, change, more=()):
-        """A run that goes on while a file is changed; its directory, the status and what it said."""
+        """Runs while a file is changed. Returns its directory, the status and the messages."""
         output = self.folder / f"{change.__name__}-{name}"
         process = subprocess.Popen([PROGRAM, "run", self.case, "-o", output, "--quiet", *settings(ENDLESS | dict(more))],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
@@ -38,7 +38,7 @@ class ChangedFiles(TestCase):
         _, said = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 4, f"{output.name}: {said}")
         self.assertIn(f"{path}: ", said)
-        # In the middle of a frame it is HDF5 that fails.
+        # In the middle of a frame HDF5 fails.
         self.assertRegex(said, r"another program has changed it|has another program changed the file\?")
         summary = json.loads((output / "summary.json").read_text())
         self.assertEqual(summary["status"], "failed")
@@ -52,7 +52,7 @@ class ChangedFiles(TestCase):
     def test_text(self):
         output, said = self.changed("history.csv", cut)
         self.assertRegex(said, r"has 500 bytes where this run has written \d+")
-        # What is left is what was written before, without holes.
+        # The remaining results are those written before, without gaps.
         self.assertEqual((output / "history.csv").stat().st_size, 500)
         refused = self.expect_status(4, run("run", "--resume", output, "--quiet"))
         self.assertIn("history.csv: has 500 bytes", refused.stderr)
@@ -69,7 +69,7 @@ class ChangedFiles(TestCase):
                 self.changed(name, cut, {"output.format": file_format})
 
     def test_readers_change_nothing(self):
-        """Who only looks, and lengthens the time since the last look, does not stop the run."""
+        """A reader that only changes the access time does not stop the run."""
         output = self.folder / "watched"
         process = subprocess.Popen([PROGRAM, "run", self.case, "-o", output, "--quiet", *settings(ENDLESS | {"time.end": 60})],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)

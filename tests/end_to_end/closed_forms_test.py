@@ -1,4 +1,5 @@
-"""The reference values of benchmarks/ and of the cases with closed forms are what benchmarks/closed_forms.py computes anew."""
+"""The reference values of benchmarks/ and of the cases with closed forms agree with those recomputed by
+benchmarks/closed_forms.py."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""The command line: exit statuses, what goes to which stream, and that results do not depend on threads."""
+"""The command line: exit statuses, use of the streams, and independence of results from threads."""
 
 import json
 import os
@@ -75,7 +75,7 @@ class CommandLine(TestCase):
         self.assertIn(f"{NOWHERE}.msh", process.stderr)
 
     def test_unwritable_directory_is_status_4(self):
-        # These hold for root as well: below a regular file, the file itself, and file systems that take no folders.
+        # These hold for root as well: below a regular file, the file itself, and file systems that accept no folders.
         for output in (self.case / "out", self.case, "/proc/ricochet-test", "/proc/self/fd/out"):
             with self.subTest(output):
                 process = self.expect_status(4, run("run", self.case, "-o", output))
@@ -107,7 +107,7 @@ class CommandLine(TestCase):
         process = self.expect_status(4, run("run", self.case, "-o", output, "--quiet"))
         self.assertIn("--force", process.stderr)
         self.assertEqual({path.name: path.read_bytes() for path in output.iterdir()}, before)
-        for name in before:  # any one of them is a run
+        for name in before:  # any one of them marks a run
             folder = self.folder / ("only-" + name)
             folder.mkdir()
             (folder / name).write_bytes(before[name])
@@ -120,7 +120,7 @@ class CommandLine(TestCase):
         self.assertEqual(History(output / "history.csv")["step"], list(range(11)))
 
     def test_an_empty_value_is_not_the_default(self):
-        """As of a variable of the shell that is not set."""
+        """As from an unset variable of the shell."""
         for arguments in (("run", self.case, "-o", ""), ("run", self.case, "-o", "", "--force"), ("run", ""),
                           ("run", self.case, "--export-contact", "1", "--export-contact-to", ""), ("study", self.case, "-o", ""),
                           ("benchmark", "-o", ""), ("report", "out", "-o", ""), ("report", ""), ("info", ""), ("contact", "")):
@@ -191,7 +191,7 @@ class CommandLine(TestCase):
             self.assertRegex(process.stderr, r'expecting\.toml:\d+:\d+: history\.csv has no column "totl_energy"; did you '
                                              'mean "total_energy"')
         self.assertFalse((self.folder / "unknown").exists())
-        # All wrong groups, and a mesh that is not there, are told with their places.
+        # All wrong groups, and a missing mesh, are reported with their locations.
         case.write_text(text.replace('"body"', '"boddy"').replace('"bottom"', '"botom"'), encoding="utf-8")
         process = self.expect_status(2, run("validate", case))
         self.assertRegex(process.stderr, r'(?s)expecting\.toml:\d+:\d+: .*"boddy".*expecting\.toml:\d+:\d+: .*"botom"')
@@ -216,7 +216,7 @@ class CommandLine(TestCase):
         self.assertNotIn("minimum", found)
         history = History(self.folder / "out" / "history.csv")
         self.assertAlmostEqual(found["value"], 2.0 * history["total_energy"][0] / history["step"][-1], delta=1e-15)
-        # A run changed by --set is not checked, and a time that it does not have is told before it begins.
+        # A run changed by --set is not checked, and a time outside the run is reported before it begins.
         process = self.expect_status(0, run("run", case, "-o", self.folder / "changed", "--quiet", "--set", "title=other"))
         self.assertIn("1 does not apply to this run", process.stdout)
         case.write_text(text.replace("t=0)", "t=1e9)"), encoding="utf-8")
@@ -329,7 +329,7 @@ class CommandLine(TestCase):
             for name in ("history.csv", "results.xdmf"):
                 contents = {(output / name).read_bytes() for output in outputs}
                 self.assertEqual(len(contents), 1, f"{name} of {case}")
-            # HDF5 stores times of day: only what is in it is the same.
+            # HDF5 stores times of day: only the contents are the same.
             found = set()
             for output in outputs:
                 pieces = []
@@ -340,7 +340,7 @@ class CommandLine(TestCase):
             self.assertEqual(len(found), 1, f"results.h5 of {case}")
 
     def test_same_bits_with_any_number_of_blas_threads(self):
-        """Shape functions of degree 2 in space come from linear systems that are solved by OpenBLAS."""
+        """Shape functions of degree 2 in space come from linear systems that OpenBLAS solves."""
         text = block_case("tetrahedron_o1_msh41_ascii.msh").split("[[probe]]")[0]
         for plane, space in (("[0.0, 0.0]", "[0.0, 0.0, 0.0]"), ("[0.0, 1.0]", "[0.0, 0.0, 1.0]"),
                              ("[0.0, -10.0]", "[0.0, 0.0, -10.0]")):
@@ -358,7 +358,7 @@ class CommandLine(TestCase):
         self.assertEqual(len(contents), 1)
 
     def test_motion_beyond_all_bounds_is_status_3(self):
-        """Newmark's scheme below γ = ½ is unstable at any step: it takes energy in until numbers run out."""
+        """Newmark's scheme below γ = ½ is unstable at any step: it gains energy until numbers overflow."""
         output = self.folder / "out"
         process = self.expect_status(3, run("run", self.case, "-o", output, "--quiet", *settings(
             {"time.beta": 0.25, "time.gamma": 0, "time.end": 1000, "output.fields_every": 100})))

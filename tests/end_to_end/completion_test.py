@@ -1,4 +1,4 @@
-"""Shells complete what the program's own help and table of keys say: bash is asked as it asks when TAB is pressed."""
+"""Shells complete the words of the program's own help and table of keys: bash is queried as if TAB were pressed."""
 
 import json
 import re
@@ -13,7 +13,7 @@ CASE = SOURCE / "cases" / "oblique" / "oblique.toml"
 
 
 def words_of_help(text, heading):
-    """The first words of the lines below a heading of --help."""
+    """Returns the first words of the lines below a heading of --help."""
     part = re.search(rf"^{heading}:\n(.*?)(?=^\S|\Z)", text, re.M | re.S)
     return set(re.findall(r"^  (\S+)", part[1], re.M)) if part else set()
 
@@ -33,9 +33,10 @@ class Completion(TestCase):
         (self.folder / "bin" / "ricochet").symlink_to(PROGRAM)
 
     def complete(self, line):
-        """What bash offers at the end of the line. It splits words at "=" and ":", too, as COMP_WORDBREAKS says."""
+        """Returns the completions of bash at the end of the line. It also splits words at "=" and ":", according to
+        COMP_WORDBREAKS."""
         words = [part for word in line.split(" ") for part in (re.findall(r"[=:]+|[^=:]+", word) or [""])]
-        # Behind a "=" at the end bash completes that itself.
+        # After a "=" at the end bash starts a new word itself.
         text = f"""
             . {self.script}
             PATH={self.folder}/bin:$PATH
@@ -71,7 +72,7 @@ class Completion(TestCase):
             found = self.complete(f"ricochet run {CASE} --set {name}.")
             self.assertLessEqual({f"{name}.{entry}.{key}=" for entry in entries for key in keys}, found)
             self.assertTrue(all(word.startswith(tuple(f"{name}.{entry}." for entry in entries)) for word in found))
-        # Without a case there are no entries, and every section that has none is there.
+        # Without a case there are no entries, and every section without entries is offered.
         self.assertEqual(self.complete("ricochet run --set contact."), set())
         self.assertIn("mass.type=", self.complete("ricochet run --set mass."))
 
@@ -80,7 +81,7 @@ class Completion(TestCase):
         for section, key in (("time", "scheme"), ("mass", "type"), ("mesh", "plane")):
             values = set(schema[section]["properties"][key]["enum"])
             self.assertGreater(len(values), 2)
-            # bash has split at "=", so that the answer is what comes behind it.
+            # bash has split at "=", so that the answer is the part after it.
             self.assertEqual(self.complete(f"ricochet run {CASE} --set {section}.{key}="), values)
         self.assertEqual(self.complete("ricochet study --vary time.scheme=midpoint,reduced-k"), {"midpoint,reduced-kane"})
         self.assertEqual(self.complete("ricochet validate --set time.no-such-key="), set())
@@ -111,7 +112,7 @@ class Completion(TestCase):
         self.assertEqual(self.complete("ricochet run b"), {"block.toml", "bin/"})
         self.assertEqual(self.complete("ricochet run n"), set())
         self.assertEqual(self.complete("ricochet info n"), {"notes.txt"})
-        # A run is a word; what is no run may have one in it.
+        # A run is a complete word; other folders may contain one.
         self.assertEqual(self.complete("ricochet report out/"), {"out/first", "out/empty/"})
         self.assertEqual(self.complete("ricochet run --resume out/f"), {"out/first"})
         self.assertEqual(self.complete("ricochet run block.toml -o out/f"), {"out/first"})

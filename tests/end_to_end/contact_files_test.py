@@ -1,4 +1,4 @@
-"""Contact problems that others have written: FCLib files that h5py writes in every form of a matrix, solved by `ricochet
+"""Contact problems written by others: FCLib files that h5py writes with every storage of a matrix, solved by `ricochet
 contact`; its answers and refusals."""
 
 import subprocess
@@ -72,7 +72,7 @@ class Files(ContactTestCase):
                     self.assertLessEqual(numpy.abs(residual).max(), 1e-12)
 
     def test_entries_with_room_behind_them(self):
-        """Arrays of nzmax entries, of which the first are used: the rest is whatever was in memory."""
+        """Arrays of nzmax entries, of which only the first are used: the rest is uninitialized memory."""
         data = self.example(3, 4, 2)
         expected = self.solve(self.write_file(data, "csc"))[0].solution
         for form in ("triplet", "csc", "csr"):
@@ -92,7 +92,7 @@ class Files(ContactTestCase):
                     self.assertEqual(values.tobytes(), solved.solution[name].tobytes(), (form, long))
 
     def test_data_sets_that_were_never_written(self):
-        """FCLib writes them where it is given no array, as /solution/r of the file in its own tests."""
+        """FCLib writes them if it is given no array, as /solution/r of the file in its own tests."""
         data = self.example(3, 4)
         for options in ({}, {"chunks": (5,), "compression": "gzip"}):
             path = self.write_file(data, "csr")
@@ -104,7 +104,7 @@ class Files(ContactTestCase):
             self.check_law(solved, solved.solution)
             self.assertIn(f"warning: {path}: /solution/r: was never written", process.stderr)
             self.assertIn("a solution", self.expect_status(0, run("info", path)).stdout)
-        with h5py.File(path, "a") as file:  # q = 0: the solution is zero, and so is what is read
+        with h5py.File(path, "a") as file:  # q = 0: the solution is zero, and so are the data read
             del file["fclib_local/vectors/q"]
             file["fclib_local/vectors"].create_dataset("q", (12,), "f8", fillvalue=-0.5)
         solved, process = self.solve(path)
@@ -121,7 +121,7 @@ class Files(ContactTestCase):
                 properties = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
                 if rows == 12:
                     properties.set_fill_time(h5py.h5d.FILL_TIME_NEVER)
-                else:  # W = 0 of so many rows takes next to no room
+                else:  # W = 0 of so many rows takes almost no space
                     local["W/m"][0] = local["W/n"][0] = rows
                     del local["W/p"]
                     local["W"].create_dataset("p", data=numpy.zeros(rows + 1, dtype="i1"), compression="gzip")
@@ -175,7 +175,7 @@ class Files(ContactTestCase):
         self.assertIn("Ricochet: NOT SOLVED", solved.text("math_info"))
 
     def test_solving_a_solved_file_again(self):
-        """What was said of the first solution is replaced; everything else stays, bit for bit."""
+        """The data of the first solution are replaced; everything else stays, bit for bit."""
         path = self.write_file(self.example(3, 5, 2), "triplet")
         first, _ = self.solve(path)
         once = (self.folder / "solution.hdf5").read_bytes()

@@ -1,5 +1,5 @@
-"""Contact problems as FCLib files: exported by a run, read by h5py, checked against the law from the file alone, solved
-by `ricochet contact`."""
+"""Contact problems as FCLib files: exported by a run, read by h5py, checked against the contact law from the file
+alone, solved by `ricochet contact`."""
 
 import unittest
 
@@ -26,7 +26,7 @@ class Exports(ContactTestCase):
         self.assertGreater(numpy.linalg.eigvalsh(w * scale * scale[:, None]).min(), 0.0)
 
     def check_layout(self, problem):
-        """Types and shapes are those of H5LTmake_dataset_int, _double and _string."""
+        """Checks types and shapes, which are those of H5LTmake_dataset_int, _double and _string."""
         for name, (kind, shape) in problem.kinds.items():
             last = name.split("/")[-1]
             if last in ("title", "description", "math_info"):
@@ -62,7 +62,8 @@ class Exports(ContactTestCase):
         return files, said, counts
 
     def test_export_in_two_dimensions(self):
-        """The thrown disc, in the middle of its impact; far from the plane no point takes part unless all shall."""
+        """The thrown disc, in the middle of its impact; far from the plane there are no points unless all are
+        requested."""
         files, said, counts = self.check_export(OBLIQUE, "1,300,535,614:615", {"solver.contact_points": "all"}, 2)
         self.assertEqual([path.name for path in files], [f"step-{k:06d}.hdf5" for k in (1, 300, 535, 614, 615)])
         self.assertIn("contact problems of 5 steps", said)
@@ -79,7 +80,8 @@ class Exports(ContactTestCase):
         self.assertGreater(counts["slip"] + counts["stick"], 0)
 
     def test_export_on_a_curved_obstacle(self):
-        """A step takes tangent planes several times: the problem is that of the last, which the history's force is of."""
+        """A step linearizes the contact several times: the exported problem is the last one, which gives the force of
+        the history."""
         output, _ = self.export(BOWL, "1:20", {"time.end": 0.002})
         files = sorted(path.name for path in (output / "contact").iterdir())
         self.assertEqual(files, [f"step-{step:06d}.hdf5" for step in range(1, 21)])
@@ -94,7 +96,7 @@ class Exports(ContactTestCase):
             self.assertAlmostEqual(rn.sum(), force, delta=1e-5 * force + 1e-9)
 
     def test_forces_and_provenance(self):
-        """Reactions are the forces of the history, in its units; the texts say where the problem comes from."""
+        """Reactions are the forces of the history, in its units; the texts state the origin of the problem."""
         case = self.write("block.toml", block_case())
         values = {"contact.0.friction": 0.4, "initial.velocity": "[0.5,-1.0]", "time.step": 0.002}
         output, _ = self.export(case, "1:150", values)
@@ -119,7 +121,7 @@ class Exports(ContactTestCase):
         self.assertGreater(pressed, 10)
 
     def test_points_without_friction(self):
-        """They have one row in the program and d in the file, of which the tangential ones do nothing."""
+        """They have one row in the program and d in the file, where the tangential ones have no effect."""
         output, _ = self.export(DISC, "700", {"time.end": 0.07})
         problem = Problem(output / "contact" / "step-000700.hdf5")
         self.assertEqual(problem.d, 2)
@@ -133,7 +135,8 @@ class Exports(ContactTestCase):
         self.assertIn("W_TT = W_NN", problem.text("description"))
 
     def test_only_eligible_points(self):
-        """klr-conserving lets only points touch that have closed: before, there is no problem; then, few points."""
+        """klr-conserving admits only points that have closed: before contact there is no problem, then there are few
+        points."""
         case = self.write("block.toml", block_case())
         values = {"time.scheme": "klr-conserving", "contact.0.friction": 0.2, "initial.velocity": "[0.1,-1.0]"}
         self.write("block.toml", block_case().replace('preset = "trapezoidal"\n', ""))
@@ -157,7 +160,7 @@ class Exports(ContactTestCase):
             self.assertEqual((plain / name).read_bytes(), (output / name).read_bytes())
 
     def test_units_by_powers_of_two_give_the_same_bits(self):
-        """Lengths times 2^5, forces times 2^5 too (moduli times 2^-5 in two dimensions): q and u scale, r scales."""
+        """Lengths times 2^5 and forces times 2^5 (moduli times 2^-5 in two dimensions): q and u scale, r scales."""
         case = self.write("block.toml", block_case())
         values = {"contact.0.friction": 0.3, "time.end": 0.2, "initial.velocity": "[0.5,-1.0]"}
         one, _ = self.export(case, "15", values, "one")

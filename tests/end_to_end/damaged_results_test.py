@@ -1,4 +1,4 @@
-"""Results that are damaged: whoever reads them says so, and neither crashes nor hangs. HDF5 1.10 itself crashes on some."""
+"""Damaged results: every reader reports them and neither crashes nor hangs. HDF5 1.10 itself crashes on some."""
 
 import random
 import re
@@ -7,12 +7,12 @@ import unittest
 from harness import TestCase, block_case, run
 
 FORMATS = {"xdmf": "results.h5", "vtkhdf": "results.vtkhdf"}
-# How the parts of an HDF5 file begin that say where its data sets are.
+# Signatures of the parts of an HDF5 file that locate its data sets.
 PARTS = re.compile(rb"OHDR|OCHK|FRHP|FHDB|FHIB|BTHD|BTLF|BTIN|TREE|SNOD|HEAP|GCOL|FSHD|FSSE")
 
 
 def damaged(whole, chance):
-    """The bytes of a file, a few of which are others."""
+    """Returns the bytes of a file with a few of them changed."""
     content = bytearray(whole)
     at = chance.randrange(len(content))
     way = chance.choice(("bits", "zeros", "ones", "cut", "moved"))
@@ -45,7 +45,7 @@ class DamagedResults(TestCase):
         return process.returncode
 
     def test_every_part_of_the_index(self):
-        """A byte behind the name of each part is another."""
+        """A byte after the signature of each part is changed."""
         for file_format in FORMATS:
             output, file = self.simulated(file_format)
             whole = file.read_bytes()

@@ -1,6 +1,6 @@
-"""The disc of the source's section 6 shows its claims: what each of its three schemes does to energy, to the contact
-force and to interpenetration, at a time step of 1e-4 over 0.15 s. The semi-explicit scheme keeps what the equivalent mass
-promises."""
+"""The disc of the source's section 6 confirms its claims: the effects of each of its three schemes on energy, contact
+force and interpenetration, at a time step of 1e-4 over 0.15 s. The semi-explicit scheme preserves the properties of the
+equivalent mass."""
 
 import unittest
 
@@ -26,7 +26,7 @@ class DiscClaims(TestCase):
         variation = {scheme: total_variation(history["lowest.reaction_normal"])
                      for scheme, history in histories.items()}
         for scheme, history in histories.items():
-            # The polygon of the mesh has a little less area than the disc.
+            # The polygon of the mesh has a slightly smaller area than the disc.
             self.assertAlmostEqual(energy[scheme][0] / CLOSED_FORM_ENERGY, 1.0, delta=0.01, msg=scheme)
             self.assertGreater(max(history["lowest.reaction_normal"]), 0.0, f"{scheme}: the disc never touched")
             # It touches at 7.35 ms and not before.
@@ -56,14 +56,15 @@ class DiscClaims(TestCase):
               f"midpoint: energy x {growth:.4g}")
 
     def test_the_figure_that_the_source_was_looking_for(self):
-        """Energy and momentum of every step to rounding, a smooth force, no interpenetration: the default."""
+        """The default satisfies energy and momentum in every step up to rounding, with a smooth force and no
+        interpenetration."""
         run = self.simulate(DISC, "default", {"output.fields_every": 0})
         history = History(run / "history.csv")
         energy = history["total_energy"]
         self.assertLessEqual(max(abs(value - energy[0]) for value in energy), 1e-11 * energy[0])
         self.assertLessEqual(max(history["max_penetration"]), 1e-12 * RADIUS)
         self.assertGreater(max(history["lowest.reaction_normal"]), 10.0)
-        self.assertLess(total_variation(history["lowest.reaction_normal"]), 60.0)  # 39 is the least
+        self.assertLess(total_variation(history["lowest.reaction_normal"]), 60.0)  # 39 is the minimum
 
 
 if __name__ == "__main__":

@@ -1,4 +1,5 @@
-"""docs/case-file.md is what the program prints, and the commands of the cases' pages can be typed one after the other."""
+"""docs/case-file.md agrees with the output of the program, and the commands of the cases' pages can be typed one after
+the other."""
 
 import pathlib
 import shlex

@@ -1,5 +1,5 @@
-"""The account of energy, recomputed from the stored fields by another program: linear triangles in plane strain,
-assembled here, on the mesh in results.h5. Nothing is taken from history.csv but what is compared."""
+"""The energy account, recomputed from the stored fields by another program: linear triangles in plane strain, assembled
+here, on the mesh in results.h5. history.csv only provides the values that are compared."""
 
 import unittest
 
@@ -8,13 +8,13 @@ import numpy
 
 from harness import DISC, History, TestCase
 
-# Of cases/disc/disc.toml.
+# From cases/disc/disc.toml.
 DENSITY, LAMBDA, MU, GRAVITY = 6000.0, 1.0e4, 5.0e3, numpy.array([0.0, -9.81])
 STEP, STEPS = 1.0e-4, 130
 
 
 def assemble(nodes, cells):
-    """Mass and stiffness matrix, dense; dofs are numbered 2 node + component."""
+    """Assembles dense mass and stiffness matrices; dofs are numbered 2 node + component."""
     dofs = 2 * len(nodes)
     mass, stiffness = numpy.zeros((dofs, dofs)), numpy.zeros((dofs, dofs))
     hooke = numpy.array([[LAMBDA + 2 * MU, LAMBDA, 0], [LAMBDA, LAMBDA + 2 * MU, 0], [0, 0, MU]])
@@ -51,7 +51,8 @@ class Account:
 
 
 def midpoint(account, h):
-    """Per row: energies, contact force per dof, displacement that it works on in the step that ends there."""
+    """Returns, per row, the energies, the contact force per dof, and the displacement on which it does work in the step
+    that ends there."""
     u, v = account.displacement, account.velocity
     yield account.energies(u[0], v[0]), 0 * account.load, 0 * account.load
     for n in range(1, len(u)):
@@ -60,7 +61,8 @@ def midpoint(account, h):
 
 
 def klr_conserving(account, h):
-    """The same; energies are those at half a step after the row's time, so the last row has none."""
+    """Returns the same quantities; energies are those half a step after the row's time, so that the last row has
+    none."""
     u = account.displacement
     for n in range(len(u) - 1):
         energies = account.energies((u[n] + u[n + 1]) / 2, (u[n + 1] - u[n]) / h)
@@ -74,7 +76,7 @@ def klr_conserving(account, h):
 
 class EnergyAccount(TestCase):
     def check(self, scheme, recompute, friction=0.0):
-        """The works of normal and of tangential contact forces, as fractions of the largest energy."""
+        """Checks the works of normal and of tangential contact forces, as fractions of the largest energy."""
         values = {"time.scheme": scheme, "mass.type": "consistent", "time.step": STEP, "time.end": STEP * STEPS,
                   "output.fields_every": 1, "contact.0.friction": friction}
         if friction > 0.0:
@@ -87,8 +89,8 @@ class EnergyAccount(TestCase):
         largest_force = max(history["contact_force_y"])
         self.assertGreater(largest_force, 0.0)
         works, worst = numpy.zeros(2), 0.0  # along the floor and across it
-        # The contact boundary is the lower half of the circle: all other dofs are without force, and so is sideways
-        # without friction.
+        # The contact boundary is the lower half of the circle: all other dofs are free of contact forces, as is the
+        # sideways direction without friction.
         free = numpy.ones(2 * len(account.nodes), dtype=bool)
         free[1::2] = account.nodes[:, 1] > 0.021 + 1e-9
         if friction > 0.0:

@@ -1,5 +1,5 @@
-"""Contact problems in files of FCLib's layout, read by h5py: what they say, whether a solution keeps the law, solving
-them with `ricochet contact`. Shared by the tests of what a run exports and of what others have written."""
+"""Contact problems in FCLib files, read by h5py: their contents, whether a solution satisfies the contact law, and
+their solution by `ricochet contact`. Shared by the tests of exported problems and of problems written by others."""
 
 import h5py
 import numpy
@@ -8,7 +8,7 @@ from harness import TestCase, run
 
 
 def matrix(group):
-    """The matrix of a group as an array, by the layout that FCLib states."""
+    """Returns the matrix of a group as an array, in any of FCLib's storages."""
     m, n, nz, nzmax = (int(group[name][0]) for name in ("m", "n", "nz", "nzmax"))
     p, i, x = group["p"][()], group["i"][()], group["x"][()]
     result = numpy.zeros((m, n))
@@ -24,7 +24,7 @@ def matrix(group):
 
 
 class Problem:
-    """A file of FCLib's layout, read with h5py."""
+    """A problem in an FCLib file, read with h5py."""
 
     def __init__(self, path):
         with h5py.File(path, "r") as file:
@@ -52,14 +52,14 @@ class Problem:
 
 
 def by_point(vector, d):
-    """(normal components, tangential vectors)"""
+    """Returns (normal components, tangential vectors)."""
     rows = vector.reshape(-1, d)
     return rows[:, 0], rows[:, 1:]
 
 
 class ContactTestCase(TestCase):
     def check_law(self, problem, solution, tolerance=1e-9):
-        """u = W r + V l + q, and at every point K* contains û, r is in K, and they are orthogonal."""
+        """Checks u = W r + V l + q, and at every point that K* contains û, r is in K, and they are orthogonal."""
         u, r = solution["u"], solution["r"]
         multiplier = solution.get("l", numpy.zeros(0))
         force = numpy.abs(problem.w) @ numpy.abs(r) + numpy.abs(problem.v) @ numpy.abs(multiplier) + numpy.abs(problem.q)

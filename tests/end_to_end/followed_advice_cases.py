@@ -1,4 +1,5 @@
-"""The cases that make messages which advise a setting (followed_advice_tables.py): texts, settings, and files beside the case."""
+"""The cases that cause messages which advise a setting (followed_advice_tables.py): texts, settings, and files beside
+the case."""
 
 import math
 
@@ -47,7 +48,7 @@ end = 0.1
 """
 # The upper block stands on the middle of the lower one, whose facets end elsewhere.
 NARROW = PAIR.replace("refine = 1\nmove = [0.0, 1.2]", "refine = 1\nscale = 0.37\nmove = [0.64, 1.195]")
-# None takes a key out again.
+# None removes a key.
 KANE = {"time.scheme": "reduced-kane", "mass.type": "equivalent", "time.preset": None}
 NEWMARK = {"time.scheme": "newmark", "time.preset": "trapezoidal"}
 EXPLICIT = {"time.scheme": "semi-explicit", "mass.type": "equivalent-lumped", "time.step": 1e-3}
@@ -62,7 +63,7 @@ RELAXES = {"material.0.relaxation.modulus": "[0.5]", "material.0.relaxation.time
 
 
 def mapped(text, place):
-    """A mesh of `strip` with its nodes at other places."""
+    """Returns a mesh of `strip` with its nodes moved."""
     lines = text.split("\n")
     first = lines.index("$Nodes") + 2
     for k in range(first, first + int(lines[first - 1])):
@@ -73,7 +74,7 @@ def mapped(text, place):
 
 
 def bricks(across, up):
-    """A cuboid of hexahedra, as a .msh file."""
+    """Returns a cuboid of hexahedra, as a .msh file."""
     at = lambda i, j, k: 1 + i + (across + 1) * (j + (across + 1) * k)
     nodes = [(i, j, k) for k in range(up + 1) for j in range(across + 1) for i in range(across + 1)]
     cells = [(at(i, j, k), at(i + 1, j, k), at(i + 1, j + 1, k), at(i, j + 1, k), at(i, j, k + 1), at(i + 1, j, k + 1),
@@ -84,13 +85,14 @@ def bricks(across, up):
     return "\n".join([*lines, "$EndElements", ""])
 
 
-# Masses with inertia on contact nodes, with schemes that take them.
+# Masses with inertia on contact nodes, with schemes that accept them.
 LUMPED = [{"mass.type": "lumped", "time.scheme": "contact-stabilized", "time.preset": None}, {"mass.type": "lumped", **NEWMARK}]
 WITH_INERTIA = [*LUMPED, *({**values, "mass.type": "consistent"} for values in LUMPED)]
 
 
 def horn():
-    """A body of revolution, of two triangles of second order, whose first facet begins on the axis, with its middle node near that."""
+    """Returns a body of revolution made of two triangles of second order, whose first facet begins on the axis, with
+    its midside node close to it."""
     nodes = [(0, 0), (1, 0), (0, 1), (1, 1), (0.4, 0.1), (0.5, 0.5), (0, 0.5), (1, 0.5), (0.5, 1)]
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "2", '1 1 "bottom"', '2 2 "body"', "$EndPhysicalNames", "$Nodes", "9"]
     lines += [f"{n} {x} {y} 0" for n, (x, y) in enumerate(nodes, start=1)] + ["$EndNodes", "$Elements", "3"]
@@ -98,7 +100,7 @@ def horn():
 
 
 def arc(angle, text):
-    """A mesh of `strip` bent by so large an angle, to a radius of 1 on one side."""
+    """Returns a mesh of `strip` bent by a large angle, to a radius of 1 on one side."""
     return mapped(text, lambda x, y: ((1.0 + y) * math.sin(angle * (x - 0.5)), -(1.0 + y) * math.cos(angle * (x - 0.5))))
 
 
@@ -117,7 +119,7 @@ STATIC = '[initial]\ndisplacement = "static"\n'
 GROUND = BLOCK + STATIC
 NEO = {**KANE, "material.0.law": "neo-hookean"}
 SIDEWAYS = {**KANE, "load.gravity": "[1.0, -10.0]"}
-# Texts that are added to a case.
+# Texts that are appended to a case.
 HELD_X = '[[support]]\ngroup = "sides"\ncomponents = ["x"]\n'
 CELL = ('[mesh]\nfile = "cell.msh"\n' + ELASTIC + f"[obstacle.floor]\n{PLANE}\n"
         '[[contact]]\ngroup = "boundary"\nobstacle = "floor"\n' + STEPS)

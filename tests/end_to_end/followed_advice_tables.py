@@ -1,4 +1,5 @@
-"""Messages that advise a setting, the case that makes each, and what is taken instead. The test is followed_advice_test.py."""
+"""Messages that advise a setting, the case that causes each, and the setting that is applied. The test is
+followed_advice_test.py."""
 
 from followed_advice_cases import (ADAPTIVE, ALL_ROUND, ARC, BALL, BLOCK, BRICKS, CELL, CURVED, EXPLICIT, FEWER, GROUND, GROWS, HELD,
                                    HELD_X, HORN, JERKED, KANE, LANDS, LONG, LUMPED, MEETS, NARROW, NEO, NEWMARK, ON_FACETS, PAIR, PIN,
@@ -11,8 +12,8 @@ def step(found):
     return {"time.step": found[1]}
 
 
-# A message of a case with settings, in the words of the sources as far as they are the same (a group stands for a number), and what
-# is to be set instead, one after the other; a text is added to the case.
+# A message of a case with settings, in the words of the sources except for groups, which stand for numbers, and the
+# settings to apply, one after the other; a text is appended to the case.
 TRIED = [
     (r'set mass.type = "equivalent-lumped", or use scheme "newmark", which takes any mass', BLOCK,
      {**EXPLICIT, "mass.type": "consistent"}, [{"mass.type": "equivalent-lumped"}, NEWMARK]),
@@ -161,7 +162,7 @@ TRIED = [
      {"mesh.degree": 2, "initial.displacement": "static"}, [{"initial.displacement": '["0", "0"]'}]),
     (r'cells, .*: refine it less often', BRICKS, {"mesh.refine": 8}, [{"mesh.refine": 1}]),
 ]
-# Of messages that only a run says.
+# For messages that only a run issues.
 TRIED_BY_RUNS = [
     (r'take law = "neo-hookean" in \[\[material\]\], which holds for any rotation', SPINNING, {}, [{"material.0.law": "neo-hookean"}]),
     (r'make time.smallest shorter, or the tolerance larger', BLOCK, {**KANE, **ADAPTIVE},

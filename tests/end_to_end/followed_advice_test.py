@@ -1,8 +1,9 @@
-"""Advice is tested: where a message advises a setting, the setting is taken on the case that made it, and the message is gone.
+"""Advice is tested: if a message advises a setting, it is applied to the case that caused it, and the message
+disappears.
 
-Every message in the sources that advises a setting (advising_messages.py) is in one of these tables: TRIED and TRIED_BY_RUNS of
-followed_advice_tables.py, whose advice is followed here; ELSEWHERE, where another test does that; UNTRIED, which is to become
-shorter. A new one belongs in the first two."""
+Every message in the sources that advises a setting (advising_messages.py) is in one of these tables: TRIED and
+TRIED_BY_RUNS of followed_advice_tables.py, whose advice is followed here; ELSEWHERE, if another test does so; UNTRIED,
+which is to become shorter. New messages belong in the first two."""
 
 import re
 import unittest
@@ -33,8 +34,8 @@ ELSEWHERE = {
     "take a time.step in which bodies move by less than the obstacle is thick":
         ("end_to_end/shaped_obstacles_test.py", "test_short_ones_do_not"),
 }
-# By the words of the sources: nobody has followed these. The list is to become shorter, not longer. A factor that CHOLMOD cannot count
-# has 2^31 entries: its analysis alone takes a minute.
+# By the words of the sources: advice that no test follows. The list is to become shorter, not longer. A factor too
+# large for CHOLMOD has 2^31 entries: its analysis alone takes a minute.
 UNTRIED = [
     'entries, more than CHOLMOD can count: set solver.method = "iterative"',
 ]
@@ -69,7 +70,7 @@ class FollowedAdvice(TestCase):
         self.follow(TRIED_BY_RUNS, "run")
 
     def info(self, text, values, name):
-        """What `ricochet info` says of a run, and of it beside itself."""
+        """Returns the output of `ricochet info` for a run, and for it beside itself."""
         out = self.simulate(self.write("case.toml", text), name, {key: value for key, value in values.items() if value is not None})
         return run("info", out).stdout, run("info", out, out).stdout
 
@@ -86,7 +87,7 @@ class FollowedAdvice(TestCase):
             self.assertEqual("was lost: take a smaller time.step, and smaller cells" in beside, refine == 0)
 
     def test_edges_are_no_curves_that_facets_stand_for(self):
-        """Two parallelograms overlap: no mesh of second order is advised, which would be the same."""
+        """Two parallelograms overlap: a mesh of second order, which would be the same, is not advised."""
         said = self.said(PRESSED_PAIR, {"part.two.move": "[0.2, 1.05]", "contact.0.initial_gap": "closed"}, "validate")
         self.assertNotIn("mesh of second order", self.expect_status(0, said).stderr)
 
@@ -108,7 +109,7 @@ class FollowedAdvice(TestCase):
 
 
 def covers(pattern, message):
-    """Whether the words of a pattern, in pieces between what stands for numbers, are those of a message."""
+    """Returns whether the words of a pattern, in pieces between its placeholders, are those of a message."""
     words = [re.sub(r"\\(.)", r"\1", piece) for piece in re.split(r"\(\\S\+\)|\\\.\\S\+|\.\*", pattern)]
     return all(piece.strip() in message for piece in words)
 

@@ -31,7 +31,7 @@ TWINS = {"triangle_o1": ("CPS3", "sides"), "triangle_o2": ("CPE6M", "sides"), "q
 
 
 class Twin:
-    """A mesh of tests/data, with its groups as they are there."""
+    """A mesh of tests/data, with its original groups."""
 
     def __init__(self, name):
         self.path = MESHES / f"{name}_msh22_ascii.msh"
@@ -57,7 +57,7 @@ class Twin:
         return self.kind.rstrip("0123456789")
 
     def sides(self, group, faces=None):
-        """(cell, face) of each facet of a group, counted from 0."""
+        """Returns (cell, face) of each facet of a group, counted from 0."""
         faces = (faces or FACES)[self.base]
         wanted = {frozenset(facet[:len(faces[0])]) for facet in self.groups[group]}
         return [(cell, face) for cell, nodes in enumerate(self.cells)
@@ -75,7 +75,7 @@ def node_lines(twin, offset=0):
 
 
 def element_lines(twin, offset=0):
-    # Long elements go on in the next line, as Abaqus writes them.
+    # Long elements continue in the next line, as Abaqus writes them.
     text = ""
     for i, nodes in enumerate(twin.cells.tolist()):
         numbers = [i + 1 + offset] + [node + 1 + offset for node in nodes]
@@ -85,7 +85,7 @@ def element_lines(twin, offset=0):
 
 
 def surface_lines(twin, group, offset=0, prefix=""):
-    """A surface by sets of elements, one for each face that it has."""
+    """Returns a surface by sets of elements, one for each of its faces."""
     text, data = "", ""
     for face in range(len(FACES[twin.base])):
         cells = [cell + 1 + offset for cell, number in twin.sides(group) if number == face]
@@ -100,7 +100,7 @@ def nodes_of(twin, group):
 
 
 def abaqus_text(twin, top):
-    """As Abaqus/CAE writes a job: a part, an instance, a step."""
+    """Returns text as Abaqus/CAE writes a job: a part, an instance, a step."""
     offset = 1000
     return f"""*Heading
 ** Job name: block, a comment
@@ -133,7 +133,7 @@ class ForeignMeshes(TestCase):
         os.environ["RICOCHET_CACHE"] = str(self.folder / "cache")
 
     def case(self, name, file, dimension, top, body="body", bottom="bottom"):
-        # The bodies' lowest points are 0.1 high in the plane; in space the prism's is 0, that of the hexahedra 0.05.
+        # The bodies' lowest points are 0.1 high in the plane; in space 0 for the prism and 0.05 for the hexahedra.
         floor = 0.09 if dimension == 2 else 0.04 if "hexahedron" in str(file) else -0.01
         up = [0.0] * (dimension - 1) + [1.0]
         drive = (f'[[support]]\ngroup = "{top}"\ncomponents = ["x"]\n'
@@ -171,7 +171,7 @@ class ForeignMeshes(TestCase):
                 self.assertEqual(NAMES[twin.kind], element)
                 reference = self.history_of(f"{name}-msh", twin.path, twin.dimension, top)
                 file = self.write(f"{name}.inp", abaqus_text(twin, top))
-                # Abaqus' names do not depend on the case of letters; those of groups are spelt as the file does.
+                # Abaqus' names are case-insensitive; those of groups are spelt as in the file.
                 self.expect_same(self.history_of(f"{name}-inp", file, twin.dimension, top, body="Body"), reference)
 
     def test_what_is_left_aside_is_said_also_when_the_mesh_is_kept(self):
@@ -285,10 +285,10 @@ class ForeignMeshes(TestCase):
                                      f"{surface_lines(twin, 'bottom')}")
         self.expect_same(self.history_of("inp", file, 3, "top"), reference)
 
-    # --- what meshio reads
+    # --- formats read through meshio
 
     def arrays(self, twin, top):
-        """Blocks of cells and, per block, the number of its group."""
+        """Returns blocks of cells and, per block, the number of its group."""
         blocks = [(twin.kind, twin.cells)]
         numbers = [numpy.full(len(twin.cells), 5)]
         parts = [numpy.array(twin.groups[group]) for group in ("bottom", top)]
@@ -360,7 +360,7 @@ class ForeignMeshes(TestCase):
         twin = Twin("tetrahedron_o1")
         mesh = meshio.Mesh(twin.points, [(twin.kind, twin.cells)])
         mesh.write(file)
-        # A module of that name that fails as one that is not there does.
+        # A module of that name that fails as a missing one does.
         for module, package in (("meshio", "python3-meshio"), ("h5py", "python3-h5py")):
             folder = self.folder / f"without-{module}"
             folder.mkdir()

@@ -1,4 +1,4 @@
-"""What is said of a run before it: the size of its files, its memory and its time, beside what they come to."""
+"""Predictions for a run: the size of its files, its memory and its time, compared with the actual values."""
 
 import json
 import re
@@ -37,7 +37,7 @@ class Foretold(TestCase):
         self.assertIn("estimate, files: history.csv of", self.validate(case, **{"output.fields_every": 0}))
 
     def test_a_large_body_has_fewer_frames(self):
-        """A hundred frames of it would take more than 200 MB; how many there are is said by `info`, too."""
+        """A hundred of its frames would take more than 200 MB; `info` also states their number."""
         case = self.write("case.toml", block_case().replace("[[material]]", "refine = 6\n[[material]]", 1))
         values = {"time.step": 1e-3, "output.fields": '["all"]'}
         said = self.expect_status(0, run("info", case, *settings(values))).stdout
@@ -62,7 +62,7 @@ class Foretold(TestCase):
             self.assertAlmostEqual(bytes_in(text, r" in all, ") / peak, 1.0, delta=0.01)
 
     def test_time(self):
-        """Between no contact and contact everywhere, with as many iterations as there mostly are; of Newton's method more."""
+        """Between no contact and contact everywhere, with the usual number of iterations; more for Newton's method."""
         case = self.write("case.toml", FINITE)
         least = {}
         for law in ("linear", "neo-hookean"):

@@ -1,4 +1,4 @@
-"""Rigid bodies that move by the forces on them: momenta, energy, closed forms, and runs that are resumed."""
+"""Rigid bodies that move freely: momenta, energy, closed forms, and resumed runs."""
 
 import json
 import math
@@ -14,7 +14,7 @@ PLANE = 'type = "plane"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]'
 
 class Bodies(TestCase):
     def case(self, obstacle, *, space=False, law="neo-hookean", more="", friction=0.3, step=0.002, end=0.2):
-        """A free block, 0.5 high in the plane and 0.6 in space, and a rigid body."""
+        """Returns a free block, 0.5 high in the plane and 0.6 in space, and a rigid body."""
         text = block_on(obstacle, self.folder, space=space, drive=more, friction=friction, step=step, end=end, group="top")
         text = text.replace("density = 1.0", f'density = 1.0\nlaw = "{law}"', 1)
         return text.replace("lambda = 100.0", "young = 130.0").replace("mu = 50.0", "poisson = 0.3")
@@ -40,14 +40,14 @@ class Momenta(Bodies):
         self.assertNotAlmostEqual(history["floor.spin_z"][-1], 5.0, delta=0.1)
 
     def test_a_brick_and_a_block_in_space(self):
-        """Of unequal moments of inertia: it tumbles, with gyroscopic torques."""
+        """Unequal moments of inertia: it tumbles, with gyroscopic torques."""
         (self.folder / "brick.stl").write_text(box_stl([0.3, 0.3, 0.65], [0.8, 0.6, 0.8]))
         history = self.keeps(self.case('type = "surface"\nfile = "brick.stl"\ndensity = 2.0\nvelocity = [0.2, 0.1, -1.5]\n'
                                   "spin = [2.0, -3.0, 1.0]", space=True, end=0.3))
         self.assertGreater(max(history["floor.contact_force_z"]), 0.0)
 
     def test_linear_bodies(self):
-        """The angular momentum is that of places at the start there; the account has what is missing."""
+        """The angular momentum uses the initial positions; the account contains the difference."""
         self.keeps(self.case('type = "sphere"\ncentre = [0.4, 0.82]\nradius = 0.3\nmass = 0.5\nvelocity = [0.3, -1.5]',
                         law="linear"), angular=False)
 

@@ -1,4 +1,4 @@
-"""Runs whose disk is full, or that may not write: an error that says so, and the run goes on once there is room.
+"""Runs whose disk is full, or that may not write: an error that states this, and the run resumes once there is space.
 
     full_disk_test.py [POINTS]     # by default 24 points at which the disk is full, as in ./dev test
 """
@@ -19,7 +19,7 @@ FULL_DISKS = 24
 
 class FullDisk(ResumeTestCase):
     def fill_disk(self, output, values, limit):
-        """Files cannot grow beyond a limit: what a write to a full disk gives, at a place that can be chosen."""
+        """Prevents files from growing beyond a limit, which has the effect of a full disk at a selectable point."""
         return start(self.disc, output, values, "--resume",
                      preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY)))
 
@@ -37,7 +37,7 @@ class FullDisk(ResumeTestCase):
                 self.assertEqual(process.returncode, 4, errors)
                 self.assertIn("File too large", errors)
                 failed.update(name for name in ("history.csv", "results.h5", "results.xdmf", "ckpt") if name in errors)
-                said = run("info", output).stdout  # the summary still has its place
+                said = run("info", output).stdout  # the summary still has space
                 self.assertIn("(FAILED)", said)
                 self.assertIn("File too large", said)
                 self.expect_status(0, run("run", self.disc, "-o", output, "--resume", "--quiet", *settings(values)))
@@ -58,10 +58,10 @@ class FullDisk(ResumeTestCase):
             subprocess.run(["umount", place], check=True)
 
     def test_full_disk(self):
-        """A disk that is too small by a little more every time; once it is larger the run goes on."""
+        """A disk that is too small by a little more every time; once it is larger, the run resumes."""
         failed = {}
         for k in range(FULL_DISKS // 2):
-            # Without fields it is the history or a checkpoint that finds the disk full.
+            # Without fields the history or a checkpoint finds the disk full.
             values = busy("newmark") if k % 2 == 0 else {
                 **busy("newmark"), "output.fields_every": 0, "output.checkpoint_every": 300}
             expected = self.reference(values)
@@ -74,7 +74,7 @@ class FullDisk(ResumeTestCase):
                 self.assertIn("No space left on device", process.stderr)
                 name = process.stderr.strip().splitlines()[-1].split(":")[1].strip()
                 failed[k, size] = pathlib.Path(name).name
-                # What is there can be looked at.
+                # Existing results can be read.
                 if (output / "results.xdmf").exists() and (output / "results.xdmf").stat().st_size > 0:
                     self.assertIn("</Xdmf>", (output / "results.xdmf").read_text())
                 subprocess.run(["mount", "-o", f"remount,size={3 * needed}k", place], check=True)

@@ -33,7 +33,8 @@ class Groups(TestCase):
         self.expect_same(self.history_of("union", union), self.history_of("whole", whole))
 
     def test_boundary_is_every_facet(self):
-        # The parallelogram's sides and bottom leave out the top, so the closed boundary's force in any direction is 0.
+        # The parallelogram's sides and bottom lack the top, so that the force on the closed boundary is 0 in any
+        # direction.
         probes = """
 [[probe]]
 name = "skin"
@@ -58,7 +59,7 @@ value = ["7.0", "-3.0"]
         # Supports and obstacles act on the boundary only.
         for force, contact in zip(history["skin.force_y"], history["contact_force_y"]):
             self.assertAlmostEqual(force, contact, delta=1e-9 * max(map(abs, history["contact_force_y"])) + 1e-12)
-        # Momentum: the traction on the closed outline of length L for a time, and weight.
+        # Momentum: the traction on the closed outline of length L over a time, and the weight.
         corners = numpy.array([[0.1, 0.2], [1.3, 0.1], [1.5, 1.2], [0.3, 1.3]])
         sides = numpy.roll(corners, -1, axis=0) - corners
         length = numpy.hypot(sides[:, 0], sides[:, 1]).sum()
@@ -153,7 +154,7 @@ when = {{ "contact.0.group" = ["bottom", "sides"] }}
     # --- reversed cells
 
     def reversed_mesh(self, name, orders, stride):
-        """The 2.2 file with every stride-th cell's nodes in another order."""
+        """Returns the 2.2 file with the nodes of every stride-th cell in another order."""
         lines, seen = (MESHES / name).read_text().split("\n"), 0
         for i in range(lines.index("$Elements") + 2, lines.index("$EndElements")):
             words = lines[i].split()

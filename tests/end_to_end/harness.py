@@ -1,4 +1,4 @@
-"""What the end-to-end tests share: running the program, reading a history, a small case to start from.
+"""Helpers of the end-to-end tests: running the program, reading a history, a small case to start from.
 
 The program and the source tree come from the environment (CTest sets both): RICOCHET_PROGRAM and RICOCHET_SOURCE_DIR.
 """
@@ -16,27 +16,27 @@ import unittest
 PROGRAM = pathlib.Path(os.environ["RICOCHET_PROGRAM"])
 SOURCE = pathlib.Path(os.environ["RICOCHET_SOURCE_DIR"])
 MESHES = SOURCE / "tests" / "data" / "meshes"
-# Seconds that a run of the program may take: many more under the sanitizers.
+# Time limit in seconds for a run of the program: much longer with the sanitizers.
 TIME_LIMIT = float(os.environ.get("RICOCHET_TIME_LIMIT", "500"))
 DISC = SOURCE / "cases" / "disc" / "disc.toml"
 
-# In a quantity, a row that is neither the first nor the last: it is of another time as soon as the step is changed.
+# In a quantity, a row that is neither the first nor the last: it belongs to another time once the step is changed.
 OTHER_ROW = re.compile(r"\[(?!0\]|-1\])")
 
-# Each scheme with the mass that it is shown with.
+# Each scheme with its usual mass.
 SCHEMES = {"midpoint": "consistent", "klr-conserving": "consistent", "newmark": "equivalent",
            "semi-explicit": "equivalent-lumped", "reduced-kane": "equivalent"}
 
 
 def method(scheme, preset="textbook-half"):
-    """The settings that give a case a scheme, with its mass; newmark needs its parameters, too."""
+    """Returns the settings that give a case a scheme, with its mass; newmark also needs its parameters."""
     values = {"time.scheme": scheme, "mass.type": SCHEMES[scheme]}
     return values | {"time.preset": preset} if scheme == "newmark" else values
 
 
 def body_case(mesh, point, up, drive, *, body="body", bottom="bottom", degree=None, lame=(100.0, 50.0), mass="consistent",
               scheme="newmark", step=0.01, end=0.3):
-    """A body of one material and a floor; `drive` are the sections that make it move."""
+    """Returns a body of one material and a floor; `drive` are the sections that make it move."""
     return (f'[mesh]\nfile = "{mesh}"\n' + (f"degree = {degree}\n" if degree else "")
             + f'[[material]]\ngroup = "{body}"\ndensity = 1.0\nlambda = {lame[0]}\nmu = {lame[1]}\n'
             f'[obstacle.floor]\ntype = "plane"\npoint = {list(point)}\nnormal = {list(up)}\n'
@@ -54,37 +54,39 @@ def initial_velocity(*velocity):
 
 
 def block_case(mesh="quadrilateral_o1_msh41_ascii.msh"):
-    """A block of quadrilaterals (the parallelogram of quadrilateral.geo) that falls on a floor."""
+    """Returns a block of quadrilaterals (the parallelogram of quadrilateral.geo) that falls on a floor."""
     return ('title = "A block falls"\n' + body_case(MESHES / mesh, [0.0, 0.0], [0.0, 1.0], gravity(0.0, -10.0))
             + '[[probe]]\nname = "foot"\nat = [1.3, 0.1]\n')
 
 
-# A disc of radius 1 that turns by 0.07 rad until it has left a smooth floor again; no cell turns by more than 0.1 rad.
+# A disc of radius 1 that rotates by 0.07 rad until it has left a smooth floor again; no cell rotates by more than 0.1
+# rad.
 SPINNING = body_case(MESHES / "disc_o2_msh41_ascii.msh", [0.0, 0.0], [0.0, 1.0],
                      '[initial]\nvelocity = ["-0.1*(y - 1.005)", "-0.05 + 0.1*x"]\n', bottom="boundary", degree=2, mass="equivalent",
                      scheme="reduced-kane", step=0.01, end=0.9).replace("degree", "refine = 2\nmove = [0.0, 1.005]\ndegree", 1)
 
 
 def with_sphere(case, centre, radius, velocity):
-    """A case of `body_case` with a sphere that moves in place of the floor."""
+    """Returns a case of `body_case` with a moving sphere in place of the floor."""
     sphere = f'type = "sphere"\ncentre = {centre}\nradius = {radius}\nvelocity = {velocity}\n'
     return re.sub(r'type = "plane"\npoint = .*\nnormal = .*\n', sphere, case)
 
 
 def with_more(path, text):
-    """A case of the collection with more sections, without its expectations, to be written anywhere."""
+    """Returns a case of the collection with additional sections and without its expectations, to be written
+    anywhere."""
     case = path.read_text(encoding="utf-8").split("[[expect]]")[0]
     return case.replace('file = "', f'file = "{path.parent}/') + text
 
 
 def run(*arguments, directory=None, environment=None):
-    """The finished process of the program, its output as text."""
+    """Returns the finished process of the program, with its output as text."""
     return subprocess.run([str(PROGRAM), *map(str, arguments)], cwd=directory, env=environment, text=True,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=TIME_LIMIT)
 
 
 def settings(values):
-    """The command-line arguments of `--set` for a dictionary of key paths."""
+    """Returns the command-line arguments of `--set` for a dictionary of key paths."""
     return [argument for key, value in values.items() for argument in ("--set", f"{key}={value}")]
 
 
@@ -130,7 +132,7 @@ def total_variation(values):
 
 
 class TestCase(unittest.TestCase):
-    """A test with a folder of its own, that is removed afterwards."""
+    """A test with a folder of its own, which is removed afterwards."""
 
     maxDiff = None
 
@@ -149,7 +151,7 @@ class TestCase(unittest.TestCase):
         return process
 
     def simulate(self, case, name="out", values=None, options=("--quiet",)):
-        """Runs a case that must succeed; the folder of its results."""
+        """Runs a case that must succeed. Returns the folder of its results."""
         output = self.folder / name
         self.expect_status(0, run("run", case, "-o", output, *options, *settings(values or {})))
         return output

@@ -1,7 +1,8 @@
 """Hertz: a cylinder and a ball pressed on a rigid plane, and striking it, in every multiplier space, degree 1 and 2.
 
-The cases are cases/hertz/*.toml, where the formulas are derived (README.md). What is measured is the meshed body's: its
-mass comes from its momentum, the load from the contact force, and both from the half or quarter that is meshed."""
+The cases are cases/hertz/*.toml, where the formulas are derived (README.md). The measured values refer to the meshed
+body: its mass comes from its momentum, the load from the contact force, and both from the half or quarter that is
+meshed."""
 
 import json
 import math
@@ -20,20 +21,21 @@ PARTS = {"cylinder": 2, "sphere": 4}  # the mesh is a half, a quarter of the bod
 UPWARDS = {"cylinder": "y", "sphere": "z"}
 SPACES = ("nodal", "p0", "p1", "dual")
 
-# Pairs that are refused unless a case asks for them. On triangles there are then twice as many conditions as nodes, so
-# that conditions depend on one another and there is no solution to compare; on edges about as many: it works here.
+# Pairs that are refused unless a case allows them. On triangles there are then twice as many conditions as nodes, so
+# that conditions are linearly dependent and there is no solution to compare; on edges there are about as many, and it
+# works here.
 UNSTABLE = {("cylinder", "p0", 1), ("sphere", "p0", 1), ("sphere", "p0", 2)}
 WITHOUT_SOLUTION = {("sphere", "p0", 1)}
 
 STATIC_TOLERANCE = 0.02
 IMPACT_TOLERANCE = 0.03
-# Of a ball by its section, which is finer; at that speed Hertz' impact itself is off by 0.9 %.
+# For a ball modelled by its section, which is finer; at that speed Hertz' impact itself is off by 0.9 %.
 SECTION_TOLERANCE = 0.01
 SECTION_IMPACT_TOLERANCE = 0.012
 
 
 def hertz(body, load):
-    """(contact half-width or radius, largest pressure) under a load (per length for the cylinder)."""
+    """Returns (contact half-width or radius, largest pressure) under a load (per length for the cylinder)."""
     if body == "cylinder":
         width = math.sqrt(4.0 * load * RADIUS / (math.pi * MODULUS))
         return width, 2.0 * load / (math.pi * width)
@@ -42,13 +44,13 @@ def hertz(body, load):
 
 
 def sphere_impact(mass, speed):
-    """(duration, largest force) of Hertz's impact: a rigid mass on the spring (4/3) E* sqrt(R) delta^(3/2)."""
+    """Returns (duration, largest force) of Hertz's impact: a rigid mass on the spring (4/3) E* sqrt(R) delta^(3/2)."""
     deepest = (15.0 * mass * speed**2 / (16.0 * MODULUS * math.sqrt(RADIUS))) ** 0.4
     return 2.943 * deepest / speed, 4.0 / 3.0 * MODULUS * math.sqrt(RADIUS) * deepest**1.5
 
 
 def cylinder_impact(mass, speed):
-    """(duration, largest force) per length of a rigid mass on the spring
+    """Returns (duration, largest force) per length of a rigid mass on the spring
 
         delta(P) = P/(pi E*) (2 ln(2R/a) - 1/(4 (1 - nu))) = k P (K - ln P),
 
@@ -60,7 +62,7 @@ def cylinder_impact(mass, speed):
     def work(load):
         return k * load**2 * (0.5 * constant - 0.25 - 0.5 * numpy.log(load))
 
-    low, high = 0.0, math.exp(constant - 1.0)  # the spring is one up to here
+    low, high = 0.0, math.exp(constant - 1.0)  # the spring is monotonic up to here
     for _ in range(200):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if work(middle) < 0.5 * mass * speed**2 else (low, middle)
@@ -75,7 +77,7 @@ def cylinder_impact(mass, speed):
 
 
 def pressure_profile(results):
-    """(distance from the axis, pressure) at the vertices of the contact boundary in the last frame."""
+    """Returns (distance from the axis, pressure) at the vertices of the contact boundary in the last frame."""
     with meshio.xdmf.TimeSeriesReader(results / "results.xdmf") as reader:
         points, cells = reader.read_points_cells()
         _, fields, _ = reader.read_data(reader.num_steps - 1)
@@ -87,8 +89,8 @@ def pressure_profile(results):
 
 
 def fit(distance, pressure):
-    """(half-width a, peak pressure p0) of p² = p0² (1 - r²/a²) by least squares over the points with r < 0.8 a: the
-    outermost ones share their pressure with points that are out of contact."""
+    """Fits (half-width a, peak pressure p0) of p² = p0² (1 - r²/a²) by least squares over the points with r < 0.8 a:
+    the outermost ones share their pressure with points that are out of contact."""
     inside = pressure > 0.5 * pressure.max()
     for _ in range(10):
         columns = numpy.column_stack([numpy.ones(inside.sum()), distance[inside]**2])
@@ -147,7 +149,7 @@ class Hertz(TestCase):
             duration, largest = closed_form(mass, speed)
             last = max(step for step, value in enumerate(force) if value > 0.0)
             self.assertLess(last + 1, len(force), "contact has not ended when the run does")
-            # It touches at the start, and lets go after the last step in contact, before the next.
+            # It touches at the start, and separates after the last step in contact, before the next.
             self.check("duration", 0.5 * (time[last] + time[last + 1]), duration, IMPACT_TOLERANCE)
             self.check("largest force", PARTS[body] * max(force), largest, IMPACT_TOLERANCE)
 

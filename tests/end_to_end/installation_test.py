@@ -1,5 +1,5 @@
-"""The project installs into a prefix of its own, and a project outside finds it there, builds against nothing but that
-prefix, and runs; so does the installed program."""
+"""The project installs into a prefix of its own, and an external project finds it there, builds against nothing but
+that prefix, and runs; so does the installed program."""
 
 import os
 import pathlib
@@ -18,7 +18,8 @@ class Installation(TestCase):
         return self.expect_status(0, process).stdout
 
     def documented_programs(self):
-        """The programs of docs/library.md: one that runs a case, one that steps, one that solves a contact problem."""
+        """Returns the programs of docs/library.md: one that runs a case, one that steps, one that solves a contact
+        problem."""
         text = (SOURCE / "docs" / "library.md").read_text(encoding="utf-8")
         programs = [block for block in re.findall(r"```cpp\n(.*?)```", text, re.S) if "int main" in block]
         self.assertEqual(len(programs), 3)
@@ -44,7 +45,7 @@ class Installation(TestCase):
 
         examples = self.documented_programs()
         build = self.folder / "build"
-        # What uses a library with sanitizers needs them itself.
+        # Users of a library with sanitizers need them as well.
         flags = re.search(r"^CMAKE_CXX_FLAGS:STRING=(.*)$", (BUILD / "CMakeCache.txt").read_text(encoding="utf-8"), re.M)[1]
         self.command("cmake", "-S", SOURCE / "tests" / "end_to_end" / "consumer", "-B", build, "-G", "Ninja",
                      f"-DDOCUMENTED={';'.join(map(str, examples))}", f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_CXX_FLAGS={flags}",
@@ -62,7 +63,7 @@ class Installation(TestCase):
         self.assertRegex(self.command(session, case), r"^done at t = \S+: the spring did \S+ J\n")
         self.assertTrue((self.folder / "out" / "spring" / "history.csv").is_file())
         self.assertEqual(self.command(contact), "reaction 1, friction -0.2\n")
-        # What solves contact problems alone needs no more.
+        # A program that only solves contact problems needs no more.
         self.assertNotRegex(self.command("ldd", contact), r"libricochet\.so|libbasix|libtomlplusplus")
 
     def test_every_installed_header_stands_alone(self):
@@ -72,7 +73,7 @@ class Installation(TestCase):
         include = prefix / "include"
         headers = sorted(path.relative_to(include) for path in include.rglob("*.hpp"))
         self.assertGreater(len(headers), 30)
-        for header in headers:  # what is installed on this machine must not hide it
+        for header in headers:  # headers installed on this machine must not hide errors
             for foreign in re.findall(r"#include <([^>]*[/.][^>]*)>", (include / header).read_text(encoding="utf-8")):
                 of_compiler = foreign in ("sys/types.h", "emmintrin.h")
                 self.assertTrue(foreign.startswith("Eigen/") or of_compiler, f"{header} includes <{foreign}>")

@@ -1,5 +1,5 @@
-"""Environment variable RICOCHET_INSTRUCTION_SET: which compiled versions of loops run, ours and OpenBLAS', so that a lesser
-processor can be tried."""
+"""Environment variable RICOCHET_INSTRUCTION_SET: selects the compiled versions of loops, ours and OpenBLAS', so that an
+older processor can be simulated."""
 
 import json
 import os
@@ -12,7 +12,7 @@ from harness import DISC, History, SOURCE, TestCase, run, settings
 
 NAMES = ("x86-64", "x86-64-v3", "x86-64-v4")
 CORES = {"x86-64": "Prescott", "x86-64-v3": "Haswell", "x86-64-v4": "SkylakeX"}
-# Those of OpenBLAS' cores that do not use all that a set has.
+# OpenBLAS' cores that do not use a whole instruction set.
 LESSER = {"x86-64": (), "x86-64-v3": ("Prescott", "Core2", "Nehalem", "Barcelona", "Sandybridge", "Bulldozer", "Piledriver")}
 LESSER["x86-64-v4"] = LESSER["x86-64-v3"] + ("Haswell", "Zen")
 BALL = SOURCE / "cases" / "ball" / "ball.toml"
@@ -27,12 +27,12 @@ def masked(name, **more):
 
 
 def possible():
-    """Those that this processor can do: each contains those before it."""
+    """Returns the sets that this processor supports: each contains those before it."""
     return [name for name in NAMES if run("schema", environment=masked(name)).returncode == 0]
 
 
 def kernels(environment):
-    """Of OpenBLAS and ours, as --version tells them."""
+    """Returns the kernels of OpenBLAS and ours, as printed by --version."""
     text = run("--version", environment=environment).stdout
     return re.search(r"OpenBLAS \S+ \((\w+)\)", text)[1], re.search(r" for (\S+)( that read in one place)?\n$", text)[1]
 
@@ -91,7 +91,7 @@ class InstructionSets(TestCase):
 
     @unittest.skipUnless(shutil.which("gmsh"), "needs gmsh")
     def test_programs_that_are_started_get_the_same_environment(self):
-        """Gmsh meshes a .geo file; here a script of that name looks first."""
+        """Gmsh meshes a .geo file; here a script of that name checks the environment first."""
         found = self.folder / "environment"
         script = self.write("gmsh", f'#!/bin/sh\nenv >> {found}\nexec {shutil.which("gmsh")} "$@"\n')
         script.chmod(0o755)

@@ -1,4 +1,4 @@
-"""What the tests of interrupted runs share: a run worth interrupting, and when one that went on is the same."""
+"""Helpers of the tests of interrupted runs: a run worth interrupting, and the criteria for an identical resumed run."""
 
 import json
 import subprocess
@@ -17,7 +17,7 @@ group = "body"
 every = 3
 """
 
-# What interrupted runs are made of: friction, a checkpoint often, a frame now and then.
+# Settings of interrupted runs: friction, frequent checkpoints, a frame now and then.
 BUSY = {"contact.0.friction": 0.3, "initial.velocity": "[0.03,-0.1]", "output.checkpoint_every": 40,
         "output.fields_every": 7, "time.end": 0.08}
 
@@ -36,7 +36,7 @@ def checkpoints(output):
 
 
 def told(output):
-    """What a summary says of the steps themselves."""
+    """Returns the statements of a summary about the steps themselves."""
     summary = json.loads((output / "summary.json").read_text())
     return {name: summary[name] for name in ("extrema", "energy_budget", "reactions", "impacts")}
 
@@ -60,7 +60,7 @@ class ResumeTestCase(TestCase):
         self.assertEqual(list(found.glob("*.new")) + list(found.glob("*.pattern")), [])
 
     def interrupted(self, values, name):
-        """A run that was killed just before its end: what a complete one leaves but for its summary."""
+        """Makes a run that was killed just before its end: the results of a complete one without its summary."""
         output = self.folder / name
         output.mkdir()
         for path in self.reference(values).iterdir():

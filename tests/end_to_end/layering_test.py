@@ -1,5 +1,5 @@
-"""Includes go one way: each folder of src/ricochet includes only itself and those before it; and what other projects'
-headers bring stays inside a few source files."""
+"""Includes are one-way: each folder of src/ricochet includes only itself and those before it; and headers of other
+projects stay inside a few source files."""
 
 import collections
 import graphlib
@@ -12,12 +12,12 @@ LAYERS = ["base", "linear_algebra", "hdf5", "mesh", "rigid", "fem", "contact", "
           "simulation", "io", "case", "model", "run", "study", "report", "distributed"]
 # The library ricochet_contact: solvers of the contact problem and its files, without finite elements or time.
 CONTACT_LIBRARY = ("base", "linear_algebra", "hdf5", "solver/contact", "fclib")
-# linear_algebra is a tool of the layers from mass on: meshes, obstacles, elements and contact do without it.
+# linear_algebra serves the layers from mass on: meshes, obstacles, elements and contact do without it.
 WITHOUT_LINEAR_ALGEBRA = {"mesh", "rigid", "fem", "contact"}
-# A scheme and a step solver speak of stages, which are in problem/: neither knows the other.
+# Schemes and step solvers share the stages in problem/: neither depends on the other.
 STRANGERS = {("scheme", "solver"), ("solver", "scheme")}
 
-# Headers of other projects that stay in the named places, each a folder and how many source files may include it there.
+# Headers of other projects are confined to these folders, with the number of source files that may include them there.
 CONFINED = {
     "Basix": (r"basix/", {"src/ricochet/fem": 1}),
     "HDF5": (r"hdf5\.h|H5", {"src/ricochet/hdf5": 4, "src/ricochet/io": 4}),
@@ -65,7 +65,7 @@ class Layering(unittest.TestCase):
         self.assertEqual(wrong, [])
 
     def test_folders_of_a_layer_have_an_order(self):
-        """Each folder can be read after those that it includes: no two of them need each other."""
+        """Each folder can be read after those that it includes: no two of them depend on each other."""
         needs = collections.defaultdict(set)
         for path in sources():
             if path.is_relative_to(SOURCE / "src"):
@@ -80,7 +80,7 @@ class Layering(unittest.TestCase):
             self.fail(f"these folders include each other, each the one before it: {', '.join(circle)}")
 
     def test_contact_matrices_are_read_by_contact_and_solvers_alone(self):
-        """All others ask ContactRows and ContactBoundary: rows may follow the motion."""
+        """Other code uses ContactRows and ContactBoundary: rows may follow the motion."""
         raw = re.compile(r"\b(gap_operator|tangential_trace|pressure_recovery)\b|\bcontact_?(?:\.|->)trace\b")
         readers = {}
         for path in sources():

@@ -1,4 +1,4 @@
-"""The manual page renders without a warning, and has every command and option that --help has."""
+"""The manual page renders without a warning, and has every command and option of --help."""
 
 import os
 import pathlib

@@ -1,4 +1,5 @@
-"""Where Newton's method takes hundreds of iterations in a step the run says what takes fewer, and that does."""
+"""If Newton's method takes hundreds of iterations per step, the run suggests a cheaper method, which is indeed
+cheaper."""
 
 import re
 import unittest

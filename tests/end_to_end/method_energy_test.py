@@ -1,4 +1,4 @@
-"""What the method itself did to the energy of a run, and which reactions acted: in summary.json, in words, in tables."""
+"""Energy gained or lost by the method in a run, and the reactions that acted: in summary.json, in words, in tables."""
 
 import json
 import re
@@ -26,12 +26,12 @@ def of_method(history):
 
 class MethodEnergy(TestCase):
     def said(self, folder):
-        """The line of `ricochet info`."""
+        """Returns the line of `ricochet info`."""
         [line] = [line for line in self.expect_status(0, run("info", folder)).stdout.splitlines() if line.startswith("  the method ")]
         return line
 
     def test_it_is_what_is_missing_in_the_total_energy(self):
-        """Nothing but contact acts on the disc: what its energy has lost since the start the method has taken."""
+        """Only contact acts on the disc: the method has taken the energy that it has lost since the start."""
         for name, values in (("end", {"time.reaction_weight": "end"}), ("newmark", {"time.scheme": "newmark", "time.preset": "textbook-half", "time.step": 2e-3}),
                              ("midpoint", {"time.scheme": "midpoint", "mass.type": "consistent"})):
             with self.subTest(name):
@@ -59,7 +59,7 @@ class MethodEnergy(TestCase):
         self.assertAlmostEqual(budget["lost_by_method"], -min(of_method(history)) / scale, delta=1e-14)
         self.assertLess(budget["at_end"]["friction"], -1e-4, "or the test tells nothing")
         self.assertAlmostEqual(budget["at_end"]["friction"], history["friction_work"][-1] / scale, delta=1e-14)
-        # "automatic" comes to the end reactions with friction.
+        # "automatic" selects the end reactions with friction.
         self.assertEqual(found["reactions"], {"acting": "end", "least_end_weight": None, "largest_end_weight": None, "steps_of_means": 0,
                                               "steps_without_mean": 0})
         self.assertTrue(self.said(folder).endswith("; reactions: those of the end of a step"), self.said(folder))
@@ -81,13 +81,14 @@ class MethodEnergy(TestCase):
             self.assertAlmostEqual(a, b, delta=1e-14 * often["energy_budget"]["largest_energy"])
 
     def test_the_weights_that_acted(self):
-        """Below a wave crossing the mean itself acts, and keeps the energy; above, up to a third of the end reactions."""
+        """Below a wave crossing the mean itself acts and keeps the energy; above, up to a third of the end reactions
+        contribute."""
         folder = self.simulate(DISC, "fine", LONG | {"time.step": 1e-4})
         found, history = summary(folder), History(folder / "history.csv")
         touching = sum(count > 0 for count in history["active_contacts"])
         reactions = found["reactions"]
         self.assertEqual([reactions[key] for key in ("acting", "least_end_weight", "largest_end_weight", "steps_without_mean")], ["adaptive", 0, 0, 0])
-        # A mean acts in the step in which a point lets go, too.
+        # A mean also acts in the step in which a point separates.
         self.assertGreaterEqual(reactions["steps_of_means"], touching)
         self.assertLessEqual(reactions["steps_of_means"], 1.2 * touching)
         self.assertRegex(self.said(folder), r"^  the method kept the energy to \S+ of the largest; reactions: mean, end weight 0$")
@@ -116,7 +117,7 @@ class MethodEnergy(TestCase):
                 self.assertEqual(summary(whole)[entry], summary(parts)[entry], entry)
 
     def test_a_restitution_that_the_method_has_made_is_marked(self):
-        """A block that strikes flat, at steps of many wave crossings: the end reactions take much of what it comes with."""
+        """A block that strikes flat, at steps of many wave crossings: the end reactions take much of its energy."""
         case = self.write("block.toml", block_case().replace("gravity = [0.0, -10.0]", "gravity = [0.0, 0.0]")
                           + '[initial]\nvelocity = [0.0, -1.0]\ndisplacement = [0.0, 0.1]\n')
         values = {"time.scheme": "reduced-kane", "mass.type": "equivalent", "time.end": 1.5}

@@ -1,5 +1,5 @@
-"""Which side of two bodies that slide carries the multipliers: a round stamp is pressed on the flat and smaller top of a block
-and slides, without friction. Then no force is along the flat side, whatever the meshes are."""
+"""The side of two sliding bodies that carries the multipliers: a round stamp is pressed on the flat and smaller top of
+a block and slides without friction. No force then acts along the flat side, for any meshes."""
 
 import re
 import unittest
@@ -29,7 +29,7 @@ PRESS = 10
 
 
 def case(more=""):
-    """Quasi-static: damping is large and inertia next to nothing."""
+    """Quasi-static: damping is large and inertia almost zero."""
     body = 'density = 1e-9\nyoung = 1000.0\npoisson = 0.3\ndamping = { mass = 1e4 }\n'
     return f"""[part.block]
 file = "block.geo"
@@ -64,7 +64,8 @@ boundary = "stamp.back"
 
 class Sides(TestCase):
     def slide(self, flat, round_, more="", degree=1):
-        """What the run says, the mean force of pressing and the largest one along the flat side, relative to that."""
+        """Returns the messages of the run, the mean normal force and the largest force along the flat side, relative to
+        it."""
         (self.folder / "block.geo").write_text(BLOCK.format(size=flat))
         (self.folder / "stamp.geo").write_text(STAMP.format(size=round_))
         output = self.folder / "out"
@@ -79,8 +80,8 @@ class Sides(TestCase):
         self.assertIn('group "stamp.tip" carries the multipliers: normals turn less within its facets', text)
         self.assertNotIn("normals turn by", text)
         self.assertLess(along, 0.01)
-        # The other side has forces along the mean normals of the round one, and the run doubts it. Its advice is to leave
-        # the choice to the program: that is the run above.
+        # The other side has forces along the mean normals of the round one, and the run warns of it. Its advice is to
+        # leave the choice to the program, as in the run above.
         text, _, along_of_other = self.slide(0.16, 0.2, 'multipliers_on = "against"')
         self.assertGreater(along_of_other, 3.0 * along)
         self.assertGreater(along_of_other, 0.03)
@@ -91,7 +92,7 @@ class Sides(TestCase):
         self.assertIn('group "block.top" carries the multipliers: normals turn less within its facets', text)
 
     def test_facets_as_fine_as_advised_are_fine_enough(self):
-        """Against a force that a mesh of 0.03 has."""
+        """Compared with the force on a mesh of size 0.03."""
         refined = 10.4
         text, coarse, _ = self.slide(0.2, 0.4)
         self.assertGreater(abs(coarse / refined - 1.0), 0.2)
@@ -104,7 +105,7 @@ class Sides(TestCase):
         self.assertNotIn("normals turn by", text)
         self.assertLess(abs(force / refined - 1.0), 0.06)
         self.assertLess(along, 0.01)
-        # Both sides agree as far as the advice has it.
+        # Both sides agree within the accuracy that the advice states.
         _, other, _ = self.slide(0.2, size, 'multipliers_on = "against"')
         self.assertLess(abs(force / other - 1.0), 0.1)
 

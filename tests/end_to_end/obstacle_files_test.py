@@ -1,4 +1,4 @@
-"""obstacles.xdmf: the surfaces of the obstacles, where they are at the time of each frame."""
+"""obstacles.xdmf: the surfaces of the obstacles, at their positions at the time of each frame."""
 
 import re
 import unittest
@@ -11,7 +11,7 @@ from results_frames import falling, frames
 
 
 def surfaces(results, corners):
-    """(time, points, cells) of each frame."""
+    """Returns (time, points, cells) of each frame."""
     for grid in xml.etree.ElementTree.parse(results / "obstacles.xdmf").iter("Grid"):
         if grid.get("GridType") == "Uniform":
             points = numpy.array(grid.find("Geometry/DataItem").text.split(), dtype=float).reshape(-1, 3)
@@ -38,7 +38,7 @@ class ObstacleFiles(TestCase):
         self.assertEqual(shown, times)
 
     def test_a_sphere_in_space(self):
-        """A surface of quadrilaterals that share their points, the same in every frame but for where it is."""
+        """A surface of quadrilaterals that share their points, the same in every frame except for its position."""
         centre, radius, velocity = [0.7, 0.5, -1.5], 1.2, [0.5, -0.25, 2.0]
         text = falling(MESHES / "tetrahedron_o1_msh41_binary.msh", lowest=[1.3, 0.1, 0.0], highest=[0.3, 1.4, 1.2])
         results = self.simulate(self.write("case.toml", with_sphere(text, centre, radius, velocity)))
@@ -77,11 +77,11 @@ class ObstacleFiles(TestCase):
         results = self.simulate(self.write("case.toml", text), values={"mesh.move": "[-0.5, -0.5, 0.5]", "time.end": 0.002})
         _, points, cells = next(surfaces(results, 4))
         self.assertLessEqual(len(cells), 6000)
-        self.assertGreater(len(cells), 4000)  # no coarser than it must be
+        self.assertGreater(len(cells), 4000)  # no coarser than necessary
         a, b, c = (points[cells[:, k]] for k in range(3))
         covered = 0.5 * numpy.cross((b - a)[:, :2], (c - a)[:, :2])
         self.assertAlmostEqual(covered.sum() / (2 * half) ** 2, 1.0, delta=0.05)  # means of corners draw its rim inwards
-        self.assertGreater(covered.min(), -1e-12)  # nothing is turned over
+        self.assertGreater(covered.min(), -1e-12)  # no triangle is flipped
         middle = (a + b + c) / 3
         self.assertLess(numpy.abs(middle[:, 2] - height(middle[:, 0], middle[:, 1])).max(), 0.02)
 

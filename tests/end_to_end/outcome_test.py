@@ -1,4 +1,4 @@
-"""What came out of a run, in summary.json and in words: its impacts and its largest stress."""
+"""Results of a run, in summary.json and in words: its impacts and its largest stress."""
 
 import json
 import math
@@ -20,7 +20,7 @@ def summary(folder):
 
 
 def cube_mesh(cells):
-    """A unit cube of cells³ hexahedra of order 1, in Gmsh's format 2.2."""
+    """Returns a unit cube of cells³ hexahedra of order 1, in Gmsh's format 2.2."""
     n = cells + 1
     nodes = [f"{1 + i + n * (j + n * k)} {i / cells} {j / cells} {k / cells}"
              for k in range(n) for j in range(n) for i in range(n)]
@@ -88,7 +88,7 @@ end = 0.001
         self.assertIn(f"largest von Mises stress {least}{peak['von_mises']:.6g}", said)
 
     def test_a_stress_that_grows_with_refinement_is_marked(self):
-        """A clamped block is stressed most at the end of its support, a disc on a floor inside."""
+        """A clamped block has its largest stress at the end of its support, a disc on a floor inside."""
         clamped = block_case() + '[[support]]\ngroup = "sides"\ncomponents = ["x", "y"]\n'
         marked = self.simulate(self.write("clamped.toml", clamped), "clamped", {"time.end": 0.1})
         peak = summary(marked)["peak_stress"]
@@ -108,7 +108,7 @@ end = 0.001
         self.assertEqual(impact["contact_points"], max(float(row.split(",")[column]) for row in rows))
         with h5py.File(folder / "results.h5") as file:
             nodes = file["/mesh/nodes"][()]
-        lowest = nodes[numpy.argmin(nodes[:, 1])]  # it flies without turning
+        lowest = nodes[numpy.argmin(nodes[:, 1])]  # it flies without rotation
         self.assertEqual(impact["first_place"], list(lowest[:2]))
         said = self.expect_status(0, run("info", folder)).stdout
         self.assertFalse(impact["coarse"])
@@ -144,7 +144,7 @@ end = 0.001
         folder = self.simulate(SOURCE / "cases" / "oblique" / "oblique.toml", "oblique", {"time.step": 1e-4})
         impact = summary(folder)["impacts"][0]
         whole = sum(component**2 for component in impact["impulse"])**0.5
-        # Coulomb's cone holds in each step, so it holds for the sums.
+        # Coulomb's cone holds in each step, and therefore for the sums.
         self.assertLessEqual(whole, (1 + 0.3**2)**0.5 * impact["normal_impulse"] * (1 + 1e-9))
         said = self.expect_status(0, run("info", folder)).stdout
         self.assertIn(f"normal impulse {impact['normal_impulse']:.4g} (with friction {whole:.4g}),", said)
@@ -184,7 +184,7 @@ end = 0.001
         self.assertIn(f"restitution {impact['restitution']:.4g}", self.expect_status(0, run("info", carried)).stdout)
 
     def test_a_body_that_begins_inside_has_no_restitution(self):
-        """Being pushed out would make any. Deeper ones are refused, with the place."""
+        """Being pushed out could give any restitution. Deeper ones are refused, with the location."""
         deep = self.expect_status(2, run("run", DISC, "-o", self.folder / "deep", "--set", "mesh.move=[0.0, -1.0]"))
         self.assertIn('inside of obstacle "foundation", the deepest by 0.999 at (0, -0.999)', deep.stderr)
         folder = self.simulate(DISC, "inside", {"mesh.move": "[0.0, -0.00102]", "time.end": 0.2, "load.gravity": "[0.0, 0.0]",
@@ -208,13 +208,13 @@ end = 0.001
         few = summary(sampled)["peak_stress"]
         self.assertLess(few["states_looked_at"], 100)
         self.assertLessEqual(few["von_mises"], peak["von_mises"])
-        # What was not looked for in every step may have been higher.
+        # A value that was not evaluated in every step may have been higher.
         said = [self.expect_status(0, run("info", folder)).stdout for folder in (every, sampled)]
         self.assertIn(f"largest von Mises stress {peak['von_mises']:.6g} at", said[0])
         self.assertIn(f"largest von Mises stress ≥ {few['von_mises']:.6g} at", said[1])
 
     def test_several_runs_are_compared(self):
-        """In the second table; a mark stands where a number cannot be trusted, and only there."""
+        """In the second table, a mark stands exactly at the numbers that cannot be trusted."""
         runs = {"puck": self.simulate(PUCK, "puck", {"time.end": 7e-4, "output.fields_every": 1}),
                 "block": self.simulate(self.write("block.toml", block_case()), "block"),
                 "disc": self.simulate(DISC, "disc", {"time.end": 0.02, "output.fields_every": 100})}
@@ -248,7 +248,7 @@ end = 0.001
             self.assertNotIn(f"  {mark} ", alone)
 
     def test_turning_after_the_last_impact_is_told_from_turning_in_it(self):
-        """The puck leaves with a spin and turns in free flight."""
+        """The puck leaves with a spin and rotates in free flight."""
         folder = self.simulate(PUCK, "puck", {"time.end": 6e-3, "time.step": 4e-6})
         found = summary(folder)
         [impact] = found["impacts"]
@@ -264,7 +264,7 @@ end = 0.001
         self.assertIn(f"cells turned by up to {rotation['until_impact_end'][0]:.3g} rad until its end", said)
         self.assertNotIn("BEYOND SMALL STRAIN", said)
         self.assertFalse(any("not those of a real body" in warning for warning in found["warnings"]), found["warnings"])
-        # It comes without a spin: what is printed of that is no rounding.
+        # It arrives without a spin: the printed value is not rounding.
         self.assertIn(f"spin 0 before and {impact['spin_after']:.4g} after", said)
         self.expect_status(0, run("report", folder))
         self.assertIn('"rotation_after_impacts":true', (folder / "report.html").read_text(encoding="utf-8"))
@@ -277,7 +277,7 @@ end = 0.001
         self.assertIn('"rotation_after_impacts":false', (folder / "report.html").read_text(encoding="utf-8"))
 
     def test_a_body_that_small_strain_makes_grow_as_it_turns(self):
-        """The law of finite strain tells what the restitution should be."""
+        """The law of finite strain gives the correct restitution."""
         case = self.write("spinning.toml", SPINNING)
         outcomes = {}
         for law in ("linear", "neo-hookean"):
@@ -295,7 +295,7 @@ end = 0.001
         self.assertNotIn("SMALL STRAIN", other.stdout)
         self.assertNotIn("too large by", other.stderr)
         self.assertIn(f"{grown['restitution']:.4g}?", self.expect_status(0, run("info", self.folder / "linear", self.folder / "neo-hookean")).stdout)
-        # The card of the report is red, though no cell turns by 0.1 rad.
+        # The card of the report is red, though no cell rotates by 0.1 rad.
         self.expect_status(0, run("report", self.folder / "linear"))
         page = (self.folder / "linear" / "report.html").read_text(encoding="utf-8")
         rotation, limit = (float(re.search(rf'"{name}":([0-9.e-]+)[,}}]', page)[1]) for name in ("rotation", "rotation_limit"))

@@ -14,14 +14,14 @@ CORNERS = (0.0, 1.4, WIDTH), (0.0, 0.9, HEIGHT)
 
 
 def rectangle():
-    """Nodes and quadrilaterals of [0, 3] x [0, 2], the facets below and above: of a body that is simple to reckon with."""
+    """Returns nodes and quadrilaterals of [0, 3] x [0, 2], and the facets below and above, for simple arithmetic."""
     nodes = [(x, y) for y in CORNERS[1] for x in CORNERS[0]]
     cells = [(first, first + 1, first + 4, first + 3) for first in (0, 1, 3, 4)]
     return nodes, cells, {"low": [(0, 1), (1, 2)], "high": [(6, 7), (7, 8)]}
 
 
 def mesh_text(bodies):
-    """A .msh file of rectangles; `bodies` is a list of (prefix of their groups, map of their nodes)."""
+    """Returns a .msh file of rectangles; `bodies` is a list of (prefix of their groups, map of their nodes)."""
     names, nodes, elements = [], [], []
     for prefix, place in bodies:
         own_nodes, cells, facets = rectangle()
@@ -38,7 +38,7 @@ def mesh_text(bodies):
 
 
 def beside(x, y):
-    """Where the second body is: scaled by 2, a quarter turn counter-clockwise, moved."""
+    """Returns the position of the second body: scaled by 2, rotated by 90 degrees counter-clockwise, moved."""
     return -2.0 * y + 12.0, 2.0 * x + 0.5
 
 
@@ -87,7 +87,7 @@ class Parts(TestCase):
         self.write("rectangle.msh", mesh_text([("", lambda x, y: (x, y))]))
 
     def parts_case(self, order=("one", "two"), motions=True, rest=REST):
-        """The two bodies, of one file each."""
+        """Returns the two bodies, in one file each."""
         text = ""
         for name in order:
             place = BESIDE if name == "two" else ""
@@ -98,7 +98,7 @@ class Parts(TestCase):
         return History(self.simulate(self.write(f"{name}.toml", text), name) / "history.csv")
 
     def expect_same(self, history, reference, tolerance=0.0, labels=("one", "two")):
-        """`labels`: what columns call the bodies "one" and "two" of the reference."""
+        """`labels`: the columns' names of the bodies "one" and "two" of the reference."""
         names = {name: name for name in reference.names}
         for label, own in zip(("one", "two"), labels):
             names |= {name: name.replace(label, own) for name in names if name.startswith(f"momentum.{label}_")}
@@ -132,7 +132,8 @@ class Parts(TestCase):
         area, inertia = WIDTH * HEIGHT, WIDTH * HEIGHT * (WIDTH ** 2 + HEIGHT ** 2) / 12.0
         self.assertAlmostEqual(history["momentum_x"][0], 0.5 * area, delta=1e-12 * area)
         self.assertAlmostEqual(history["momentum_y"][0], -1.0 * area, delta=1e-12 * area)
-        # About the origin: that of the first body's centre, and both spins; the second is scaled by 2 and of density 3.
+        # About the origin: that of the first body's centre, and both spins; the second is scaled by 2 and has density
+        # 3.
         orbit = area * (WIDTH / 2 * -1.0 - HEIGHT / 2 * 0.5)
         wanted = orbit + 0.25 * inertia - 0.125 * 3.0 * 2.0 ** 4 * inertia
         self.assertAlmostEqual(history["angular_momentum_z"][0], wanted, delta=1e-12 * 48.0 * inertia)
@@ -160,7 +161,7 @@ class Parts(TestCase):
         summary = json.loads((self.simulate(self.write("case.toml", text)) / "summary.json").read_text())
         self.assertEqual(summary["nodes"], 18)
 
-    # --- what else knows of parts
+    # --- other features that use parts
 
     def test_bodies_are_called_by_their_parts(self):
         text = self.expect_status(0, run("info", self.write("case.toml", self.parts_case()))).stdout
@@ -225,7 +226,7 @@ class Parts(TestCase):
         self.assertIn('group "one.body" shares cells with part "one", which has a motion at', shared)
 
     def interrupted(self, text):
-        """A run that seems to have been interrupted."""
+        """Makes a run look as if it had been interrupted."""
         case = self.write("case.toml", text)
         output = self.simulate(case)
         summary = output / "summary.json"
@@ -248,7 +249,7 @@ class Parts(TestCase):
         process = self.expect_status(2, run("run", case, "-o", output, "--resume"))
         self.assertIn('case.toml:2:8: the run cannot be resumed', process.stderr)
         self.assertIn('(differences in: groups of part "one")', process.stderr)
-        # What counts is the content, not the name of the file.
+        # The contents decide, not the name of the file.
         self.write("other.msh", mesh)
         self.expect_status(0, run("run", case, "-o", output, "--resume", "--set", "part.one.file=other.msh"))
 

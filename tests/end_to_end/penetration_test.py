@@ -1,5 +1,5 @@
-"""What no contact prevents is found and said: the whole boundary against obstacles, bodies against each other, contact at
-the rim of its group. The depths are found here from the fields, or follow from a free fall."""
+"""Penetration that no contact prevents is found and reported: the whole boundary against obstacles, bodies against each
+other, contact at the rim of its group. The depths are computed here from the fields, or follow from a free fall."""
 
 import json
 import re
@@ -20,7 +20,8 @@ CASE += '[[material]]\ngroup = "high"\ndensity = 1.0\nlambda = 1000.0\nmu = 1000
 
 
 def blocks(path, gap=0.1):
-    """A block with its base (in the group "base") on y = 0, and a smaller one above it that touches nothing: squares of 0.1."""
+    """Returns a block with its base (in the group "base") on y = 0, and a smaller one above it that touches nothing:
+    squares of 0.1."""
     nodes, cells = [], []
     for tag, (x, y, columns, rows) in enumerate(((0.0, 0.0, 10, 5), (0.25, 0.5 + gap, 5, 3)), start=1):
         first = len(nodes) + 1
@@ -46,7 +47,8 @@ def found_in(output):
 
 class Penetration(TestCase):
     def test_the_boundary_beyond_a_contact_group(self):
-        """All that goes into the obstacle is in the fields: the deepest node of all, but for those that contact holds."""
+        """All nodes that enter the obstacle are in the fields: the deepest node of all, except those that contact
+        holds."""
         output = self.simulate(OBLIQUE, values={**FAST, "output.fields_every": 1})
         entry = found_in(output)
         deepest, when = 0.0, None
@@ -74,7 +76,7 @@ class Penetration(TestCase):
         self.assertEqual(sum("has reached the rim of the group" in text for text in warnings), 1, warnings)
         text = self.expect_status(0, run("info", output)).stdout
         self.assertIn(f"PENETRATION WITHOUT CONTACT: the body in \"foundation\", {found['depth']:.3g} deep", text)
-        # The table of several runs has the worst of both, and says of results that did not look that they did not.
+        # The table of several runs has the worst of both, and states which results were not checked.
         other = self.folder / "old"
         shutil.copytree(output, other)
         old = summary_of(other)
@@ -84,7 +86,7 @@ class Penetration(TestCase):
         self.assertIn(f" {found['depth']:.3g} ", rows[0])
         self.assertIn(" ≥ ", rows[1])
         self.assertIn("no others were looked at", self.expect_status(0, run("info", other)).stdout)
-        # So has the report what it judges.
+        # The report judges the same.
         for directory, checked in ((output, True), (other, False)):
             self.expect_status(0, run("report", directory))
             page = (directory / "report.html").read_text(encoding="utf-8")
@@ -109,13 +111,13 @@ class Penetration(TestCase):
         return self.simulate(case, name, values)
 
     def test_two_bodies(self):
-        """One falls freely, through the other: ½ g t² − gap, exact in the trapezoidal rule."""
+        """One falls freely through the other: ½ g t² − gap, exact with the trapezoidal rule."""
         output = self.two_blocks("out")
         entry = found_in(output)
         [found] = entry["found"]
         self.assertEqual(found["bodies"], ['body "low"', 'body "high"'])
         self.assertIsNone(found["obstacle"])
-        # The lower one is pressed down a little by its own weight.
+        # The lower one is compressed slightly by its own weight.
         self.assertAlmostEqual(found["depth"], 0.5 * 10.0 * 0.2**2 - 0.1, delta=0.003)
         self.assertAlmostEqual(found["time"], 0.2, delta=1e-9)
         met = (2 * 0.1 / 10.0) ** 0.5
@@ -125,13 +127,13 @@ class Penetration(TestCase):
         warnings = summary_of(output)["warnings"]
         self.assertEqual(len(warnings), 1, warnings)
         self.assertIn('body "low" and body "high" overlap', warnings[0])
-        # The same names wherever bodies are told apart.
+        # The same names wherever bodies are distinguished.
         self.assertEqual([body["name"] for body in summary_of(output)["bodies"]], ['body "low"', 'body "high"'])
         self.assertIn('impact 1: body "low" on "floor"', self.expect_status(0, run("info", output)).stdout)
         self.assertIn('  body "high": mass', self.expect_status(0, run("info", self.folder / "case.toml")).stdout)
 
     def test_an_overlap_of_the_start(self):
-        """Also with an obstacle that no contact names: each is said once, at the start."""
+        """Also with an obstacle that no contact names: each is reported once, at the start."""
         ceiling = "[obstacle.ceiling]\ntype = \"plane\"\npoint = [0.0, 0.7]\nnormal = [0.0, -1.0]\n"
         output = self.two_blocks("out", gap=-0.03, values={"time.end": 0.01}, more=ceiling)
         entry = found_in(output)
@@ -147,7 +149,7 @@ class Penetration(TestCase):
         self.assertIn("no [[contact]] names this obstacle", warnings[0])
 
     def test_a_run_that_is_resumed(self):
-        """From its last checkpoint it finds what the whole run has found, and has said what that had said."""
+        """From its last checkpoint it finds the same as the whole run, and has repeated its messages."""
         for case, values in ((OBLIQUE, FAST), (None, {})):
             values = {**values, "output.checkpoint_every": 130 if case is None else 250}
             name = "bodies" if case is None else "obstacle"

@@ -1,4 +1,5 @@
-"""Where bodies start: turns in order, on an obstacle, dropped from a height. Places and velocities are those of closed forms."""
+"""Initial positions of bodies: turns in order, on an obstacle, dropped from a height. Positions and velocities are
+closed forms."""
 
 import math
 import unittest
@@ -34,7 +35,7 @@ def rotation(axis, degrees):
 
 class Placement(TestCase):
     def place(self, keys, rest="", name="case", status=0, mesh=MESH):
-        """The nodes where the run starts; the message where it is refused."""
+        """Returns the nodes at the start of the run, or the message if it is refused."""
         case = self.write(f"{name}.toml", f'[part.body]\nfile = "{mesh}"\n{keys}\n{rest}{REST}')
         process = self.expect_status(status, run("run", case, "-o", self.folder / name, "--quiet"))
         return frames(self.folder / name)[0] if status == 0 else process.stderr
@@ -56,7 +57,7 @@ class Placement(TestCase):
                                name)
             gaps = (found - [0.3, 0.1, -0.4]) @ PLANE_NORMAL
             self.assertAlmostEqual(gaps.min(), gap, delta=1e-14)
-            # A translation along the normal, whichever way gravity points.
+            # A translation along the normal, for any direction of gravity.
             way = found - moved
             numpy.testing.assert_allclose(way - (way @ PLANE_NORMAL)[:, None] * PLANE_NORMAL, 0, atol=1e-14)
             numpy.testing.assert_allclose(way - way[0], 0, atol=1e-14)
@@ -73,7 +74,7 @@ class Placement(TestCase):
             numpy.testing.assert_allclose((found - plain)[:, :2], 0, atol=1e-14)
             places.append(found)
         numpy.testing.assert_allclose(places[0], places[1], rtol=0, atol=1e-12)
-        # Without gravity along the normal where the body is nearest: the line from the ball's centre.
+        # Without gravity along the normal at the nearest node: the line from the ball's centre.
         start = plain + [0, 0, 4.0]
         nearest = start[numpy.linalg.norm(start - centre, axis=1).argmin()]
         found = self.place('move = [0, 0, 4.0]\nrest_on = "ball"', ball.split("[load]")[0], "free")

@@ -16,7 +16,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 def curves(path):
-    """The long lines of an SVG: arrays of points. Grid lines and ticks have two."""
+    """Returns the long lines of an SVG as arrays of points. Grid lines and ticks have two."""
     result = []
     for element in xml.etree.ElementTree.parse(path).iter(f"{SVG}path"):
         points = re.findall(r"[ML] (-?[\d.]+) (-?[\d.]+)", element.get("d", ""))
@@ -26,13 +26,14 @@ def curves(path):
 
 
 def texts(path):
-    """Where the texts of an SVG stand, from the top, in points: matplotlib draws letters and leaves the text in a comment."""
+    """Returns the positions of the texts of an SVG, from the top, in points: matplotlib draws letters and leaves the
+    text in a comment."""
     return {text: float(height) for text, height in
             re.findall(r"<!-- (.*?) -->\s*<g [^>]*translate\([-\d.]+ ([-\d.]+)\)", path.read_text(encoding="utf-8"))}
 
 
 def width_of_axes(path):
-    """As a part of the figure's width; of the first panel."""
+    """Returns the width of the first panel relative to the figure's width."""
     root = xml.etree.ElementTree.parse(path)
     (box,) = [group for group in root.iter(f"{SVG}g") if group.get("id") == "patch_2"]
     across = [float(x) for x in re.findall(r"[ML] (-?[\d.]+) ", box.find(f"{SVG}path").get("d"))]
@@ -52,7 +53,7 @@ class Plot(TestCase):
         return process
 
     def check_curve(self, points, times, values):
-        """Points are an affine picture of the numbers, upside down as SVG counts."""
+        """Checks that points are an affine image of the numbers, with SVG's downward axis."""
         self.assertEqual(len(points), len(times))
         for coordinate, wanted, sign in ((points[:, 0], times, 1), (points[:, 1], values, -1)):
             wanted = numpy.array(wanted)
@@ -73,7 +74,7 @@ class Plot(TestCase):
                 self.check_curve(points, history["time"], history[column])
 
     def test_instants_are_those_of_the_scheme(self):
-        """Energies of klr-conserving are those half a step later: its curve lies that much to the right of the other's."""
+        """Energies of klr-conserving are those half a step later: its curve is shifted to the right by that much."""
         runs = [self.simulate("klr", **{"time.scheme": "klr-conserving", "mass.type": "consistent"}), self.simulate("default")]
         self.plot(*runs, "--what", "kinetic_energy", "-o", "figure.svg")
         first, second = curves(self.folder / "figure.svg")
@@ -109,7 +110,7 @@ class Plot(TestCase):
                          ["figure.pdf", "figure.png", "figure.svg", "run"])
 
     def test_runs_of_a_study_are_called_by_what_differs(self):
-        """And however long names are, axes keep their width and a title stands above the names."""
+        """For any length of the names, axes keep their width and the title stands above the names."""
         study = self.folder / "study"
         values = settings({"time.end": 0.01, "output.fields_every": 0})
         self.expect_status(0, run("study", DISC, "--vary", "time.scheme,mass.type=reduced-kane/equivalent,midpoint/consistent",
@@ -132,7 +133,7 @@ class Plot(TestCase):
         self.assertLess(texts(figure)["All of them"] + 5, texts(figure)["midpoint"])
 
     def test_keys_that_are_vectors(self):
-        """By the component in which the runs differ, else by their length: 5, 10 and 13 of Pythagoras' triangles."""
+        """By the component in which the runs differ, else by their length: 5, 10 and 13 of Pythagorean triangles."""
         def study(name, values):
             process = run("study", DISC, "--vary", f"initial.velocity={values}", "-o", self.folder / name, "--quiet", "--jobs", "1",
                           "--log-level", "error", *settings({"time.end": 0.0005, "output.fields_every": 0}))
@@ -168,7 +169,7 @@ class Plot(TestCase):
         runs = [self.simulate("midpoint", **values, **{"time.scheme": "midpoint", "mass.type": "consistent"}),
                 self.simulate("default", **values)]
         self.plot(*runs, "--what", "energy", "-o", "figure.svg")
-        # Matplotlib cuts curves off where they leave the picture: of the midpoint scheme's most is outside.
+        # Matplotlib clips curves at the picture: most of the midpoint scheme's curve is outside.
         lengths = sorted(len(points) for points in curves(self.folder / "figure.svg"))
         self.assertEqual(lengths[1], 601)
         self.assertLess(lengths[0], 300)

@@ -1,4 +1,4 @@
-"""Probes and sensors: what they say of one another, of the fields and of the laws."""
+"""Probes and sensors: consistency with each other, with the fields and with physical laws."""
 
 import json
 import unittest
@@ -112,7 +112,7 @@ class Probes(TestCase):
         self.assertTrue(all(abs(p["position"][0]) <= 5e-4 and abs(p["position"][0]) == p["distance"] for p in along))
 
     def test_centre_and_area_of_a_contact(self):
-        """A block on its edge: every contact node is watched, so the resultant can be summed here."""
+        """A block on its edge: every contact node is watched, so that the resultant can be summed here."""
         bottom = ('[[probe]]\nname = "edge"\nfrom = [0.1, 0.2]\nto = [1.3, 0.1]\nwithin = 1e-3\n'
                   '[[probe]]\nname = "contact"\ncontact = 0\n'
                   '[[probe]]\nname = "bottom"\nboundary = "bottom"\nabout = [0.3, -0.2]\n')
@@ -143,7 +143,7 @@ class Probes(TestCase):
         self.assertGreater(numpy.abs(moment).max(), 0.0)
         numpy.testing.assert_allclose(moment, expected, rtol=0, atol=1e-12 * numpy.abs(moment).max())
         self.assertFalse(numpy.array(history["contact.area"])[~closed].any())
-        # Edges between pressed nodes count whole, those with one such end in part.
+        # Edges between pressed nodes count in full, those with one pressed end in part.
         length = numpy.hypot(1.2, 0.1) / 3
         pressed = normal > 0
         whole = length * (pressed[1:] & pressed[:-1]).sum(axis=0)
@@ -157,7 +157,7 @@ class Probes(TestCase):
         numpy.testing.assert_allclose(history["bottom.moment_z"], moment, rtol=0, atol=1e-12 * size)
 
     def test_supports_carry_the_weight(self):
-        """At rest under gravity, the sides held: force and moment of the supports are minus those of the weight."""
+        """At rest under gravity with the sides held, force and moment of the supports are minus those of the weight."""
         text = block_case().replace('[[contact]]\ngroup = "bottom"\nobstacle = "floor"\n', "")
         text = text[:text.index("[obstacle.floor]")] + text[text.index("[load]"):]
         text += ('[[support]]\ngroup = "sides"\ncomponents = ["x", "y"]\n[initial]\ndisplacement = "static"\n'
@@ -178,7 +178,8 @@ class Probes(TestCase):
             self.assertAlmostEqual(history["sides.moment_z"][row], 10.0 * first, delta=1e-11)
 
     def test_supports_apart_from_contacts(self):
-        """Sides held along x share the lower corners with the contact: what acts on these along y is its, not theirs."""
+        """Sides held along x share the lower corners with the contact: forces along y on these belong to the contact,
+        not to the supports."""
         corners = '[[probe]]\nname = "other"\nat = [0.1, 0.2]\n[[probe]]\nname = "sides"\nboundary = "sides"\n'
         text = block_case() + '[[support]]\ngroup = "sides"\ncomponents = ["x"]\n' + corners
         results = self.simulate(self.write("case.toml", text), values={"time.end": 0.6})
@@ -211,9 +212,9 @@ class Probes(TestCase):
             self.assertEqual(history["ball.von_mises_maximum"][rows[at]], cell["von_mises"][0].max())
 
     def test_moments_at_finite_strain_have_the_places_of_their_instant(self):
-        """A rubber puck that is thrown aside and flattened: the impulse of the moments is the change of the angular momentum, to first
-        order in the step, as those are of its end; on a plane they are that of the force at the centre. With reference places
-        half of it was missing."""
+        """A rubber puck that is thrown aside and flattened: the impulse of the moments is the change of the angular
+        momentum, to first order in the step, as the moments are those of its end; on a plane they are those of the
+        force at the centre. With reference positions half of it was missing."""
         case = self.write("rolls.toml", f"""[mesh]
 file = "{SOURCE / 'cases' / 'puck' / 'puck.msh'}"
 [[material]]
@@ -256,7 +257,7 @@ contact = 0
         self.assertLess(errors[1], 0.6 * errors[0])
 
     def test_at_a_node_of_two_contacts(self):
-        """Gap and pressure are those with what is nearer, whichever comes first in the case."""
+        """Gap and pressure are those with the nearer obstacle, whichever comes first in the case."""
         roof = ('[obstacle.roof]\ntype = "plane"\npoint = [0.0, 5.0]\nnormal = [0.0, -1.0]\n'
                 '[[contact]]\ngroup = "bottom"\nobstacle = "roof"\n')
         text = block_case().replace("[obstacle.floor]", roof + "[obstacle.floor]")
@@ -287,7 +288,7 @@ contact = 0
 
 
     def test_columns_in_a_file_of_their_own(self):
-        """They are none of history.csv, and no other probe is meant."""
+        """history.csv does not have them, and no other probe is suggested."""
         case = self.write("sampled.toml", block_case() + '[[probe]]\nname = "f"\nat = [0.0, 0.0]\nevery = 3\n'
                           '[[expect]]\nquantity = "max(history.f.displacement_x)"\nmaximum = 1\n')
         errors = self.expect_status(2, run("run", case, "-o", self.folder / "sampled")).stderr

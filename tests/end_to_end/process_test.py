@@ -13,13 +13,13 @@ import unittest
 
 from harness import PROGRAM, TestCase, block_case, body_case, gravity, run, settings, wait_for
 
-# After a signal the process has ended within two seconds, the machine's own delays aside.
+# After a signal the process must end within two seconds, apart from the machine's own delays.
 AT_MOST = 2.0
 RESULTS = ("history.csv", "results.h5", "results.xdmf", "obstacles.xdmf")
 
 
 def redirected(redirections, *arguments, **more):
-    """The program, started by a shell with such redirections (`>&-` closes)."""
+    """Starts the program by a shell with such redirections (`>&-` closes)."""
     return subprocess.run(["sh", "-c", f'exec "$@" {redirections}', "sh", str(PROGRAM), *map(str, arguments)],
                           stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=100, **more)
 
@@ -30,7 +30,7 @@ def start(*arguments, **more):
 
 
 def box(n):
-    """A mesh of n × n × n hexahedra with the groups body, bottom: large at will, and written in a moment."""
+    """Writes a mesh of n × n × n hexahedra with the groups body, bottom: arbitrarily large, and quickly written."""
     nodes, cells, bottom = [], [], []
     m = n + 1
     for k, j, i in itertools.product(range(m), repeat=3):
@@ -81,7 +81,7 @@ class Streams(TestCase):
             figure = self.folder / "figure.svg"
             self.expect_status(0, redirected(marks, "plot", output, "--what", "energy", "-o", figure))
             self.assertIn("<svg", figure.read_text())
-            # An answer that goes nowhere is an error.
+            # An answer that nobody can read is an error.
             for command in (("info", output), ("info", self.case), ("validate", self.case), ("schema",), ("--help",),
                             ("--version",), ("contact", "--list"), ("contact", exported)):
                 answer = self.expect_status(4 if closed[1] else 0, redirected(marks, *command))
@@ -124,7 +124,7 @@ class Files(TestCase):
         self.assertIn("it is no regular file", answer.stderr)
 
     def test_pipes(self):
-        """Nobody may ever write into them: they are refused, and not waited for."""
+        """They are refused without waiting, as nobody might ever write into them."""
         obstacle = '[obstacle.floor]\ntype = "plane"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n'
         for suffix in (".toml", ".msh", ".geo", ".vtk", ".stl", ".csv"):
             os.mkfifo(self.folder / f"pipe{suffix}")
@@ -154,7 +154,7 @@ class Files(TestCase):
             os.link(hole, sparse)
             for path in (device, sparse):
                 begun = time.monotonic()
-                # With a limit on memory that such a file would not fit into.
+                # With a limit on memory smaller than such a file.
                 answer = redirected("", "info", path, preexec_fn=lambda: __import__("resource").setrlimit(
                     __import__("resource").RLIMIT_AS, (1 << 30, 1 << 30)))
                 self.assertIn(answer.returncode, (2, 4), f"{path}: {answer.stderr}")
@@ -162,7 +162,7 @@ class Files(TestCase):
                 self.assertLess(time.monotonic() - begun, 5.0)
 
     def test_a_limit_on_memory(self):
-        """OpenBLAS asks again and again for memory that it does not get."""
+        """OpenBLAS requests memory again and again without success."""
         case = self.write("block.toml", block_case())
         environment = {key: value for key, value in os.environ.items() if key != "OPENBLAS_NUM_THREADS"}
         for megabytes in (150, 200, 250, 300, 300, 300, 350, 400, 600, 1000):
@@ -184,7 +184,7 @@ class Messages(TestCase):
         self.assertIn(wanted, answer.stderr)
         self.assertEqual(json.loads((self.folder / "out" / "summary.json").read_text())["warnings"], [wanted])
         self.assertIn(wanted, run("validate", case, *settings(values)).stderr)
-        # A step that a whole number of which gives the end to rounding is none of these.
+        # Excludes steps that reach the end, up to rounding, in a whole number of steps.
         values = {"time.step": 0.1, "time.end": 0.3}
         self.assertNotIn("whole number", run("run", case, "-o", self.folder / "even", *settings(values)).stderr)
 
@@ -208,7 +208,7 @@ class Signals(TestCase):
         return text, errors
 
     def test_while_a_run_is_prepared(self):
-        """A body that takes seconds to order and to factorize: the signal comes there, wherever that is."""
+        """A body that takes seconds to order and to factorize: the signal arrives somewhere in this work."""
         self.write("box.msh", box(28))
         case = self.write("box.toml", box_case())
         output = self.folder / "out"
@@ -230,7 +230,8 @@ class Signals(TestCase):
         self.end(process, signal.SIGINT, 130)
 
     def test_while_a_step_takes_long(self):
-        """One that comes to no end for long: contact and conjugate gradients disagree, as the step is far too large."""
+        """A step that does not end for a long time: contact and conjugate gradients disagree, as the step is far too
+        large."""
         self.write("box.msh", box(14))
         case = self.write("box.toml", box_case())
         output = self.folder / "out"
@@ -259,7 +260,7 @@ class Signals(TestCase):
         self.end(process, signal.SIGTERM, 143)
         summary = json.loads((output / "summary.json").read_text())
         self.assertEqual(summary["status"], "interrupted")
-        # Of the end of the step where that came in time, else of its beginning.
+        # Of the end of the step if it came in time, else of its start.
         step = int(sorted(output.glob("checkpoint-*.ckpt"))[-1].stem.split("-")[1])
         self.assertEqual(summary["checkpoint_step"], step)
         self.assertGreater(step, 0)
@@ -284,7 +285,7 @@ class Signals(TestCase):
         self.assertIn(process.returncode, (130, 143))
 
     def test_while_gmsh_works(self):
-        """It ends with the program, and its folder goes."""
+        """It ends with the program, and its folder is removed."""
         geometry = self.write("fine.geo", 'SetFactory("OpenCASCADE");\nSphere(1) = {0, 0, 0, 1};\n'
                               'Physical Volume("body") = {1};\nPhysical Surface("bottom") = {1};\n')
         case = self.write("ball.toml", box_case(geometry.name, degree=1).replace(
@@ -300,7 +301,7 @@ class Signals(TestCase):
         self.end(process, signal.SIGTERM, 143)
         self.assertEqual(list(cache.iterdir()), [])
         self.assertFalse((self.folder / "out").exists())
-        with contextlib.suppress(FileNotFoundError):  # it is gone, or waits to be buried
+        with contextlib.suppress(FileNotFoundError):  # it is gone, or a zombie
             self.assertIn("\nState:\tZ", pathlib.Path(f"/proc/{child}/status").read_text())
 
     def test_an_ignored_one_stays_ignored(self):

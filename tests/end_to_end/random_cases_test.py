@@ -1,4 +1,4 @@
-"""Random cases under every scheme: what docs/energy.md says of the default, on the first of its cases."""
+"""Random cases under every scheme: the statements of docs/energy.md about the default, on the first of its cases."""
 
 import collections
 import csv
@@ -25,7 +25,7 @@ class RandomCases(TestCase):
         for method in DEFAULT:
             self.assertEqual(len(rows[method]), CASES[kind])
             for row in rows[method]:
-                # Some pairs of bodies lie where they do not face each other, which is said.
+                # Some pairs of bodies do not face each other at the start, which is reported.
                 faces = kind != "pair" or "do not face each other" not in row["failure"]
                 self.assertEqual(row["failure"] if faces else "", "", f"{method}: {row['description']}")
         return rows
@@ -42,7 +42,7 @@ class RandomCases(TestCase):
     def test_the_default_creates_no_energy_and_never_fails(self):
         rows = self.run_cases("plane")
         self.check_energy(rows, ("reduced-kane", "mean-reaction", "contact-stabilized"))
-        # The same measure finds what others create.
+        # The same measure detects energy created by other schemes.
         created = [float(row["created"]) > 0.01 for row in rows["newmark trapezoidal, equivalent"]]
         self.assertGreater(sum(created), CASES["plane"] // 4)
 

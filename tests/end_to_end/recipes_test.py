@@ -1,5 +1,5 @@
-"""The recipes of packaging/ for other packagers are well-formed, and name all libraries that CMake looks for. Their tools are
-not here: no recipe is built."""
+"""The recipes of packaging/ for other packagers are well-formed and name all libraries that CMake searches for. Their
+tools are not available here: no recipe is built."""
 
 import re
 import subprocess
@@ -13,7 +13,7 @@ import yaml
 from harness import SOURCE, TestCase
 
 PACKAGING = SOURCE / "packaging"
-# What CMake looks for, as conda-forge and Spack call it.
+# Packages that CMake searches for, as conda-forge and Spack call them.
 CALLED = {"Eigen3": ("eigen", "eigen"), "Basix": ("fenics-libbasix", "fenics-basix"), "fmt": ("fmt", "fmt"),
           "spdlog": ("spdlog", "spdlog"), "tomlplusplus": ("tomlplusplus", "tomlplusplus"), "muparser": ("muparser", "muparser"),
           "CLI11": ("cli11", "cli11"), "nlohmann_json": ("nlohmann_json", "nlohmann-json"), "ZLIB": ("zlib", "zlib-api"),
@@ -38,7 +38,7 @@ def conda_recipe():
 
 
 def spack_recipe():
-    """The class of the recipe, and what its body asks for."""
+    """Returns the class of the recipe, and the requirements in its body."""
     asked = {"depends_on": [], "version": [], "variant": []}
     fake = types.ModuleType("spack.package")
     fake.CMakePackage = type("CMakePackage", (), {"define": lambda self, name, value: (name, value)})
@@ -83,7 +83,7 @@ class Recipes(TestCase):
             self.assertTrue(name in known or name.startswith("CMAKE_"), name)
 
     def test_container(self):
-        """What it installs beside the packages is what the package recommends or suggests (cmake/Packages.cmake)."""
+        """The packages installed besides are those that the package recommends or suggests (cmake/Packages.cmake)."""
         text = (PACKAGING / "Containerfile").read_text(encoding="utf-8")
         added = set(re.search(r"/packages/\*\.deb (.*?) &&", text)[1].split())
         packages = (SOURCE / "cmake" / "Packages.cmake").read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""A report's page, unpacked by other means than the viewer's. Shared by the tests of its data and of what is said."""
+"""A report's page, unpacked independently of the viewer. Shared by the tests of its data and of its texts."""
 
 import base64
 import json
@@ -17,7 +17,7 @@ SHORT = {"time.end": 0.02, "output.fields_every": 10}
 
 
 class Page:
-    """The data of a report, read as the description of the format says."""
+    """The data of a report, read according to the description of the format."""
 
     def __init__(self, path):
         self.text = path.read_text(encoding="utf-8")
@@ -54,7 +54,7 @@ class Page:
 class ReportTestCase(TestCase):
     def setUp(self):
         super().setUp()
-        # A program with a viewer of its own, as an installation has it.
+        # A program with a viewer of its own, as in an installation.
         (self.folder / "bin").mkdir()
         (self.folder / "share" / "ricochet").mkdir(parents=True)
         self.program = shutil.copy2(PROGRAM, self.folder / "bin" / "ricochet")

@@ -1,5 +1,5 @@
-"""`ricochet report`: the data in the page are those of history.csv and results.h5, unpacked here by other means; what is
-thinned is said. The page itself is tested in a browser by viewer/test."""
+"""`ricochet report`: the data in the page are those of history.csv and results.h5, unpacked here independently;
+thinning is reported. viewer/test tests the page itself in a browser."""
 
 import hashlib
 import json
@@ -30,14 +30,14 @@ class Report(ReportTestCase):
         self.assertEqual(len(body["times"]), len(frames))
         dimension = data["summary"]["dimension"]
         positions = page.levels(body["positions"])
-        # The nodes are those of the file in another order: found by where they are.
+        # The nodes are those of the file in another order: matched by position.
         order = [int(numpy.argmin(numpy.sum((nodes[:, :dimension] - place) ** 2, axis=1))) for place in positions.T]
         self.assertEqual(len(set(order)), body["nodes"])
         moved = numpy.stack([page.levels(array) for array in body["deviations"]], axis=2)
         moved += page.reals(body["mean"])[:, None, :dimension]
         wanted = read["displacement"][:, order, :dimension]
         self.assertLess(numpy.abs(moved - wanted).max(), 0.51 * max(a["step"] for a in body["deviations"]) + 1e-7)
-        # Triangles are made of nodes of the cell that they are said to be of; there every cell is a triangle.
+        # Each triangle consists of nodes of its stated cell; here every cell is a triangle.
         corners = page.indices(body["corners"]).reshape(-1, 3)
         for field in body["fields"]:
             values = page.levels(field["values"])
@@ -72,7 +72,7 @@ class Report(ReportTestCase):
             numpy.testing.assert_allclose(numpy.diff(position), steps, rtol=1e-12)
 
     def check_inside(self, page, data, results):
-        """All cells of a solid of tetrahedra are there once, with their values, as far as steps go."""
+        """All cells of a solid of tetrahedra occur once, with their values, up to the quantization."""
         body, volume = data["body"], data["body"]["volume"]
         with h5py.File(results / "results.h5") as file:
             frames = [file["frames"][name] for name in sorted(file["frames"])]
@@ -110,7 +110,7 @@ class Report(ReportTestCase):
         self.assertEqual(data["summary"], json.loads((results / "summary.json").read_text()))
         self.check_history(page, data, results)
         self.check_frames(page, data, results)
-        # The obstacle does not move: its surface is there once, on the line y = 0.
+        # The obstacle does not move: its surface occurs once, on the line y = 0.
         self.assertEqual(len(data["obstacles"]["times"]), 1)
         self.assertEqual(page.reals(data["obstacles"]["positions"])[0][1::3].tolist(), [0.0, 0.0])
 
@@ -135,7 +135,7 @@ class Report(ReportTestCase):
         self.check_history(page, data, results)
         self.check_frames(page, data, results)
         self.check_inside(page, data, results)
-        # The resultant is what is judged, and its size is that of all components together.
+        # The resultant is judged, and its magnitude includes all components.
         judgement, history = data["judgement"], History(results / "history.csv")
         self.assertEqual(judgement["force"], "contact_force_z")
         sizes = numpy.sqrt(sum(numpy.array(history[f"contact_force_{axis}"]) ** 2 for axis in "xyz"))
@@ -188,7 +188,7 @@ class Report(ReportTestCase):
         numpy.testing.assert_allclose(offsets, numpy.outer(times, [0.0, 0.5, 0.0]), atol=1e-9)
 
     def test_a_sphere_in_space_that_moves(self):
-        """Its surface is in the page once, and how far it is from there in each frame."""
+        """Its surface is in the page once, with its offset in each frame."""
         velocity = [0.5, -0.25, 2.0]
         text = with_sphere(body_case(MESHES / "tetrahedron_o1_msh41_binary.msh", [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], ""),
                            [0.7, 0.5, -1.5], 1.2, velocity)
@@ -211,7 +211,7 @@ class Report(ReportTestCase):
         self.assertLess(packed, 80_000, "unpacked, of all frames")
 
     def test_a_turntable(self):
-        """What turns is at other places in each frame."""
+        """A rotating surface has other positions in each frame."""
         text = body_case(MESHES / "tetrahedron_o1_msh41_binary.msh", [0.0, 0.0, -0.1], [0.0, 0.0, 1.0], "").replace(
             "normal = [0.0, 0.0, 1.0]", "normal = [0.0, 0.0, 1.0]\nrotation_rate = 3.0")
         results = self.simulate(self.write("case.toml", text), "out", {"time.end": 0.1, "output.fields_every": 2})
@@ -276,7 +276,7 @@ class Report(ReportTestCase):
 
 class BuiltViewer(TestCase):
     def test_the_page_in_the_repository_is_made_from_these_sources(self):
-        """Users need no Node.js. Whether the bytes are those that the sources give is compared by `./dev viewer --test`."""
+        """Users need no Node.js. `./dev viewer --test` checks that the bytes are those of the sources."""
         viewer = SOURCE / "viewer"
         files = [path for path in (viewer / "src").rglob("*") if path.is_file()]
         total = hashlib.sha256()

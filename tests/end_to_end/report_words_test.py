@@ -1,4 +1,4 @@
-"""`ricochet report` of runs of every state: what is judged, what is missing, what is refused, in words."""
+"""`ricochet report` of runs of every state: judgements, missing data and refusals, in words."""
 
 import json
 import os
@@ -14,7 +14,7 @@ from report_page import SHORT, VIEWER, Page, ReportTestCase
 
 class ReportWords(ReportTestCase):
     def test_a_run_that_goes_on(self):
-        """Again and again while frames are written."""
+        """Repeated while frames are written."""
         command = [str(PROGRAM), "run", str(DISC), "-o", str(self.folder / "disc"), "--quiet", "--log-level", "error",
                    "--set", "time.end=4", "--set", "output.fields_every=10"]
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -82,7 +82,7 @@ class ReportWords(ReportTestCase):
         self.assertIn("no report", self.report(results, "-o", other, status=4).stderr)
         self.assertEqual(other.read_text(), "<p>my notes</p>")
         self.report(results, "-o", self.folder / "page.html")
-        self.report(results, "-o", self.folder / "page.html")  # one's own is written over
+        self.report(results, "-o", self.folder / "page.html")  # an own page is overwritten
         missing = self.folder / "missing"
         process = self.report(results, "-o", missing / "page.html", status=4)
         self.assertIn(f"{missing}/page.html: cannot write: {missing} does not exist", process.stderr)
@@ -159,13 +159,13 @@ class ReportWords(ReportTestCase):
         self.report(results)
         judgement = Page(results / "report.html").runs[0]["judgement"]
         self.assertEqual([judgement["penetration"], judgement["relative_penetration"]], ["inf", "inf"])
-        # What is not known is another thing.
+        # An unknown value is another matter.
         self.report(self.simulate(DISC, "without", SHORT | {"output.fields_every": 0}))
         self.assertIsNone(Page(self.folder / "without" / "report.html").runs[0]["judgement"]["relative_penetration"])
 
     def test_judgements(self):
-        """A rattling force is found in short and in sparsely written histories, rounding is not one, an explosion is told
-        by its size, and without fields nothing is said of the body's size."""
+        """An oscillating force is found in short and in sparsely written histories, rounding does not count, a
+        divergence is recognized by its size, and without fields nothing is stated about the body's size."""
         rattling = {"time.scheme": "klr-conserving", "mass.type": "consistent", "output.fields_every": 0}
         for name, values in (("short", {"time.end": 0.03}), ("sparse", {"output.history_every": 7})):
             self.report(self.simulate(DISC, name, rattling | values))

@@ -1,4 +1,4 @@
-"""results.xdmf and results.h5, read by meshio and h5py, say the same as history.csv, on every kind of cell."""
+"""results.xdmf and results.h5, read by meshio and h5py, agree with history.csv on every kind of cell."""
 
 import json
 import os
@@ -16,7 +16,7 @@ from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case
 from results_frames import falling, frames
 from vtk_cells import middles, volumes
 
-# Four squares in a row, of two materials by turns, with numbers that go down.
+# Four squares in a row, of two alternating materials, with descending numbers.
 STRIP = """$MeshFormat
 2.2 0 8
 $EndMeshFormat
@@ -49,7 +49,7 @@ $Elements
 $EndElements
 """
 
-# Bodies of tests/data/meshes: their volume from the corners written in the .geo files, two points to watch.
+# Bodies of tests/data/meshes: their volume from the corners in the .geo files, and two points to watch.
 SHAPES = {
     "triangle": dict(volume=0.5 * ((1.5 - 0.1) * (0.9 - 0.1) - (-0.1 - 1.3) * (1.2 - 0.2)), lowest=[1.3, 0.1],
                      highest=[1.5, 1.2]),
@@ -71,7 +71,8 @@ class ResultsFiles(TestCase):
         return self.simulate(self.write("case.toml", text))
 
     def check_probes(self, results, points, read):
-        """Every frame equals the row of the history at its time, bit for bit; returns how many saw contact."""
+        """Checks that every frame equals the row of the history at its time, bit for bit. Returns how many saw
+        contact."""
         history = History(results / "history.csv")
         summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
         dimension = summary["dimension"]
@@ -99,7 +100,7 @@ class ResultsFiles(TestCase):
         return in_contact
 
     def check_cells(self, points, cells, volume, straight):
-        # gmsh places second-order nodes by their parameter on a curve: good to 1e-12 of the body, no better.
+        # gmsh places second-order nodes by their parameter on a curve: accurate to 1e-12 of the body, no better.
         tolerance = 1e-11 if any(middles(kind) for kind, _ in cells) else 1e-14
         total = 0.0
         for kind, nodes in cells:
@@ -152,7 +153,8 @@ class ResultsFiles(TestCase):
         self.check_shape("hexahedron", 2, 2, ["hexahedron27"])
 
     def test_triangles_and_quadrilaterals_of_degree_2(self):
-        """meshio 5.0 knows no second-order cells in mixed topologies: read by h5py, the numbers taken from XDMF."""
+        """meshio 5.0 does not support second-order cells in mixed topologies: read by h5py, with the numbers from
+        XDMF."""
         results = self.simulate_shape("mixed", 2, 2)
         kinds = {36: ("triangle6", 6), 35: ("quad9", 9)}
         with h5py.File(results / "results.h5", "r") as file:
@@ -215,7 +217,7 @@ class ResultsFiles(TestCase):
                          ["history.csv", "summary.json"])
 
     def test_the_same_run_gives_the_same_bytes(self):
-        """Run again later: nothing in the files tells when they were written."""
+        """Run again later: nothing in the files depends on the time of writing."""
         case = self.write("block.toml", block_case())
         first = self.simulate(case, "first")
         time.sleep(1.1)  # file formats keep times in seconds
@@ -224,7 +226,7 @@ class ResultsFiles(TestCase):
             self.assertEqual((first / name).read_bytes(), (second / name).read_bytes(), name)
 
     def test_well_formed_after_every_frame(self):
-        """The run is stopped again and again: whatever it has written by then is a complete document."""
+        """The run is stopped again and again: the files written by then are complete documents."""
         case = self.write("case.toml", block_case() + "[output]\nfields_every = 1\n")
         process = subprocess.Popen([PROGRAM, "run", case, "-o", self.folder / "out", "--quiet", "--set",
                                     "time.end=1000"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -247,7 +249,7 @@ class ResultsFiles(TestCase):
         self.assertGreaterEqual(len(counts), 20)
 
     def test_all_fields(self):
-        """What can be derived from others is derived here once more, by other means."""
+        """Derived fields are derived here once more, independently."""
         for case, values in ((DISC, {"time.end": 0.05}), (SOURCE / "cases/ball/ball.toml", {"time.end": 0.02}),
                              (SOURCE / "cases/ball-axisymmetric/ball-axisymmetric.toml", {"time.end": 0.036}),
                              (DISC, {"time.end": 0.05, "mesh.degree": 2, "mesh.plane": "\"stress\""})):
@@ -299,7 +301,7 @@ class ResultsFiles(TestCase):
             self.assertEqual(file["mesh/nodes"].dtype, numpy.float64)
             self.assertEqual(file["frames/000003/stress"].compression, "gzip")
             self.assertEqual(file["frames/000003/stress"].shape, (780, 6))
-        # Of a small body nothing is compressed: it would grow.
+        # Small bodies are not compressed, as they would grow.
         case = self.write("case.toml", block_case())
         sizes = [(self.simulate(case, f"block{level}", {"output.compression": level}) / "results.h5").stat().st_size
                  for level in (0, 9)]
@@ -321,10 +323,10 @@ class ResultsFiles(TestCase):
             reader.read_points_cells()
             self.assertEqual(reader.num_steps, 10001)
             self.assertEqual(reader.read_data(10000)[0], 100.0)
-        self.assertLess(time.monotonic() - begun, 60.0)  # some seconds: nothing that grows with its square
+        self.assertLess(time.monotonic() - begun, 60.0)  # some seconds: no quadratic cost
 
     def test_friction(self):
-        """Tractions stay in the cone, on it where nodes slip, and agree with the probe's reactions."""
+        """Tractions stay in the cone, on it if nodes slip, and agree with the probe's reactions."""
         values = {"contact.0.friction": 0.3, "initial.velocity": "[0.08,-0.1]", "time.end": 0.05,
                   "output.fields_every": 1}
         results = self.simulate(DISC, values=values)

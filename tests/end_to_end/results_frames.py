@@ -6,7 +6,7 @@ from harness import body_case, initial_velocity
 
 
 def falling(mesh, lowest, highest, *, group="body", bottom="bottom", degree=1, scheme="midpoint"):
-    """A body that moves down on a floor just below it, with probes at these points of it."""
+    """Returns a body that moves down on a floor just below it, with probes at these points."""
     up = [0] * (len(lowest) - 1) + [1]
     point = [0.0] * (len(lowest) - 1) + [lowest[-1] - 0.01]
     return body_case(mesh, point, up, initial_velocity(*(-x for x in up)), body=group, bottom=bottom, degree=degree,
@@ -16,7 +16,7 @@ def falling(mesh, lowest, highest, *, group="body", bottom="bottom", degree=1, s
 
 
 def frames(results):
-    """(points, cell blocks, [(time, fields)]) as meshio reads them."""
+    """Returns (points, cell blocks, [(time, fields)]) as meshio reads them."""
     with meshio.xdmf.TimeSeriesReader(results / "results.xdmf") as reader:
         points, cells = reader.read_points_cells()
         read = [reader.read_data(k) for k in range(reader.num_steps)]

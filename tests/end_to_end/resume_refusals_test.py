@@ -1,4 +1,4 @@
-"""What `--resume` refuses: another case, mesh or version, results that were changed, a directory that is in use."""
+"""Refusals of `--resume`: another case, mesh or version, results that were changed, a directory that is in use."""
 
 import json
 import struct
@@ -24,13 +24,13 @@ class Refusals(ResumeTestCase):
             self.assertIn(names, process.stderr)
             self.assertIn("--set", process.stderr)
         self.assertEqual(before, {path.name: path.read_bytes() for path in output.iterdir()})
-        # What does not decide results may change; and another way to write a number is no change.
+        # Settings that do not decide results may change; another spelling of a number is no change.
         free = {**values, "title": "\"another\"", "output.checkpoint_every": 3, "time.step": "1.0e-4"}
         self.expect_status(0, run("run", self.disc, "-o", output, "--resume", *settings(free)))
         self.expect_same(self.reference(values), output)
 
     def test_refuses_another_version(self):
-        """As if another version had written the checkpoint, and summary.json."""
+        """As if another version had written the checkpoint and summary.json."""
         values = busy("newmark")
         output = self.interrupted(values, "out")
         version = json.loads((output / "summary.json").read_text())["ricochet_version"]
@@ -66,7 +66,7 @@ class Refusals(ResumeTestCase):
         self.expect_status(0, run("run", case, "-o", output, "--resume"))
 
     def test_refuses_results_that_were_changed(self):
-        """And says which file and line; nothing is overwritten."""
+        """The message names file and line; nothing is overwritten."""
         values = busy("newmark")
         expected = self.reference(values)
         history = (expected / "history.csv").read_bytes()
@@ -97,7 +97,7 @@ class Refusals(ResumeTestCase):
             self.assertRegex(process.stderr, says)
             self.assertIn("--force", process.stderr)
             self.assertEqual(before, {path.name: path.read_bytes() for path in output.iterdir()})
-        # What came after the checkpoint does not count.
+        # Results after the checkpoint do not count.
         output = self.interrupted(values, "longer")
         checkpoints(output)[1].unlink()
         (output / "history.csv").write_bytes(b"\n".join(lines[:790]) + b"\n790,nonsense")
@@ -124,7 +124,7 @@ class Refusals(ResumeTestCase):
     def test_nothing_to_resume(self):
         values = busy("newmark")
         expected = self.reference(values)
-        # From the beginning where nothing is there; and nothing is done where the run is complete.
+        # It starts from the beginning if nothing exists; nothing is done if the run is complete.
         output = self.folder / "new"
         process = self.expect_status(0, run("run", self.disc, "-o", output, "--resume", *settings(values)))
         self.assertIn("starts from the beginning", process.stderr)
@@ -133,14 +133,14 @@ class Refusals(ResumeTestCase):
         process = self.expect_status(0, run("run", self.disc, "-o", output, "--resume", *settings(values)))
         self.assertIn("complete", process.stderr)
         self.assertEqual(written, {path: path.stat().st_mtime_ns for path in output.iterdir()})
-        # What it is expected to hold is asked again.
+        # Its expectations are evaluated again.
         case = self.write("expecting.toml", self.disc.read_text() + '[[expect]]\nquantity = "history.time[-1]"\nvalue = 1.0\n'
                           'absolute = 0.1\n')
         self.expect_status(5, run("run", case, "-o", self.folder / "expecting", "--quiet", "--set", "output.fields_every=0"))
         process = self.expect_status(5, run("run", case, "-o", self.folder / "expecting", "--resume", "--quiet", "--set",
                                             "output.fields_every=0"))
         self.assertIn("DOES NOT HOLD: history.time[-1]", process.stdout)
-        # Results that another program has changed are not gone on with.
+        # Results that another program has changed are not resumed.
         output = self.interrupted(values, "cut")
         (output / "history.csv").write_text("step\n")
         process = self.expect_status(4, run("run", self.disc, "-o", output, "--resume", *settings(values)))
@@ -187,7 +187,7 @@ class Refusals(ResumeTestCase):
         self.expect_status(1, run("run", "--resume", output, "-o", empty))
 
     def test_results_of_nobody_knows_what_are_not_overwritten(self):
-        """Nothing in the directory says that they are of this case: a job that ran before must not be lost."""
+        """Nothing in the directory states that they belong to this case: results of an earlier job must not be lost."""
         values = busy("newmark")
         for k, summary in enumerate((None, "", "{}")):
             output = self.folder / f"foreign{k}"

@@ -1,4 +1,4 @@
-"""Runs that are interrupted, by anything, go on to the same bytes as one that never was.
+"""Runs that are interrupted in any way resume to the same bytes as uninterrupted ones.
 
     resume_test.py [KILLS]     # by default 50 kills, as in ./dev test
 """
@@ -23,7 +23,7 @@ KILLS = 50
 
 class Resume(ResumeTestCase):
     def test_killed_at_random_moments(self):
-        """kill -9, then --resume, until the run has come to its end, for one scheme after the other."""
+        """kill -9, then --resume, until the run has reached its end, for one scheme after the other."""
         seed = random.randrange(2**32)
         chance = random.Random(seed)
         kills, resumed, completed = 0, 0, 0
@@ -80,7 +80,7 @@ class Resume(ResumeTestCase):
             self.assertEqual(json.loads((output / "summary.json").read_text())["resumed_at"], [summary["steps"]])
 
     def test_stopped_while_it_starts(self):
-        """Also where METIS orders a matrix, which catches SIGTERM on its own account."""
+        """Also while METIS orders a matrix, which catches SIGTERM on its own."""
         mesh = self.folder / "fine.msh"
         subprocess.run(["gmsh", DISC.with_name("disc.geo"), "-2", "-clscale", "0.2", "-o", mesh, "-v", "0"], check=True)
         values = {"mesh.file": f'"{mesh}"', "time.end": 2, "output.fields_every": 0}
@@ -146,7 +146,7 @@ class Resume(ResumeTestCase):
             self.expect_same(self.reference(values), output)
 
     def test_goes_on_to_a_later_end(self):
-        """The bytes of one run to that end, whatever is written at an end only."""
+        """The bytes of one run to that end, whatever is written only at an end."""
         for k, (scheme, more, ends) in enumerate((
                 ("newmark", {}, (0.0413, 0.08)), ("midpoint", {"output.history_every": 3}, (0.02, 0.0405, 0.08)),
                 ("klr-conserving", {"output.compression": 3}, (0.0401, 0.08)),
@@ -161,7 +161,7 @@ class Resume(ResumeTestCase):
             self.expect_same(expected, output)
             steps = json.loads((output / "summary.json").read_text())["resumed_at"]
             self.assertEqual(steps, [round(end / 1e-4) for end in ends[:-1]])
-        # Without a word on frames: as often as the run that began.
+        # Without settings of frames: as often as in the original run.
         values = busy("newmark")
         del values["output.fields_every"]
         output = self.simulate(self.disc, "began", {**values, "time.end": 0.02})
@@ -170,7 +170,7 @@ class Resume(ResumeTestCase):
         self.expect_status(0, run("run", "--resume", output, "--quiet", "--set", "time.end=0.04"))
         with h5py.File(output / "results.h5") as file:
             self.assertAlmostEqual(len(file["frames"]), 2 * before, delta=2)
-        # Backwards, and where the checkpoint is gone.
+        # Backwards, and without the checkpoint.
         process = self.expect_status(2, run("run", "--resume", output, "--set", "time.end=0.03"))
         self.assertIn("time.end = 0.03 comes before t = 0.04", process.stderr)
         for path in checkpoints(output):
@@ -179,8 +179,8 @@ class Resume(ResumeTestCase):
         self.assertIn("cannot go on to a later time.end", process.stderr)
 
     def test_goes_on_with_what_the_contact_solver_has_learnt(self):
-        """Where the factor was made anew, on another scale: what a rubber block on a turning wedge costs by sweeps and by Newton's
-        method decides which of them the next step begins with."""
+        """If the factorization was repeated at another scale: the costs of a rubber block on a turning wedge, by sweeps
+        and by Newton's method, decide with which of them the next step begins."""
         wedge = self.write("wedge.txt", "-1 -1.5\n2 -1.6\n0.7 -0.02\n-1 -1.5\n")
         case = self.write("block.toml", f"""[mesh]
 file = "{MESHES / 'quadrilateral_o1_msh41_ascii.msh'}"

@@ -1,4 +1,5 @@
-"""Rigid and elastic bodies that strike one another, beside closed forms: Hertz, a cradle, bounces in a bowl, a peg in a hole."""
+"""Rigid and elastic bodies that strike one another, compared with closed forms: Hertz, a cradle, bounces in a bowl, a
+peg in a hole."""
 
 import unittest
 
@@ -56,8 +57,8 @@ class Impacts(TestCase):
 
 
 class Hertz(Impacts):
-    """A rigid ball bounces on an elastic block as large as 40 radii of contact; a quarter of both. Depth, force and
-    duration of H. Hertz' impact on a half-space: the block is stiffer by some 2 %."""
+    """A rigid ball bounces on an elastic block as large as 40 contact radii; a quarter of both. Depth, force and
+    duration of Hertz' impact on a half-space: the block is stiffer by some 2 %."""
 
     def test_a_ball_that_bounces(self):
         (self.folder / "plate.geo").write_text(QUARTER)
@@ -78,14 +79,14 @@ class Hertz(Impacts):
         self.assertAlmostEqual(4.0 * max(history["ball.contact_force_z"]), force, delta=0.05 * force)
         pressed = [t for t, n in zip(history["time"], history["active_contacts"]) if n > 0]
         self.assertAlmostEqual(pressed[-1] - pressed[0], duration, delta=0.06 * duration)
-        # It goes back as it came, by the impulse of the force.
+        # It returns with its initial speed, by the impulse of the force.
         self.assertAlmostEqual(history["ball.velocity_z"][-1], velocity, delta=0.01 * velocity)
         impulse = numpy.sum(history["ball.contact_force_z"]) * 0.01
         self.assertAlmostEqual(impulse, mass / 4.0 * (history["ball.velocity_z"][-1] + velocity), delta=1e-9 * impulse)
 
 
 class Cradle(Impacts):
-    """A light elastic block between guides and two rigid discs of one mass: a spring between them, and the first one
+    """A light elastic block between guides and two rigid discs of equal mass: a spring between them, and the first one
     stops."""
 
     def test_the_last_ball_goes_on_with_the_velocity(self):
@@ -132,7 +133,8 @@ class Bounces(Impacts):
 
 
 class PegInHole(Impacts):
-    """A peg that comes beside the hole slides in over the chamfers, with 1 mm of play in 400: two obstacles at once."""
+    """A peg that arrives beside the hole slides in over the chamfers, with 1 mm of play in 400: two obstacles at
+    once."""
 
     def test_it_goes_in(self):
         (self.folder / "peg.geo").write_text(PEG)
@@ -146,7 +148,7 @@ class PegInHole(Impacts):
                       for name in ("left", "right"))
             + '[mass]\ntype = "equivalent"\n[time]\nstep = 0.001\nend = 0.8\n[[probe]]\nname = "middle"\nat = [0.04, 0.3]\n')
         self.closes(history)
-        # In the hole: by what it was beside it, up to the play.
+        # In the hole: displaced by its initial offset, up to the play.
         self.assertAlmostEqual(history["middle.displacement_x"][-1], -0.04, delta=0.003)
         self.assertLess(max(history["friction_work"]), 1e-12)
         self.assertLess(max(history["contact_work"]), 1e-12)

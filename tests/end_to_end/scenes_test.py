@@ -1,4 +1,4 @@
-"""Some of the random scenes of ./dev bench scenes, as they are judged there, and faults that it must find."""
+"""Some of the random scenes of ./dev bench scenes, judged as there, and faults that it must find."""
 
 import os
 import pathlib
@@ -16,7 +16,7 @@ from draw import scene_of  # noqa: E402
 from history import deviations  # noqa: E402
 from quantities import Frame  # noqa: E402
 
-# Of each family one, with a turning obstacle, a pair and finite strain among them.
+# One of each family, with a rotating obstacle, a pair and finite strain among them.
 SEEDS = (6001, 6004, 6005, 6006, 6009, 6011, 6036)
 PAIR_WHOSE_FACETS_ARE_RENUMBERED = 6110
 STICKS_TO_A_TURNING_OBSTACLE = 6044
@@ -39,7 +39,8 @@ class Scenes(unittest.TestCase):
         for seed in SEEDS:
             self.assertGreater(len(self.examine(seed)), 2)
 
-    # Directions of pairs at finite strain were fitted with edges of the facet that the file had first: 2e-5 of the forces.
+    # Directions of pairs at finite strain were fitted with edges of the facet that came first in the file: 2e-5 of the
+    # forces.
     def test_the_order_of_facets_says_nothing(self):
         self.assertEqual(self.examine(PAIR_WHOSE_FACETS_ARE_RENUMBERED, ["renumbered"]), ["renumbered"])
 
@@ -51,13 +52,13 @@ class Scenes(unittest.TestCase):
         twins = properties.Twins(scene, scenes.PROGRAM, self.folder)
         run, scale = twins.base, twins.base.energy_scale()
         self.assertEqual(energy.findings(scene, run), [])
-        # A rise of what only falls, in one row and all that follow.
+        # A rise in a column that can only fall, in one row and all that follow.
         for column, expected in (("friction_work", "friction work"), ("contact_work", "contact work"), ("total_energy", "account")):
             kept = list(run.columns[column])
             run.columns[column] = [v + (scale if k > len(kept) // 2 else 0.0) for k, v in enumerate(kept)]
             self.assertIn(expected, [name for name, _, _ in energy.findings(scene, run)])
             run.columns[column] = kept
-        # An observer whose frame is turned by a little more than the scene.
+        # An observer whose frame is rotated slightly more than the scene.
         d, small = scene.dimension, 1e-3
         rows = [[float(i == j) for j in range(d)] for i in range(d)]
         rows[0][1], rows[1][0] = -small, small

@@ -1,4 +1,4 @@
-"""A surface that touches itself: against the same surfaces as a pair, energy, momenta, runs that are resumed, refusals."""
+"""A surface that touches itself: compared with the same surfaces as a pair; energy, momenta, resumed runs, refusals."""
 
 import unittest
 
@@ -45,7 +45,7 @@ class SelfContact(TestCase):
         return History(self.simulate(self.write(name, text), name.replace(".toml", "")) / "history.csv")
 
     def clamp(self, group="inside", against="inside", friction=0.2, end=0.24, more="", geo=CLAMP_GEO, law="neo-hookean"):
-        """Its arms swing together, touch, and part again."""
+        """Returns a clamp whose arms swing together, touch, and part again."""
         (self.folder / "clamp.geo").write_text(geo)
         velocity = '"0", "4*(x-0.3)*(0.5-y)"' + (', "0"' if geo is CLAMP_IN_SPACE_GEO else "")
         return (f'[mesh]\nfile = "clamp.geo"\n[[material]]\ngroup = "body"\nlaw = "{law}"\ndensity = 1.0\nyoung = 300.0\n'
@@ -122,7 +122,7 @@ class SelfContact(TestCase):
         self.assertEqual((whole / "history.csv").read_text(), (folder / "history.csv").read_text())
 
     def test_no_flight_closes_it(self):
-        """What a surface has in front of it is itself: no velocity of the whole body brings it nearer."""
+        """The surface faces itself: no velocity of the whole body closes the gap."""
         (self.folder / "ring.geo").write_text(RING_GEO)
         case = self.write("ring.toml", '[mesh]\nfile = "ring.geo"\n[[material]]\ngroup = "body"\ndensity = 1.0\nyoung = 300.0\n'
                           'poisson = 0.3\n[[contact]]\ngroup = "inside"\nagainst = "inside"\nsliding = "large"\n'

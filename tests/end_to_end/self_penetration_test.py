@@ -1,5 +1,5 @@
-"""Bodies that go through themselves: found and said, with the contact that keeps them out, which is tried; and what is said
-where nobody looked."""
+"""Bodies that penetrate themselves: found and reported, with the contact that prevents it, which is tested; and reports
+if nothing was checked."""
 
 import json
 import unittest
@@ -57,8 +57,8 @@ HELD = '[[support]]\ngroup = "base"\ncomponents = ["x", "y"]\n[[pressure]]\ngrou
 
 
 def cracked(path):
-    """A block of squares of 0.1 with a slit at half of its height, as wide as rounding of a drawing: nodes are double there but for
-    its tip."""
+    """Returns a block of squares of 0.1 with a slit at half of its height, as wide as the rounding of a drawing: nodes
+    are doubled except at its tip."""
     columns, rows, tip = 10, 4, 6
     nodes = [(0.1 * i, 0.1 * j) for j in range(rows + 1) for i in range(columns + 1)]
     at = lambda i, j: 1 + j * (columns + 1) + i
@@ -98,7 +98,7 @@ class SelfPenetration(TestCase):
         return self.simulate(self.write(f"{name}.toml", CLAMP + more), name, options=options)
 
     def test_a_clamp_and_the_advice(self):
-        """Its arms go through each other by what two nodes say that face each other; with the contact that is advised none does."""
+        """Its arms penetrate by the distance of two facing nodes; with the advised contact none do."""
         output = self.clamp("alone")
         history = History(output / "history.csv")
         overlap = lambda where: max(0.35 + low - 0.65 - high for low, high in zip(
@@ -106,7 +106,7 @@ class SelfPenetration(TestCase):
         self.assertGreater(overlap(""), 0.05)
         [found] = self.found_in(output)
         self.assertEqual((found["bodies"], found["obstacle"], found["contact"]), (["the body"], None, None))
-        # The arms' ends are deepest; nodes at their corners see nothing before them, those beside them do.
+        # The arms' ends are deepest; nodes at their corners face nothing, those beside them do.
         self.assertGreater(found["depth"], overlap(""))
         self.assertLess(found["depth"], overlap("-tip"))
         self.assertIn("inside", found["groups"])
@@ -128,7 +128,8 @@ class SelfPenetration(TestCase):
         self.assertEqual((self.found_in(kept), told(kept)), ([], []))
 
     def test_facets_without_a_group_of_their_own(self):
-        """A group that another body is in, too, is no side of such a contact: one for the body is asked for, and does."""
+        """A group that contains another body as well cannot be a side of such a contact: a group of the body alone is
+        requested, and works."""
         beside = CLAMP_GEO.replace('Physical Surface("body") = {3};', 'Rectangle(9) = {4, 0, 0, 0.5, 0.5};\nPhysical Surface("body") = {3, 9};')
         beside = beside.replace('Boundary{ Surface{3}; };', 'Boundary{ Surface{3, 9}; };')
         groups = beside.index('Physical Curve("lower")')
@@ -151,7 +152,8 @@ class SelfPenetration(TestCase):
         self.assertEqual(other["warnings"], one["warnings"])
 
     def test_a_slit_that_closes_opens_and_flies(self):
-        """Lips that as good as touch are no overlap; pressed they are, by what their displacements say, as the linear law has it."""
+        """Lips that almost touch do not overlap; if pressed they do, according to their displacements, as in the linear
+        law."""
         cracked(self.folder / "cracked.msh")
         lip = '[[probe]]\nname = "{}"\ngroup = "{}"\n'
         probes = lip.format("low", "lower.lip") + lip.format("high", "upper.lip")
@@ -165,7 +167,7 @@ class SelfPenetration(TestCase):
             [found] = found
             self.assertEqual((found["groups"], found["through_groups"]) in
                              ((["lower.lip"], ["upper.lip"]), (["upper.lip"], ["lower.lip"])), True, found)
-            # Of opposite nodes: the mouth of the slit closes most.
+            # For opposite nodes: the mouth of the slit closes most.
             history = History(output / "history.csv")
             largest = max(low - high for low, high in
                           zip(history["low.displacement_maximum_y"], history["high.displacement_minimum_y"]))
@@ -175,7 +177,7 @@ class SelfPenetration(TestCase):
             self.assertIn('against = "', warning)
 
     def test_what_was_not_watched_is_not_called_fine(self):
-        """Of results of a version that did not look, and of several processes."""
+        """For results of a version without the check, and of several processes."""
         output = self.clamp("old", "[output]\nfields_every = 10\n")
         summary = summary_of(output)
         for left_out in ("version", "processes"):

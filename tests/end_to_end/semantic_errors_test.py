@@ -1,5 +1,5 @@
-"""Cases that are well formed but make no sense with their mesh: each ends with status 2 and a message that says what is
-wrong, where it stands (file:line:column), and what there is instead."""
+"""Cases that are well formed but inconsistent with their mesh: each ends with status 2 and a message that states the
+error, its location (file:line:column), and the alternatives."""
 
 import json
 import os
@@ -50,7 +50,7 @@ def obstacle(name, point, normal, more=""):
 
 class SemanticErrors(TestCase):
     def refuse(self, text, at, *fragments, command="validate", environment=None):
-        """`at` is the piece of the case file whose place the message must name: its last occurrence."""
+        """`at` is the piece of the case file whose location the message must name: its last occurrence."""
         case = self.write("case.toml", text)
         arguments = [command, case] + (["-o", self.folder / "out", "--quiet"] if command == "run" else [])
         process = self.expect_status(2, run(*arguments, environment=environment))
@@ -193,7 +193,7 @@ class SemanticErrors(TestCase):
         self.assertIn("warning: 4 nodes of contact boundaries are held by supports", process.stderr)
 
     def test_locking_is_told_from_a_ratio_of_0_45_on(self):
-        """Whatever the modulus is: the ratio is the user's number, not what rounding makes of it."""
+        """For any modulus: the ratio is the user's number, without rounding."""
         def warns(young, ratio):
             text = re.sub(r"lambda = .*\nmu = .*", f"young = {young}\npoisson = {ratio}", block_case())
             process = self.expect_status(0, run("validate", self.write("case.toml", text)))
@@ -204,7 +204,7 @@ class SemanticErrors(TestCase):
         self.assertFalse(warns("60e6", 0.4499))
 
     def axisymmetric(self, more="", mesh_keys="", contact="bottom", drive="[load]\ngravity = [0.0, -1.0]\n"):
-        """A unit square beside its axis; `bottom` is all of its boundary, the axis, too."""
+        """Returns a unit square beside its axis; `bottom` is all of its boundary, including the axis."""
         mesh = self.write("section.msh", TWO_TRIANGLES)
         return (f'[mesh]\nfile = "{mesh}"\ndegree = 2\nplane = "axisymmetric"\n{mesh_keys}'
                 '[[material]]\ngroup = "body"\ndensity = 1.0\nlambda = 100.0\nmu = 50.0\n'
@@ -225,7 +225,8 @@ class SemanticErrors(TestCase):
         self.expect_status(0, run("validate", self.write("case.toml", held)))
 
     def test_ring_on_a_pin(self):
-        """It is pressed all round, and no force is along its axis: rounding is not a violated balance of momentum."""
+        """It is pressed all round, and no force acts along its axis: rounding does not violate the balance of
+        momentum."""
         text = self.axisymmetric(mesh_keys="move = [1.0, 0.0]\n", drive='[initial]\ndisplacement = "static"\n')
         text = text.replace("point = [0.0, 0.0]\nnormal = [0.0, 1.0]", "point = [1.001, 0.0]\nnormal = [1.0, 0.0]")
         results = self.simulate(self.write("case.toml", text))
@@ -266,7 +267,7 @@ class SemanticErrors(TestCase):
         newmark = 'scheme = "newmark"\npreset = "trapezoidal"\n'
         self.refuse(with_law(block_case(), "neo-hookean").replace(newmark, 'scheme = "bathe"\n'), '"bathe"',
                     "linear", "reduced-kane")
-        # Squeezed to less than nothing: only a run sees that.
+        # Squeezed to less than nothing: only a run detects that.
         turned = with_law(block_case(), "neo-hookean") + '[initial]\ndisplacement = ["-1.5*x", "0"]\n'
         status = run("run", self.write("case.toml", turned), "-o", self.folder / "turned")
         self.assertEqual(status.returncode, 2)

@@ -1,4 +1,5 @@
-"""Obstacles of any shape that move as a case says: the same surface in several ways, the account, and what is refused."""
+"""Obstacles of any shape that move as a case prescribes: the same surface in several ways, the account, and
+refusals."""
 
 import json
 import math
@@ -14,7 +15,7 @@ FLOOR = 'type = "plane"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]'
 
 
 def box_stl(low, high, turned=()):
-    """Text of an STL of a block; triangles whose numbers are in `turned` are turned over."""
+    """Returns the text of an STL of a block; triangles whose numbers are in `turned` are flipped."""
     text, number = "solid block\n", 0
     for axis in range(3):
         for at in (0, 1):
@@ -36,8 +37,8 @@ def box_stl(low, high, turned=()):
 
 
 def ball_stl(centre, radius, sectors):
-    """Text of an STL of a ball in `sectors` segments round and half as many from pole to pole; its corners rounded as
-    seven digits do."""
+    """Returns the text of an STL of a ball in `sectors` segments round and half as many from pole to pole; its corners
+    are rounded to seven digits."""
     def corner(i, j):
         polar, round_ = math.pi * i / (sectors // 2), 2.0 * math.pi * j / sectors
         direction = (math.sin(polar) * math.cos(round_), math.sin(polar) * math.sin(round_), math.cos(polar))
@@ -46,7 +47,7 @@ def ball_stl(centre, radius, sectors):
     for i in range(sectors // 2):
         for j in range(sectors):
             square = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]
-            # At the poles two corners are one.
+            # At the poles two corners coincide.
             triangles = [square[:3]] * (i + 1 < sectors // 2) + [[square[0], square[2], square[3]]] * (i > 0)
             for triangle in triangles:
                 text += "facet normal 0 0 0\nouter loop\n"
@@ -72,7 +73,8 @@ Physical Surface("top") = {6};
 
 
 def block_on(obstacle, folder, *, space, drive, friction=0.2, step=0.005, end=0.4, group="bottom"):
-    """A block of unit length, its base in the plane of zero height, and an obstacle, under the default scheme."""
+    """Returns a block of unit length, its base in the plane of zero height, and an obstacle, under the default
+    scheme."""
     (folder / "block.geo").write_text(CUBE if space else SQUARE)
     up = [0.0, 0.0, 1.0] if space else [0.0, 1.0]
     text = body_case("block.geo", [0.0] * len(up), up, drive, scheme="reduced-kane", mass="equivalent", step=step, end=end,
@@ -83,7 +85,7 @@ def block_on(obstacle, folder, *, space, drive, friction=0.2, step=0.005, end=0.
 
 class Blocks(TestCase):
     def in_space(self, obstacle):
-        """A block that falls obliquely."""
+        """Returns a block that falls obliquely."""
         return block_on(obstacle, self.folder, space=True,
                         drive=gravity(0.0, 0.0, -10.0) + initial_velocity(0.4, 0.1, -1.0))
 
@@ -115,7 +117,7 @@ class SameSurface(Blocks):
             self.agree(plane, other, ("kinetic_energy", "momentum_x", "momentum_z", "friction_work"), 1e-9)
 
     def test_a_ball_of_triangles(self):
-        """It comes nearer to the sphere with the square of the triangles' size."""
+        """It approaches the sphere with the square of the triangles' size."""
         case = lambda obstacle: self.in_space(obstacle).replace("end = 0.4", "end = 0.15")
         texts = [case('type = "sphere"\ncentre = [0.5, 0.4, -1.05]\nradius = 1.0')]
         for sectors in (60, 120):
@@ -129,7 +131,7 @@ class SameSurface(Blocks):
         self.assertGreater(off[0] / off[1], 2.5)
 
     def test_a_bowl(self):
-        """As a circle, an expression and polygons, which come nearer with their number of sides."""
+        """As a circle, an expression and polygons, which approach it with their number of sides."""
         text = with_more(BOWL, "").replace("end = 3.1", "end = 0.2")
         circle = 'type = "sphere"                     # a circle in two dimensions\ncentre = [0.0, 1.0]\nradius = 1.0\nside = "inside"'
         self.assertIn(circle, text)
@@ -158,8 +160,8 @@ class SameSurface(Blocks):
 
 class Frames(Blocks):
     def test_edges_are_rounded_alike_in_every_frame(self):
-        """A block and the triangulated floor below it, turned together about the vertical axis: the default edge_radius is
-        that of the facets, whose boxes along the axes become smaller or larger."""
+        """A block and the triangulated floor below it, rotated together about the vertical axis: the default
+        edge_radius is that of the facets, whose bounding boxes become smaller or larger."""
         radii = []
         for angle in (0.0, 17.0, 45.0):
             corners = "".join(
@@ -187,17 +189,17 @@ class Motion(Blocks):
         return history
 
     def test_a_plane_that_tilts_throws_a_block(self):
-        """Its work is what the block has in the end, with gravity and what the method lost."""
+        """Its work is the final energy of the block, with gravity and the losses of the method."""
         history = self.balanced(self.in_plane('rotation = "0.5*sin(6*t)"\nabout = [-1.0, 0.0]', friction=0.4))
         self.assertGreater(history["obstacle_work"][-1], 0.1)
         works = sum(history[name][-1] for name in ("obstacle_work", "friction_work", "contact_work"))
         self.assertAlmostEqual(history["total_energy"][-1] - history["total_energy"][0],
                                works - history["numerical_dissipation"][-1], delta=1e-11 * history.largest_energy())
-        # A frictionless contact that lasts works nothing by itself, only where it begins: it never gives energy.
+        # A lasting frictionless contact does no work, only its onset does: it never gives energy.
         self.assertLess(history["contact_work"][-1], 1e-12)
 
     def test_rollers_carry_a_block(self):
-        """Three circles that turn under a block: friction on surfaces that stay where they are."""
+        """Three circles that rotate under a block: friction on surfaces that stay in place."""
         rollers = "".join(f'[obstacle.roller{k}]\ntype = "sphere"\ncentre = [{0.1 + 0.4 * k}, -0.2]\nradius = 0.2\n'
                           f"rotation_rate = -4.0\n[[contact]]\ngroup = \"bottom\"\nobstacle = \"roller{k}\"\nfriction = 0.5\n"
                           for k in range(3))
@@ -209,7 +211,7 @@ class Motion(Blocks):
 
 
 class Passages(Blocks):
-    """A thin plate that a body would go through in a step: no end of a step shows it."""
+    """A thin plate through which a body would pass within a step: no end of a step shows it."""
 
     def outcome(self, step, top, group="bottom"):
         (self.folder / "plate.txt").write_text(f"-3 -0.4\n4 -0.4\n4 {top}\n-3 {top}\n-3 -0.4\n")
@@ -274,7 +276,7 @@ class Refusals(Blocks):
         self.refuse(with_motion("about = [0, 0]"), "give \"rotation\"")
         (self.folder / "m.csv").write_text("0 0 0\n0 1 1\n")
         self.refuse(with_motion('table = "m.csv"'), "m.csv:2: the time 0 does not come after 0")
-        for first in ("0.0 0.0m 0.0", "0 nan 0"):  # no header: letters would be one
+        for first in ("0.0 0.0m 0.0", "0 nan 0"):  # no header: letters would make one
             (self.folder / "m.csv").write_text(f"{first}\n1 1 1\n")
             self.refuse(with_motion('table = "m.csv"'), "m.csv:1:", f'"{first.split()[1]}" is no finite number')
         (self.folder / "m.csv").write_text("t, ux, uy, uz\n0 0 0 0\n1 1 1 0.5\n")

@@ -1,5 +1,5 @@
-"""show_in_paraview.py, as far as it goes without ParaView: it compiles, finds the files of runs, and says what is wrong.
-Where ParaView (pvbatch) is installed with a display (xvfb-run), it draws runs of both formats."""
+"""show_in_paraview.py, as far as possible without ParaView: it compiles, finds the files of runs, and reports errors.
+If ParaView (pvbatch) is installed with a display (xvfb-run), it draws runs of both formats."""
 
 import importlib.util
 import os
@@ -33,7 +33,7 @@ class ShowInParaView(TestCase):
             script.find_files(str(self.folder))
 
     def test_which_run(self):
-        """The directory that is named, else that of the selected file, else that of the environment."""
+        """The named directory, else that of the selected file, else that of the environment."""
         script = load()
 
         def selected(**properties):

@@ -1,4 +1,4 @@
-"""Bodies that slide along each other without limit: closed forms, momenta, energy, runs that are resumed, refusals."""
+"""Bodies that slide along each other without limit: closed forms, momenta, energy, resumed runs, refusals."""
 
 import json
 import math
@@ -144,7 +144,7 @@ class Sliding(TestCase):
         return History(self.simulate(self.write(name, text)) / "history.csv")
 
     def closes(self, history):
-        """The account, without energy from contact or from facets that change."""
+        """Checks that the account closes, without energy from contact or from facets that change."""
         largest = history.largest_energy()
         self.assertGreater(max(history["active_contacts"]), 0)
         self.assertLess(max(map(abs, history["energy_residual"])), 1e-10 * largest)
@@ -161,8 +161,8 @@ class Sliding(TestCase):
 
 
 def block_in_bowl(x):
-    """Of a rigid block whose two lower corners are on the parabola: height of its centre, and kinetic energy per mass
-    and velocity squared of x, the middle of the chord."""
+    """Returns, for a rigid block whose two lower corners are on the parabola, the height of its centre, and the kinetic
+    energy per mass and squared velocity of x, the middle of the chord."""
     def place(x):
         turn = math.atan(2.0 * BOWL * x)
         chord = BOWL * x**2 + BOWL * (HALF * math.cos(turn))**2
@@ -223,7 +223,7 @@ class Bowl(Sliding):
 
 
 class FreeBodies(Sliding):
-    """Two bodies that nothing holds."""
+    """Two free bodies."""
 
     def in_plane(self, law, **more):
         (self.folder / "bowl.geo").write_text(BOWL_GEO.format(bowl=-0.15, size=0.09))
@@ -256,7 +256,7 @@ class FreeBodies(Sliding):
 
 
 class Ends(Sliding):
-    """A block slides off a table, turns over its edge and falls."""
+    """A block slides off a table, tips over its edge and falls."""
 
     def test_over_the_edge(self):
         (self.folder / "table.geo").write_text(BLOCK_GEO.format(left=-1.0, right=0.0, height=0.3, size=0.08)
@@ -276,7 +276,7 @@ class Ends(Sliding):
         self.assertLess(max(history["contact_work"]), 1e-10 * largest)
         self.assertEqual(history["active_contacts"][-1], 0)
         self.assertLess(history["momentum.block_y"][-1], -0.08)  # it falls
-        self.assertLess(history["angular_momentum_z"][-1], 0.0)  # and turns forwards
+        self.assertLess(history["angular_momentum_z"][-1], 0.0)  # and tips forwards
 
 
 class Refusals(Sliding):
@@ -304,8 +304,8 @@ class Refusals(Sliding):
         self.assertNotEqual(run("run", self.write("tied.toml", tied), "-o", self.folder / "tied", "--quiet").returncode, 0)
 
     def test_the_force_that_held_steps_put_in_doubt(self):
-        """A shaft pressed into a hub: where steps were held an overlap is left, the force is wrong, and the run says by how much at
-        most. It slides all the time: the axial force is friction times the radial one, whichever that is."""
+        """A shaft pressed into a hub: held steps leave an overlap, the force is wrong, and the run states a bound of
+        the error. It slides all the time: the axial force is friction times the radial one, whatever its value."""
         (self.folder / "hub.geo").write_text(HUB_GEO)
         (self.folder / "shaft.geo").write_text(SHAFT_GEO)
         case = self.write("fit.toml", PRESS_FIT)

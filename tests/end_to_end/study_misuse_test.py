@@ -1,4 +1,4 @@
-"""`ricochet study` in the hands of somebody who is mistaken, or means harm: what is said, and what stays as it was."""
+"""`ricochet study` used by mistake or with malice: messages, and files that stay unchanged."""
 
 import json
 import os
@@ -25,7 +25,7 @@ class StudyMisuse(TestCase):
         path.write_text(json.dumps(content))
 
     def refused(self, status, said, *arguments):
-        """Without a defect of the program being the reason."""
+        """Refused, but not because of a defect of the program."""
         errors = self.expect_status(status, run(*arguments)).stderr
         for words in said if isinstance(said, tuple) else (said,):
             self.assertIn(words, errors)
@@ -50,7 +50,7 @@ class StudyMisuse(TestCase):
             shutil.rmtree(self.output)
 
     def test_only_runs_are_removed(self):
-        """Where a run was, there is a link, or something of the user's."""
+        """In place of a run there is a link, or something of the user's."""
         vary = ("--vary", "time.step=0.004,0.002")
         self.study("out", *vary)
         second = self.output / "runs" / "002-step=0.002"
@@ -125,7 +125,7 @@ class StudyMisuse(TestCase):
                            ("time.scheme=newmark, newmark", '"newmark" is there twice'),
                            ("contact.00.friction=0,1", "write 0, as in contact.0.friction")):
             self.refused(1, said, "study", BAR, "--vary", vary, "-o", self.folder / "no")
-        # Written in another way it is the same run.
+        # With another spelling it is the same run.
         self.study("out", "--vary", "time.step=0.004,0.002")
         self.study("out", "--vary", "time.step=4e-3,0.0020", "--resume", values={"time.end": "2e-2",
                                                                                  "output.fields_every": 0})
@@ -135,7 +135,7 @@ class StudyMisuse(TestCase):
                      self.folder / "no")
 
     def test_columns_that_no_run_has(self):
-        """They are refused before the first run where that can be known, else told at the end."""
+        """They are refused before the first run if that can be known, else reported at the end."""
         vary = ("--vary", "time.step=0.004,0.002")
         for question, said in (
                 (("--quantity", "max(history.bottm.pressure)"), 'did you mean "bottom.pressure"?'),
@@ -153,7 +153,7 @@ class StudyMisuse(TestCase):
         reference.rename(self.folder / "elsewhere")
         self.refused(1, "name another with --reference", "study", "--resume", self.output)
         self.assertIn("was moved or removed", self.expect_status(0, run("info", self.output)).stderr)
-        # A probe that is in some of the runs alone.
+        # A probe that only some of the runs have.
         self.study("probes", "--vary", "probe.0.name=low,lower", "--quantity", "max(history.low.gap)")
         self.refused(1, "no column", "study", BAR, "--vary", "probe.0.name=low,lower", "--quantity",
                      "history.kinetic_enrgy[-1]", *settings(SHORT), "-o", self.folder / "no")
@@ -163,14 +163,14 @@ class StudyMisuse(TestCase):
         self.assertIn("2 of 2 runs done", process.stdout)
         self.refused(1, 'probe "top" has "every"', "study", BAR, *vary, "--quantity", "max(history.top.displacement_y)",
                      *settings(SHORT | {"probe.1.every": 2}), "-o", self.folder / "no")
-        # What depends on what comes out is told afterwards; and is no mistake where some run answers.
+        # Entries that depend on the results are reported afterwards, and are no mistake if some run has them.
         process = self.study("late", *vary, "--quantity", "summary.impacts.7.restitution", status=1)
         self.assertIn("--quantity summary.impacts.7.restitution", process.stderr)
         self.study("some", "--vary", "time.end=0.02,0.04", "--quantity", "history.time(t=0.03)",
                    values={"output.fields_every": 0})
 
     def test_names_stay_what_they_are(self):
-        """What a user, a case or a mesh names is no markup, whatever it looks like."""
+        """Names given by a user, a case or a mesh are not markup, whatever they look like."""
         title = "<b>x</b> | `a` ](http://example.org) $y$"
         self.study("out", "--vary", f'title="{title}",plain <i>,"a*b*"', values=SHORT)
         text = (self.output / "study.md").read_text()
@@ -210,7 +210,7 @@ class StudyMisuse(TestCase):
         self.refused(4, "locked", "study", BAR, "--vary", "time.step=0.004", "-o", folder)
 
     def test_output_that_nobody_reads(self):
-        """The study is made all the same, and its exit status says that its table could not be printed."""
+        """The study is made nonetheless, and its exit status states that its table could not be printed."""
         self.output = self.folder / "out"
         command = [str(PROGRAM), "study", str(BAR), "--vary", "time.step=0.004,0.002", *settings(SHORT), "-o",
                    str(self.output), "--quiet"]

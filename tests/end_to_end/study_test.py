@@ -1,4 +1,4 @@
-"""`ricochet study`: its table says what its runs say, whatever happened on the way; orders of a known problem."""
+"""`ricochet study`: its table agrees with its runs, whatever happened in between; orders of a known problem."""
 
 import csv
 import json
@@ -69,7 +69,7 @@ class Study(TestCase):
                 self.assertAlmostEqual(float(row[column]), value, delta=1e-14 * abs(value) + 1e-300, msg=column)
             self.assertGreater(float(row["processor_seconds"]), 0)
             self.assertIn("warning", row["doubts"])  # strains of 30 %
-            # A column for each quantity of the case's [[expect]] entries, too.
+            # Also a column for each quantity of the case's [[expect]] entries.
             self.assertEqual(float(row["history.bottom.pressure(t=0.7)"]), history["bottom.pressure"][350])
         alone = self.simulate(BAR, "alone", {"time.end": 1.8, "initial.velocity": "[0,-5]"})
         self.assertEqual((alone / "history.csv").read_bytes(),
@@ -81,7 +81,7 @@ class Study(TestCase):
             self.study(f"jobs{jobs}", "--vary", "time.step=0.004,0.002,0.001", "--reference", "finest", "--jobs", jobs)
             tables.append(table(self.output))
         self.assertEqual(tables[0], tables[1])
-        # Against itself nothing is said, and an order needs two errors.
+        # No error relative to itself, and an order needs two errors.
         errors = [row["error:top.displacement"] for row in tables[0]]
         self.assertTrue(float(errors[0]) > float(errors[1]) > 0)
         self.assertEqual(errors[2], "")
@@ -129,13 +129,13 @@ class Study(TestCase):
             self.assertAlmostEqual(float(order), 2.0, delta=0.05)
         cells = [self.summary(row)["cells"] for row in rows]
         self.assertEqual(cells[1:], [4 * cells[0], 16 * cells[0]])
-        # The finest is that of the most halvings.
+        # The finest run has the most halvings.
         self.assertEqual([row["error:tip.displacement"] == "" for row in rows], [False, False, True])
         self.expect_status(0, run("plot", self.output, "--what", "order:history.elastic_energy[0]", "-o", self.folder / "order.svg"))
         self.assertIn("2^-mesh.refine", (self.folder / "order.svg").read_text())
 
     def test_orders_that_mean_nothing_are_told(self):
-        """Against a wrong value the error does not fall; against the finest run orders are too large."""
+        """Relative to a wrong value the error does not fall; relative to the finest run orders are too large."""
         process = self.study("floor", "--vary", "time.step=0.1,0.05,0.025", "--exact", "history.time[-1]=3", "--reference", "finest",
                              case=ROD, values={**FREE, "time.scheme": "midpoint"})
         for text in (process.stdout, (self.output / "study.md").read_text()):
@@ -174,7 +174,7 @@ class Study(TestCase):
         self.assertNotIn("coarse", (self.folder / "figure.svg").read_text())
 
     def test_a_run_that_fails_is_a_row(self):
-        """An account that cannot close so well stops a run, and a limit below 0 is none."""
+        """An account that cannot close so well stops a run, and a limit below 0 is invalid."""
         process = self.study("failing", "--vary", "check.energy_residual=1e-8,1e-17,-1,1e-9", status=3,
                              values={"check.on_failure": "stop"})
         rows = table(self.output)
@@ -203,7 +203,7 @@ class Study(TestCase):
         self.assertEqual((first["summary.steps"], second["summary.steps"]), ("500", "1000"))
 
     def test_interrupted_and_resumed(self):
-        """By kill -9 and by a signal that it can answer; the tables are those of a study that was left in peace."""
+        """By kill -9 and by a signal that it can handle; the tables are those of an uninterrupted study."""
         vary = ("--vary", "time.step=0.002,0.0005,0.00025")
         self.study("whole", *vary, values=SLOW)
         expected = table(self.output)
@@ -221,11 +221,11 @@ class Study(TestCase):
                 self.assertIn("interrupted", [row["status"] for row in table(self.output)])
             else:
                 self.assertFalse((self.output / "study.csv").exists())
-                # Begun anew it is refused, and the message says how to go on.
+                # A new start is refused, and the message states how to resume.
                 self.assertIn("--resume", self.study(name, *vary, values=SLOW, status=4).stderr)
             self.expect_status(0, run("study", "--resume", self.output, "--quiet"))
             self.assertEqual(table(self.output), expected)
-            # What had a checkpoint went on from there.
+            # A run with a checkpoint resumed from there.
             self.assertTrue(any(json.loads(path.read_text())["resumed_at"] for path in interrupted))
 
     def test_a_run_whose_process_is_killed(self):

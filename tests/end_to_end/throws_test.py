@@ -1,4 +1,4 @@
-"""Some of the random throws of ./dev bench throws, as they are judged there."""
+"""Some of the random throws of ./dev bench throws, judged as there."""
 
 import os
 import pathlib

@@ -1,13 +1,13 @@
-"""What a tutorial holds, and how it is run as its reader does: blocks that name a file are written, commands are run in their
-order, and what they print is compared with what the page shows.
+"""Contents of a tutorial, and its execution as by its reader: blocks that name a file are written, commands are run in
+their order, and their output is compared with that on the page.
 
-A fenced block whose first line is a comment with nothing but a file's name is that file. In a block of `console`, lines that begin with
-"$ " are commands; the lines below are what comes out. A line that is "…" stands for any lines, "…" within a line for anything. Numbers
-agree when they do to the digits shown, give or take one of the last; whole numbers of one or two digits, which count something, when
-they are equal.
+A fenced block whose first line is a comment with nothing but a file's name is that file. In a block of `console`, lines
+that begin with "$ " are commands; the lines below are their output. A line that is "…" stands for any lines, "…" within
+a line for any text. Numbers agree if they do to the digits shown, give or take one of the last; whole numbers of one or
+two digits, which count something, if they are equal.
 
-"```console needs NAME" says that the commands of this block need NAME, a program or a module of Python: where it is not installed they
-are left out."""
+"```console needs NAME" states that the commands of this block need NAME, a program or a module of Python: if it is not
+installed they are left out."""
 
 import dataclasses
 import decimal
@@ -39,7 +39,7 @@ class File:
 
 
 def read(page):
-    """The files and commands of a page, in their order."""
+    """Returns the files and commands of a page, in their order."""
     steps = []
     for kind, needs, body in FENCE.findall(pathlib.Path(page).read_text(encoding="utf-8")):
         if kind == "console":
@@ -82,7 +82,7 @@ def same_number(shown, found):
 
 
 def agrees(shown, found):
-    """Does a printed line agree with one that the page shows?"""
+    """Returns whether a printed line agrees with one that the page shows."""
     shown, found = " ".join(shown.split()), " ".join(found.split())
     parts = [part for part in re.split(f"({ANYTHING}|{NUMBER.pattern})", shown) if part]
 
@@ -102,7 +102,7 @@ def agrees(shown, found):
 
 
 def difference(shown, printed):
-    """None where the lines printed are those that the page shows; else what is wrong."""
+    """Returns None if the lines printed are those that the page shows; else the difference."""
     at, free = 0, False
     for line in shown:
         if line.strip() == ANYTHING:
@@ -126,7 +126,7 @@ def is_installed(name, environment):
 
 
 def run(page, folder, environment):
-    """Runs a page in an empty folder. Yields (command, seconds, what it printed, what is wrong: None for nothing)."""
+    """Runs a page in an empty folder. Yields (command, seconds, output, error: None if there is none)."""
     for step in read(page):
         if isinstance(step, File):
             path = folder / step.name
@@ -144,7 +144,8 @@ def run(page, folder, environment):
 
 
 def environment_of(program, build, folder):
-    """Where `ricochet` is this program, `python3` Debian's, and CMake finds what is installed below the folder."""
+    """Returns an environment in which `ricochet` is this program, `python3` is Debian's, and CMake finds the
+    installation below the folder."""
     tools = folder / "tools"
     tools.mkdir()
     (tools / "ricochet").symlink_to(program)

@@ -1,4 +1,4 @@
-"""What runs the tutorials finds what is wrong on a page: without this a tutorial that says anything at all could pass."""
+"""The tutorial runner finds errors on a page: otherwise a tutorial with any contents could pass."""
 
 import pathlib
 import re
@@ -68,7 +68,7 @@ class TutorialPages(unittest.TestCase):
         self.assertEqual(self.problems("```console needs bash\n$ false\n```\n"), ["ended with status 1"])
 
     def test_pages_start_only_programs_that_they_ask_for(self):
-        """What a machine happens to have is not what a reader has: CMake, for one, takes `make` where it is not told otherwise."""
+        """Programs on a test machine need not exist on a reader's: CMake, for one, uses `make` by default."""
         of_debian = {"bash", "cmp", "diff", "echo", "grep", "ls", "true"}  # essential packages have them
         for path in sorted(TUTORIALS.glob("*.md")):
             text = path.read_text(encoding="utf-8")

@@ -1,10 +1,11 @@
-"""A tutorial is run as its reader does: the files that it names are written, the commands run, what they print compared.
+"""A tutorial is run as its reader does: the files that it names are written, the commands run, and their output
+compared.
 
     tutorials_test.py PAGE.md                 # the test
-    tutorials_test.py PAGE.md --pictures      # also puts the pictures that the page shows into docs/figures/tutorials
-    tutorials_test.py PAGE.md --print         # shows what every command prints, for who writes one
+    tutorials_test.py PAGE.md --pictures      # also puts the pictures of the page into docs/figures/tutorials
+    tutorials_test.py PAGE.md --print         # prints the output of every command, for authors
 
-RICOCHET_PROGRAM and RICOCHET_BUILD_DIR say which build is used; without them it is what is installed.
+RICOCHET_PROGRAM and RICOCHET_BUILD_DIR select the build; without them the installed program is used.
 """
 
 import os

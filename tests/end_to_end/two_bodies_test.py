@@ -1,5 +1,5 @@
-"""What is reported of two bodies in contact: impacts, forces and momenta of each, sliding, penetration, texts, going on from a
-checkpoint. Two bars of one length and wave speed give back all of the approach; the rest are balances."""
+"""Reports on two bodies in contact: impacts, forces and momenta of each, sliding, penetration, texts, resumption from a
+checkpoint. Two bars of equal length and wave speed return all of the approach; the rest are balances."""
 
 import json
 import re
@@ -11,8 +11,8 @@ CELLS = 40
 
 
 def strip(cells, rows, height, split=False):
-    """[0, 1] x [0, height] of rectangles, as a .msh file with the groups left, right (or left0, left1, … of each row), bottom,
-    top and body."""
+    """Returns [0, 1] x [0, height] of rectangles, as a .msh file with the groups left, right (or left0, left1, … of
+    each row), bottom, top and body."""
     at = lambda i, j: 1 + i * (rows + 1) + j
     nodes = [(i / cells, height * j / rows) for i in range(cells + 1) for j in range(rows + 1)]
     ends = [(f"{name}{j}" if split else name, [(at(i, j), at(i, j + 1))]) for name, i in (("left", 0), ("right", cells)) for j in range(rows)]
@@ -67,7 +67,8 @@ class TwoBodies(TestCase):
         return self.write("blocks.toml", BLOCKS)
 
     def test_a_probe_in_a_place_of_two_nodes_is_at_the_one_with_multipliers(self):
-        """That of the finer side, whichever body comes first: the force there is the pressure over its own part of the height."""
+        """That of the finer side, whichever body comes first: the force there is the pressure over its own part of the
+        height."""
         height, rows = 0.1, {"one": 2, "two": 4}
         for name, own in rows.items():
             self.write(f"{name}.msh", strip(10, own, height))
@@ -93,9 +94,9 @@ class TwoBodies(TestCase):
         one, two = (body["mass"] for body in found["bodies"])
         self.assertAlmostEqual(one, 0.15, delta=1e-12)
         self.assertEqual((impact["body"], impact["against"]["body"], impact["obstacle"]), (0, 1, None))
-        # What is missing is left in the mesh as vibrations; of the momenta it takes nothing.
+        # The missing energy is left in the mesh as vibrations; they carry no momentum.
         self.assertAlmostEqual(impact["restitution"], 1.0, delta=0.01)
-        # Of momenta and impulse nothing is missing.
+        # Momenta and impulse are complete.
         change = [impact["velocity_after"][0] - impact["velocity_before"][0],
                   impact["against"]["velocity_after"][0] - impact["against"]["velocity_before"][0]]
         self.assertAlmostEqual(one * change[0], impact["impulse"][0], delta=1e-12)
@@ -124,7 +125,7 @@ class TwoBodies(TestCase):
             self.assertAlmostEqual(one + two, whole, delta=1e-12 * largest)
         self.assertAlmostEqual(history["momentum.one_x"][0], 0.15, delta=1e-12)
         self.assertAlmostEqual(history["momentum.two_x"][-1], summary(out)["bodies"][1]["mass"] * 1.5, delta=1e-3)
-        # The other way round in the case the force is the opposite one, whichever side carries the multipliers.
+        # In the opposite order in the case the force has the opposite sign, whichever side carries the multipliers.
         for side in ("group", "against"):
             turned = self.simulate(self.bars(), name=side, values={"contact.0.group": "two.left", "contact.0.against": "one.right",
                                                                    "contact.0.multipliers_on": side})
@@ -185,7 +186,7 @@ class TwoBodies(TestCase):
         self.assertIsNone(summary(short)["sliding"][0]["time_beyond"])
         self.assertEqual([text for text in summary(short)["warnings"] if "slid" in text or "overlap" in text], [])
         self.assertEqual(summary(short)["unwatched_penetration"]["found"], [])
-        # What the message advises.
+        # The advice of the message.
         large = self.simulate(self.blocks(), name="large", values={"contact.0.sliding": "large"})
         self.assertEqual([text for text in summary(large)["warnings"] if "slid" in text or "overlap" in text], [])
 

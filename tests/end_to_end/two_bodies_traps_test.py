@@ -1,5 +1,5 @@
-"""What users of several bodies run into: momenta that cancel, places that face nothing, corners against large facets, ties
-between bodies in motion, static starts of what floats, motions far away."""
+"""Traps for users of several bodies: momenta that cancel, points that face nothing, corners against large facets, ties
+between bodies in motion, static starts of floating bodies, motions far away."""
 
 import json
 import unittest
@@ -13,7 +13,7 @@ def summary(folder):
 
 
 def wedge(cells):
-    """The strip [0, 1] x [0, 1] of rectangles, whose top is a roof with its ridge in the middle, 0.5 higher."""
+    """Returns the strip [0, 1] x [0, 1] of rectangles, whose top is a roof with its ridge in the middle, 0.5 higher."""
     lines = strip(cells, cells, 1.0).split("\n")
     at = lines.index("$Nodes") + 2
     for k in range(at, at + (cells + 1) ** 2):
@@ -38,7 +38,7 @@ class TwoBodiesTraps(TestCase):
         self.assertEqual(self.warnings(out, "is violated"), [])
         self.assertLess(summary(out)["checks"]["momentum"]["largest"], 1e-10)
         self.assertEqual(len(summary(out)["impacts"]), 1)
-        # And of a body that only turns.
+        # Also for a body that only rotates.
         out = self.simulate(case, name="spin", values={"part.one.spin": 0.1, "check.on_failure": '"stop"'})
         self.assertEqual(self.warnings(out, "is violated"), [])
 
@@ -88,7 +88,7 @@ class TwoBodiesTraps(TestCase):
             self.assertLess(late(side, **{carries: 2}), 0.35 * first)
 
     def test_a_ridge_that_facets_do_not_see_at_all(self):
-        """With sliding = "large" nothing is left to be set but the mesh, and what is said is why."""
+        """With sliding = "large" only the mesh can be changed, and the message states the reason."""
         above = '[[contact]]\ngroup = "one.top"\nagainst = "two.bottom"\nsliding = "large"\nmultipliers_on = "against"\n'
         case = self.bodies(wedge(4), strip(3, 2, 0.5), "[time]\nstep = 0.02\nend = 2.2\n", above)
         values = {"part.two.move": "[0.0, 1.51]", "part.one.velocity": "[0.0, 0.1]", "material.0.law": "neo-hookean", "material.1.law": "neo-hookean"}
@@ -116,7 +116,7 @@ class TwoBodiesTraps(TestCase):
         for side in ("group", "against"):
             case = self.write(f"{side}.toml", parts + tie("a.bottom", "base.top", side) + tie("b.bottom", "base.top", side)
                               + tie("a.right", "b.left", "group") + "[time]\nstep = 0.03\nend = 0.3\n")
-            # A uniform stretch has a uniform stress: nothing but the ends pull.
+            # A uniform stretch has a uniform stress: only the ends pull.
             out = self.simulate(case, name=side, values={"part.base.velocity": "[0.1, 0.0]", "part.a.velocity": "[0.1, 0.0]",
                                                          "part.b.velocity": "[0.1, 0.0]"})
             history = History(out / "history.csv")
@@ -142,7 +142,7 @@ class TwoBodiesTraps(TestCase):
         case = self.write("names.toml", '[part.1]\nfile = "one.msh"\n[part.0]\nfile = "one.msh"\nmove = [3.0, 0.0]\n'
                           + material("1", 1.0) + material("0", 1.0) + "[time]\nstep = 0.03\nend = 0.3\n")
         out = self.simulate(case)
-        names = History(out / "history.csv").names  # which refuses a column that is there twice
+        names = History(out / "history.csv").names  # which refuses duplicate columns
         self.assertEqual(len([name for name in names if name.startswith("momentum.")]), 4)
 
 

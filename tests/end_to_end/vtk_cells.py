@@ -5,7 +5,7 @@ import itertools
 
 import numpy
 
-# For each type of meshio: the vertices of the reference cell, then the vertices that each further node lies between.
+# For each type of meshio: the vertices of the reference cell, then the vertices between which each further node lies.
 TRIANGLE = [(0, 0), (1, 0), (0, 1)]
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
 TETRAHEDRON = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
@@ -47,7 +47,7 @@ def exponents(kind):
 
 
 def quadrature(kind):
-    """Gauss points on the cube, collapsed onto the simplex where there is one."""
+    """Returns Gauss points on the cube, collapsed onto the simplex if there is one."""
     dimension = len(CELLS[kind][0][0])
     points, weights = numpy.polynomial.legendre.leggauss(5)
     points, weights = (points + 1) / 2, weights / 2
@@ -63,7 +63,7 @@ def quadrature(kind):
 
 
 def gradients(powers, x):
-    """Of the monomials with these exponents at a point: monomials × dimension."""
+    """Returns the gradients of the monomials with these exponents at a point: monomials × dimension."""
     result = numpy.empty((len(powers), len(x)))
     for i, power in enumerate(powers):
         for k, n in enumerate(power):
@@ -73,7 +73,7 @@ def gradients(powers, x):
 
 
 def volumes(kind, nodes, cells):
-    """The volume of each cell, and the smallest determinant of its map at any quadrature point."""
+    """Returns the volume of each cell, and the smallest determinant of its map at any quadrature point."""
     powers = exponents(kind)
     reference = reference_nodes(kind)
     vandermonde = numpy.array([[numpy.prod(x**power) for power in numpy.array(powers)] for x in reference])

@@ -1,9 +1,9 @@
 """VTKHDF files of unstructured grids that change in time, read in two ways: by the published description of the format
 (docs.vtk.org, "VTKHDF File Format"), with h5py, and by VTK's own reader.
 
-VTK 9.1, Debian's, reads files without steps (version 1.0), and of those with steps the first. view() makes such a file
-of any step: with links to what is in the file and virtual data sets for the step's rows, so that VTK reads the file's
-own bytes."""
+VTK 9.1, Debian's, reads files without steps (version 1.0), and of those with steps only the first. view() makes such a
+file for any step: with links to the data in the file and virtual data sets for the step's rows, so that VTK reads the
+file's own bytes."""
 
 import h5py
 import numpy
@@ -16,7 +16,7 @@ MESH = ("Points", "Connectivity", "Offsets", "Types")
 
 
 class Step:
-    """What a step is: where its parts of the data sets begin and how long they are, and the values."""
+    """A step: the start and length of its parts of the data sets, and the values."""
 
     def __init__(self, root, number):
         steps = root["Steps"]
@@ -45,8 +45,8 @@ class Step:
 
 
 def check_steps(root, killed=False):
-    """The description's demands on the group /VTKHDF; all its steps. Of a run that was killed tables may have an entry for
-    a step that does not count yet."""
+    """Checks the description's demands on the group /VTKHDF. Returns all its steps. Tables of a run that was killed may
+    have an entry for a step that does not count yet."""
     assert list(root.attrs["Version"]) == [2, 0] and root.attrs["Version"].dtype.kind == "i"
     kind = root.attrs.get_id("Type")
     assert kind.get_type().get_class() == h5py.h5t.STRING and not kind.get_type().is_variable_str()
@@ -70,7 +70,7 @@ def check_steps(root, killed=False):
 
 
 def view(path, number, place):
-    """A file of VTKHDF 1.0 that shows one step of another one."""
+    """Makes a file of VTKHDF 1.0 that shows one step of another one."""
     with h5py.File(path) as file, h5py.File(place, "w", libver="latest") as new:
         root, shown = file["VTKHDF"], new.create_group("VTKHDF")
         step = Step(root, number)
@@ -88,7 +88,7 @@ def view(path, number, place):
 
 
 class Grid:
-    """What VTK's reader makes of a file."""
+    """The contents of a file as read by VTK's reader."""
 
     def __init__(self, path):
         reader = vtkHDFReader()

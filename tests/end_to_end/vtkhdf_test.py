@@ -1,4 +1,4 @@
-"""Fields as VTKHDF (`output.format = "vtkhdf"`): to the bit what results.h5 has, for VTK's reader and by the published
+"""Fields as VTKHDF (`output.format = "vtkhdf"`): to the bit those of results.h5, for VTK's reader and by the published
 description, whatever happens to the run.
 
     vtkhdf_test.py [KILLS]     # by default 20 kills, as in ./dev test
@@ -29,7 +29,7 @@ from vtkhdf_reading import Grid, check_steps, view
 KILLS = 20
 VTKHDF = {"output.format": "vtkhdf"}
 ALL = {"output.fields": "[\"all\"]"}
-# VTK's numbers of cells (vtkCellType.h), and what meshio calls them.
+# VTK's numbers of cells (vtkCellType.h), and meshio's names of them.
 TYPES = {5: "triangle", 22: "triangle6", 9: "quad", 28: "quad9", 10: "tetra", 24: "tetra10", 12: "hexahedron",
          29: "hexahedron27"}
 # results.h5 has xx, xy, xz, yy, yz, zz; VTK calls the components of six xx, yy, zz, xy, yz, xz.
@@ -42,7 +42,7 @@ def as_vtk(values):
 
 class VtkHdf(TestCase):
     def both(self, text, values=None):
-        """A case run in both formats."""
+        """Runs a case in both formats."""
         case = self.write("case.toml", text)
         options = ("--quiet", "--force")
         return (self.simulate(case, "xdmf", values, options),
@@ -54,7 +54,7 @@ class VtkHdf(TestCase):
         self.assertEqual(found.tobytes(), expected.tobytes(), what)
 
     def check_fields(self, xdmf, vtkhdf):
-        """All frames, by the description; how many there are."""
+        """Checks all frames by the description. Returns their number."""
         side = xml.etree.ElementTree.parse(xdmf / "results.xdmf")
         times = [float(at.get("Value")) for at in side.iter("Time")]
         with h5py.File(xdmf / "results.h5") as old, h5py.File(vtkhdf / "results.vtkhdf") as new:
@@ -73,7 +73,7 @@ class VtkHdf(TestCase):
         return len(times)
 
     def check_grid(self, grid, xdmf, frame):
-        """What VTK's reader has read of this frame."""
+        """Checks the data of this frame as read by VTK's reader."""
         self.check_mesh(grid, *frames(xdmf)[:2])
         self.check_values(grid, xdmf, frame)
 
@@ -101,7 +101,7 @@ class VtkHdf(TestCase):
         xdmf, vtkhdf = self.both(text, {**ALL, **(values or {})})
         count = self.check_fields(xdmf, vtkhdf)
         self.assertEqual(count, 31)
-        # meshio 5.3 does not know triangles of degree 2 beside other cells: there the volume has to do.
+        # meshio 5.3 does not support triangles of degree 2 beside other cells: only the volume is checked there.
         check = self.check_values if shape == "mixed" and degree == 2 else self.check_grid
         grid = Grid(vtkhdf / "results.vtkhdf")
         check(grid, xdmf, 0)
@@ -178,7 +178,7 @@ class VtkHdf(TestCase):
         self.expect_status(0, run("report", output, "-o", self.folder / "report.html"))
 
     def test_reports_and_figures(self):
-        """The same pages but for names and times, the same figures, of either format."""
+        """The same pages except for names and times, and the same figures, from either format."""
         values = {**ALL, "time.end": 0.02, "output.fields_every": 10}
         xdmf, vtkhdf = self.both(with_more(DISC, ""), values)
         pages = []
@@ -208,7 +208,7 @@ class VtkHdf(TestCase):
         for word in ("xdmf", "vtkhdf"):
             self.assertIn(word, said)
         self.assertFalse((self.folder / "out").exists())
-        # Of a run that is there with another format nothing is lost, unless that is asked for.
+        # An existing run in another format is not lost unless this is requested.
         output = self.simulate(case, "out", {"output.checkpoint_every": 10})
         before = (output / "results.h5").read_bytes()
         more = ("--set", "output.checkpoint_every=10", *settings(VTKHDF))
@@ -222,13 +222,13 @@ class VtkHdf(TestCase):
 
 class InterruptedVtkHdf(ResumeTestCase):
     def readable(self, output):
-        """Every step of what a run has left so far, whole; how many there are."""
+        """Reads every step of the results so far, each complete. Returns their number."""
         with h5py.File(output / "results.vtkhdf") as file:
             root = file["VTKHDF"]
             steps = check_steps(root, killed=True)
             for step in steps:
                 self.assertTrue(all(numpy.isfinite(step.read(root, name)).all() for name in step.fields if name != "gap"))
-                # The moving disc: a step whose numbers had not been written would be the fill value.
+                # The moving disc: a step whose numbers had not been written would have the fill value.
                 self.assertTrue(step.read(root, "velocity").any())
         if not steps:
             return 0
@@ -239,7 +239,7 @@ class InterruptedVtkHdf(ResumeTestCase):
         return len(steps)
 
     def test_killed_at_random_moments(self):
-        """kill -9 while frames are written, then --resume: what is there can be read, and the end is the same."""
+        """kill -9 while frames are written, then --resume: existing results can be read, and the end is the same."""
         seed = random.randrange(2**32)
         chance = random.Random(seed)
         kills, seen, completed = 0, 0, 0
@@ -271,7 +271,7 @@ class InterruptedVtkHdf(ResumeTestCase):
         print(f"{kills} kills, {seen} frames read after them", file=sys.stderr)
 
     def test_full_disk(self):
-        """Nothing of a frame is written where there is no room for all of it."""
+        """No part of a frame is written unless there is space for all of it."""
         values = {**busy("newmark"), **VTKHDF}
         expected = self.reference(values)
         size = (expected / "results.vtkhdf").stat().st_size

@@ -1,4 +1,4 @@
-"""What the program says of motions that the scheme, and of strains that small strain, cannot follow."""
+"""Warnings of motions that the scheme, and of strains that small strain, cannot follow."""
 
 import json
 import re
@@ -42,7 +42,8 @@ class Warnings(TestCase):
                 self.assertEqual(len(told), 1 if limited and step == 0.1 else 0, (scheme, step, told))
 
     def test_bodies_that_slide_without_damping(self):
-        """A block of another material than the slope's of the collection, which does not flutter: damping keeps it down."""
+        """A block of a different material than the slope of the collection, which does not flutter: damping suppresses
+        it."""
         damped = with_more(SOURCE / "cases" / "incline" / "incline.toml", "")
         for text, flutters in ((re.sub("damping = .*\n", "", damped), True), (damped, False)):
             told = self.warnings_of(text, **{
@@ -66,7 +67,7 @@ class Warnings(TestCase):
             self.assertEqual(any("the scheme itself have taken" in line for line in told), loses, told)
 
     def test_jumps_anywhere_in_a_long_run(self):
-        # A corner at a step, between two steps, at the begin of the motion and after a million steps.
+        # A corner at a step, between two steps, at the start of the motion and after a million steps.
         for corner in (0.1, 0.1001, 0.0004, 300.0):
             motion = f"-0.01*max(t-{corner}, 0)"
             text = (block_case() + SUPPORT.format(motion)).replace("step = 0.01", "step = 0.0002")
@@ -86,7 +87,7 @@ class Warnings(TestCase):
         self.assertIn('the parameter "speed"', told)
 
     def test_energies_that_are_next_to_nothing_are_no_violation(self):
-        """A support that comes up as exp(-t²) from energies of 1e-323, of which rounding is a half."""
+        """A support whose motion starts like exp(-t²), from energies of 1e-323, half of which is rounding."""
         case = block_case().replace("gravity = [0.0, -10.0]", "gravity = [0.0, 0.0]") + SUPPORT.format("0.01*exp(-((t-0.63)/0.01)^2)")
         for step in (2e-4, 1e-3):
             warnings = self.warnings_of(case, **{"time.step": step, "time.end": 0.7})
@@ -109,13 +110,14 @@ class Warnings(TestCase):
         self.assertIn(past, told(5.0, **fast))
         self.assertNotIn(past, told(50.0, **fast))
         self.assertNotIn(past, told(5.0, **fast, **{"obstacle.floor.velocity": "[0.0,-600.0]"}))
-        # Of gaps that are differences of large numbers nothing is left.
+        # Gaps that are differences of large numbers lose all digits.
         for radius, refused in ((1e12, True), (1e4, False)):
             said = told(radius)
             self.assertEqual("ball.toml:9:1: gaps to obstacle \"floor\" are rounded to" in said, refused, said)
 
     def test_strains_that_are_not_small(self):
-        # A uniform strain e along y has the equivalent strain sqrt(2/3 e:e) = 2/3 e, the largest of the motion that it starts.
+        # A uniform strain e along y has the equivalent strain sqrt(2/3 e:e) = 2/3 e, the largest of the motion that it
+        # starts.
         for strain, told in ((0.30, "equivalent strain of 20 %"), (0.05, None)):
             text = block_case().replace("gravity = [0.0, -10.0]", "gravity = [0.0, 0.0]") + (
                 f'[initial]\ndisplacement = ["0", "{strain}*y"]\n')

@@ -1,4 +1,4 @@
-"""Runs that are looked at while they go on, and what is left of those that fail."""
+"""Runs that are observed while in progress, and the results of those that fail."""
 
 import json
 import re
@@ -25,7 +25,7 @@ class Watching(TestCase):
             time.sleep(0.05)
 
     def test_a_run_that_goes_on(self):
-        """info: progress, rate, time left, energy, warnings, checkpoint; and a history that grows, as tail -f shows."""
+        """info: progress, rate, time left, energy, warnings, checkpoint; and a growing history, as tail -f shows."""
         output = self.folder / "out"
         process = self.start("--set", "time.end=1000", "--set", "output.checkpoint_every=2000")
         history = output / "history.csv"
@@ -50,7 +50,7 @@ class Watching(TestCase):
         self.assertIn("(interrupted)", text)
         self.assertIn("--resume", text)
         self.assertNotIn(" left", text.split("\n")[1])
-        # As far as its history says, which is newer than its summary.
+        # As far as its history states, which is newer than its summary.
         last = history.read_text().rsplit("\n", 2)[1].split(",")[0]
         self.assertIn(f"step {last} of 10000000", text)
         newest = sorted(output.glob("*.ckpt"))[-1]
@@ -89,7 +89,7 @@ class Watching(TestCase):
             self.assertGreater(len(iterations), 20)
             self.assertEqual(told, iterations)
             self.assertGreater(changes, 0)
-            # To be told of it changes nothing.
+            # Reporting it changes nothing.
             again = self.simulate(DISC, f"quiet-{friction}", values)
             self.assertEqual((again / "history.csv").read_bytes(), (output / "history.csv").read_bytes())
 
@@ -123,7 +123,7 @@ class Watching(TestCase):
                 self.assertLess(check["largest"], 1e-11, f"{scheme}: {name}")
 
     def test_works_that_cancel(self):
-        """A block held on a belt: friction and the belt do the same work, thousands of times all energies there are."""
+        """A block held on a belt: friction and the belt do the same work, thousands of times all energies."""
         block = SOURCE / "cases" / "incline" / "block.msh"
         text = block_case(block).replace('"body"\ndensity = 1.0\nlambda = 100.0\nmu = 50.0',
                                          '"block"\ndensity = 7800.0\nyoung = 2e11\npoisson = 0.3')
@@ -163,7 +163,7 @@ class Watching(TestCase):
         summary = json.loads((output / "summary.json").read_text())
         text = self.expect_status(0, run("info", left[0])).stdout
         self.assertIn(f"the state of step {summary['steps']}", text)
-        # The step whose row of the history is not there.
+        # The step whose row is missing in the history.
         self.assertIn(f"step {int(left[0].stem.split('-')[1])} ", summary["message"])
         self.assertEqual(int(left[0].stem.split("-")[1]), len(History(output / "history.csv").rows))
         self.assertIn("no longer finite", text)

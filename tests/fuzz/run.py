@@ -38,7 +38,7 @@ def mesh_seeds(dialect, kind):
     return sorted(path for path in MESHES.glob(f"*msh{dialect}_{kind}.msh"))
 
 
-# name: the program, the seeds, the words that a fuzzer may insert.
+# Returns, by name, the program, the seeds, and the words that a fuzzer may insert.
 def targets():
     documented = (ROOT / "docs" / "case-file.md").read_text(encoding="utf-8")
     words = sorted(set(re.findall(r"`\"?([a-zA-Z_][a-zA-Z_0-9-]*)\"?`", documented)))

@@ -14,14 +14,14 @@ namespace ricochet::test_support {
 
 namespace {
 
-/// Place of a node: its coordinates in half box widths, so that middles are integers too.
+/// Position of a node in half box widths, so that midpoints are integers as well.
 using Place = std::array<int, 3>;
 
 Place corner(int k) {
   return {2 * (k & 1), 2 * ((k >> 1) & 1), 2 * ((k >> 2) & 1)};
 }
 
-/// The cells of one box as lists of its corners (numbered by their bits), positively oriented.
+/// Returns the cells of one box as lists of its corners (numbered by their bits), positively oriented.
 std::vector<std::vector<int>> cells_of_box(CellShape shape, bool flipped) {
   switch (shape) {
     case CellShape::triangle:
@@ -94,7 +94,7 @@ class Builder {
     for (std::size_t facet = 0; facet < facet_vertices.size(); ++facet) add_facet(vertices, nodes, facet);
   }
 
-  /// Keeps the facet when it lies on a side of the box.
+  /// Keeps the facet if it lies on a side of the box.
   void add_facet(const std::vector<Place>& vertices, const std::vector<Index>& nodes, std::size_t facet) {
     const auto& own = facet_nodes(box_.shape, 1)[facet];
     for (int axis = 0; axis < dimension_; ++axis) {
@@ -156,7 +156,7 @@ class Builder {
 
   const BoxMesh& box_;
   int dimension_;
-  std::mt19937 random_;  // the engine's numbers are the same everywhere, those of distributions are not
+  std::mt19937 random_;  // the numbers of the engine are the same everywhere, those of distributions are not
   Mesh mesh_;
   std::vector<Vector> positions_;
   std::map<Place, Index> numbers_;

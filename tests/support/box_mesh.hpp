@@ -14,20 +14,21 @@ using PointMap = std::function<Vector(const Vector&)>;
 
 struct BoxMesh {
   CellShape shape = CellShape::triangle;
-  std::vector<int> counts;   ///< boxes per axis; simplices cut each into 2 triangles or 6 tetrahedra
-  int geometry_degree = 1;   ///< 2: nodes on edges, faces and inside are mapped too, so cells are curved
+  std::vector<int> counts;   ///< boxes per axis; simplices divide each into 2 triangles or 6 tetrahedra
+  int geometry_degree = 1;   ///< 2: nodes on edges, faces and inside are mapped as well, so that cells are curved
   double distortion = 0.15;  ///< largest random displacement of a vertex in [0, 1]ᵈ, in widths of a box
   PointMap map;              ///< from [0, 1]ᵈ to the body; empty: the identity
 };
 
-/// The unit box, its cells distorted as by default.
+/// Returns the unit box with the default distortion of its cells.
 [[nodiscard]] BoxMesh box_of(CellShape shape, std::vector<int> counts);
 
-/// Vertices on a side of the unit box move within that side only, so the undistorted shape of the body is kept. Groups:
-/// "body" (cells), and of facets "x0", "x1", "y0", … (the sides where that reference coordinate is 0 or 1), "boundary".
+/// Makes the mesh. Vertices on a side of the unit box move within that side only, so that the undistorted shape of the
+/// body is kept. Groups: "body" (cells), and facets "x0", "x1", "y0", … (the sides where that reference coordinate is 0
+/// or 1), "boundary".
 [[nodiscard]] Mesh make_box_mesh(const BoxMesh& box);
 
-/// Refuses tangled and degenerate cells as the reader of meshes does.
+/// Makes the mesh and refuses tangled and degenerate cells, as the reader of meshes does.
 [[nodiscard]] Mesh make_checked_box_mesh(const BoxMesh& box);
 
 /// x ↦ matrix · x + shift.
@@ -36,10 +37,11 @@ struct BoxMesh {
 [[nodiscard]] PointMap swirl_map(double amplitude);
 /// A smooth map that bends the sides.
 [[nodiscard]] PointMap bend_map();
-/// The unit box to the disc or ball of radius 1 about `centre`, smooth (its Jacobian vanishes at the corners only).
+/// A smooth map of the unit box to the disc or ball of radius 1 about `centre` (its Jacobian vanishes at the corners
+/// only).
 [[nodiscard]] PointMap ball_map(const Vector& centre);
 
-/// A mesh with its space and material, at an address that does not change.
+/// A mesh with its space and material, at a fixed address.
 struct MeshedBody {
   Mesh mesh;
   DisplacementSpace space;
@@ -49,10 +51,10 @@ struct MeshedBody {
 [[nodiscard]] std::unique_ptr<MeshedBody> make_meshed_body(Mesh mesh, int displacement_degree,
                                                            PlaneState plane = PlaneState::strain);
 
-/// Nodal values of a vector field, d per node.
+/// Returns the nodal values of a vector field, d per node.
 [[nodiscard]] Vector interpolate(const DisplacementSpace& space, const PointMap& field);
 
-/// ∫ over the cells (their curved geometry included) of a scalar.
+/// Returns the integral of a scalar over the cells, including their curved geometry.
 [[nodiscard]] double integrate(const MeshedBody& test, int degree, const std::function<double(const Vector&)>& value);
 
 constexpr CellShape all_cell_shapes[] = {CellShape::triangle, CellShape::quadrilateral, CellShape::tetrahedron,
@@ -65,10 +67,10 @@ struct ElementKind {
   int displacement_degree = 1;
 
   [[nodiscard]] int dimension() const { return ricochet::dimension(shape); }
-  /// The displacement's degree is at least that of the geometry: then the space contains the affine displacements on
-  /// curved cells too.
+  /// Returns true if the degree of the displacement is at least that of the geometry: the space then contains the
+  /// affine displacements on curved cells as well.
   [[nodiscard]] bool contains_affine() const { return displacement_degree >= geometry_degree; }
-  /// "triangle_geometry1_displacement2"
+  /// Returns "triangle_geometry1_displacement2".
   [[nodiscard]] std::string label() const;
 };
 [[nodiscard]] std::vector<ElementKind> all_element_kinds();

@@ -15,7 +15,7 @@
 namespace ricochet::test_support {
 
 std::string write_temporary(const std::string& name, const std::string& text) {
-  // Of this process alone: not only other tests run at the same time, but also the same one, of another build or under
+  // Belongs to this process alone: other tests run simultaneously, and so may the same one, of another build or under
   // another name of CTest.
   static const TemporaryFolder own(::testing::TempDir(), "ricochet-test");
   const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
@@ -32,7 +32,7 @@ std::string write_temporary(const std::string& name, const std::string& text) {
 std::string mesh_geometry(const std::string& name, const std::string& geometry, double size, int order) {
   const std::string text = "SetFactory(\"OpenCASCADE\");\nMesh.MeshSizeMin = " + std::to_string(size) +
                            ";\nMesh.MeshSizeMax = " + std::to_string(size) + ";\n" + geometry + "\n";
-  // Tests that run at the same time ask for the same meshes: each is made once, and appears whole.
+  // Simultaneous tests request the same meshes: each is made once, and appears complete.
   const std::string key = text + "order " + std::to_string(order);
   const std::filesystem::path directory = meshes_directory();
   const std::filesystem::path made = directory / (name + "_" + std::to_string(std::hash<std::string>()(key)) + ".msh");

@@ -8,13 +8,13 @@
 
 #include "support/contact_problems.hpp"
 
-/// @file What the tests of every contact solver of the library have in common. A solver that is registered is in them.
+/// @file Fixture of the tests of every contact solver. Registered solvers are included automatically.
 namespace ricochet::test {
 
-/// The parameter: a solver's name.
+/// The parameter is the name of a solver.
 class ContactSolverTest : public testing::TestWithParam<std::string> {
  protected:
-  /// The active set method has no slip in two directions.
+  /// The active set method does not support slip in two directions.
   [[nodiscard]] Index dimension() const { return GetParam() == "active-set" ? 2 : 3; }
   [[nodiscard]] ContactSolution solve(const FrictionProblem& problem, const ContactOptions& options) const {
     return test::solve(problem, options, GetParam());
@@ -28,7 +28,7 @@ class ContactSolverTest : public testing::TestWithParam<std::string> {
   }
 };
 
-/// For INSTANTIATE_TEST_SUITE_P.
+/// Parameters for INSTANTIATE_TEST_SUITE_P.
 inline auto every_contact_solver() {
   std::vector<std::string> names;
   for (const auto& solver : contact_solver_registry().all()) names.push_back(solver.name);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-/// @file Errors on finer and finer meshes, printed in a line with their observed orders.
+/// @file Errors on successively refined meshes, printed in a line with their observed orders.
 namespace ricochet::test_support {
 
 class Convergence {
@@ -15,13 +15,13 @@ class Convergence {
   Convergence(const Convergence&) = delete;
   Convergence& operator=(const Convergence&) = delete;
 
-  /// Each on a mesh twice as fine as the one before.
+  /// Adds an error, on a mesh twice as fine as the previous one.
   void add(double error) {
     errors_.push_back(error);
     std::printf("  %.2e", error);
     if (errors_.size() > 1) std::printf(" (%.2f)", last_order());
   }
-  /// Between the last two.
+  /// Returns the order between the last two.
   [[nodiscard]] double last_order() const { return std::log2(errors_.at(errors_.size() - 2) / errors_.back()); }
 
  private:

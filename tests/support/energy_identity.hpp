@@ -13,7 +13,7 @@
 /// @file Discrete energy identities: exact, for one step, on any mesh.
 namespace ricochet::test_support {
 
-/// Runs a case and compares the energy change of every step with `identity(before, after)`, to so many roundings.
+/// Runs a case and compares the energy change of every step with `identity(before, after)`, up to so many roundings.
 inline void expect_identity(CaseRun& run, const std::string& name,
                             const std::function<double(const StepEnd&, const StepEnd&)>& identity,
                             double roundings = 20.0) {

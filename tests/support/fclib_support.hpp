@@ -17,7 +17,7 @@
 #include "ricochet/fclib/fclib_file.hpp"
 #include "ricochet/hdf5/hdf5_file.hpp"
 
-/// @file FCLib files for tests: whole ones, and ones written entry by entry, so that each entry can be wrong.
+/// @file FCLib files for tests: complete ones, and ones written entry by entry, so that each entry can be wrong.
 namespace ricochet::test {
 
 struct TemporaryFile {
@@ -64,11 +64,11 @@ inline Matrix random_operator(Index size, std::mt19937& random) {
   return result;
 }
 
-/// Every field is filled.
+/// Returns a problem in which every field is filled.
 inline FclibProblem example(Index dimension, Index points, Index constraints) {
   std::mt19937 random(7);
   const Index rows = dimension * points;
-  // One positive semi-definite matrix of [W, V; Vᵀ, R], as an assembly of bodies and joints gives it.
+  // A positive semidefinite matrix [W, V; Vᵀ, R], as an assembly of bodies and joints has it.
   const Matrix whole = random_operator(rows + constraints, random);
   FclibProblem result;
   result.dimension = dimension;
@@ -101,7 +101,7 @@ inline bool same(const FclibSolution& a, const FclibSolution& b) {
   return same(a.motion, b.motion) && same(a.reaction, b.reaction) && same(a.multiplier, b.multiplier);
 }
 
-/// Bit for bit.
+/// Compares bit for bit.
 inline bool same(const FclibProblem& a, const FclibProblem& b) {
   if (a.guesses.size() != b.guesses.size() || a.solution.has_value() != b.solution.has_value()) return false;
   for (std::size_t k = 0; k < a.guesses.size(); ++k) {
@@ -113,7 +113,7 @@ inline bool same(const FclibProblem& a, const FclibProblem& b) {
          a.math_info == b.math_info && a.points == b.points && same(a.q_rounding, b.q_rounding);
 }
 
-/// The data sets of a file by name. Groups are made as they are needed.
+/// The data sets of a file by name. Groups are made as needed.
 struct Raw {
   std::map<std::string, std::vector<int>> integers;
   std::map<std::string, std::vector<double>> reals;

@@ -10,7 +10,7 @@
 namespace ricochet::test {
 namespace {
 
-/// Projection on |r_T| ≤ F r_N.
+/// Projects on |r_T| ≤ F r_N.
 Eigen::Vector3<long double> project_long(long double friction, const Eigen::Vector3<long double>& r) {
   const long double length = r.tail<2>().norm();
   if (friction * length <= -r[0]) return Eigen::Vector3<long double>::Zero();
@@ -29,7 +29,7 @@ Matrix rigid_trace(const std::vector<RigidPoint>& points, Index dimension) {
   Matrix trace(dimension * count, dimension == 2 ? 3 : 6);
   for (Index i = 0; i < count; ++i) {
     const auto& [place, normal] = points[static_cast<std::size_t>(i)];
-    // An axis that is not along the normal; in two dimensions the tangent lies in the plane.
+    // An axis not parallel to the normal; in two dimensions the tangent lies in the plane.
     const Eigen::Vector3d across = std::abs(normal.y()) < 0.9 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitX();
     const Eigen::Vector3d first = across.cross(normal).normalized(), second = normal.cross(first);
     const std::array<Eigen::Vector3d, 3> axes{normal, first, second};
@@ -166,7 +166,7 @@ ContactProblem lattice_problem(Index side, Index dimension, double friction, dou
       entries.emplace_back(dimension * i + k, dimension * i + k, 4.0 * (1.0 + least));
     for (const Index j : {i % side + 1 < side ? i + 1 : -1, i + side < side * side ? i + side : -1}) {
       if (j < 0) continue;
-      // A rotation by a small angle of normal into tangent: its 2-norm is one, so W stays positive definite.
+      // A small rotation of normal into tangential directions: its 2-norm is one, so that W stays positive definite.
       const double turn = 0.3 * uniform(random);
       for (Index k = 0; k < dimension; ++k) {
         for (Index l = 0; l < dimension; ++l) {

@@ -14,7 +14,7 @@ namespace ricochet::test_support {
 
 namespace {
 
-/// ∫ |∇v|² + v²/L² on the nodes that are not held. `number` receives each node's unknown, or −1.
+/// Returns ∫ |∇v|² + v²/L² on the nodes that are not held. `number` receives each node's unknown, or −1.
 SparseMatrix norm_matrix(const Body& body, const std::function<bool(Index)>& is_held, std::vector<int>& number) {
   // With λ = −μ the diagonal blocks of the elastic stiffness are those of the Laplacian: (λ + μ) ∂_a v ∂_a w vanishes.
   Body scalar = body;
@@ -52,7 +52,7 @@ SparseMatrix norm_matrix(const Body& body, const std::function<bool(Index)>& is_
   return result;
 }
 
-/// The multipliers in use, by anchor.
+/// Numbers the multipliers in use, by anchor.
 std::map<Index, Index> number_multipliers(const MultiplierSpace& space) {
   std::map<Index, Index> number;
   for (const Multiplier& multiplier : space.multipliers()) {
@@ -62,7 +62,7 @@ std::map<Index, Index> number_multipliers(const MultiplierSpace& space) {
   return number;
 }
 
-/// Cᵀ, unknowns × multipliers, and H.
+/// Computes Cᵀ, unknowns × multipliers, and H.
 void boundary_products(const MultiplierSpace& space, const std::vector<int>& unknown,
                        const std::map<Index, Index>& number, Matrix& coupling, Matrix& norm) {
   const Body& body = *space.patch().body;

@@ -18,10 +18,10 @@ struct BodyDescription {
 };
 
 [[nodiscard]] const std::vector<BodyDescription>& bodies_of_every_kind();
-/// The one of this name.
+/// Returns the body of this name.
 [[nodiscard]] const BodyDescription& body_of_kind(const std::string& name);
 
-/// Meshes a body and assembles its consistent mass.
+/// A meshed body with its consistent mass.
 struct AssembledBody {
   Mesh mesh;
   DisplacementSpace space;
@@ -35,7 +35,7 @@ struct AssembledBody {
   explicit AssembledBody(const BodyDescription& description);
 
  protected:
-  /// Another body, whose mesh and space may be changed before its mass is assembled.
+  /// Makes another body, whose mesh and space may be changed before its mass is assembled.
   AssembledBody(Mesh of_mesh, DisplacementSpace of_space, const Body& like);
   void assemble(std::vector<Index> contact_nodes);
 };

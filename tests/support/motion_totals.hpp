@@ -5,10 +5,10 @@
 #include "ricochet/problem/viscous_force.hpp"
 #include "support/case_run.hpp"
 
-/// @file What a motion has as a whole, from the mass and the state alone.
+/// @file Momenta and energy of a motion, computed from the mass and the state alone.
 namespace ricochet::test_support {
 
-/// About the origin and current positions.
+/// Momenta about the origin and at current positions.
 struct Momenta {
   Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
   explicit Momenta(const CaseRun& run) {
@@ -26,7 +26,7 @@ struct Momenta {
   }
 };
 
-/// Kinetic and stored energy, less the work of constant loads.
+/// Returns the kinetic and stored energy, less the work of constant loads.
 [[nodiscard]] inline double energy_of(const CaseRun& run) {
   const State& state = run.state();
   return 0.5 * run.problem().mass.form(state.velocity) +

@@ -10,7 +10,7 @@ namespace ricochet::test_support {
 
 class MshText {
  public:
-  /// Names of the groups of edges, numbered from 1; the cells are the last group, "body".
+  /// `edge_groups` are the names of the groups of edges, numbered from 1; the cells are the last group, "body".
   explicit MshText(const std::vector<std::string>& edge_groups) : body_(static_cast<int>(edge_groups.size()) + 1) {
     head_ = fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n{}\n", body_);
     for (int i = 1; i < body_; ++i)

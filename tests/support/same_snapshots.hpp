@@ -6,7 +6,7 @@
 
 #include "ricochet/base/snapshot.hpp"
 
-/// @file Checkpoints that are the same to the bit.
+/// @file Checkpoints that are equal to the bit.
 namespace ricochet::test_support {
 
 inline void expect_same(const Snapshot& expected, const Snapshot& found) {

@@ -1,7 +1,7 @@
 #pragma once
 
-/// @file How much of a test a build with sanitizers does: they look at the code and not at the numbers, and cost two
-/// orders of magnitude, so a sample is enough.
+/// @file Extent of a test in a build with sanitizers: these check the code, not the numbers, and cost two orders of
+/// magnitude, so that a sample is enough.
 namespace ricochet::test {
 
 #ifdef __SANITIZE_ADDRESS__
@@ -10,7 +10,7 @@ inline constexpr bool is_sanitized = true;
 inline constexpr bool is_sanitized = false;
 #endif
 
-/// Of each kind of random problem.
+/// Returns the number of random problems of each kind.
 constexpr unsigned seeds(unsigned count) {
   return is_sanitized ? (count + 9) / 10 : count;
 }

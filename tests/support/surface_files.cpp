@@ -14,7 +14,7 @@ namespace {
 using Three = Eigen::Vector3d;
 using Triangle = std::array<Three, 3>;
 
-/// Turns it so that its normal goes away from a point.
+/// Orients a triangle such that its normal points away from a point.
 Triangle facing_away(Triangle triangle, const Three& from) {
   const Three normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
   if (normal.dot(triangle[0] - from) < 0.0) std::swap(triangle[1], triangle[2]);

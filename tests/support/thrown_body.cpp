@@ -63,7 +63,7 @@ ThrownBody one_sided_block() {
 
 namespace {
 
-/// The critical step of lumped masses is that of the smallest cells.
+/// Returns the step: the critical step of lumped masses is that of the smallest cells.
 std::string step_of(const std::string& time) {
   const bool is_explicit = time.find("\"cd-lagrange\"") != std::string::npos ||
                            time.find("\"taylor-flanagan\"") != std::string::npos ||

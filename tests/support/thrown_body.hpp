@@ -14,52 +14,53 @@ struct ThrownBody {
   std::string against = {};  ///< a group of another body, in place of the plane
 };
 
-/// Unstructured discs and balls of radius 1 that touch the obstacle soon; their whole boundary, or its lower part, is
-/// the contact boundary. The last two are pairs of bodies that meet each other: blocks with curved sides whose meshes
-/// do not match, both free.
+/// Returns unstructured discs and balls of radius 1 that touch the obstacle soon; their whole boundary, or its lower
+/// part, is the contact boundary. The last two are pairs of free bodies that meet each other: blocks with curved sides
+/// and non-matching meshes.
 std::vector<ThrownBody> thrown_bodies();
 
-/// One of these pairs, in two or three dimensions.
+/// Returns one of these pairs, in two or three dimensions.
 ThrownBody thrown_pair(int dimension);
 
-/// A block with contact on one side, of which every mass can be made.
+/// Returns a block with contact on one side, for which every mass can be built.
 ThrownBody one_sided_block();
 
-/// A body thrown at an oblique plane in oblique gravity, turning, so that no component is special: 150 steps of 0.01.
-/// `time`, `contact` and `obstacle` are further lines of [time], [[contact]] and [obstacle.plane].
+/// Returns a body thrown at an oblique plane in oblique gravity, rotating, so that no component is special: 150 steps
+/// of 0.01. `time`, `contact` and `obstacle` are additional lines of [time], [[contact]] and [obstacle.plane].
 std::string thrown_case(const ThrownBody& body, const std::string& mass, const std::string& time,
                         const std::string& contact = "", const std::string& obstacle = "");
 
-/// The same with friction's company: a plane that moves, a load that varies in time and space, mass damping.
+/// Returns the same case with features that interact with friction: a moving plane, a load that varies in time and
+/// space, mass damping.
 std::string dragged_case(const ThrownBody& body, const std::string& mass, const std::string& time,
                          const std::string& contact);
 
-/// Lines of [time] for a registered scheme.
+/// Returns the lines of [time] for a registered scheme.
 std::string time_of(const std::string& scheme);
-/// The masses that a scheme takes; it refuses all others. Every mass where this list does not know better: a new scheme
-/// is tested with all of them.
+/// Returns the masses that a scheme accepts; it refuses all others. The default is every mass, so that a new scheme is
+/// tested with all of them.
 std::vector<std::string> masses_of(const std::string& scheme);
 
-/// Those that do not refuse it.
+/// Returns false for schemes that refuse friction.
 bool takes_friction(const std::string& scheme);
 bool takes_damping(const std::string& scheme);
-/// Also at contact nodes.
+/// Returns true if stiffness damping is accepted at contact nodes as well.
 bool takes_stiffness_damping(const std::string& scheme);
 
-/// Every scheme, mass and multiplier space that is registered, whether they go together or not.
+/// Every registered scheme, mass and multiplier space, whether compatible or not.
 struct Discretization {
   std::string scheme, mass, multipliers;
 
-  /// Lines of [time] and [[contact]], with friction.
+  /// Returns the lines of [time] and [[contact]], with friction.
   [[nodiscard]] std::string time() const;
   [[nodiscard]] std::string contact() const;
-  /// The scheme takes the mass.
+  /// Returns true if the scheme accepts the mass.
   [[nodiscard]] bool is_possible() const;
   [[nodiscard]] std::string label() const { return scheme + ' ' + mass + ' ' + multipliers; }
 };
 std::vector<Discretization> all_discretizations();
 
-/// A block pushed into the floor by supports that move, also on contact nodes: 200 steps, under every scheme.
+/// A block pushed into the floor by moving supports, also on contact nodes: 200 steps, under every scheme.
 struct SupportedCase {
   std::string scheme, text;
 };

@@ -37,7 +37,7 @@ int gmsh_type(CellShape shape, int degree) {
 
 }  // namespace
 
-/// Groups of facets that hold all of a body's boundary are left out: elements belong to one group each.
+/// Groups of facets that contain the whole boundary of a body are left out, as elements belong to one group each.
 std::string write_mesh(const std::string& name, const Mesh& mesh) {
   std::string names, elements, nodes;
   int groups = 0, count = 0;

@@ -8,7 +8,7 @@
 #include "ricochet/fem/material.hpp"
 #include "support/case_run.hpp"
 
-/// @file A block whose stress relaxes, as pieces of a case.
+/// @file A viscoelastic block, as pieces of a case.
 namespace ricochet::test_support::viscous {
 
 inline std::string block(int dimension) {

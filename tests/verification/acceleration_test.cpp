@@ -13,7 +13,7 @@ using test_support::dragged_case;
 using test_support::StepEnd;
 using test_support::thrown_bodies;
 
-/// Of a step: what V₁ − V₀ must be, from the two ends.
+/// Expected V₁ − V₀ of a step, from the states at its two ends.
 using VelocityChange = std::function<Vector(const StepEnd& before, const StepEnd& after)>;
 
 /// Largest difference over all steps on dofs with mass, relative to the largest change.

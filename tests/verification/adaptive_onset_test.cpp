@@ -57,7 +57,7 @@ std::string onset(const std::string& kind, double length = 1.0, double mass = 1.
 
 const std::vector<std::string> onsets = {"support", "late support", "traction", "pressure", "gravity", "obstacle"};
 
-/// Course of a run of an onset: the way that kinetic and elastic energy go.
+/// Course of a run: kinetic and elastic energy over time.
 struct Course {
   std::vector<double> time, energy, corner;
   long attempts = 0, tolerated = 0;
@@ -84,7 +84,7 @@ Course course(const std::string& text, const std::vector<std::string>& changes) 
   return result;
 }
 
-/// Returns the distance of the corner's displacement over time, relative to its largest.
+/// Returns the distance between two displacements of the corner over time, relative to the largest.
 double distance(const Course& one, const Course& reference) {
   double worst = 0.0, size = 0.0;
   for (std::size_t i = 0; i < reference.time.size(); ++i) {
@@ -147,7 +147,7 @@ TEST(AdaptiveOnset, SetOffFromRestWithTheSameBits) {
   }
 }
 
-/// A velocity that jumps in every step has the same error at any length: that is told, and ends in time.
+/// A velocity that jumps in every step has the same error for every length: the run reports this and ends in time.
 TEST(AdaptiveOnset, EndWhereTheyDoNotGetOn) {
   const CaseRun run(test_support::thrown_case(test_support::one_sided_block(), "consistent", time_of("midpoint")));
   StepControl control(run.problem(), {.end = 1.0, .largest = 0.1, .smallest = 1e-9, .tolerance = 1e-3});
@@ -175,7 +175,7 @@ TEST(AdaptiveOnset, EndWhereTheyDoNotGetOn) {
   EXPECT_EQ(steps + 1, StepControl::most_steps);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("the last 10000 steps"), std::string::npos) << warnings[0];
-  // What it advises ends the run.
+  // The advice in the message lets the run finish.
   StepControl other(run.problem(), {.end = 1.0, .largest = 0.1, .smallest = 0.00625, .tolerance = 1e-3});
   other.start(still);
   for (steps = 0; !other.at_end(); ++steps) {

@@ -34,7 +34,7 @@ TEST(AdaptiveSteps, TimeHasNoDriftInAMillionSteps) {
   State still = run.state();
   still.velocity.setZero();
   control.start(still);
-  // Lengths change all the time: a jump of the velocity shortens steps, rest lets them grow.
+  // The step length changes continually: a jump of the velocity shortens the steps, rest lets them grow.
   State jumped = still;
   long steps = 0;
   double sum = 0.0, longest = 0.0, shortest = largest;
@@ -55,7 +55,7 @@ TEST(AdaptiveSteps, TimeHasNoDriftInAMillionSteps) {
   EXPECT_NEAR(control.time(), sum, 1e-9 * sum);
 }
 
-/// Under a scheme whose contact creates the more energy the shorter the steps, which then become shorter still.
+/// A scheme whose contact creates more energy with shorter steps, which therefore become shorter still.
 TEST(AdaptiveSteps, StopWhereTheSchemeHasMadeMostOfTheEnergy) {
   CaseRun run(test_support::thrown_case(thrown_bodies()[0], "consistent", time_of("midpoint")),
               {adaptive[0], adaptive[1], adaptive[2], "time.end=20"});
@@ -81,8 +81,8 @@ TEST(AdaptiveSteps, EndAtTheEnd) {
   }
 }
 
-/// A step that finds no solution is followed by a shorter one, near the end too; one that blows up by refusals that
-/// leave the measure of errors as it was.
+/// A step without a solution is repeated with a shorter length, also near the end; one that blows up is refused, and
+/// the error measure is unchanged.
 TEST(AdaptiveSteps, AttemptsThatFailLeaveNothingBehind) {
   const CaseRun run(test_support::thrown_case(test_support::one_sided_block(), "consistent", time_of("midpoint")));
   StepControl control(run.problem(), {.end = 0.33, .largest = 0.1, .smallest = 1e-9, .tolerance = 1e-3});
@@ -184,7 +184,7 @@ Bounces bounces(const std::vector<std::string>& changes) {
   return result;
 }
 
-/// Of the height over time, in the L² norm.
+/// Relative error of the height over time, in the L² norm.
 double error(const Bounces& run, const Bounces& reference) {
   const auto at = [](const Bounces& each, double time) {
     const auto after =
@@ -225,7 +225,7 @@ TEST(AdaptiveSteps, ReachAGivenErrorWithHalfTheWorkOfFixedSteps) {
     steps_before = steps;
   }
   EXPECT_LT(2.0 * static_cast<double>(adapted.solves), least) << "error " << reached;
-  // The first touch is met: free fall of 5 mm takes √(2H/g).
+  // The first contact is resolved: free fall from 5 mm takes √(2H/g).
   EXPECT_NEAR(adapted.first_touch, std::sqrt(2.0 * 0.005 / 9.81), 1.5e-3);
   EXPECT_LT(adapted.step_there, 2e-3);
 }

@@ -48,7 +48,7 @@ std::string part(const std::string& name, const std::string& mesh, double x, con
   return fmt::format("[part.{}]\nfile = \"{}\"\nmove = [{:.17g}, 0.0]\nvelocity = {}\n", name, mesh, x, velocity);
 }
 
-/// Young's modulus and density in one: waves run at 1.
+/// Material with equal Young's modulus and density: the wave speed is 1.
 std::string material(const std::string& part, double stiffness) {
   return fmt::format("[[material]]\ngroup = \"{}.body\"\nyoung = {}\npoisson = 0.0\ndensity = {}\n", part, stiffness,
                      stiffness);
@@ -61,7 +61,7 @@ std::string time_section(int cells, double end) {
       0.5 / cells, end);
 }
 
-/// Bars of length 1, the first one three times as heavy and stiff, which comes at the speed 1 from a gap of 0.1.
+/// Bars of length 1, the first one three times as heavy and stiff, approaching at the speed 1 from a gap of 0.1.
 std::string two_bars(int cells, const std::string& contact) {
   const std::string mesh = strip_mesh(0.0, 1.0, cells);
   return part("one", mesh, 0.0, "[1.0, 0.0]") + part("two", mesh, 1.1, "[0.0, 0.0]") + material("one", 3.0) +
@@ -71,9 +71,9 @@ std::string two_bars(int cells, const std::string& contact) {
 
 const std::string one_against_two = "group = \"one.right\"\nagainst = \"two.left\"\n";
 
-/// Both ends send their waves back at the same time, so that the bars part after 2L/c and leave no vibrations behind:
-/// all of the approach comes back, and the velocities are 1/2 and 3/2. What a mesh lacks of it, 1 − e, is left in it as
-/// oscillations behind the fronts, in proportion to the size of its cells.
+/// Both far ends reflect their waves at the same time, so that the bars separate after 2L/c without vibrations: the
+/// relative velocity is reversed, and the velocities are 1/2 and 3/2. The loss in a mesh, 1 − e, remains as
+/// oscillations behind the fronts and is proportional to the size of the cells.
 TEST(BodyImpacts, OfBarsOfOneTransitTimeGiveTheApproachBack) {
   double last_error = 1.0;
   for (const int cells : {10, 20, 40, 80}) {
@@ -96,7 +96,7 @@ TEST(BodyImpacts, OfBarsOfOneTransitTimeGiveTheApproachBack) {
     const double error = std::abs(*impact.restitution() - 1.0);
     EXPECT_LT(error, last_error) << cells;
     last_error = error;
-    // Impulses are opposite, and all that acts: to rounding of the velocities.
+    // The impulses are opposite and the only ones, up to rounding of the velocities.
     const Eigen::Vector3d of_one = impact.mass * (impact.after.velocity - impact.before.velocity);
     const Eigen::Vector3d of_two = impact.other->mass * (impact.other->after.velocity - impact.other->before.velocity);
     EXPECT_NEAR((of_one - impact.impulse).norm(), 0.0, 1e-11 * mass);
@@ -110,7 +110,7 @@ TEST(BodyImpacts, OfBarsOfOneTransitTimeGiveTheApproachBack) {
   EXPECT_LT(last_error, 0.01);
 }
 
-/// Which group carries the multipliers is a matter of the method; the first body is that of the case's `group`.
+/// The first body is that of the `group` in the case, whichever group carries the multipliers.
 TEST(BodyImpacts, NameTheBodyOfTheGroupFirst) {
   const Impact usual = impacts_of(two_bars(10, one_against_two + "multipliers_on = \"group\"\n")).at(0);
   const Impact other_side = impacts_of(two_bars(10, one_against_two + "multipliers_on = \"against\"\n")).at(0);
@@ -129,8 +129,8 @@ TEST(BodyImpacts, NameTheBodyOfTheGroupFirst) {
   }
 }
 
-/// Equal bars that meet at opposite speeds do what each does at a wall between them, to rounding: two of these impacts
-/// are the same numbers, oscillations of the mesh included.
+/// Equal bars that meet at opposite velocities move like each of them at a wall between them, to rounding, oscillations
+/// of the mesh included.
 TEST(BodyImpacts, OfEqualBarsAreThoseAtAWall) {
   const std::string mesh = strip_mesh(0.0, 1.0, 20);
   const std::string sides = "components = [\"y\"]\n", end = time_section(20, 4.0);
@@ -187,7 +187,7 @@ TEST(BodyImpacts, AreOneForEachBodyAndObstacle) {
   EXPECT_LT(from_left[0].impulse[0], 0.0);
   EXPECT_GT(from_right[0].impulse[0], 0.0);
   EXPECT_GT(floor[0].impulse[1], 0.0);
-  // What the middle bar has got from all three, to rounding.
+  // Impulse on the middle bar from all three contacts, to rounding.
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Impact& impact : from_left) sum -= impact.impulse;
   for (const Impact& impact : from_right) sum -= impact.impulse;
@@ -197,9 +197,9 @@ TEST(BodyImpacts, AreOneForEachBodyAndObstacle) {
   EXPECT_GT(sum.norm(), 0.01 * mass);
 }
 
-/// A bar of length 1 and speed 1 that strikes an equal bar whose far end is held: the two are one bar of length 2 that
-/// has struck a wall, half of it at rest, and after 4L/c the first one goes back at the whole of its speed. The wall's
-/// forces give the second bar as much as the first one, and nothing of that is of the approach.
+/// A bar of length 1 and speed 1 that hits an equal bar whose far end is held: together they are a bar of length 2 that
+/// has hit a wall, half of it at rest, and after 4L/c the first one returns at its full speed. The forces of the wall
+/// give the second bar as large an impulse as the first one, which is not part of the approach.
 TEST(BodyImpacts, OfABarAgainstAHeldOneGiveItsSpeedBack) {
   const auto text = [](int cells, const std::string& contact, const std::string& place) {
     const std::string mesh = strip_mesh(0.0, 1.0, cells);
@@ -222,20 +222,20 @@ TEST(BodyImpacts, OfABarAgainstAHeldOneGiveItsSpeedBack) {
     EXPECT_LT(error, 0.75 * last_error) << cells;
     last_error = error;
   }
-  // The same with the bars named the other way round.
+  // The same case with the roles of the bars exchanged.
   const std::vector<Impact> exchanged = impacts_of(text(80, "group = \"two.left\"\nagainst = \"one.right\"\n", ""));
   ASSERT_EQ(exchanged.size(), 1U);
   EXPECT_TRUE(exchanged[0].is_ground());
   ASSERT_TRUE(exchanged[0].restitution().has_value()) << why_no_restitution(exchanged[0]);
   EXPECT_NEAR(std::abs(1.0 - *exchanged[0].restitution()), last_error, 1e-6);
-  // Held by a support that moves the second bar is no part of the ground.
+  // A second bar that is held by a moving support is not part of the ground.
   const std::vector<Impact> moved = impacts_of(text(10, one_against_two, "value = \"-1e-3*t*t\"\n"));
   ASSERT_GE(moved.size(), 1U);
   EXPECT_FALSE(moved[0].other->held);
   EXPECT_DOUBLE_EQ(moved[0].approach_mass(), 0.5 * moved[0].mass);
 }
 
-/// Goes on from a snapshot to the same numbers, those of the other body included.
+/// Resuming from a snapshot gives the same numbers, also for the other body.
 TEST(BodyImpacts, GoOnFromASnapshot) {
   CaseRun run(two_bars(10, one_against_two));
   ImpactRecorder recorder = make_recorder(run);

@@ -52,7 +52,7 @@ std::vector<Index> all_points(const SemidiscreteProblem& problem) {
   return points;
 }
 
-/// What a P wave crosses: √((λ+2μ)/ρ) h over the size of the cells.
+/// Number of cells that a P wave crosses in a step: √((λ+2μ)/ρ) h over the size of the cells.
 TEST(ContactZones, HaveLayersForWhatAWaveCrosses) {
   const CaseRun run(plate());
   const std::vector<char> solved(static_cast<std::size_t>(run.problem().dof_count()), 1);

@@ -37,8 +37,8 @@ double heaviside(double r) {
 /// at +10.
 Problem impact() {
   const double c = 30.0, L = 10.0, v = 10.0;
-  // While in contact the end is at rest: u = −5 − v s + F(s − x/c) + F(s − (2L−x)/c), F(r) = v r H(r), s = t − 1/2 ≥ 0;
-  // afterwards the two waves have crossed the bar and the formula is the rebound.
+  // In contact the end is at rest: u = −5 − v s + F(s − x/c) + F(s − (2L−x)/c), F(r) = v r H(r), s = t − 1/2 ≥ 0;
+  // afterwards the two waves have crossed the bar and the formula describes the rebound.
   Exact exact;
   exact.displacement = [=](double x, double t) {
     const double s = std::max(t - 0.5, 0.0);
@@ -57,7 +57,8 @@ Problem impact() {
   return {"impact", 5.0, L, 900.0, 1.0, c, 1.6, "[initial]\nvelocity = [-10.0, 0.0]\n", exact, {{0.5, 7.0 / 6.0}}};
 }
 
-/// The same bar dropped from rest with g = 10. Period 16/3; the second contact is the time reverse of the first.
+/// A bar like that of impact(), dropped from rest with g = 10. Its period is 16/3; the second contact is the time
+/// reverse of the first.
 Problem bounce() {
   const double c = 30.0, L = 10.0, v = 10.0, g = 10.0;
   const auto wave = [=](double r) { return r > 0.0 ? v * r + 0.5 * g * r * r : 0.0; };
@@ -81,7 +82,7 @@ Problem bounce() {
 
 /// E = ρ = L = 1, right end fixed, compressed by ½ − x/2 and released. Period 3; contact stress ½ on [1, 2].
 Problem rod() {
-  // The closed form is that of the end at x = 0; fields inside are left out.
+  // The closed form holds for the end at x = 0; the fields inside are omitted.
   Exact exact;
   const auto end_position = [](double t) {
     const double s = std::fmod(t, 3.0);
@@ -123,7 +124,7 @@ constexpr const char* reduced_midpoint = "[mass]\ntype = \"equivalent\"\n[time]\
 constexpr const char* semi_explicit = "[mass]\ntype = \"equivalent-lumped\"\n[time]\nscheme = \"semi-explicit\"\n";
 
 /// Runs a problem on `cells` cells with Δt = ½ h/c. Errors are relative L² norms over the bar and time (displacement of
-/// the contact end alone where the closed form is only known there).
+/// the contact end alone if the closed form is known only there).
 Errors solve(const Problem& problem, int cells, int degree, bool triangles, const char* scheme = trapezoidal) {
   const double h = problem.length / cells;
   const double step = 0.5 * h / problem.speed;
@@ -189,7 +190,7 @@ double order(double coarse, double fine) {
   return fine > 0.0 ? std::log2(coarse / fine) : 0.0;
 }
 
-/// What `[time]` says before its step.
+/// Scheme and parameters in `[time]`, on one line.
 std::string scheme_name(const std::string& text) {
   const std::size_t begin = text.find("scheme");
   std::string name = begin == std::string::npos ? "reduced-kane" : text.substr(begin);
@@ -233,7 +234,7 @@ double mean_order(const std::vector<Errors>& all, double Errors::*part) {
 
 /// Contacts begin within one step of the exact time on every mesh. They end when the tail of the dispersed release wave
 /// has passed, which is wider than a step on fine meshes (its width shrinks like h^(2/3), the step like h): within one
-/// step up to 100 cells, and within the step of 100 cells beyond.
+/// step up to 100 cells, and within the step of 100 cells on finer meshes.
 void expect_contact_times(const Problem& problem, const std::vector<Errors>& all, const std::vector<int>& cells) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     const double wide = all[k].step * std::max(1.0, cells[k] / 100.0) * (1.0 + 1e-9);
@@ -246,8 +247,8 @@ void expect_contact_times(const Problem& problem, const std::vector<Errors>& all
   }
 }
 
-/// With a lumped mass and central differences waves of wave number k lag by c (kh)²(1−r²)/8 per time, r = cΔt/h, so a
-/// front that has travelled x is (x h² (1−r²)/8)^⅓ wide: contacts end by so much late at most, and not early.
+/// With a lumped mass and central differences, waves of wave number k lag by c (kh)²(1−r²)/8 per time, r = cΔt/h, so a
+/// front that has travelled x is (x h² (1−r²)/8)^⅓ wide: contacts end at most that much late, and not early.
 void expect_late_releases(const Problem& problem, const std::vector<Errors>& all, const std::vector<int>& cells) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     const double h = problem.length / cells[k];
@@ -262,7 +263,7 @@ void expect_late_releases(const Problem& problem, const std::vector<Errors>& all
   }
 }
 
-/// The rebound is uniform at +10 but for what the mesh keeps as oscillation behind the fronts, which vanishes with h.
+/// The rebound is uniform at +10 apart from oscillations behind the fronts, which vanish with h.
 void expect_rebound(const std::vector<Errors>& all) {
   for (std::size_t k = 1; k < all.size(); ++k) {
     EXPECT_LT(10.0 - all[k].end_velocity, 10.0 - all[k - 1].end_velocity);
@@ -344,8 +345,7 @@ TEST(ExactBars, BouncingIsPeriodic) {
   problem.exact.velocity = nullptr;  // only times are compared
   problem.exact.displacement = [](double, double) { return 0.0; };
   problem.contacts = {{1.0, 5.0 / 3.0}, {11.0 / 3.0, 13.0 / 3.0}, {19.0 / 3.0, 7.0}};
-  // Each bounce leaves a little oscillation in the mesh, so later flights are a little short: the times converge with
-  // h.
+  // Each bounce leaves small oscillations in the mesh, so later flights are slightly short: the times converge with h.
   double last_worst = 1.0;
   for (const int cells : {50, 100, 200, 400}) {
     const Errors found = solve(problem, cells, 1, false);

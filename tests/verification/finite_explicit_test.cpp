@@ -14,7 +14,7 @@
 #include "support/same_snapshots.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file The scheme semi-explicit for bodies that turn and stretch: what it keeps, and what it converges to.
+/// @file The scheme semi-explicit at finite strain: its balances and its limit.
 namespace ricochet {
 namespace finite_explicit_test {
 
@@ -89,8 +89,8 @@ TEST(FiniteExplicit, FreeFlightKeepsMomenta) {
   }
 }
 
-/// The energy goes up and down by O(h²), and does not drift over 10⁴ steps; the account closes with what the internal
-/// forces miss.
+/// The energy oscillates by O(h²) and does not drift over 10⁴ steps; the account closes with the integration error of
+/// the internal forces.
 TEST(FiniteExplicit, TheEnergyOfALongFlightIsBounded) {
   double before = 0.0;
   for (const double step : {0.004, 0.002}) {
@@ -225,7 +225,7 @@ TEST(FiniteExplicit, MomentaChangeByTheImpulsesOfAllForces) {
       false);
 }
 
-/// Round an axis and on a ball the same.
+/// The balances also hold for axisymmetric bodies and on a ball.
 TEST(FiniteExplicit, RingsAndBallsBalance) {
   std::string ring = case_of({.height = 0.02, .steps = 300.0, .more = "friction = 0.4\n"},
                              "[\"0.03*x*sin(3*y)\", \"0.02*sin(5*y)\"]", "[\"0\", \"-0.5\"]");
@@ -275,7 +275,7 @@ TEST(FiniteExplicit, ConvergesToReducedKane) {
   }
 }
 
-/// Also where the critical step falls and is looked for again and again, and the factor of contact nodes is renewed.
+/// Also if the critical step decreases and is recomputed repeatedly, and the factor of the contact nodes is renewed.
 TEST(FiniteExplicit, ResumesToTheSameBits) {
   const std::string bounce =
       case_of({.step = 0.004, .height = 0.02, .steps = 300.0, .more = "friction = 0.3\n"},

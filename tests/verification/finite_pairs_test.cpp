@@ -11,7 +11,7 @@
 #include "support/motion_totals.hpp"
 #include "support/same_snapshots.hpp"
 
-/// @file Contact between bodies that turn: what rows that turn with them must keep.
+/// @file Contact between rotating bodies: the balances with contact rows that rotate with them.
 namespace ricochet {
 namespace finite_pairs_test {
 
@@ -21,7 +21,7 @@ using test_support::expect_same;
 using test_support::mesh_geometry;
 using test_support::Momenta;
 
-/// Two blocks that do not match, one above the other, of which the upper one comes down and both turn.
+/// Two blocks with non-matching meshes, one above the other; the upper one comes down, and both rotate.
 struct Blocks {
   int dimension = 2;
   std::string contact = "friction = 0.3\n";
@@ -76,7 +76,7 @@ Blocks colliding(int dimension) {
   return blocks;
 }
 
-/// Bodies that meet, turn and part: no energy arises, both momenta stay, and the account closes.
+/// Bodies that collide, rotate and separate: no energy is created, both momenta are conserved, and the account closes.
 TEST(FinitePairs, CollisionsKeepMomentaAndCreateNoEnergy) {
   for (const int dimension : {2, 3}) {
     for (const std::string contact :
@@ -101,7 +101,7 @@ TEST(FinitePairs, CollisionsKeepMomentaAndCreateNoEnergy) {
             const Momenta now(run);
             EXPECT_LT((now.linear - first.linear).norm(), 1e-12) << what;
             EXPECT_LT((now.angular - first.angular - momentum.impulse().moment).norm(), 1e-11) << what;
-            // Friction across what has slid leaves a part along the normal, in space alone.
+            // In 3D, friction transverse to the slip leaves a component along the normal.
             if (dimension == 2 || contact.find("friction") == std::string::npos) {
               EXPECT_LT((now.angular - first.angular).norm(), 1e-9) << what;
             }
@@ -139,7 +139,7 @@ TEST(FinitePairs, TiedBodiesKeepEnergyAndMomenta) {
   }
 }
 
-/// Superposed rotations of the whole motion change nothing but the places, contact and friction included.
+/// Superposed rotations of the whole motion change only the positions, with contact and friction.
 TEST(FinitePairs, AMotionThatIsTurnedIsTheSameMotion) {
   Blocks blocks = colliding(2);
   blocks.steps = 60;
@@ -155,7 +155,7 @@ TEST(FinitePairs, AMotionThatIsTurnedIsTheSameMotion) {
   turned.move = rotated(0.1, 0.5 + blocks.gap);
   CaseRun other(case_of(turned));
   const Matrix rotation = (Matrix(2, 2) << c, -s, s, c).finished();
-  // Nodes are numbered by where they are; people's numbers stay.
+  // Nodes are numbered by position; the numbers of the file do not change.
   const auto places = [](const CaseRun& run) {
     const Index nodes = run.problem().nodes.cols();
     Points result(2, nodes);
@@ -172,7 +172,7 @@ TEST(FinitePairs, AMotionThatIsTurnedIsTheSameMotion) {
   EXPECT_GT((first - at_start).cwiseAbs().maxCoeff(), 0.1);
 }
 
-/// Rows that lag behind, warm starts and momenta are all in a checkpoint.
+/// A checkpoint contains lagged contact rows, warm starts and momenta.
 TEST(FinitePairs, GoOnFromACheckpointWithTheSameBits) {
   for (const int dimension : {2, 3}) {
     Blocks blocks = colliding(dimension);

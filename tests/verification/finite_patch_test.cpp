@@ -18,7 +18,7 @@ namespace finite_patch_test {
 
 struct Law {
   std::string name, keys;
-  /// Cauchy stress of simple shear by γ (volume stays), from B = F Fᵀ.
+  /// Cauchy stress of simple shear by γ (isochoric), from B = F Fᵀ.
   Eigen::Matrix3d (*shear)(double gamma);
 };
 
@@ -90,7 +90,7 @@ double field_error(const CaseRun& run, const Matrix& gradient) {
   return (u - gradient.topLeftCorner(d, d) * run.problem().nodes).cwiseAbs().maxCoeff();
 }
 
-/// Of each cell, as results show them.
+/// Expects these principal stretches in every cell, as written in the results.
 void expect_stretches(const CaseRun& run, const std::array<double, 3>& wanted) {
   const std::vector<std::string> names{"principal_stretch_1", "principal_stretch_2", "principal_stretch_3"};
   const auto sources = make_field_sources({run.model().body, run.problem(), names});
@@ -108,7 +108,8 @@ void expect_stretches(const CaseRun& run, const std::array<double, 3>& wanted) {
 
 class Homogeneous : public testing::TestWithParam<ElementKind> {};
 
-/// Bottom and top are held where simple shear has them, and its nominal stress P = σ F⁻ᵀ acts on the other sides.
+/// Bottom and top are held at their positions in simple shear, and its nominal stress P = σ F⁻ᵀ acts on the other
+/// sides.
 TEST_P(Homogeneous, SimpleShear) {
   constexpr double gamma = 0.6;
   const ElementKind& kind = GetParam();
@@ -164,7 +165,7 @@ struct Squeezed {
   }
 };
 
-/// Compares what probes and fields say of a body on a plane: pressures of all its contact nodes, and areas.
+/// Compares probes and fields of a body on a plane with the exact pressure at all contact nodes and with the areas.
 void expect_contact(const CaseRun& run, double pressure, double nominal, double area, const std::string& what) {
   Observer observer(run.problem());
   const Observation observation = observer.observe(run.state());
@@ -179,7 +180,7 @@ void expect_contact(const CaseRun& run, double pressure, double nominal, double 
   ASSERT_EQ(names.size(), row.size());
   EXPECT_EQ(names[row.size() - 2], "c.area");
   EXPECT_EQ(names[row.size() - 1], "c.nominal_area");
-  // Without the stability of their space some multipliers of "p0" bear nothing, and their facets are not pressed.
+  // The space "p0" is unstable here: some multipliers are zero, and their facets are not pressed.
   const bool all_press = run.state().forces.normal_reaction.minCoeff() > 0.0;
   if (all_press || what.find(" p0 ") == std::string::npos) {
     EXPECT_NEAR(row[row.size() - 2], area, 1e-9) << what;
@@ -196,10 +197,10 @@ void expect_contact(const CaseRun& run, double pressure, double nominal, double 
   }
 }
 
-/// A block that is squeezed against a plane without friction is squeezed the same everywhere, and its pressure on the
-/// plane is uniform: by 30 % with a top that is moved; by 15 % so with a pressure on its sides, which follows them, and
-/// with a dead load on top, where the plane alone holds it. The true pressure is Cauchy's stress, on the area that the
-/// stretch across has made of the unit square; the nominal one is the force per undeformed area.
+/// A block squeezed against a frictionless plane deforms homogeneously, and its pressure on the plane is uniform: by 30
+/// % with a moving top; by 15 % with a moving top and a follower pressure on its sides, and with a dead load on top,
+/// where the plane alone holds it. The true pressure is the Cauchy stress, on the deformed area of the unit square; the
+/// nominal one is the force per undeformed area.
 TEST_P(Homogeneous, SqueezedAgainstAPlane) {
   const ElementKind& kind = GetParam();
   const int d = kind.dimension(), up = d - 1;
@@ -240,7 +241,7 @@ TEST_P(Homogeneous, SqueezedAgainstAPlane) {
   }
 }
 
-/// Round the axis and across a sheet, too.
+/// Principal stretches in the hoop direction and through the thickness of a sheet.
 TEST(PrincipalStretches, OfRingsAndSheets) {
   const ElementKind kind{CellShape::quadrilateral, 1, 2};
   const std::string mesh = mesh_of(kind, 0.15), law = "law = \"neo-hookean\"\nlambda = 1.3\nmu = 0.8\n";

@@ -53,7 +53,7 @@ std::vector<double> stress_of(const CaseRun& run) {
 constexpr double lambda = 1.3, mu = 0.8;
 const std::string neo_hookean = "law = \"neo-hookean\"\nlambda = 1.3\nmu = 0.8\n";
 
-/// Of W = (μ/2)(I₁ − 3 − 2 ln J) + (λ/4)(J² − 1 − 2 ln J): σ_i = [μ(λ_i² − 1) + ½λ(J² − 1)]/J.
+/// Principal stress σ_i = [μ(λ_i² − 1) + ½λ(J² − 1)]/J of W = (μ/2)(I₁ − 3 − 2 ln J) + (λ/4)(J² − 1 − 2 ln J).
 double principal_stress(double stretch, double volume) {
   return (mu * (stretch * stretch - 1.0) + 0.5 * lambda * (volume * volume - 1.0)) / volume;
 }
@@ -98,7 +98,7 @@ TEST(FiniteStatics, BiaxialStretch) {
   }
 }
 
-/// Of plane stress the same in a plane mesh.
+/// Plane stress in a plane mesh agrees with the stretch of a sheet.
 TEST(FiniteStatics, PlaneStressIsTheStretchOfASheet) {
   CaseRun run(
       body(square(), neo_hookean,

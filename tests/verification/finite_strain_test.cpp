@@ -11,7 +11,7 @@
 #include "support/motion_totals.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file Bodies that turn and stretch: what every step must keep.
+/// @file Finite rotations and strains: the balances of every step.
 namespace ricochet {
 namespace finite_strain_test {
 
@@ -86,8 +86,8 @@ TEST(FiniteStrain, FreeFlightKeepsEnergyAndMomenta) {
   }
 }
 
-/// Also where corrections shrink so fast that places have converged before σ is known: strains of 10⁻⁷. (Displacements
-/// of 10⁻⁵ have a rounding of 10⁻¹⁴ of those.)
+/// Also for strains of 10⁻⁷, at which corrections shrink so fast that positions have converged before σ is known.
+/// (Displacements of 10⁻⁵ have a rounding of 10⁻¹⁴ of those.)
 TEST(FiniteStrain, SmallVibrationsKeepEnergyAsExactly) {
   for (const std::string& scheme : exact_schemes()) {
     for (const double step : {0.01, 0.2}) {
@@ -141,7 +141,7 @@ TEST(FiniteStrain, BouncingBalances) {
   }
 }
 
-/// Round an axis the same: energy is exact, and only what goes along the axis has momentum.
+/// Axisymmetric bodies: energy is exact, and only motion along the axis has momentum.
 TEST(FiniteStrain, AxisymmetricBodiesBounceWithExactEnergy) {
   std::string text = case_of({.scheme = "mean-reaction", .height = 0.05}, "[\"0.03*x*sin(3*y)\", \"0.02*sin(5*y)\"]",
                              "[\"0\", \"-0.5\"]");
@@ -165,10 +165,10 @@ TEST(FiniteStrain, AxisymmetricBodiesBounceWithExactEnergy) {
   EXPECT_GT(largest_force, 1.0);
 }
 
-/// A rigid spin has no strain, however far a step turns: bodies do not swell. (They are stretched by ρω²L²/E alone.)
+/// A rigid spin has no strain, however large the rotation in a step: bodies do not swell. (Their stretch is ρω²L²/E.)
 TEST(FiniteStrain, ARigidSpinDoesNotSwell) {
   for (const int dimension : {2, 3}) {
-    // In space such steps are cut: the body of their middle is narrower across its axis, and the operator is not.
+    // In 3D such steps are subdivided: the mean configuration is narrower across its axis, and the operator is not.
     Flight flight{.dimension = dimension, .step = 500.0, .height = 1e6, .more = {}, .steps = 70};
     CaseRun run(case_of(
         flight, dimension == 2 ? "[\"0\", \"0\"]" : "[\"0\", \"0\", \"0\"]",
@@ -186,7 +186,7 @@ TEST(FiniteStrain, ARigidSpinDoesNotSwell) {
   }
 }
 
-/// Superposed rotations of the whole motion change nothing but the places.
+/// Superposed rotations of the whole motion change only the positions.
 TEST(FiniteStrain, AMotionThatIsTurnedIsTheSameMotion) {
   for (const std::string scheme : {"reduced-kane", "mean-reaction", "newmark", "generalized-alpha"}) {
     const double angle = 0.7, c = std::cos(angle), s = std::sin(angle);
@@ -210,7 +210,7 @@ TEST(FiniteStrain, AMotionThatIsTurnedIsTheSameMotion) {
   }
 }
 
-/// In the limit of small loads the linear results come back.
+/// In the limit of small loads the results are those of the linear law.
 TEST(FiniteStrain, SmallMotionsAreLinear) {
   for (const std::string scheme : {"reduced-kane", "mean-reaction", "newmark", "generalized-alpha"}) {
     for (const std::string law : {"neo-hookean", "saint-venant-kirchhoff"}) {

@@ -8,7 +8,7 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file Where bodies will be.
+/// @file Predicted positions of bodies in free flight.
 namespace ricochet {
 namespace flight_prediction_test {
 

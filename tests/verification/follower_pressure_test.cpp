@@ -10,8 +10,8 @@
 #include "support/convergence.hpp"
 #include "support/motion_totals.hpp"
 
-/// @file Pressure that follows the surface: inflated spheres and cylinders against the solution of the radial equation,
-/// and what every step under it must keep.
+/// @file Follower pressure: inflated spheres and cylinders compared with the solution of the radial equation, and the
+/// balances of every step.
 namespace ricochet {
 namespace follower_pressure_test {
 
@@ -25,12 +25,12 @@ constexpr double inner = 1.0, outer = 2.0;
 /// A thick sphere (`hoops` = 2) or cylinder in plane strain (1) of W = (μ/2)(I₁ − 3 − 2 ln J) + (λ/4)(J² − 1 − 2 ln J)
 /// under a pressure inside: with the stretches l = r′ and h = r/R and the nominal stresses P_l = ∂W/∂l,
 ///   P_l′ + hoops (P_l − P_h)/R = 0,   P_l = −p h^hoops at the inner radius, 0 at the outer one,
-/// by shooting with the method of Runge and Kutta.
+/// solved by shooting with the Runge–Kutta method.
 class InflatedShell {
  public:
   InflatedShell(int hoops, double lambda, double mu, double pressure)
       : hoops_(hoops), lambda_(lambda), mu_(mu), pressure_(pressure) {
-    // The stress at the outer radius rises with the radius inside as long as the shell is stable.
+    // As long as the shell is stable, the stress at the outer radius rises with the deformed inner radius.
     double low = inner, high = inner;
     while (shoot(high) <= 0.0) high += 0.01;
     for (int k = 0; k < 100; ++k) {
@@ -55,7 +55,7 @@ class InflatedShell {
   [[nodiscard]] double nominal(double stretch, double j) const {
     return mu_ * (stretch - 1.0 / stretch) + 0.5 * lambda_ * (j * j - 1.0) / stretch;
   }
-  /// l of P_l, which rises with it.
+  /// Radial stretch l for a given P_l, which increases with l.
   [[nodiscard]] double stretch_of(double stress, double h) const {
     double low = 1e-3, high = 1e3;
     for (int k = 0; k < 60; ++k) {
@@ -147,7 +147,7 @@ std::string case_of(const Shell& shell) {
          "\"trapezoidal\"\nstep = 0.01\nend = 0.01\n";
 }
 
-/// The largest error of a node, relative to the displacement inside.
+/// Largest error at a node, relative to the displacement of the inner surface.
 double inflation_error(const Shell& shell) {
   const int hoops = shell.supports.size() == 3 || shell.plane == "axisymmetric" ? 2 : 1;
   const InflatedShell exact(hoops, shell.lambda, shell.mu, shell.pressure);
@@ -156,7 +156,7 @@ double inflation_error(const Shell& shell) {
   double error = 0.0;
   for (Index node = 0; node < nodes.cols(); ++node) {
     const Vector at = nodes.col(node), u = run.state().displacement.segment(node * at.size(), at.size());
-    // Nodes that degree 2 adds to straight cells are not on the circle.
+    // The nodes that degree 2 adds to straight cells do not lie on the circle.
     error = std::max(error, (u - exact.displacement(at.norm()) * at.normalized()).norm());
   }
   return error / exact.displacement(inner);
@@ -201,7 +201,7 @@ TEST(FollowerPressure, InflatesThickSpheresInSpace) {
   for (const int degree : {1, 2}) {
     Convergence errors(fmt::format("sphere, an eighth, degree {}", degree));
     double error = 0.0;
-    // Meshes of Gmsh, not refined ones: sizes are halved, and so are cells, on the whole.
+    // Gmsh generates each mesh anew: halving the mesh size halves the cells on average.
     for (const double size : degree == 1 ? std::vector{0.25, 0.125} : std::vector{0.5, 0.25}) {
       error = inflation_error({.mesh = eighth(size, degree), .degree = degree, .supports = {"x", "y", "z"}});
       errors.add(error);
@@ -211,8 +211,8 @@ TEST(FollowerPressure, InflatesThickSpheresInSpace) {
   }
 }
 
-/// Near the largest pressure that it holds (about 0.77 μ) the shell has hardly any stiffness left, and beyond there is
-/// no equilibrium: the error says for what part of the pressure there is one.
+/// Near the limit pressure (about 0.77 μ) the shell has hardly any stiffness left, and beyond it there is no
+/// equilibrium: the error states the fraction of the pressure for which there is one.
 TEST(FollowerPressure, GoesAsFarAsTheShellHolds) {
   Shell shell{.mesh = ring(4, 2, false), .degree = 2, .plane = "axisymmetric", .pressure = 0.76};
   EXPECT_LT(inflation_error(shell), 1e-2);
@@ -233,7 +233,7 @@ struct Flight {
   std::string pressure = "6*sin(20*t+0.3)", more = "";
 };
 
-/// A spinning, stretched block of E = 100, ρ = 1 above a floor, with a pressure all round it.
+/// A spinning, stretched block of E = 100, ρ = 1 above a floor, with a pressure on its whole boundary.
 std::string case_of(const Flight& flight) {
   const bool plane = flight.dimension == 2;
   const std::string mesh = plane
@@ -267,7 +267,7 @@ double account_error(CaseRun& run) {
   return account.residual(account.energies(run.state()));
 }
 
-/// A pressure all round has neither resultant nor moment, and its work is in the account.
+/// A pressure on the whole boundary has neither resultant nor moment, and the energy account contains its work.
 TEST(FollowerPressure, InFlightMomentaAreKeptAndTheAccountCloses) {
   for (const int dimension : {2, 3}) {
     for (const std::string scheme :
@@ -281,7 +281,8 @@ TEST(FollowerPressure, InFlightMomentaAreKeptAndTheAccountCloses) {
         const Momenta now(run);
         if (scheme != "generalized-alpha") drifted = std::max(drifted, (now.linear - first.linear).norm());
         if (keeps_moments) turned = std::max(turned, (now.angular - first.angular).norm());
-        // The account of these two leaves out what the middle's force misses of the elastic energy.
+        // The accounts of these two omit the difference between the work of the midpoint force and the change of
+        // elastic energy.
         if (scheme != "midpoint" && scheme != "kane") worst = std::max(worst, std::abs(account_error(run)));
         work = std::max(work, std::abs(run.simulation().account().works().load));
       });
@@ -293,7 +294,7 @@ TEST(FollowerPressure, InFlightMomentaAreKeptAndTheAccountCloses) {
   }
 }
 
-/// On contact nodes, too, which have no inertia.
+/// The pressure also acts on massless contact nodes.
 TEST(FollowerPressure, ABodyThatBouncesUnderPressure) {
   for (const int dimension : {2, 3}) {
     for (const std::string scheme : {"reduced-kane", "mean-reaction", "reduced-midpoint", "newmark"}) {
@@ -325,7 +326,7 @@ TEST(FollowerPressure, ABodyThatBouncesUnderPressure) {
   }
 }
 
-/// With the linear law a pressure is a traction along the normal of the start.
+/// With the linear law a pressure is a traction along the normal of the undeformed surface.
 TEST(FollowerPressure, IsADeadLoadWithTheLinearLaw) {
   const std::string mesh = ring(4, 1, false);
   const std::string rest =

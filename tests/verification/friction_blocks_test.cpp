@@ -10,7 +10,7 @@
 #include "support/paths.hpp"
 
 // Stiff blocks that slide like rigid ones: to rest, down a slope, along with a belt. The cases of cases/incline and
-// cases/conveyor with other schemes and masses, held against the closed forms, and each other.
+// cases/conveyor with other schemes and masses, compared with the closed forms and with each other.
 
 namespace ricochet {
 namespace friction_blocks_test {
@@ -18,10 +18,10 @@ namespace friction_blocks_test {
 using test_support::CaseRun;
 
 constexpr double gravity = 9.81;
-constexpr double block_mass = 1000.0 * 0.2 * 0.1;  ///< of cases/incline/block.msh
+constexpr double block_mass = 1000.0 * 0.2 * 0.1;  ///< mass of cases/incline/block.msh
 constexpr double coefficient = 0.3;
-constexpr double speed = 0.5;  ///< of the belt
-/// The time a shear wave takes through the block: what sets it apart from a rigid one.
+constexpr double speed = 0.5;  ///< velocity of the belt
+/// Time of passage of a shear wave through the block, the scale of its deviation from a rigid one.
 const double passage = 0.1 / std::sqrt(5.0e6 / 1000.0);
 
 /// Runs a case of cases/ with overrides.
@@ -61,7 +61,7 @@ double contact_force(const CaseRun& run, int component) {
 struct Method {
   std::string name;
   std::vector<std::string> overrides;
-  /// klr-conserving opens its account of energy half a step after the start.
+  /// Time not covered by the energy account: klr-conserving opens it half a step after the start.
   [[nodiscard]] double missed_time() const { return name.find("klr") == 0 ? 0.5 * 5.0e-4 : 0.0; }
 };
 
@@ -101,8 +101,8 @@ TEST(SlidingBlock, ComesToRest) {
   }
 }
 
-// Galilean invariance: a block at rest on a belt that runs is a block that runs on a floor at rest. The belt gives m
-// v², half of which is lost to friction.
+// Galilean invariance: a block at rest on a moving belt is a block that moves on a floor at rest. The belt supplies
+// m v², half of which is lost to friction.
 TEST(Conveyor, MovesLikeTheBlockThatSlidesSeenFromTheBelt) {
   for (const Method& method : methods()) {
     CaseRun belt = run_case_file("conveyor/conveyor.toml", method.overrides);
@@ -142,8 +142,8 @@ TEST(Conveyor, MovesLikeTheBlockThatSlidesSeenFromTheBelt) {
 
 const double slope = 20.0 * M_PI / 180.0;
 
-/// An elastic block starts a little ahead: its friction only grows as the first shear wave loads the base, ρ c_s g sin
-/// θ t, until it is F ρ g H cos θ.
+/// An elastic block starts slightly ahead: its friction grows only as the first shear wave loads the base,
+/// ρ c_s g sin θ t, until it is F ρ g H cos θ.
 double head_start(double friction, double passage_time) {
   return 0.5 * friction * friction * gravity * std::cos(slope) * passage_time / std::tan(slope);
 }
@@ -173,7 +173,7 @@ TEST(Incline, AcceleratesAboveTheThresholdAndHoldsBelow) {
   }
 }
 
-// The stiffer, the more like a rigid block: the difference is halved when the wave speed is doubled.
+// The difference from a rigid block is halved when the wave speed is doubled.
 TEST(Incline, ApproachesTheRigidBlockAsStiffnessGrows) {
   std::vector<double> differences;
   for (const int factor : {1, 2, 4}) {
@@ -210,7 +210,7 @@ TEST(Incline, StaticEquilibriumExistsBelowTheThresholdOnly) {
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::invalid_input) << error.what();
       EXPECT_NE(std::string(error.what()).find("no equilibrium"), std::string::npos) << error.what();
-      // With the force that friction lacks.
+      // The force that friction cannot supply.
       const double missing = weight * std::sin(slope) * (1.0 - factor);
       EXPECT_NE(std::string(error.what()).find(fmt::format("({:.3g}, ", missing)), std::string::npos) << error.what();
     }

@@ -14,7 +14,7 @@
 #include "support/paths.hpp"
 #include "support/thrown_body.hpp"
 
-// Oblique impacts: what momentum, angular momentum and Coulomb's law demand of any body, and the stick and slip of
+// Oblique impacts: balances of momentum and angular momentum and Coulomb's law for any body, and stick and slip in
 // cases/oblique.
 
 namespace ricochet {
@@ -52,14 +52,14 @@ Vector force(const CaseRun& run) {
   return result;
 }
 
-/// γ of a Newmark scheme; midpoint and klr-conserving take the force of the step itself.
+/// Scheme with its weight γ of the Newmark forces; midpoint and klr-conserving use the force of the step itself.
 struct Method {
   std::string time, mass;
   double current_weight;
 };
 
-// In a step the momentum changes by h [(1−γ) f₀ + γ f₁], and the angular momentum by the torque of that force: linear
-// elasticity has no say in it, and neither has friction but by its force.
+// In a step the momentum changes by h [(1−γ) f₀ + γ f₁], and the angular momentum by the moment of that force: linear
+// elasticity does not contribute, and friction only through its force.
 TEST(ObliqueImpact, MomentumAndAngularMomentumBalanceInEveryStep) {
   for (const test_support::ThrownBody& body : test_support::thrown_bodies()) {
     for (const Method& method :
@@ -103,7 +103,7 @@ std::string cases() {
   return test_support::source_path("cases/");
 }
 
-/// What came of throwing the disc of cases/oblique.
+/// Results of throwing the disc of cases/oblique.
 struct Throw {
   Eigen::Vector2d start, end;         ///< momentum
   Eigen::Vector2d impulse{0.0, 0.0};  ///< of contact, as the scheme weights it
@@ -166,8 +166,8 @@ TEST(ObliqueImpact, ImpulseRatioIsAtMostTheCoefficient) {
     EXPECT_GT(ratio, last_ratio) << speed;
     EXPECT_LT(found.most_per_point, 1e-14) << speed;
     EXPECT_LT(found.friction_work, 0.0) << speed;
-    // Besides friction points that touch or stick take some, of first order in the step: 1.1e-3 at most, 5.7e-4 with
-    // half the step. Nothing gives any.
+    // Besides friction, points that close or stick dissipate energy of first order in the step: 1.1e-3 at most, 5.7e-4
+    // with half the step. No energy is created.
     EXPECT_LT(found.energy_change, found.friction_work + 1e-12 * found.kinetic) << speed;
     EXPECT_GT(found.energy_change, found.friction_work - 1.5e-3 * found.kinetic) << speed;
     last_ratio = ratio;
@@ -181,7 +181,7 @@ TEST(ObliqueImpact, SlipsSticksAndSlipsBack) {
   EXPECT_EQ(found.phases.front(), 's');
   EXPECT_NE(found.phases.find('S'), std::string::npos);
   EXPECT_EQ(found.phases.back(), 's');
-  // The lowest point goes back: friction takes more than the third of v_x that stops it on a rigid disc.
+  // The lowest point moves back: friction takes more than the third of v_x that would stop it on a rigid disc.
   EXPECT_LT(found.end[0], 0.6 * found.start[0]);
   EXPECT_EQ(throw_disc(0.3, {}).phases, "s");
 }
@@ -202,8 +202,8 @@ TEST(ObliqueImpact, SchemesThatConserveEnergyAgree) {
   }
 }
 
-// A block thrown across a slope with F = tan θ. Its friction turns with its velocity and takes as much from its speed
-// as gravity adds to its velocity down the slope, so speed + velocity down the slope stays what it was.
+// A block thrown across a slope with F = tan θ. Friction rotates with the velocity and takes as much from the speed as
+// gravity adds to the velocity down the slope, so speed + velocity down the slope is constant.
 TEST(SlidingBlockInSpace, FrictionTurnsWithTheVelocity) {
   const double slope = 20.0 * M_PI / 180.0, gravity = 9.81, speed = 0.5, mass = 4.0;
   const std::string mesh = test_support::mesh_geometry(
@@ -250,7 +250,7 @@ TEST(SpinningBall, RaisesTheWarningOfSmallStrain) {
   EXPECT_NE(summary.warnings[0].find("small strain no longer holds"), std::string::npos) << summary.warnings[0];
   const double rotation = summary.digest("max_rotation").maximum;
   EXPECT_GT(rotation, 0.3);
-  // At the end it says how large the error has become.
+  // The warning at the end states the size of the error.
   const std::string strain = fmt::format("a strain of {:.2g} %", 100.0 * (1.0 - std::cos(rotation)));
   EXPECT_NE(summary.warnings.back().find(strain), std::string::npos) << summary.warnings.back();
 }

@@ -7,7 +7,7 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-// Coulomb's law, and what friction does to the energy, step by step on any mesh. Rates, forces and energies are
+// Coulomb's law and the effect of friction on the energy, step by step on any mesh. Rates, forces and energies are
 // computed here from the states, not taken from the solver or the energy account.
 
 namespace ricochet {
@@ -24,8 +24,8 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 struct Method {
   std::string scheme;  ///< lines of [time]
   std::string mass;
-  double gamma;  ///< forces enter the step with weights 1 − γ and γ; 1: the law is at the step's own instant
-  bool reduced = false;  ///< its identity is another one
+  double gamma;  ///< forces enter the step with weights 1 − γ and γ; 1: the law holds at the instant of the step
+  bool reduced = false;  ///< has another energy identity
 };
 
 std::vector<Method> methods() {
@@ -45,20 +45,21 @@ std::vector<Method> methods() {
   return all;
 }
 
-/// The displacement that the step's slip rate is taken over, by definition of the scheme: U₁−U₀, or (Uⁿ⁺¹−Uⁿ⁻¹)/2.
+/// Displacement from which the scheme defines the slip rate of the step: U₁−U₀, or (Uⁿ⁺¹−Uⁿ⁻¹)/2.
 Vector slip_of(CaseRun& run, const Vector& before, const Vector& ahead_before) {
   const State& state = run.state();
   if (run.input().time.scheme != "klr-conserving") return state.displacement - before;
   return 0.5 * (ahead_before + state.memory.at("increment_ahead"));
 }
 
-/// Largest of what the law forbids, relative to the largest reaction and slip so far, and what was seen.
+/// Largest violations of the law, relative to the largest reaction and slip so far, and the statuses that occurred.
 struct Seen {
   double cone = 0.0, alignment = 0.0, dissipation = 0.0, complementarity = 0.0;
   long stick = 0, slip = 0;
 };
 
-/// y of the step's conditions 0 ≤ r_N ⟂ y ≥ 0: the gap at the scheme's instant, or the normal part of its increment.
+/// y in the conditions 0 ≤ r_N ⟂ y ≥ 0 of the step: the gap at the instant of the scheme, or the normal part of the
+/// increment.
 Vector normal_motion(CaseRun& run, const Vector& increment) {
   const State& state = run.state();
   if (run.input().time.scheme == "klr-conserving") return run.problem().contact.rows->gap_operator * increment;
@@ -69,7 +70,7 @@ Vector normal_motion(CaseRun& run, const Vector& increment) {
 }
 
 /// Checks Coulomb's law (bound = F r_N) or Tresca's (a bound per point) at every point of the last step. Under Tresca's
-/// a point may graze: r_N = 0 = y with any friction up to the bound, without which a solution need not exist.
+/// law a point may graze: r_N = 0 = y with any friction up to the bound; otherwise a solution need not exist.
 void check_law(CaseRun& run, const Vector& increment, double coefficient, const Vector& bounds, Seen& seen) {
   const State& state = run.state();
   const ContactBoundary& contact = run.problem().contact;
@@ -122,7 +123,7 @@ void expect_law(const ThrownBody& body, const Method& method, const std::string&
       },
       false);
   EXPECT_LT(seen.cone, 1e-13) << name;
-  // A displacement of order 1 is differenced to a slip of order h |v|.
+  // The slip, of order h |v|, is a difference of displacements of order 1.
   EXPECT_LT(seen.alignment, 1e-11) << name;
   EXPECT_LT(seen.dissipation, 1e-11) << name << ": friction drives the slip";
   EXPECT_LT(seen.complementarity, 1e-10) << name << ": sticking points slip";
@@ -176,8 +177,8 @@ TEST(FrictionLaw, StickAndSlipAreBothSeen) {
   }
 }
 
-// At the corner two obstacles have two conditions and two slips on two dofs: the condensed operator is singular, and
-// points have to be pressed against each other until one of them slips.
+// At the corner two obstacles impose two conditions and two slips on two dofs: the Delassus operator is singular, and
+// the points press against each other until one of them slips.
 TEST(FrictionLaw, HoldsInACornerBetweenTwoObstacles) {
   const std::string mesh = test_support::mesh_geometry(
       "corner",
@@ -211,7 +212,7 @@ TEST(FrictionLaw, HoldsInACornerBetweenTwoObstacles) {
   }
 }
 
-// The frictionless identities with the friction work −[(1−γ) r_T0 + γ r_T1]·B_T ΔU added.
+// The frictionless identities plus the friction work −[(1−γ) r_T0 + γ r_T1]·B_T ΔU.
 // For semi-explicit, Newmark's with β = 0, the energy is J − (h²/8)AᵀMA.
 TEST(FrictionEnergy, MidpointAndNewmarkIdentitiesWithFriction) {
   for (const ThrownBody& body : thrown_bodies()) {
@@ -304,7 +305,7 @@ Vector resultants(const SemidiscreteProblem& problem, const Vector& nodal) {
   return result;
 }
 
-// Linear and angular momentum change by the impulses of gravity and contact, friction included, and by nothing else.
+// Linear and angular momentum change only by the impulses of gravity and contact, friction included.
 TEST(FrictionMomentum, BalancesCloseToRounding) {
   for (const ThrownBody& body : thrown_bodies()) {
     for (const Method& method : methods()) {
@@ -342,7 +343,7 @@ TEST(FrictionMomentum, BalancesCloseToRounding) {
   }
 }
 
-// With friction and an obstacle that moves along and across its plane, and turns.
+// With friction and an obstacle that moves along and across its plane, and rotates.
 TEST(FrictionEnergy, AccountClosesWithMovingObstacles) {
   for (const ThrownBody& body : thrown_bodies()) {
     for (const Method& method : methods()) {

@@ -15,9 +15,10 @@ namespace friction_layer_test {
 using test_support::CaseRun;
 
 /// Height, density and speed of shear waves 1, first velocity 1 along x, free top, friction traction at most a = F p.
-/// v + τ is carried downwards and v − τ upwards, so that what arrives at the base is D = (v + τ) of there two units of
-/// time before, reflected at the top: D(t) = (v − τ)(t − 2), at first 1. While the base slides forwards, τ = a and v =
-/// D − a, which lowers D by 2a for the next two units. It sticks when |D| ≤ a: v = 0, τ = D, and D only changes sign.
+/// Waves carry v + τ downwards and v − τ upwards, so that D = v + τ arriving at the base is v − τ at the base two units
+/// of time earlier, reflected at the top: D(t) = (v − τ)(t − 2), initially 1. While the base slides forwards, τ = a and
+/// v = D − a, which lowers D by 2a for the next two units. It sticks if |D| ≤ a: v = 0, τ = D; D then only changes
+/// sign.
 struct Layer {
   double a;
 
@@ -27,12 +28,12 @@ struct Layer {
     const double last = 1.0 - 2.0 * a * sliding;
     return (k - sliding) % 2 == 0 ? last : -last;
   }
-  /// k*, the number of phases in which it slides.
+  /// Number k* of phases in which the base slides.
   [[nodiscard]] int phases() const { return static_cast<int>(std::ceil((1.0 / a - 1.0) / 2.0 - 1e-12)); }
   [[nodiscard]] static int phase(double t) { return static_cast<int>(t / 2.0); }
   [[nodiscard]] double sticking_time() const { return 2.0 * phases(); }
   [[nodiscard]] double velocity(double t) const { return phase(t) < phases() ? arriving(phase(t)) - a : 0.0; }
-  /// Of the base on the layer.
+  /// Traction of the base on the layer.
   [[nodiscard]] double traction(double t) const { return phase(t) < phases() ? -a : -arriving(phase(t)); }
   [[nodiscard]] double slip() const { return 2.0 * phases() * (1.0 - phases() * a); }
 };
@@ -45,7 +46,7 @@ TEST(SlidingLayer, ClosedFormAgreesWithTheFormulasOfTheWaves) {
   EXPECT_DOUBLE_EQ(layer.slip(), 1.6);
   EXPECT_DOUBLE_EQ(layer.traction(5.0), 0.2);
   EXPECT_DOUBLE_EQ(layer.traction(7.0), -0.2);
-  // Kinetic energy ½ at the start, D²/2 in the standing waves that are left, friction work a × slip between them.
+  // Kinetic energy ½ at the start, D²/2 in the standing waves that remain; friction takes the difference, a × slip.
   for (const double a : {0.15, 0.2, 0.3, 0.45, 1.5}) {
     const Layer other{a};
     const double left = other.arriving(100);
@@ -66,7 +67,7 @@ const Method newmark{"newmark trapezoidal, equivalent", "scheme = \"newmark\"\np
 struct Errors {
   double velocity = 0.0, traction = 0.0;             ///< relative, in L²(0, T)
   double slip = 0.0;                                 ///< at the end, relative
-  double sticking = 0.0;                             ///< of the time of sticking, in units of time
+  double sticking = 0.0;                             ///< error of the time of sticking, in units of time
   double late_slip = 0.0;                            ///< total variation of the slip well after sticking, relative
   double friction_work = 0.0;                        ///< relative
   std::vector<double> mean_velocity, mean_traction;  ///< over the middle half of each phase
@@ -105,8 +106,7 @@ struct RelativeError {
   [[nodiscard]] double value() const { return std::sqrt(error / size); }
 };
 
-/// What is seen of a layer: the mean over its base of the displacement along x, of its rate over a step, and of the
-/// traction on the layer.
+/// Means over the base of a layer: the displacement along x, its rate over a step, and the traction on the layer.
 struct Base {
   double displacement = 0.0, velocity = 0.0, traction = 0.0;
 
@@ -126,8 +126,8 @@ struct Base {
   }
 };
 
-/// Where the line through the middle of the last sliding phase meets the final slip: a time of sticking that does not
-/// depend on what single steps do.
+/// Time at which the line through the middle of the last sliding phase reaches the final slip: a time of sticking that
+/// does not depend on single steps.
 double sticking_time(const Layer& layer, const std::vector<std::pair<double, double>>& slips) {
   const double middle = layer.sticking_time() - 1.0;
   std::vector<std::pair<double, double>> line;
@@ -148,7 +148,7 @@ Errors solve(const Layer& layer, const Method& method, int cells) {
                           "{:.17g}\n",
                           method.mass, method.time, step, end));
   const std::string scheme = run.input().time.scheme;
-  // Velocities are central differences at the row's time, or differences over the step before it.
+  // Velocities are central differences at the time of the row, or differences over the preceding step.
   const double velocity_instant = scheme == "klr-conserving" ? 0.0 : -0.5;
   const double force_instant = scheme == "midpoint" ? -0.5 : 0.0;
   RelativeError velocity, traction;
@@ -235,8 +235,8 @@ TEST(SlidingLayer, ThreeSlidingPhasesTwoAndOne) {
   }
 }
 
-// V/a − 1 = 4: in the last phase the wave brings just the traction a. Between stick and slip the state says nothing,
-// and what the fronts overshoot is slip. Traction and slip converge.
+// V/a − 1 = 4: in the last phase the wave brings exactly the traction a. At the limit between stick and slip the status
+// is undetermined, and the overshoot of the fronts is slip. Traction and slip converge.
 TEST(SlidingLayer, NeutralBetweenStickAndSlip) {
   const Layer layer{0.2};
   EXPECT_EQ(layer.phases(), 2);
@@ -248,8 +248,8 @@ TEST(SlidingLayer, NeutralBetweenStickAndSlip) {
   expect_phases(layer, all.back(), 4e-3, "neutral");
 }
 
-// With a > V it does not slide at all. The start lets the massless nodes of the base relax over one step, so they may
-// move by V Δt.
+// With a > V the base does not slide at all. The massless nodes of the base relax over the first step, so they may move
+// by V Δt.
 TEST(SlidingLayer, SticksAtOnce) {
   const Layer layer{1.5};
   EXPECT_EQ(layer.phases(), 0);
@@ -300,9 +300,9 @@ TEST(SlidingLayer, OtherSchemesAndMasses) {
   }
 }
 
-// A node with inertia that sticks has U₁ = U₀ in every step, and the trapezoidal rule answers with V₁ = −V₀: it keeps
-// the speed it came with, and the friction force alternates by 2 m V/h until it reaches the cone. So this pair slides
-// on where it should stick, on every mesh.
+// A sticking node with inertia has U₁ = U₀ in every step, so the trapezoidal rule gives V₁ = −V₀: the node keeps its
+// initial speed, and the friction force alternates by 2 m V/h until it reaches the cone. This combination therefore
+// continues to slide when it should stick, on every mesh.
 TEST(SlidingLayer, TrapezoidalRuleWithInertiaOnContactNodesDoesNotStick) {
   const Method method{"newmark trapezoidal, consistent", newmark.time, "consistent"};
   for (const Errors& e : table({0.3}, method, {25, 50, 100})) {

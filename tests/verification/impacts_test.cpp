@@ -13,7 +13,7 @@
 #include "support/strip.hpp"
 #include "support/thrown_body.hpp"
 
-// Impacts told from a run: bars with exact solutions, momentum balances of thrown bodies, moving obstacles, several
+// Impacts detected in a run: bars with exact solutions, momentum balances of thrown bodies, moving obstacles, several
 // bodies, checkpoints; and the largest stress.
 
 namespace ricochet {
@@ -54,7 +54,7 @@ std::string bar(int cells, const std::string& rest) {
          trapezoidal + fmt::format("step = {:.17g}\n", step);
 }
 
-/// A bar that meets a wall at the speed v is in contact for 2L/c and leaves at v: impulse 2mv, largest force ρcv A.
+/// A bar that hits a wall at the speed v is in contact for 2L/c and leaves at v: impulse 2mv, largest force ρcv A.
 TEST(Impacts, OfABarAgainstAWall) {
   double last_error = 1.0;
   for (const int cells : {25, 50, 100}) {
@@ -69,14 +69,14 @@ TEST(Impacts, OfABarAgainstAWall) {
     EXPECT_NEAR(impact.mass, mass, 1e-12 * mass);
     EXPECT_NEAR(impact.normal_velocity_before(), -10.0, 1e-10);
     EXPECT_NEAR(impact.normal()[0], 1.0, 1e-14);
-    // The whole end of the strip, which has two nodes.
+    // All of the end of the strip, which has two nodes.
     EXPECT_EQ(impact.contact_points, 2);
     EXPECT_EQ(impact.all_contact_points, 2);
     EXPECT_FALSE(impact.is_coarse());
     ASSERT_EQ(impact.first_place.size(), 2u);
     EXPECT_EQ(impact.first_place[0], 5.0);
     ASSERT_TRUE(impact.restitution().has_value());
-    // What is lost stays in the mesh as oscillation.
+    // The energy that is lost remains in the mesh as oscillations.
     const double error = std::abs(*impact.restitution() - 1.0);
     EXPECT_LT(error, last_error) << cells;
     last_error = error;
@@ -88,7 +88,7 @@ TEST(Impacts, OfABarAgainstAWall) {
   EXPECT_LT(last_error, 0.02);
 }
 
-/// Dropped from rest with g = 10 it bounces with the period 8/3 for ever: three impacts, each of the duration 2/3.
+/// A bar dropped from rest with g = 10 bounces for ever with the period 8/3: three impacts, each of the duration 2/3.
 TEST(Impacts, OfABarThatBounces) {
   const std::vector<Impact> found = impacts_of(bar(200, "[load]\ngravity = [-10.0, 0.0]\n"), {"time.end=7.5"});
   ASSERT_EQ(found.size(), 3u);
@@ -100,7 +100,7 @@ TEST(Impacts, OfABarThatBounces) {
   }
 }
 
-/// The wall that comes to the bar and the bar that comes to the wall are the same impact.
+/// A moving wall that hits the bar and a moving bar that hits the wall are the same impact.
 TEST(Impacts, DoNotDependOnWhoMoves) {
   const std::string moving = bar(50, "");
   const std::string wall = "normal = [1.0, 0.0]\n";
@@ -119,7 +119,7 @@ TEST(Impacts, DoNotDependOnWhoMoves) {
 
 struct SchemeOfImpacts {
   std::string time, mass;
-  double steps_more;  ///< that the force at one instant acts in, less one
+  double steps_more;  ///< number of steps in which the force at one instant acts, less one
 };
 
 std::vector<SchemeOfImpacts> schemes() {
@@ -130,8 +130,8 @@ std::vector<SchemeOfImpacts> schemes() {
           {"scheme = \"semi-explicit\"\n", "equivalent-lumped", 1.0}};
 }
 
-/// Bodies thrown with a spin against an oblique plane with friction: before, the motion is that of the initial
-/// velocity; the impulse is the change of momentum, but for that of gravity, and its moment that of angular momentum.
+/// Bodies thrown with a spin against an oblique plane with friction: before the impact the motion has the initial
+/// velocity; the impulse is the change of momentum less that by gravity, and its moment the change of angular momentum.
 TEST(Impacts, BalanceMomentumInEveryScheme) {
   const std::vector<ThrownBody> bodies = thrown_bodies();
   for (const std::size_t which : {0u, 3u}) {
@@ -154,7 +154,7 @@ TEST(Impacts, BalanceMomentumInEveryScheme) {
       ASSERT_TRUE(impact.ended) << trace;
       const RigidBody& body = recorder.bodies()[0];
       const double size = impact.mass * impact.before.velocity.norm();
-      // v = v₀ + ω × x with ω = 0.2 about z, or −0.2 about y (and 0.2 of a shear that turns nothing).
+      // v = v₀ + ω × x with ω = 0.2 about z, or −0.2 about y (and a shear of 0.2 without rotation).
       const Eigen::Vector3d spin = which == 0 ? Eigen::Vector3d(0.0, 0.0, 0.2) : Eigen::Vector3d(0.0, -0.2, 0.0);
       EXPECT_LT((impact.before.spin - spin).norm(), 1e-12) << trace;
       const Eigen::Vector3d start = which == 0
@@ -169,13 +169,13 @@ TEST(Impacts, BalanceMomentumInEveryScheme) {
       if (which == 0) change[0] = change[1] = 0.0;
       EXPECT_LT((change - moment).norm(), 1e-10 * size) << trace;
       EXPECT_GT(change.norm(), 1e-3 * size) << trace;
-      // Friction acts against the slip, and no more than Coulomb's law lets it.
+      // Friction acts against the slip, within the bound of Coulomb's law.
       EXPECT_LT((impact.impulse - impact.normal_impulse).norm(), 0.3 * impact.normal_impulse.norm() * (1.0 + 1e-12));
     }
   }
 }
 
-/// What is not the contact's is gravity's: m g times the time of the impact's steps.
+/// The impulse of other forces is that of gravity: m g times the duration of the steps of the impact.
 TEST(Impacts, TellGravitysPart) {
   const std::vector<ThrownBody> bodies = thrown_bodies();
   for (const SchemeOfImpacts& scheme : schemes()) {
@@ -191,7 +191,7 @@ TEST(Impacts, TellGravitysPart) {
   }
 }
 
-/// Two discs in one mesh, of different sizes and heights: each has impacts of its own.
+/// Two discs in one mesh, of different sizes and heights: each has its own impacts.
 TEST(Impacts, AreOfOneBodyEach) {
   const std::string mesh =
       mesh_geometry("pair",
@@ -206,13 +206,13 @@ TEST(Impacts, AreOfOneBodyEach) {
   EXPECT_EQ(found[1].body, 1);
   EXPECT_NEAR(found[0].begin, 0.04, 0.02);
   EXPECT_NEAR(found[1].begin, 0.6, 0.03);
-  // Regular polygons of the discs, at most: masses differ by a factor of four.
+  // The discs are approximately regular polygons: their masses differ by a factor of four.
   EXPECT_NEAR(found[0].mass / found[1].mass, 4.0, 0.4);
   for (const Impact& impact : found)
     EXPECT_LT(impact.other_impulse().norm(), 1e-11 * impact.impulse.norm()) << impact.body;
 }
 
-/// A body that lies on the floor from the start: one impact, without a restitution, that does not end.
+/// A body that rests on the floor from the start: one impact, without restitution, that does not end.
 TEST(Impacts, OfABodyAtRest) {
   const std::vector<Impact> found =
       impacts_of(bar(10, "[load]\ngravity = [-10.0, 0.0]\n[initial]\ndisplacement = \"static\"\n"),
@@ -226,8 +226,8 @@ TEST(Impacts, OfABodyAtRest) {
   EXPECT_NEAR(found[0].impulse[0], 100.0 * 2.0, 1e-9 * 200.0);
 }
 
-/// A bar that rests on the floor and is thrown up faster than its weight can press it down: only the force at t = 0,
-/// its weight, acts, with half a step's weight. The interval of contact and the time of contact are the same.
+/// A bar that rests on the floor and is thrown up so fast that its weight cannot press it down: only the force at t = 0
+/// acts, its weight, for half a step. The interval of contact equals the time of contact.
 TEST(Impacts, OfABodyThatLeavesInTheFirstStep) {
   for (const char* scheme : {"scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "scheme = \"semi-explicit\"\n"}) {
     std::string text = bar(10,
@@ -248,7 +248,7 @@ TEST(Impacts, OfABodyThatLeavesInTheFirstStep) {
   }
 }
 
-/// Goes on from a snapshot to the same numbers.
+/// Resuming from a snapshot gives the same numbers.
 TEST(Impacts, GoOnFromASnapshot) {
   const std::string text = thrown_case(thrown_bodies()[0], "equivalent", trapezoidal, "friction = 0.3\n");
   CaseRun run(text, {"time.end=4.0"});
@@ -275,7 +275,8 @@ TEST(Impacts, GoOnFromASnapshot) {
   for (const ImpactRecorder& other : resumed) EXPECT_TRUE(numbers(other) == numbers(recorder));
 }
 
-/// With time for it, every state is looked at; without, the states of frames and some more, no more than the share.
+/// If the time share allows it, every state is evaluated; otherwise the states of frames and some others, within the
+/// share.
 TEST(PeakStress, IsThatOfTheStatesThatWereLookedAt) {
   CaseRun run(bar(50, "[initial]\nvelocity = [-10.0, 0.0]\n"), {"time.end=1.6"});
   const Body& body = run.model().body;

@@ -64,7 +64,7 @@ Setting setting(int dimension, double friction = 0.0) {
 
 struct SchemeChoice {
   std::string time, mass;
-  bool smooth;  ///< does not rattle: agrees over the whole run, not only up to the first release
+  bool smooth;  ///< no chatter: results agree over the whole run, not only up to the first release
 };
 
 const std::vector<SchemeChoice>& scheme_choices() {
@@ -97,7 +97,7 @@ std::vector<Frame> frames(const Setting& s, const SchemeChoice& choice) {
   return result;
 }
 
-/// Frames up to the first step in which a contact opens again; all of them for smooth schemes.
+/// Number of frames up to the first step in which a contact reopens; all frames for smooth schemes.
 std::size_t comparable(const std::vector<Frame>& all, bool smooth) {
   EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const Frame& f) { return f.normal.maxCoeff() > 0.0; }))
       << "no contact";
@@ -108,8 +108,8 @@ std::size_t comparable(const std::vector<Frame>& all, bool smooth) {
   return all.size();
 }
 
-/// Largest difference of displacement and reaction, relative to the largest of each in the run, after `map` of the
-/// second.
+/// Largest difference of displacement and reaction after `map` is applied to the second run, relative to the largest
+/// value of each.
 double difference(const std::vector<Frame>& a, const std::vector<Frame>& b, std::size_t count,
                   const std::function<Frame(const Frame&)>& map) {
   double u = 0.0, r = 0.0, u_size = 0.0, r_size = 0.0;
@@ -179,10 +179,10 @@ TEST(Invariance, MetreKilogramAgainstMillimetreTonne) {
   }
 }
 
-/// A copy of an ASCII .msh 2.2 file with moved nodes, numbered in reverse when asked.
+/// Writes a copy of an ASCII .msh 2.2 file with moved nodes, numbered in reverse if requested.
 std::string transformed_mesh(const std::string& path, const std::string& name, const Eigen::Matrix3d& map,
                              bool renumber, bool flip) {
-  // Beside the mesh it would be written by one test and read by another: meshes are shared.
+  // Meshes are shared: a file beside the mesh would be written by one test and read by another.
   const std::string plain = test_support::write_temporary("plain.msh", "");
   if (std::system(("gmsh '" + path + "' -v 1 -save -format msh22 -o '" + plain + "'").c_str()) != 0)
     throw std::runtime_error("gmsh failed");
@@ -227,7 +227,7 @@ std::string transformed_mesh(const std::string& path, const std::string& name, c
   return test_support::write_temporary(name, text);
 }
 
-/// Compares a case with itself under a linear map of space that keeps lengths.
+/// Compares a case with itself under an orthogonal map of space.
 void expect_same_under(const Setting& s, const Eigen::Matrix3d& map, bool renumber, const std::string& name) {
   Setting t = s;
   t.mesh = transformed_mesh(s.mesh, name + ".msh", map, renumber, map.determinant() < 0.0);
@@ -238,7 +238,7 @@ void expect_same_under(const Setting& s, const Eigen::Matrix3d& map, bool renumb
   const int d = s.dimension;
   for (const SchemeChoice& choice : scheme_choices()) {
     const std::vector<Frame> a = frames(plain, choice), b = frames(t, choice);
-    // Nodes keep their number from the file in both, but for the ones that belong to no cell: match them by position.
+    // Nodes keep their numbers of the file in both meshes, except for those that belong to no cell: match by position.
     CaseRun first(case_text(plain, choice.time, choice.mass)), second(case_text(t, choice.time, choice.mass));
     const Points& x = first.problem().nodes;
     const Points& y = second.problem().nodes;
@@ -275,7 +275,7 @@ TEST(Invariance, RotationOfTheWholeCase) {
                       Eigen::AngleAxisd(1.1, Eigen::Vector3d(1.0, 2.0, -0.5).normalized()).toRotationMatrix(), false,
                       "rotated3");
   }
-  // An obstacle that moves and turns, too.
+  // Also an obstacle that moves and rotates.
   Setting turning = setting(3, 0.3);
   turning.obstacle_velocity = {0.2, -0.02, 0.1};
   turning.rotation_rate = 0.8;
@@ -338,7 +338,7 @@ TEST(Invariance, ObstacleMovingAgainstBodyMovingTheOtherWay) {
   }
 }
 
-/// Restitution and friction are about velocities relative to the obstacle.
+/// Restitution and friction act on velocities relative to the obstacle.
 TEST(Invariance, ObstacleMovingUnderPublishedSchemes) {
   const std::vector<SchemeChoice> with_friction{
       {"scheme = \"moreau-jean\"\ntheta = 0.7\nrestitution = 0.5\n", "consistent", false},

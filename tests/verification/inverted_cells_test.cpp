@@ -4,7 +4,7 @@
 #include "ricochet/scheme/stage_solve.hpp"
 #include "support/case_run.hpp"
 
-/// @file What a step that fails says where an iteration has turned a cell inside out.
+/// @file Message of a step that fails because an iteration has inverted a cell.
 namespace ricochet {
 namespace inverted_cells_test {
 

@@ -2,8 +2,8 @@
 
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/solver/delassus/contact_columns.hpp"
+#include "ricochet/solver/delassus/direct_stage.hpp"
 #include "ricochet/solver/stage/stage_operator.hpp"
-#include "ricochet/solver/stage/stage_solver.hpp"
 #include "ricochet/solver/step_estimate.hpp"
 #include "support/case_run.hpp"
 

@@ -38,7 +38,8 @@ PointMap block_above(int up) {
 std::string write_blocks(const MirroredBody& body, bool with_image) {
   const int up = dimension(body.shape) - 1;
   test_support::StackedBoxes stack{body.shape, body.shape, body.counts, body.counts};
-  // On facets that are no parallelograms the rule is exact to nine digits alone, and some schemes amplify that.
+  // On facets that are no parallelograms the quadrature is exact only to nine digits, and some schemes amplify the
+  // error.
   if (body.shape == CellShape::hexahedron) stack.distortion = 0.0;
   stack.upper_map = block_above(up);
   stack.lower_map = [up, above = stack.upper_map](const Vector& x) {
@@ -84,7 +85,7 @@ std::string case_text(const MirroredBody& body, const std::string& mesh, bool wi
       is_explicit ? 0.002 : 0.01, is_explicit ? 0.4 : 0.8);
 }
 
-/// Where each node of one set of points is in another one that contains them.
+/// Index of each point in another set that contains it.
 std::vector<Index> find_nodes(const Points& points, const Points& among) {
   const auto key = [](const auto& x) { return std::vector<double>(x.begin(), x.end()); };
   std::map<std::vector<double>, Index> place;
@@ -94,7 +95,7 @@ std::vector<Index> find_nodes(const Points& points, const Points& among) {
   return result;
 }
 
-/// The largest difference beside the largest value, of displacements and of forces, over all steps.
+/// Largest difference and largest value of displacements and forces over all steps.
 struct Difference {
   double displacement = 0.0, force = 0.0;
   double largest_displacement = 0.0, largest_force = 0.0;
@@ -135,7 +136,8 @@ TEST(MirroredBodies, MoveAsOneAgainstThePlaneBetweenThem) {
         MirroredBody{CellShape::tetrahedron, {3, 2, 2}, 1}, MirroredBody{CellShape::hexahedron, {2, 3, 2}, 1}}) {
     const std::string one = write_blocks(body, false), two = write_blocks(body, true);
     for (const Discretization& discretization : test_support::all_discretizations()) {
-      // Under Nitsche's method points penetrate by what the stress of one side is wrong by: both sides share it.
+      // Under Nitsche's method points penetrate in proportion to the stress error of one side; here both sides share
+      // it.
       if (!discretization.is_possible() || discretization.scheme == "nitsche") continue;
       // These masses cannot be made of blocks of so few cells.
       if (discretization.mass == "equivalent-nearest") continue;

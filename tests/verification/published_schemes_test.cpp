@@ -25,7 +25,7 @@ using test_support::time_of;
 
 constexpr double rounding = 20.0 * std::numeric_limits<double>::epsilon();
 
-/// Runs a scheme on every body with every mass that it takes and that can be made of the body.
+/// Runs a scheme on every body with every mass that it supports and that can be computed for the body.
 void each_run(const std::string& scheme, const std::string& keys,
               const std::function<void(CaseRun&, const std::string&)>& check, const std::string& contact = "") {
   std::vector<ThrownBody> bodies = thrown_bodies();
@@ -33,7 +33,7 @@ void each_run(const std::string& scheme, const std::string& keys,
   for (const ThrownBody& body : bodies) {
     for (const std::string& mass : masses_of(scheme)) {
       if (mass.starts_with("equivalent-") && body.name != bodies.back().name) continue;
-      // Nodal forces at the vertices of six-node triangles have no share of the area.
+      // The nodal areas at the vertices of six-node triangles are zero.
       const bool needs_area = scheme == "nitsche" && body.dimension == 3 && body.degree == 2;
       CaseRun run(
           thrown_case(body, mass, time_of(scheme) + keys, needs_area ? contact + "multipliers = \"p1\"\n" : contact));
@@ -201,7 +201,7 @@ TEST(PublishedScheme, AlphaSchemesDissipateInClosedForm) {
 }
 
 /// Neither penetration nor drift, and Λ·G(V₀+V₁)/2 − (½−α_f)(ΔUᵀKΔU + ΔUᵀMΔA) − … − (Q−½hW)ᵀMA*, with Q and W from the
-/// state's own formulas.
+/// formulas of the state.
 TEST(PublishedScheme, NonsmoothGeneralizedAlphaDissipatesInClosedForm) {
   for (const auto& [rho, e] : {std::pair{0.8, 0.0}, {0.8, 0.5}, {1.0, 0.0}, {0.0, 1.0}}) {
     const double force = rho / (rho + 1.0), inertia = (2.0 * rho - 1.0) / (rho + 1.0);
@@ -234,7 +234,7 @@ TEST(PublishedScheme, NonsmoothGeneralizedAlphaDissipatesInClosedForm) {
 }
 
 /// E₁ − E₀ = ⅔(F₀+F_½)·Δ₁ + ⅓F₁·hV₁ − ½⟨a−b, a+b/3⟩ with a = (Δ₂, V₁−V_½) and b = (Δ₁, V_½−V₀) in the norm of K and M:
-/// another form than the account's.
+/// a form other than that of the energy account.
 TEST(PublishedScheme, BatheDissipatesInClosedForm) {
   each_run("bathe", "", [](CaseRun& run, const std::string& name) {
     const double h = run.scheme().step();
@@ -274,7 +274,7 @@ TEST(PublishedScheme, MoreauJeanChangesByTheImpulsesOnTheVelocitiesBefore) {
   }
 }
 
-/// Of impulses on V_θ contact has a sign for θ(1+e) ≥ 1 where points approach, and friction always.
+/// With impulses on V_θ, the work of contact has a sign for θ(1+e) ≥ 1 if points approach, and that of friction always.
 TEST(PublishedScheme, MoreauJeanLosesByFrictionWhereItsSlipIsThatOfTheta) {
   const auto check = [](CaseRun& run, const std::string& name) {
     const double h = run.scheme().step();
@@ -373,8 +373,8 @@ TEST(PublishedScheme, CdLagrangeChangesByTheImpulsesOnTheVelocitiesBefore) {
   }
 }
 
-/// The displacement of a body that vibrates in free flight, with three steps: the order is that of the
-/// schemes, which no identity of a step tells.
+/// Displacement of a body that vibrates in free flight, with three step lengths: the order of the schemes, which no
+/// identity of a single step shows.
 TEST(PublishedScheme, IsOfSecondOrderWhereNothingTouches) {
   for (const std::string& scheme : scheme_names()) {
     for (const std::string& mass : masses_of(scheme)) {

@@ -29,7 +29,7 @@ std::string reduced_kane(const std::string& weight) {
   return "scheme = \"reduced-kane\"\nreaction_weight = \"" + weight + "\"\n";
 }
 
-/// The stiffness of the contact nodes, whole.
+/// Full stiffness K_cc of the contact nodes.
 class Layer {
  public:
   explicit Layer(const SemidiscreteProblem& problem) : dofs_(problem.contact_dofs) {
@@ -129,7 +129,7 @@ TEST(ReducedKane, LosesEnergyAtEachPointInEveryStep) {
   }
 }
 
-/// The account has three parts of the mean; each is a loss.
+/// The account has three terms of the mean reaction; each is a loss.
 TEST(ReducedKane, AdaptiveWeightCreatesNoEnergyAndLosesLess) {
   for (const ThrownBody& body : bodies()) {
     for (const double friction : {0.0, 0.3}) {
@@ -236,7 +236,7 @@ TEST(MeanReaction, BooksTheWorkOfLoadsOnContactNodes) {
             before = now;
           },
           false);
-      // With friction the rounds that find a mean stop at 1e-10 of the reactions where rounding stops them.
+      // With friction the iterations for the mean reaction stop at 1e-10 of the reactions if rounding stalls them.
       EXPECT_GT(least, (friction > 0.0 ? -1e-11 : -1e-12) * size) << body.name << scheme << step;
       EXPECT_LT(residual, 1e-12 * size) << body.name << scheme;
       if (scheme.find("mean") == std::string::npos) continue;

@@ -12,8 +12,8 @@
 
 // A simulation that goes on from a snapshot gives the same bits as one that was never interrupted: for every scheme,
 // mass and multiplier space that is registered, for every way to solve a step, with friction, moving obstacles, loads
-// that vary, damping and supports. What is compared is the whole snapshot at the end, so nothing that a later step
-// could depend on is left out.
+// that vary, damping and supports. The whole snapshot at the end is compared, so that nothing on which a later step
+// could depend is omitted.
 
 namespace ricochet {
 namespace resume_test {
@@ -25,7 +25,7 @@ using test_support::ThrownBody;
 
 bool same_bits(const Vector& a, const Vector& b) {
   if (a.size() != b.size()) return false;
-  // An empty vector has no address that memcmp takes.
+  // An empty vector has no address that memcmp accepts.
   return a.size() == 0 || std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
 }
 
@@ -49,7 +49,7 @@ Snapshot snapshot_of(const Simulation& simulation) {
   return snapshot;
 }
 
-/// Runs a case, taking snapshots, and goes on from each of them. False: the program refuses such a case.
+/// Runs a case with snapshots and resumes from each of them. Returns false if the program refuses such a case.
 bool resumes_to_the_same_bits(const std::string& text, const std::set<long>& at) {
   std::unique_ptr<CaseRun> run;
   try {
@@ -155,7 +155,7 @@ TEST(Resume, AdaptiveSteps) {
   }
 }
 
-/// Where schemes keep more than the state's vectors.
+/// Cases in which schemes keep more than the vectors of the state.
 TEST(Resume, MovingSupports) {
   for (const auto& [scheme, text] : test_support::moving_support_cases())
     EXPECT_TRUE(resumes_to_the_same_bits(text, {0, 3, 60, 61, 150, 199})) << scheme;

@@ -54,7 +54,7 @@ TEST_F(SessionTest, GoesOnFromASnapshotWithTheSameBits) {
   EXPECT_THROW(second.resume(middle), Error);
 }
 
-/// What a session writes step by step is what a run writes.
+/// A session that is stepped writes the files that a run writes.
 TEST_F(SessionTest, WritesWhatARunWrites) {
   (void)run_case(read_case(path_), {.output_directory = directory_, .force = true, .quiet = true});
   Session session(path_);
@@ -90,7 +90,7 @@ TEST_F(SessionTest, FeedsALoadBack) {
   EXPECT_THROW(held.set_load(Vector::Zero(dofs - 1)), Error);
 }
 
-/// What was set is part of what is saved; who does not set it again is refused.
+/// The load that was set is part of the checkpoint; a session that does not set it again is refused.
 TEST_F(SessionTest, ResumesWithTheLoadThatWasSet) {
   const auto spring = [](Session& session) { session.set_load(-4.0 * session.state().displacement); };
   const RunOptions options{.output_directory = directory_ + "-loaded", .force = true, .quiet = true};

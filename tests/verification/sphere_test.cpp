@@ -111,7 +111,8 @@ Swing swing(CaseRun& run, double length) {
   return result;
 }
 
-/// Of the physical pendulum without friction: length l of the centre of gravity, radius of gyration k, amplitude a.
+/// Half period of the physical pendulum without friction: distance l of the centre of gravity, radius of gyration k,
+/// amplitude a.
 double half_period(double l, double k_squared, double a) {
   // Quarter periods by the arithmetic-geometric mean.
   double x = 1.0, y = std::cos(0.5 * a);
@@ -170,7 +171,7 @@ end = )" +
 }
 
 /// A disc in a hollow that is hardly larger, thrown so hard that its contact forces are stiffer than the step and
-/// rounds of tangent planes go away from one another: they are accelerated, and the conditions hold all the same.
+/// iterations of tangent planes diverge: they are accelerated, and the conditions hold nevertheless.
 TEST(Sphere, ADiscThrownIntoATightHollowStaysInside) {
   CaseRun run(disc_case("0.0105", "inside", 0.05));
   EnergyWatch energy;
@@ -186,7 +187,7 @@ TEST(Sphere, ADiscThrownIntoATightHollowStaysInside) {
   EXPECT_LE(penetration, 1e-15);
 }
 
-/// All nodes of its boundary touch, and none is inside: the body is.
+/// All nodes of the boundary touch and none is inside, although the body is.
 TEST(Sphere, ADiscThatFillsABallIsToldToBeInside) {
   Session session(write_temporary("filled.toml", disc_case("0.01", "outside", 2e-4)));
   const std::string output = testing::TempDir() + "filled";
@@ -239,7 +240,7 @@ TEST_P(BowlScheme, ABlockLosesItsAmplitudeToFrictionAsItsPointMassDoes) {
 INSTANTIATE_TEST_SUITE_P(All, BowlScheme,
                          ::testing::Values(dissipative, "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
                                            "scheme = \"klr-conserving\"\n[mass]\ntype = \"consistent\"\n",
-                                           // Whose projections are of the size of rounding while the block is slow.
+                                           // Its projections are of the size of rounding while the block is slow.
                                            "scheme = \"contact-stabilized\"\n[mass]\ntype = \"consistent\"\n"));
 
 }  // namespace sphere_test

@@ -47,7 +47,7 @@ double contact_force(const CaseRun& run, int component) {
   return sum;
 }
 
-/// F times the normal reactions, at points where friction can act: not at a corner that a support holds.
+/// F times the normal reactions at points where friction can act, which excludes a corner held by a support.
 double largest_friction(const CaseRun& run) {
   const ContactBoundary& contact = run.problem().contact;
   double sum = 0.0;
@@ -61,9 +61,9 @@ TEST(StaticFriction, FreelySlidingBlockStaysWhereItIs) {
   for (const char* mass : {"equivalent", "consistent"}) {
     for (const char* velocity : {"[0.5, 0.0]", "[-1e-6, 0.0]"}) {
       CaseRun run(block_case(mass, "[0.0, 0.0]", velocity));
-      // Compressed by its own weight, ρ g / 2E, and no more: not carried along by the size of the body.
+      // Compressed by its own weight, ρ g / 2E, and no more: not displaced by the size of the body.
       EXPECT_LT(run.state().displacement.lpNorm<Eigen::Infinity>(), 3e-3) << mass << velocity;
-      // Massless contact nodes take their equilibrium with the friction that sets in.
+      // Massless contact nodes move to equilibrium with the friction that sets in.
       EXPECT_NEAR(contact_force(run, 1), weight, (mass[0] == 'e' ? 0.02 : 1e-9) * weight) << mass << velocity;
       if (velocity[1] == '-') continue;  // it stops within a step
       EXPECT_NEAR(contact_force(run, 0), -largest_friction(run), 1e-9 * weight) << mass;
@@ -101,7 +101,7 @@ TEST(StaticFriction, BlockThatSlidesDownASlopeIsRefused) {
 /// A block on a floor of two or three dimensions, in gravity that is inclined by an angle to it.
 struct InclinedBlock {
   int dimension;
-  double angle, heading;  ///< of gravity: to the floor's normal, and along the floor
+  double angle, heading;  ///< of gravity: to the normal of the floor, and along the floor
   double friction;
   std::string mass, multipliers, mesh;
 
@@ -134,7 +134,7 @@ std::string inclined_mesh(int dimension) {
                                                       1.0, 1);
 }
 
-/// The numbers in parentheses that follows a word, component by component.
+/// Components of the vector in parentheses after a word.
 std::vector<double> vector_after(const std::string& text, const std::string& word) {
   std::vector<double> result;
   const std::size_t at = text.find(word + " (");
@@ -145,8 +145,8 @@ std::vector<double> vector_after(const std::string& text, const std::string& wor
   return result;
 }
 
-/// A block slides down any incline that is steeper than its friction, by however little, and the error says which way.
-/// RICOCHET_RANDOM_CASES=10 tries ten times as many.
+/// A block slides down any incline that is steeper than its friction allows, however slightly, and the error states the
+/// direction. RICOCHET_RANDOM_CASES=10 tries ten times as many inclines.
 TEST(StaticFriction, OfABlockThatSlidesIsRefusedWithItsDirection) {
   const char* const factor = std::getenv("RICOCHET_RANDOM_CASES");
   const unsigned count = factor != nullptr ? 16 * static_cast<unsigned>(std::atoi(factor)) : 16;
@@ -182,7 +182,7 @@ TEST(StaticFriction, OfABlockThatSlidesIsRefusedWithItsDirection) {
         EXPECT_NEAR(force[k], lacking, 6e-3 * volume * nearness) << message;
       }
     }
-    // The other side is not refused for want of friction.
+    // Sufficient friction is not refused.
     if (seed % 4 != 0) continue;
     block.friction = std::tan(block.angle) * (1.0 + std::max(nearness, 0.01));
     EXPECT_NO_THROW(CaseRun run(block.text()));
@@ -190,7 +190,7 @@ TEST(StaticFriction, OfABlockThatSlidesIsRefusedWithItsDirection) {
   }
 }
 
-/// Without anything to slide on it is said, too.
+/// The error also gives the direction if there is nothing to slide on.
 TEST(StaticFriction, ABodyThatFallsIsRefusedWithItsDirection) {
   try {
     CaseRun run(block_case("consistent", "[0.0, 0.0]", "[0.0, 0.0]", "", "[0.0, 10.0]"));
@@ -202,7 +202,7 @@ TEST(StaticFriction, ABodyThatFallsIsRefusedWithItsDirection) {
   }
 }
 
-/// Pulled at its upper edge, above what its weight can hold down.
+/// A block pulled at its upper edge by more than its weight can balance.
 TEST(StaticFriction, ABodyThatTipsIsRefused) {
   for (const double pull : {0.99, 1.01}) {
     // Friction holds it; it tips about a corner where pull × height > weight × half its width.

@@ -58,7 +58,7 @@ TEST(StaticOverlap, IsWhatTheErrorIsAbout) {
   }
 }
 
-/// Where nothing overlaps at the start the reasons are those of the search.
+/// If nothing overlaps at the start, the reasons are those of the load path.
 TEST(StaticOverlap, IsNotSaidWhereThereIsNone) {
   for (const std::string law : {"linear", "neo-hookean"}) {
     std::string text = square(law, -0.1, "[\"x\"]");

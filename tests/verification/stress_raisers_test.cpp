@@ -11,7 +11,7 @@
 #include "support/case_run.hpp"
 #include "support/two_bodies.hpp"
 
-/// @file What the largest stress sits on: corners, supports, contact, and what looks like them and has a finite stress.
+/// @file Location of the largest stress: corners, supports, contact, and similar places where the stress is finite.
 namespace ricochet::test_support {
 namespace stress_raisers_test {
 

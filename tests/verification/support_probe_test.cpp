@@ -74,7 +74,7 @@ class Probe {
 
 const std::string linear = "young = 1.0e4\npoisson = 0.3\n";
 
-/// On every mesh alike, though the contact's share in the side's nodes depends on it.
+/// The reaction is the same on every mesh, although the contact forces at the nodes of the side depend on the mesh.
 TEST(SupportProbe, OfABodyOnASlope) {
   for (const CellShape shape : all_cell_shapes) {
     for (const int count : {2, 5}) {

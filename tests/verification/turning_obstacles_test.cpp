@@ -11,8 +11,8 @@
 #include "support/two_bodies.hpp"
 
 // Friction on obstacles that turn acts relative to their material where the points are, not where they would be without
-// reactions. Points are pressed in by a hundredth of the radius: what is taken at the predicted position differs by as
-// much, at any length of the step.
+// reactions. Points are pressed in by a hundredth of the radius: velocities at the predicted position differ by as much
+// for every length of the step.
 
 namespace ricochet {
 namespace turning_obstacles_test {
@@ -69,8 +69,8 @@ std::string pressed_block(const Turning& turning, const std::string& law, const 
   return text;
 }
 
-/// Slips of the points over the last step, relative to the obstacle's material that is where they are in its middle,
-/// and that material's motion: asked from the obstacle itself.
+/// Slips of the points over the last step, relative to the material of the obstacle at their positions in the middle of
+/// the step, and the motion of that material, both computed from the obstacle itself.
 struct Slips {
   Vector slip, travel;
   double largest = 0.0;
@@ -128,7 +128,7 @@ TEST(TurningObstacles, PointsThatStickMoveWithTheMaterial) {
   }
 }
 
-// Every iteration of Newton's method takes the positions anew.
+// Every Newton iteration updates the positions.
 TEST(TurningObstacles, PointsThatStickMoveWithTheMaterialAtFiniteStrain) {
   for (const Turning& turning : turning_obstacles()) {
     for (const std::string scheme : {"reduced-kane", "newmark", "semi-explicit"})
@@ -136,7 +136,7 @@ TEST(TurningObstacles, PointsThatStickMoveWithTheMaterialAtFiniteStrain) {
   }
 }
 
-// Friction takes energy, whatever the obstacle does: at every step, and under all schemes whose friction does so.
+// Friction dissipates energy for every motion of the obstacle, in every step of all schemes with that property.
 TEST(TurningObstacles, FrictionGivesNoEnergy) {
   for (const Turning& turning : turning_obstacles()) {
     for (const std::string law : {"linear", "neo-hookean"}) {

@@ -4,7 +4,7 @@
 
 #include "support/case_run.hpp"
 
-/// @file What balances the energy of a step where no stress does.
+/// @file The velocity correction, which balances the energy of a step if no stress does.
 namespace ricochet {
 namespace velocity_correction_test {
 
@@ -80,7 +80,7 @@ TEST(VelocityCorrection, ChangesTheEnergyAndNeitherMomentaNorSupports) {
   }
 }
 
-/// What moves as a whole has nothing to give.
+/// Rigid motion has no energy that a correction without momenta could take.
 TEST(VelocityCorrection, TakesNothingOfRigidMotion) {
   const CaseRun run = run_of({"plane", "strain", ""}, "equivalent");
   const BodyRotations bodies(run.problem());

@@ -13,7 +13,7 @@
 #include "support/same_snapshots.hpp"
 #include "support/viscous_block.hpp"
 
-/// @file Stress that relaxes: what every step must keep.
+/// @file Viscoelastic stress: the balances of every step.
 namespace ricochet {
 namespace viscoelasticity_test {
 
@@ -57,14 +57,14 @@ const std::vector<std::string>& schemes() {
   return all;
 }
 
-/// What every step must keep, of a body that bounces, or flies.
+/// Expects the balances of every step of a body that bounces, or flies.
 void expect_balances(const Motion& motion, double least_force) {
   CaseRun run(case_of(motion));
   const double start = energy_of(run);
   double before = start, viscous = 0.0, numerical = 0.0, largest_force = 0.0;
   const Momenta first(run);
   MomentumAccount momentum(run.problem(), run.scheme(), run.state());
-  // Of each part of a step that was cut, too.
+  // Called for each part of a subdivided step, too.
   const auto check = [&](const State& state) {
     const std::string what = fmt::format("{} {} {} {}D, {} step {}", motion.scheme, motion.more, motion.time,
                                          motion.dimension, motion.branches.front().time, state.step);
@@ -129,7 +129,7 @@ TEST(Viscoelasticity, BouncesBalance) {
 }
 
 /// Steps of every length relative to the relaxation times, branches that are stiffer than the law, and every kind of
-/// reaction that acts.
+/// reaction.
 TEST(Viscoelasticity, BouncesBalanceWhateverTheTimes) {
   for (const double time : {1e-5, 1e-3, 0.01, 0.1, 10.0}) {
     for (const std::string more : {"", "friction = 0.4\n"}) {
@@ -176,7 +176,7 @@ TEST(Viscoelasticity, AdaptiveStepsBalance) {
   EXPECT_GT(run.simulation().control()->counts().refused, 0);
 }
 
-/// However far a step turns: no stress, no dissipation.
+/// A rigid spin has no stress and no dissipation, however large the rotation in a step.
 TEST(Viscoelasticity, ARigidSpinDissipatesNothing) {
   CaseRun run(case_of({.step = 500.0, .height = 1e6, .velocity = "[\"-1e-4*(y-0.25)\", \"1e-4*(x-0.5)\"]"}));
   const double start = energy_of(run);
@@ -186,7 +186,7 @@ TEST(Viscoelasticity, ARigidSpinDissipatesNothing) {
   EXPECT_NEAR(energy_of(run), start, 1e-8 * start);
 }
 
-/// Superposed rotations of the whole motion change nothing but the places.
+/// Superposed rotations of the whole motion change only the positions.
 TEST(Viscoelasticity, AMotionThatIsTurnedIsTheSameMotion) {
   const double angle = 0.7, c = std::cos(angle), s = std::sin(angle);
   const auto number = [](double value) { return fmt::format("({:.17g})", value); };
@@ -208,9 +208,9 @@ TEST(Viscoelasticity, AMotionThatIsTurnedIsTheSameMotion) {
   EXPECT_LT((one.state().internal_strain - other.state().internal_strain).lpNorm<Eigen::Infinity>(), 1e-12);
 }
 
-/// Branches that do not relax in the time of a run are springs beside the law, those that relax at once are nothing: in
-/// flight but for rounding. Where a body bounces, σ of a step has forces by the moduli of the law alone,
-/// which are not those of the stiffer body.
+/// Branches that do not relax during a run are springs parallel to the law, and those that relax at once vanish: in
+/// flight up to rounding. If a body bounces, the σ of a step is computed with the moduli of the law alone, which are
+/// not those of the stiffer body.
 TEST(Viscoelasticity, ItsLimitsAreTwoElasticBodies) {
   const double g = 0.8;
   const std::string stiff =
@@ -262,7 +262,7 @@ TEST(Viscoelasticity, IsOfSecondOrder) {
   }
 }
 
-/// A disc that is dropped leaves the slower, the more of its stiffness relaxes.
+/// The more of the stiffness relaxes, the slower a dropped disc rebounds.
 TEST(Viscoelasticity, RestitutionFallsWithTheBranches) {
   const std::string disc = mesh_geometry("viscous-disc",
                                          "Disk(1) = {0, 0.5, 0, 0.5};\nPhysical Surface(\"body\") = {1};\n"
@@ -285,7 +285,7 @@ TEST(Viscoelasticity, RestitutionFallsWithTheBranches) {
   }
 }
 
-/// A body is at rest for long where it starts: from a static start under its weight nothing moves and nothing relaxes.
+/// A static start is fully relaxed: under its weight the body neither moves nor relaxes further.
 TEST(Viscoelasticity, AStaticStartIsRelaxed) {
   const std::string text = "[mesh]\nfile = \"" + block(2) + "\"\n" + material("neo-hookean", {{5.0, 0.05}}) +
                            "[load]\ngravity = [0, -50]\n[initial]\ndisplacement = \"static\"\n[[support]]\ngroup = "
@@ -321,7 +321,7 @@ TEST(Viscoelasticity, GoesOnFromACheckpointWithTheSameBits) {
   }
 }
 
-/// Schemes whose steps do not relax stress say so.
+/// Schemes without viscoelasticity refuse it.
 TEST(Viscoelasticity, OtherSchemesRefuseIt) {
   for (const std::string scheme : {"newmark", "generalized-alpha", "midpoint", "kane"}) {
     std::string text = case_of({.scheme = scheme});

@@ -25,8 +25,8 @@ namespace {
 constexpr InstructionSet baseline = InstructionSet::baseline, avx2 = InstructionSet::avx2,
                          avx512 = InstructionSet::avx512;
 
-/// What a processor can do decides, not the table of OpenBLAS; a kernel as good as that, or one that is not known,
-/// stays.
+/// The features of the processor decide, not the table of OpenBLAS; a kernel that is as good, or an unknown one, is
+/// kept.
 TEST(BlasKernels, AreThoseOfTheProcessorUnlessOpenBlasHasChosenAsWell) {
   for (const char* lesser : {"Prescott", "PRESCOTT", "Nehalem", "Core2", "Barcelona", "Sandybridge", "Bulldozer"}) {
     EXPECT_EQ(better_blas_core(lesser, avx512, false), "SkylakeX") << lesser;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-/// @file What a caller may rely on of each decomposition.
+/// @file Guarantees of the dense decompositions.
 namespace ricochet {
 namespace {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-/// @file Where contact ends on an edge between a pressed node and an open one.
+/// @file Position of the end of contact on an edge between a closed node and an open one.
 namespace ricochet {
 namespace {
 

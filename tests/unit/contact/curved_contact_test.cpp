@@ -109,7 +109,7 @@ TEST_P(TwoPoints, ChangeTheirRevisionWithTheirRowsAlone) {
   EXPECT_GT(rows_.revision[1], first[1]);
 }
 
-/// What a checkpoint keeps of them, normals and gaps, makes them again to the bit.
+/// The normals and gaps that a checkpoint stores restore the rows to the bit.
 TEST_P(TwoPoints, AreRestoredToTheBit) {
   const Vector displacement = 0.05 * Vector::LinSpaced(2 * GetParam(), -1.0, 1.0);
   geometry_->update(displacement, 0.1, nullptr, rows_);

@@ -216,7 +216,7 @@ INSTANTIATE_TEST_SUITE_P(Elements, MeasureInvariance,
                                                                     {CellShape::hexahedron, 1, 1}}),
                          [](const auto& of) { return of.param.label(); });
 
-/// A warped quadrilateral is cut into triangles along one of its diagonals by nobody who measures it.
+/// No measure of a warped quadrilateral depends on a diagonal along which it could be cut into triangles.
 TEST(MeasureInvariance, OfAWarpedFacetWhereverItsNumberingBegins) {
   Mesh mesh = make_box_mesh({CellShape::hexahedron, {1, 1, 1}, 1, 0.0, {}});
   mesh.nodes(2, mesh.cells[0].cell(0)[7]) += 0.3;
@@ -228,7 +228,7 @@ TEST(MeasureInvariance, OfAWarpedFacetWhereverItsNumberingBegins) {
   EXPECT_NEAR(cell_heights(mesh).front(), height, 1e-14);
 }
 
-/// A block of other sides, in the frame of its sides and in others.
+/// A block with three different side lengths, in the frame of its sides and in others.
 TEST(MeasureInvariance, OfSurfacesFromFiles) {
   const SurfaceFacets block = block_surface({-1.0, 0.0, 0.5}, {1.0, 0.3, 1.5}, 2);
   const auto measures = [](const SurfaceFacets& facets) {

@@ -18,7 +18,7 @@ struct Malformed {
   const char* expected;  ///< part of the message
 };
 
-/// The same matrix in compressed form.
+/// Converts W to compressed form.
 void compress(Raw& raw, int form) {
   raw.integers[w + "nz"] = {form};
   raw.integers[w + "nzmax"] = {4};
@@ -27,7 +27,7 @@ void compress(Raw& raw, int form) {
   raw.reals[w + "x"] = {2.0, 1.0, 1.0, 3.0};
 }
 
-/// One constraint.
+/// Adds one equality constraint.
 void constrain(Raw& raw) {
   for (const std::string name : {"/fclib_local/V/", "/fclib_local/R/"}) {
     const bool v = name == "/fclib_local/V/";

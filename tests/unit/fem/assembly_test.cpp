@@ -149,7 +149,7 @@ double rotation_of_simplex(const Points& nodes, const Vector& u, const Index* ce
   return std::atan2(axial, 2.0 + h.trace());
 }
 
-/// Cells are looked at some at a time: whichever turns most, by whatever angle, is found.
+/// Cells are evaluated in packs: the one with the largest rotation is found, for every angle.
 TEST(RotationGauge, FindsTheLargestOfAllCells) {
   for (const CellShape shape : {CellShape::triangle, CellShape::tetrahedron}) {
     const auto test = large_body({shape, 1, 1});
@@ -162,7 +162,7 @@ TEST(RotationGauge, FindsTheLargestOfAllCells) {
       return result;
     };
     const Index d = test->space.nodes.rows(), nodes = test->space.node_count();
-    // From less than anybody would see to beyond a right angle: 2 + the divergence is negative in some cells, then.
+    // From negligible angles to beyond a right angle, where 2 + the divergence is negative in some cells.
     for (const double size : {1e-9, 1e-3, 1e-2, 10.0}) {
       const Vector u = size * Vector::NullaryExpr(
                                   nodes * d, [](Index i) { return std::sin(0.7 * static_cast<double>(i * i % 1009)); });

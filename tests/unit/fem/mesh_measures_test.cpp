@@ -52,7 +52,7 @@ TEST_P(MeshMeasures, OfAParallelepiped) {
   }
 }
 
-/// Of equal cells in a unit box of n³: 1/n of quadrilaterals and hexahedra, 1/(n√2) of right triangles.
+/// Equal cells in a unit box of n³ have the height 1/n (quadrilaterals, hexahedra) or 1/(n√2) (right triangles).
 TEST_P(MeshMeasures, HeightsOfCells) {
   const int d = dimension(GetParam());
   BoxMesh box;

@@ -15,7 +15,8 @@
 namespace ricochet {
 namespace {
 
-/// Of which displacements are compressed in single precision, too, and status numbers are not: they are few.
+/// Number of nodes: enough that displacements are compressed in single precision, too, and few enough that status
+/// numbers are not.
 constexpr Index rows = 1500;
 
 std::string content(const std::string& path) {

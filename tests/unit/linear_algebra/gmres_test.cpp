@@ -35,7 +35,7 @@ TEST(Gmres, NeedsAsManyIterationsAsThereAreDifferences) {
   EXPECT_LE((matrix * x - right).norm(), 1e-11 * right.norm());
 }
 
-/// What it says it reached is what is left.
+/// The residual that it reports is the one of the solution that it returns.
 TEST(Gmres, KnowsItsResidual) {
   std::mt19937 random(5);
   const Index size = 40;

@@ -59,7 +59,7 @@ TEST(NodeMatrix, MultipliesAsTheWholeMatrixDoes) {
     expect_product(blocks, stiffness, x);
     expect_product(scalars, mass, x);
     EXPECT_LT(static_cast<double>(blocks.bytes()), 0.6 * 12.0 * static_cast<double>(stiffness.nonZeros()));
-    // What was stored is what was given, entry by entry.
+    // The stored matrix equals the given one, entry by entry.
     for (const auto& [stored, given] : {std::pair{&blocks, &stiffness}, std::pair{&scalars, &mass}}) {
       EXPECT_EQ(stored->diagonal(), Vector(given->diagonal()));
       EXPECT_FALSE(stored->is_diagonal());
@@ -73,7 +73,7 @@ TEST(NodeMatrix, MultipliesAsTheWholeMatrixDoes) {
   }
 }
 
-/// Of patterns of which none is in another, blocks and single numbers: to the bit what sparse sums are.
+/// Patterns of which none contains another, blocks and scalars: sums equal those of sparse matrices to the bit.
 TEST(NodeMatrix, AddsUp) {
   for (const int d : {2, 3}) {
     const auto test = body_of(d);
@@ -103,7 +103,7 @@ TEST(NodeMatrix, AddsUp) {
         EXPECT_EQ(blocks[dof * d + k], expected.coeff(dof / d * d + k, dof));
       }
     }
-    // Of single numbers alone it has single numbers.
+    // A sum of scalar matrices is scalar.
     EXPECT_TRUE(NodeMatrix({{0.3, &first}, {2.0, &first}}).is_scalar());
     EXPECT_EQ(NodeMatrix({{1.0, &first}, {2.0, &first}}).diagonal(), 3.0 * first.diagonal());
   }
@@ -245,7 +245,7 @@ TEST(NodeMatrix, TakesAnySymmetricPattern) {
   }
 }
 
-/// Near nodes get near numbers: most neighbours are in the same part.
+/// Neighbouring nodes get nearby numbers: most neighbours are in the same part.
 TEST(NodeOrder, KeepsNeighboursTogether) {
   for (const int d : {2, 3}) {
     const auto test = body_of(d);

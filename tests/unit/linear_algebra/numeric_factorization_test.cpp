@@ -19,7 +19,7 @@ using test_support::random_vector;
 using test_support::uniform;
 using Arithmetic = SparseCholesky::Arithmetic;
 
-/// The same factor as CHOLMOD's, up to rounding.
+/// Expects the factor of CHOLMOD up to rounding.
 void expect_factor(const SparseMatrix& matrix, const std::string& what) {
   SparseCholesky own(matrix), library(matrix, Arithmetic::library);
   ASSERT_TRUE(own.positive_definite()) << what;

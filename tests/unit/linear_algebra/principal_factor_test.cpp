@@ -40,7 +40,7 @@ TEST(PrincipalFactor, FollowsItsIndices) {
   EXPECT_GE(factored, 3);
 }
 
-/// What is made again from the base set gives the same bits.
+/// A factor that is recomputed from the base set has the same bits.
 TEST(PrincipalFactor, IsMadeAgainFromItsBase) {
   std::mt19937 random(2);
   const Matrix w = test::random_operator(50, 2.0, random);

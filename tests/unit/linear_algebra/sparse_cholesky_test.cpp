@@ -74,7 +74,7 @@ TEST(SparseCholesky, KnowsThePlaceOfEveryUnknown) {
     EXPECT_EQ(factor.place(factor.permutation()[static_cast<std::size_t>(place)]), place);
 }
 
-/// What enters between the two solves as L⁻¹P f is a force f.
+/// Adding L⁻¹P f between the two solves has the effect of the force f.
 TEST(SparseCholesky, ForcesMayEnterBetweenTheTwoSolves) {
   const Index size = 60;
   const SparseMatrix matrix = random_matrix(size, 21);

@@ -17,7 +17,7 @@ Points points(Index dimension, std::initializer_list<double> values) {
   return Eigen::Map<const Points>(values.begin(), dimension, static_cast<Index>(values.size()) / dimension);
 }
 
-/// Of a bar of length 1 and mass 1: ⅓ and ⅙.
+/// Consistent mass matrix of a bar of length 1 and mass 1: ⅓ and ⅙.
 Matrix bar() {
   return (Matrix(2, 2) << 1.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0, 1.0 / 3.0).finished();
 }

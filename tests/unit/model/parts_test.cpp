@@ -47,7 +47,7 @@ std::string time_section(const std::string& mass = "consistent") {
   return "[mass]\ntype = \"" + mass + "\"\n[time]\nscheme = \"midpoint\"\nstep = 0.001\nend = 0.001\n";
 }
 
-/// Of the nodes of some body, by the mass matrix: mass times velocity, and its moment about a point.
+/// Momentum of the nodes of a body and its moment about a point, from M v.
 struct Momenta {
   double mass = 0.0;
   Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();

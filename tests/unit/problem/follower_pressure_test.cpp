@@ -62,7 +62,7 @@ class Pressed : public testing::TestWithParam<Kind> {
     for (double& each : result) each = values(generator);
     return result;
   }
-  /// Of the deformed body, cell by cell.
+  /// Volume of the deformed body, summed over its cells.
   [[nodiscard]] double volume(const Vector& u) const { return dimension() == 2 ? volume_of<2>(u) : volume_of<3>(u); }
 
   std::unique_ptr<MeshedBody> body_;
@@ -94,7 +94,7 @@ class Pressed : public testing::TestWithParam<Kind> {
   }
 };
 
-/// Of p all round: the virtual work is −p times the change of the volume, which is a cubic polynomial.
+/// The virtual work of p on the whole boundary is −p times the change of the volume, which is a cubic polynomial.
 TEST_P(Pressed, AllRoundItDoesTheWorkOfTheVolume) {
   const Vector u = random(0.04, 1), along = random(1.0, 2);
   const auto change = [&](double h) { return volume(u + h * along) - volume(u - h * along); };
@@ -117,7 +117,7 @@ TEST_P(Pressed, AllRoundItHasNeitherResultantNorMoment) {
   EXPECT_LT((moments - moments.transpose()).norm(), 1e-13);
 }
 
-/// Where F is the same everywhere, the force on a flat side of the area A is −p A cof(F) N.
+/// If F is homogeneous, the force on a flat side of area A is −p A cof(F) N.
 TEST_P(Pressed, OnAFlatSideItIsThatOfNanson) {
   if (element().geometry_degree == 2 || is_axisymmetric()) return;
   const int d = dimension();

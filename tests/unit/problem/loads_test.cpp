@@ -82,7 +82,7 @@ TEST(Supports, KeepTheFirstValueOfADof) {
   EXPECT_EQ(supports.expression(1).text(), "5");
 }
 
-/// The same formula may be given twice with different parameters.
+/// One formula may be given twice with different parameters.
 TEST(Supports, TellFormulasApartByTheirParameters) {
   Supports supports;
   supports.add(0, Expression("a*t", {{"a", 1.0}}));
@@ -240,7 +240,8 @@ TEST(RigidMotion, LeavesTheDeformationOfEachBody) {
   }
 }
 
-/// What is computed is K U of the K in the operators, also where K sees rotations: linear functions on curved cells.
+/// The force is K U with the K of the operators, even if rigid rotations are not in the kernel of K (linear functions
+/// on curved cells).
 TEST(LinearElasticity, IsThatOfItsTangentOnCurvedCells) {
   using test_support::make_box_mesh;
   for (const int d : {2, 3}) {

@@ -25,7 +25,7 @@ unsigned byte(const std::string& bytes, std::size_t at) {
   return static_cast<unsigned char>(bytes.at(at));
 }
 
-/// What the viewer does with levels, from the description of the format.
+/// Decodes the levels as the viewer does, from the description of the format.
 std::vector<unsigned> decoded(const PackedArray& array, const std::string& bytes) {
   const auto columns = static_cast<std::size_t>(array.columns);
   const unsigned mask = (1U << array.bits) - 1U;

@@ -102,8 +102,8 @@ TEST_P(SurfaceOf, TrianglesBelongToTheirCells) {
   }
 }
 
-/// What a page shows and what contact is looked for on are one surface: the same facets, cut at the same places. In the
-/// plane it is the outline of what is shown.
+/// The surface on a page is the surface of contact detection: the same facets, subdivided at the same points. In the
+/// plane it is the outline of the surface on the page.
 TEST_P(SurfaceOf, ItIsTheOneThatContactSees) {
   const ElementKind& kind = GetParam();
   const BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 2));

@@ -77,7 +77,7 @@ TEST_P(VolumeOf, ACubeIsComplete) {
   EXPECT_NEAR(surface, 6.0, 1e-12);
 }
 
-/// Where nothing is cut away, the inside ends at the surface that is drawn: triangle for triangle.
+/// Without a cut, the boundary of the volume is the drawn surface, triangle for triangle.
 TEST_P(VolumeOf, ItsOutsideIsTheSurface) {
   const ElementKind& kind = GetParam();
   const auto body =
@@ -101,7 +101,7 @@ TEST_P(VolumeOf, ItsOutsideIsTheSurface) {
   EXPECT_EQ(outside, drawn);
 }
 
-/// Of too many there are fewer: first those of the vertices, which still fill the cube, then larger ones.
+/// Too many tetrahedra are made fewer: first only those of the vertices, which still fill the cube, then larger ones.
 TEST_P(VolumeOf, ManyCellsAreMadeFewer) {
   const ElementKind& kind = GetParam();
   const auto body =

@@ -82,8 +82,8 @@ TEST_P(FreeMotions, KeepEnergyAndAngularMomentumOfAStepTogether) {
   EXPECT_GT(largest, 0.1);
 }
 
-/// What the rows say of a step is what a point of the body does in it, exactly: Δc + θ × a with the arm of its mean
-/// place.
+/// The rows give the displacement of a point of the body in a step exactly: Δc + θ × a, with the arm of its mean
+/// position.
 TEST_P(FreeMotions, MovePointsAsTheirRowsSay) {
   const Index d = GetParam();
   std::mt19937 random(3);

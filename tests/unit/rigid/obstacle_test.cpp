@@ -12,13 +12,13 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/temporary_folder.hpp"
 
-/// @file What every obstacle promises of its gap, normal and motion.
+/// @file Properties of the gap, the normal and the motion of every obstacle.
 namespace ricochet {
 namespace {
 
 using Numbers = std::vector<double>;
 
-/// Every registered type but surfaces from files (rigid_surface_test.cpp), askew, in the dimensions that it has.
+/// Returns a skew obstacle of any registered type except surfaces from files (see rigid_surface_test.cpp).
 std::unique_ptr<ObstacleShape> shape_of(const std::string& type, Index dimension, const std::string& side) {
   const auto cut = [&](Numbers values) {
     values.resize(static_cast<std::size_t>(dimension));
@@ -45,7 +45,7 @@ std::unique_ptr<ObstacleShape> shape_of(const std::string& type, Index dimension
   return make_obstacle_shape(type, parameters);
 }
 
-/// The same, moving; turntables turn in their plane, too.
+/// Returns a moving obstacle with the shape of the type; turntables also turn in their plane.
 std::unique_ptr<Obstacle> placed(const std::string& type, Index dimension, const std::string& side = "outside") {
   const Vector velocity = Eigen::Vector3d(0.3, -0.2, 0.5).head(dimension);
   std::unique_ptr<ObstacleShape> shape = shape_of(type, dimension, side);
@@ -53,7 +53,7 @@ std::unique_ptr<Obstacle> placed(const std::string& type, Index dimension, const
   return std::make_unique<Obstacle>(std::move(shape), make_uniform_path(velocity), spin, Vector::Zero(dimension));
 }
 
-/// Digits that gaps and normals of a type have.
+/// Accuracy of the gaps and normals of a type.
 double rounding_of(const std::string& type) {
   return type == "implicit" ? 1e-11 : 1e-14;
 }
@@ -87,7 +87,8 @@ TEST_P(Obstacles, HaveUnitNormalsThatAreTheDerivativeOfTheGap) {
   }
 }
 
-/// Along the normal of a step it goes out where the gap grows, in where it shrinks, and neither where it stays.
+/// The displacement along the normal of a step is positive if the gap grows, negative if it shrinks, and zero if it
+/// does not change.
 TEST_P(Obstacles, HaveNormalsOfStepsThatKnowTheChangeOfTheGap) {
   const auto obstacle = make();
   int near = 0;
@@ -97,7 +98,7 @@ TEST_P(Obstacles, HaveNormalsOfStepsThatKnowTheChangeOfTheGap) {
     SpaceVector normal = obstacle->shape().normal_of_step(from, to);
     EXPECT_NEAR(normal.norm(), 1.0, 1e-15);
     EXPECT_GE(normal.dot(obstacle->normal(to)), 0.0);
-    // Whatever a step does: no force along its normal gives energy.
+    // For every step: no force along its normal creates energy.
     EXPECT_GE(normal.dot(to - from) * (obstacle->gap(to) - obstacle->gap(from)), -rounding());
     if (normal.dot(obstacle->normal(to)) < 0.5) continue;                          // too far round
     if (normal == obstacle->normal(to) && !obstacle->shape().is_flat()) continue;  // too far round
@@ -117,7 +118,7 @@ TEST_P(Obstacles, HaveNormalsOfStepsThatKnowTheChangeOfTheGap) {
   EXPECT_GT(near, 50);
 }
 
-/// The gap is a distance: along the normal it changes by as much as one goes, until the surface and beyond.
+/// The gap is a distance: along the normal it changes by the length of the path, up to the surface and beyond.
 TEST_P(Obstacles, HaveGapsThatAreDistances) {
   const auto obstacle = make();
   for (int k = 0; k < 50; ++k) {
@@ -134,7 +135,7 @@ TEST_P(Obstacles, HaveGapsThatAreDistances) {
   }
 }
 
-/// Surfaces for pictures lie on the obstacle, also after it has moved.
+/// Surfaces for visualization lie on the obstacle, also after it has moved.
 TEST_P(Obstacles, HaveSurfacesWhereTheyAre) {
   const auto obstacle = make();
   constexpr double time = 0.5;
@@ -150,10 +151,10 @@ TEST_P(Obstacles, HaveSurfacesWhereTheyAre) {
     const double coarse = type() == "implicit" ? 0.01 : 1e-14;  // cuts of a grid
     EXPECT_NEAR(obstacle->gap(SpaceVector(start.col(k))), 0.0, coarse);
     EXPECT_NEAR(obstacle->at(time).gap(SpaceVector(later.col(k))), 0.0, coarse);
-    // The picture keeps its size.
+    // The surface keeps its size.
     EXPECT_NEAR((later.col(k) - later.col(0)).norm(), (start.col(k) - start.col(0)).norm(), 1e-14);
   }
-  // What the material does, the surface does along its normal.
+  // The normal velocity of the surface is that of the material.
   const Vector foot = later.col(0);
   const Vector normal = obstacle->at(time).normal(foot);
   EXPECT_NEAR(obstacle->surface_velocity(foot, time).dot(normal), moved.dot(normal) / time, 1e-12);
@@ -161,10 +162,10 @@ TEST_P(Obstacles, HaveSurfacesWhereTheyAre) {
   EXPECT_NEAR(way.dot(normal), moved.dot(normal), 1e-14);
 }
 
-/// The cells' sides tell where the obstacle is, and what they share is there once.
+/// The orientation of the cells shows the side of the obstacle, and shared nodes occur once.
 TEST_P(Obstacles, HaveSurfacesThatFaceOut) {
   const auto obstacle = make();
-  // A part, and all that there is.
+  // A part of the obstacle, and all of it.
   for (const double radius : {0.1, 3.0}) {
     const ObstacleSurface surface = obstacle->surface(random_point(), radius);
     const auto corners = static_cast<std::size_t>(surface.corners());
@@ -197,7 +198,7 @@ TEST_P(Obstacles, HaveSurfacesThatFaceOut) {
       }
     }
     EXPECT_EQ(std::count(uses.begin(), uses.end(), 0), 0);
-    // One more than cells at a pole or an end, not four for each cell.
+    // About one node per cell, plus one at a pole or an end, not four for each cell.
     const auto cells = static_cast<Index>(surface.cells.size() / corners);
     const bool has_rims = type() == "cylinder" || type() == "torus" || type() == "implicit";
     EXPECT_LE(surface.points.cols(), obstacle->shape().is_flat() ? 4 : has_rims ? 3 * cells / 2 : cells + 1);
@@ -208,7 +209,7 @@ TEST_P(Obstacles, HaveSurfacesThatFaceOut) {
   }
 }
 
-/// Planes are shown beside the body when they move along themselves, and turn; spheres go with what moves them.
+/// Planes stay beside the body when they move tangentially, and rotate; spheres follow their motion.
 TEST(Obstacle, IsShownWhereItCanBeSeen) {
   const auto plane = placed("plane", 3);
   const ObstacleSurface square = plane->surface(Vector::Zero(3), 0.3);
@@ -286,8 +287,9 @@ TEST(Obstacle, RefusesAnExpressionWithoutASlope) {
   }
 }
 
-/// A plane that tilts, a sphere that goes round and a cylinder that does both: gaps at an instant are those of the
-/// shape where it is, and a step's normal knows what the gap has changed by beside the obstacle's own motion.
+/// A plane that tilts, a sphere on a circular path and a cylinder that does both: gaps at an instant are those of the
+/// shape in its current pose, and the normal of a step accounts for the change of the gap relative to the motion of the
+/// obstacle.
 TEST(Obstacle, TurnsAndIsWhereItsPoseSays) {
   std::mt19937 random(5);
   const auto number = [&] { return 2.0 * static_cast<double>(random()) / 4294967296.0 - 1.0; };
@@ -321,7 +323,7 @@ TEST(Obstacle, TurnsAndIsWhereItsPoseSays) {
       EXPECT_LT((before.pose().seen_from(from) - of_shape).norm(), 1e-14);
       const SpaceVector normal = normal_of_step(before, from, after, to);
       EXPECT_NEAR(normal.norm(), 1.0, 1e-14);
-      // The velocity of what is at the mean place, over the step and at an instant.
+      // The velocity of the material at the mean position, over the step and at an instant.
       const SpaceVector own =
           (end - start) * obstacle.surface_velocity(0.5 * (from + to), 0.5 * (start + end), end - start);
       EXPECT_LT((own - motion_at(before.pose(), after.pose(), 0.5 * (from + to))).norm(), 1e-14);
@@ -331,7 +333,7 @@ TEST(Obstacle, TurnsAndIsWhereItsPoseSays) {
       EXPECT_LT((at_start - (ahead - behind) / 2e-5).norm(), 1e-5);
       const double change = after.gap(to) - before.gap(from);
       EXPECT_GE(normal.dot(to - from - own) * change, -1e-12);
-      // Far round it is that of the end, or gives nothing.
+      // Far round, the normal is that of the end, or the displacement along it is zero.
       if (std::abs(normal.dot(to - from - own)) < 1e-12 || (normal - after.normal(to)).norm() < 1e-14) continue;
       ++near;
       EXPECT_GE(normal.dot(to - from - own) * change, -1e-13);
@@ -344,7 +346,7 @@ TEST(Obstacle, TurnsAndIsWhereItsPoseSays) {
   }
 }
 
-/// Rounding of differences would be a velocity, and friction at the start would have its direction.
+/// The rounding of differences must not appear as a velocity, whose direction friction at the start would have.
 TEST(Obstacle, HasNoVelocityWhereItStartsFromRest) {
   const Vector about = Eigen::Vector2d(0.0, 0.0);
   const auto velocity = [&](const std::string& motion, double time_scale) {

@@ -15,7 +15,7 @@
 #include "ricochet/rigid/surface/facet_weight.hpp"
 #include "support/surface_files.hpp"
 
-/// @file Surfaces from files: distances against closed forms and against looking at every facet, and what is refused.
+/// @file Surfaces from files: distances compared with closed forms and with a search of all facets; invalid files.
 namespace ricochet {
 namespace {
 
@@ -34,7 +34,7 @@ class RigidSurfaces : public testing::Test {
   std::mt19937 random_{11};
 };
 
-/// Of a block, by its three coordinates.
+/// Signed distance to a block, coordinate by coordinate.
 double distance_to_block(const Three& at, const Three& low, const Three& high) {
   const Three q = (at - 0.5 * (low + high)).cwiseAbs() - 0.5 * (high - low);
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
@@ -54,9 +54,9 @@ TEST_F(RigidSurfaces, HaveTheDistancesOfABlockInsideAndOutside) {
   }
 }
 
-/// Two blocks that make an L: edges that go in, corners of both kinds.
+/// Two blocks that form an L, with a re-entrant edge and corners of both kinds.
 TEST_F(RigidSurfaces, KnowInsideFromOutsideAtEdgesThatGoIn) {
-  // One polygon in the plane, with the lines of the L, carried along the third axis by hand.
+  // Outline of the L as one polygon in the plane, extruded along the third axis by hand.
   const std::vector<Eigen::Vector2d> outline{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
   SurfaceFacets facets;
   const auto at = [&](std::size_t i, double z) { return Three(outline[i][0], outline[i][1], z); };
@@ -100,7 +100,7 @@ TEST_F(RigidSurfaces, FindTheNearestOfAllFacets) {
   }
 }
 
-/// The distance to it tends to that of the sphere with the square of the size of its triangles, its mean normals, too.
+/// The distance converges to that of the sphere with the square of the triangle size, and so do the mean normals.
 TEST_F(RigidSurfaces, TendToASphere) {
   double gap_before = 0.0, normal_before = 0.0;
   for (const int level : {2, 3, 4}) {
@@ -124,7 +124,7 @@ TEST_F(RigidSurfaces, TendToASphere) {
   EXPECT_LT(normal_before, 2e-2);
 }
 
-/// ∫ over the facet by a fine sum.
+/// Compares weights with integrals over the facet, computed by a fine sum.
 TEST_F(RigidSurfaces, WeighFacetsExactly) {
   for (int k = 0; k < 20; ++k) {
     const std::array<Three, 3> corners{point(1.0), point(1.0), point(1.0)};
@@ -165,7 +165,7 @@ TEST_F(RigidSurfaces, WeighFacetsExactly) {
   }
 }
 
-/// Whatever the triangles are: the height above a plane, with a derivative that turns around edges and does not jump.
+/// For any triangles: the mean height above a plane, whose derivative rotates around edges without a jump.
 TEST_F(RigidSurfaces, HaveMeanHeightsWhoseDerivativesTurnAroundEdges) {
   const Three low(-1, -1, -1), high(1, 1, 1);
   const RigidSurface coarse(block_surface(low, high), "coarse"), fine(block_surface(low, high, 7), "fine");
@@ -196,7 +196,7 @@ TEST_F(RigidSurfaces, HaveMeanHeightsWhoseDerivativesTurnAroundEdges) {
   EXPECT_GT(off, 0.1 * radius);
 }
 
-/// The derivative of the gap in all of its parts, near edges and corners and beyond the radius.
+/// The derivative of the gap in all regions: near edges and corners, and beyond the radius.
 TEST_F(RigidSurfaces, HaveNormalsAlongTheDerivativeOfTheGap) {
   const auto block = shape(block_surface({-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}, 2), {{"edge_radius", 0.15}});
   const auto polygon = [&] {
@@ -226,8 +226,9 @@ TEST_F(RigidSurfaces, HaveNormalsAlongTheDerivativeOfTheGap) {
   EXPECT_GT(looked_at, 1000);
 }
 
-/// Of steps of any length at rounded edges, where the gap changes by less than one goes. The direction of a way that is
-/// rounding says nothing: forces of a node that sticks there would change from one iteration to the next.
+/// Steps of any length at rounded edges, where the gap changes by less than the length of the step. The direction of a
+/// displacement that is mere rounding has no meaning: with it, the forces at a node that sticks there would change from
+/// one iteration to the next.
 TEST_F(RigidSurfaces, HaveNormalsOfStepsThatDoNotFollowRounding) {
   const auto block = shape(block_surface({-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}, 2), {{"edge_radius", 0.15}});
   int rounded = 0;
@@ -239,7 +240,7 @@ TEST_F(RigidSurfaces, HaveNormalsOfStepsThatDoNotFollowRounding) {
       const double length = std::pow(10.0, -digits);
       const SpaceVector way = length * point(1.0);
       const SpaceVector normal = block->normal_of_step(from, from + way);
-      // It turns by a way beside the radius; 2e-8 is what is left of rounding beside ways of 1e-7.
+      // The normal rotates by the displacement over the radius; 2e-8 is the rounding relative to displacements of 1e-7.
       EXPECT_LT((normal - block->normal(from)).norm(), 100.0 * length + 2e-8) << from.transpose() << ", " << length;
     }
     const SpaceVector to = from + SpaceVector(point(0.02));
@@ -267,14 +268,14 @@ TEST_F(RigidSurfaces, AreTheSameFromTextAndFromBytes) {
   }
 }
 
-/// A square whose sides are lines of a file, and a line that has ends.
+/// A square whose sides are the lines of a file, and an open line.
 TEST_F(RigidSurfaces, AreInThePlaneToo) {
   const auto polygon = [&](const std::string& text, Parameters parameters = {}) {
     std::ofstream(folder_.file("body.txt")) << text;
     parameters.set("file", folder_.file("body.txt"));
     return make_obstacle_shape("surface", parameters);
   };
-  // Both ways round.
+  // Both orientations.
   for (const std::string text : {"0 0\n1, 0\n1 1\n0 1 # last\n0 0\n", "0 0\n0 1\n1 1\n1 0\n0 0\n"}) {
     const auto square = polygon(text);
     EXPECT_NEAR(square->gap(Eigen::Vector2d(0.5, 0.7)), -0.3, 1e-15);
@@ -282,7 +283,7 @@ TEST_F(RigidSurfaces, AreInThePlaneToo) {
     EXPECT_NEAR(square->gap(Eigen::Vector2d(0.5, -0.25)), 0.25, 1e-15);
     EXPECT_LT((square->normal(Eigen::Vector2d(0.5, -0.25)) - Eigen::Vector2d(0, -1)).norm(), 1e-15);
   }
-  // The body is below, to the right of lines that go to the left... beyond its ends nothing is behind it.
+  // The obstacle lies above, on the right of a line that runs to the left; beyond its ends no point is inside.
   const auto line = polygon("1 0\n-1 0\n");
   EXPECT_NEAR(line->gap(Eigen::Vector2d(0.3, -0.2)), 0.2, 1e-15);
   EXPECT_NEAR(line->gap(Eigen::Vector2d(0.3, 0.2)), -0.2, 1e-15);
@@ -322,14 +323,14 @@ TEST_F(RigidSurfaces, RefuseWhatHasNoInside) {
   SurfaceFacets joined = block;
   for (const auto& triangle : block_surface({1, 1, 0}, {2, 2, 1}).corners) joined.corners.push_back(triangle);
   EXPECT_NE(problem(joined).find("4 triangles meet at the edge at (1, 1, 0.5)"), std::string::npos);
-  // Inside out as a whole it is turned round.
+  // A surface that is inverted as a whole is reoriented.
   SurfaceFacets inside_out = block;
   for (auto& triangle : inside_out.corners) std::swap(triangle[0], triangle[1]);
   EXPECT_TRUE(RigidSurface(inside_out, "block").was_turned_round());
   EXPECT_NEAR(shape(inside_out)->gap(Three(0.5, 0.5, 1.25)), 0.25, 1e-15);
   EXPECT_NEAR(shape(inside_out)->gap(Three(1.5, 0.5, 1.5)), std::sqrt(0.5), 1e-15);
   EXPECT_NEAR(shape(inside_out)->gap(Three(0.9, 0.8, 0.9)), -0.1, 1e-15);
-  // A triangle without area, out of two corners that are one.
+  // A triangle without area, with two coinciding corners.
   SurfaceFacets flat = block;
   flat.corners.push_back({block.corners[0][0], block.corners[0][0], block.corners[0][1]});
   EXPECT_EQ(RigidSurface(flat, "block").flat_count(), 1);
@@ -359,7 +360,7 @@ TEST_F(RigidSurfaces, SayWhereAFileIsWrong) {
         std::string::npos)
         << normal;
   }
-  // Some programs write those for triangles without area.
+  // Some programs write such normals for triangles without area.
   const std::string triangle = "\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
   for (const std::string normal : {"nan nan nan", "-nan(ind) 0 NaN", "-1 +.5e3 0"})
     EXPECT_EQ(problem("solid a\nfacet normal " + normal + triangle), "none") << normal;

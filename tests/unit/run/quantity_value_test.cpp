@@ -21,7 +21,7 @@ HistoryTable pulse() {
   return history;
 }
 
-/// Of differences of times, which are a tenth of the times, and of values up to 10.
+/// Rounding of differences of times, which are a tenth of the times, and of values up to 10.
 constexpr double rounding = 1e-14;
 
 double value(const std::string& text, const HistoryTable& history = pulse()) {

@@ -139,7 +139,7 @@ TEST(Registry, MakesByNameWithParametersInCode) {
       "scheme \"newmark\": the parameter \"preset\" is trapezoid; it must be \"trapezoidal\" or \"textbook-half\"");
 }
 
-/// What a type cannot have is said when it is registered, not when it is used.
+/// A key that its type does not admit is refused at registration, not at its first use.
 TEST(Registry, RefusesKeysThatATypeCannotHave) {
   const auto with = [](Key key) {
     SchemeRegistration registration = drag_scheme();

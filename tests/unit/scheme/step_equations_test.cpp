@@ -5,7 +5,7 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file What schemes say of their stages, against the formulas on the problem's own matrices.
+/// @file Stages of the schemes, compared with their formulas on the matrices of the problem.
 namespace ricochet {
 namespace {
 

@@ -48,7 +48,7 @@ struct TwoSquares {
   [[nodiscard]] BodyWatch watch(const std::vector<KeptNode>& kept = {}) const {
     return {positions, cells, boundary_facets(cells), bodies, size, kept};
   }
-  /// Those of both squares that come upon each other, as nodes of a contact with these allowances.
+  /// Nodes of the facing sides of the two squares, as nodes of a contact with these allowances.
   [[nodiscard]] std::vector<KeptNode> facing_nodes(double of_lower, double of_upper) const {
     std::vector<KeptNode> result;
     for (Index node = 0; node < positions.cols(); ++node) {
@@ -60,7 +60,7 @@ struct TwoSquares {
     }
     return result;
   }
-  /// The second one displaced.
+  /// Displacement of the second square.
   [[nodiscard]] Vector displacement(double x, double y) const {
     Vector result = Vector::Zero(2 * positions.cols());
     for (Index node = 0; node < positions.cols(); ++node) {
@@ -120,8 +120,8 @@ TEST(BodyWatch, SeesAnOverlapOfTheStart) {
   EXPECT_NEAR(watch.pairs()[0].deepest.depth, 0.1, 1e-14);
 }
 
-/// Conditions between bodies hold in the mean over facets; what is deeper than that allows and than the contact sees is
-/// wrong of its pairing.
+/// Conditions between bodies hold in the mean over facets; a penetration beyond that allowance and beyond the gap of
+/// the contact means that the pairing is wrong.
 TEST(BodyWatch, LetsNodesOfAContactBeInsideByTheirAllowance) {
   const TwoSquares squares;
   Vector gap = Vector::Constant(100, std::nan(""));
@@ -135,7 +135,7 @@ TEST(BodyWatch, LetsNodesOfAContactBeInsideByTheirAllowance) {
   EXPECT_EQ(watch.pairs()[0].contact, 7);
   EXPECT_NEAR(watch.pairs()[0].at_contact.depth, 0.055, 1e-12);
   EXPECT_NEAR(watch.pairs()[0].at_contact.place[1], 1.0, 1e-12) << "a node of the lower one";
-  // What the contact itself knows of needs no telling.
+  // Penetration that the contact itself detects is not reported.
   gap.setConstant(-0.04);
   BodyWatch knowing = squares.watch(squares.facing_nodes(0.05, 0.05));
   knowing.look(squares.displacement(0.0, -0.2 - 0.089), 0.25, true, gaps);
@@ -143,7 +143,7 @@ TEST(BodyWatch, LetsNodesOfAContactBeInsideByTheirAllowance) {
   knowing.look(squares.displacement(0.0, -0.2 - 0.091), 0.5, true, gaps);
   ASSERT_EQ(knowing.pairs().size(), 1U);
   EXPECT_NEAR(knowing.pairs()[0].at_contact.depth, 0.091, 1e-12);
-  // All others are looked at as before: here the second row of the upper square.
+  // All other nodes are checked as before: here the second row of the upper square.
   EXPECT_FALSE(knowing.pairs()[0].deepest.found());
   gap.setConstant(-1.0);
   knowing.look(squares.displacement(0.0, -0.2 - 0.11), 0.75, true, gaps);

@@ -13,7 +13,7 @@ namespace {
 
 using test_support::CaseRun;
 
-/// What a row should say, and the sizes of the sums that it is rounded to.
+/// Expected values of a row, and the sizes of the sums that determine its rounding.
 struct Wanted {
   double kinetic = 0.0, elastic = 0.0;
   Eigen::Vector3d momentum = Eigen::Vector3d::Zero(), angular_momentum = Eigen::Vector3d::Zero();

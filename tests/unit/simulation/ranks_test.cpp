@@ -8,7 +8,7 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file What the numbers of a body that is divided among processes are made of.
+/// @file Results of a body that is distributed over processes.
 namespace ricochet {
 namespace {
 

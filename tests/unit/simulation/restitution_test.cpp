@@ -45,7 +45,8 @@ TEST(Restitution, IsNoneOfABodyThatStaysOrDidNotCome) {
   expect_none(impact(1.0, -0.5, 1.0), "did not come nearer");
 }
 
-/// What friction, vibrations or gravity make of a hardly approaching body would be 1000 of its approach.
+/// The velocity that friction, vibrations or gravity give to a body that hardly approaches would be 1000 times its
+/// velocity of approach.
 TEST(Restitution, IsNoneWhereOtherThingsMakeTheVelocityAfter) {
   expect_none(impact(1.0, 1e-4, 0.1), "along the obstacle");
   Impact vibrating = impact(0.0, 1e-4, 0.1);
@@ -110,7 +111,7 @@ TEST(Restitution, OfTwoBodiesIsThatOfTheirVelocityAgainstEachOther) {
   EXPECT_NEAR(*two.restitution(), 0.5, 1e-15);
   EXPECT_NEAR(two.other_impulse().norm(), 0.0, 1e-15);
   EXPECT_NEAR((two.other_impulse_on_other() - Eigen::Vector3d(0.0, 1.5, 0.0)).norm(), 0.0, 1e-15);
-  // Seen from a train all is the same.
+  // Results do not depend on the observer.
   for (RigidMotionState* motion : {&two.before, &two.after, &two.other->before, &two.other->after})
     motion->velocity += Eigen::Vector3d(100.0, -100.0, 7.0);
   two.before.kinetic_energy = 0.5 * two.mass * two.before.velocity.squaredNorm();

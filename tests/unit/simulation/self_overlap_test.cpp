@@ -84,7 +84,7 @@ TEST(SelfOverlap, IsThatOfTheArmsOfAClamp) {
 }
 
 /// A clamp that is as thick as it likes: its sides are of triangles.
-/// Nodes between the arms see the other arm; what is outside of the clamp sees nothing of it.
+/// Nodes between the arms face the other arm; nodes outside of the clamp face nothing.
 TEST(SelfOverlap, KnowsHowFarAwayWhatFacesANodeIs) {
   const std::vector<Two> reference = refined(clamp, 12);
   const BodySurface surface(as_points(reference), segments(reference.size()));

@@ -19,7 +19,7 @@ namespace {
 using test_support::CaseRun;
 using test_support::StackedBoxes;
 
-/// Of the meshes: nodes of one file must not lie on each other.
+/// Distance of the two meshes: nodes of one file must not coincide.
 constexpr double gap = 1e-3;
 
 std::string stack(const std::string& contact) {

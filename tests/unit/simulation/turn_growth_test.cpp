@@ -19,7 +19,7 @@ TurningBody disc(double radius, double turn, double before, double after) {
           radius * down};
 }
 
-/// Of radius R √(1 + φ²): it grows at R φ ω.
+/// Radius R √(1 + φ²), which grows at the rate R φ ω.
 TEST(TurnGrowth, OfASteadySpinIsThatOfTheRadius) {
   const double radius = 9.525e-3, spin = 800.0, duration = 54e-6, turn = 0.01;
   const double before = radius * turn * spin, after = radius * (turn + spin * duration) * spin;
@@ -30,7 +30,7 @@ TEST(TurnGrowth, OfASteadySpinIsThatOfTheRadius) {
   EXPECT_EQ(turn_growth(disc(radius, 0.0, 0.0, 0.0), down, duration), 0.0);
 }
 
-/// What turns about the normal does not move along it, and a point on the axis not at all.
+/// A rotation about the normal moves no point along it, and a point on the axis not at all.
 TEST(TurnGrowth, IsThatAcrossTheAxis) {
   TurningBody top = disc(1.0, 0.0, 0.0, 0.0);
   top.turn = 0.1 * up;
@@ -57,7 +57,7 @@ double velocity_after(const std::function<double(double)>& growth) {
   return velocity;
 }
 
-/// Of unit mass and stiffness, so that contact lasts for π.
+/// Unit mass and stiffness, so that contact lasts for π.
 TEST(TurnGrowth, GivesTheVelocityAfter) {
   constexpr double pi = std::numbers::pi, turn = 0.004;
   EXPECT_NEAR(velocity_after([](double) { return 0.0; }), 1.0, 1e-4);

@@ -91,7 +91,7 @@ TEST(ChooseMethod, DoesWhatItIsTold) {
             SolverMethod::direct);
 }
 
-/// Of conjugate gradients for a force that is there everywhere.
+/// Number of conjugate gradient iterations for a force on all nodes.
 int iterations_of(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, double tolerance) {
   const StageProduct product(problem, coefficients);
   const std::vector<char> solved(static_cast<std::size_t>(problem.dof_count()), 1);
@@ -128,7 +128,7 @@ TEST(IterationEstimate, IsOfTheSizeOfTheCounts) {
   }
 }
 
-/// What was chosen at the start holds, whatever would be chosen for the rest of the run.
+/// The choice at the start is kept, even if the rest of the run alone would lead to another one.
 TEST(ChooseMethod, IsKeptByARunThatGoesOn) {
   for (const bool began_with_iterations : {true, false}) {
     CaseRun run(test_support::thrown_case(test_support::one_sided_block(), "equivalent",

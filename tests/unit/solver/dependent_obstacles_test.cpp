@@ -66,7 +66,7 @@ std::string body(const std::string& mesh, const Pairing& pairing, const std::str
 
 const std::string held_along = "[[support]]\ngroup = \"bottom\"\ncomponents = [\"x\"]\nvalue = 0\n";
 
-/// No contact point is inside an obstacle, none is pulled.
+/// Expects that no contact point is inside an obstacle and that no reaction is tensile.
 void expect_contact(CaseRun& run, bool ends_outside) {
   run.run(
       [&] {
@@ -149,7 +149,8 @@ TEST(DependentObstacles, APlaneTwiceIsAPlane) {
   }
 }
 
-/// A ceiling comes down on nodes that stand on a floor: the step in which no room is left says where and between what.
+/// A ceiling comes down on nodes on a floor: the step in which no clearance is left names the position and the
+/// obstacles.
 TEST(DependentObstacles, WithoutRoomAreNamed) {
   const std::string mesh = block_mesh();
   for (const double friction : {0.0, 0.2}) {

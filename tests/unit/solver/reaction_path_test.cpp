@@ -129,7 +129,7 @@ TEST(ReactionPath, LosesNothingWhereFrictionGoesOn) {
   }
 }
 
-/// Where U_NN + U_NT D is no P-matrix the cone has another path, along which nothing would press: it is not taken.
+/// If U_NN + U_NT D is no P-matrix, the cone has another path, along which all contact would open: it is not followed.
 TEST(ReactionPath, TakesNoPathThatEndsElsewhere) {
   Matrix u(2, 2);
   u << 1.0, 1.5, 1.5, 4.0;

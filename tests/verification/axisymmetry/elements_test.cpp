@@ -62,7 +62,7 @@ double axial_stress() {
 
 class AxisymmetricPatch : public testing::TestWithParam<PatchCase> {
  protected:
-  /// A cylinder of height 1 between the radii 0 and 1, or 0.5 and 1.5, with its sides where they are.
+  /// A cylinder of height 1 between the radii 0 and 1, or 0.5 and 1.5; its sides are not moved by the distortion.
   [[nodiscard]] std::unique_ptr<MeshedBody> make_body(const std::vector<int>& counts = {4, 3}) const {
     const PatchCase& given = GetParam();
     const double inner = given.at_axis ? 0.0 : 0.5;
@@ -78,7 +78,7 @@ class AxisymmetricPatch : public testing::TestWithParam<PatchCase> {
   [[nodiscard]] double volume() const { return pi * (outer() * outer() - inner() * inner()); }
 };
 
-/// K u is the load of the tractions on the sides, at every node: those on the axis have none.
+/// K u equals the load of the tractions on the sides at every node, which is zero on the axis.
 TEST_P(AxisymmetricPatch, InternalForceBalancesTheTractions) {
   const auto test = make_body();
   const SparseMatrix stiffness = assemble_stiffness(test->body, node_graph(test->space));
@@ -128,7 +128,7 @@ TEST_P(AxisymmetricPatch, EnergyDensitiesAddUpToTheStrainEnergy) {
   EXPECT_NEAR(volumes.sum(), volume(), 1e-13 * volume());
 }
 
-/// The stress of u = (rz, …) on degree 2 is a linear function, and what is recovered at the nodes is its value there.
+/// The stress of u = (rz, …) of degree 2 is a linear function, which the recovery reproduces at the nodes.
 TEST_P(AxisymmetricPatch, RecoveryIsExactForLinearStresses) {
   if (GetParam().kind.displacement_degree == 1 || GetParam().curved) return;  // not contained in the space
   const auto test = make_body({5, 5});
@@ -146,14 +146,14 @@ TEST_P(AxisymmetricPatch, RecoveryIsExactForLinearStresses) {
   }
 }
 
-/// The symmetric matrix has one motion without energy, the translation along the axis.
+/// The symmetric matrix has one motion without energy: the translation along the axis.
 TEST_P(AxisymmetricPatch, OnlyTheTranslationAlongTheAxisIsRigid) {
   const auto test = make_body();
   const SparseMatrix stiffness = assemble_stiffness(test->body, node_graph(test->space));
   const Vector values = symmetric_eigenvalues(Matrix(stiffness));
   EXPECT_LE(std::abs(values[0]), 1e-13 * values[values.size() - 1]);
   EXPECT_GE(values[1], 1e-6 * values[values.size() - 1]);
-  // And it alone is taken out of displacements before products.
+  // Only this translation is subtracted from displacements before products.
   const RigidMotion rigid(test->space.nodes, stiffness);
   const Vector moved = interpolate(test->space, [](const Vector& x) -> Vector {
     return stretched(x) + Vector(Eigen::Vector2d(0.2 - 3.0 * x[1], 1e6 + 3.0 * x[0]));
@@ -208,8 +208,8 @@ TEST_P(AxisymmetricPatch, GroupsMeasureWhatTheirRingsDo) {
   EXPECT_NEAR(area, volume(), 1e-12);
 }
 
-/// Mass, first and second moments with the density 2πrρ are kept, so a translation along the axis and u = (a r, b z +
-/// c) have their kinetic energy.
+/// Mass, first and second moments with the density 2πrρ are preserved, so a translation along the axis and u = (a r, b
+/// z + c) have their exact kinetic energy.
 TEST_P(AxisymmetricPatch, EquivalentMassesKeepTheirMoments) {
   const auto test = make_body({7, 7});
   const SparseMatrix consistent = assemble_scalar_mass(test->body, node_graph(test->space));
@@ -243,7 +243,7 @@ TEST_P(AxisymmetricPatch, EquivalentMassesKeepTheirMoments) {
 INSTANTIATE_TEST_SUITE_P(Elements, AxisymmetricPatch, testing::ValuesIn(patch_cases()),
                          [](const auto& info) { return info.param.label(); });
 
-/// The equilibrium under a load, with the dofs for which `is_held` says so at zero.
+/// Equilibrium under a load; the dofs with `is_held` are zero.
 Vector equilibrium(const MeshedBody& test, const Vector& load, const std::function<bool(const Vector&, int)>& is_held) {
   std::vector<int> number(static_cast<std::size_t>(test.space.dof_count()), -1);
   int count = 0;
@@ -266,8 +266,8 @@ Vector equilibrium(const MeshedBody& test, const Vector& load, const std::functi
   return result;
 }
 
-/// Of a displacement at the nodes and of the hoop stress in cells, root mean squares over the rings: at the axis itself
-/// values converge by up to half an order more slowly.
+/// Errors of the displacement at the nodes and of the hoop stress in the cells, root mean squares over the rings: at
+/// the axis itself values converge by up to half an order more slowly.
 struct LameErrors {
   double displacement = 0.0, hoop = 0.0;
 };
@@ -350,7 +350,7 @@ TEST_P(Lame, HollowBallUnderPressure) {
   const double second = ratio * std::pow(outer, 3) / (4.0 * material.mu());
   std::vector<LameErrors> errors;
   for (const int count : {4, 8, 16}) {
-    // From the axis below (x₁ = 0) to the equator; the first coordinate goes outwards.
+    // From the lower pole on the axis (x₁ = 0) to the equator; the first coordinate points outwards.
     const PointMap map = [&](const Vector& x) -> Vector {
       const double angle = 0.5 * pi * x[1], radius = inner + x[0];
       return radius * Vector(Eigen::Vector2d(x[1] == 0.0 ? 0.0 : std::sin(angle), -std::cos(angle)));

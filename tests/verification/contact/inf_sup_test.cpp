@@ -194,7 +194,7 @@ TEST(InfSup, HasNoUnit) {
   EXPECT_EQ(at(1.0), at(1024.0));
 }
 
-/// What a user would see of an unstable pair: a pressure that no displacement feels.
+/// Symptom of an unstable pair: a pressure that does no work on any displacement.
 TEST(InfSup, AlternatingFacetPressuresDoNoWorkOnAClosedBoundary) {
   const auto test = make_meshed_body(ring(CellShape::triangle, 2), 1);
   EXPECT_LT(inf_sup_constant(test->body, test->mesh.group("y1", 1).members, "p0"), 0.1);

@@ -17,8 +17,8 @@
 #include "support/paths.hpp"
 
 /// @file Contact patch test: a block pressed on a tilted plane by a uniform pressure on the opposite side. The exact
-/// solution is a uniform stress, so the contact pressure is uniform. The test prints the table of docs/multipliers.md,
-/// and checks the numbers that the page has.
+/// solution is a uniform stress, so the contact pressure is uniform. The test prints the table of docs/multipliers.md
+/// and checks the numbers on that page.
 namespace ricochet::test_support {
 namespace patch_test {
 
@@ -28,8 +28,8 @@ constexpr double closing = 0.01;  ///< gap to the plane at the start
 /// How the cells of the block are shaped; its sides are flat.
 enum class Cells { straight, curved };
 
-/// Moves nodes within the sides of the unit box: on second-order geometry the edges of cells are then curved, those in
-/// the contact side, too.
+/// Moves nodes within the sides of the unit box: with second-order geometry the edges of cells become curved, also
+/// those in the contact side.
 Vector curve(const Vector& x) {
   Vector result = x;
   for (Index k = 0; k < x.size(); ++k) {
@@ -40,7 +40,7 @@ Vector curve(const Vector& x) {
   return result;
 }
 
-/// A turn of the block and the plane.
+/// Rotation of the block and the plane.
 Matrix turn(int dimension) {
   if (dimension == 2) return Eigen::Rotation2Dd(0.4).toRotationMatrix();
   return Eigen::AngleAxisd(0.5, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
@@ -66,14 +66,14 @@ class PressedBlock {
     set_up_problem(rotation, shift, normal, multipliers);
   }
 
-  /// The equilibrium, in which the solver decides which points are pressed.
+  /// Finds the equilibrium, for which the solver determines the active points.
   void find_equilibrium() {
     const Vector zero = Vector::Zero(test_->space.dof_count());
     const StaticEquilibrium found = static_equilibrium(problem_, zero, zero);
     displacement_ = found.displacement;
     reaction_ = found.normal_reaction;
   }
-  /// The solution of K U = L + Gᵀr, G U + g₀ = 0 with the supports, whatever the signs of r.
+  /// Solves K U = L + Gᵀr, G U + g₀ = 0 with the supports, for any signs of r.
   void press_all_points() {
     const Index dofs = test_->space.dof_count();
     const Index points = problem_.contact.size();
@@ -131,7 +131,7 @@ class PressedBlock {
   [[nodiscard]] double displacement_deviation() const {
     return (displacement_ - exact_).lpNorm<Eigen::Infinity>() / (pressure / test_material().young());
   }
-  /// Largest of these.
+  /// Largest of these deviations.
   [[nodiscard]] double deviation() const {
     return std::max({node_deviation(), reaction_deviation(), displacement_deviation()});
   }
@@ -164,11 +164,11 @@ class PressedBlock {
         body, test_->mesh.group(d_ == 2 ? "y1" : "z1", d_ - 1).members,
         [&](const Vector&, Vector& density) { density = -pressure * normal; }, load);
     problem_.loads.add_constant(load);
-    // What contact leaves free: motions along the plane and the turn about its normal.
+    // Motions that contact leaves free: translations along the plane and the rotation about its normal.
     const Index corner = nearest_node(test_->space, shift).node;
     for (int k = 0; k < d_ - 1; ++k) hold(corner, k);
     if (d_ == 3) hold(nearest_node(test_->space, shift + rotation.col(0)).node, 1);
-    // Or the whole of a side that the contact boundary ends at, displaced as in the exact solution.
+    // Or a whole side at which the contact boundary ends, displaced as in the exact solution.
     if (held_side_) {
       for (const Index node : facet_nodes(test_->space, test_->mesh.group("x1", d_ - 1).members)) {
         for (int k = 0; k < d_; ++k) hold(node, k);
@@ -197,13 +197,14 @@ class PressedBlock {
   Vector displacement_, reaction_;
 };
 
-/// What nodal forces cannot transmit: on curved six-node triangles a uniform pressure has nodal forces that pull.
+/// Whether some nodal forces of a uniform pressure are tensile, so that contact cannot transmit it: curved six-node
+/// triangles.
 bool pulls(const ElementKind& kind, const std::string& multipliers) {
   return multipliers == "nodal" && kind.shape == CellShape::tetrahedron && kind.geometry_degree == 2 &&
          kind.displacement_degree == 2;
 }
 
-/// The table of the page: row → cell by cell.
+/// Table of the documentation page: row → its cells.
 std::map<std::string, std::vector<std::string>> documented() {
   std::map<std::string, std::vector<std::string>> result;
   std::ifstream page(source_path("docs/multipliers.md"));
@@ -237,8 +238,8 @@ class ContactPatchTest : public testing::TestWithParam<ElementKind> {
   }
 };
 
-/// Without the signs of contact every space has the uniform pressure, to rounding, where the displacement's space has
-/// the affine displacement.
+/// Without sign conditions every multiplier space reproduces the uniform pressure to rounding, if the displacement
+/// space contains the affine displacement.
 TEST_P(ContactPatchTest, UniformPressureIsThatOfThePressedBoundary) {
   const ElementKind& kind = GetParam();
   for (const Cells cells : {Cells::straight, Cells::curved}) {
@@ -255,7 +256,7 @@ TEST_P(ContactPatchTest, UniformPressureIsThatOfThePressedBoundary) {
   }
 }
 
-/// With them, too, but for nodal forces that would have to pull. What is not exact is in the page's table.
+/// With sign conditions, too, except for nodal forces that would have to be tensile. The page tabulates the deviations.
 TEST_P(ContactPatchTest, UniformPressureIsTransmittedOrDeviatesAsThePageSays) {
   const ElementKind& kind = GetParam();
   const auto table = documented();

@@ -71,7 +71,7 @@ class ElasticCellsOfKind : public ::testing::TestWithParam<Kind> {
     const Points places = body_->space.nodes + displacement.reshaped(dimension(), body_->space.node_count());
     return Vector((rotation * places - body_->space.nodes).reshaped());
   }
-  /// Of an axisymmetric body there is no rotation in the plane, and the forces along x are balanced round the axis.
+  /// An axisymmetric body does not rotate in the plane, and forces along x are balanced round the axis.
   [[nodiscard]] static bool is_axisymmetric() { return kind().plane == PlaneState::axisymmetric; }
   [[nodiscard]] Matrix some_rotation() const {
     const Matrix space = Eigen::AngleAxisd(2.3, Eigen::Vector3d(0.3, -0.2, 0.8).normalized()).toRotationMatrix();
@@ -146,7 +146,7 @@ TEST_P(ElasticCellsOfKind, StrainForceIsSelfEquilibrated) {
   }
 }
 
-/// Of a homogeneous strain all cells have the stress of the law, mean dilatation or not.
+/// In homogeneous strain all cells have the stress of the law, with mean dilatation or without.
 TEST_P(ElasticCellsOfKind, HomogeneousStrainHasTheStressOfTheLaw) {
   if (!kind().element.contains_affine() || kind().law == "linear" || is_axisymmetric()) return;
   const int d = dimension();

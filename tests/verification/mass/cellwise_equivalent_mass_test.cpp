@@ -16,7 +16,7 @@
 #include "support/mass_bodies.hpp"
 #include "support/mass_moments.hpp"
 
-// The mass that is handed over cell by cell: what must not change it, where it may go, and what it does to frequencies.
+// Mass redistributed cell by cell: its invariances, the nodes that may receive it, and its effect on frequencies.
 
 namespace ricochet {
 namespace cellwise_equivalent_mass_test {
@@ -27,9 +27,9 @@ using test_support::mass_moments;
 
 constexpr const char* cellwise = "equivalent-cellwise";
 
-/// The same body with other positions, another density, other numbers of nodes, cells in another order.
+/// A copy of a body with other positions, another density, renumbered nodes, cells in another order.
 struct Variant : AssembledBody {
-  std::vector<Index> number;  ///< of each node of before
+  std::vector<Index> number;  ///< new number of each node
 
   explicit Variant(const AssembledBody& from)
       : AssembledBody(from.mesh, from.space, from.body), number(static_cast<std::size_t>(space.nodes.cols())) {
@@ -88,7 +88,7 @@ TEST(CellwiseEquivalentMass, NumbersOfNodesAndCellsDoNotMatter) {
         worst = std::max(worst, std::abs(there - entry.value()));
       }
     }
-    // Of grids, donors that are alike to rounding have like parts: nothing hangs on ties.
+    // In grids, donors that are equal up to rounding have equal shares: the result does not depend on ties.
     EXPECT_LE(worst, 1e-12 * plain.coeffs().cwiseAbs().maxCoeff()) << name;
   }
 }
@@ -120,7 +120,7 @@ Matrix affine_map(Index dimension, double ratio, std::mt19937& random) {
   return result;
 }
 
-/// An affine map of a mesh makes its cells as flat as one likes, and changes its mass by one factor.
+/// An affine map of a mesh makes its cells arbitrarily flat and multiplies its mass by one factor.
 TEST(CellwiseEquivalentMass, OfFlatCellsIsThatOfRoundOnes) {
   std::mt19937 random(11);
   for (const char* type : {cellwise, "equivalent-nodewise"}) {
@@ -134,8 +134,8 @@ TEST(CellwiseEquivalentMass, OfFlatCellsIsThatOfRoundOnes) {
         mapped.move(map, Vector::Constant(d, 3.0 * ratio));
         const SparseMatrix found = mapped.build(body, type);
         ASSERT_EQ(found.nonZeros(), plain.nonZeros()) << name << ": the same nodes are taken";
-        // Rounding of the mapped positions is some 1e-15 ratio of the thickness of a cell, and weights that extrapolate
-        // are hundreds of times as sensitive. At 1e6:1 the mesh has no more digits to compare.
+        // The rounding of the mapped positions is about 1e-15 times the ratio of the thickness of a cell, and
+        // extrapolating weights are hundreds of times as sensitive. At 1e6:1 the mesh has no digits left to compare.
         if (ratio <= 1e5) {
           const SparseMatrix change = found / map.determinant() - plain;
           EXPECT_LE(change.coeffs().cwiseAbs().maxCoeff(),
@@ -152,11 +152,10 @@ TEST(CellwiseEquivalentMass, OfFlatCellsIsThatOfRoundOnes) {
   }
 }
 
-/// What `cells` are left of a grid of triangles with a slit along x = ½, y < ¾, whose two sides have nodes of their
-/// own.
+/// The `kept` cells of a grid of triangles with a slit along x = ½, y < ¾, each side of which has its own nodes.
 struct Slit {
   std::unique_ptr<test_support::MeshedBody> body;
-  std::map<Index, Index> left;  ///< node of the grid → node here, of those that cells with x < ½ have
+  std::map<Index, Index> left;  ///< node of the grid → node here, for nodes of cells with x < ½
   SparseMatrix consistent;
   SparseMatrix mass;
 
@@ -189,12 +188,12 @@ struct Slit {
     mesh.node_tags.resize(at.size());
     std::iota(mesh.node_tags.begin(), mesh.node_tags.end(), 1);
     body = test_support::make_meshed_body(mesh, 1);
-    // The space has numbers of its own.
+    // The displacement space has its own numbering.
     for (auto& [from, to] : left) to = space_node(to);
     consistent = assemble_scalar_mass(body->body, node_graph(body->space));
     const CellMasses cells(body->body);
     MassInput input{&consistent, &body->space.nodes, {}, nullptr, &cells};
-    // Beside the slit, nearer to the other side than to free nodes of its own.
+    // Nodes beside the slit, nearer to its other side than to free nodes of their own side.
     for (const auto& [from, to] : left) {
       if (grid.nodes(0, from) > 0.24 && grid.nodes(1, from) < 0.5) input.contact_nodes.push_back(to);
     }
@@ -222,7 +221,7 @@ TEST(CellwiseEquivalentMass, NothingIsHandedAcrossASlit) {
   EXPECT_GE(of_whole, 1e-2 * largest) << "else this shows nothing";
 }
 
-/// Damping ∫aρ φ_i φ_j is shared out as the inertia is.
+/// Damping ∫aρ φ_i φ_j is redistributed like the inertia.
 TEST(CellwiseEquivalentMass, OfDamping) {
   for (const char* name : some_bodies) {
     AssembledBody body(body_of_kind(name));
@@ -282,7 +281,7 @@ double torsion(const AssembledBody& body, const SparseMatrix& scalar_mass) {
 }
 
 TEST(CellwiseEquivalentMass, FrequenciesAreAsNearToTheExactOnesAsWithTheConsistentMass) {
-  // η j₂'(η) = j₂(η), j₂ the spherical Bessel function: no traction on r = R.
+  // η j₂'(η) = j₂(η) with the spherical Bessel function j₂: no traction on r = R.
   const auto traction = [](double z) {
     const auto j2 = [](double t) { return (3.0 / (t * t) - 1.0) * std::sin(t) / t - 3.0 * std::cos(t) / (t * t); };
     const double step = 1e-5;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 
-/// Of one equation: the positive root of ½ w p² + a p = c, without cancellation.
+/// Positive root of the single equation ½ w p² + a p = c, without cancellation.
 double root(double w, double a, double c) {
   const double s = std::sqrt(a * a + 2.0 * w * c);
   return a > 0.0 ? 2.0 * c / (a + s) : (s - a) / w;

@@ -63,7 +63,7 @@ TEST(ContactPoint, SticksAndSlipsInClosedFormInTwoDimensions) {
   // Slip: r_N = −q_N/(W_NN ± F W_NT), u_T against ρ_T.
   expect_near(solve_point(point, w, vector({-2.2, -5.0})), vector({1.0, 0.4}));
   expect_near(solve_point(point, w, vector({-1.8, 5.0})), vector({1.0, -0.4}));
-  // The limit itself, from both sides: ρ is continuous there.
+  // The limit between stick and slip, from both sides: ρ is continuous there.
   expect_near(solve_point(point, w, vector({-2.2, -0.9})), vector({1.0, 0.4}));
   expect_near(solve_point(point, w, vector({-2.2, -0.9 - 1e-13})), vector({1.0, 0.4}), 1e-12);
   expect_near(solve_point(point, w, vector({-2.2, -0.9 + 1e-13})), vector({1.0, 0.4}), 1e-12);
@@ -75,7 +75,7 @@ TEST(ContactPoint, SlipsAgainstTheSlipOfAnIsotropicPoint) {
   expect_near(rho, vector({2.0, -0.6, 0.8}));
 }
 
-/// q from a chosen ρ on the cone and a chosen κ, for W as oblique as a definite matrix can be.
+/// q is computed from a chosen ρ on the cone and a chosen κ, for W as oblique as a definite matrix can be.
 TEST(ContactPoint, FindsTheSlipItWasMadeFrom) {
   std::mt19937 random(5);
   int sticking = 0;
@@ -84,7 +84,7 @@ TEST(ContactPoint, FindsTheSlipItWasMadeFrom) {
     const PointMatrix w = test::random_operator(3, 4.0 * std::abs(test::uniform(random)), random);
     const double kappa = std::pow(10.0, 6.0 * test::uniform(random));
     const double angle = 4.0 * test::uniform(random);
-    // Weak enough for r_N to stay determined along any direction of slip.
+    // Weak enough that r_N is determined for every direction of slip.
     const double friction = 0.5 * std::abs(w(0, 0) / w.row(0).tail(2).norm());
     const PointVector rho = vector({1.0, friction * std::cos(angle), friction * std::sin(angle)});
     PointVector u = -kappa * rho;
@@ -92,7 +92,7 @@ TEST(ContactPoint, FindsTheSlipItWasMadeFrom) {
     const PointVector q = u - w * rho;
     const PointVector found = solve_point(make_point(3, friction), w, q);
     const PointVector motion = w * found + q;
-    // As exact as q tells: what is compared is u, and the cone.
+    // Up to the rounding of q: u and the cone are compared.
     const double rounding = 1e-13 * (q.norm() + found.norm());
     EXPECT_NEAR(motion[0], 0.0, rounding);
     const PointVector slip = motion.tail(2);
@@ -128,7 +128,7 @@ TEST(ContactPoint, SlipsWithTheLesserOfCoulombsFrictionAndTheBound) {
   expect_near(solve_point(make_point(2, 0.5, 3.0), w, vector({-4.5, -20.0})), vector({2.0, 1.0}));
   expect_near(solve_point(make_point(2, 2.0, 3.0), w, vector({-4.2, -1.2})),
               PointVector(w.inverse() * vector({4.2, 1.2})));
-  // Pressed so little that friction cannot carry it: on the cone below the bound.
+  // The normal reaction is too small for friction to carry the point: on the cone below the bound.
   const PointVector found = solve_point(make_point(2, 2.0, 3.0), w, vector({-0.5, -20.0}));
   EXPECT_NEAR(found[1], 2.0 * found[0], 1e-15);
   EXPECT_NEAR(2.0 * found[0] + 0.5 * found[1] - 0.5, 0.0, 1e-15);
@@ -166,7 +166,7 @@ TEST(ContactPoint, NaturalMapIsZeroOnTheLawOnly) {
   EXPECT_EQ(map({2.0, 0.3, 0.4}, {0.0, 0.0, 0.0}).norm(), 0.0);
   EXPECT_NEAR(map({2.0, 0.6, 0.8}, {0.0, -6.0, -8.0}).norm(), 0.0, 1e-15);
   EXPECT_EQ(map({0.0, 0.0, 0.0}, {0.0, 2.0, 3.0}).norm(), 0.0);
-  // Stick inside the cone: û/w is all that is wrong.
+  // Stick inside the cone: the residual is û/w alone.
   EXPECT_EQ(map({2.0, 0.3, 0.4}, {0.0, 0.04, 0.0}), PaddedVector(0.005, 0.01, 0.0));
   // A pull, a penetration, friction along the slip, a reaction beyond the cone.
   EXPECT_GT(map({2.0, 0.0, 0.0}, {1.0, 0.0, 0.0}).norm(), 0.1);

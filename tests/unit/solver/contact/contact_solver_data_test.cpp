@@ -11,7 +11,7 @@
 #include "ricochet/base/error.hpp"
 #include "support/contact_solver_test.hpp"
 
-/// @file What every solver of the library makes of data and options that do not fit, or only just do.
+/// @file Behaviour of every solver of the library for data and options that are invalid, or at the limits.
 namespace ricochet {
 namespace {
 
@@ -147,7 +147,7 @@ TEST_P(ContactSolverData, RefuseMemoriesThatAreNotTheirs) {
   EXPECT_TRUE(solution.solved());
 }
 
-/// Of a solver that has solved nothing, too.
+/// Also if the solver has solved nothing yet.
 TEST_P(ContactSolverData, TakeTheMemoryTheySave) {
   for (const Index points : {1, 2, 30}) {
     const ContactProblem problem = random_problem(points, dimension(), 0.3, 2).contact();
@@ -192,7 +192,7 @@ TEST_P(ContactSolverData, SolveDataOfAnySize) {
   EXPECT_NE(solution.reason.find("range of numbers"), std::string::npos) << solution.reason;
 }
 
-/// Of a large F the cone hardly sees a penetration: its residual is 1/F of it.
+/// For large F the residual of the cone hardly measures a penetration: it is 1/F of it.
 TEST_P(ContactSolverData, DoNotTakePenetrationForRounding) {
   for (const double friction : {1e6, 1e7, 1e9}) {
     for (unsigned seed = 0; seed < seeds(10); ++seed) {

@@ -8,7 +8,7 @@
 
 #include "support/contact_solver_test.hpp"
 
-/// @file What every solver of the library solves, judged by a measure of this file's own.
+/// @file Solutions of every solver of the library, judged by an independent residual of this file.
 namespace ricochet {
 namespace {
 
@@ -32,7 +32,7 @@ LongVector project(Long friction, const LongVector& r) {
   return result;
 }
 
-/// What the headers define: |r − P_K(r − û/w)| √w, the largest over the eligible points.
+/// Residual as defined in the headers: the largest |r − P_K(r − û/w)| √w over the eligible points.
 Long measure(const FrictionProblem& problem, const LongVector& reaction) {
   const LongVector u = problem.q.cast<Long>() + problem.w.cast<Long>() * reaction;
   Long largest = 0;

@@ -10,8 +10,8 @@
 #include "ricochet/solver/contact/iterative_contact_solver.hpp"
 #include "support/contact_problems.hpp"
 
-/// @file Contact conditions that depend on one another: W = H A⁻¹ Hᵀ with more rows than unknowns, with rows twice,
-/// nearly parallel and opposed. A step has one motion then, too, and it is known from the energy alone:
+/// @file Dependent contact conditions: W = H A⁻¹ Hᵀ with more rows than unknowns, with rows that are repeated, nearly
+/// parallel or opposed. A step still has a unique motion, determined by the energy alone:
 ///   δ = argmin ½ δᵀA δ  over  H δ + q ≥ 0.
 
 namespace ricochet {
@@ -19,7 +19,7 @@ namespace {
 
 using test::uniform;
 
-/// RICOCHET_RANDOM_CASES: how many times as many random cases as usual.
+/// Number of random cases, multiplied by RICOCHET_RANDOM_CASES.
 unsigned samples(unsigned count) {
   const char* const factor = std::getenv("RICOCHET_RANDOM_CASES");
   return factor != nullptr ? count * static_cast<unsigned>(std::atoi(factor)) : test::seeds(count);
@@ -31,16 +31,16 @@ struct Constrained {
   Matrix rows;       ///< H, of unit length or nearly
   Vector offset;     ///< q
 
-  /// What A, H and the reactions say of the motion.
+  /// Displacement δ = A⁻¹Hᵀr.
   [[nodiscard]] Vector motion(const Vector& reaction) const {
     return stiffness.llt().solve(rows.transpose() * reaction);
   }
-  /// Of the product H δ + q, and of the reactions that come out of it.
+  /// Rounding of H δ + q and of the reactions computed from it.
   [[nodiscard]] double rounding(const Vector& reaction) const {
     const Matrix w = rows * stiffness.llt().solve(rows.transpose());
     return 1e-12 * (1.0 + offset.lpNorm<Eigen::Infinity>() + (w.cwiseAbs() * reaction).maxCoeff());
   }
-  /// YᵀY with Y = L⁻¹Hᵀ, as a step makes it.
+  /// Delassus operator as YᵀY with Y = L⁻¹Hᵀ, as computed in a step.
   [[nodiscard]] Matrix contact_operator() const {
     const Matrix half = stiffness.llt().matrixL().solve(rows.transpose());
     Matrix w = half.transpose() * half;
@@ -57,7 +57,7 @@ struct Constrained {
 
 enum class Kind { twice, nearly_parallel, opposed, random };
 
-/// `room`: what is left between conditions at a motion that meets all of them; negative: contradictory ones.
+/// Random conditions; `room`: clearance of all conditions at an admissible motion, negative if they are contradictory.
 Constrained random_constraints(Index unknowns, Index count, unsigned seed) {
   std::mt19937 random(seed);
   Constrained result;
@@ -76,8 +76,8 @@ Constrained random_constraints(Index unknowns, Index count, unsigned seed) {
       row = result.rows.row(like).transpose() + angle * row;
     }
     result.rows.row(i) = row / row.norm();
-    // Met by `inside`, by nothing now and then. Some room between those that are nearly opposed, or it would be for
-    // rounding to say whether there is a motion.
+    // `inside` meets the conditions, now and then with no clearance. Nearly opposed conditions need some clearance:
+    // otherwise rounding would decide whether there is an admissible motion.
     const bool tight = random() % 3 == 0 && kind == Kind::random;
     const double room = tight ? 0.0 : 0.05 + std::abs(uniform(random));
     result.offset[i] = room - result.rows.row(i).dot(inside);
@@ -112,7 +112,7 @@ TEST(DependentConditions, HaveOneMotionHoweverTheyAreStated) {
       Vector first;
       for (int statement = 0; statement < 3; ++statement) {
         test::ContactRun run(name);
-        // Another order, and another start.
+        // Another order, and another initial guess.
         if (statement > 0) std::shuffle(order.begin(), order.end(), random);
         if (statement > 1) run.set_warm_start(uniform(count, random).cwiseAbs());
         const ContactSolution& solution = run.solve(system.problem(order));
@@ -121,7 +121,7 @@ TEST(DependentConditions, HaveOneMotionHoweverTheyAreStated) {
         for (Index i = 0; i < count; ++i) reaction[order[static_cast<std::size_t>(i)]] = solution.reaction[i];
         expect_minimum(system, reaction);
         if (statement == 0) first = reaction;
-        // (δ − δ′)ᵀA(δ − δ′) = (r − r′)ᵀ(u − u′), which is negative but for the rounding of u.
+        // (δ − δ′)ᵀA(δ − δ′) = (r − r′)ᵀ(u − u′), which is negative up to the rounding of u.
         const Vector apart = system.motion(reaction) - system.motion(first);
         const double rounding = system.rounding(reaction) + system.rounding(first);
         EXPECT_LE(apart.dot(system.stiffness * apart), 2.0 * rounding * (reaction + first).lpNorm<1>()) << name;
@@ -130,7 +130,7 @@ TEST(DependentConditions, HaveOneMotionHoweverTheyAreStated) {
   }
 }
 
-/// Steps in time: other points every time, other offsets, and what is kept from the last step.
+/// Time steps: different points and offsets in each, with the data that is kept from the previous step.
 TEST(DependentConditions, StayInStepWithWhatIsKept) {
   for (unsigned seed = 0; seed < samples(40); ++seed) {
     SCOPED_TRACE(seed);
@@ -153,14 +153,14 @@ TEST(DependentConditions, StayInStepWithWhatIsKept) {
   }
 }
 
-/// A floor and a ceiling without room between them; beside them conditions that do not matter.
+/// A floor and a ceiling without clearance between them, and conditions that do not matter.
 TEST(DependentConditions, NameThosePointsThatContradictOneAnother) {
   for (unsigned seed = 0; seed < samples(60); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const Index unknowns = 3;
     Constrained system = random_constraints(unknowns, 8, 2000 + seed);
-    // Three rows in a plane, in positive combination zero, and no room.
+    // Three rows in a plane with a positive combination that is zero, and no clearance.
     const Vector one = uniform(unknowns, random).normalized(), other = uniform(unknowns, random).normalized();
     const Index a = 1, b = 4, c = 6;
     system.rows.row(a) = one;
@@ -170,7 +170,7 @@ TEST(DependentConditions, NameThosePointsThatContradictOneAnother) {
     system.offset[b] = 0.4;
     const double lack = std::pow(10.0, -static_cast<double>(seed % 6));
     system.offset[c] = -0.7 - lack;
-    // The others have room for any motion that is of interest.
+    // The other conditions have clearance for every motion of interest.
     for (const Index i : {0, 2, 3, 5, 7}) system.offset[i] = 1e3;
     for (const Index tangents : {0, 1}) {
       test::FrictionProblem problem(std::vector<Index>(8, 1 + tangents), 0.3);
@@ -205,7 +205,7 @@ TEST(DependentConditions, WithFrictionMeetTheLaw) {
     const double angle = std::pow(10.0, -static_cast<double>(seed % 12));
     for (Index i = 0; i < points; ++i) {
       const Index node = i / planes;
-      // A floor, one that hardly differs from it, and a ceiling.
+      // A floor, a nearly identical one, and a ceiling.
       const double turn = i % planes == 1 ? angle : i % planes == 2 ? 3.141592653589793 : 0.0;
       system.rows.block(2 * i, 2 * node, 2, 2) << -std::sin(turn), std::cos(turn), std::cos(turn), std::sin(turn);
       system.offset[2 * i] = i % planes == 2 ? 2.0 : -std::abs(uniform(random));

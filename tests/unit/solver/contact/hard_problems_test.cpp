@@ -12,8 +12,8 @@
 #include "support/hard_contact_problems.hpp"
 #include "support/paths.hpp"
 
-/// @file The default solver on problems that are hard: redundant points, wedges, twelve orders of magnitude, no points
-/// and thousands. What it calls solved is judged in long double; what it does not solve it must say.
+/// @file The default solver on hard problems: redundant points, wedges, twelve orders of magnitude, no points and
+/// thousands. Solutions reported as solved are judged in long double; unsolved problems must be reported as such.
 namespace ricochet {
 namespace {
 
@@ -37,8 +37,8 @@ ContactSolution solve(const ContactProblem& problem, double tolerance) {
   return solution;
 }
 
-/// What is claimed is true, solved or not. Half of the rounding floor is for the rounding of u in the solver, which is
-/// in its residual and not in the judge's. `problem` has the entries of W.
+/// Expects that the reported outcome and residual are true, solved or not. Half of the rounding floor is for the
+/// rounding of u in the solver, which is in its residual and not in the judge's. `problem` has the entries of W.
 Judgement expect_truth(const ContactProblem& problem, const ContactSolution& solution, double tolerance) {
   EXPECT_TRUE(solution.reaction.allFinite());
   const Judgement judgement = judge(problem, solution.reaction);
@@ -85,8 +85,8 @@ TEST(HardContact, RigidBodiesOnManyPoints) {
   }
 }
 
-/// Without friction the motion is the one nearest to the free motion, in M, that does not penetrate; the reactions are
-/// any that make it.
+/// Without friction the motion is the projection of the free motion on the admissible ones in the norm of M; the
+/// reactions that cause it need not be unique.
 TEST(HardContact, TheFrictionlessMotionOfARigidBodyIsUnique) {
   for (const Index dimension : {2, 3}) {
     for (unsigned seed = 0; seed < seeds(20); ++seed) {
@@ -95,7 +95,7 @@ TEST(HardContact, TheFrictionlessMotionOfARigidBodyIsUnique) {
       const Vector motion = expect_solved(problem, 1e-13).motion;
       const Index rows = motion.size();
       EXPECT_LE(largest(expect_solved(twice(problem), 1e-13).motion - motion.replicate(2, 1)), 1e-10);
-      // Points in reverse.
+      // The points in reverse order.
       std::vector<Index> order;
       for (Index i = problem.points(); i-- > 0;) {
         for (Index k = 0; k < dimension; ++k) order.push_back(dimension * i + k);
@@ -104,7 +104,7 @@ TEST(HardContact, TheFrictionlessMotionOfARigidBodyIsUnique) {
       reversed.w = problem.w(order, order);
       reversed.q = problem.q(order);
       EXPECT_LE(largest(expect_solved(reversed, 1e-13).motion - motion(order)), 1e-10);
-      // Other reactions to start from, and so perhaps other ones at the end.
+      // A different initial guess may lead to different reactions.
       test::ContactRun run;
       run.set_warm_start(10.0 * Vector::Random(rows).cwiseAbs());
       const ContactSolution& other = run.solve(problem, {.tolerance = 1e-13});
@@ -119,7 +119,7 @@ TEST(HardContact, SymmetricElasticContactWithEveryPointTwice) {
     for (const Index side : {3, 5, 8}) {
       SCOPED_TRACE(testing::Message() << side << ", F " << friction);
       FrictionProblem problem = test::half_space_problem(side, friction);
-      // Pressed without twist: everything about the problem is symmetric.
+      // Pressed without twist: the problem is symmetric.
       for (Index i = 0; i < problem.points(); ++i) problem.q.segment(3 * i + 1, 2) << 0.05, 0.0;
       const ContactSolution single = expect_solved(problem, 1e-13);
       const ContactSolution copies = expect_solved(twice(problem), 1e-13);
@@ -140,10 +140,10 @@ TEST(HardContact, SymmetricElasticContactWithEveryPointTwice) {
 
 struct Count {
   int all = 0, unsolved = 0, locked = 0;
-  std::string which;  ///< seeds of the unsolved
+  std::string which;  ///< seeds of unsolved problems
 };
 
-/// All angles, all F from 0.5 to 3, few points and many.
+/// Counts solved and unsolved wedges of all angles, with F from 0.5 to 3, few points and many.
 Count count_wedges(double push, double softness, double preload) {
   Count count;
   unsigned seed = 0;
@@ -172,7 +172,7 @@ Count count_wedges(double push, double softness, double preload) {
 }
 
 TEST(HardContact, WedgedBodies) {
-  // A rigid body that is pushed in, and bodies that give a little: their problems have solutions.
+  // A rigid body that is pushed in, and slightly compliant bodies: their problems have solutions.
   for (const double softness : {0.0, 1e-1, 1e-3, 1e-6}) {
     const Count in = count_wedges(1.0, softness, 0.0);
     EXPECT_GT(in.locked, in.all / 3);
@@ -186,7 +186,7 @@ TEST(HardContact, WedgedBodies) {
   }
 }
 
-/// Walls that come together and a rigid body between them.
+/// Converging walls with a rigid body between them.
 TEST(HardContact, WhatHasNoSolutionIsNotSolved) {
   for (const Index dimension : {2, 3}) {
     for (const double friction : {0.0, 0.5, 3.0}) {
@@ -208,9 +208,9 @@ TEST(HardContact, WhatHasNoSolutionIsNotSolved) {
   }
 }
 
-/// A rigid rod against a rough plane (P. Painlevé, C. R. Acad. Sci. 121 (1895) 112): u_T − a u_N = q_T − a q_N = s
-/// whatever r is; with s > 0 it must slip, r_T = −F r_N, and u_N = q_N + (1 − a F) r_N < 0 for a F > 1. What bends by
-/// however little sticks instead, under a reaction so large in the end that nothing can be said of the motion.
+/// A rigid rod on a rough plane (P. Painlevé, C. R. Acad. Sci. 121 (1895) 112): u_T − a u_N = q_T − a q_N = s for every
+/// r; with s > 0 the rod must slip, r_T = −F r_N, and u_N = q_N + (1 − a F) r_N < 0 for a F > 1. A rod of any small
+/// compliance sticks instead; as the compliance vanishes, its reaction grows until the motion is lost in rounding.
 TEST(HardContact, PainlevesRod) {
   for (const Index dimension : {2, 3}) {
     for (const double slope : {0.5, 2.0}) {
@@ -249,11 +249,11 @@ TEST(HardContact, TwelveOrdersOfMassesAndStiffnesses) {
           const ContactProblem contact = problem.contact();
           const ContactSolution solution = solve(contact, 1e-8);
           const Judgement judgement = expect_truth(contact, solution, 1e-8);
-          // Every point has about the same share in the measure: none is neglected.
+          // Every point has about the same weight in the residual: none is neglected.
           if (power == 1.0 && solution.solved()) {
             EXPECT_LE(judgement.own_residual, 1e-7);
           }
-          // Rounding is asked for at each point by itself.
+          // The tolerance 0 requires rounding at each point separately.
           const ContactSolution best = solve(contact, 0.0);
           const Judgement of_best = expect_truth(contact, best, 1e-12);
           if (best.solved()) {
@@ -285,7 +285,7 @@ TEST(HardContact, PointsScaledByAnyFactors) {
       const Vector expected = expect_solved(problem, 0.0).reaction;
       const Vector found = factors.cwiseProduct(expect_solved(scaled, 0.0).reaction);
       EXPECT_LE(largest(found - expected), 1e-11 * largest(expected));
-      // A rigid body's points in different units.
+      // The points of a rigid body in different units.
       FrictionProblem rigid = rigid_box(30, dimension, 0.3, seed);
       rigid.w = factors.asDiagonal() * rigid.w * factors.asDiagonal();
       rigid.q = factors.cwiseProduct(rigid.q);
@@ -294,7 +294,7 @@ TEST(HardContact, PointsScaledByAnyFactors) {
   }
 }
 
-// None to thousands.
+// No points, and thousands.
 
 TEST(HardContact, NoPoints) {
   const auto nothing = [](const Vector&, Vector& y) { y.resize(0); };
@@ -346,8 +346,8 @@ TEST(HardContact, FiveThousandPoints) {
   }
 }
 
-/// A finite element problem on which the default solver's own Newton iteration comes back to where it was: another
-/// Newton method takes over, instead of thousands of sweeps.
+/// A finite element problem on which the Newton iteration of the default solver cycles: another Newton method takes
+/// over, instead of thousands of sweeps.
 TEST(HardContact, NewtonThatCycles) {
   const ContactProblem problem = reduce(read_fclib(test_support::data_path("contact/newton-cycles.hdf5"))).problem;
   for (const double tolerance : {0.0, 1e-10}) {
@@ -358,7 +358,7 @@ TEST(HardContact, NewtonThatCycles) {
   }
 }
 
-/// More rows than entries are sought for: the rounding floor is no excuse.
+/// W given by products, with too many rows to assemble its entries: the rounding floor is no excuse.
 TEST(HardContact, ThousandsOfPointsByProducts) {
   struct Size {
     Index side, dimension;

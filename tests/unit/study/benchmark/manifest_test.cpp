@@ -16,7 +16,7 @@ using test_support::source_path;
 
 class BenchmarkManifest : public ::testing::Test {
  protected:
-  /// What is wrong with a manifest of this text, beside a file a.toml.
+  /// Returns the error message for a manifest with this text next to a file a.toml.
   std::string problem_of(const std::string& text) {
     std::ofstream(folder_.file("a.toml")) << "";
     std::ofstream(folder_.file("benchmarks.toml")) << text;
