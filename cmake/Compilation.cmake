@@ -15,8 +15,10 @@ set(RICOCHET_COLD_FOLDERS base hdf5 fclib contact/construction contact/multiplie
   study report)
 # Sources in these folders that have such loops.
 set(RICOCHET_HOT_SOURCES base/dense_decompositions.cpp base/parallel.cpp base/expression.cpp)
-# With less inlining GCC 12 takes vectors of Eigen for uninitialized, or for used after they were freed.
-set(RICOCHET_COLD_OPTIONS $<$<CONFIG:Release>:-O1> $<$<CONFIG:Release>:-finline-small-functions>
+# Code that is not worth the optimizer's time links this. (With less inlining GCC 12 takes vectors of Eigen for uninitialized, or for
+# used after they were freed.)
+add_library(ricochet_cold_code INTERFACE)
+target_compile_options(ricochet_cold_code INTERFACE $<$<CONFIG:Release>:-O1> $<$<CONFIG:Release>:-finline-small-functions>
   $<$<CONFIG:Release>:-Wno-maybe-uninitialized> $<$<CONFIG:Release>:-Wno-use-after-free>)
 
 # ricochet_add_sources(LIBRARY SOURCES…): adds the sources to a library, those of cold folders as objects with their own options.
@@ -31,7 +33,7 @@ function(ricochet_add_sources library)
   list(REMOVE_ITEM hot ${cold})
   add_library(${library}_hot OBJECT ${hot})
   add_library(${library}_cold OBJECT ${cold})
-  target_compile_options(${library}_cold PRIVATE ${RICOCHET_COLD_OPTIONS})
+  target_link_libraries(${library}_cold PRIVATE ricochet_cold_code)
   foreach(part hot cold)
     set_target_properties(${library}_${part} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_include_directories(${library}_${part} PRIVATE ${CMAKE_SOURCE_DIR}/src ${CMAKE_BINARY_DIR}/generated)
@@ -44,7 +46,4 @@ function(ricochet_add_sources library)
     endif()
     target_sources(${library} PRIVATE $<TARGET_OBJECTS:${library}_${part}>)
   endforeach()
-  target_include_directories(${library} PUBLIC
-    $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src> $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/generated>)
-  target_link_libraries(${library} PRIVATE ricochet_dependencies Threads::Threads)
 endfunction()
