@@ -12,6 +12,7 @@
 #include "progress_text.hpp"
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 #include "ricochet/base/run_name.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/io/checkpoint.hpp"

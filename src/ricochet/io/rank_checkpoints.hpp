@@ -6,6 +6,7 @@
 
 #include "ricochet/base/ranks.hpp"
 #include "ricochet/base/snapshot.hpp"
+#include "ricochet/io/checkpoint.hpp"
 
 /// @file Checkpoints of a run on several ranks: a file per rank, and a manifest that confirms that all are complete.
 ///

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/io/summary.hpp"
 #include "ricochet/simulation/impact/turn_growth.hpp"
 

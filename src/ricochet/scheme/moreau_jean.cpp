@@ -1,3 +1,4 @@
+#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/requirements.hpp"
 #include "ricochet/scheme/restitution_key.hpp"
 #include "ricochet/scheme/scheme.hpp"

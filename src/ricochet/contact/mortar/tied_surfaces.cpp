@@ -12,6 +12,7 @@
 #include "ricochet/base/point_sets.hpp"
 #include "ricochet/contact/mortar/facet_surface.hpp"
 #include "ricochet/fem/reference_element.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
 
 namespace ricochet {
 

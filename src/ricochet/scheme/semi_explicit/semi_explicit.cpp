@@ -10,6 +10,7 @@
 #include "ricochet/scheme/semi_explicit/layer_equilibrium.hpp"
 #include "ricochet/scheme/semi_explicit/requirements.hpp"
 #include "ricochet/scheme/semi_explicit/supported_motion.hpp"
+#include "ricochet/scheme/step_equations.hpp"
 
 namespace ricochet {
 
