@@ -93,7 +93,7 @@ int dispatch(int argc, char** argv, const WorldRanks& ranks, const Communicator&
 int end(const WorldRanks& ranks, int status, const std::string& message) {
   if (Processes::all_arrive(patience)) {
     if (ranks.is_first()) std::fputs(fmt::format("ricochet-mpi: {}\n", message).c_str(), stderr);
-    program::say_signals_as(nullptr);  // mpirun stops those that end a little later
+    program::set_signal_program_name(nullptr);  // mpirun stops those that end a little later
     return status;
   }
   std::fputs(fmt::format("ricochet-mpi: process {} of {}: {}\n", ranks.rank(), ranks.size(), message).c_str(), stderr);
@@ -112,8 +112,8 @@ int main(int argc, char** argv) {
   const Processes processes(argc, argv);
   const Communicator world = Communicator::world();
   const WorldRanks ranks(world);
-  if (ranks.is_first()) program::say_signals_as("ricochet-mpi");
-  if (ranks.are_several()) program::let_steps_end();
+  if (ranks.is_first()) program::set_signal_program_name("ricochet-mpi");
+  if (ranks.are_several()) program::remove_step_time_limit();
   try {
     return dispatch(argc, argv, ranks, world);
   } catch (const Error& problem) {

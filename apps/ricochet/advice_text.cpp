@@ -10,7 +10,7 @@
 
 #include "contact_text.hpp"
 #include "number_text.hpp"
-#include "place_text.hpp"
+#include "position_text.hpp"
 #include "ricochet/base/rounded.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
@@ -150,7 +150,7 @@ std::optional<double> time_of_meeting(const Model& model, std::size_t pair) {
   for (Index point = 0; point < contact.size(); ++point) {
     if (contact.pair[static_cast<std::size_t>(point)] != static_cast<int>(pair)) continue;
     const double gap = contact.initial_gap[point];
-    if (contact.slides(point) && gap >= contact.out_of_sight) continue;
+    if (contact.slides(point) && gap >= contact.unpaired_gap) continue;
     SpaceVector velocity = SpaceVector::Zero(contact.dimension);
     contact.visit_nodes(point, [&](Index node, double weight) {
       velocity += weight * model.initial.velocity.segment(node * contact.dimension, contact.dimension);
@@ -163,7 +163,7 @@ std::optional<double> time_of_meeting(const Model& model, std::size_t pair) {
 
 /// Prints how two bodies face each other and, if they fly freely, when they would meet.
 void print_bodies_contact(const Case& input, const Model& model, std::size_t pair) {
-  const FacingDescription facing = *describe_facing(model, pair);
+  const PairingDescription facing = *describe_facing(model, pair);
   std::string text = facing_text(facing);
   if (facing.points > 0 && facing.smallest_gap > 0.0 && flies_freely(input) &&
       is_free_along_normals(input, model, static_cast<int>(pair))) {
@@ -190,7 +190,7 @@ double time_of_contact(const std::vector<Flight>& flights, const Obstacle& obsta
   const int instants =
       std::clamp(static_cast<int>(evaluations / static_cast<double>(flights.size())), least_instants, most_instants);
   const auto touches = [&](double time) {
-    const PlacedObstacle placed = obstacle.at(time);
+    const PosedObstacle placed = obstacle.at(time);
     return std::any_of(flights.begin(), flights.end(),
                        [&](const Flight& flight) { return placed.gap(flight.at(time)) <= 0.0; });
   };
@@ -325,7 +325,7 @@ void print_advice(const Case& input, const Model& model) {
   const ConnectedBodies connected = find_connected_bodies(model.space);
   fmt::print("  {}, {}, {}, {}\n", counted(model.sizes.nodes, "node"), counted(model.sizes.cells, "cell"),
              counted(model.sizes.dofs, "dof"), counted(model.sizes.contact_points, "contact point"));
-  print_place(input, model);
+  print_position(input, model);
   print_materials(model.body);
   print_bodies(model, connected);
   print_groups(model.mesh, is_axisymmetric(model.body));

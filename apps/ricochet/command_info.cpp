@@ -10,11 +10,11 @@
 #include "contact_text.hpp"
 #include "expectation_text.hpp"
 #include "method_text.hpp"
-#include "outcome_text.hpp"
 #include "penetration_text.hpp"
-#include "place_text.hpp"
+#include "position_text.hpp"
 #include "probe_text.hpp"
 #include "progress_text.hpp"
+#include "results_text.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/read_case.hpp"
@@ -45,7 +45,7 @@ std::string shape_text(const CellBlock& block) {
 
 /// Returns true for a file for which gmsh may run shell commands; only `run` and `validate --mesh` pass it to gmsh.
 bool must_be_meshed_first(const MeshFile& file) {
-  return may_run_commands(file.path) && !is_meshed(file);
+  return may_run_commands(file.path) && !is_mesh_cached(file);
 }
 
 void describe_mesh(const std::string& path) {

@@ -124,7 +124,7 @@ int report(const ReportArguments& arguments) {
                 fmt::format("{}: is there and shows other runs: name another file with -o, or this one", output));
   }
   Report page;
-  read_with_patience(arguments.directories, [&] { page = make_report(arguments.directories, options); });
+  read_with_retries(arguments.directories, [&] { page = make_report(arguments.directories, options); });
   write_durably(output, page.html);
   for (const std::string& sentence : page.thinned) log::info(fmt::format("thinned: {}", sentence));
   fmt::print("{}: {:.1f} MB; open it in a browser\n", output, 1e-6 * static_cast<double>(page.html.size()));

@@ -4,7 +4,7 @@
 
 #include "advice_text.hpp"
 #include "commands.hpp"
-#include "place_text.hpp"
+#include "position_text.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
@@ -100,7 +100,7 @@ double print_estimates(const Case& input, const Model& model, const Scheme& sche
 bool has_mesh(const MeshFile& file) {
   if (!needs_gmsh_program(file.path)) return true;
   try {
-    return is_meshed(file);
+    return is_mesh_cached(file);
   } catch (const Error& problem) {
     if (problem.kind() != ErrorKind::invalid_input) throw;
     log::warning(problem.what());  // the gmsh program is not installed
@@ -155,7 +155,7 @@ int validate(const ValidateArguments& arguments) {
              counted(model.mesh.cell_count(), "cell"), counted(model.problem.contact.size(), "contact point"),
              counted(model.problem.supports.size(), "supported dof"),
              input.time.adaptive ? steps_text(input.time) : counted(step_count(input.time), "step"));
-  print_place(input, model);
+  print_position(input, model);
   print_facings(input, model);
   if (!starts) {
     fmt::print(

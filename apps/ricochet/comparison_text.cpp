@@ -10,7 +10,7 @@
 #include "penetration_text.hpp"
 #include "progress_text.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/fem/cell_rotations.hpp"
 #include "ricochet/io/summary.hpp"
 #include "ricochet/simulation/impact/restitution.hpp"
 
@@ -111,7 +111,7 @@ class Outcome {
     const PeakStressResult& peak = s_.peak_stress->peak;
     return mark("≥", peak.looks < peak.states) + (peak.looks < peak.states ? " " : "") +
            fmt::format("{:.4g}", peak.von_mises) + mark("?", turned_until(peak.time)) +
-           mark("^", peak.sits_on != StressRaiser::none);
+           mark("^", peak.raised_by != StressRaiser::none);
   }
 
  private:

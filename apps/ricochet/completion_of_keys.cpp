@@ -15,7 +15,7 @@ namespace {
 /// not parsed: only its headings are searched.
 std::vector<std::string> entries_of(const Section& section, const std::string& case_file) {
   std::vector<std::string> result;
-  if (!why_no_input(case_file).empty()) return result;
+  if (!unreadable_reason(case_file).empty()) return result;
   std::ifstream file(case_file);
   for (std::string line; std::getline(file, line);) {
     line.erase(std::remove_if(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\t'; }), line.end());

@@ -29,7 +29,7 @@ std::string motion_text(const ContactDescription& c) {
 
 }  // namespace
 
-std::string facing_text(const FacingDescription& facing) {
+std::string facing_text(const PairingDescription& facing) {
   std::string gaps = "the gaps are closed";
   if (facing.smallest_gap > facing.largest_gap) {
     gaps = "none of which faces the other side at the start";

@@ -9,7 +9,7 @@ namespace ricochet::program {
 void print_contacts(const std::vector<ContactDescription>& contacts);
 /// Returns a text such as "\"two.left\" carries the multipliers: its mesh is finer (0.02 against 0.03); 4 contact
 /// points, …".
-[[nodiscard]] std::string facing_text(const FacingDescription& facing);
+[[nodiscard]] std::string facing_text(const PairingDescription& facing);
 
 /// Prints the works of friction and of moving obstacles, and the largest numbers of sticking and slipping points;
 /// nothing if there was neither friction nor motion.

@@ -30,7 +30,7 @@ void draw_figure(const std::string& description, const std::string& format, cons
   child.input = workspace.file("description.json");
   child.output = workspace.file("messages");
   std::ofstream(child.input) << description;
-  const ChildOutcome outcome = run_child(child);
+  const ChildResult outcome = run_child(child);
   if (outcome.is_absent())
     throw Error(ErrorKind::file_access,
                 "figures are drawn by Python, which is not here: apt-get install python3-matplotlib");

@@ -3,16 +3,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/fem/cell_rotations.hpp"
 
 namespace ricochet::program {
 
 namespace {
 
 std::string found_text(const UnwatchedPenetration& p) {
-  const std::string what = p.is_in_itself()     ? p.bodies[0] + " in itself"
-                           : p.obstacle.empty() ? fmt::format("{} and {} overlap", p.bodies[0], p.bodies[1])
-                                                : fmt::format("{} in \"{}\"", p.bodies[0], p.obstacle);
+  const std::string what = p.is_self_penetration() ? p.bodies[0] + " in itself"
+                           : p.obstacle.empty()    ? fmt::format("{} and {} overlap", p.bodies[0], p.bodies[1])
+                                                   : fmt::format("{} in \"{}\"", p.bodies[0], p.obstacle);
   const std::string kind =
       p.passed_through    ? "PASSED THROUGH WITHIN ONE STEP"
       : p.contact.empty() ? "PENETRATION WITHOUT CONTACT"

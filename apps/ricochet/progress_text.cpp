@@ -125,7 +125,7 @@ void print_cost(const RunSummary& s) {
 void print_solver(const RunSummary& s) {
   if (s.iterations) {
     fmt::print("  solved by iterations: {:.3g} rounds of contact and {:.3g} conjugate gradients in a step\n",
-               s.iterations->rounds_per_step, s.iterations->gradients_per_step);
+               s.iterations->schwarz_iterations_per_step, s.iterations->gradients_per_step);
   }
   if (!s.processes) return;
   const ProcessReport& p = *s.processes;

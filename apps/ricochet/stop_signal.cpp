@@ -74,7 +74,7 @@ int next_request(const sigset_t& awaited, int first, std::chrono::steady_clock::
 void end_process(int signal) {
   try {
     std::thread([signal] {
-      if (interruption::take_actions()) _exit(128 + signal);
+      if (interruption::run_actions()) _exit(128 + signal);
     }).detach();
   } catch (const std::system_error&) {  // no room for a thread
     _exit(128 + signal);
@@ -119,11 +119,11 @@ void wait_for_stop_signals(const char* program_name) {
   }
 }
 
-void say_signals_as(const char* program_name) {
+void set_signal_program_name(const char* program_name) {
   speaker = program_name;
 }
 
-void let_steps_end() {
+void remove_step_time_limit() {
   steps_end = true;
 }
 

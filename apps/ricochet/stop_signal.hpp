@@ -8,9 +8,9 @@ namespace ricochet::program {
 /// Starts a thread that waits for signals and reports them under the name of the program; null: without messages. Must
 /// be the second call in main().
 void wait_for_stop_signals(const char* program_name);
-void say_signals_as(const char* program_name);
+void set_signal_program_name(const char* program_name);
 /// Removes the limit on the duration of a step: other processes compute it as well and must not be left waiting.
-void let_steps_end();
+void remove_step_time_limit();
 
 /// Returns the signal that was received, or 0.
 [[nodiscard]] int stop_signal();

@@ -52,7 +52,7 @@ class SignalCheck {
   void raise();
 
  private:
-  double last_asked_ = 0.0;
+  double last_check_ = 0.0;
   int signal_ = 0;  ///< signal that raised the exception
   std::optional<py::error_already_set> raised_;
 };

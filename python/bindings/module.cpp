@@ -32,8 +32,8 @@ std::recursive_mutex& LibraryLock::mutex() {
 int SignalCheck::operator()() {
   static const Timer clock;
   const double now = clock.seconds();
-  if (!raised_ && now - last_asked_ > signal_interval) {
-    last_asked_ = now;
+  if (!raised_ && now - last_check_ > signal_interval) {
+    last_check_ = now;
     const py::gil_scoped_acquire lock;
     if (PyErr_CheckSignals() != 0) {
       raised_.emplace();

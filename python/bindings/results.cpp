@@ -21,7 +21,7 @@ namespace {
 RunData read_run(const std::string& directory) {
   const LibraryLock lock;
   std::vector<RunData> runs;
-  read_with_patience({directory}, [&] { runs = read_runs({directory}, true); });
+  read_with_retries({directory}, [&] { runs = read_runs({directory}, true); });
   if (runs.front().results != nullptr) runs.front().results->release();
   return std::move(runs.front());
 }

@@ -6,7 +6,7 @@
 #include "distributed/cut_body.hpp"
 #include "ricochet/distributed/petsc_preconditioner.hpp"
 #include "ricochet/linear_algebra/block_jacobi.hpp"
-#include "ricochet/linear_algebra/single_gradients.hpp"
+#include "ricochet/linear_algebra/single_precision_cg.hpp"
 
 // Matrices of pieces add up to those of the whole, and are solved as it is.
 
@@ -45,8 +45,8 @@ TEST_P(Pieces, AreTheWhole) {
   }
   // Elements keep their tags, their nodes and their positions in mesh and space.
   for (std::size_t i = 0; i < piece_.cell_number.size(); ++i) {
-    const PlaceInBlocks here = place_in_blocks(piece_.mesh.cells, static_cast<Index>(i));
-    const PlaceInBlocks there = place_in_blocks(mesh.cells, piece_.cell_number[i]);
+    const IndexInBlocks here = locate_in_blocks(piece_.mesh.cells, static_cast<Index>(i));
+    const IndexInBlocks there = locate_in_blocks(mesh.cells, piece_.cell_number[i]);
     const CellBlock &own = piece_.mesh.cells[here.block], &all = mesh.cells[there.block];
     EXPECT_EQ(own.tags[static_cast<std::size_t>(here.local)], all.tags[static_cast<std::size_t>(there.local)]);
     for (int k = 0; k < own.nodes_per_cell; ++k)
@@ -171,7 +171,7 @@ TEST_P(Pieces, AreSolvedAsTheWhole) {
                          const Ranks& ranks) {
     Vector diagonal = matrix.diagonal_blocks();
     ranks.accumulate(diagonal);
-    SingleGradients single(matrix, diagonal, taken, ranks);
+    SinglePrecisionCg single(matrix, diagonal, taken, ranks);
     ConjugateGradients gradients(d, ranks);
     const auto blocks = make_block_jacobi(diagonal, d, taken);
     Vector x = Vector::Zero(right.size()), residual = right, image;

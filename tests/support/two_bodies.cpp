@@ -46,7 +46,7 @@ std::string write_mesh(const std::string& name, const Mesh& mesh) {
     names += fmt::format("{} {} \"{}\"\n", group.dimension, ++groups, group.name);
     const std::vector<CellBlock>& blocks = group.dimension == mesh.dimension ? mesh.cells : mesh.facets;
     for (const Index member : group.members) {
-      const PlaceInBlocks place = place_in_blocks(blocks, member);
+      const IndexInBlocks place = locate_in_blocks(blocks, member);
       const CellBlock& block = blocks[place.block];
       const std::vector<int>& order = gmsh::node_order(block.shape, mesh.degree);
       std::vector<Index> ordered(order.size());

@@ -162,7 +162,7 @@ TEST(AdaptiveOnset, EndWhereTheyDoNotGetOn) {
     for (; steps < 2 * StepControl::most_steps; ++steps) {
       jumped.velocity.setConstant(steps % 2 == 0 ? 1.0 : -1.0);
       while (!control.accept(still, jumped, 1.0)) {
-        if (control.wants_prospect()) control.take_prospect(0, 1.0);
+        if (control.needs_trial_step()) control.set_energy_ahead(0, 1.0);
       }
       control.watch(1.0, 0.0);
     }
@@ -181,7 +181,7 @@ TEST(AdaptiveOnset, EndWhereTheyDoNotGetOn) {
   for (steps = 0; !other.at_end(); ++steps) {
     jumped.velocity.setConstant(steps % 2 == 0 ? 1.0 : -1.0);
     while (!other.accept(still, jumped, 1.0)) {
-      if (other.wants_prospect()) other.take_prospect(0, 1.0);
+      if (other.needs_trial_step()) other.set_energy_ahead(0, 1.0);
     }
     other.watch(1.0, 0.0);
   }
@@ -194,7 +194,7 @@ TEST(AdaptiveOnset, EndWhereTheyDoNotGetOn) {
     for (; !control.at_end(); ++count) {
       jumped.velocity.setConstant(count % 2 == 0 ? 1.0 : -1.0);
       while (!control.accept(still, jumped, 1.0)) {
-        if (control.wants_prospect()) control.take_prospect(0, 1.0);
+        if (control.needs_trial_step()) control.set_energy_ahead(0, 1.0);
       }
       control.watch(1.0, 0.0);
     }

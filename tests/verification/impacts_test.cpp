@@ -311,7 +311,7 @@ TEST(PeakStress, IsThatOfTheStatesThatWereLookedAt) {
   EXPECT_LT(some.result().looks, states);
   EXPECT_LE(some.result().von_mises, largest);
   EXPECT_GE(some.result().von_mises, largest_of_frames);
-  const CellPlace place = place_of_cell(run.model().mesh, all.result().cell);
+  const CellLocation place = location_of_cell(run.model().mesh, all.result().cell);
   EXPECT_GE(place.centre[0], 5.0);
   EXPECT_LE(place.centre[0], 15.0);
 }

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "ricochet/mass/mass.hpp"
-#include "ricochet/solver/delassus/contact_columns.hpp"
+#include "ricochet/solver/delassus/delassus_columns.hpp"
 #include "ricochet/solver/delassus/direct_stage.hpp"
 #include "ricochet/solver/stage/stage_operator.hpp"
 #include "ricochet/solver/step_estimate.hpp"
@@ -60,7 +60,7 @@ TEST(LargeContact, EstimatesAreWhatIsMade) {
 
   AnalysedOperator analysed = analyse_operator(run.problem(), operators[0]);
   analysed.factor.factorize();
-  ContactColumns columns(analysed.factor);
+  DelassusColumns columns(analysed.factor);
   const std::vector<int> number = number_dofs(run.problem(), analysed.dofs);
   std::vector<Eigen::Triplet<double>> entries;
   const Index points = 40, rows = 3;

@@ -90,7 +90,7 @@ TEST(StressRaisers, Crack) {
   Group& bottom = *std::find_if(mesh.groups.begin(), mesh.groups.end(),
                                 [](const Group& group) { return group.name == "y0" && group.dimension == 1; });
   std::erase_if(bottom.members, [&](Index facet) {
-    const PlaceInBlocks place = place_in_blocks(mesh.facets, facet);
+    const IndexInBlocks place = locate_in_blocks(mesh.facets, facet);
     const Index* const nodes = mesh.facets[place.block].cell(place.local);
     return mesh.nodes(0, nodes[0]) + mesh.nodes(0, nodes[1]) < 0.0;
   });
@@ -139,7 +139,7 @@ TEST(StressRaisers, ABlockOnAPlane) {
   const CaseRun rough(static_case(mesh, on_floor("y0", plane, "friction = 0.5\n") + top));
   Raisers raisers(rough);
   each_cell(rough.model().mesh.cells, [&](Index cell, std::span<const Index>) {
-    const Vector centre = place_of_cell(rough.model().mesh, cell).centre;
+    const Vector centre = location_of_cell(rough.model().mesh, cell).centre;
     const bool is_corner = centre[1] < 0.25 && std::abs(centre[0] - 0.5) > 0.25;
     if (!is_corner && centre[1] < 0.5) return;
     EXPECT_EQ(raisers.at(cell), is_corner ? "a sharp edge in contact" : "");
@@ -152,7 +152,7 @@ TEST(StressRaisers, ReachTheNextCell) {
                                 hold("x0", R"("x", "y")") + pull("x1", R"("0", "-0.1")")));
   Raisers raisers(run);
   each_cell(run.model().mesh.cells, [&](Index cell, std::span<const Index>) {
-    const Vector centre = place_of_cell(run.model().mesh, cell).centre;
+    const Vector centre = location_of_cell(run.model().mesh, cell).centre;
     const bool is_next = centre[0] < 0.25 && centre[1] > 0.875;
     if (!is_next && centre[0] < 0.25) return;
     EXPECT_EQ(raisers.at(cell), is_next ? "the edge of a support" : "") << centre.transpose();

@@ -82,19 +82,19 @@ bool look_for_end(pid_t process, int options, int& problem) {
 
 }  // namespace
 
-bool ChildOutcome::is_absent() const {
+bool ChildResult::is_absent() const {
   return spawn_error == ENOENT || (spawn_error == 0 && exit_status() == 127);
 }
 
-bool ChildOutcome::succeeded() const {
+bool ChildResult::succeeded() const {
   return spawn_error == 0 && exit_status() == 0;
 }
 
-int ChildOutcome::exit_status() const {
+int ChildResult::exit_status() const {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-std::string ChildOutcome::description() const {
+std::string ChildResult::description() const {
   if (spawn_error != 0) return fmt::format("cannot be run: {}", std::strerror(spawn_error));
   if (WIFSIGNALED(status)) return fmt::format("was killed by signal {}", WTERMSIG(status));
   return fmt::format("ended with status {}", WEXITSTATUS(status));
@@ -169,7 +169,7 @@ void RunningChild::collect() {
   process_ = -1;
 }
 
-ChildOutcome run_child(ChildProcess child) {
+ChildResult run_child(ChildProcess child) {
   RunningChild running(std::move(child));
   running.wait();
   return running.outcome();

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "ricochet/base/default_sigchld_guard.hpp"
 #include "ricochet/base/interruption.hpp"
-#include "ricochet/base/kept_children.hpp"
 
 /// @file Running another program. Its arguments are passed on unchanged: no shell is involved.
 namespace ricochet {
@@ -20,7 +20,7 @@ struct ChildProcess {
   std::string output;                       ///< file that receives its standard output and standard error
 };
 
-struct ChildOutcome {
+struct ChildResult {
   int spawn_error = 0;  ///< errno if it could not be started
   int status = 0;       ///< as returned by waitpid
 
@@ -50,21 +50,21 @@ class RunningChild {
   /// Sends a signal to the child and to all processes that it has started; has no effect after its end.
   void send(int signal);
   /// Outcome of a child that has ended.
-  [[nodiscard]] const ChildOutcome& outcome() const { return outcome_; }
+  [[nodiscard]] const ChildResult& outcome() const { return outcome_; }
 
  private:
   class SharedErrno;
   /// Reaps the child and stores how it ended.
   void collect();
 
-  KeptChildren kept_;
+  DefaultSigchldGuard kept_;
   pid_t process_ = -1;
-  ChildOutcome outcome_;
+  ChildResult outcome_;
   std::unique_ptr<SharedErrno> error_;
   std::optional<AtInterruption> kill_when_interrupted_;
 };
 
 /// Runs the child and waits until it has ended.
-[[nodiscard]] ChildOutcome run_child(ChildProcess child);
+[[nodiscard]] ChildResult run_child(ChildProcess child);
 
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 
 namespace ricochet {
 
-std::string why_no_input(const std::string& path, int header) {
+std::string unreadable_reason(const std::string& path, int header) {
   struct stat about {};
   if (stat(path.c_str(), &about) != 0) return "";
   if (S_ISDIR(about.st_mode)) return "it is a directory";

@@ -9,6 +9,6 @@ namespace ricochet {
 /// (where reading may wait for a writer forever, and which cannot be read twice), or begins with zeros alone. No format
 /// does so except binary STL, whose `header` of so many bytes may be anything; a damaged file may hold gigabytes of
 /// zeros. Empty if none of these is found; opening the file reports one that is missing or may not be read.
-[[nodiscard]] std::string why_no_input(const std::string& path, int header = 0);
+[[nodiscard]] std::string unreadable_reason(const std::string& path, int header = 0);
 
 }  // namespace ricochet

@@ -64,7 +64,7 @@ bool has_stopping_points() {
   return registry().stopping_points > 0;
 }
 
-bool take_actions() {
+bool run_actions() {
   std::unique_lock lock(registry().mutex);
   if (registry().at_stopping_point) return false;
   for (auto action = registry().actions.rbegin(); action != registry().actions.rend(); ++action) {

@@ -45,7 +45,7 @@ void reach_stopping_point();
 
 /// Runs the actions. Returns false without running any if a stopping point was reached. After true the caller must end
 /// the process.
-[[nodiscard]] bool take_actions();
+[[nodiscard]] bool run_actions();
 
 /// Writes a line to standard error unless nobody reads it.
 void say(const char* line);

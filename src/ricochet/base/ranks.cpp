@@ -27,7 +27,7 @@ void Ranks::together(const std::function<void()>& work) const {
   }
 }
 
-std::vector<std::string> Ranks::texts_of_all(const std::string& own) const {
+std::vector<std::string> Ranks::gather_texts(const std::string& own) const {
   ForEach<std::int64_t> told(static_cast<std::size_t>(size()));
   told.front().assign(own.begin(), own.end());
   std::vector<std::string> result;

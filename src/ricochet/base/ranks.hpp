@@ -75,7 +75,7 @@ class Ranks {
     return exchange(ForEach<double>(static_cast<std::size_t>(size()), own));
   }
   /// Returns the texts of all ranks on the first rank; none on the others.
-  [[nodiscard]] std::vector<std::string> texts_of_all(const std::string& own) const;
+  [[nodiscard]] std::vector<std::string> gather_texts(const std::string& own) const;
   /// Sums several numbers over the ranks, in place.
   void sum(std::span<double> values) const;
 

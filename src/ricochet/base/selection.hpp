@@ -24,21 +24,21 @@ template <class Value>
 }
 
 /// Position of a number in an ascending list, or −1.
-[[nodiscard]] inline Index place_in(const std::vector<Index>& numbers, Index number) {
+[[nodiscard]] inline Index index_in(const std::vector<Index>& numbers, Index number) {
   const auto found = std::lower_bound(numbers.begin(), numbers.end(), number);
   return found != numbers.end() && *found == number ? found - numbers.begin() : Index{-1};
 }
 /// Positions of those members that are in the list, in the order of `members`.
-[[nodiscard]] inline std::vector<Index> places_in(const std::vector<Index>& members,
-                                                  const std::vector<Index>& numbers) {
+[[nodiscard]] inline std::vector<Index> indices_in(const std::vector<Index>& members,
+                                                   const std::vector<Index>& numbers) {
   std::vector<Index> result;
   for (const Index member : members) {
-    if (const Index place = place_in(numbers, member); place >= 0) result.push_back(place);
+    if (const Index place = index_in(numbers, member); place >= 0) result.push_back(place);
   }
   return result;
 }
 /// For each number below `count`, its position in a list, or −1.
-[[nodiscard]] inline std::vector<Index> places_of_all(const std::vector<Index>& numbers, Index count) {
+[[nodiscard]] inline std::vector<Index> inverse_indices(const std::vector<Index>& numbers, Index count) {
   std::vector<Index> result(static_cast<std::size_t>(count), -1);
   for (std::size_t i = 0; i < numbers.size(); ++i) result[static_cast<std::size_t>(numbers[i])] = static_cast<Index>(i);
   return result;

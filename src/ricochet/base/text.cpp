@@ -71,7 +71,7 @@ std::optional<std::string_view> between(std::string_view text, std::string_view 
   return text.substr(begin.size(), text.size() - begin.size() - end.size());
 }
 
-std::string form_of(std::string_view message) {
+std::string message_pattern(std::string_view message) {
   const auto is_any_of = [](char c, std::string_view these) { return these.find(c) != std::string_view::npos; };
   constexpr std::string_view digits = "0123456789";
   std::string form;

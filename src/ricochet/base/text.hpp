@@ -19,7 +19,7 @@ std::string nearest_name(std::string_view word, std::span<const std::string> can
 std::optional<std::string_view> between(std::string_view text, std::string_view begin, std::string_view end);
 /// Returns a message with every number replaced by 0 that stands alone and is not within quotes. Messages about the
 /// same problem at different positions have the same form.
-std::string form_of(std::string_view message);
+std::string message_pattern(std::string_view message);
 
 /// Returns whether a text consists of decimal digits, from `least` to `most` of them.
 bool is_digits(std::string_view text, std::size_t least, std::size_t most = std::string_view::npos);

@@ -12,8 +12,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "ricochet/base/default_sigchld_guard.hpp"
 #include "ricochet/base/error.hpp"
-#include "ricochet/base/kept_children.hpp"
 
 namespace ricochet {
 
@@ -40,13 +40,13 @@ void prepare_child(pid_t parent, double processor_seconds) {
 
 }  // namespace
 
-std::string TrialOutcome::description() const {
+std::string TrialResult::description() const {
   if (endless) return "does not come to an end";
   return signal != 0 ? fmt::format("ended a process with signal {}", signal) : "failed";
 }
 
-TrialOutcome try_in_child(const std::function<bool()>& work, double processor_seconds) {
-  const KeptChildren kept;
+TrialResult try_in_child(const std::function<bool()>& work, double processor_seconds) {
+  const DefaultSigchldGuard kept;
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0)
@@ -64,7 +64,7 @@ TrialOutcome try_in_child(const std::function<bool()>& work, double processor_se
   while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) throw Error(ErrorKind::file_access, fmt::format("a process is lost: {}", std::strerror(errno)));
   }
-  TrialOutcome outcome;
+  TrialResult outcome;
   outcome.succeeded = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
   outcome.endless = outcome.signal == SIGXCPU;

@@ -7,7 +7,7 @@
 /// process.
 namespace ricochet {
 
-struct TrialOutcome {
+struct TrialResult {
   bool succeeded = false;  ///< the work ended and returned true
   int signal = 0;          ///< the signal that killed the copy; 0 if it ended by itself
   bool endless = false;    ///< it was killed because it took too long
@@ -19,6 +19,6 @@ struct TrialOutcome {
 /// Calls `work` in a forked child, which prints nothing, dumps no core and ends with this process, and waits for it.
 /// Other threads do not exist in the child: `work` must not need anything they may hold. The child is killed after
 /// `processor_seconds`. Throws Error(file_access) if no child can be created.
-[[nodiscard]] TrialOutcome try_in_child(const std::function<bool()>& work, double processor_seconds);
+[[nodiscard]] TrialResult try_in_child(const std::function<bool()>& work, double processor_seconds);
 
 }  // namespace ricochet

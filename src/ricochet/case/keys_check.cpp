@@ -84,7 +84,7 @@ class TreeChecker {
   void check_foreign_key(const Section& section, const Key& key, const std::string& title, TomlNode& table);
   void check_key(const Key& key, const std::string& title, TomlNode& value);
   [[nodiscard]] bool has_entries(const std::string& section) const;
-  [[nodiscard]] bool gives_way(const std::string& section) const;
+  [[nodiscard]] bool is_replaced(const std::string& section) const;
   void check_alternatives(const KeySets& alternatives, const std::vector<Key>& keys, const std::string& title,
                           const TomlNode& table, const Section* section = nullptr);
   void report_missing_section(const Section& section);
@@ -135,7 +135,7 @@ void TreeChecker::check_top_member(const TomlNode& member) {
 void TreeChecker::check_section(const Section& section) {
   TomlNode* node = root_.find(section.name);
   if (node == nullptr) {
-    if (section.required && !gives_way(section.gives_way_to)) return report_missing_section(section);
+    if (section.required && !is_replaced(section.gives_way_to)) return report_missing_section(section);
     if (section.kind != SectionKind::table) return;
     // An absent section has its defaults nevertheless.
     node = &root_.children.emplace_back();
@@ -291,7 +291,7 @@ bool TreeChecker::has_entries(const std::string& section) const {
 }
 
 /// Returns whether that section replaces a key or section; also if its name is misspelt, which is reported separately.
-bool TreeChecker::gives_way(const std::string& section) const {
+bool TreeChecker::is_replaced(const std::string& section) const {
   if (section.empty()) return false;
   return has_entries(section) || std::any_of(root_.children.begin(), root_.children.end(), [&](const TomlNode& member) {
            return find_section(member.key) == nullptr && (member.is_table() || member.is_list_of_tables()) &&
@@ -311,7 +311,7 @@ void TreeChecker::check_keys(const std::vector<Key>& keys, const std::string& ti
                       key.name, title, section_title(*find_section(key.gives_way_to))));
     } else if (value != nullptr) {
       check_key(key, title, *value);
-    } else if (is_misspelt(key, keys, table) || gives_way(key.gives_way_to)) {
+    } else if (is_misspelt(key, keys, table) || is_replaced(key.gives_way_to)) {
       continue;
     } else if (key.required) {
       problems_.add(table.location,

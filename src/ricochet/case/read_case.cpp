@@ -25,7 +25,7 @@ std::string read_text(const std::string& path) {
   const auto fail = [&path](const std::string& why) {
     throw Error(ErrorKind::file_access, fmt::format("{}: cannot be read: {}", path, why));
   };
-  if (const std::string why = why_no_input(path); !why.empty()) fail(why + ", not a case file");
+  if (const std::string why = unreadable_reason(path); !why.empty()) fail(why + ", not a case file");
   constexpr std::uintmax_t longest = 64u << 20;
   std::error_code unknown;
   if (const std::uintmax_t size = std::filesystem::file_size(path, unknown); !unknown && size > longest)

@@ -5,19 +5,19 @@ namespace ricochet {
 void transfer(Archive& archive, ContactRows& rows) {
   archive.all(rows.normals, rows.tangents, rows.slips, rows.gap_rounding, rows.gap_operator, rows.tangential_trace,
               rows.gap, rows.revision, rows.places);
-  bool turns = rows.turning_trace != nullptr;
+  bool turns = rows.rotating_trace != nullptr;
   archive(turns);
   if (!turns) return;
-  SparseRowMatrix trace = archive.reads() ? SparseRowMatrix() : *rows.turning_trace;
+  SparseRowMatrix trace = archive.reads() ? SparseRowMatrix() : *rows.rotating_trace;
   archive(trace);
-  if (archive.reads()) rows.turning_trace = std::make_shared<const SparseRowMatrix>(std::move(trace));
+  if (archive.reads()) rows.rotating_trace = std::make_shared<const SparseRowMatrix>(std::move(trace));
 }
 void transfer(Archive& archive, ContactBoundary& contact) {
   archive.all(contact.dimension, contact.facets, contact.pair, contact.initial_gap, contact.weights,
               contact.friction_coefficient, contact.friction_bound, contact.trace, contact.own_trace, contact.net,
               contact.slides_far, contact.reachable_nodes, contact.touches_itself, contact.has_friction_elsewhere,
-              contact.out_of_sight, contact.opposite_node, contact.nodes, contact.node_pair, contact.is_opposite,
-              contact.own_point, contact.node_normals, contact.node_initial_gap, contact.opposite_place,
+              contact.unpaired_gap, contact.opposite_node, contact.nodes, contact.node_pair, contact.is_opposite,
+              contact.own_point, contact.node_normals, contact.node_initial_gap, contact.opposite_projection,
               contact.pressure_recovery);
 }
 void transfer(Archive& archive, CurvedContactData::Point& point) {

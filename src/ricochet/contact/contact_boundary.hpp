@@ -102,17 +102,18 @@ struct ContactBoundary {
   std::vector<Index> reachable_nodes;   ///< of both surfaces of these pairs
   bool touches_itself = false;          ///< whether one of them is a single surface, whose points may be deactivated
   bool has_friction_elsewhere = false;  ///< whether points of other ranks have friction
-  double out_of_sight = 0.0;            ///< the gap of such a point if it faces nothing
+  double unpaired_gap = 0.0;            ///< the gap of such a point if it faces nothing
   std::vector<Index> opposite_node;     ///< per ContactPair: a node of the opposite surface if it slides far, or −1
 
   // Per node of the contact boundary (once per obstacle or pair), for nodal output:
-  std::vector<Index> nodes;        ///< ascending; all nodes in the trace of some point, of any rank
-  std::vector<int> node_pair;      ///< index of the (first) ContactPair
-  std::vector<char> is_opposite;   ///< 1 on the side of a pair of bodies without multipliers
-  std::vector<Index> own_point;    ///< the contact point anchored at the node; −1 if none, −2 if on another rank
-  Points node_normals;             ///< towards the node's body, at the start, d × nodes
-  Vector node_initial_gap;         ///< NaN if the node faces nothing
-  SparseRowMatrix opposite_place;  ///< contact nodes × nodes: projections onto other bodies; 0 × 0 if there are none
+  std::vector<Index> nodes;       ///< ascending; all nodes in the trace of some point, of any rank
+  std::vector<int> node_pair;     ///< index of the (first) ContactPair
+  std::vector<char> is_opposite;  ///< 1 on the side of a pair of bodies without multipliers
+  std::vector<Index> own_point;   ///< the contact point anchored at the node; −1 if none, −2 if on another rank
+  Points node_normals;            ///< towards the node's body, at the start, d × nodes
+  Vector node_initial_gap;        ///< NaN if the node faces nothing
+  SparseRowMatrix
+      opposite_projection;  ///< contact nodes × nodes: projections onto other bodies; 0 × 0 if there are none
   SparseRowMatrix pressure_recovery;  ///< contact nodes × points: pressure at the nodes = this · r_N, in stress units;
                                       ///< any component of the friction traction likewise from that of the reaction
 

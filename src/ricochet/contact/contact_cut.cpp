@@ -58,8 +58,8 @@ ContactRows cut_rows(const ContactRows& whole, const ContactCut& part) {
   rows.tangential_trace = cut_matrix(whole.tangential_trace, slip_rows, part.nodes * d, place_of_dof);
   if (whole.gap.size() > 0) rows.gap = chosen(whole.gap, part.points);
   rows.revision = chosen(whole.revision, part.points);
-  if (whole.turning_trace)
-    rows.turning_trace = std::make_shared<const SparseRowMatrix>(cut_trace(*whole.turning_trace, part));
+  if (whole.rotating_trace)
+    rows.rotating_trace = std::make_shared<const SparseRowMatrix>(cut_trace(*whole.rotating_trace, part));
   return rows;
 }
 
@@ -69,7 +69,7 @@ ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part
   if (whole.net.size() > 0 && whole.net.minCoeff() == 0.0)
     throw Error(ErrorKind::invalid_input, "contact between bodies cannot be divided");
   const auto place_of_node = [&](Index node) { return part.place_of[static_cast<std::size_t>(node)]; };
-  const std::vector<Index> point_place = places_of_all(part.points, whole.size());
+  const std::vector<Index> point_place = inverse_indices(part.points, whole.size());
   ContactBoundary own;
   own.dimension = whole.dimension;
   for (const Index facet : whole.facets) {
@@ -99,7 +99,7 @@ ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part
   own.is_opposite = chosen(whole.is_opposite, part.entries);
   own.node_normals = chosen_columns(whole.node_normals, part.entries);
   own.node_initial_gap = chosen(whole.node_initial_gap, part.entries);
-  own.opposite_place.resize(0, 0);
+  own.opposite_projection.resize(0, 0);
   own.pressure_recovery = cut_matrix(whole.pressure_recovery, part.entries, static_cast<Index>(part.points.size()),
                                      [&](Index point) { return point_place[static_cast<std::size_t>(point)]; });
   own.rows = std::make_shared<const ContactRows>(cut_rows(*whole.rows, part));

@@ -39,8 +39,8 @@ class CombinedGeometry final : public ContactGeometry {
   void end_step() const override {
     for (const auto& part : parts_) part->end_step();
   }
-  [[nodiscard]] bool has_held() const override {
-    return std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->has_held(); });
+  [[nodiscard]] bool has_frozen() const override {
+    return std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->has_frozen(); });
   }
   void allow_overlap(Vector& gap) const override {
     for (const auto& part : parts_) part->allow_overlap(gap);

@@ -41,7 +41,7 @@ class ContactGeometry {
   virtual bool hold() const { return false; }
   virtual void end_step() const {}
   /// Whether rows were held in some step of the run so far.
-  [[nodiscard]] virtual bool has_held() const { return false; }
+  [[nodiscard]] virtual bool has_frozen() const { return false; }
   /// Adds to the gaps at the end of a step the penetration of points at its start. Steps with held rows leave it
   /// behind, and removing it would create energy; it may only not grow.
   virtual void allow_overlap(Vector& /*gap*/) const {}

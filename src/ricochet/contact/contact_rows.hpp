@@ -25,7 +25,7 @@ struct ContactRows {
   Vector places;
   /// c, points × nodes, for points whose rows have exactly the entries c ⊗ n and c ⊗ t, whatever their directions; the
   /// rows of all other points are empty. Null if the directions of all points are constant.
-  std::shared_ptr<const SparseRowMatrix> turning_trace;
+  std::shared_ptr<const SparseRowMatrix> rotating_trace;
 
   [[nodiscard]] Index size() const { return normals.cols(); }
   [[nodiscard]] int dimension() const { return static_cast<int>(normals.rows()); }

@@ -76,7 +76,7 @@ class StressRows {
         entries.emplace_back(point, other * d + component, weight);
     };
     for (const auto& [cell, all] : of_cells) {
-      const PlaceInBlocks place = locate_cell(*body_.space, cell);
+      const IndexInBlocks place = locate_cell(*body_.space, cell);
       const Index* nodes = body_.space->cells[place.block].cell(place.local);
       const double largest = largest_of_cell(place, cell, all);
       for (const Share& each : all) {
@@ -95,8 +95,8 @@ class StressRows {
   using Space = Eigen::Matrix<double, d, 1>;
 
   void add_facet(std::size_t k, std::vector<Share>& shares) {
-    const PlaceInBlocks at = locate_facet(*body_.space, boundary_.facets[k]);
-    const PlaceInBlocks in = locate_cell(*body_.space, facets_[k].cell);
+    const IndexInBlocks at = locate_facet(*body_.space, boundary_.facets[k]);
+    const IndexInBlocks in = locate_cell(*body_.space, facets_[k].cell);
     const CellBlock& facets = body_.space->facets[at.block];
     const CellBlock& cells = body_.space->cells[in.block];
     const Index *nodes = facets.cell(at.local), *corners = cells.cell(in.local);
@@ -136,7 +136,7 @@ class StressRows {
   }
 
   /// Gradients of the shape functions of a cell, at one of its nodes.
-  Eigen::Matrix<double, Eigen::Dynamic, d> gradients_at(const PlaceInBlocks& in, Index node) const {
+  Eigen::Matrix<double, Eigen::Dynamic, d> gradients_at(const IndexInBlocks& in, Index node) const {
     const BlockRules& rules = cells_[in.block];
     const auto at = static_cast<std::size_t>(node);
     const Index* nodes = body_.mesh->cells[in.block].cell(in.local);
@@ -145,7 +145,7 @@ class StressRows {
   }
 
   /// Normal of the facet `at` of the cell `in`, out of the cell, at a node of the facet.
-  Space normal_at(const PlaceInBlocks& at, Index node, const PlaceInBlocks& in) const {
+  Space normal_at(const IndexInBlocks& at, Index node, const IndexInBlocks& in) const {
     const CellBlock& geometry = body_.mesh->facets[at.block];
     const auto along = jacobian<d, d - 1>(body_.mesh->nodes, geometry.cell(at.local),
                                           facet_maps_[at.block].gradients[static_cast<std::size_t>(node)]);
@@ -167,7 +167,7 @@ class StressRows {
   }
 
   /// Largest Σ |share| s² over displacements of the cell with uᵀK_cell u = 1.
-  double largest_of_cell(const PlaceInBlocks& place, Index cell, const std::vector<Share>& all) const {
+  double largest_of_cell(const IndexInBlocks& place, Index cell, const std::vector<Share>& all) const {
     if (all.empty()) return 0.0;
     const CellBlock& geometry = body_.mesh->cells[place.block];
     const BlockIntegration& integration = cells_[place.block].stiffness;

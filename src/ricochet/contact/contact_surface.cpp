@@ -104,7 +104,7 @@ class ContactSurface::Builder {
     for (const double modulus : plate_moduli(body_, contact.opposite_facets))
       compliance += 1.0 / (modulus * static_cast<double>(contact.opposite_facets.size()));
     for (std::size_t i = 0; i < contact.facets.size(); ++i) {
-      const PlaceInBlocks place = locate_facet(*body_.space, contact.facets[i]);
+      const IndexInBlocks place = locate_facet(*body_.space, contact.facets[i]);
       const CellBlock& geometry = body_.mesh->facets[place.block];
       const CellBlock& block = body_.space->facets[place.block];
       Facet facet{place.block, surface_.slots_of_facets_.size(), place_of_node_.size(), 0.0,

@@ -25,13 +25,13 @@ class Placing {
     for (std::size_t k = few_.size(); k < obstacles.size(); ++k)
       others_.push_back(obstacles[k]->at(time, displacement));
   }
-  [[nodiscard]] const PlacedObstacle& operator[](std::size_t k) const {
+  [[nodiscard]] const PosedObstacle& operator[](std::size_t k) const {
     return k < few_.size() ? *few_[k] : others_[k - few_.size()];
   }
 
  private:
-  std::array<std::optional<PlacedObstacle>, 8> few_;  ///< stored without allocation
-  std::vector<PlacedObstacle> others_;
+  std::array<std::optional<PosedObstacle>, 8> few_;  ///< stored without allocation
+  std::vector<PosedObstacle> others_;
 };
 
 class CurvedContact final : public ContactGeometry {
@@ -214,11 +214,11 @@ std::unique_ptr<ContactGeometry> CurvedContact::cut(const ContactCut& part) cons
   CurvedContactData own;
   own.obstacles = data_.obstacles;
   for (CurvedContactData::Point point : data_.points) {
-    point.number = place_in(part.points, point.number);
+    point.number = index_in(part.points, point.number);
     if (point.number >= 0) own.points.push_back(point);
   }
   for (CurvedContactData::Node node : data_.nodes) {
-    node.entry = place_in(part.entries, node.entry);
+    node.entry = index_in(part.entries, node.entry);
     node.node = part.place_of[static_cast<std::size_t>(node.node)];
     if (node.entry >= 0) own.nodes.push_back(node);
   }

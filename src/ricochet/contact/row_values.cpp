@@ -70,7 +70,7 @@ Vector row_values(const ContactRows& rows) {
   return result;
 }
 
-bool take_row_values(const Vector& values, ContactRows& rows) {
+bool set_row_values(const Vector& values, ContactRows& rows) {
   SparseRowMatrix &gap = rows.gap_operator, &slip = rows.tangential_trace;
   const Values gap_values(values.data(), gap.nonZeros()), slip_values(values.data() + gap.nonZeros(), slip.nonZeros());
   if (gap_values == values_between(gap, 0, gap.rows()) && slip_values == values_between(slip, 0, slip.rows()))

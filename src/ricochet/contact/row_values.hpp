@@ -10,7 +10,7 @@ namespace ricochet {
 [[nodiscard]] Index row_value_count(const ContactRows& rows);
 [[nodiscard]] Vector row_values(const ContactRows& rows);
 /// Sets row_value_count() values; returns false if the rows already have them.
-bool take_row_values(const Vector& values, ContactRows& rows);
+bool set_row_values(const Vector& values, ContactRows& rows);
 
 /// Largest change of a value in a point's rows, relative to the largest value of its G or B_T.
 [[nodiscard]] double change_of_rows(const ContactRows& from, const ContactRows& to, Index point);

@@ -41,7 +41,7 @@ std::vector<CellFacet> cut_facets(const std::vector<CellFacet>& facets, const st
   for (const CellBlock& block : own) first_of_own.push_back(first_of_own.back() + block.size());
   std::vector<CellFacet> result;
   for (const CellFacet& facet : facets) {
-    const Index place = place_in(cell_number, first_of_whole[facet.block] + facet.cell);
+    const Index place = index_in(cell_number, first_of_whole[facet.block] + facet.cell);
     if (place >= 0) result.push_back({facet.block, place - first_of_own[facet.block], facet.local});
   }
   return result;
@@ -54,14 +54,14 @@ void cut_bodies(const BodiesOfMesh& whole, const Model& whole_model, const Piece
   own.boundary = cut_facets(whole.boundary, whole_model.space.cells, piece.space.cells, piece.cell_number);
 }
 
-void cut_watched(const std::vector<WatchedPlaces>& whole, const Piece& piece, const ContactBoundary& contact,
-                 const ContactBoundary& own, std::vector<WatchedPlaces>& result) {
+void cut_probe_targets(const std::vector<ProbeTargets>& whole, const Piece& piece, const ContactBoundary& contact,
+                       const ContactBoundary& own, std::vector<ProbeTargets>& result) {
   result = whole;
-  for (WatchedPlaces& places : result) {
-    places.nodes = places_in(places.nodes, piece.node_number);
+  for (ProbeTargets& places : result) {
+    places.nodes = indices_in(places.nodes, piece.node_number);
     for (Probe& probe : places.probes) {
       const Index node = probe.node, entry = probe.contact_node;
-      probe.node = place_in(piece.node_number, node);
+      probe.node = index_in(piece.node_number, node);
       if (probe.node < 0 || entry < 0) continue;
       // Entries keep their order, so that the offset among the entries of the node is unchanged.
       const auto first = std::find(contact.nodes.begin(), contact.nodes.end(), node) - contact.nodes.begin();
@@ -113,12 +113,12 @@ ModelPart cut_model(Model& whole, const Division& division, int rank) {
   model.history_bodies.labels = whole.history_bodies.labels;
   model.history_bodies.of_node = chosen(whole.history_bodies.of_node, piece.node_number);
   cut_bodies(whole.bodies, whole, piece, model.bodies);
-  cut_watched(whole.watched, piece, whole.problem.contact, model.problem.contact, model.watched);
+  cut_probe_targets(whole.watched, piece, whole.problem.contact, model.problem.contact, model.watched);
   model.contact_scales = whole.contact_scales;
   model.contacts = whole.contacts;
   for (ModelContact& contact : model.contacts) contact.facets.clear();
   model.contact_pairs = whole.contact_pairs;
-  for (ContactPair& pair : model.contact_pairs) pair.facets = places_in(pair.facets, piece.facet_number);
+  for (ContactPair& pair : model.contact_pairs) pair.facets = indices_in(pair.facets, piece.facet_number);
   model.pair_facings = whole.pair_facings;
   model.body = whole.body;
   model.body.tied = nullptr;
@@ -174,7 +174,7 @@ ModelPart hand_out(const Case& input, std::unique_ptr<Model> whole, std::optiona
 std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator& ranks, const DivisionOptions& options,
                                            BuildTimes* times) {
   // All ranks initialize PETSc together; the first then divides the mesh with it.
-  const std::shared_ptr<const PreconditionerMaker> preconditioners = make_petsc_preconditioners();
+  const std::shared_ptr<const PreconditionerFactory> preconditioners = make_petsc_preconditioners();
   if (ranks.size() == 1) {
     std::unique_ptr<Model> model = build_model(input, times);
     model->preconditioners = preconditioners;
@@ -208,7 +208,7 @@ std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator
   ContactBoundary& contact = model->problem.contact;
   contact.surface = std::make_shared<const ContactSurface>(model->body, model->contact_pairs, contact);
   add_sensors(input, *model);
-  model->rotation = std::make_unique<RotationGauge>(model->body);
+  model->rotation = std::make_unique<CellRotations>(model->body);
   model->preconditioners = preconditioners;
   if (times != nullptr) times->model += timer.seconds();
   return model;

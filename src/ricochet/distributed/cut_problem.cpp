@@ -10,7 +10,7 @@ namespace {
 ContactCut contact_part(const SemidiscreteProblem& whole, const Division& division, const Piece& piece, int rank) {
   ContactCut part;
   part.points = division.points_of(rank);
-  part.place_of = places_of_all(piece.node_number, whole.nodes.cols());
+  part.place_of = inverse_indices(piece.node_number, whole.nodes.cols());
   part.nodes = static_cast<Index>(piece.node_number.size());
   for (std::size_t entry = 0; entry < whole.contact.nodes.size(); ++entry) {
     if (part.place_of[static_cast<std::size_t>(whole.contact.nodes[entry])] >= 0)

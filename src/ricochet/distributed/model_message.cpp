@@ -43,7 +43,7 @@ void transfer(Archive& archive, Probe& probe) {
 void transfer(Archive& archive, Column& column) {
   archive.all(column.name, column.by);
 }
-void transfer(Archive& archive, WatchedPlaces& places) {
+void transfer(Archive& archive, ProbeTargets& places) {
   archive.all(places.probes, places.positions, places.columns, places.nodes, places.sums);
 }
 void transfer(Archive& archive, ModelSizes& sizes) {

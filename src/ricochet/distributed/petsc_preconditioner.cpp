@@ -199,7 +199,7 @@ class PetscPreconditioner final : public Preconditioner {
   Vec given_ = nullptr, found_ = nullptr;  ///< on own dofs
 };
 
-class PetscPreconditioners final : public PreconditionerMaker {
+class PetscPreconditioners final : public PreconditionerFactory {
  public:
   [[nodiscard]] std::unique_ptr<Preconditioner> make(const std::string& kind, const SparseMatrix& part,
                                                      const std::vector<char>& solved, const Points& nodes,
@@ -213,7 +213,7 @@ class PetscPreconditioners final : public PreconditionerMaker {
 
 }  // namespace
 
-std::shared_ptr<const PreconditionerMaker> make_petsc_preconditioners() {
+std::shared_ptr<const PreconditionerFactory> make_petsc_preconditioners() {
   return std::make_shared<const PetscPreconditioners>();
 }
 

@@ -112,11 +112,11 @@ Piece cut_piece(const Mesh& mesh, const DisplacementSpace& space, const std::vec
   piece.mesh.facets = std::move(of_facets.blocks);
   cut_mesh_nodes(mesh, piece.mesh);
   for (std::size_t i = 0; i < mesh.parts.size(); ++i)
-    piece.mesh.parts[i].cells = places_in(mesh.parts[i].cells, piece.cell_number);
+    piece.mesh.parts[i].cells = indices_in(mesh.parts[i].cells, piece.cell_number);
   for (const Group& group : mesh.groups) {
     const bool is_of_cells = group.dimension == mesh.dimension;
     piece.mesh.groups.push_back({group.name, group.tag, group.dimension,
-                                 places_in(group.members, is_of_cells ? piece.cell_number : piece.facet_number)});
+                                 indices_in(group.members, is_of_cells ? piece.cell_number : piece.facet_number)});
   }
 
   piece.space.dimension = space.dimension;

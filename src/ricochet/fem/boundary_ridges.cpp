@@ -53,9 +53,9 @@ class RidgeSides {
     result.head(body_.mesh->dimension) = body_.mesh->nodes.col(body_.mesh->cells[facet.block].cell(facet.cell)[node]);
     return result;
   }
-  [[nodiscard]] PolynomialMap<3>::NodePlaces places(const CellFacet& facet) const {
+  [[nodiscard]] PolynomialMap<3>::NodePositions places(const CellFacet& facet) const {
     const CellShape shape = body_.space->cells[facet.block].shape;
-    PolynomialMap<3>::NodePlaces result = PolynomialMap<3>::NodePlaces::Zero();
+    PolynomialMap<3>::NodePositions result = PolynomialMap<3>::NodePositions::Zero();
     Index k = 0;
     for (const int node : facet_nodes(shape, body_.mesh->degree)[facet.local]) result.col(k++) = position(facet, node);
     return result;

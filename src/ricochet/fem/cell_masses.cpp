@@ -53,8 +53,8 @@ void CellMasses::for_each_inertia(const VisitInertia& visit) const {
         visit(nodes, mass, weight);
         continue;
       }
-      const std::vector<Index> followed = nodes_followed(nodes);
-      const Matrix spreading = spreading_of(nodes, followed);
+      const std::vector<Index> followed = untied_nodes_of(nodes);
+      const Matrix spreading = tie_matrix(nodes, followed);
       const Matrix half = spreading.transpose() * mass * spreading;
       visit(followed, 0.5 * (half + half.transpose()), weight);
     }
@@ -67,7 +67,7 @@ bool CellMasses::has_tied(const std::vector<Index>& nodes) const {
 }
 
 /// Nodes that determine the values at the nodes of a cell.
-std::vector<Index> CellMasses::nodes_followed(const std::vector<Index>& nodes) const {
+std::vector<Index> CellMasses::untied_nodes_of(const std::vector<Index>& nodes) const {
   std::vector<Index> result;
   for (const Index node : nodes) {
     for (const auto& [other, weight] : body_.tied->spread({{node, 1.0}})) result.push_back(other);
@@ -78,7 +78,7 @@ std::vector<Index> CellMasses::nodes_followed(const std::vector<Index>& nodes) c
 }
 
 /// T on a cell: its nodes × the nodes that determine them.
-Matrix CellMasses::spreading_of(const std::vector<Index>& nodes, const std::vector<Index>& followed) const {
+Matrix CellMasses::tie_matrix(const std::vector<Index>& nodes, const std::vector<Index>& followed) const {
   Matrix result = Matrix::Zero(static_cast<Index>(nodes.size()), static_cast<Index>(followed.size()));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (const auto& [other, weight] : body_.tied->spread({{nodes[i], 1.0}}))
@@ -92,7 +92,7 @@ void CellMasses::for_each_cell(const std::function<void(const std::vector<Index>
   for (const CellBlock& cells : body_.space->cells) {
     for (Index cell = 0; cell < cells.size(); ++cell) {
       const std::vector<Index> nodes(cells.cell(cell), cells.cell(cell) + cells.nodes_per_cell);
-      visit(has_tied(nodes) ? nodes_followed(nodes) : nodes);
+      visit(has_tied(nodes) ? untied_nodes_of(nodes) : nodes);
     }
   }
 }

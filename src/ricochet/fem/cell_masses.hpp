@@ -31,8 +31,8 @@ class CellMasses {
 
  private:
   [[nodiscard]] bool has_tied(const std::vector<Index>& nodes) const;
-  [[nodiscard]] std::vector<Index> nodes_followed(const std::vector<Index>& nodes) const;
-  [[nodiscard]] Matrix spreading_of(const std::vector<Index>& nodes, const std::vector<Index>& followed) const;
+  [[nodiscard]] std::vector<Index> untied_nodes_of(const std::vector<Index>& nodes) const;
+  [[nodiscard]] Matrix tie_matrix(const std::vector<Index>& nodes, const std::vector<Index>& followed) const;
 
   const Body& body_;
   std::vector<double> weight_;

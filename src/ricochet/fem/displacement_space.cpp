@@ -146,7 +146,7 @@ double extent(const Points& nodes) {
 std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
   std::vector<Index> nodes;
   for (const Index facet : facets) {
-    const PlaceInBlocks place = locate_facet(space, facet);
+    const IndexInBlocks place = locate_facet(space, facet);
     const CellBlock& block = space.facets[place.block];
     nodes.insert(nodes.end(), block.cell(place.local), block.cell(place.local) + block.nodes_per_cell);
   }

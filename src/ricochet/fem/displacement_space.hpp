@@ -38,11 +38,11 @@ struct DisplacementSpace {
 [[nodiscard]] DisplacementSpace make_displacement_space(const Mesh& mesh, int degree);
 
 /// Block and local index of a facet or a cell that is numbered through all blocks.
-[[nodiscard]] inline PlaceInBlocks locate_facet(const DisplacementSpace& space, Index facet) {
-  return place_in_blocks(space.facets, facet);
+[[nodiscard]] inline IndexInBlocks locate_facet(const DisplacementSpace& space, Index facet) {
+  return locate_in_blocks(space.facets, facet);
 }
-[[nodiscard]] inline PlaceInBlocks locate_cell(const DisplacementSpace& space, Index cell) {
-  return place_in_blocks(space.cells, cell);
+[[nodiscard]] inline IndexInBlocks locate_cell(const DisplacementSpace& space, Index cell) {
+  return locate_in_blocks(space.cells, cell);
 }
 
 /// Nodes of the given facets (numbered through all blocks), ascending and unique.

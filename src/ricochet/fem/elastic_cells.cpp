@@ -10,7 +10,7 @@ ElasticCells::ElasticCells(const Body& body, const NodeGraph* graph, std::vector
     : body_(body), graph_(graph), cells_(std::move(cells)) {
   if (body.mesh->dimension == 2) plane_ = std::make_unique<Blocks<2>>(body, graph, cells_);
   if (body.mesh->dimension == 3) solid_ = std::make_unique<Blocks<3>>(body, graph, cells_);
-  find_internal_places();
+  find_internal_offsets();
 }
 
 ElasticCells::~ElasticCells() = default;

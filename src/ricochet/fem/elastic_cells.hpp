@@ -108,12 +108,12 @@ class ElasticCells {
   template <int d, class Work>
   InvertedCell visit_strips(std::initializer_list<PackInput> inputs, std::initializer_list<PackSum> sums,
                             const Work& work) const;
-  void find_internal_places();
-  struct BranchPlaces;
+  void find_internal_offsets();
+  struct BranchDisplacements;
   template <int d, class Find>
-  void add_up_branches(const BranchPlaces& places, const Find& find, Vector& result) const;
+  void add_up_branches(const BranchDisplacements& places, const Find& find, Vector& result) const;
   template <int d, class Find>
-  double sum_branches(const BranchPlaces& places, const Find& find) const;
+  double sum_branches(const BranchDisplacements& places, const Find& find) const;
 
   const Body& body_;
   const NodeGraph* graph_;

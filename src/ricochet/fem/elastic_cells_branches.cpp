@@ -3,7 +3,7 @@
 /// @file Viscoelastic branches of the materials in the cells of a body.
 namespace ricochet {
 
-void ElasticCells::find_internal_places() {
+void ElasticCells::find_internal_offsets() {
   Index sum = 0;
   std::vector<Index> begin;
   begin.reserve(body_.cell_material.size() + 1);
@@ -22,7 +22,7 @@ void ElasticCells::find_internal_places() {
 }
 
 /// Vectors from which the strains of branches are computed.
-struct ElasticCells::BranchPlaces {
+struct ElasticCells::BranchDisplacements {
   const BranchStep* step = nullptr;      ///< null for an instant instead of a step
   const Vector* displacement = nullptr;  ///< null if only displacements of the step are needed
   const Vector& internal;
@@ -36,8 +36,8 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
 
   /// Calls work(strip) for the strips of a part whose cells have branches, after computing their strains.
   template <class Work>
-  void for_each_strip(Index part, Index begin, const BranchPlaces& places, const std::vector<Index>& internal_begin,
-                      const Work& work) {
+  void for_each_strip(Index part, Index begin, const BranchDisplacements& places,
+                      const std::vector<Index>& internal_begin, const Work& work) {
     read(part, places);
     const auto has_branches = [](const Material& material) { return !material.relaxation.empty(); };
     CellStrips<d>::for_each_strip(part, has_branches, [&](const PackStrip<d>& strip) {
@@ -61,12 +61,12 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
     return this->integral(strip, result_.data());
   }
   /// Writes A₁ to a vector in the order of A; returns the dissipation.
-  [[nodiscard]] double advance(const PackStrip<d>& strip, const BranchPlaces& places, Vector& next) {
+  [[nodiscard]] double advance(const PackStrip<d>& strip, const BranchDisplacements& places, Vector& next) {
     find_next(strip, places, next);
     find_branch_works(BranchWork::dissipation, points(strip), next_.data(), result_.data());
     return this->integral(strip, result_.data());
   }
-  void relax(const PackStrip<d>& strip, const BranchPlaces& places, Vector& next) {
+  void relax(const PackStrip<d>& strip, const BranchDisplacements& places, Vector& next) {
     find_next(strip, places, next);
     relax_branches(points(strip), next_.data());
   }
@@ -76,14 +76,14 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
   static std::size_t lane_number(const PackStrip<d>& strip, Index pack, int lane) {
     return static_cast<std::size_t>((pack - strip.begin) * strip.block.width + lane);
   }
-  void find_next(const PackStrip<d>& strip, const BranchPlaces& places, Vector& next) {
+  void find_next(const PackStrip<d>& strip, const BranchDisplacements& places, Vector& next) {
     next_.fill(nullptr);
     this->for_each_lane(strip, [&](Index pack, int lane, Index, int) {
       const std::size_t number = lane_number(strip, pack, lane);
       next_[number] = next.data() + (internal_[number] - places.internal.data());
     });
   }
-  void read(Index part, const BranchPlaces& places) {
+  void read(Index part, const BranchDisplacements& places) {
     if (places.step != nullptr) {
       blocks_.packs.template read<d>(part, places.step->middle, blocks_.displacement);
       blocks_.packs.template read<d>(part, places.step->increment, blocks_.increment);
@@ -92,7 +92,7 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
     if (places.displacement != nullptr) blocks_.packs.template read<d>(part, *places.displacement, blocks_.at);
   }
   /// Computes E₀ from the gradient of u₁ minus that of the increment; or E at the displacement if no E₀ is needed.
-  void find_all_strains(const PackStrip<d>& strip, Index begin, const BranchPlaces& places) {
+  void find_all_strains(const PackStrip<d>& strip, Index begin, const BranchDisplacements& places) {
     const Index count = strip.points();
     has_step_ = places.step != nullptr;
     has_displacement_ = places.displacement != nullptr;
@@ -133,7 +133,7 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
 
 /// Sums forces over the branches: find(strips, strip, forces) adds those of a strip.
 template <int d, class Find>
-void ElasticCells::add_up_branches(const BranchPlaces& places, const Find& find, Vector& result) const {
+void ElasticCells::add_up_branches(const BranchDisplacements& places, const Find& find, Vector& result) const {
   const Blocks<d>& all = blocks<d>();
   all.take_branches(places.step != nullptr ? places.step->step : 0.0);
   for_each_part<d, BranchStrips>([&](Index part, Index begin, BranchStrips<d>& strips) {
@@ -146,7 +146,7 @@ void ElasticCells::add_up_branches(const BranchPlaces& places, const Find& find,
 
 /// Sums find(strips, strip), the contribution of a strip.
 template <int d, class Find>
-double ElasticCells::sum_branches(const BranchPlaces& places, const Find& find) const {
+double ElasticCells::sum_branches(const BranchDisplacements& places, const Find& find) const {
   const Blocks<d>& all = blocks<d>();
   all.take_branches(places.step != nullptr ? places.step->step : 0.0);
   std::array<double, most_node_parts> sums{};
@@ -164,7 +164,7 @@ void ElasticCells::relax(const Vector& displacement, Vector& internal) const {
   internal.setZero(internal_size());
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
-    const BranchPlaces places{nullptr, &displacement, internal};
+    const BranchDisplacements places{nullptr, &displacement, internal};
     sum_branches<d>(places, [&](BranchStrips<d>& strips, const PackStrip<d>& strip) {
       strips.relax(strip, places, internal);
       return 0.0;
@@ -225,7 +225,7 @@ double ElasticCells::advance_internal(const BranchStep& step, Vector& internal) 
   internal.resize(internal_size());
   return with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
-    const BranchPlaces places{&step, nullptr, step.internal};
+    const BranchDisplacements places{&step, nullptr, step.internal};
     return sum_branches<d>(places, [&](BranchStrips<d>& strips, const PackStrip<d>& strip) {
       return strips.advance(strip, places, internal);
     });

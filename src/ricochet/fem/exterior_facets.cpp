@@ -11,7 +11,7 @@ namespace {
 
 /// Vertices of a facet numbered through all blocks.
 std::span<const Index> vertices_of(const Mesh& mesh, Index facet) {
-  const PlaceInBlocks at = place_in_blocks(mesh.facets, facet);
+  const IndexInBlocks at = locate_in_blocks(mesh.facets, facet);
   const CellBlock& block = mesh.facets[at.block];
   return {block.cell(at.local), static_cast<std::size_t>(vertex_count(block.shape))};
 }
@@ -60,7 +60,7 @@ std::string facet_tags(const Mesh& mesh, const std::vector<Index>& facets) {
   std::string text;
   constexpr std::size_t shown = 5;
   for (std::size_t i = 0; i < std::min(facets.size(), shown); ++i) {
-    const PlaceInBlocks at = place_in_blocks(mesh.facets, facets[i]);
+    const IndexInBlocks at = locate_in_blocks(mesh.facets, facets[i]);
     text += fmt::format("{}{}", i == 0 ? "" : ", ", mesh.facets[at.block].tags[static_cast<std::size_t>(at.local)]);
   }
   if (facets.size() > shown) text += fmt::format(", … ({} in all)", facets.size());

@@ -23,7 +23,7 @@ struct FacetShape {
 /// axisymmetric bodies that of the ring.
 class FacetArea {
  public:
-  using Places = PolynomialMap<3>::NodePlaces;
+  using Places = PolynomialMap<3>::NodePositions;
   /// Keeps a reference to the shape. `places`: X at the nodes of the geometry; `motions`: u at
   /// the nodes of the displacement.
   FacetArea(const FacetShape& shape, const Places& places, const Places& motions, bool axisymmetric);

@@ -41,7 +41,7 @@ class FacetIntegration {
 
   /// Evaluates a facet numbered through all blocks. Pointers in `result` are valid for the lifetime of this object.
   void evaluate(Index facet, FacetQuadrature& result) const {
-    const PlaceInBlocks place = locate_facet(*body_->space, facet);
+    const IndexInBlocks place = locate_facet(*body_->space, facet);
     const std::size_t b = place.block;
     const Index local = place.local;
     const CellBlock& geometry = body_->mesh->facets[b];

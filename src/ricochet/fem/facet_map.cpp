@@ -87,10 +87,10 @@ FacetMap::FacetMap(const Body& body) : body_(body) {
   }
 }
 
-PolynomialMap<3> FacetMap::geometry(const PlaceInBlocks& place) const {
+PolynomialMap<3> FacetMap::geometry(const IndexInBlocks& place) const {
   const PolynomialShape& shape = shapes_[place.block].geometry;
   const Index* const nodes = body_.mesh->facets[place.block].cell(place.local);
-  PolynomialMap<3>::NodePlaces places = PolynomialMap<3>::NodePlaces::Zero();
+  PolynomialMap<3>::NodePositions places = PolynomialMap<3>::NodePositions::Zero();
   for (Index k = 0; k < shape.node_count(); ++k)
     places.col(k).head(body_.mesh->dimension) = body_.mesh->nodes.col(nodes[k]);
   return {shape, places};
@@ -104,10 +104,10 @@ void FacetMap::positions(Index facet, const Points& local, Points& result) const
 }
 
 bool FacetMap::invert(Index facet, const Points& axes, const Points& plane, Points& local) const {
-  const PlaceInBlocks place = locate_facet(*body_.space, facet);
+  const IndexInBlocks place = locate_facet(*body_.space, facet);
   const CellBlock& block = body_.mesh->facets[place.block];
   const Index* const nodes = block.cell(place.local);
-  PolynomialMap<2>::NodePlaces places = PolynomialMap<2>::NodePlaces::Zero();
+  PolynomialMap<2>::NodePositions places = PolynomialMap<2>::NodePositions::Zero();
   for (Index k = 0; k < block.nodes_per_cell; ++k)
     places.col(k).head(axes.cols()) = axes.transpose() * body_.mesh->nodes.col(nodes[k]);
   const PolynomialMap<2> seen(shapes_[place.block].geometry, places);
@@ -125,7 +125,7 @@ bool FacetMap::invert(Index facet, const Points& axes, const Points& plane, Poin
 }
 
 void FacetMap::evaluate(Index facet, const Points& axes, const Vector& weights, FacetPoints& points) const {
-  const PlaceInBlocks place = locate_facet(*body_.space, facet);
+  const IndexInBlocks place = locate_facet(*body_.space, facet);
   const Index d = axes.rows(), count = points.local.cols();
   tabulate(shapes_[place.block].displacement, points.local, points.displacement);
   tabulate(shapes_[place.block].hats, points.local, points.hats);

@@ -173,7 +173,7 @@ class CellHeights {
                           product_quadrature_degree(block.shape, mesh.degree, 1));
     }
   }
-  [[nodiscard]] double of(const PlaceInBlocks& place) const {
+  [[nodiscard]] double of(const IndexInBlocks& place) const {
     const CellBlock& block = mesh_.cells[place.block];
     const CellShape shape = facet_shape(block.shape);
     const bool is_simplex = block.shape == CellShape::triangle || block.shape == CellShape::tetrahedron;
@@ -203,12 +203,12 @@ std::vector<double> cell_heights(const Mesh& mesh) {
 std::vector<double> cell_heights(const Mesh& mesh, const std::vector<Index>& cells) {
   const CellHeights height(mesh);
   std::vector<double> heights;
-  for (const Index cell : cells) heights.push_back(height.of(place_in_blocks(mesh.cells, cell)));
+  for (const Index cell : cells) heights.push_back(height.of(locate_in_blocks(mesh.cells, cell)));
   return heights;
 }
 
 double facet_diameter(const Mesh& mesh, Index facet) {
-  const PlaceInBlocks place = place_in_blocks(mesh.facets, facet);
+  const IndexInBlocks place = locate_in_blocks(mesh.facets, facet);
   const CellBlock& block = mesh.facets[place.block];
   const Index* const nodes = block.cell(place.local);
   double largest = 0.0;

@@ -20,7 +20,7 @@ Tensor PointLaw::strain(const Tensor& gradient) const {
 
 /// Newton's method for S_zz(E_zz) = 0, from the strain of linear elasticity. The stress increases with the strain; if a
 /// step would invert the volume (E_zz ≤ −½), it is replaced by half of the distance to that bound.
-void PointLaw::thin_out(Tensor& strain) const {
+void PointLaw::solve_plane_stress(Tensor& strain) const {
   constexpr int most_steps = 60;
   const double lambda = law_->lambda(), mu = law_->mu();
   double& across = strain(2, 2);

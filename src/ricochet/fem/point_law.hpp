@@ -17,7 +17,7 @@ class PointLaw {
   [[nodiscard]] Tensor strain(const Tensor& gradient) const;
   /// Completes a strain given by its components in the plane, under plane stress.
   void complete(Tensor& strain) const {
-    if (plane_stress_) thin_out(strain);
+    if (plane_stress_) solve_plane_stress(strain);
   }
 
   // Evaluated at that strain:
@@ -27,7 +27,7 @@ class PointLaw {
   void tangent(const Tensor& strain, StressTangent& result) const;
 
  private:
-  void thin_out(Tensor& strain) const;
+  void solve_plane_stress(Tensor& strain) const;
 
   const MaterialLaw* law_;
   bool plane_stress_, is_linear_;

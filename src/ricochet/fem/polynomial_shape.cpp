@@ -45,7 +45,7 @@ void PolynomialShape::values(const double* point, double* values) const {
 }
 
 template <int components>
-PolynomialMap<components>::PolynomialMap(const PolynomialShape& shape, const NodePlaces& places)
+PolynomialMap<components>::PolynomialMap(const PolynomialShape& shape, const NodePositions& places)
     : shape_(shape), origin_(places.col(0)) {
   for (int t = 0; t < shape.terms_; ++t) {
     At& sum = coefficients_[static_cast<std::size_t>(t)];

@@ -36,9 +36,9 @@ class PolynomialMap {
  public:
   using At = Eigen::Matrix<double, components, 1>;
   /// x_k in the columns; components and nodes that a cell does not have are ignored.
-  using NodePlaces = Eigen::Matrix<double, components, PolynomialShape::most_nodes>;
+  using NodePositions = Eigen::Matrix<double, components, PolynomialShape::most_nodes>;
   /// Keeps a reference to the shape.
-  PolynomialMap(const PolynomialShape& shape, const NodePlaces& places);
+  PolynomialMap(const PolynomialShape& shape, const NodePositions& places);
 
   struct Place {
     At at;                     ///< x

@@ -113,8 +113,7 @@ void try_hdf5_file(const std::string& path) {
   const std::optional<Stamp> stamp = stamp_of(path);
   if (const auto found = tried.find(path); stamp && found != tried.end() && found->second == *stamp) return;
   const double size = stamp ? static_cast<double>(stamp->size) : 0.0;
-  const TrialOutcome outcome =
-      try_in_child([&path] { return open_all(path); }, least_seconds + seconds_per_byte * size);
+  const TrialResult outcome = try_in_child([&path] { return open_all(path); }, least_seconds + seconds_per_byte * size);
   if (!outcome.succeeded) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: cannot be read as an HDF5 file: reading it {}: it is cut off or damaged", path,

@@ -187,7 +187,8 @@ Snapshot read_checkpoint(const std::string& path) {
     char head[magic.size()] = {};
     std::ifstream file(path, std::ios::binary);
     // Files that are not checkpoints are not read completely.
-    if (why_no_input(path).empty() && file.read(head, sizeof(head)) && std::string_view(head, sizeof(head)) != magic)
+    if (unreadable_reason(path).empty() && file.read(head, sizeof(head)) &&
+        std::string_view(head, sizeof(head)) != magic)
       throw Error(ErrorKind::invalid_input, fmt::format("{}: it is no checkpoint", path));
   }
   const std::string text = read_file(path);

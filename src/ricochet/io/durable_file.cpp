@@ -104,7 +104,7 @@ void write_durably(const std::string& path, const std::string& content) {
 }
 
 std::string read_file(const std::string& path) {
-  if (const std::string why = why_no_input(path); !why.empty())
+  if (const std::string why = unreadable_reason(path); !why.empty())
     throw Error(ErrorKind::file_access, fmt::format("{}: cannot read: {}", path, why));
   errno = 0;
   std::ifstream file(path, std::ios::binary);
@@ -128,7 +128,7 @@ void require_length(const std::string& path, std::int64_t length) {
   if (about.st_size < length) refuse(fmt::format("has {} bytes", about.st_size));
 }
 
-void cut_back(const std::string& path, std::int64_t length) {
+void truncate_file(const std::string& path, std::int64_t length) {
   require_length(path, length);
   const OpenFile file(path, O_WRONLY);
   if (ftruncate(file.descriptor(), length) != 0) throw_file_error(path, "cut back", errno);

@@ -22,7 +22,7 @@ void write_durably(const std::string& path, const std::string& content);
 void require_length(const std::string& path, std::int64_t length);
 
 /// Truncates a file to an earlier length. Throws Error(file_access) if it is missing or shorter.
-void cut_back(const std::string& path, std::int64_t length);
+void truncate_file(const std::string& path, std::int64_t length);
 
 /// Ensures that a file can grow by so many bytes, if the file system supports this. Throws Error(file_access), with the
 /// file unchanged, if the disk is full.

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 FailureBundle::FailureBundle(std::string directory, ContactProvenance provenance)
     : directory_(std::move(directory)), provenance_(std::move(provenance)) {}
 
-void FailureBundle::take_problem(const ContactProblem& problem, const ContactSolution& solution, long step) {
+void FailureBundle::write_problem(const ContactProblem& problem, const ContactSolution& solution, long step) {
   const std::string path = (fs::path(directory_) / fmt::format("failure-{:09}.hdf5", step)).string();
   try {
     write_contact_problem(
@@ -30,10 +30,10 @@ void FailureBundle::take_problem(const ContactProblem& problem, const ContactSol
   }
 }
 
-void FailureBundle::forget_problem() {
+void FailureBundle::remove_problem() {
   problem_trouble_.clear();
   if (problem_file_.empty()) return;
-  std::error_code ignored;  // left_behind finds it
+  std::error_code ignored;  // leftover_files finds it
   fs::remove(problem_file_, ignored);
   problem_file_.clear();
 }

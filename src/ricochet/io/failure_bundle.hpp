@@ -16,10 +16,10 @@ class FailureBundle {
 
   /// Writes the unsolved contact problem of a step with its best approximate solution. If FCLib's format cannot
   /// represent it or the disk is full, write() reports that.
-  void take_problem(const ContactProblem& problem, const ContactSolution& solution, long step);
-  /// Removes the file of take_problem, after a step that was solved in the end, by another method or with another
+  void write_problem(const ContactProblem& problem, const ContactSolution& solution, long step);
+  /// Removes the file of write_problem, after a step that was solved in the end, by another method or with another
   /// length.
-  void forget_problem();
+  void remove_problem();
   /// Adds the message to the snapshot and writes it. Returns a sentence that names the files. Throws
   /// Error(file_access).
   [[nodiscard]] std::string write(long step, Snapshot& snapshot, const std::string& message) const;

@@ -97,7 +97,7 @@ FrameFile::FrameFile(std::string path, const std::vector<FixedDataset>& fixed, s
     : FrameFile(std::move(path), std::move(frame), options) {
   arrangement_ = make_frame_arrangement(fixed, layout_, options_);
   create(path_, fixed);
-  sole_.emplace(path_);
+  change_detector_.emplace(path_);
 }
 
 FrameFile::FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
@@ -106,7 +106,7 @@ FrameFile::FrameFile(std::string path, const std::vector<FixedDataset>& fixed, s
   arrangement_ = make_frame_arrangement(fixed, layout_, options_);
   load(snapshot, name);
   repair(fixed, Repair::write);
-  sole_.emplace(path_);
+  change_detector_.emplace(path_);
 }
 
 void FrameFile::check(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
@@ -174,10 +174,10 @@ std::int64_t FrameFile::frame_bytes() const {
 }
 
 void FrameFile::append(const std::vector<const void*>& values, double time) {
-  sole_->require_untouched();
+  change_detector_->require_unchanged();
   reserve_space(path_, frame_bytes());
   const std::vector<FrameExtent> extents = write_frame(path_, {frames_, time, &values, nullptr});
-  sole_->expect_present_size();
+  change_detector_->expect_present_size();
   if (options_.compression > 0) {
     for (const FrameExtent& extent : extents) stored_sizes_.push_back(extent.size);
   }
@@ -275,7 +275,7 @@ void FrameFile::repair(const std::vector<FixedDataset>& fixed, Repair repair) co
     copy_gaps(pattern, path_, kept, count_extent(pattern));
     // Truncation is last: if it is interrupted, the file is longer than recorded, which HDF5 can open, unlike a shorter
     // one.
-    cut_back(path_, size);
+    truncate_file(path_, size);
   } catch (const Error&) {
     remove_pattern();
     throw;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "ricochet/base/snapshot.hpp"
+#include "ricochet/io/file_change_detector.hpp"
 #include "ricochet/io/frame_arrangement.hpp"
-#include "ricochet/io/sole_writer.hpp"
 
 /// @file HDF5 file of frames that survives interruptions: fixed datasets, followed by any number of frames.
 ///
@@ -38,7 +38,7 @@ class FrameFile {
   /// before the file is modified.
   void append(const std::vector<const void*>& values, double time);
   [[nodiscard]] long frames() const { return frames_; }
-  void require_untouched() const { sole_->require_untouched(); }
+  void require_unchanged() const { change_detector_->require_unchanged(); }
 
  private:
   FrameFile(std::string path, std::vector<DatasetLayout> frame, const FrameFileOptions& options)
@@ -58,7 +58,7 @@ class FrameFile {
   std::vector<DatasetLayout> layout_;
   FrameFileOptions options_;
   std::unique_ptr<const FrameArrangement> arrangement_;
-  std::optional<SoleWriter> sole_;
+  std::optional<FileChangeDetector> change_detector_;
   long frames_ = 0;
   std::vector<double> times_;               ///< of the frames, if the arrangement stores them
   std::vector<std::int64_t> checksums_;     ///< of each frame's values, as stored in the file

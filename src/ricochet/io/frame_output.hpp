@@ -30,7 +30,7 @@ class FrameOutput {
   [[nodiscard]] virtual long frames() const = 0;
   virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
   /// Throws Error(file_access) if another program has changed a file since it was written.
-  virtual void require_untouched() const = 0;
+  virtual void require_unchanged() const = 0;
   /// Paths of all files.
   [[nodiscard]] virtual std::vector<std::string> paths() const = 0;
 };

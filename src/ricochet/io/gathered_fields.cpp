@@ -16,7 +16,7 @@ GatheredFields::GatheredFields(const Ranks& ranks, std::vector<Field> own, const
   integers_.resize(own_.size());
   for (std::size_t i = 0; ranks.is_first() && i < own_.size(); ++i) {
     Field field = own_[i];
-    field.rows = field.place == FieldPlace::nodes ? nodes : cells;
+    field.rows = field.place == FieldLocation::nodes ? nodes : cells;
     const auto count = static_cast<std::size_t>(field.rows * field.components);
     if (field.whole) {
       integers_[i].assign(count, 0);

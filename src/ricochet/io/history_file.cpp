@@ -30,7 +30,7 @@ HistoryWriter::HistoryWriter(const std::string& path, const std::vector<std::str
 
 HistoryWriter::HistoryWriter(const std::string& path, const Snapshot& snapshot, const std::string& name)
     : path_(path), checksums_(snapshot, name) {
-  cut_back(path_, checksums_.length());
+  truncate_file(path_, checksums_.length());
   open();
 }
 
@@ -46,7 +46,7 @@ void HistoryWriter::open() {
   errno = 0;
   file_.open(path_, std::ios::binary | std::ios::app);
   if (!file_) throw_file_error(path_, "write", errno);
-  sole_.emplace(path_);
+  change_detector_.emplace(path_);
   waiting_.reserve(2 * piece);
 }
 
@@ -71,13 +71,13 @@ void HistoryWriter::write(const std::vector<double>& row) {
 }
 
 void HistoryWriter::flush() {
-  sole_->require_untouched();
+  change_detector_->require_unchanged();
   if (waiting_.empty()) return;
   errno = 0;
   file_.write(waiting_.data(), static_cast<std::streamsize>(waiting_.size()));
   if (!file_.flush()) throw_file_error(path_, "write", errno);
   waiting_.clear();
-  sole_->expect_size(checksums_.length());
+  change_detector_->expect_size(checksums_.length());
 }
 
 void HistoryWriter::sync() {

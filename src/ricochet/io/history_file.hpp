@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "ricochet/base/snapshot.hpp"
+#include "ricochet/io/file_change_detector.hpp"
 #include "ricochet/io/line_checksums.hpp"
-#include "ricochet/io/sole_writer.hpp"
 
 /// @file history.csv: a header row, then one row per step, numbers as %.17g, never an empty field.
 namespace ricochet {
@@ -39,7 +39,7 @@ class HistoryWriter {
 
   std::string path_;
   std::ofstream file_;
-  std::optional<SoleWriter> sole_;
+  std::optional<FileChangeDetector> change_detector_;
   std::string line_, waiting_;  ///< `waiting_`: buffered lines
   LineChecksums checksums_;
 };

@@ -63,7 +63,7 @@ FixedDataset element_numbers(const DisplacementSpace& space) {
 FixedDataset contact_facets_of(const DisplacementSpace& space, const ContactBoundary& contact) {
   std::vector<Part> parts;
   for (const Index facet : contact.facets) {
-    const PlaceInBlocks place = locate_facet(space, facet);
+    const IndexInBlocks place = locate_facet(space, facet);
     const CellBlock* block = &space.facets[place.block];
     if (parts.empty() || parts.back().block != block) parts.push_back({block, {}});
     parts.back().members.push_back(place.local);

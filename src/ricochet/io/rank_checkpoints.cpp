@@ -105,7 +105,7 @@ void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, lon
     checksum = checksum_of(path);
     if (checksum.empty()) throw Error(ErrorKind::file_access, path + ": cannot be read after it was written");
   });
-  const std::vector<std::string> checksums = ranks.texts_of_all(checksum);
+  const std::vector<std::string> checksums = ranks.gather_texts(checksum);
   ranks.together([&] {
     if (!ranks.is_first()) return;
     const Manifest manifest{manifest_path(directory, step), step, checksums};
@@ -142,7 +142,7 @@ std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::st
       }
     }
     if (!ranks.any(!snapshot)) return snapshot;
-    std::vector<std::string> reasons = ranks.texts_of_all(snapshot ? "" : why);
+    std::vector<std::string> reasons = ranks.gather_texts(snapshot ? "" : why);
     reasons.erase(std::unique(reasons.begin(), reasons.end()), reasons.end());
     for (const std::string& reason : reasons) {
       if (!reason.empty()) log::warning(fmt::format("{}: this checkpoint cannot be used: {}", manifest.path, reason));

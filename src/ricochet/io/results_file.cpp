@@ -115,8 +115,8 @@ void ResultsWriter::save(Snapshot& snapshot, const std::string& name) const {
   if (implementation_->output) implementation_->output->save(snapshot, name);
 }
 
-void ResultsWriter::require_untouched() const {
-  if (implementation_->output) implementation_->output->require_untouched();
+void ResultsWriter::require_unchanged() const {
+  if (implementation_->output) implementation_->output->require_unchanged();
 }
 
 void ResultsWriter::sync() const {

@@ -51,7 +51,7 @@ class ResultsWriter {
   [[nodiscard]] long frames() const;
   void save(Snapshot& snapshot, const std::string& name) const;
   /// Throws Error(file_access) if another program has changed a file since it was written; so does write().
-  void require_untouched() const;
+  void require_unchanged() const;
   /// Waits until all files are on the disk.
   void sync() const;
 

@@ -93,7 +93,7 @@ std::vector<std::string> RunDirectory::results() const {
   return result;
 }
 
-std::vector<std::string> RunDirectory::left_behind(long step) const {
+std::vector<std::string> RunDirectory::leftover_files(long step) const {
   std::vector<std::string> result;
   for (const char* name :
        {"summary.json.new", "results.h5.pattern", "results.vtkhdf.pattern", "obstacles.vtkhdf.pattern"}) {

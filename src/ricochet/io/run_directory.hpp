@@ -27,7 +27,7 @@ class RunDirectory {
   [[nodiscard]] std::vector<std::string> results() const;
   /// Files of an interrupted run that are of no use to a run resumed after this step: unfinished files, those of a
   /// failed step, and checkpoints of later steps, which are damaged. For step −1 all files that are not results.
-  [[nodiscard]] std::vector<std::string> left_behind(long step) const;
+  [[nodiscard]] std::vector<std::string> leftover_files(long step) const;
 
   /// Returns whether a run is writing into this directory.
   [[nodiscard]] static bool is_in_use(const std::string& path);

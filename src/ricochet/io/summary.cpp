@@ -15,11 +15,11 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/json.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/fem/cell_rotations.hpp"
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/io/summary_expectations.hpp"
 #include "ricochet/io/summary_method.hpp"
-#include "ricochet/io/summary_outcome.hpp"
+#include "ricochet/io/summary_results.hpp"
 
 namespace ricochet {
 
@@ -82,12 +82,12 @@ Json contacts_to_json(const RunSummary& summary) {
   return result;
 }
 
-std::optional<FacingDescription> facing_from(const Json& contact) {
+std::optional<PairingDescription> facing_from(const Json& contact) {
   if (!contact.contains("facing")) return {};
   const Json& facing = contact.at("facing");
-  return FacingDescription{facing.at("multipliers_on"),           facing.at("reason"),
-                           facing.at("contact_points"),           facing.at("covered").to_number(),
-                           facing.at("smallest_gap").to_number(), facing.at("largest_gap").to_number()};
+  return PairingDescription{facing.at("multipliers_on"),           facing.at("reason"),
+                            facing.at("contact_points"),           facing.at("covered").to_number(),
+                            facing.at("smallest_gap").to_number(), facing.at("largest_gap").to_number()};
 }
 
 Json checks_to_json(const RunSummary& summary) {
@@ -231,7 +231,7 @@ std::string to_json(const RunSummary& s) {
                {"warnings", s.warnings},
                {"expectations", expectations_to_json(s.expectations)},
                {"parameters", s.parameters}};
-  json.update(outcome_to_json(s));
+  json.update(summary_results_to_json(s));
   return json.dump(2) + "\n";
 }
 
@@ -317,7 +317,7 @@ RunSummary summary_from_json(const std::string& text, const std::string& path) {
       s.checks.push_back({name, check.at("limit").to_number(), check.at("largest").to_number()});
     s.expectations = read_expectations(json);
     read_method(json, s);
-    read_outcome(json, path, s);
+    read_summary_results(json, path, s);
     for (const auto& contact : json.at("contacts")) {
       const bool between_bodies = contact.contains("against");
       s.contacts.push_back({contact.at("group"), contact.at(between_bodies ? "against" : "obstacle"),

@@ -45,7 +45,7 @@ struct CheckResult {
 };
 
 /// Initial pairing of the two groups of a contact between bodies.
-struct FacingDescription {
+struct PairingDescription {
   std::string multipliers_on;  ///< the group that carries the multipliers
   std::string reason;          ///< reason for this choice; empty: prescribed by the case
   long points = 0;
@@ -60,9 +60,9 @@ struct ContactDescription {
   std::vector<double> obstacle_velocity = {};  ///< empty: at rest
   double obstacle_rotation_rate = 0.0;
   bool between_bodies = false;
-  bool tied = false;                             ///< no multipliers, no friction
-  std::optional<FacingDescription> facing = {};  ///< null for an obstacle, or if unknown
-  std::string pair_of = {};                      ///< group of an entry for every body against every other; else empty
+  bool tied = false;                              ///< no multipliers, no friction
+  std::optional<PairingDescription> facing = {};  ///< null for an obstacle, or if unknown
+  std::string pair_of = {};                       ///< group of an entry for every body against every other; else empty
 };
 
 /// Body of the mesh, and the time for which its contact must be lost for an impact to end.
@@ -93,8 +93,8 @@ struct ProcessReport {
 
 /// Costs of the iterative method per step.
 struct IterationReport {
-  double rounds_per_step = 0.0;     ///< alternating iterations of subdomains and conjugate gradients
-  double gradients_per_step = 0.0;  ///< iterations of conjugate gradients
+  double schwarz_iterations_per_step = 0.0;  ///< alternating iterations of subdomains and conjugate gradients
+  double gradients_per_step = 0.0;           ///< iterations of conjugate gradients
 };
 
 /// Largest von Mises stress of a run and its location.

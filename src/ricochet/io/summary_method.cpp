@@ -87,7 +87,7 @@ Json processes_to_json(const RunSummary& summary) {
 
 Json iterations_to_json(const RunSummary& summary) {
   if (!summary.iterations) return {};
-  return {{"rounds_per_step", summary.iterations->rounds_per_step},
+  return {{"rounds_per_step", summary.iterations->schwarz_iterations_per_step},
           {"gradients_per_step", summary.iterations->gradients_per_step}};
 }
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/fem/cell_rotations.hpp"
 #include "ricochet/io/summary.hpp"
-#include "ricochet/simulation/impact/turn_growth.hpp"
+#include "ricochet/simulation/impact/rotation_growth.hpp"
 
 /// @file Validity of small strain in a run's impacts, as far as rotations are concerned.
 namespace ricochet {
@@ -16,7 +16,7 @@ bool RunSummary::cells_turn_little_in(std::size_t impact) const {
 }
 
 bool RunSummary::small_strain_holds_in(std::size_t impact) const {
-  return cells_turn_little_in(impact) && !(impact < impacts.size() && is_changed_by_turning(impacts[impact]));
+  return cells_turn_little_in(impact) && !(impact < impacts.size() && is_distorted_by_rotation(impacts[impact]));
 }
 
 bool RunSummary::cells_turn_little_in_impacts() const {
@@ -28,7 +28,7 @@ bool RunSummary::cells_turn_little_in_impacts() const {
 }
 
 bool RunSummary::small_strain_holds_in_impacts() const {
-  return cells_turn_little_in_impacts() && std::none_of(impacts.begin(), impacts.end(), is_changed_by_turning);
+  return cells_turn_little_in_impacts() && std::none_of(impacts.begin(), impacts.end(), is_distorted_by_rotation);
 }
 
 }  // namespace ricochet

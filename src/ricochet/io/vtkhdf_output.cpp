@@ -36,7 +36,7 @@ class VtkValues {
 std::vector<DatasetLayout> vtkhdf_datasets_of(const std::vector<Field>& fields) {
   std::vector<DatasetLayout> result;
   for (const Field& field : fields) {
-    result.push_back({(field.place == FieldPlace::nodes ? "PointData/" : "CellData/") + field.name, field.whole,
+    result.push_back({(field.place == FieldLocation::nodes ? "PointData/" : "CellData/") + field.name, field.whole,
                       field.rows, field.components > 1 ? field.components : 0});
   }
   return result;
@@ -80,9 +80,9 @@ class VtkHdfOutput : public FrameOutput {
     file_->save(snapshot, name + ".frames");
     if (obstacle_file_) obstacle_file_->save(snapshot, name + ".obstacles");
   }
-  void require_untouched() const override {
-    file_->require_untouched();
-    if (obstacle_file_) obstacle_file_->require_untouched();
+  void require_unchanged() const override {
+    file_->require_unchanged();
+    if (obstacle_file_) obstacle_file_->require_unchanged();
   }
   [[nodiscard]] std::vector<std::string> paths() const override {
     std::vector<std::string> result{directory_ + "/results.vtkhdf"};

@@ -18,7 +18,7 @@ const std::string tail = "    </Grid>\n  </Domain>\n</Xdmf>\n";
 XdmfFile::XdmfFile(std::string path, const std::string& collection, const std::string& included)
     : path_(std::move(path)), file_(path_, std::ios::in | std::ios::out | std::ios::trunc | std::ios::binary) {
   if (!file_) throw_file_error(path_, "write", errno);
-  sole_.emplace(path_);
+  change_detector_.emplace(path_);
   std::string head =
       "<?xml version=\"1.0\"?>\n<Xdmf xmlns:xi=\"http://www.w3.org/2001/XInclude\" Version=\"3.0\">\n  <Domain>\n";
   // The include comes first: readers that support only one collection use the last.
@@ -30,10 +30,10 @@ XdmfFile::XdmfFile(std::string path, const std::string& collection, const std::s
 
 XdmfFile::XdmfFile(std::string path, const Snapshot& snapshot, const std::string& name)
     : path_(std::move(path)), checksums_(snapshot, name) {
-  cut_back(path_, checksums_.length());
+  truncate_file(path_, checksums_.length());
   file_.open(path_, std::ios::in | std::ios::out | std::ios::binary);
   if (!file_) throw_file_error(path_, "write", errno);
-  sole_.emplace(path_);
+  change_detector_.emplace(path_);
   append("");
 }
 
@@ -43,7 +43,7 @@ void XdmfFile::save(Snapshot& snapshot, const std::string& name) const {
 
 /// Overwrites the closing tags by the grid and new closing tags in one write, once there is space for both.
 void XdmfFile::append(const std::string& grid) {
-  sole_->require_untouched();
+  change_detector_->require_unchanged();
   const std::string text = grid + tail;
   reserve_space(path_, static_cast<std::int64_t>(text.size()));
   errno = 0;
@@ -51,7 +51,7 @@ void XdmfFile::append(const std::string& grid) {
   file_ << text << std::flush;
   if (!file_) throw_file_error(path_, "write", errno);
   if (!grid.empty()) checksums_.add(grid);
-  sole_->expect_size(checksums_.length() + static_cast<std::int64_t>(tail.size()));
+  change_detector_->expect_size(checksums_.length() + static_cast<std::int64_t>(tail.size()));
 }
 
 }  // namespace ricochet

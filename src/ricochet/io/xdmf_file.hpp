@@ -5,8 +5,8 @@
 #include <string>
 
 #include "ricochet/base/snapshot.hpp"
+#include "ricochet/io/file_change_detector.hpp"
 #include "ricochet/io/line_checksums.hpp"
-#include "ricochet/io/sole_writer.hpp"
 
 /// @file XDMF 3.0 side-file: a temporal collection of grids, a complete document after each of them.
 namespace ricochet {
@@ -22,12 +22,12 @@ class XdmfFile {
 
   /// Appends a <Grid> element. Throws Error(file_access), also if another program has changed the file.
   void append(const std::string& grid);
-  void require_untouched() const { sole_->require_untouched(); }
+  void require_unchanged() const { change_detector_->require_unchanged(); }
 
  private:
   std::string path_;
   std::fstream file_;
-  std::optional<SoleWriter> sole_;
+  std::optional<FileChangeDetector> change_detector_;
   LineChecksums checksums_;  ///< without the closing tags
 };
 

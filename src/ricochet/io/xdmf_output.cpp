@@ -82,10 +82,10 @@ class XdmfOutput : public FrameOutput {
     side_->save(snapshot, name + ".side");
     if (obstacle_side_) obstacle_side_->save(snapshot, name + ".obstacles");
   }
-  void require_untouched() const override {
-    file_->require_untouched();
-    side_->require_untouched();
-    if (obstacle_side_) obstacle_side_->require_untouched();
+  void require_unchanged() const override {
+    file_->require_unchanged();
+    side_->require_unchanged();
+    if (obstacle_side_) obstacle_side_->require_unchanged();
   }
   [[nodiscard]] std::vector<std::string> paths() const override {
     std::vector<std::string> result{path("results.h5"), path("results.xdmf")};
@@ -116,7 +116,7 @@ std::string XdmfOutput::grid(double time, long frame) const {
     text += fmt::format(
         "        <Attribute Name=\"{0}\" AttributeType=\"{1}\" Center=\"{2}\"><DataItem Format=\"HDF\" "
         "NumberType=\"{3}\" Precision=\"{4}\" Dimensions=\"{5}\">results.h5:{6}/{0}</DataItem></Attribute>\n",
-        field.name, xdmf_type(field.components), field.place == FieldPlace::nodes ? "Node" : "Cell",
+        field.name, xdmf_type(field.components), field.place == FieldLocation::nodes ? "Node" : "Cell",
         field.whole ? "Int" : "Float", field.whole ? 4 : precision_,
         field.components > 1 ? fmt::format("{} {}", field.rows, field.components) : fmt::format("{}", field.rows),
         frame_group_name(frame));

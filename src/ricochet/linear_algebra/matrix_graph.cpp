@@ -46,14 +46,14 @@ MatrixGraph::MatrixGraph(const NodePattern& pattern) : begin_(pattern.node.size(
     std::sort(neighbour_.begin() + begin_[i], neighbour_.begin() + begin_[i + 1]);
 }
 
-std::vector<Index> NodeLayers::ascending() const {
+std::vector<Index> NodeDistances::ascending() const {
   std::vector<Index> result = nodes;
   std::sort(result.begin(), result.end());
   return result;
 }
 
-NodeLayers layers_around(const MatrixGraph& graph, const std::vector<Index>& first, int layers) {
-  NodeLayers result;
+NodeDistances nodes_within(const MatrixGraph& graph, const std::vector<Index>& first, int layers) {
+  NodeDistances result;
   std::unordered_set<Index> reached;
   const auto reach = [&](Index node, int layer) {
     if (!reached.insert(node).second) return;

@@ -30,12 +30,12 @@ class MatrixGraph {
 };
 
 /// Nodes in the neighbourhood of given ones, with the number of steps to the nearest of these.
-struct NodeLayers {
+struct NodeDistances {
   std::vector<Index> nodes;  ///< the given ones first, then layer after layer
   std::vector<int> layer;    ///< of each of them
   [[nodiscard]] std::vector<Index> ascending() const;
 };
 /// Returns the nodes within `layers` steps of `first`, which may contain nodes more than once.
-[[nodiscard]] NodeLayers layers_around(const MatrixGraph& graph, const std::vector<Index>& first, int layers);
+[[nodiscard]] NodeDistances nodes_within(const MatrixGraph& graph, const std::vector<Index>& first, int layers);
 
 }  // namespace ricochet

@@ -152,7 +152,7 @@ void NodeMatrix::visit_blocks(const Enter& enter) const {
   });
 }
 
-double NodeMatrix::magnitude_form(const Vector& x) const {
+double NodeMatrix::absolute_quadratic_form(const Vector& x) const {
   const int d = dimension_;
   double sum = 0.0;
   pattern_.visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {

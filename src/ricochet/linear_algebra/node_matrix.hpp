@@ -49,7 +49,7 @@ class NodeMatrix {
   [[nodiscard]] double form(const Vector& x) const;
 
   /// Returns |x|ᵀ |A| |x|.
-  [[nodiscard]] double magnitude_form(const Vector& x) const;
+  [[nodiscard]] double absolute_quadratic_form(const Vector& x) const;
   [[nodiscard]] Vector diagonal() const;
   /// Diagonal blocks, d² numbers per node.
   [[nodiscard]] Vector diagonal_blocks() const;

@@ -114,14 +114,14 @@ void NumericFactorization::prepare_workspaces() {
   }
 }
 
-std::unique_ptr<PanelWorkspace> NumericFactorization::take_workspace() {
+std::unique_ptr<PanelWorkspace> NumericFactorization::acquire_workspace() {
   const std::lock_guard lock(access_);
   std::unique_ptr<PanelWorkspace> last = std::move(workspaces_.back());
   workspaces_.pop_back();
   return last;
 }
 
-void NumericFactorization::give_back(std::unique_ptr<PanelWorkspace> workspace) {
+void NumericFactorization::release_workspace(std::unique_ptr<PanelWorkspace> workspace) {
   const std::lock_guard lock(access_);
   workspaces_.push_back(std::move(workspace));
 }
@@ -129,9 +129,9 @@ void NumericFactorization::give_back(std::unique_ptr<PanelWorkspace> workspace) 
 void NumericFactorization::has_factorized(const FactorPanel& panel) {
   const std::lock_guard lock(access_);
   done_ += operations(factor_.supernode(panel.supernode), panel.begin, panel.end);
-  if (since_told_.seconds() < silence) return;
+  if (since_logged_.seconds() < silence) return;
   log::info(fmt::format("factorizing: {:.0f} % of the operations are done", 100.0 * done_ / all_operations_));
-  since_told_.restart();
+  since_logged_.restart();
 }
 
 /// Factorizes one panel after the other; with `divided`, on all threads.
@@ -148,9 +148,9 @@ Index NumericFactorization::factorize(int supernode, const LowerColumns& matrix,
     };
     if (divided && thread_count() > 1) {
       parallel_items((rows + rows_per_tile - 1) / rows_per_tile, [&](Index tile) {
-        auto own = take_workspace();
+        auto own = acquire_workspace();
         assemble(tile * rows_per_tile, std::min((tile + 1) * rows_per_tile, rows), *own);
-        give_back(std::move(own));
+        release_workspace(std::move(own));
       });
     } else {
       assemble(0, rows, workspace);
@@ -167,30 +167,30 @@ Index NumericFactorization::factorize(int supernode, const LowerColumns& matrix,
 }
 
 void NumericFactorization::factorize_subtree(std::size_t number, const LowerColumns& matrix, double scale) {
-  auto workspace = take_workspace();
+  auto workspace = acquire_workspace();
   const Subtree& subtree = subtrees_[number];
   Index failed = -1;
   for (int s = subtree.begin; s < subtree.end && failed < 0; ++s)
     failed = factorize(s, matrix, scale, *workspace, false);
   failed_[number] = failed < 0 ? factor_.size() : failed;
-  give_back(std::move(workspace));
+  release_workspace(std::move(workspace));
 }
 
 Index NumericFactorization::run(const LowerColumns& matrix, double scale) {
   prepare_workspaces();
   done_ = 0.0;
-  since_told_.restart();
+  since_logged_.restart();
   parallel_items(static_cast<Index>(subtrees_.size()),
                  [&](Index number) { factorize_subtree(static_cast<std::size_t>(number), matrix, scale); });
   Index first_failed = factor_.size();
   for (const Index column : failed_) first_failed = std::min(first_failed, column);
-  auto workspace = take_workspace();
+  auto workspace = acquire_workspace();
   // Panels before a failed column may fail as well: the first failure of all is where one thread would have stopped.
   for (std::size_t k = 0; k < top_.size() && factor_.supernode(top_[k]).first < first_failed; ++k) {
     const Index failed = factorize(top_[k], matrix, scale, *workspace, true);
     if (failed >= 0) first_failed = failed;
   }
-  give_back(std::move(workspace));
+  release_workspace(std::move(workspace));
   return first_failed < factor_.size() ? first_failed : -1;
 }
 

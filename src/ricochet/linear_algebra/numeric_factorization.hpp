@@ -16,7 +16,7 @@
 /// neither on the number of threads nor on the division.
 ///
 /// The form L Lᵀ, instead of L D Lᵀ, is relied on in factorize_triangle (pivots are positive), in the products of a
-/// panel with itself (no D between), in the solves, and in CondensedContact (W = YᵀY).
+/// panel with itself (no D between), in the solves, and in DelassusProblem (W = YᵀY).
 namespace ricochet {
 
 class NumericFactorization {
@@ -33,8 +33,8 @@ class NumericFactorization {
   void plan_updates();
   void plan_tasks();
   void prepare_workspaces();
-  std::unique_ptr<PanelWorkspace> take_workspace();
-  void give_back(std::unique_ptr<PanelWorkspace> workspace);
+  std::unique_ptr<PanelWorkspace> acquire_workspace();
+  void release_workspace(std::unique_ptr<PanelWorkspace> workspace);
   void has_factorized(const FactorPanel& panel);
   Index factorize(int supernode, const LowerColumns& matrix, double scale, PanelWorkspace& workspace, bool divided);
   void factorize_subtree(std::size_t number, const LowerColumns& matrix, double scale);
@@ -58,7 +58,7 @@ class NumericFactorization {
   std::mutex access_;  ///< guards the members below
   std::vector<std::unique_ptr<PanelWorkspace>> workspaces_;
   double done_ = 0.0;  ///< operations
-  Timer since_told_;
+  Timer since_logged_;
 };
 
 }  // namespace ricochet

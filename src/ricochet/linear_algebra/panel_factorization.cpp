@@ -164,11 +164,11 @@ void PanelFactorization::subtract(const Source& source, Index row_begin, Index r
     };
     const auto places = [head](Index panel, Index begin, Index end, const int* all) {
       const Index at = head + 8 * panel;
-      return PanelPlaces{std::max<Index>(0, begin - at), std::min<Index>(8, end - at), all + (at - begin)};
+      return PanelTarget{std::max<Index>(0, begin - at), std::min<Index>(8, end - at), all + (at - begin)};
     };
     const auto multiply = [&](Index panel, Index many, Index column) {
       multiply_panels(many, rows_of(panel), rows_of(column), columns, product);
-      const PanelPlaces column_range = places(column, column_begin, column_end, column_places);
+      const PanelTarget column_range = places(column, column_begin, column_end, column_places);
       for (Index p = 0; p < many; ++p) {
         subtract_panel(product + 64 * p, places(panel + p, row_begin, row_end, row_places), column_range, values_,
                        stride_);

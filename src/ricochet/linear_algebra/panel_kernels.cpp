@@ -101,7 +101,7 @@ void multiply_panels(Index count, const PanelRows& a, const PanelRows& b, PanelC
 }
 
 RICOCHET_EACH_INSTRUCTION_SET(void, subtract_panel,
-                              (const double* c, const PanelPlaces& rows, const PanelPlaces& columns, double* matrix,
+                              (const double* c, const PanelTarget& rows, const PanelTarget& columns, double* matrix,
                                Index stride),
                               (c, rows, columns, matrix, stride)) {
   const int* const places = rows.places;

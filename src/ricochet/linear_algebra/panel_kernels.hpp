@@ -26,12 +26,12 @@ constexpr Index panels_per_group = 3;
 void multiply_panels(Index count, const PanelRows& a, const PanelRows& b, PanelColumns columns, double* c);
 
 /// Target of a product of two panels in a matrix: rows or columns [begin, end) of the eight, and their indices.
-struct PanelPlaces {
+struct PanelTarget {
   Index begin = 0, end = 8;
   const int* places = nullptr;  ///< eight, ascending; those outside of [begin, end) are not read
 };
 /// Subtracts C, 8 × 8 in column-major order, from a matrix in column-major order.
-void subtract_panel(const double* c, const PanelPlaces& rows, const PanelPlaces& columns, double* matrix, Index stride);
+void subtract_panel(const double* c, const PanelTarget& rows, const PanelTarget& columns, double* matrix, Index stride);
 /// Computes C ← A − C for 8 rows and `columns` columns of A, in column-major order.
 void subtract_from(const double* a, Index stride, Index columns, double* c);
 

@@ -19,13 +19,13 @@ constexpr double least_divided_size = 1 << 18;
 constexpr double parts_per_factor = 16.0;
 }  // namespace
 
-SupernodalFactor::SupernodalFactor(const SupernodalShape& shape) {
+SupernodalFactor::SupernodalFactor(const SupernodalStructure& shape) {
   read_shape(shape);
   divide();
   place_numbers(shape);
 }
 
-void SupernodalFactor::read_shape(const SupernodalShape& shape) {
+void SupernodalFactor::read_shape(const SupernodalStructure& shape) {
   const auto count = static_cast<std::size_t>(shape.supernodes);
   size_ = shape.supernodes == 0 ? 0 : shape.first_column[shape.supernodes];
   supernodes_.resize(count);
@@ -99,7 +99,7 @@ void SupernodalFactor::divide() {
   for (std::size_t k = 0; k < count; ++k) place_[static_cast<std::size_t>(supernodes_[k].number)] = static_cast<int>(k);
 }
 
-void SupernodalFactor::place_numbers(const SupernodalShape& shape) {
+void SupernodalFactor::place_numbers(const SupernodalStructure& shape) {
   Index stream_size = 0, row_count = 0;
   for (Supernode& node : supernodes_) {
     node.stream = stream_size;

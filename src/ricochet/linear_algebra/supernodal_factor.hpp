@@ -10,7 +10,7 @@ namespace ricochet {
 
 /// Structure of a factor as computed by CHOLMOD's analysis: supernode s has columns [first_column[s],
 /// first_column[s+1]) and the rows rows[row_start[s]] … rows[row_start[s+1]−1] ascending, its own columns first.
-struct SupernodalShape {
+struct SupernodalStructure {
   Index supernodes = 0;
   const int* first_column = nullptr;
   const int* row_start = nullptr;
@@ -30,7 +30,7 @@ class SupernodalFactor {
  public:
   SupernodalFactor() = default;
   /// Copies the structure. A factorization (linear_algebra/numeric_factorization.hpp) writes the numbers.
-  explicit SupernodalFactor(const SupernodalShape& shape);
+  explicit SupernodalFactor(const SupernodalStructure& shape);
 
   [[nodiscard]] Index size() const { return size_; }
   /// Length of the vectors in solves: the first `size` entries are the vector, the others work space.
@@ -84,9 +84,9 @@ class SupernodalFactor {
     mutable std::vector<double> work;
   };
 
-  void read_shape(const SupernodalShape& shape);
+  void read_shape(const SupernodalStructure& shape);
   void divide();
-  void place_numbers(const SupernodalShape& shape);
+  void place_numbers(const SupernodalStructure& shape);
   void number_boundary(Part& part);
   void gather(const Supernode& node, const double* y, double* w) const;
   bool is_shared(const Part& part, const Supernode& node) const;

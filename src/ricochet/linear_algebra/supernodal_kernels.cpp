@@ -17,15 +17,15 @@ constexpr Index streams = 4;
 constexpr Index fewest_panels = 4;
 
 /// Number of panels per position; 0 if there is only one position.
-template <ReadingPlaces P>
+template <StreamCount P>
 RICOCHET_PART_OF_CALLER constexpr Index panels_apart(Index rows) {
-  const Index panels = P == ReadingPlaces::four ? rows / 8 / streams : 0;
+  const Index panels = P == StreamCount::four ? rows / 8 / streams : 0;
   return panels >= fewest_panels ? panels : 0;
 }
 
-template <ReadingPlaces P, int C>
+template <StreamCount P, int C>
 RICOCHET_PART_OF_CALLER void fetch_panel(const double* panel) {
-  if constexpr (P == ReadingPlaces::four) {
+  if constexpr (P == StreamCount::four) {
     for (int j = 0; j < C; ++j) __builtin_prefetch(panel + 8 * j);
   }
 }
@@ -53,7 +53,7 @@ RICOCHET_PART_OF_CALLER const double* forward_panel(const double* stream, const 
   return stream + H * C;
 }
 
-template <ReadingPlaces P, int C>
+template <StreamCount P, int C>
 RICOCHET_PART_OF_CALLER const double* forward_block(const double* stream, Index rows_below, double* w) {
   constexpr int lanes = static_cast<int>(triangle_lanes(C));
   Pack<lanes> solved = load<lanes>(stream) * w[0];
@@ -108,7 +108,7 @@ RICOCHET_PART_OF_CALLER void add_panel(const double* panel, const double* rows, 
   }
 }
 
-template <ReadingPlaces P, int C>
+template <StreamCount P, int C>
 RICOCHET_PART_OF_CALLER const double* backward_block(const double* stream, Index rows_below, double* w) {
   const Index end = filled(rows_below);
   double* const below = w + C;
@@ -176,17 +176,17 @@ RICOCHET_PART_OF_CALLER const double* forward_block_eight(const double* stream, 
 
 }  // namespace
 
-ReadingPlaces reading_places() {
+StreamCount stream_count() {
   // A named instruction set gives the same bits on every processor.
 #if defined(__x86_64__) && defined(__GNUC__)
   static const bool one = !instruction_set_is_given() && __builtin_cpu_is("amd") != 0;
-  return one ? ReadingPlaces::one : ReadingPlaces::four;
+  return one ? StreamCount::one : StreamCount::four;
 #else
-  return ReadingPlaces::four;
+  return StreamCount::four;
 #endif
 }
 
-template <ReadingPlaces P>
+template <StreamCount P>
 RICOCHET_PART_OF_CALLER const double* forward_blocks(const double* stream, Index columns, Index rows, double* w) {
   Index first = columns % 8;
   with_constant<7>(
@@ -196,13 +196,13 @@ RICOCHET_PART_OF_CALLER const double* forward_blocks(const double* stream, Index
 }
 
 RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_forward,
-                              (const double* stream, Index columns, Index rows, double* w, ReadingPlaces places),
+                              (const double* stream, Index columns, Index rows, double* w, StreamCount places),
                               (stream, columns, rows, w, places)) {
-  return places == ReadingPlaces::one ? forward_blocks<ReadingPlaces::one>(stream, columns, rows, w)
-                                      : forward_blocks<ReadingPlaces::four>(stream, columns, rows, w);
+  return places == StreamCount::one ? forward_blocks<StreamCount::one>(stream, columns, rows, w)
+                                    : forward_blocks<StreamCount::four>(stream, columns, rows, w);
 }
 
-template <ReadingPlaces P>
+template <StreamCount P>
 RICOCHET_PART_OF_CALLER const double* backward_blocks(const double* stream_end, Index columns, Index rows, double* w) {
   const Index head = columns % 8;
   for (Index first = columns; first > head;) {
@@ -215,10 +215,10 @@ RICOCHET_PART_OF_CALLER const double* backward_blocks(const double* stream_end, 
 }
 
 RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_backward,
-                              (const double* stream_end, Index columns, Index rows, double* w, ReadingPlaces places),
+                              (const double* stream_end, Index columns, Index rows, double* w, StreamCount places),
                               (stream_end, columns, rows, w, places)) {
-  return places == ReadingPlaces::one ? backward_blocks<ReadingPlaces::one>(stream_end, columns, rows, w)
-                                      : backward_blocks<ReadingPlaces::four>(stream_end, columns, rows, w);
+  return places == StreamCount::one ? backward_blocks<StreamCount::one>(stream_end, columns, rows, w)
+                                    : backward_blocks<StreamCount::four>(stream_end, columns, rows, w);
 }
 
 RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_forward_eight,
@@ -235,10 +235,10 @@ RICOCHET_EACH_INSTRUCTION_SET(void, supernode_forward_rows,
                               (Index columns, Index rows_below, const double* stream, double* w),
                               (columns, rows_below, stream, w)) {
   with_constant<8>(
-      columns, [&](auto c) RICOCHET_LAMBDA_OF_CALLER { forward_block<ReadingPlaces::one, c>(stream, rows_below, w); });
+      columns, [&](auto c) RICOCHET_LAMBDA_OF_CALLER { forward_block<StreamCount::one, c>(stream, rows_below, w); });
 }
 
-template <ReadingPlaces P, int C>
+template <StreamCount P, int C>
 RICOCHET_PART_OF_CALLER void forward_panels(Index count, const double* stream, const double* columns_of_w, double* w) {
   double x[C];
   for (int j = 0; j < C; ++j) x[j] = columns_of_w[j];
@@ -250,15 +250,15 @@ RICOCHET_PART_OF_CALLER void forward_panels(Index count, const double* stream, c
 
 RICOCHET_EACH_INSTRUCTION_SET(void, panels_forward,
                               (Index columns, Index count, const double* stream, const double* x, double* w,
-                               ReadingPlaces places),
+                               StreamCount places),
                               (columns, count, stream, x, w, places)) {
   with_constant<8>(columns, [&](auto c) RICOCHET_LAMBDA_OF_CALLER {
-    places == ReadingPlaces::one ? forward_panels<ReadingPlaces::one, c>(count, stream, x, w)
-                                 : forward_panels<ReadingPlaces::four, c>(count, stream, x, w);
+    places == StreamCount::one ? forward_panels<StreamCount::one, c>(count, stream, x, w)
+                               : forward_panels<StreamCount::four, c>(count, stream, x, w);
   });
 }
 
-template <ReadingPlaces P, int C>
+template <StreamCount P, int C>
 RICOCHET_PART_OF_CALLER void backward_panels(Index count, const double* stream, const double* w, double* sums) {
   Pack<8> products[C];
   for (int j = 0; j < C; ++j) products[j] = load<8>(sums + 8 * j);
@@ -272,11 +272,11 @@ RICOCHET_PART_OF_CALLER void backward_panels(Index count, const double* stream, 
 
 RICOCHET_EACH_INSTRUCTION_SET(void, panels_backward,
                               (Index columns, Index count, const double* stream, const double* w, double* sums,
-                               ReadingPlaces places),
+                               StreamCount places),
                               (columns, count, stream, w, sums, places)) {
   with_constant<8>(columns, [&](auto c) RICOCHET_LAMBDA_OF_CALLER {
-    places == ReadingPlaces::one ? backward_panels<ReadingPlaces::one, c>(count, stream, w, sums)
-                                 : backward_panels<ReadingPlaces::four, c>(count, stream, w, sums);
+    places == StreamCount::one ? backward_panels<StreamCount::one, c>(count, stream, w, sums)
+                               : backward_panels<StreamCount::four, c>(count, stream, w, sums);
   });
 }
 

@@ -22,7 +22,7 @@ constexpr Index least_size = Index{1} << 16;
 /// Calls visit(part, panel, count) for the panels of parts [first, last), so that a few parts take turns.
 template <class Parts, class Visit>
 void in_turns(const Parts& parts, Index first, Index last, const Visit& visit) {
-  const Index places = reading_places() == ReadingPlaces::one ? 1 : most_places;
+  const Index places = stream_count() == StreamCount::one ? 1 : most_places;
   for (Index group = first; group < last; group += places) {
     const Index group_end = std::min(group + places, last);
     bool more = true;

@@ -28,7 +28,7 @@ void add_inertia(AffineInertia& to, double factor, const AffineInertia& added) {
 }
 
 /// Cell with contact nodes: PᵀRP of the inertia R that it cannot keep, in the frame of its nodes.
-struct Giver {
+struct ContactCell {
   int cell = 0;
   double weight = 1.0;  ///< ratio of the mass to be built to the inertia
   AffineFrame frame;
@@ -67,14 +67,14 @@ class CellwiseBuilder {
   int donor_of(int cell);
   void share_out();
   void update_costs(const Vector& lengths);
-  void update_parts(const Giver& giver, std::size_t end, bool first);
-  void receive(const Giver& giver, std::size_t end, double weight);
+  void update_parts(const ContactCell& giver, std::size_t end, bool first);
+  void receive(const ContactCell& giver, std::size_t end, double weight);
   [[nodiscard]] Vector diagonal() const;
   void hand_over();
   template <class Visit>
   void for_each_weight(const Donor& donor, const Visit& visit) const;
-  [[nodiscard]] bool see(const Donor& donor, const Giver& giver, AffineInertia& inertia) const;
-  [[noreturn]] void refuse(const Giver& giver);
+  [[nodiscard]] bool see(const Donor& donor, const ContactCell& giver, AffineInertia& inertia) const;
+  [[noreturn]] void refuse(const ContactCell& giver);
 
   const MassInput& input_;
   const int d_;
@@ -84,7 +84,7 @@ class CellwiseBuilder {
   SparseMatrix result_;  ///< on the pattern of M
   Matrix remains_;       ///< work space: S_T, with zero rows for contact nodes
   CellRings rings_;
-  std::vector<Giver> givers_;
+  std::vector<ContactCell> contact_cells_;
   std::vector<Donor> donors_;
   std::vector<int> donor_number_;  ///< per cell; −1: not a donor, −2: not yet determined
   std::vector<Share> shares_;
@@ -131,7 +131,7 @@ void CellwiseBuilder::add_cell(int cell, const std::vector<Index>& nodes, const 
   const auto count = static_cast<Index>(nodes.size());
   if (std::none_of(nodes.begin(), nodes.end(), [this](Index node) { return is_contact(node); }))
     return keep_inertia(nodes, inertia, weight);
-  Giver giver;
+  ContactCell giver;
   giver.cell = cell;
   giver.weight = weight;
   if (!make_affine_frame(*input_.nodes, rings_.nodes(cell), static_cast<int>(count), trust_, giver.frame))
@@ -156,7 +156,7 @@ void CellwiseBuilder::add_cell(int cell, const std::vector<Index>& nodes, const 
     remains_.col(c).setZero();
   }
   keep_inertia(nodes, remains_, weight);
-  givers_.push_back(giver);
+  contact_cells_.push_back(giver);
 }
 
 /// Adds the inertia that a cell keeps. Only the lower triangle of `inertia` is used.
@@ -194,7 +194,7 @@ int CellwiseBuilder::donor_of(int cell) {
 /// the first ring with one, and beyond `many_cells`: from so far away inertia is amplified more than any user would
 /// accept, and searching a whole body for donors, cell after cell, would take minutes.
 void CellwiseBuilder::find_donors() {
-  for (Giver& giver : givers_) {
+  for (ContactCell& giver : contact_cells_) {
     giver.first_share = shares_.size();
     rings_.start(giver.cell);
     std::size_t seen = 0, ring = 0, nearest = 0;
@@ -215,7 +215,7 @@ void CellwiseBuilder::find_donors() {
 
 /// Computes PᵀRP with P = (1, ξ) in the frame of the donor. Returns false if the donor's free nodes barely span space:
 /// if the root mean square distance of the contact cell's nodes exceeds a hundred times their spread in some direction.
-bool CellwiseBuilder::see(const Donor& donor, const Giver& giver, AffineInertia& inertia) const {
+bool CellwiseBuilder::see(const Donor& donor, const ContactCell& giver, AffineInertia& inertia) const {
   constexpr double largest_distance = 100.0;
   double change[4][4] = {{1.0}}, shift[3], turn[3][3], square = 0.0;
   affine_change(giver.frame, donor.frame, d_, shift, turn);
@@ -279,7 +279,7 @@ void CellwiseBuilder::update_costs(const Vector& lengths) {
 
 /// Sets θ_Tq in proportion to 1/c², with c_Tq the trace of the inertia that q would receive relative to D, with the
 /// weights L².
-void CellwiseBuilder::update_parts(const Giver& giver, std::size_t end, bool first) {
+void CellwiseBuilder::update_parts(const ContactCell& giver, std::size_t end, bool first) {
   double sum = 0.0, least = 0.0;
   for (std::size_t s = giver.first_share; s < end; ++s) {
     Share& share = shares_[s];
@@ -298,7 +298,7 @@ void CellwiseBuilder::update_parts(const Giver& giver, std::size_t end, bool fir
   }
 }
 
-void CellwiseBuilder::receive(const Giver& giver, std::size_t end, double weight) {
+void CellwiseBuilder::receive(const ContactCell& giver, std::size_t end, double weight) {
   for (std::size_t s = giver.first_share; s < end; ++s) {
     add_inertia(donors_[static_cast<std::size_t>(shares_[s].donor)].received, weight * shares_[s].part,
                 shares_[s].inertia);
@@ -323,10 +323,10 @@ void CellwiseBuilder::share_out() {
     if (sweep > 0) lengths = diagonal().cwiseQuotient(trust_);
     update_costs(lengths);
     for (Donor& donor : donors_) donor.received = {};
-    for (std::size_t g = 0; g < givers_.size(); ++g) {
-      const std::size_t end = g + 1 < givers_.size() ? givers_[g + 1].first_share : shares_.size();
-      update_parts(givers_[g], end, sweep == 0);
-      receive(givers_[g], end, sweep < sweeps ? 1.0 : givers_[g].weight);
+    for (std::size_t g = 0; g < contact_cells_.size(); ++g) {
+      const std::size_t end = g + 1 < contact_cells_.size() ? contact_cells_[g + 1].first_share : shares_.size();
+      update_parts(contact_cells_[g], end, sweep == 0);
+      receive(contact_cells_[g], end, sweep < sweeps ? 1.0 : contact_cells_[g].weight);
     }
   }
 }
@@ -345,7 +345,7 @@ void CellwiseBuilder::hand_over() {
 }
 
 /// Throws an error that describes the free nodes of the cell's body.
-void CellwiseBuilder::refuse(const Giver& giver) {
+void CellwiseBuilder::refuse(const ContactCell& giver) {
   rings_.start(giver.cell);
   while (rings_.grow()) continue;
   const std::vector<Index> body = rings_.nodes();

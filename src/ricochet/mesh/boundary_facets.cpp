@@ -113,7 +113,7 @@ std::vector<CellFacet> boundary_facets(const std::vector<CellBlock>& cells) {
   return result;
 }
 
-std::vector<SharedFacet> folds(const std::vector<CellBlock>& cells) {
+std::vector<SharedFacet> folded_facets(const std::vector<CellBlock>& cells) {
   std::vector<SharedFacet> result;
   for_each_distinct_facet(cells, [&](const std::vector<CellFacet>& equal) {
     for (std::size_t i = 0; i < equal.size(); ++i) {

@@ -27,7 +27,7 @@ struct SharedFacet {
 
 /// Returns the facets whose two cells lie on the same side, so that they overlap: the mesh is folded there. The order
 /// in which the cells number the facet's vertices shows it, provided that the Jacobian of all cells is positive.
-[[nodiscard]] std::vector<SharedFacet> folds(const std::vector<CellBlock>& cells);
+[[nodiscard]] std::vector<SharedFacet> folded_facets(const std::vector<CellBlock>& cells);
 
 /// Returns the facet's nodes in the order in which the facet itself numbers them, its vertices first.
 [[nodiscard]] std::vector<Index> nodes_of_facet(const std::vector<CellBlock>& cells, const CellFacet& facet);

@@ -116,7 +116,7 @@ Orientation orientation(const Points& points, const Index* cell, const std::vect
   return result;
 }
 
-void turn_round(Index* cell, const std::vector<int>& mirrored, std::vector<Index>& nodes) {
+void reverse_orientation(Index* cell, const std::vector<int>& mirrored, std::vector<Index>& nodes) {
   nodes.assign(cell, cell + mirrored.size());
   for (std::size_t node = 0; node < mirrored.size(); ++node)
     cell[node] = nodes[static_cast<std::size_t>(mirrored[node])];
@@ -135,7 +135,7 @@ std::string place_of(const Mesh& mesh, const CellFacet& facet) {
 /// Refuses folded meshes. An inverted straight simplex has a negative Jacobian throughout, as if its nodes were only
 /// numbered in reverse. Its neighbours distinguish the two cases: they are on the wrong side of it.
 void check_folds(const Mesh& mesh) {
-  const std::vector<SharedFacet> found = folds(mesh.cells);
+  const std::vector<SharedFacet> found = folded_facets(mesh.cells);
   if (found.empty()) return;
   const auto tag = [&](const CellFacet& facet) {
     return mesh.cells[facet.block].tags[static_cast<std::size_t>(facet.cell)];
@@ -172,7 +172,7 @@ void orient_cells_of_dimension(Mesh& mesh) {
         tangled.add(tag);
       } else if (found.negative) {
         reversed.add(tag);
-        turn_round(block.nodes.data() + i * block.nodes_per_cell, mirrored, nodes);
+        reverse_orientation(block.nodes.data() + i * block.nodes_per_cell, mirrored, nodes);
       }
     }
   }

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Answer {
-  ChildOutcome outcome;
+  ChildResult outcome;
   std::deque<std::string> last_lines;
 
   [[nodiscard]] std::string last_line() const { return last_lines.empty() ? "" : last_lines.back(); }

@@ -22,8 +22,8 @@ namespace {
 }
 
 /// Runs gmsh with its output in `log`, without the user's own options, on which the mesh should not depend.
-ChildOutcome run(std::vector<std::string> arguments, const std::filesystem::path& workspace,
-                 const std::filesystem::path& log) {
+ChildResult run(std::vector<std::string> arguments, const std::filesystem::path& workspace,
+                const std::filesystem::path& log) {
   arguments.insert(arguments.begin(), "gmsh");
   ChildProcess gmsh;
   gmsh.arguments = std::move(arguments);
@@ -51,7 +51,7 @@ std::string last_lines(const std::filesystem::path& log) {
   return text.empty() ? " (it said nothing)" : text;
 }
 
-void check_spawned(const ChildOutcome& outcome, const std::string& source) {
+void check_spawned(const ChildResult& outcome, const std::string& source) {
   if (outcome.is_absent()) fail_absent(source);
   if (outcome.spawn_error != 0) {
     throw Error(ErrorKind::invalid_input,
@@ -64,7 +64,7 @@ void check_spawned(const ChildOutcome& outcome, const std::string& source) {
 std::string program_version(const std::string& source) {
   const TemporaryFolder workspace(std::filesystem::temp_directory_path(), "ricochet-gmsh-version");
   const std::filesystem::path log = workspace.path() / "log";
-  const ChildOutcome outcome = run({"-version"}, workspace.path(), log);
+  const ChildResult outcome = run({"-version"}, workspace.path(), log);
   std::string version;
   std::string line;
   for (std::ifstream stream(log); std::getline(stream, line);) version += line;
@@ -80,7 +80,7 @@ void run_program(const std::string& input, const std::string& options, const std
   std::ofstream(options_file) << options;
   const std::filesystem::path log = workspace / "gmsh.log";
   const std::string absolute = std::filesystem::absolute(input).string();
-  const ChildOutcome outcome =
+  const ChildResult outcome =
       run({absolute, options_file.string(), "-3", "-v", "2", "-nt", "1", "-o", output.string()}, workspace, log);
   check_spawned(outcome, input);
   std::error_code ignored;

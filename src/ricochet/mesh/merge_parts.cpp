@@ -77,7 +77,7 @@ class BlockMerger {
   /// Number, through all blocks, of a cell or facet given by its number in its part.
   [[nodiscard]] Index number(std::size_t part, Index in_part) const {
     const std::vector<CellBlock>& blocks = parts_[part].mesh.*of_;
-    const PlaceInBlocks place = place_in_blocks(blocks, in_part);
+    const IndexInBlocks place = locate_in_blocks(blocks, in_part);
     return first_[part][place_of(blocks[place.block].shape)] + place.local;
   }
 

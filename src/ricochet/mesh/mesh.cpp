@@ -93,13 +93,13 @@ const Group& Mesh::group(const std::string& name, int dimension) const {
   return *found;
 }
 
-CellPlace place_of_cell(const Mesh& mesh, Index cell) {
+CellLocation location_of_cell(const Mesh& mesh, Index cell) {
   for (const CellBlock& block : mesh.cells) {
     if (cell >= block.size()) {
       cell -= block.size();
       continue;
     }
-    CellPlace result{Vector::Zero(mesh.dimension), block.tags[static_cast<std::size_t>(cell)]};
+    CellLocation result{Vector::Zero(mesh.dimension), block.tags[static_cast<std::size_t>(cell)]};
     const int vertices = vertex_count(block.shape);
     for (int k = 0; k < vertices; ++k) result.centre += mesh.nodes.col(block.cell(cell)[k]);
     result.centre /= static_cast<double>(vertices);

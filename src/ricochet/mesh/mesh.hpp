@@ -22,12 +22,12 @@ struct CellBlock {
 };
 
 /// Block and local index of a cell or facet that is numbered through all blocks.
-struct PlaceInBlocks {
+struct IndexInBlocks {
   std::size_t block = 0;
   Index local = 0;
 };
-[[nodiscard]] inline PlaceInBlocks place_in_blocks(const std::vector<CellBlock>& blocks, Index number) {
-  PlaceInBlocks place{0, number};
+[[nodiscard]] inline IndexInBlocks locate_in_blocks(const std::vector<CellBlock>& blocks, Index number) {
+  IndexInBlocks place{0, number};
   while (place.local >= blocks[place.block].size()) place.local -= blocks[place.block++].size();
   return place;
 }
@@ -85,11 +85,11 @@ struct Mesh {
   [[nodiscard]] const Group& group(const std::string& name, int dimension) const;
 };
 
-struct CellPlace {
+struct CellLocation {
   Vector centre;         ///< mean of the cell's vertices, in the reference configuration
   std::int64_t tag = 0;  ///< the cell's number in the mesh file
 };
 /// Returns position and tag of a cell, numbered through all blocks.
-[[nodiscard]] CellPlace place_of_cell(const Mesh& mesh, Index cell);
+[[nodiscard]] CellLocation location_of_cell(const Mesh& mesh, Index cell);
 
 }  // namespace ricochet

@@ -25,7 +25,7 @@ std::string read_whole_file(const std::filesystem::path& path) {
     throw Error(ErrorKind::file_access, fmt::format("cannot read {}: {}", path.string(), why));
   };
   std::error_code error;
-  if (const std::string why = why_no_input(path); !why.empty()) fail(why);
+  if (const std::string why = unreadable_reason(path); !why.empty()) fail(why);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (file == nullptr) fail(std::strerror(errno));
   std::string content;
@@ -67,7 +67,7 @@ void check_request(const MeshFile& file, bool by_program) {
 
 }  // namespace
 
-bool is_meshed(const MeshFile& file) {
+bool is_mesh_cached(const MeshFile& file) {
   check_request(file, true);
   (void)gmsh::read_whole_file(file.path);  // reports a file that cannot be read
   return gmsh::meshed_before(file).has_value();

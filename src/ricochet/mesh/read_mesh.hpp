@@ -28,7 +28,7 @@ struct MeshFile {
 
 /// Returns whether the mesh of such a file is in the cache, so that reading it does not run gmsh. Throws as read_mesh
 /// does.
-[[nodiscard]] bool is_meshed(const MeshFile& file);
+[[nodiscard]] bool is_mesh_cached(const MeshFile& file);
 
 /// Returns true for meshes in the formats of other programs, by the extension of the file.
 [[nodiscard]] bool is_foreign_mesh(const std::string& path);

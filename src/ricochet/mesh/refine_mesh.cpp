@@ -257,7 +257,7 @@ Index parts_of(CellShape shape) {
 std::vector<Index> numbers_of_parts(const std::vector<CellBlock>& blocks, const std::vector<Index>& members) {
   std::vector<Index> result;
   for (const Index member : members) {
-    const PlaceInBlocks place = place_in_blocks(blocks, member);
+    const IndexInBlocks place = locate_in_blocks(blocks, member);
     Index before = 0;
     for (std::size_t block = 0; block < place.block; ++block)
       before += blocks[block].size() * parts_of(blocks[block].shape);

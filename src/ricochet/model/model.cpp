@@ -339,7 +339,7 @@ std::unique_ptr<Model> build(const Case& input, bool with_forces, BuildTimes* ti
   model->sizes = {model->space.cell_node_count(), model->mesh.cell_count(),
                   model->space.dof_count(),       model->problem.contact.size(),
                   model->problem.supports.size(), enclosing_diameter(model->mesh.nodes)};
-  model->rotation = std::make_unique<RotationGauge>(model->body);
+  model->rotation = std::make_unique<CellRotations>(model->body);
   model_seconds += timer.restart();
   if (times != nullptr) *times = {read_seconds, model_seconds, assembly_seconds};
   return model;

@@ -18,7 +18,7 @@
 namespace ricochet {
 
 /// Nodes, columns and boundary of a [[probe]], found in the mesh.
-struct WatchedPlaces {
+struct ProbeTargets {
   std::vector<Probe> probes;      ///< per node, including the nodes of segments
   std::vector<Vector> positions;  ///< per probe
   std::vector<Columns> columns;   ///< per probe, the columns of its sensor
@@ -49,21 +49,21 @@ struct Model {
   std::vector<ModelContact> contacts;        ///< in the order of the case
   std::vector<ContactPair> contact_pairs;    ///< per contact
   TiedNodes tied;                            ///< nodes of surfaces that are glued to other surfaces
-  std::vector<PairFacing> pair_facings;      ///< per contact; empty for contacts with obstacles
+  std::vector<PairingSummary> pair_facings;  ///< per contact; empty for contacts with obstacles
   SemidiscreteProblem problem;
   ModelSizes sizes;
   std::string mass_built;  ///< name of the mass construction; for "equivalent", of the one that it chose
   InitialConditions initial;
   bool contains_rotations = true;  ///< false for degree 1 on curved cells and for axisymmetric bodies
   BodiesOfMesh bodies;
-  std::vector<WatchedPlaces> watched;            ///< per [[probe]]
+  std::vector<ProbeTargets> watched;             ///< per [[probe]]
   std::vector<std::shared_ptr<Sensor>> sensors;  ///< sensors with a column in history.csv
   HistoryBodies history_bodies;                  ///< bodies with columns of their own
   /// Sensors with a file of their own, by the number of steps between its rows.
   std::map<long, std::vector<std::shared_ptr<Sensor>>> sampled_sensors;
-  std::unique_ptr<RotationGauge> rotation;
-  std::shared_ptr<const PreconditionerMaker> preconditioners;  ///< preconditioners of other libraries; null if none
-  std::shared_ptr<const void> kept;                            ///< data of the ranks, if the body is divided
+  std::unique_ptr<CellRotations> rotation;
+  std::shared_ptr<const PreconditionerFactory> preconditioners;  ///< preconditioners of other libraries; null if none
+  std::shared_ptr<const void> kept;                              ///< data of the ranks, if the body is divided
   /// Positions of a divided body's nodes and cells in the output files and, on the first rank, the whole body.
   struct Written {
     std::vector<Index> node_rows, cell_rows;

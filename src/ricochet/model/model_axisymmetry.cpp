@@ -94,7 +94,7 @@ std::vector<Index> facets_off_axis(const Case& input, const std::string& key_pat
   if (!is_axisymmetric(input)) return group.members;
   std::vector<Index> result;
   for (const Index facet : group.members) {
-    const PlaceInBlocks at = place_in_blocks(mesh.facets, facet);
+    const IndexInBlocks at = locate_in_blocks(mesh.facets, facet);
     const Index* const nodes = mesh.facets[at.block].cell(at.local);
     if (mesh.nodes(0, nodes[0]) != 0.0 || mesh.nodes(0, nodes[1]) != 0.0) result.push_back(facet);
   }

@@ -9,7 +9,7 @@
 #include "ricochet/contact/mortar/choose_side.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/model/model_parts.hpp"
-#include "ricochet/problem/points_inside.hpp"
+#include "ricochet/problem/penetrating_points.hpp"
 
 /// @file [[contact]] between bodies: which side carries the multipliers, and how the groups face each other.
 namespace ricochet {
@@ -40,7 +40,7 @@ void warn_of_overlap_where_paired(const Case& input, std::size_t number, const M
   const ContactBoundary& contact = model.problem.contact;
   Vector gap = contact.initial_gap;
   for (Index i = 0; i < gap.size(); ++i) gap[i] += contact.rows->normal(i).dot(pair.pair_at);
-  const PointsInside overlap = points_inside(model.problem, gap, static_cast<int>(number));
+  const PenetratingPoints overlap = penetrating_points(model.problem, gap, static_cast<int>(number));
   if (overlap.count == 0) return;
   log::warning(fmt::format(
       "{}: {} overlap where pair_at puts them: {} inside of the other body, the deepest by {:.3g} at {} of the mesh, "
@@ -91,7 +91,7 @@ void warn_of_side(const ContactPair& pair, const SideDoubt& doubt, bool is_chose
 
 /// Reports facets that are covered in part. Contact ends within such a facet, but its nodal values extend beyond that
 /// end.
-void tell_of_partly_covered(const ContactPair& pair, const PairFacing& facing) {
+void tell_of_partly_covered(const ContactPair& pair, const PairingSummary& facing) {
   constexpr double felt = 0.02;
   if (pair.tied || pair.slides_far || facing.partly_covered <= felt * facing.covered) return;
   log::info(fmt::format(
@@ -151,7 +151,7 @@ ContactPair body_pair(const Case& input, const ModelContact& section, const Mode
 
 void check_facing(const Case& input, std::size_t number, const Model& model) {
   const ContactPair& pair = model.contact_pairs[number];
-  const PairFacing& facing = model.pair_facings[number];
+  const PairingSummary& facing = model.pair_facings[number];
   if (pair.slides_far && !pair.is_one_of_many && facing.points + facing.held > 0 && facing.uncovered == facing.points) {
     log::info(fmt::format("{} do not face each other at the start: contact begins where they do", names_of_pair(pair)));
   }
@@ -227,7 +227,7 @@ void check_body_overlaps(const Case& input, const Model& model) {
   for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
     const ContactPair& pair = model.contact_pairs[number];
     if (!pair.between_bodies() || pair.tied) continue;
-    const PointsInside overlap = points_inside(model.problem, gap, static_cast<int>(number));
+    const PenetratingPoints overlap = penetrating_points(model.problem, gap, static_cast<int>(number));
     if (overlap.count == 0) continue;
     refuse(
         input, fmt::format("contact.{}.group", model.contacts[number].entry),
@@ -244,8 +244,8 @@ namespace {
 
 void refuse_overlap_with_obstacle(const Case& input, const Model& model, std::size_t number, const Vector& gap) {
   const ContactPair& pair = model.contact_pairs[number];
-  const PointsInside overlap =
-      points_inside(model.problem, gap, static_cast<int>(number), off_by_facets * model.sizes.diameter);
+  const PenetratingPoints overlap =
+      penetrating_points(model.problem, gap, static_cast<int>(number), off_by_facets * model.sizes.diameter);
   if (overlap.count == 0) return;
   refuse(input, fmt::format("contact.{}.group", model.contacts[number].entry),
          fmt::format("at the start {} of group \"{}\" {} inside of obstacle \"{}\", the deepest by {:.3g} at {}, and "

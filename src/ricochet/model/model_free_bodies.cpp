@@ -198,7 +198,7 @@ void start_free_bodies(const Case& input, Model& model) {
     model.initial.displacement.segment(body.centre_node() * d, 2 * d).setZero();
     auto turning = model.initial.velocity.segment(body.rotation_node() * d, d);
     turning.setZero();
-    if (!section.spin.empty()) turning = body.velocity_of_spin(vector_of(section.spin), undeformed);
+    if (!section.spin.empty()) turning = body.rotational_velocity(vector_of(section.spin), undeformed);
   });
 }
 

@@ -38,7 +38,7 @@ std::unique_ptr<Obstacle> make_obstacle(const Case& input, const ObstacleSection
              fmt::format("obstacle \"{}\" is in {} dimensions, but the mesh has {}", section.name,
                          shape->centre().size(), dimension));
     }
-    if (section.rotation_rate != 0.0 && !shape->own_axis().exists) {
+    if (section.rotation_rate != 0.0 && !shape->symmetry_axis().exists) {
       refuse(
           input, key + ".rotation_rate",
           fmt::format("obstacle \"{}\" has no axis of its own that it could turn about and stay the same surface (the "

@@ -220,13 +220,13 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
         model.space.nodes);
   add_ground(input, model);
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
-  if (!model.problem.internal_force->is_linear() && !scheme->takes_nonlinear_force()) {
+  if (!model.problem.internal_force->is_linear() && !scheme->supports_nonlinear_force()) {
     refuse(input, "time.scheme",
            fmt::format("scheme \"{}\" needs the linear material law; \"reduced-kane\", the default, takes those of "
                        "finite strain, too, and so does \"semi-explicit\"",
                        input.time.scheme));
   }
-  if (!model.problem.free_bodies.empty() && !scheme->takes_free_bodies()) {
+  if (!model.problem.free_bodies.empty() && !scheme->supports_free_bodies()) {
     refuse(input, "time.scheme",
            fmt::format("scheme \"{}\" takes no rigid bodies that move freely; \"reduced-kane\", the default, does",
                        input.time.scheme));

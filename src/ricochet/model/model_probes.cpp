@@ -28,7 +28,7 @@ class ProbeFinder {
  public:
   ProbeFinder(const Case& input, Model& model) : input_(input), model_(model) {}
 
-  WatchedPlaces find(std::size_t number) {
+  ProbeTargets find(std::size_t number) {
     places_ = {};
     const ProbeSection& section = input_.probes[number];
     const std::string key = fmt::format("probe.{}", number);
@@ -225,7 +225,7 @@ class ProbeFinder {
 
   const Case& input_;
   Model& model_;
-  WatchedPlaces places_;
+  ProbeTargets places_;
 };
 
 class SensorMaker {
@@ -234,7 +234,7 @@ class SensorMaker {
 
   void make(std::size_t number) {
     const ProbeSection& section = input_.probes[number];
-    const WatchedPlaces& places = model_.watched[number];
+    const ProbeTargets& places = model_.watched[number];
     for (std::size_t i = 0; i < places.probes.size(); ++i) {
       const Probe& probe = places.probes[i];
       add(section, probe.node < 0 ? make_absent_sensor(places.columns[i]) : make_point_sensor(model_.problem, probe));

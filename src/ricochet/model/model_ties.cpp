@@ -33,11 +33,12 @@ void check_tie(const Case& input, std::size_t number, const ContactPair& pair, c
                        pair.group, pair.opposite_group, pair.group, pair.opposite_group));
   }
   if (surface.farthest_in_heights > farthest_apart) {
-    refuse(input, key,
-           fmt::format(
-               "groups \"{}\" and \"{}\" are too far apart to be tied: by {:.3g} heights of a cell at ({:.6g}); "
-               "move the bodies until the surfaces touch, or tie only what touches",
-               pair.group, pair.opposite_group, surface.farthest_in_heights, fmt::join(surface.farthest_place, ", ")));
+    refuse(
+        input, key,
+        fmt::format("groups \"{}\" and \"{}\" are too far apart to be tied: by {:.3g} heights of a cell at ({:.6g}); "
+                    "move the bodies until the surfaces touch, or tie only what touches",
+                    pair.group, pair.opposite_group, surface.farthest_in_heights,
+                    fmt::join(surface.farthest_position, ", ")));
   }
   if (surface.farthest_in_heights > moved) {
     (surface.farthest_in_heights > moved_far ? log::warning : log::info)(

@@ -75,8 +75,8 @@ double largest_turn(const Obstacle& obstacle, Index dimension, const Case& input
     const double start = k * input.time.end / steps;
     double turn = 0.0;
     for (int part = 0; part < parts; ++part)
-      turn += turn_between(obstacle.pose(start + part * h / parts), obstacle.pose(start + (part + 1) * h / parts),
-                           dimension);
+      turn += rotation_angle_between(obstacle.pose(start + part * h / parts),
+                                     obstacle.pose(start + (part + 1) * h / parts), dimension);
     largest = std::max(largest, turn);
   }
   return largest;
@@ -96,7 +96,7 @@ void warn_of_fast_turn(const Case& input, const ContactPair& pair, Index dimensi
       "contact of group \"{}\": obstacle \"{}\" turns by up to {:.3g} rad in a step, and the speed of its surface that "
       "the step sees is {}; take time.step = {:.1g} or less{}",
       pair.group, pair.obstacle_name, turn, wrong, rounded_down(advised / turn * input.time.step, 1),
-      pair.obstacle->shape().own_axis().exists
+      pair.obstacle->shape().symmetry_axis().exists
           ? ", or, where it turns about its own axis, a rotation_rate in place of the rotation"
           : ""));
 }

@@ -11,7 +11,7 @@ namespace {
 /// Rows of the stage that may be overwritten because no one else refers to them. A completed step keeps the rows with
 /// which it was solved, so there are as many as there are steps and stages in use, and only the first ones allocate.
 ContactRows& own_rows(const SemidiscreteProblem& problem, Stage& stage) {
-  for (std::shared_ptr<ContactRows>& rows : stage.rows_in_store) {
+  for (std::shared_ptr<ContactRows>& rows : stage.row_storage) {
     if (rows.use_count() > 1 && stage.rows != rows) continue;
     if (rows.use_count() > 2) continue;
     if (stage.rows != rows) {
@@ -20,10 +20,10 @@ ContactRows& own_rows(const SemidiscreteProblem& problem, Stage& stage) {
     }
     return *rows;
   }
-  stage.rows_in_store.push_back(
+  stage.row_storage.push_back(
       std::make_shared<ContactRows>(stage.rows != nullptr ? *stage.rows : *problem.contact.rows));
-  stage.rows = stage.rows_in_store.back();
-  return *stage.rows_in_store.back();
+  stage.rows = stage.row_storage.back();
+  return *stage.row_storage.back();
 }
 
 /// Updates the rows to a displacement and a time, or to the step that ends there.
@@ -96,10 +96,10 @@ double obstacle_error(const SemidiscreteProblem& problem, const StageSolution& s
 
 }  // namespace
 
-void observe_obstacles(const SemidiscreteProblem& problem, const Vector& displacement, const ObstacleInstant& instant,
-                       Stage& stage) {
+void evaluate_obstacle_velocity(const SemidiscreteProblem& problem, const Vector& displacement,
+                                const ObstacleInstant& instant, Stage& stage) {
   problem.obstacle_velocity(displacement, instant.time, instant.span, stage.obstacle);
-  if (!stage.motion || !problem.has_turning_obstacles()) return;
+  if (!stage.motion || !problem.has_rotating_obstacles()) return;
   stage.motion->observes = true;
   stage.motion->observed = displacement;
   stage.motion->instant = instant;
@@ -112,7 +112,7 @@ void require_no_penetration(const SemidiscreteProblem& problem, const Vector& ba
   stage.gap_offset_rounding = stage.rows->gap_rounding;
   stage.gap_factor = 1.0;
   take_eligible(problem, stage);
-  if (!problem.contact.follows_motion() && !problem.has_turning_obstacles()) return;
+  if (!problem.contact.follows_motion() && !problem.has_rotating_obstacles()) return;
   if (!stage.motion) stage.motion.emplace();
   ContactMotion& motion = *stage.motion;
   motion.displacement = base;

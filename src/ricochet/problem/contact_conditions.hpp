@@ -11,8 +11,8 @@ namespace ricochet {
 /// on the position and the stage has conditions at positions (require_no_penetration, which is called first), the
 /// solver re-evaluates them at displacement + instant.factor δ: friction then acts relative to the obstacle at the
 /// position of the point, not at the position it would have without reactions.
-void observe_obstacles(const SemidiscreteProblem& problem, const Vector& displacement, const ObstacleInstant& instant,
-                       Stage& stage);
+void evaluate_obstacle_velocity(const SemidiscreteProblem& problem, const Vector& displacement,
+                                const ObstacleInstant& instant, Stage& stage);
 
 /// Makes every contact point eligible, with its gap as y: y = g₀ + G (base + δ) at `time`; if gaps are not
 /// linear, y = g(base + δ) with the rows at base, and the solver relinearizes them. With `start`, the rows are

@@ -42,9 +42,9 @@ void FiniteElasticity::condense(Vector& force) const {
   if (body_.tied != nullptr && !body_.tied->empty()) body_.tied->condense_load(force, body_.mesh->dimension);
 }
 
-void FiniteElasticity::require_upright(const InvertedCell& inverted) const {
+void FiniteElasticity::require_positive_volume(const InvertedCell& inverted) const {
   if (inverted.cell < 0) return;
-  const CellPlace place = place_of_cell(*body_.mesh, inverted.cell);
+  const CellLocation place = location_of_cell(*body_.mesh, inverted.cell);
   throw Error(
       ErrorKind::not_converged,
       fmt::format("cell {} at ({:.6g}) is turned inside out: somewhere in it the volume is {:.3g} times that at "
@@ -53,18 +53,18 @@ void FiniteElasticity::require_upright(const InvertedCell& inverted) const {
 }
 
 void FiniteElasticity::evaluate(const Vector& displacement, Vector& force) const {
-  require_upright(cells_.force(complete(displacement, displacement_), force));
+  require_positive_volume(cells_.force(complete(displacement, displacement_), force));
   condense(force);
 }
 
 void FiniteElasticity::mean_force(const Vector& middle, const Vector& increment, Vector& force) const {
-  require_upright(cells_.mean_force(complete(middle, displacement_), complete(increment, increment_), force));
+  require_positive_volume(cells_.mean_force(complete(middle, displacement_), complete(increment, increment_), force));
   condense(force);
 }
 
 void FiniteElasticity::mean_forces(const Vector& middle, const Vector& increment, Vector& force,
                                    Vector& of_strain) const {
-  require_upright(
+  require_positive_volume(
       cells_.mean_forces(complete(middle, displacement_), complete(increment, increment_), force, of_strain));
   condense(force);
   condense(of_strain);

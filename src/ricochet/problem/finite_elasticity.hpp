@@ -39,7 +39,7 @@ class FiniteElasticity final : public InternalForce, public ViscousForce {
   /// Fills in the values of the tied nodes.
   const Vector& complete(const Vector& values, Vector& memory) const;
   void condense(Vector& force) const;
-  void require_upright(const InvertedCell& inverted) const;
+  void require_positive_volume(const InvertedCell& inverted) const;
 
   const Body& body_;
   NodeGraph graph_;

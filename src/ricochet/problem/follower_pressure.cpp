@@ -30,14 +30,14 @@ double FollowerPressure::outward_side(const Facet& facet, Index cell) const {
   }
   const int vertices = vertex_count(block.shape);
   for (int k = 0; k < vertices; ++k) centre += at(k) / vertices;
-  return normal.dot(centre - place_of_cell(*body_.mesh, cell).centre) > 0.0 ? 1.0 : -1.0;
+  return normal.dot(centre - location_of_cell(*body_.mesh, cell).centre) > 0.0 ? 1.0 : -1.0;
 }
 
 void FollowerPressure::add(const std::vector<Index>& facets, Expression pressure) {
   Surface surface{{}, std::move(pressure)};
   const std::vector<std::vector<Index>> cells = cells_of_facets(*body_.mesh, facets);
   for (std::size_t i = 0; i < facets.size(); ++i) {
-    const PlaceInBlocks place = place_in_blocks(body_.mesh->facets, facets[i]);
+    const IndexInBlocks place = locate_in_blocks(body_.mesh->facets, facets[i]);
     Facet facet{place.block, place.local, 1.0};
     facet.side = outward_side(facet, cells[i].front());
     surface.facets.push_back(facet);

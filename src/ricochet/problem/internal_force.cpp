@@ -69,7 +69,7 @@ double LinearElasticity::energy(const Vector& displacement) const {
 
 double LinearElasticity::energy_terms(const Vector& displacement) const {
   rigid_.remove(displacement, deformation_);
-  return stiffness_.magnitude_form(deformation_);
+  return stiffness_.absolute_quadratic_form(deformation_);
 }
 
 double LinearElasticity::energy(const Vector& displacement, const Vector& force) const {

@@ -22,7 +22,7 @@ void subtract_translation(const std::vector<const Obstacle*>& obstacles, const s
 
 }  // namespace
 
-bool SemidiscreteProblem::has_turning_obstacles() const {
+bool SemidiscreteProblem::has_rotating_obstacles() const {
   return std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle* obstacle) {
     return obstacle != nullptr && (obstacle->turns() || obstacle->spins());
   });
@@ -46,8 +46,8 @@ void SemidiscreteProblem::node_gaps(const Vector& displacement, double time, Vec
     const Index first = contact.nodes[static_cast<std::size_t>(i)] * dimension;
     gap[i] = contact.node_initial_gap[i] + contact.node_normals.col(i).dot(displacement.segment(first, dimension));
   }
-  for (Index i = 0; i < contact.opposite_place.rows(); ++i) {
-    for (SparseRowMatrix::InnerIterator entry(contact.opposite_place, i); entry; ++entry)
+  for (Index i = 0; i < contact.opposite_projection.rows(); ++i) {
+    for (SparseRowMatrix::InnerIterator entry(contact.opposite_projection, i); entry; ++entry)
       gap[i] -= entry.value() *
                 contact.node_normals.col(i).dot(displacement.segment(Index{entry.col()} * dimension, dimension));
   }
@@ -106,11 +106,11 @@ void SemidiscreteProblem::take_contact(const Vector& values, Eigen::Ref<Vector> 
   for (std::size_t i = 0; i < contact_dofs.size(); ++i) on_contact[static_cast<Index>(i)] = values[contact_dofs[i]];
 }
 
-void SemidiscreteProblem::put_contact(const Eigen::Ref<const Vector>& on_contact, Vector& values) const {
+void SemidiscreteProblem::scatter_contact(const Eigen::Ref<const Vector>& on_contact, Vector& values) const {
   for (std::size_t i = 0; i < contact_dofs.size(); ++i) values[contact_dofs[i]] = on_contact[static_cast<Index>(i)];
 }
 
-std::shared_ptr<const InternalForce> SemidiscreteProblem::force_near_contact() const {
+std::shared_ptr<const InternalForce> SemidiscreteProblem::internal_force_at_contact() const {
   if (contact_dofs.empty()) return nullptr;
   std::vector<char> wanted(static_cast<std::size_t>(nodes.cols()), 0);
   for (const Index dof : contact_dofs) wanted[static_cast<std::size_t>(dof / dimension)] = 1;

@@ -70,10 +70,10 @@ struct SemidiscreteProblem {
   [[nodiscard]] bool has_contact_dofs() const { return has_contact_elsewhere || !contact_dofs.empty(); }
   /// Gather values per dof at contact_dofs, and scatter them back. (Eigen's indexed views copy their indices.)
   void take_contact(const Vector& values, Eigen::Ref<Vector> on_contact) const;
-  void put_contact(const Eigen::Ref<const Vector>& on_contact, Vector& values) const;
+  void scatter_contact(const Eigen::Ref<const Vector>& on_contact, Vector& values) const;
   /// Returns the internal force of the cells at contact_dofs alone, exact at the nodes of these
   /// dofs; null if there are none.
-  [[nodiscard]] std::shared_ptr<const InternalForce> force_near_contact() const;
+  [[nodiscard]] std::shared_ptr<const InternalForce> internal_force_at_contact() const;
   /// Obstacle of a contact point; null between bodies.
   [[nodiscard]] const Obstacle* obstacle_of_point(Index point) const {
     return obstacles[static_cast<std::size_t>(contact.pair[static_cast<std::size_t>(point)])];
@@ -86,7 +86,7 @@ struct SemidiscreteProblem {
   /// Normal at a node of the contact boundary.
   [[nodiscard]] SpaceVector node_normal(Index entry, const Vector& displacement, double time) const;
   /// Whether an obstacle rotates or spins, so that its velocity depends on the position of the contact points.
-  [[nodiscard]] bool has_turning_obstacles() const;
+  [[nodiscard]] bool has_rotating_obstacles() const;
   /// Computes the obstacle velocities at the contact points of this displacement and time, along the directions of the
   /// initial rows: means over a time span centred at `time`, or instantaneous values for a span of 0.
   void obstacle_velocity(const Vector& displacement, double time, double span, ObstacleMotion& velocity) const;

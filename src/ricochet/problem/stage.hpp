@@ -48,7 +48,7 @@ struct OperatorCoefficients {
   double damping = 0.0;    ///< η
   StageDofs dofs = StageDofs::all;
   int layer = -1;  ///< index of the operator A_c on the contact dofs, which precedes this one; −1 if the stage has none
-  double layer_weight = 1.0;  ///< ℓ
+  double condensed_weight = 1.0;  ///< ℓ
   ReactionMean mean = ReactionMean::end;
   /// h if stress of viscoelastic branches relaxes over the stage (viscous_force.hpp): K then contains
   /// their stiffness. 0 if it does not.
@@ -70,7 +70,7 @@ struct ContactMotion {
   Vector start;  ///< displacement at the start of the step if the rows are those of a step; else empty
   double start_time = 0.0;
   /// Whether the obstacle velocities depend on δ. They are then evaluated at observed + instant.factor δ, see
-  /// observe_obstacles().
+  /// evaluate_obstacle_velocity().
   bool observes = false;
   Vector observed;
   ObstacleInstant instant;
@@ -83,13 +83,13 @@ struct Stage {
   /// Set if the gaps of this stage, or the velocities of its obstacles, are nonlinear functions of δ: the solver then
   /// re-evaluates rows and offsets until they hold at the solution.
   std::optional<ContactMotion> motion;
-  std::vector<std::shared_ptr<ContactRows>> rows_in_store;  ///< storage for rows that follow the motion
+  std::vector<std::shared_ptr<ContactRows>> row_storage;  ///< storage for rows that follow the motion
   /// Obstacle velocities: the conditions are relative to them, and the reactions do work on them.
   ObstacleMotion obstacle;
   Vector right_hand_side;  ///< b, per dof
   /// Displacement p of the linearization if the internal force f is nonlinear: b contains −f(p), and A δ stands for
   /// αM δ + ηC δ + f(p + κδ) − f(p). Empty if A δ is linear.
-  Vector force_place;
+  Vector force_base;
   /// Instant and scale factor of the loads that follow the surface: b contains them at p, and the
   /// solver re-evaluates them at p + κδ.
   double pressure_time = 0.0, pressure_part = 1.0;

@@ -214,7 +214,7 @@ std::string describe(const RunData& run, const AnimationOptions& options) {
 
 std::string describe_animation(const std::string& directory, const AnimationOptions& options) {
   std::string description;
-  read_with_patience({directory}, [&] {
+  read_with_retries({directory}, [&] {
     const std::vector<RunData> runs = read_runs({directory}, true);
     description = describe(runs.front(), options);
   });

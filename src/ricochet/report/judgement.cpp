@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "ricochet/fem/rotation_gauge.hpp"
-#include "ricochet/simulation/impact/turn_growth.hpp"
+#include "ricochet/fem/cell_rotations.hpp"
+#include "ricochet/simulation/impact/rotation_growth.hpp"
 
 namespace ricochet {
 
@@ -175,8 +175,8 @@ void judge_penetration(const RunData& run, Judgement& result) {
   if (deepest == nullptr) return;
   result.penetration = std::max(result.penetration, deepest->depth);
   result.relative_penetration = std::max(result.relative_penetration.value_or(0.0), deepest->relative_depth);
-  result.unwatched_penetration = deepest->is_in_itself()     ? deepest->bodies[0] + " in itself"
-                                 : deepest->obstacle.empty() ? deepest->bodies[0] + " and " + deepest->bodies[1]
+  result.unwatched_penetration = deepest->is_self_penetration() ? deepest->bodies[0] + " in itself"
+                                 : deepest->obstacle.empty()    ? deepest->bodies[0] + " and " + deepest->bodies[1]
                                                              : deepest->bodies[0] + " in \"" + deepest->obstacle + "\"";
 }
 
@@ -184,10 +184,10 @@ void judge_penetration(const RunData& run, Judgement& result) {
 /// body's rotation.
 double rotation_limit_of(std::size_t number, const RunSummary& summary) {
   const Impact& impact = summary.impacts[number];
-  if (!is_changed_by_turning(impact)) return std::numeric_limits<double>::infinity();
+  if (!is_distorted_by_rotation(impact)) return std::numeric_limits<double>::infinity();
   const bool known = summary.rotation && number < summary.rotation->until_impact_end.size();
   const double rotation = known ? summary.rotation->until_impact_end[number] : summary.digest("max_rotation").maximum;
-  return rotation * std::sqrt(restitution_by_turning_limit / std::abs(restitution_by_turning(impact)));
+  return rotation * std::sqrt(restitution_excess_limit / std::abs(restitution_excess(impact)));
 }
 
 }  // namespace

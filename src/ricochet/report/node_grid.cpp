@@ -30,13 +30,13 @@ GridBox NodeGrid::box(const Points& nodes, Index node) const {
   return result;
 }
 
-std::vector<Index> each_once(std::vector<Index> numbers) {
+std::vector<Index> sorted_unique(std::vector<Index> numbers) {
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   return numbers;
 }
 
-std::vector<Index> by_place(const Points& nodes, const std::vector<Index>& chosen) {
+std::vector<Index> spatially_sorted(const Points& nodes, const std::vector<Index>& chosen) {
   const NodeGrid grid(nodes, 1048575.0);
   std::vector<std::pair<std::uint64_t, Index>> order;
   order.reserve(chosen.size());

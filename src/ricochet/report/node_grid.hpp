@@ -24,9 +24,9 @@ class NodeGrid {
 };
 
 /// Returns the numbers in ascending order, without repetitions.
-[[nodiscard]] std::vector<Index> each_once(std::vector<Index> numbers);
+[[nodiscard]] std::vector<Index> sorted_unique(std::vector<Index> numbers);
 /// Returns the same nodes, ordered such that neighbouring nodes are close to each other in the list.
-[[nodiscard]] std::vector<Index> by_place(const Points& nodes, const std::vector<Index>& chosen);
+[[nodiscard]] std::vector<Index> spatially_sorted(const Points& nodes, const std::vector<Index>& chosen);
 /// Returns, for each of `count` nodes, its index in the list; −1 if it is not in the list.
 [[nodiscard]] std::vector<int> local_numbers(const std::vector<Index>& chosen, Index count);
 

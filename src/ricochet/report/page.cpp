@@ -10,7 +10,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/json.hpp"
-#include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/fem/cell_rotations.hpp"
 #include "ricochet/io/durable_file.hpp"
 #include "ricochet/report/body_part.hpp"
 #include "ricochet/report/history_part.hpp"

@@ -11,7 +11,7 @@
 
 namespace ricochet {
 
-void read_with_patience(const std::vector<std::string>& directories, const std::function<void()>& read) {
+void read_with_retries(const std::vector<std::string>& directories, const std::function<void()>& read) {
   constexpr int most_attempts = 5;
   for (int attempt = 1;; ++attempt) {
     try {

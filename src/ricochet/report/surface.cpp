@@ -85,7 +85,7 @@ std::vector<Index> used_nodes(const std::vector<Triangle>& triangles) {
   std::vector<Index> all;
   all.reserve(3 * triangles.size());
   for (const Triangle& t : triangles) all.insert(all.end(), t.corners.begin(), t.corners.end());
-  return each_once(std::move(all));
+  return sorted_unique(std::move(all));
 }
 
 /// Merges all nodes of a box into the first of them. Degenerate and repeated triangles are left out.
@@ -124,7 +124,7 @@ Surface make_surface(const Points& nodes, const std::vector<CellBlock>& cells, I
       boxes *= 0.75;
     } while (static_cast<Index>(triangles.size()) > most);
   }
-  surface.nodes = by_place(nodes, used_nodes(triangles));
+  surface.nodes = spatially_sorted(nodes, used_nodes(triangles));
   const std::vector<int> local = local_numbers(surface.nodes, nodes.cols());
   // Triangles with close nodes become neighbours in the list.
   const auto first_of = [&local](const Triangle& t) {

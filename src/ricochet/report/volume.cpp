@@ -118,7 +118,7 @@ std::vector<Index> used_nodes(const std::vector<Tetrahedron>& tetrahedra) {
   std::vector<Index> all;
   all.reserve(4 * tetrahedra.size());
   for (const Tetrahedron& t : tetrahedra) all.insert(all.end(), t.corners.begin(), t.corners.end());
-  return each_once(std::move(all));
+  return sorted_unique(std::move(all));
 }
 
 /// Merges all nodes of a box into the first of them. Tetrahedra without volume are left out.
@@ -157,7 +157,7 @@ Volume make_volume(const Points& nodes, const std::vector<CellBlock>& cells, Ind
       boxes *= 0.8;
     } while (too_many());
   }
-  volume.nodes = by_place(nodes, used_nodes(tetrahedra));
+  volume.nodes = spatially_sorted(nodes, used_nodes(tetrahedra));
   const std::vector<int> local = local_numbers(volume.nodes, nodes.cols());
   const auto first_of = [&local](const Tetrahedron& t) {
     int least = local[static_cast<std::size_t>(t.corners[0])];

@@ -119,7 +119,7 @@ SpaceVector FreeMotion::spin(const Vector& displacement, const Vector& velocity)
   return turned(axes(displacement), own.cwiseQuotient(gyration_));
 }
 
-SpaceVector FreeMotion::velocity_of_spin(const SpaceVector& spin, const Vector& displacement) const {
+SpaceVector FreeMotion::rotational_velocity(const SpaceVector& spin, const Vector& displacement) const {
   const SpaceVector own = turned_back(axes(displacement), spin).cwiseProduct(gyration_);
   SpaceVector result = SpaceVector::Zero(dimension());
   result.head(own.size()) = own;

@@ -63,7 +63,7 @@ class FreeMotion {
   /// Angular velocity in space.
   [[nodiscard]] SpaceVector spin(const Vector& displacement, const Vector& velocity) const;
   /// Velocity V of the second node for an angular velocity in space, at a displacement.
-  [[nodiscard]] SpaceVector velocity_of_spin(const SpaceVector& spin, const Vector& displacement) const;
+  [[nodiscard]] SpaceVector rotational_velocity(const SpaceVector& spin, const Vector& displacement) const;
 
   /// Adds −g/ℓ for a step of length h that starts with `velocity` and ends at the displacement `end`.
   void add_gyroscopic_force(const Vector& end, const Vector& velocity, double step, Vector& force) const;

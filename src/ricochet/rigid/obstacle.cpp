@@ -40,13 +40,13 @@ constexpr double least_half_cosine = 0.01;
 
 }  // namespace
 
-double PlacedObstacle::gap_rounding(const SpaceVector& position) const {
+double PosedObstacle::gap_rounding(const SpaceVector& position) const {
   const double moved = pose_.shift.size() > 0 ? pose_.shift.lpNorm<1>() : 0.0;
   return shape_->gap_rounding(pose_.seen_from(position)) +
          eight_roundings(moved + (pose_.turns() ? position.lpNorm<1>() : 0.0));
 }
 
-double turn_between(const Pose& start, const Pose& end, Index dimension) {
+double rotation_angle_between(const Pose& start, const Pose& end, Index dimension) {
   if (!start.turns() && !end.turns()) return 0.0;
   const double squared = half_cosine(rotation_of(start, dimension), rotation_of(end, dimension));
   return 2.0 * std::acos(std::sqrt(std::clamp(squared, 0.0, 1.0)));
@@ -63,7 +63,7 @@ SpaceVector motion_at(const Pose& start, const Pose& end, const SpaceVector& mid
   return (last - first) * of_shape + after - before;
 }
 
-SpaceVector normal_of_step(const PlacedObstacle& start, const SpaceVector& from, const PlacedObstacle& end,
+SpaceVector normal_of_step(const PosedObstacle& start, const SpaceVector& from, const PosedObstacle& end,
                            const SpaceVector& to) {
   const ObstacleShape& shape = *end.shape_;
   const SpaceVector seen_before = start.pose_.seen_from(from), seen_after = end.pose_.seen_from(to);
@@ -84,7 +84,7 @@ Obstacle::Obstacle(std::unique_ptr<ObstacleShape> shape, std::unique_ptr<const O
   if (about_.size() == 0) about_ = shape_->centre();
   if (about_.size() == 0)
     throw Error(ErrorKind::invalid_input, "an obstacle that is in two dimensions or three needs a point");
-  const ObstacleShape::OwnAxis own = shape_->own_axis();
+  const ObstacleShape::SymmetryAxis own = shape_->symmetry_axis();
   axis_ = own.direction;
   if (spin_ != 0.0 && !own.exists)
     throw Error(ErrorKind::invalid_input,

@@ -12,9 +12,9 @@
 namespace ricochet {
 
 /// An obstacle in its pose at an instant. Refers to its shape.
-class PlacedObstacle {
+class PosedObstacle {
  public:
-  PlacedObstacle(const ObstacleShape& shape, Pose pose) : shape_(&shape), pose_(std::move(pose)) {}
+  PosedObstacle(const ObstacleShape& shape, Pose pose) : shape_(&shape), pose_(std::move(pose)) {}
   [[nodiscard]] const Pose& pose() const { return pose_; }
   /// Signed distance to the surface, positive where bodies may be, and the unit normal towards them.
   [[nodiscard]] double gap(const SpaceVector& position) const { return shape_->gap(pose_.seen_from(position)); }
@@ -24,8 +24,7 @@ class PlacedObstacle {
   [[nodiscard]] double gap_rounding(const SpaceVector& position) const;
 
  private:
-  friend SpaceVector normal_of_step(const PlacedObstacle&, const SpaceVector&, const PlacedObstacle&,
-                                    const SpaceVector&);
+  friend SpaceVector normal_of_step(const PosedObstacle&, const SpaceVector&, const PosedObstacle&, const SpaceVector&);
   const ObstacleShape* shape_;
   Pose pose_;
 };
@@ -35,7 +34,7 @@ class PlacedObstacle {
 /// motion of the point that the second pose maps to x̄.
 [[nodiscard]] SpaceVector motion_at(const Pose& start, const Pose& end, const SpaceVector& middle);
 /// Angle by which an obstacle in `dimension` dimensions rotates between two poses, from 0 to π.
-[[nodiscard]] double turn_between(const Pose& start, const Pose& end, Index dimension);
+[[nodiscard]] double rotation_angle_between(const Pose& start, const Pose& end, Index dimension);
 /// Returns a unit normal n for an obstacle at two instants and a point that moves from one position to another, such
 /// that with some a > 0
 ///   n·(Δx − v) = a (gap₁ − gap₀),
@@ -43,8 +42,8 @@ class PlacedObstacle {
 /// is the normal of its shape (ObstacleShape::normal_of_step). Otherwise, with X the position of the point relative to
 /// the obstacle and N the shape's normal at the mean X̄, n has the direction of Q̄N plus a correction along Δx − v, as
 /// there.
-[[nodiscard]] SpaceVector normal_of_step(const PlacedObstacle& start, const SpaceVector& from,
-                                         const PlacedObstacle& end, const SpaceVector& to);
+[[nodiscard]] SpaceVector normal_of_step(const PosedObstacle& start, const SpaceVector& from, const PosedObstacle& end,
+                                         const SpaceVector& to);
 
 class Obstacle {
  public:
@@ -63,11 +62,11 @@ class Obstacle {
   [[nodiscard]] SteeredPath* steered_path() const { return steered_; }
   void set_steered(std::unique_ptr<SteeredPath> path);
   /// The obstacle in its pose at a time and a displacement of the problem.
-  [[nodiscard]] PlacedObstacle at(double time, const Vector& displacement) const {
+  [[nodiscard]] PosedObstacle at(double time, const Vector& displacement) const {
     return {*shape_, free_ != nullptr ? free_->pose(displacement) : pose(time)};
   }
   /// Pose at a time, for an obstacle that does not move freely, or for the start.
-  [[nodiscard]] PlacedObstacle at(double time) const { return {*shape_, pose(time)}; }
+  [[nodiscard]] PosedObstacle at(double time) const { return {*shape_, pose(time)}; }
   /// At t = 0.
   [[nodiscard]] double gap(const SpaceVector& position) const { return at(0.0).gap(position); }
   [[nodiscard]] SpaceVector normal(const SpaceVector& position) const { return at(0.0).normal(position); }

@@ -80,7 +80,7 @@ class TablePath final : public ObstaclePath {
 };
 
 std::string contents_of(const std::string& file) {
-  const std::string why_not = why_no_input(file);
+  const std::string why_not = unreadable_reason(file);
   std::ifstream stream;
   if (why_not.empty()) stream.open(file, std::ios::binary);
   if (!why_not.empty() || !stream.is_open())

@@ -37,8 +37,8 @@ namespace {
 
 /// Returns the normal of a step so long that its midpoint is not representative: the normal at the end, unless a force
 /// along it would create energy; then the direction perpendicular to `way` that is nearest to it.
-SpaceVector normal_far_round(const SpaceVector& way, double change, const SpaceVector& at_start,
-                             const SpaceVector& at_end) {
+SpaceVector normal_of_long_step(const SpaceVector& way, double change, const SpaceVector& at_start,
+                                const SpaceVector& at_end) {
   if (at_end.dot(way) * change >= 0.0) return at_end;
   const SpaceVector along = way.normalized();
   constexpr double least = 0.1;
@@ -61,7 +61,7 @@ constexpr double least_way = 100.0;
 SpaceVector ObstacleShape::normal_at_middle(const SpaceVector& from, const SpaceVector& to) const {
   const SpaceVector middle = normal(0.5 * (from + to)), start = normal(from), end = normal(to);
   if (agree(middle, end) && agree(middle, start)) return middle;
-  return normal_far_round(to - from, gap(to) - gap(from), start, end);
+  return normal_of_long_step(to - from, gap(to) - gap(from), start, end);
 }
 
 SpaceVector corrected_normal(SpaceVector gradient, const SpaceVector& way, double change, double rounding,
@@ -74,9 +74,9 @@ SpaceVector corrected_normal(SpaceVector gradient, const SpaceVector& way, doubl
                       std::clamp(std::sqrt(square) / (least_way * rounding) - 1.0, 0.0, 1.0);
   if (square > 0.0 && part > 0.0) gradient += part * missing / square * way;
   const double length = gradient.norm();
-  if (!(length > 0.0)) return normal_far_round(way, change, at_start, at_end);
+  if (!(length > 0.0)) return normal_of_long_step(way, change, at_start, at_end);
   const SpaceVector normal = gradient / length;
-  return agree(normal, at_end) && agree(normal, at_start) ? normal : normal_far_round(way, change, at_start, at_end);
+  return agree(normal, at_end) && agree(normal, at_start) ? normal : normal_of_long_step(way, change, at_start, at_end);
 }
 
 SpaceVector ObstacleShape::normal_of_step(const SpaceVector& from, const SpaceVector& to) const {

@@ -65,11 +65,11 @@ class ObstacleShape {
   [[nodiscard]] virtual SpaceVector centre() const = 0;
   /// Axis through `centre` about which a rotation leaves the surface unchanged, such as the normal of a plane; a circle
   /// in 2D has one, and needs no direction.
-  struct OwnAxis {
+  struct SymmetryAxis {
     bool exists = false;
     SpaceVector direction = {};  ///< a unit vector, in 3D
   };
-  [[nodiscard]] virtual OwnAxis own_axis() const { return {}; }
+  [[nodiscard]] virtual SymmetryAxis symmetry_axis() const { return {}; }
   /// The body filled with density 1: its volume (area in 2D), centre of mass, and inertia tensor about it
   /// (1 × 1 in 2D). None if it does not enclose a finite body, or if bodies are inside.
   struct Solid {

@@ -31,7 +31,7 @@ class PartChecksums {
  public:
   PartChecksums(const Mesh& mesh, const MeshPart& part) : mesh_(mesh), part_(part) {
     for (Index facet = 0; facet < mesh.facet_count(); ++facet) {
-      const PlaceInBlocks at = place_in_blocks(mesh.facets, facet);
+      const IndexInBlocks at = locate_in_blocks(mesh.facets, facet);
       if (part.has_node(mesh.facets[at.block].cell(at.local)[0])) facets_.push_back(facet);
     }
   }
@@ -52,7 +52,7 @@ class PartChecksums {
     Checksum sum;
     std::vector<Index> nodes;
     for (const Index member : members) {
-      const PlaceInBlocks at = place_in_blocks(blocks, member);
+      const IndexInBlocks at = locate_in_blocks(blocks, member);
       const CellBlock& block = blocks[at.block];
       nodes.assign(block.cell(at.local), block.cell(at.local) + block.nodes_per_cell);
       for (Index& node : nodes) node -= part_.first_node;

@@ -33,9 +33,9 @@ std::vector<std::string> input_files(const Case& input) {
 
 }  // namespace
 
-void refuse_inputs_in_the_way(const RunDirectory& directory, const RunOptions& options, const Case& input) {
+void refuse_overwriting_inputs(const RunDirectory& directory, const RunOptions& options, const Case& input) {
   std::vector<std::string> taken = directory.results();
-  for (const std::string& file : directory.left_behind(-1)) taken.push_back(file);
+  for (const std::string& file : directory.leftover_files(-1)) taken.push_back(file);
   for (const std::string& file : exported_contact_problems(export_directory(options))) taken.push_back(file);
   for (const std::string& file : input_files(input)) {
     for (const std::string& other : taken) {
@@ -51,7 +51,7 @@ void refuse_inputs_in_the_way(const RunDirectory& directory, const RunOptions& o
 
 void refuse_old_run(const RunDirectory& directory, const RunOptions& options) {
   std::vector<std::string> results = directory.results();
-  if (results.empty()) results = directory.left_behind(-1);
+  if (results.empty()) results = directory.leftover_files(-1);
   if (!results.empty()) {
     throw Error(ErrorKind::file_access,
                 fmt::format("{}: holds a run already ({}); choose another directory with -o, go on with that run with "
@@ -104,7 +104,7 @@ void replace_old_run(const RunDirectory& directory, const RunOptions& options, R
   const std::string contact = export_directory(options);
   const std::vector<std::string> problems = exported_contact_problems(contact);
   const std::string summary_path = directory.file("summary.json");
-  remove_files(directory.left_behind(-1));
+  remove_files(directory.leftover_files(-1));
   summary.status = "running";
   write_durably(summary_path, to_json(summary));
   std::vector<std::string> results = directory.results();

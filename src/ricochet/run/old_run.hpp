@@ -14,7 +14,7 @@ namespace ricochet {
 
 /// Throws Error(file_access) if a file that the case is read from (the case itself, a mesh, a table) has the name of a
 /// file that a run would write or remove there.
-void refuse_inputs_in_the_way(const RunDirectory& directory, const RunOptions& options, const Case& input);
+void refuse_overwriting_inputs(const RunDirectory& directory, const RunOptions& options, const Case& input);
 
 /// Throws Error(file_access) if the directory holds results of another run.
 void refuse_old_run(const RunDirectory& directory, const RunOptions& options);

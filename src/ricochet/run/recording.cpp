@@ -8,7 +8,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
-#include "ricochet/problem/points_inside.hpp"
+#include "ricochet/problem/penetrating_points.hpp"
 
 namespace ricochet {
 
@@ -43,7 +43,7 @@ ImpactRecorder make_impact_recorder(const Model& model, const Scheme& scheme, co
   ImpactRecorder impacts(model.problem, scheme, state, model.contact_pairs, model.bodies.connected.of_node,
                          model.bodies.crossing_times);
   if (!model.initial.static_equilibrium)
-    impacts.begin_inside(points_inside_at_start(model.problem, model.initial.displacement).points);
+    impacts.begin_inside(initially_penetrating_points(model.problem, model.initial.displacement).points);
   return impacts;
 }
 
@@ -66,7 +66,7 @@ PenetrationWatch make_penetration_watch(const Case& input, const Model& model, s
   for (std::size_t i = 0; i < input.obstacles.size(); ++i)
     obstacles.push_back({input.obstacles[i].name, model.obstacles[i].get()});
   constexpr double looks_at_cells = 20.0;
-  const double of_cells = has_finite_strain(model.body) ? looks_at_cells * look_work(model.body) : 0.0;
+  const double of_cells = has_finite_strain(model.body) ? looks_at_cells * evaluation_work(model.body) : 0.0;
   return {model.body, model.problem, model.contact_pairs,
           obstacles,  model.bodies,  step_work(model.sizes.dofs, factor_entries) + of_cells};
 }
@@ -121,7 +121,7 @@ double Recording::of_method(const State& state, EnergyAccount& account) const {
 
 void Recording::enter_part(const State& state, EnergyAccount& account) {
   checks_.enter_part(state);
-  penetration_.look_at_part(state);
+  penetration_.check_part(state);
   impacts_.enter_step(state, of_method(state, account));
 }
 
@@ -160,7 +160,7 @@ void Recording::record_end(const State& state, EnergyAccount& account) {
     results_->write(state);
   }
   const Timer watch_timer;
-  penetration_.look_at_end(state);
+  penetration_.check_end(state);
   watch_seconds_ += watch_timer.seconds();
   flush();
   seconds_ += timer.seconds();
@@ -189,7 +189,7 @@ void Recording::flush() {
   for (Sampled& sampled : sampled_) {
     if (sampled.file) sampled.file->flush();
   }
-  if (results_) results_->require_untouched();
+  if (results_) results_->require_unchanged();
 }
 
 void Recording::save(Snapshot& snapshot) {
@@ -250,7 +250,7 @@ void Recording::describe_peak_stress(RunSummary& summary) const {
   const PeakStressResult& peak = peak_stress_.result();
   if (peak.cell < 0) return;
   const Body& body = model_.body;
-  const CellPlace place = place_of_cell(*body.mesh, peak.cell);
+  const CellLocation place = location_of_cell(*body.mesh, peak.cell);
   const auto material = static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(peak.cell)]);
   PeakStressResult told = peak;
   if (model_.written) told.cell = model_.written->cell_rows[static_cast<std::size_t>(peak.cell)];

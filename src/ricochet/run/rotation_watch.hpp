@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ricochet/fem/assembly.hpp"
-#include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/fem/cell_rotations.hpp"
 #include "ricochet/scheme/state.hpp"
 
 /// @file Rotations beyond the range of small strain.

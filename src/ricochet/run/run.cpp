@@ -59,19 +59,19 @@ Run::Run(Session& session, const RunOptions& options)
       ranks_(*options.ranks),
       directory_(options.output_directory, *options.ranks),
       steps_(session.steps()),
-      of_reading_(static_cast<std::ptrdiff_t>(session.warnings().size())),
-      at_interruption_([this] { end_early(); }) {}
+      reading_warning_count_(static_cast<std::ptrdiff_t>(session.warnings().size())),
+      at_interruption_([this] { end_on_interruption(); }) {}
 
 void Run::begin() {
   // Many quiet runs may execute at once; their warnings need a name.
   log::set_run_name(options_.quiet ? options_.output_directory : "");
   check_export(input_, options_, steps_);
   ranks_.together([&] {
-    if (ranks_.is_first()) refuse_inputs_in_the_way(directory_, options_, input_);
+    if (ranks_.is_first()) refuse_overwriting_inputs(directory_, options_, input_);
   });
   if (options_.resume) {
-    ranks_.together([&] { has_nothing_to_do_ = is_complete(); });
-    if (has_nothing_to_do_) return;
+    ranks_.together([&] { is_already_complete_ = is_complete(); });
+    if (is_already_complete_) return;
     find_checkpoint();
   } else if (!options_.force) {
     ranks_.together([&] {
@@ -86,7 +86,7 @@ void Run::begin() {
 }
 
 RunSummary Run::finish() {
-  if (has_nothing_to_do_) return summary_;
+  if (is_already_complete_) return summary_;
   if (!has_ended_) {  // a program has stopped stepping
     if (!session_.at_end()) {
       interrupt("ended by the program");
@@ -108,7 +108,7 @@ bool Run::is_complete() {
     return false;  // the summary may be damaged, as it is not synced to the disk; checkpoints are
   }
   if (summary_.parameters.empty()) return false;
-  knows_what_ran_ = true;
+  has_matching_summary_ = true;
   require_same_case(input_, summary_.version, summary_.parameters, options_.output_directory);
   if (input_.time.adaptive) {
     if (input_.time.end < summary_.end_time) refuse_earlier_end(summary_.end_time);
@@ -130,10 +130,10 @@ void Run::find_checkpoint() {
   const std::string& directory = options_.output_directory;
   ranks_.together([&] { require_ranks_of_checkpoints(directory, ranks_.size()); });
   snapshot_ = ranks_.are_several() ? newest_rank_checkpoint(ranks_, directory) : newest_checkpoint(directory);
-  ranks_.together([&] { look_at_checkpoint(); });
+  ranks_.together([&] { check_snapshot(); });
 }
 
-void Run::look_at_checkpoint() {
+void Run::check_snapshot() {
   if (snapshot_) {
     require_same_case(input_, *snapshot_, options_.output_directory);
     const double reached = snapshot_->real("state.time");
@@ -159,7 +159,7 @@ void Run::look_at_checkpoint() {
         fmt::format("{}: this run is complete and cannot go on to a later time.end: the checkpoint of its end is "
                     "not there; start anew with --force",
                     options_.output_directory));
-  } else if (const std::vector<std::string> results = directory_.results(); !knows_what_ran_ && !results.empty()) {
+  } else if (const auto results = directory_.results(); !has_matching_summary_ && !results.empty()) {
     throw Error(
         ErrorKind::file_access,
         fmt::format("{}: cannot be resumed: there are results ({}), but neither a checkpoint nor a summary.json "
@@ -180,12 +180,13 @@ void Run::refuse_earlier_end(double reached) const {
 
 void Run::begin_session() {
   // The snapshot already holds the warnings of reading the case.
-  const std::vector<std::string> resume_warnings(session_.warnings().begin() + of_reading_, session_.warnings().end());
+  const auto& all = session_.warnings();
+  const std::vector<std::string> resume_warnings(all.begin() + reading_warning_count_, all.end());
   BuildTimes build;
   session_.build(&build);
   times_.add_build(build);
   check_expected_quantities(input_, session_.model());
-  tell_of_size();
+  report_size();
   const auto built = static_cast<std::ptrdiff_t>(session_.warnings().size());
   Timer timer;
   begin_simulation();
@@ -255,7 +256,7 @@ void Run::start_recording() {
     contact_export_.emplace(options_.export_contact, export_directory(options_), provenance);
   failure_bundle_.emplace(options_.output_directory, provenance);
   session_.simulation().observe_contact([this](const ContactProblem& problem, const ContactSolution& solution) {
-    if (!solution.solved()) failure_bundle_->take_problem(problem, solution, session_.simulation().state().step + 1);
+    if (!solution.solved()) failure_bundle_->write_problem(problem, solution, session_.simulation().state().step + 1);
     if (contact_export_) contact_export_->write(problem, solution);
   });
   recording_.emplace(input_, session_.model(), session_.scheme(), session_.simulation().state(),
@@ -263,7 +264,7 @@ void Run::start_recording() {
   if (!snapshot_) recording_->record(session_.simulation().state(), session_.simulation().account());
   // Only now is it certain that the files of the run are as it left them.
   ranks_.together([&] {
-    if (snapshot_ && ranks_.is_first()) remove_files(directory_.left_behind(session_.simulation().state().step));
+    if (snapshot_ && ranks_.is_first()) remove_files(directory_.leftover_files(session_.simulation().state().step));
   });
   snapshot_.reset();
   contact_before_ = session_.simulation().contact_seconds();
@@ -286,14 +287,14 @@ void Run::enter_impulse(const Vector& impulse) {
 }
 
 void Run::keep() {
-  if (has_nothing_to_do_ || has_ended_) return;
+  if (is_already_complete_ || has_ended_) return;
   const std::lock_guard files(files_);
   write_checkpoint();
   report_progress();
 }
 
 bool Run::take_step() {
-  if (has_nothing_to_do_ || has_ended_) return false;
+  if (is_already_complete_ || has_ended_) return false;
   try {
     if (!session_.at_end() && advance()) return true;
     end_steps();
@@ -327,8 +328,8 @@ bool Run::advance() {
   simulation.advance([&](const State& state) { recording_->enter_part(state, simulation.account()); });
   step_seconds_ = timer.seconds();
   times_.steps += step_seconds_;
-  failure_bundle_->forget_problem();
-  if (newton_.enter_step(simulation.state().newton_rounds, step_seconds_)) tell_of_many_iterations();
+  failure_bundle_->remove_problem();
+  if (newton_.enter_step(simulation.state().newton_rounds, step_seconds_)) warn_of_many_iterations();
   const std::lock_guard files(files_);
   recording_->record(simulation.state(), simulation.account());
   progress_->update(simulation.state().step, simulation.state().time);
@@ -361,7 +362,7 @@ void Run::write_end_checkpoint() {
 }
 
 /// Warns once per run. (With a divided body the first process would have to build the whole body anew.)
-void Run::tell_of_many_iterations() {
+void Run::warn_of_many_iterations() {
   if (ranks_.are_several()) return;
   const double now = session_.simulation().state().time;
   log::warning(many_iterations_text(newton_, try_explicit(input_), now, std::max(0.0, input_.time.end - now),
@@ -369,7 +370,7 @@ void Run::tell_of_many_iterations() {
 }
 
 /// Announces long preparations and large files in advance.
-void Run::tell_of_size() const {
+void Run::report_size() const {
   constexpr double large_files = 100e6;
   const Model& model = session_.model();
   const bool is_large = model.sizes.dofs >= large_body;

@@ -32,7 +32,7 @@ class Run {
   /// resumed is complete.
   void begin();
   /// Returns true if the run to be resumed was complete already, so that there is no state.
-  [[nodiscard]] bool is_complete_already() const { return has_nothing_to_do_; }
+  [[nodiscard]] bool is_complete_already() const { return is_already_complete_; }
   /// Enters an impulse per dof by which a program has changed the velocity.
   void enter_impulse(const Vector& impulse);
   /// Writes a checkpoint of the present state, unless the run has ended.
@@ -45,7 +45,7 @@ class Run {
  private:
   [[nodiscard]] bool is_complete();
   void find_checkpoint();
-  void look_at_checkpoint();
+  void check_snapshot();
   [[noreturn]] void refuse_earlier_end(double reached) const;
   void begin_simulation();
   void begin_session();
@@ -55,14 +55,14 @@ class Run {
   bool advance();
   [[nodiscard]] bool is_near_end();
   void write_end_checkpoint();
-  void tell_of_many_iterations();
-  void tell_of_size() const;
+  void warn_of_many_iterations();
+  void report_size() const;
   void end_steps();
   /// Returns "step 12 of 100", or with adaptive steps "step 12 (t = 0.5 of 2)".
   [[nodiscard]] std::string step_in_words();
   void stop(int signal);
   void interrupt(const std::string& how);
-  void end_early();
+  void end_on_interruption();
   void keep_state_before_step();
   [[nodiscard]] Snapshot take_snapshot();
   void write_checkpoint();
@@ -85,13 +85,13 @@ class Run {
   const Ranks& ranks_;
   RunDirectory directory_;
   long steps_;
-  std::ptrdiff_t of_reading_;  ///< number of warnings from reading the case
+  std::ptrdiff_t reading_warning_count_;  ///< number of warnings from reading the case
   RunTimes times_;
-  bool has_nothing_to_do_ = false;  ///< the run to be resumed is complete
+  bool is_already_complete_ = false;  ///< the run to be resumed is complete
   bool has_ended_ = false, has_end_checkpoint_ = false;
-  bool knows_what_ran_ = false;       ///< the run to be resumed has a summary of this case
-  bool was_complete_ = false;         ///< the run to be resumed had ended, and now has a later end
-  std::optional<Snapshot> snapshot_;  ///< snapshot from which the run resumes
+  bool has_matching_summary_ = false;  ///< the run to be resumed has a summary of this case
+  bool was_complete_ = false;          ///< the run to be resumed had ended, and now has a later end
+  std::optional<Snapshot> snapshot_;   ///< snapshot from which the run resumes
   std::optional<ContactExport> contact_export_;
   std::optional<FailureBundle> failure_bundle_;
   std::optional<Recording> recording_;

@@ -38,11 +38,11 @@ std::vector<ContactDescription> describe_contacts(const Case& input) {
   return result;
 }
 
-std::optional<FacingDescription> describe_facing(const Model& model, std::size_t contact) {
+std::optional<PairingDescription> describe_facing(const Model& model, std::size_t contact) {
   const ContactPair& pair = model.contact_pairs[contact];
   if (!pair.has_two_sides()) return {};
-  const PairFacing& facing = model.pair_facings[contact];
-  FacingDescription result{pair.group, pair.side_reason, facing.points};
+  const PairingSummary& facing = model.pair_facings[contact];
+  PairingDescription result{pair.group, pair.side_reason, facing.points};
   result.covered = facing.area > 0.0 ? facing.covered / facing.area : 0.0;
   const auto without_rounding = [&](double gap) { return std::abs(gap) <= facing.gap_rounding ? 0.0 : gap; };
   if (facing.points > 0) {
@@ -87,7 +87,7 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
     summary.contacts.push_back(describe_contact(input, contact, contact.pair_of));
   for (std::size_t i = 0; i < summary.contacts.size(); ++i) summary.contacts[i].facing = describe_facing(model, i);
   for (std::size_t number = 0; number < model.watched.size(); ++number) {
-    const WatchedPlaces& places = model.watched[number];
+    const ProbeTargets& places = model.watched[number];
     if (!places.sums.empty()) summary.probe_sums.emplace_back(input.probes[number].name, places.sums);
     for (std::size_t i = 0; i < places.probes.size(); ++i) {
       Probe& probe = summary.probes.emplace_back(places.probes[i]);

@@ -11,7 +11,7 @@ namespace ricochet {
 /// Returns the contacts of a case as listed in the summary, without the facing of bodies.
 [[nodiscard]] std::vector<ContactDescription> describe_contacts(const Case& input);
 /// Returns how the sides of a contact face each other; none for obstacles and tied surfaces.
-[[nodiscard]] std::optional<FacingDescription> describe_facing(const Model& model, std::size_t contact);
+[[nodiscard]] std::optional<PairingDescription> describe_facing(const Model& model, std::size_t contact);
 
 [[nodiscard]] RunSummary describe_run(const Case& input, const Model& model, const Scheme& scheme,
                                       const Simulation& simulation);

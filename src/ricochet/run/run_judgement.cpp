@@ -8,7 +8,7 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/run/rotation_watch.hpp"
-#include "ricochet/simulation/impact/turn_growth.hpp"
+#include "ricochet/simulation/impact/rotation_growth.hpp"
 
 namespace ricochet {
 
@@ -156,18 +156,18 @@ void judge_strain(const RunSummary& summary, const Body& body) {
       summary.peak_stress->peak.time, 100.0 * strain, 100.0 * strain_limit));
 }
 
-void judge_turning(const RunSummary& summary) {
+void judge_rotation_growth(const RunSummary& summary) {
   std::size_t worst = summary.impacts.size();
-  double largest = restitution_by_turning_limit;
+  double largest = restitution_excess_limit;
   for (std::size_t i = 0; i < summary.impacts.size(); ++i) {
-    const double error = std::abs(restitution_by_turning(summary.impacts[i]));
+    const double error = std::abs(restitution_excess(summary.impacts[i]));
     // A warning at the time when cells rotated too far has covered the others.
     if (!(error > largest) || !summary.cells_turn_little_in(i)) continue;
     worst = i;
     largest = error;
   }
   if (worst == summary.impacts.size()) return;
-  const double error = restitution_by_turning(summary.impacts[worst]);
+  const double error = restitution_excess(summary.impacts[worst]);
   log::warning(fmt::format(
       "the restitution of impact {} is too {} by about {:.2g}, its force and duration are wrong by about a third of "
       "that part: the linear law makes a body that turns grow, here at a speed of {:.2g} towards the contact, as if an "

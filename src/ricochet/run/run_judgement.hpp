@@ -23,7 +23,7 @@ void judge_sliding(const RunSummary& summary, const SemidiscreteProblem& problem
 void judge_strain(const RunSummary& summary, const Body& body);
 
 /// Warns of the impact whose restitution is most affected by the growth of a rotating body at small strain.
-void judge_turning(const RunSummary& summary);
+void judge_rotation_growth(const RunSummary& summary);
 
 /// Returns true if an energy does not exceed the rounding of ½UᵀKU, as that of a body that is merely displaced.
 [[nodiscard]] bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, const State& state);

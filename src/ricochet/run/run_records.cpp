@@ -67,7 +67,7 @@ void Run::interrupt(const std::string& how) {
 
 /// Runs on another thread while the run is in the middle of something that takes too long. The files on the disk always
 /// suffice for --resume; if they are at rest, more of the run is kept.
-void Run::end_early() {
+void Run::end_on_interruption() {
   if (ranks_.are_several()) return;  // the other ranks are busy as well
   const std::unique_lock files(files_, longest_wait);
   if (!files || !reported_) return;
@@ -196,14 +196,15 @@ void Run::gather_from_ranks(RunSummary& summary) {
   describe_processes(summary);
   add_work_of_ranks(summary);
   summary.warnings = session_.warnings();
-  for (const std::string& text : ranks_.texts_of_all(ranks_.is_first() ? "" : to_json(summary))) {
+  for (const std::string& text : ranks_.gather_texts(ranks_.is_first() ? "" : to_json(summary))) {
     if (text.empty()) continue;
     const RunSummary other = summary_from_json(text, "what another process says");
     merge_findings(other, summary);
     for (const std::string& warning : other.warnings) {
       const std::vector<std::string>& said = session_.warnings();
-      if (std::none_of(said.begin(), said.end(),
-                       [&, form = form_of(warning)](const std::string& before) { return form_of(before) == form; }))
+      if (std::none_of(said.begin(), said.end(), [&, form = message_pattern(warning)](const std::string& before) {
+            return message_pattern(before) == form;
+          }))
         log::warning(warning);
     }
   }
@@ -243,7 +244,7 @@ void Run::write_end() {
     judge_unsettled(summary_);
     judge_sliding(summary_, session_.model().problem, session_.model().body);
     judge_strain(summary_, session_.model().body);
-    judge_turning(summary_);
+    judge_rotation_growth(summary_);
     summary_.warnings = session_.warnings();
   }
   if (contact_export_) summary_.contact_export = contact_export_->report();

@@ -19,7 +19,7 @@ class Bathe final : public Scheme {
  public:
   using Scheme::Scheme;
 
-  [[nodiscard]] bool changes_step() const override { return true; }
+  [[nodiscard]] bool supports_step_changes() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     const double h = step();
     return {{16.0 / (h * h), 1.0, damping_factor(problem)}, {9.0 / (h * h), 1.0, 3.0 / h}};
@@ -42,7 +42,7 @@ class Bathe final : public Scheme {
     equations_.balance(problem, state.time + h, base_, rate_, stage);
     equations_.prescribe_from(problem, state.time + h, base_, stage);
     require_no_penetration(problem, base_, state.time + h, stage);
-    if (problem.has_moving_obstacles()) observe_obstacles(problem, base_, {state.time + h, 0.0, 1.0}, stage);
+    if (problem.has_moving_obstacles()) evaluate_obstacle_velocity(problem, base_, {state.time + h, 0.0, 1.0}, stage);
     require_friction(problem, rate_, 3.0 / h, stage);
     const StageSolution& solution = stages.solve(1);
     second_ += solution.increment;            // U₁ − U_½

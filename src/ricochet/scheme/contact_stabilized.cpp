@@ -21,7 +21,7 @@ class ContactStabilized final : public Scheme {
  public:
   using Scheme::Scheme;
 
-  [[nodiscard]] bool changes_step() const override { return true; }
+  [[nodiscard]] bool supports_step_changes() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
     return {{1.0, 0.0, 0.0}, {2.0 / (h * h), 0.5, 1.0 / h}};

@@ -20,9 +20,9 @@ class Kane : public Scheme {
  public:
   explicit Kane(double step, std::string name = "kane") : Scheme(step), name_(std::move(name)) {}
 
-  [[nodiscard]] bool changes_step() const override { return true; }
-  [[nodiscard]] bool takes_nonlinear_force() const override { return name_ == "kane"; }
-  [[nodiscard]] bool keeps_moments_at_finite_strain() const override { return true; }
+  [[nodiscard]] bool supports_step_changes() const override { return true; }
+  [[nodiscard]] bool supports_nonlinear_force() const override { return name_ == "kane"; }
+  [[nodiscard]] bool conserves_moments_at_finite_strain() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
     return {{2.0 / (h * h), 0.5, 1.0 / h}};

@@ -18,7 +18,7 @@ class LaursenChawla final : public Scheme {
  public:
   using Scheme::Scheme;
 
-  [[nodiscard]] bool changes_step() const override { return true; }
+  [[nodiscard]] bool supports_step_changes() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
     return {{4.0 / (h * h), 1.0, 2.0 / h}};
@@ -37,7 +37,7 @@ class LaursenChawla final : public Scheme {
     equations_.balance(problem, middle, base_, state.velocity, stage);
     const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - base_[dof]; };
     equations_.prescribe(problem, state.time + h, half_way, stage);
-    observe_obstacles(problem, base_, {middle, h}, stage);
+    evaluate_obstacle_velocity(problem, base_, {middle, h}, stage);
     require_no_approach(problem, state.displacement, state.time, state.velocity, stage.obstacle, h, stage);
     stage.gap_factor = 2.0 / h;
     equations_.require_friction_beside_rates(problem, state.velocity, 2.0 / h, stage);

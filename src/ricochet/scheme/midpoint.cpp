@@ -19,9 +19,9 @@ class Midpoint final : public Scheme {
  public:
   using Scheme::Scheme;
 
-  [[nodiscard]] bool changes_step() const override { return true; }
-  [[nodiscard]] bool takes_nonlinear_force() const override { return true; }
-  [[nodiscard]] bool keeps_moments_at_finite_strain() const override { return true; }
+  [[nodiscard]] bool supports_step_changes() const override { return true; }
+  [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
+  [[nodiscard]] bool conserves_moments_at_finite_strain() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
     return {{4.0 / (h * h), 1.0, 2.0 / h, StageDofs::all}};
@@ -41,7 +41,7 @@ class Midpoint final : public Scheme {
     const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - base_[dof]; };
     equations_.prescribe(problem, state.time + h, half_way, stage);
     require_no_penetration(problem, base_, middle, stage);
-    observe_obstacles(problem, base_, {middle, h, 1.0}, stage);
+    evaluate_obstacle_velocity(problem, base_, {middle, h, 1.0}, stage);
     require_friction(problem, state.velocity, 2.0 / h, stage);
 
     const StageSolution& solution = stages.solve(0);

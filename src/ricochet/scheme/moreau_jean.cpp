@@ -23,7 +23,7 @@ class MoreauJean final : public Scheme {
   MoreauJean(double step, double theta, double restitution, bool slip_at_end)
       : Scheme(step), theta_(theta), restitution_(restitution), slip_at_end_(slip_at_end) {}
 
-  [[nodiscard]] bool changes_step() const override { return true; }
+  [[nodiscard]] bool supports_step_changes() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
     return {{1.0 / (theta_ * h * h), theta_, 1.0 / h}};
@@ -50,7 +50,7 @@ class MoreauJean final : public Scheme {
     const auto to_end = [&](Index dof, double end) { return end - state.displacement[dof] - h * state.velocity[dof]; };
     equations_.prescribe(problem, state.time + h, to_end, stage);
     place_ = state.displacement + (0.5 * h) * state.velocity;
-    observe_obstacles(problem, place_, {state.time + 0.5 * h, h}, stage);
+    evaluate_obstacle_velocity(problem, place_, {state.time + 0.5 * h, h}, stage);
     equations_.require_impact_law(problem, place_, state.time + 0.5 * h, state.velocity, state.velocity, restitution_,
                                   h, stage);
     stage.gap_factor = 1.0 / (theta_ * h);

@@ -24,8 +24,8 @@ class Newmark final : public Scheme {
  public:
   Newmark(double step, double beta, double gamma) : Scheme(step), beta_(beta), gamma_(gamma) {}
 
-  [[nodiscard]] bool changes_step() const override { return true; }
-  [[nodiscard]] bool takes_nonlinear_force() const override { return true; }
+  [[nodiscard]] bool supports_step_changes() const override { return true; }
+  [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     return {{alpha(), 1.0, damping_factor(problem)}};
   }

@@ -33,7 +33,7 @@ void require_explicit(const SemidiscreteProblem& problem, const std::string& sch
 }
 
 void require_changing_steps(const Scheme& scheme, const std::string& name) {
-  if (scheme.changes_step()) return;
+  if (scheme.supports_step_changes()) return;
   throw Error(ErrorKind::invalid_input,
               fmt::format("{} remembers the step before and cannot change its length; give time.step as a number, or "
                           "use scheme \"reduced-kane\"",
@@ -41,7 +41,7 @@ void require_changing_steps(const Scheme& scheme, const std::string& name) {
 }
 
 void require_relaxation(const Scheme& scheme, const SemidiscreteProblem& problem, const std::string& name) {
-  if (problem.internal_force->viscous() == nullptr || scheme.takes_relaxation()) return;
+  if (problem.internal_force->viscous() == nullptr || scheme.supports_relaxation()) return;
   throw Error(ErrorKind::invalid_input,
               name +
                   " does not relax stress: use scheme \"reduced-kane\", \"mean-reaction\" or \"reduced-midpoint\", "

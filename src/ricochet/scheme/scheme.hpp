@@ -47,7 +47,7 @@ class Scheme {
   [[nodiscard]] double step() const { return step_; }
   /// True if steps of different lengths may follow one another: neither the state's memory nor energy_state() depends
   /// on the last length, and advance() moves by step(). (algorithmic_energy() may: the account books the difference.)
-  [[nodiscard]] virtual bool changes_step() const { return false; }
+  [[nodiscard]] virtual bool supports_step_changes() const { return false; }
   /// Sets the length of the following steps, after analyse(). The operators change with it.
   void change_step(const SemidiscreteProblem& problem, double step) {
     step_ = step;
@@ -73,18 +73,18 @@ class Scheme {
   /// problem.
   [[nodiscard]] virtual std::optional<double> stability_limit(const SemidiscreteProblem&) const { return std::nullopt; }
   /// True if the scheme supports internal forces that are nonlinear in the displacement.
-  [[nodiscard]] virtual bool takes_nonlinear_force() const { return false; }
+  [[nodiscard]] virtual bool supports_nonlinear_force() const { return false; }
   /// True if, in addition, its steps relax viscoelastic branches (viscous_force.hpp) and report their dissipation.
-  [[nodiscard]] virtual bool takes_relaxation() const { return false; }
+  [[nodiscard]] virtual bool supports_relaxation() const { return false; }
   /// True if the scheme supports a body divided among ranks: it operates on each rank's part and solves stages.
-  [[nodiscard]] virtual bool takes_ranks() const { return true; }
+  [[nodiscard]] virtual bool supports_ranks() const { return true; }
   /// True if rigid bodies that move under the forces on them (free_motion.hpp) are part of its steps.
-  [[nodiscard]] virtual bool takes_free_bodies() const { return false; }
+  [[nodiscard]] virtual bool supports_free_bodies() const { return false; }
   /// True if, at finite strain, its steps change the angular momentum about current positions only by the moments of
   /// external forces about the positions at which these act.
-  [[nodiscard]] virtual bool keeps_moments_at_finite_strain() const { return false; }
+  [[nodiscard]] virtual bool conserves_moments_at_finite_strain() const { return false; }
   /// Displacement at which the end forces of the last step act at finite strain; null: half way through the step.
-  [[nodiscard]] virtual const Vector* place_of_forces() const { return nullptr; }
+  [[nodiscard]] virtual const Vector* displacement_of_forces() const { return nullptr; }
   /// True if contact forces between bodies have couples there (ContactGeometry::add_couples).
   [[nodiscard]] virtual bool has_couples_between_bodies() const { return false; }
   /// True if its contact forces create hardly any energy with a mass without inertia on contact nodes.

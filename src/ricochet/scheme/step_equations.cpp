@@ -11,7 +11,7 @@ void StepEquations::balance(const SemidiscreteProblem& problem, double time, con
   if (problem.pressure) problem.pressure->add_force(base, time, stage.right_hand_side);
   stage.pressure_time = time;
   stage.right_hand_side -= force_;
-  if (!problem.internal_force->is_linear()) stage.force_place = base;
+  if (!problem.internal_force->is_linear()) stage.force_base = base;
 }
 
 void StepEquations::balance(const SemidiscreteProblem& problem, double time, const Vector& base, const Vector& velocity,
@@ -24,7 +24,7 @@ void StepEquations::balance_with(const SemidiscreteProblem& problem, const Vecto
                                  const Vector& velocity, Stage& stage) {
   problem.internal_force->evaluate(base, force_);
   stage.right_hand_side = load - force_;
-  if (!problem.internal_force->is_linear()) stage.force_place = base;
+  if (!problem.internal_force->is_linear()) stage.force_base = base;
   resist(problem, velocity, stage);
 }
 
@@ -38,7 +38,7 @@ void StepEquations::observe_step(const SemidiscreteProblem& problem, const Vecto
                                  const Vector& end, double step, Stage& stage) {
   if (!problem.has_moving_obstacles()) return;
   middle_ = 0.5 * (start + end);
-  observe_obstacles(problem, middle_, {start_time + 0.5 * step, step, 0.5 * stage.gap_factor}, stage);
+  evaluate_obstacle_velocity(problem, middle_, {start_time + 0.5 * step, step, 0.5 * stage.gap_factor}, stage);
 }
 
 void StepEquations::require_impact_law(const SemidiscreteProblem& problem, const Vector& place, double time,
@@ -61,7 +61,7 @@ void StepEquations::require_friction_over_step(const SemidiscreteProblem& proble
                                                const Vector& predicted, double step, Stage& stage) {
   if (problem.has_moving_obstacles()) {
     middle_ = state.displacement + 0.5 * predicted;
-    observe_obstacles(problem, middle_, {state.time + 0.5 * step, step, 0.5 * stage.gap_factor}, stage);
+    evaluate_obstacle_velocity(problem, middle_, {state.time + 0.5 * step, step, 0.5 * stage.gap_factor}, stage);
   }
   if (!problem.contact.has_friction()) return;
   rate_ = predicted / step;

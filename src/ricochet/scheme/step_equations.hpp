@@ -45,7 +45,7 @@ class StepEquations {
   }
 
   /// Observes the obstacles' mean velocities over a step from one displacement to another, with the points half way. A
-  /// stage whose gaps are those of the end follows the points there. See also observe_obstacles().
+  /// stage whose gaps are those of the end follows the points there. See also evaluate_obstacle_velocity().
   void observe_step(const SemidiscreteProblem& problem, const Vector& start, double start_time, const Vector& end,
                     double step, Stage& stage);
   /// Imposes Newton's impact law at the points that touch at `place` and `time`, with the obstacles observed and one

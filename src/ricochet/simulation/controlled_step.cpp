@@ -33,14 +33,14 @@ double Simulation::take_controlled_step() {
     const double energy = energy_of_motion();
     if (control_->accept(before_, state_, energy)) return energy;
     state_ = before_;
-    if (control_->wants_prospect()) look_ahead();
+    if (control_->needs_trial_step()) take_trial_step();
   }
 }
 
 /// Takes the longest step that has a solution, up to a level, and undoes it; if none has one, the energy ahead is
 /// unknown (0). The energy account is restored as a whole: changing the step length there and back would leave rounding
 /// errors relative to the algorithmic energy of the longest step.
-void Simulation::look_ahead() {
+void Simulation::take_trial_step() {
   const EnergyAccount account = *account_;
   const int shortest = std::min(shortest_look_ahead, control_->deepest());
   double energy = 0.0;
@@ -65,7 +65,7 @@ void Simulation::look_ahead() {
   state_ = before_;
   use_level(control_->level());
   account_ = std::make_unique<EnergyAccount>(account);
-  control_->take_prospect(std::min(level, shortest), energy);
+  control_->set_energy_ahead(std::min(level, shortest), energy);
 }
 
 }  // namespace ricochet

@@ -43,7 +43,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
       scheme_(scheme),
       options_(options),
       whole_step_(scheme.step()) {
-  if (!scheme_.takes_nonlinear_force()) require_linear(*problem_.internal_force, nameless);
+  if (!scheme_.supports_nonlinear_force()) require_linear(*problem_.internal_force, nameless);
   require_relaxation(scheme_, problem_, nameless);
   scheme_.analyse(problem_);
   state_ = make_starting_state(problem_, initial, scheme_.step(), options);
@@ -57,7 +57,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
   scheme_.start(problem_, state_, *this);
   complete_tied();
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_);
-  guard_passages();
+  set_up_tunnelling_watches();
 }
 
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const Snapshot& snapshot,
@@ -79,7 +79,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
     first = static_cast<int>(snapshot.integer("level"));
   }
   cut_steps_ = snapshot.integer("cut_steps");
-  told_short_parts_ = snapshot.integer("told_short_parts") != 0;
+  short_parts_warned_ = snapshot.integer("told_short_parts") != 0;
   for (const std::int64_t level : snapshot.integers("levels", 0, control_ ? control_->deepest() : deepest_cut)) {
     const auto number = static_cast<int>(level);
     if (scheme_.step() != length_of(number)) scheme_.change_step(problem_, length_of(number));
@@ -93,7 +93,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
   if (scheme_.step() != length_of(first)) scheme_.change_step(problem_, length_of(first));
   current_ = &levels_.at(first);
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_, snapshot, "account");
-  guard_passages();
+  set_up_tunnelling_watches();
 }
 
 void Simulation::save(Snapshot& snapshot) const {
@@ -107,7 +107,7 @@ void Simulation::save(Snapshot& snapshot) const {
     if (&level == current_) snapshot.save("level", std::int64_t{number});
   }
   snapshot.save("cut_steps", std::int64_t{cut_steps_});
-  snapshot.save("told_short_parts", std::int64_t{told_short_parts_ ? 1 : 0});
+  snapshot.save("told_short_parts", std::int64_t{short_parts_warned_ ? 1 : 0});
   snapshot.save("levels", std::move(numbers));
   if (control_) control_->save(snapshot, "control");
   account_->save(snapshot, "account");
@@ -166,13 +166,13 @@ const StageSolution& Simulation::solve(std::size_t number) {
   iterations_ += solution.iterations;
   // Stages of contact nodes alone, if there are other stages, are solved within the iterations of these.
   const bool counts = dofs != StageDofs::contact || current_->stages.size() == 1;
-  if (!problem_.internal_force->is_linear() && counts) newton_rounds_ += solution.rounds;
+  if (!problem_.internal_force->is_linear() && counts) newton_iterations_ += solution.rounds;
   return solution;
 }
 
 /// Sets up the check of contact nodes, and of contact points that lie between nodes, against the obstacles that they
 /// touch, if these have another side.
-void Simulation::guard_passages() {
+void Simulation::set_up_tunnelling_watches() {
   const ContactBoundary& contact = problem_.contact;
   std::map<const Obstacle*, std::vector<Index>> nodes, points;
   for (Index point = 0; point < contact.size(); ++point) {
@@ -193,23 +193,23 @@ void Simulation::guard_passages() {
     guards_.emplace_back(problem_, std::move(found->second), std::vector{obstacle});
     nodes.erase(found);
     if (std::vector<Index>& others = points[obstacle]; !others.empty())
-      guards_.emplace_back(problem_, std::move(others), std::vector{obstacle}, PassageWatch::Of::contact_points);
+      guards_.emplace_back(problem_, std::move(others), std::vector{obstacle}, TunnellingWatch::Of::contact_points);
   }
-  for (PassageWatch& guard : guards_) guard.look(state_);
+  for (TunnellingWatch& guard : guards_) guard.look(state_);
   has_guards_ = problem_.ranks->any(!guards_.empty());
 }
 
 /// Refuses a step in which a node goes through an obstacle, if the step can be shorter.
 void Simulation::take_step(bool is_shortest) {
-  goes_through_ = false;
+  has_tunnelled_ = false;
   const bool is_guarded = has_guards_ && !is_shortest;
   if (is_guarded) unguarded_ = state_;
   solve_step();
   const double end = state_.time + scheme_.step();
-  const auto passes = [&](const PassageWatch& guard) { return guard.any_passes(state_, end); };
+  const auto passes = [&](const TunnellingWatch& guard) { return guard.any_tunnels(state_, end); };
   if (!is_guarded || !problem_.ranks->any(std::any_of(guards_.begin(), guards_.end(), passes))) return;
   state_ = unguarded_;
-  goes_through_ = true;
+  has_tunnelled_ = true;
   throw Error(ErrorKind::not_converged,
               fmt::format("step {} (t = {:.9g}, step size {:.3g}): a node goes through an obstacle within the step",
                           state_.step + 1, end, scheme_.step()));
@@ -247,7 +247,7 @@ void Simulation::attempt_step() {
   }
   if (problem_.contact.follows_motion()) problem_.contact.geometry->end_step();
   state_.iterations = iterations_;
-  state_.newton_rounds = newton_rounds_;
+  state_.newton_rounds = newton_iterations_;
 }
 
 /// Factorizes operators that are needed for the first time.
@@ -281,28 +281,28 @@ double Simulation::length_of(int level) const {
 void Simulation::end_part(const std::function<void(const State&)>& each_part) {
   complete_tied();
   account_->enter_step(increment_, state_);
-  for (PassageWatch& guard : guards_) guard.look(state_);
+  for (TunnellingWatch& guard : guards_) guard.look(state_);
   if (each_part) each_part(state_);
 }
 
-const char* Simulation::why_no_solution() const {
-  return goes_through_                          ? "a node went through an obstacle"
+const char* Simulation::failure_reason() const {
+  return has_tunnelled_                         ? "a node went through an obstacle"
          : problem_.internal_force->is_linear() ? "the contact forces did not settle"
                                                 : "Newton's method found no solution";
 }
 
 /// Warns once in a run.
-void Simulation::tell_short_parts(int level) {
-  if (level < short_parts || std::exchange(told_short_parts_, true)) return;
+void Simulation::warn_of_short_parts(int level) {
+  if (level < short_parts || std::exchange(short_parts_warned_, true)) return;
   log::warning(fmt::format(
       "step {} is taken in parts as short as 1/{} of it, and perhaps shorter ones, as {} in longer ones: that takes as "
       "much longer, while the progress stands, and it may fail in the end",
-      state_.step + 1, 1L << level, why_no_solution()));
+      state_.step + 1, 1L << level, failure_reason()));
 }
 
 /// Parts have the lengths h 2^-k. After each part the longest one that fits into the remaining step is tried.
 void Simulation::take_step_in_parts(const std::function<void(const State&)>& each_part) {
-  const char* const reason = why_no_solution();
+  const char* const reason = failure_reason();
   const State start = state_;
   const EnergyAccount account = *account_;
   std::vector<FreeMotion> bodies;
@@ -319,7 +319,7 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
     } catch (const Error& problem) {
       if (problem.kind() == ErrorKind::not_converged && level < deepest_cut) {
         ++level;
-        tell_short_parts(level);
+        warn_of_short_parts(level);
         continue;
       }
       state_ = start;
@@ -343,15 +343,15 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
 void Simulation::advance(const std::function<void(const State&)>& each_part) {
   double energy = 0.0;
   bool in_parts = false;
-  newton_rounds_ = 0;
+  newton_iterations_ = 0;
   if (control_) {
     energy = take_controlled_step();
   } else {
     try {
-      take_step(!scheme_.changes_step());
+      take_step(!scheme_.supports_step_changes());
     } catch (const Error& problem) {
       const bool is_nonlinear = !problem_.internal_force->is_linear() || problem_.contact.follows_motion();
-      const bool may_cut = is_nonlinear && scheme_.changes_step();
+      const bool may_cut = is_nonlinear && scheme_.supports_step_changes();
       if (problem.kind() != ErrorKind::not_converged || !may_cut) throw;
       take_step_in_parts(each_part);
       in_parts = true;

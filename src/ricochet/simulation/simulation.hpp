@@ -8,7 +8,7 @@
 
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/simulation/history/energy_account.hpp"
-#include "ricochet/simulation/monitor/passage_watch.hpp"
+#include "ricochet/simulation/monitor/tunnelling_watch.hpp"
 #include "ricochet/simulation/statics/starting_state.hpp"
 #include "ricochet/simulation/step_control.hpp"
 #include "ricochet/solver/step_solver.hpp"
@@ -70,12 +70,12 @@ class Simulation : private StageSolve {
   };
   Level& make_level(int level, const StepSolverOptions& options);
   void use_level(int level);
-  void guard_passages();
+  void set_up_tunnelling_watches();
   void take_step(bool is_shortest);
   void solve_step();
   void attempt_step();
-  [[nodiscard]] const char* why_no_solution() const;
-  void tell_short_parts(int level);
+  [[nodiscard]] const char* failure_reason() const;
+  void warn_of_short_parts(int level);
   void take_step_in_parts(const std::function<void(const State&)>& each_part);
   [[nodiscard]] double length_of(int level) const;
   void end_part(const std::function<void(const State&)>& each_part);
@@ -84,7 +84,7 @@ class Simulation : private StageSolve {
   double take_controlled_step();
   [[nodiscard]] double energy_of_motion() const;
   /// Passes the energy at the end of a trial step of the longest length to the step control.
-  void look_ahead();
+  void take_trial_step();
   Stage& stage(std::size_t number) override;
   const StageSolution& solve(std::size_t number) override;
   void follow(const Vector& displacement) override { current_->solver->follow(displacement); }
@@ -103,15 +103,15 @@ class Simulation : private StageSolve {
   std::optional<StepControl> control_;
   double whole_step_;  ///< length, without control
   long cut_steps_ = 0;
-  bool told_short_parts_ = false;
-  std::vector<PassageWatch> guards_;  ///< contact nodes and points, each against the obstacle that they touch
-  bool has_guards_ = false;           ///< on this or another rank
-  State unguarded_;                   ///< state at the start of a step, with guards
-  bool goes_through_ = false;         ///< true if the last attempt was refused for tunnelling
-  State before_;                      ///< state before an attempt, with control
+  bool short_parts_warned_ = false;
+  std::vector<TunnellingWatch> guards_;  ///< contact nodes and points, each against the obstacle that they touch
+  bool has_guards_ = false;              ///< on this or another rank
+  State unguarded_;                      ///< state at the start of a step, with guards
+  bool has_tunnelled_ = false;           ///< true if the last attempt was refused for tunnelling
+  State before_;                         ///< state before an attempt, with control
   std::unique_ptr<EnergyAccount> account_;
-  int iterations_ = 0;     ///< of the contact solver in the last attempt
-  int newton_rounds_ = 0;  ///< Newton iterations, of all attempts and parts of this step
+  int iterations_ = 0;         ///< of the contact solver in the last attempt
+  int newton_iterations_ = 0;  ///< Newton iterations, of all attempts and parts of this step
   Vector increment_;
 };
 

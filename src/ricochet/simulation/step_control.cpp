@@ -97,8 +97,9 @@ bool StepControl::accept(const State& before, const State& after, double energy)
   error_ = own != 0.0 ? h * h / (6.0 * (h + step_before_)) * std::sqrt(own / measure) / options_.tolerance : 0.0;
   if (!std::isfinite(energy) || !std::isfinite(error_)) error_ = std::numeric_limits<double>::infinity();
   const bool grown = level_ < last_level_;
-  wants_prospect_ = !(error_ <= 1.0) && ticks_ >= prospect_ticks_ && energy > (1.0 + growth_ahead) * largest_energy_;
-  if (wants_prospect_) {
+  needs_trial_step_ =
+      !(error_ <= 1.0) && ticks_ >= energy_ahead_ticks_ && energy > (1.0 + growth_ahead) * largest_energy_;
+  if (needs_trial_step_) {
     ++counts_.refused;
     return false;
   }
@@ -150,9 +151,9 @@ void StepControl::watch(double energy, double created) {
 }
 
 /// No energy ahead counts once its time has come; one found after a refusal also serves the repeated attempt.
-void StepControl::take_prospect(int level, double energy) {
-  prospect_ = std::isfinite(energy) ? part_of_prospect * energy : 0.0;
-  prospect_ticks_ = ticks_ + ticks_of(level);
+void StepControl::set_energy_ahead(int level, double energy) {
+  energy_ahead_ = std::isfinite(energy) ? part_of_prospect * energy : 0.0;
+  energy_ahead_ticks_ = ticks_ + ticks_of(level);
 }
 
 void StepControl::count_step() {
@@ -196,13 +197,13 @@ void StepControl::fit_to_end() {
 }
 
 void StepControl::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name + ".ticks", Snapshot::Integers{ticks_, prospect_ticks_, stretch_ticks_, stretch_steps_});
+  snapshot.save(name + ".ticks", Snapshot::Integers{ticks_, energy_ahead_ticks_, stretch_ticks_, stretch_steps_});
   snapshot.save(name + ".levels", Snapshot::Integers{level_, wanted_, last_level_, deepest_});
   snapshot.save(name + ".steps", Snapshot::Integers{finest_, patience_, backoff_});
   snapshot.save(name + ".counts", Snapshot::Integers{counts_.refused, counts_.unsolved, counts_.tolerated});
   Vector numbers(8);
   numbers << largest_energy_, step_before_, error_, counts_.largest_error, counts_.shortest, counts_.longest,
-      own_energy_, prospect_;
+      own_energy_, energy_ahead_;
   snapshot.save(name + ".numbers", numbers);
   snapshot.save(name + ".acceleration", acceleration_before_);
 }
@@ -211,7 +212,7 @@ void StepControl::load(const Snapshot& snapshot, const std::string& name) {
   const Snapshot::Integers& ticks = snapshot.integers(name + ".ticks", 0, std::int64_t{1} << 60);
   if (ticks.size() != 4) Snapshot::refuse(name + ".ticks", "are not four");
   ticks_ = ticks[0];
-  prospect_ticks_ = ticks[1];
+  energy_ahead_ticks_ = ticks[1];
   stretch_ticks_ = ticks[2];
   stretch_steps_ = static_cast<long>(ticks[3]);
   const Snapshot::Integers& levels = snapshot.integers(name + ".levels", 0, deepest_);
@@ -240,7 +241,7 @@ void StepControl::load(const Snapshot& snapshot, const std::string& name) {
   counts_.shortest = numbers[4];
   counts_.longest = numbers[5];
   own_energy_ = numbers[6];
-  prospect_ = numbers[7];
+  energy_ahead_ = numbers[7];
   acceleration_before_ = snapshot.reals(name + ".acceleration", problem_.dof_count());
   // The end may differ from the one that the saved length was fitted to.
   level_ = wanted_;

@@ -77,10 +77,10 @@ class StepControl {
   /// instability of the scheme, and if the steps hardly advance the time.
   void watch(double energy, double created);
   /// Returns whether, after a refused attempt, its error is to be compared with the energy that is about to come.
-  [[nodiscard]] bool wants_prospect() const { return wants_prospect_; }
+  [[nodiscard]] bool needs_trial_step() const { return needs_trial_step_; }
   /// Accepts the result of a trial step of this level from the start of the attempt: the energy at its end, without the
   /// energy that the method has created in it.
-  void take_prospect(int level, double energy);
+  void set_energy_ahead(int level, double energy);
   /// Shortens a step that has no solution. Returns false if it already has the shortest length.
   [[nodiscard]] bool shorten();
 
@@ -95,7 +95,7 @@ class StepControl {
   void find_inertia();
   /// Half of the square of `change_` in the norm of the kinetic energy, over all ranks.
   [[nodiscard]] double energy_of_change();
-  [[nodiscard]] double energy_ahead() const { return ticks_ < prospect_ticks_ ? prospect_ : 0.0; }
+  [[nodiscard]] double energy_ahead() const { return ticks_ < energy_ahead_ticks_ ? energy_ahead_ : 0.0; }
   void count_step();
 
   const SemidiscreteProblem& problem_;
@@ -108,10 +108,10 @@ class StepControl {
   int finest_ = 0;                  ///< level of the shortest length required so far
   int patience_ = 0, backoff_ = 2;  ///< steps until lengths may grow again: left, and after the last refusal
   double largest_energy_ = 0.0, step_before_ = 0.0, error_ = 0.0;
-  double own_energy_ = 0.0;  ///< largest energy without the part that the method has created
-  double prospect_ = 0.0;    ///< energy that the trial step has found, and the time until which it counts
-  std::int64_t prospect_ticks_ = 0;
-  bool wants_prospect_ = false;
+  double own_energy_ = 0.0;    ///< largest energy without the part that the method has created
+  double energy_ahead_ = 0.0;  ///< energy that the trial step has found, and the time until which it counts
+  std::int64_t energy_ahead_ticks_ = 0;
+  bool needs_trial_step_ = false;
   std::int64_t stretch_ticks_ = 0;  ///< start of the steps that are counted
   long stretch_steps_ = 0;
   Vector acceleration_, acceleration_before_, change_;

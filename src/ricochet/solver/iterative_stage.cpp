@@ -8,12 +8,12 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/linear_algebra/block_jacobi.hpp"
-#include "ricochet/linear_algebra/single_gradients.hpp"
-#include "ricochet/solver/gathered/gathered_zones.hpp"
+#include "ricochet/linear_algebra/single_precision_cg.hpp"
+#include "ricochet/solver/gathered/gathered_subdomains.hpp"
 #include "ricochet/solver/stage/moved_product.hpp"
 #include "ricochet/solver/stage/stage_operator.hpp"
 #include "ricochet/solver/stage/stage_product.hpp"
-#include "ricochet/solver/subdomain/contact_zones.hpp"
+#include "ricochet/solver/subdomain/subdomains.hpp"
 
 namespace ricochet {
 
@@ -58,10 +58,10 @@ class IterativeStage final : public StageSolver {
   bool turn_to_multigrid();
   void begin(const Stage& stage, StageSolution& solution);
   [[nodiscard]] bool are_outside(const std::vector<Index>& points) const;
-  void make_zones(const Stage& stage, const std::vector<Index>& points);
+  void make_subdomains(const Stage& stage, const std::vector<Index>& points);
   void keep_columns() { moved_.make(product_, zones_->nodes(), problem_.nodes.cols(), problem_.dimension); }
   void find_residual();
-  void solve_zones(const Stage& stage, StageSolution& solution);
+  void solve_subdomains(const Stage& stage, StageSolution& solution);
   void find_reactions(const Stage& stage, const StageSolution& solution);
   void mask(Vector& values) const;
   void put_together(Vector& force) const;
@@ -81,12 +81,12 @@ class IterativeStage final : public StageSolver {
   IterationCounts counts_;
   long gradients_before_ = 0;  ///< of the previous stages
   ConjugateGradients gradients_;
-  std::unique_ptr<SingleGradients> single_;  ///< null if A is not stored in blocks
-  bool single_is_trusted_ = true;            ///< in this stage
-  double promised_ = 0.0;                    ///< norm of the residual that they reported
-  ContactCandidates near_;                   ///< points for which the subdomains were made
-  PointsNearby nearby_;
-  std::unique_ptr<NearContact> zones_;
+  std::unique_ptr<SinglePrecisionCg> single_;  ///< null if A is not stored in blocks
+  bool single_is_trusted_ = true;              ///< in this stage
+  double promised_ = 0.0;                      ///< norm of the residual that they reported
+  ContactCandidates near_;                     ///< points for which the subdomains were made
+  ContactNeighbourhood nearby_;
+  std::unique_ptr<ContactRegion> zones_;
   MovedProduct moved_;             ///< of the motion of the subdomains
   bool may_touch_ = false;         ///< some point may touch in this stage
   bool presses_at_start_ = false;  ///< points with reactions at the start of the step are part of a mean
@@ -108,11 +108,10 @@ IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const Operato
       near_(problem.contact.size(), *problem.ranks),
       nearby_(problem) {
   if (gathered != nullptr) {
-    zones_ =
-        make_gathered_zones(problem, coefficients, solved_, product_, nearby_, options.all_points, *gathered, layer);
+    zones_ = make_gathered_subdomains(problem, coefficients, solved_, product_, nearby_, options.all_points, *gathered,
+                                      layer);
   } else {
-    zones_ =
-        std::make_unique<ContactZones>(problem, coefficients, solved_, product_, nearby_, options.all_points, layer);
+    zones_ = std::make_unique<Subdomains>(problem, coefficients, solved_, product_, nearby_, options.all_points, layer);
   }
   const auto count = static_cast<std::size_t>(problem.dof_count());
   solved_.assign(count, 0);
@@ -154,7 +153,7 @@ void IterativeStage::make_preconditioner() {
   preconditioner_ = make_block_jacobi(blocks, problem_.dimension, solved_);
   const NodeMatrix* const matrix = product_.matrix();
   if (!problem_.ranks->any(matrix == nullptr || matrix->is_scalar()))
-    single_ = std::make_unique<SingleGradients>(*matrix, blocks, solved_, *problem_.ranks);
+    single_ = std::make_unique<SinglePrecisionCg>(*matrix, blocks, solved_, *problem_.ranks);
 }
 
 /// Replaces diagonal blocks, which need too many iterations, by multigrid. All ranks see the same number.
@@ -177,7 +176,7 @@ bool IterativeStage::are_outside(const std::vector<Index>& points) const {
 
 /// Makes subdomains for these points and those near them, and for those of the last subdomains unless there are too
 /// many: a body that rolls leaves them behind.
-void IterativeStage::make_zones(const Stage& stage, const std::vector<Index>& wanted) {
+void IterativeStage::make_subdomains(const Stage& stage, const std::vector<Index>& wanted) {
   std::vector<Index> points = wanted;
   if (problem_.ranks->any(near_.are_too_many())) {
     const std::vector<Index> nearest = near_.nearest(stage);
@@ -189,7 +188,7 @@ void IterativeStage::make_zones(const Stage& stage, const std::vector<Index>& wa
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
   near_.clear();
-  near_.take_up(points);
+  near_.add_candidates(points);
   try {
     zones_->make(points);
     keep_columns();
@@ -220,7 +219,7 @@ void IterativeStage::load(const Snapshot& snapshot, const std::string& name) {
   if (snapshot.flag(name + ".has_zone")) {
     const std::vector<Index>& points = snapshot.integers(name + ".near.points", 0, problem_.contact.size() - 1);
     near_.clear();
-    near_.take_up(points);
+    near_.add_candidates(points);
     zones_->load(snapshot, name + ".zones", points);
     keep_columns();
   }
@@ -247,9 +246,9 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   may_touch_ = ranks.any(near_.some_may_touch(stage));
   if (may_touch_) {
     const std::vector<Index> approaching = near_.approaching(stage);
-    if (ranks.any(!approaching.empty())) make_zones(stage, approaching);
+    if (ranks.any(!approaching.empty())) make_subdomains(stage, approaching);
   }
-  if (presses_at_start_ && ranks.any(are_outside(pressing))) make_zones(stage, pressing);
+  if (presses_at_start_ && ranks.any(are_outside(pressing))) make_subdomains(stage, pressing);
 }
 
 /// Accumulates a force over the ranks that hold parts of it, on the dofs that are solved for.
@@ -267,7 +266,7 @@ void IterativeStage::find_residual() {
 }
 
 /// Solves the subdomains and updates the residual. They move few nodes, so that these columns of A suffice.
-void IterativeStage::solve_zones(const Stage& stage, StageSolution& solution) {
+void IterativeStage::solve_subdomains(const Stage& stage, StageSolution& solution) {
   moved_.begin(guess_);
   zones_->solve(stage, residual_, guess_, solution);
   moved_.multiply(guess_, work_);
@@ -340,7 +339,7 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
     watch_single_precision();
     const bool touches = zones_->are_made() && (must_touch || presses_at_start_ || may_touch_);
     if (touches) {
-      solve_zones(stage, solution);
+      solve_subdomains(stage, solution);
       find_reactions(stage, solution);
       residual_ += reactions_;
     }
@@ -356,7 +355,7 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
         return end(stage, solution);
       }
       must_touch = true;
-      if (problem_.ranks->any(are_outside(penetrating))) make_zones(stage, penetrating);
+      if (problem_.ranks->any(are_outside(penetrating))) make_subdomains(stage, penetrating);
       target = 0.0;
       continue;
     }

@@ -7,13 +7,13 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/solver/choose_method.hpp"
-#include "ricochet/solver/corotated/turned_stage.hpp"
+#include "ricochet/solver/corotated/corotated_stage.hpp"
 #include "ricochet/solver/delassus/direct_stage.hpp"
 #include "ricochet/solver/gathered/gathered_contact.hpp"
 #include "ricochet/solver/gathered/gathered_stage.hpp"
 #include "ricochet/solver/iterative_stage.hpp"
-#include "ricochet/solver/newton_rounds.hpp"
-#include "ricochet/solver/tangent_rounds.hpp"
+#include "ricochet/solver/stage_newton.hpp"
+#include "ricochet/solver/tangent_iterations.hpp"
 
 namespace ricochet {
 
@@ -46,7 +46,7 @@ class StagesStepSolver final : public StepSolver {
   StagesStepSolver(const SemidiscreteProblem& problem, const std::vector<OperatorCoefficients>& operators,
                    const StepSolverOptions& options)
       : problem_(problem), operators_(operators), rounds_(problem), newton_(problem) {
-    if (!problem.internal_force->is_linear()) frame_ = std::make_unique<TurnedFrame>(problem);
+    if (!problem.internal_force->is_linear()) frame_ = std::make_unique<CorotatedFrame>(problem);
     const bool is_divided = problem.ranks->are_several();
     if (is_divided && problem.ranks->any(problem.contact.size() > 0))
       gathered_ = std::make_unique<GatheredContact>(problem);
@@ -65,8 +65,8 @@ class StagesStepSolver final : public StepSolver {
       solver.solve(linear, result);
       if (linear.motion) rounds_.follow_motion(solver, linear, result);
     };
-    if (stage.force_place.size() > 0) {
-      follow(stage.force_place);
+    if (stage.force_base.size() > 0) {
+      follow(stage.force_base);
       newton_.solve(
           operators_[number], solve_linear, [this](const Vector& displacement) { renew(displacement, displacement); },
           stage, solution);
@@ -217,17 +217,17 @@ class StagesStepSolver final : public StepSolver {
       analysed = {};
       stages_.push_back(make_iterative_stage(problem, coefficients, options, layer));
     }
-    if (frame_) stages_.back() = make_turned_stage(std::move(stages_.back()), *frame_);
+    if (frame_) stages_.back() = make_corotated_stage(std::move(stages_.back()), *frame_);
     methods_.push_back(chosen);
   }
 
   const SemidiscreteProblem& problem_;
   std::vector<OperatorCoefficients> operators_;
-  std::unique_ptr<TurnedFrame> frame_;     ///< null if the internal force is linear
+  std::unique_ptr<CorotatedFrame> frame_;  ///< null if the internal force is linear
   Vector made_at_, contact_made_at_;       ///< displacement of the factors; empty: the undeformed body
   FollowerPressure::Instant pressure_at_;  ///< likewise
-  TangentRounds rounds_;
-  NewtonRounds newton_;
+  TangentIterations rounds_;
+  StageNewton newton_;
   std::unique_ptr<GatheredContact> gathered_;  ///< on several ranks with contact
   std::vector<std::unique_ptr<StageSolver>> stages_;
   std::vector<ChosenMethod> methods_;

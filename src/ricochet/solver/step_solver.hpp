@@ -28,7 +28,7 @@ class StepSolver {
   /// displacement, or finally for the undeformed body, rotated with the bodies.
   virtual void renew(const Vector& displacement, const Vector& of_contact_nodes) = 0;
   /// For a nonlinear internal force: rotates the operators with bodies at this displacement. (solve() does so itself
-  /// for a stage with a force_place.)
+  /// for a stage with a force_base.)
   virtual void follow(const Vector& displacement) = 0;
   /// Shows every contact problem solved from now on, with its solution, to the observer; none if it is empty.
   virtual void observe_contact(const ContactObserver& observer) = 0;

@@ -28,7 +28,7 @@ std::optional<std::size_t> run_before(const Study& study, std::size_t run, std::
 
 /// Returns the orders for column c of errors, run by run.
 std::vector<std::optional<double>> orders_of(const Study& study, const ResultTable& table, std::size_t c) {
-  const KeyPlace place = find_varied(study.plan, study.questions.order_key, "--order");
+  const KeyPosition place = find_varied(study.plan, study.questions.order_key, "--order");
   const auto step = [&](std::size_t run) {
     const std::size_t at = study.runs[run].planned.at[place.axis];
     return step_of(study.questions.order_key, number_in(study.plan.axes[place.axis].values[at][place.key]).value());
@@ -50,7 +50,7 @@ std::string idle_text(const std::string& key, const std::string& name,
   for (const std::optional<double>& order : orders) {
     if (order) found.push_back(*order);
   }
-  const std::vector<bool> idle = find_idle_orders(key, found);
+  const std::vector<bool> idle = find_stagnant_orders(key, found);
   const auto count = std::count(idle.begin(), idle.end(), true);
   return count > 0 ? fmt::format("{} of {} of {}", count, found.size(), name) : "";
 }
@@ -61,7 +61,7 @@ bool is_biased(const StudyQuestions& questions) {
 
 }  // namespace
 
-std::vector<bool> find_idle_orders(const std::string& key, const std::vector<double>& orders) {
+std::vector<bool> find_stagnant_orders(const std::string& key, const std::vector<double>& orders) {
   const auto positive = std::count_if(orders.begin(), orders.end(), [](double order) { return order > 0.0; });
   const bool smaller_is_finer = key == "time.step" || 2 * positive >= static_cast<std::ptrdiff_t>(orders.size());
   std::vector<bool> idle;

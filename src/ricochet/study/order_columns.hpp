@@ -16,6 +16,6 @@ void add_order_columns(const Study& study, ResultTable& table, std::vector<std::
 /// Returns which of these orders, observed along one key, show that the error no longer decreases, as its remainder
 /// does not depend on this key. Smaller values of `key` are finer, as they always are for a step, unless most orders
 /// are negative, as along a number of cells.
-[[nodiscard]] std::vector<bool> find_idle_orders(const std::string& key, const std::vector<double>& orders);
+[[nodiscard]] std::vector<bool> find_stagnant_orders(const std::string& key, const std::vector<double>& orders);
 
 }  // namespace ricochet

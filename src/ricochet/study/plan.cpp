@@ -176,7 +176,7 @@ double step_of(const std::string& key, double value) {
   return counts_halvings(key) ? std::exp2(-value) : value;
 }
 
-KeyPlace find_varied(const StudyPlan& plan, const std::string& key, const std::string& option) {
+KeyPosition find_varied(const StudyPlan& plan, const std::string& key, const std::string& option) {
   for (std::size_t a = 0; a < plan.axes.size(); ++a) {
     const std::vector<std::string>& keys = plan.axes[a].keys;
     const auto found = std::find(keys.begin(), keys.end(), key);
@@ -186,7 +186,7 @@ KeyPlace find_varied(const StudyPlan& plan, const std::string& key, const std::s
               fmt::format("{}: \"{}\" does not vary; {} does", option, key, join_names(varied_keys(plan))));
 }
 
-bool is_numeric(const StudyPlan& plan, KeyPlace place) {
+bool is_numeric(const StudyPlan& plan, KeyPosition place) {
   const auto& values = plan.axes[place.axis].values;
   return values.size() > 1 && std::all_of(values.begin(), values.end(),
                                           [&](const auto& entry) { return number_in(entry[place.key]).has_value(); });

@@ -41,11 +41,11 @@ void check_plan(const StudyPlan& plan);
 [[nodiscard]] std::vector<PlannedRun> runs_of(const StudyPlan& plan);
 
 /// Axis of a key, and its index on that axis.
-struct KeyPlace {
+struct KeyPosition {
   std::size_t axis, key;
 };
 /// Throws Error(usage) that lists the varied keys; `option` names the option that refers to the key.
-[[nodiscard]] KeyPlace find_varied(const StudyPlan& plan, const std::string& key, const std::string& option);
+[[nodiscard]] KeyPosition find_varied(const StudyPlan& plan, const std::string& key, const std::string& option);
 
 /// Returns true for keys that count halvings (mesh.refine, part.NAME.refine): the size of cells is proportional to
 /// 2^−value.
@@ -54,6 +54,6 @@ struct KeyPlace {
 [[nodiscard]] double step_of(const std::string& key, double value);
 
 /// Returns true if all values of the key are numbers, and there are at least two.
-[[nodiscard]] bool is_numeric(const StudyPlan& plan, KeyPlace place);
+[[nodiscard]] bool is_numeric(const StudyPlan& plan, KeyPosition place);
 
 }  // namespace ricochet

@@ -28,7 +28,7 @@ class RunPool {
 
  private:
   [[nodiscard]] ChildProcess start(std::size_t i);
-  void end(std::size_t i, const ChildOutcome& outcome);
+  void end(std::size_t i, const ChildResult& outcome);
   [[nodiscard]] const PooledRun& run_at(std::size_t i) const { return runs_[pending_[i]]; }
 
   const std::vector<PooledRun>& runs_;
@@ -58,7 +58,7 @@ RunPool::RunPool(const std::vector<PooledRun>& runs, const RunPoolOptions& optio
 int RunPool::run() {
   PoolWork work;
   work.make = [this](std::size_t i) { return start(i); };
-  work.ended = [this](std::size_t i, const ChildOutcome& outcome) { end(i, outcome); };
+  work.ended = [this](std::size_t i, const ChildResult& outcome) { end(i, outcome); };
   work.watch = [this] { progress_->watch(); };
   work.stop_signal = options_.stop_signal;
   const int signal = run_children(pending_.size(), options_.jobs, work);
@@ -71,7 +71,7 @@ ChildProcess RunPool::start(std::size_t i) {
   std::error_code problem;
   std::filesystem::create_directories(directory, problem);
   if (problem) throw Error(ErrorKind::file_access, fmt::format("{}: cannot be made: {}", directory, problem.message()));
-  record_outcome(directory, 0, "");
+  record_exit_status(directory, 0, "");
   ChildProcess child;
   child.arguments = {options_.program, "run", run_at(i).case_path, "-o", directory};
   for (const std::string& setting : run_at(i).settings) {
@@ -86,14 +86,14 @@ ChildProcess RunPool::start(std::size_t i) {
   return child;
 }
 
-void RunPool::end(std::size_t i, const ChildOutcome& outcome) {
+void RunPool::end(std::size_t i, const ChildResult& outcome) {
   const std::string& directory = run_at(i).directory;
   // As shells report it if a signal has killed the process.
   const int status = WIFSIGNALED(outcome.status) ? 128 + WTERMSIG(outcome.status) : outcome.exit_status();
   std::string message = last_error(read_file(directory + "/" + messages_file), directory);
   if (message.empty()) message = fmt::format("its process {}", outcome.description());
   const bool was_stopped = status >= 128 && options_.stop_signal && options_.stop_signal() != 0;
-  if (!was_stopped) record_outcome(directory, status, message);
+  if (!was_stopped) record_exit_status(directory, status, message);
   progress_->end(directory, was_stopped ? "interrupted" : status == 0 ? "done" : message);
 }
 

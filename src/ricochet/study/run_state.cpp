@@ -94,7 +94,7 @@ RunState read_run_state(const std::string& directory) {
   return state;
 }
 
-void record_outcome(const std::string& directory, int exit_status, const std::string& message) {
+void record_exit_status(const std::string& directory, int exit_status, const std::string& message) {
   std::error_code ignored;
   std::filesystem::remove(outcome_path(directory), ignored);
   if (exit_status == 0) return;

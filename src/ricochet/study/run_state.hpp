@@ -36,7 +36,7 @@ enum class NextAction {
 [[nodiscard]] RunState read_run_state(const std::string& directory);
 
 /// Records in the directory of a run how its process has ended, for read_run_state; a status of 0 leaves no record.
-void record_outcome(const std::string& directory, int exit_status, const std::string& message);
+void record_exit_status(const std::string& directory, int exit_status, const std::string& message);
 
 /// Returns the first line of the last "ricochet: …" message of a process, without the name of its run.
 [[nodiscard]] std::string last_error(const std::string& messages, const std::string& run_name);

@@ -9,7 +9,7 @@
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/run/run_identity.hpp"
-#include "ricochet/study/asked_columns.hpp"
+#include "ricochet/study/requested_columns.hpp"
 #include "ricochet/study/run_folders.hpp"
 #include "ricochet/study/run_pool.hpp"
 #include "ricochet/study/run_state.hpp"
@@ -71,10 +71,10 @@ Study prepare_study(const std::string& directory, const StudyPlan& plan, const S
                     const StudyOptions& options) {
   Study study{directory, plan, questions, number_runs(plan)};
   require_one_valid_case(study);
-  check_asked_columns(study);
+  check_requested_columns(study);
   if (holds_study(directory) && options.force) remove_old_study(directory);
   if (holds_study(directory) && options.resume) {
-    study.runs = take_over_runs(plan, read_study(directory));
+    study.runs = reuse_runs(plan, read_study(directory));
     require_runs_of_this_case(study);
   }
   write_study(study);

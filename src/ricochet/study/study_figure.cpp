@@ -218,10 +218,10 @@ void describe_orders(const std::vector<StudyLine>& lines, const std::string& key
   std::vector<std::string> last;
   for (const StudyLine& line : lines) {
     std::vector<double> orders = orders_of(line);
-    const bool ends_idle = !orders.empty() && find_idle_orders(key, orders).back();
+    const bool ends_idle = !orders.empty() && find_stagnant_orders(key, orders).back();
     last.push_back(ends_idle ? "floor" : orders.empty() ? "-" : fmt::format("{:.2f}", orders.back()));
     if (line.x.front() < line.x.back()) std::reverse(orders.begin(), orders.end());
-    const std::vector<bool> idle = find_idle_orders(key, orders);
+    const std::vector<bool> idle = find_stagnant_orders(key, orders);
     const auto floor = static_cast<std::size_t>(std::find(idle.begin(), idle.end(), true) - idle.begin());
     if (floor < orders.size()) orders.resize(floor > 0 ? floor - 1 : 0);
     for (const double order : orders) {

@@ -97,7 +97,7 @@ std::string checked_reference(const std::string& reference, const StudyPlan& pla
     }
     if (!reference.starts_with(kind + ":")) continue;
     const std::string key = reference.substr(kind.size() + 1);
-    const KeyPlace place = find_varied(plan, key, option);
+    const KeyPosition place = find_varied(plan, key, option);
     if (kind == "finest" && !is_numeric(plan, place))
       throw Error(ErrorKind::usage, fmt::format("{}: the values of {} are not numbers, or only one", option, key));
     return reference;
@@ -223,7 +223,7 @@ std::vector<StudyRun> number_runs(const StudyPlan& plan) {
   return runs;
 }
 
-std::vector<StudyRun> take_over_runs(const StudyPlan& plan, const Study& before) {
+std::vector<StudyRun> reuse_runs(const StudyPlan& plan, const Study& before) {
   const auto refuse = [&](const std::string& why) {
     throw Error(ErrorKind::file_access,
                 fmt::format("{}: holds another study: {}; choose another directory with -o, or start anew over it "

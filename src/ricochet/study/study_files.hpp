@@ -44,7 +44,7 @@ void write_study(const Study& study);
 [[nodiscard]] std::vector<StudyRun> number_runs(const StudyPlan& plan);
 /// Returns the runs of a plan in the folders of an existing study, and those that it lacks in new folders. Throws
 /// Error(file_access) if the study has runs that are not in this plan.
-[[nodiscard]] std::vector<StudyRun> take_over_runs(const StudyPlan& plan, const Study& before);
+[[nodiscard]] std::vector<StudyRun> reuse_runs(const StudyPlan& plan, const Study& before);
 
 /// Checks the questions of a study: quantities can be parsed, KEYs vary; "last", "finest" and orders get their keys.
 /// Throws Error(usage) or Error(invalid_input).

@@ -17,7 +17,7 @@
 #include "ricochet/run/quantity_value.hpp"
 #include "ricochet/study/history_errors.hpp"
 #include "ricochet/study/order_columns.hpp"
-#include "ricochet/study/outcome_columns.hpp"
+#include "ricochet/study/result_columns.hpp"
 
 namespace ricochet {
 
@@ -119,12 +119,12 @@ void StudyTableMaker::note_problems() {
 void StudyTableMaker::add_outcomes() {
   results_.table.key_columns = varied_keys(study_.plan).size();
   for (const std::string& key : varied_keys(study_.plan)) results_.table.columns.push_back({key});
-  for (TableColumn& column : outcome_columns()) results_.table.columns.push_back(std::move(column));
+  for (TableColumn& column : result_columns()) results_.table.columns.push_back(std::move(column));
   for (const StudyRun& run : study_.runs) {
     states_.push_back(read_run_state(study_.path(run)));
     Cells& row = results_.table.rows.emplace_back();
     for (const std::string& value : run.planned.values) row.emplace_back(value);
-    for (TableCell& cell : outcome_cells(run.folder, states_.back())) row.push_back(std::move(cell));
+    for (TableCell& cell : result_cells(run.folder, states_.back())) row.push_back(std::move(cell));
     const std::optional<int> status = states_.back().final_status();
     results_.done += states_.back().word() == "done";
     results_.worst_status = worse_status(results_.worst_status, status.value_or(0));
@@ -199,7 +199,7 @@ std::string StudyTableMaker::reference_of(std::size_t run) const {
   const std::string kind = questions_.reference.substr(0, colon);
   if (colon == std::string::npos || (kind != "last" && kind != "finest")) return questions_.reference;
   const std::string key = questions_.reference.substr(colon + 1);
-  const KeyPlace place = find_varied(study_.plan, key, "--reference");
+  const KeyPosition place = find_varied(study_.plan, key, "--reference");
   const auto& values = study_.plan.axes[place.axis].values;
   std::size_t chosen = values.size() - 1;
   if (kind == "finest") {

@@ -47,11 +47,11 @@ TEST_F(ChildProcesses, TakeArgumentsVariablesAndInputAsTheyAre) {
 TEST_F(ChildProcesses, TellHowTheyEnd) {
   EXPECT_EQ(run_child(child({"sh", "-c", "exit 7"})).description(), "ended with status 7");
   EXPECT_EQ(run_child(child({"sh", "-c", "kill -9 $$"})).description(), "was killed by signal 9");
-  const ChildOutcome absent = run_child(child({"ricochet-has-no-such-program"}));
+  const ChildResult absent = run_child(child({"ricochet-has-no-such-program"}));
   EXPECT_TRUE(absent.is_absent());
   EXPECT_FALSE(absent.succeeded());
   EXPECT_EQ(absent.description(), "cannot be run: No such file or directory");
-  const ChildOutcome directory = run_child(child({std::filesystem::temp_directory_path().string()}));
+  const ChildResult directory = run_child(child({std::filesystem::temp_directory_path().string()}));
   EXPECT_FALSE(directory.is_absent());
   EXPECT_EQ(directory.spawn_error, EACCES);
   ChildProcess without_input = child({"true"});

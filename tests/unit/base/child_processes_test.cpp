@@ -29,7 +29,7 @@ TEST(RunChildren, RunsAllInOrderAndNoMoreThanSoManyAtOnce) {
       most = std::max(most, ++running);
       return shell("sleep 0.05; exit " + std::to_string(i));
     };
-    work.ended = [&](std::size_t i, const ChildOutcome& outcome) {
+    work.ended = [&](std::size_t i, const ChildResult& outcome) {
       --running;
       statuses[i] = outcome.exit_status();
     };
@@ -50,7 +50,7 @@ TEST(RunChildren, EndsThoseThatRunAndStartsNoMoreWhenASignalComes) {
     // One ends as it is asked to, in its own way; the other would go on.
     return shell(i == 0 ? "trap 'exit 7' TERM; sleep 600 & wait" : "sleep 600");
   };
-  work.ended = [&](std::size_t i, const ChildOutcome& outcome) {
+  work.ended = [&](std::size_t i, const ChildResult& outcome) {
     ended.push_back(i);
     EXPECT_FALSE(outcome.succeeded());
   };
@@ -71,7 +71,7 @@ TEST(RunChildren, TellsOfAProgramThatIsNotThere) {
     child.output = "/dev/null";
     return child;
   };
-  work.ended = [&](std::size_t, const ChildOutcome& outcome) { is_absent = outcome.is_absent(); };
+  work.ended = [&](std::size_t, const ChildResult& outcome) { is_absent = outcome.is_absent(); };
   EXPECT_EQ(run_children(1, 1, work), 0);
   EXPECT_TRUE(is_absent);
 }

@@ -24,7 +24,7 @@ TEST(Interruption, WaitsForWhatIsJustBeingMade) {
     std::thread other;
     bool is_made = false;
     const auto make = [&] {
-      other = std::thread([] { _exit(interruption::take_actions() ? 1 : 2); });  // 1: nothing was there to be removed
+      other = std::thread([] { _exit(interruption::run_actions() ? 1 : 2); });  // 1: nothing was there to be removed
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
       is_made = true;
     };
@@ -40,7 +40,7 @@ TEST(Interruption, WhatCouldNotBeMadeIsNotRemoved) {
     try {
       const AtInterruption remove(fail, [] { _exit(1); });
     } catch (const std::runtime_error&) {
-      _exit(interruption::take_actions() ? 0 : 2);
+      _exit(interruption::run_actions() ? 0 : 2);
     }
   };
   EXPECT_EXIT(scenario(), testing::ExitedWithCode(0), "");
@@ -52,7 +52,7 @@ TEST(Interruption, TemporaryFoldersGo) {
     const TemporaryFolder inner(outer.path(), "inner");
     std::ofstream(inner.file("file")) << "text";
     if (fs::is_empty(outer.path())) _exit(1);
-    if (!interruption::take_actions()) _exit(2);
+    if (!interruption::run_actions()) _exit(2);
     // The process that takes the actions takes those of the outer folder, too, and may have made it anew: it looks
     // itself.
     _exit(fs::exists(outer.path()) ? 3 : 0);
@@ -66,11 +66,11 @@ TEST(Interruption, AStoppingPointIsThatOfOneRun) {
     {
       const StoppingPoints first;
       interruption::reach_stopping_point();
-      if (interruption::take_actions()) _exit(1);
+      if (interruption::run_actions()) _exit(1);
     }
-    if (interruption::has_stopping_points() || interruption::take_actions()) _exit(2);  // it still writes its results
+    if (interruption::has_stopping_points() || interruption::run_actions()) _exit(2);  // it still writes its results
     const StoppingPoints second;
-    _exit(interruption::take_actions() ? 0 : 3);
+    _exit(interruption::run_actions() ? 0 : 3);
   };
   EXPECT_EXIT(scenario(), testing::ExitedWithCode(0), "");
 }

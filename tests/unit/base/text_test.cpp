@@ -45,11 +45,11 @@ TEST(Text, Digits) {
 }
 
 TEST(FormOf, IsTheSameForTheSameOfDifferentPlaces) {
-  EXPECT_EQ(form_of("at t = 1.25e-05 a node at (-0.5, 2, 1e+3) is 3% inside of \"floor 2\", body 7 of x1."),
+  EXPECT_EQ(message_pattern("at t = 1.25e-05 a node at (-0.5, 2, 1e+3) is 3% inside of \"floor 2\", body 7 of x1."),
             "at t = 0 a node at (0, 0, 0) is 0% inside of \"floor 2\", body 0 of x1.");
-  EXPECT_EQ(form_of("no number - none, and not the first-hand one; 12."),
+  EXPECT_EQ(message_pattern("no number - none, and not the first-hand one; 12."),
             "no number - none, and not the first-hand one; 0.");
-  EXPECT_NE(form_of("in \"a1\""), form_of("in \"a2\""));
+  EXPECT_NE(message_pattern("in \"a1\""), message_pattern("in \"a2\""));
 }
 
 }  // namespace

@@ -11,11 +11,11 @@ namespace {
 
 TEST(Trial, TellsWhatCameOfTheWork) {
   EXPECT_TRUE(try_in_child([] { return true; }, 10.0).succeeded);
-  const TrialOutcome failed = try_in_child([] { return false; }, 10.0);
+  const TrialResult failed = try_in_child([] { return false; }, 10.0);
   EXPECT_FALSE(failed.succeeded);
   EXPECT_EQ(failed.signal, 0);
   EXPECT_FALSE(try_in_child([]() -> bool { throw std::runtime_error("no"); }, 10.0).succeeded);
-  const TrialOutcome crashed = try_in_child([] { return raise(SIGSEGV) == 0; }, 10.0);
+  const TrialResult crashed = try_in_child([] { return raise(SIGSEGV) == 0; }, 10.0);
   EXPECT_FALSE(crashed.succeeded);
   EXPECT_EQ(crashed.signal, SIGSEGV);
   EXPECT_EQ(crashed.description(), "ended a process with signal 11");
@@ -31,7 +31,7 @@ TEST(Trial, TellsWhatCameOfTheWorkWhereEndsOfChildrenAreIgnored) {
 
 TEST(Trial, EndsWhatHasNoEnd) {
   volatile bool goes_on = true;
-  const TrialOutcome endless = try_in_child(
+  const TrialResult endless = try_in_child(
       [&] {
         while (goes_on) {
         }
@@ -47,7 +47,7 @@ TEST(Trial, LeavesThisProcessAlone) {
   static volatile sig_atomic_t handled = 0;
   const auto before = signal(SIGABRT, [](int) { handled = 1; });
   int value = 1;
-  const TrialOutcome outcome = try_in_child(
+  const TrialResult outcome = try_in_child(
       [&value]() -> bool {
         value = 2;
         std::abort();

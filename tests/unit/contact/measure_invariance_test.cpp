@@ -10,7 +10,7 @@
 #include "ricochet/base/point_sets.hpp"
 #include "ricochet/contact/mortar/choose_side.hpp"
 #include "ricochet/contact/mortar/facet_surface.hpp"
-#include "ricochet/contact/mortar/touching_turns.hpp"
+#include "ricochet/contact/mortar/normal_variation.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/fem/mesh_measures.hpp"
 #include "ricochet/model/model_parts.hpp"
@@ -165,7 +165,7 @@ Measures measures_of(const Mesh& mesh, const Change& change) {
     all[slides_far ? "choice of side, sliding far" : "choice of side"] = {
         {choose_side(body, pair).opposite ? 1.0 : 0.0}};
   }
-  const TouchingTurns turns = touching_turns(body, pair.facets, pair.opposite_facets);
+  const NormalVariation turns = normal_variation(body, pair.facets, pair.opposite_facets);
   all["turns where surfaces can touch"] = {{turns.own, turns.own_of_bends, turns.opposite, turns.opposite_of_bends}};
   EXPECT_GT(turns.own_of_bends, 0.0);
   return all;

@@ -217,8 +217,8 @@ TEST(RigidPart, OnlyDeformationIsLeft) {
                       Eigen::Vector3d(plane ? 0.0 : 0.4, plane ? 0.0 : -0.1, 0.7).cross(place));
       motions.push_back(rigid.back() + Eigen::Vector3d(number(random), number(random), plane ? 0.0 : number(random)));
     }
-    take_off_rigid_part(places, plane, rigid);
-    take_off_rigid_part(places, plane, motions);
+    remove_rigid_part(places, plane, rigid);
+    remove_rigid_part(places, plane, motions);
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = force;
     double largest = 0.0;
     for (std::size_t k = 0; k < places.size(); ++k) {

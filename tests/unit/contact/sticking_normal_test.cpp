@@ -32,7 +32,7 @@ TEST(StickingNormal, DoesNotFollowRounding) {
     if (std::abs(wedge.shape().gap(at)) > 0.05) continue;
     if (wedge.shape().gradient(at).norm() < 0.99) ++rounded;
     const double time = 1.0 + number();
-    const PlacedObstacle before = wedge.at(time), after = wedge.at(time + 0.05);
+    const PosedObstacle before = wedge.at(time), after = wedge.at(time + 0.05);
     const SpaceVector from = before.pose().in_space(at), noise = 1e-15 * Eigen::Vector2d(number(), number());
     const SpaceVector to = after.pose().in_space(at) + noise;
     const SpaceVector normal = normal_of_step(before, from, after, to);

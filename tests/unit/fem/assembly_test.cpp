@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "ricochet/base/parallel.hpp"
-#include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/fem/cell_rotations.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "support/box_mesh.hpp"
 
@@ -105,13 +105,13 @@ TEST(EquivalentMass, IsTheSameBitsForAnyNumberOfThreads) {
 }
 
 /// One cell turned by more than the others is found, whichever it is, on straight simplices and on other cells.
-TEST(RotationGauge, FindsTheCellThatTurnsMost) {
+TEST(CellRotations, FindsTheCellThatTurnsMost) {
   for (const ElementKind& kind :
        {ElementKind{CellShape::triangle, 1, 1}, ElementKind{CellShape::tetrahedron, 1, 1},
         ElementKind{CellShape::tetrahedron, 2, 2}, ElementKind{CellShape::quadrilateral, 1, 1}}) {
     const auto test = large_body(kind);
     const int d = kind.dimension();
-    const RotationGauge gauge(test->body);
+    const CellRotations gauge(test->body);
     // A rotation of the whole by 0.3, which is exact for any size below π.
     Matrix turn = Matrix::Identity(d, d);
     turn.topLeftCorner(2, 2) << std::cos(0.3), -std::sin(0.3), std::sin(0.3), std::cos(0.3);
@@ -150,10 +150,10 @@ double rotation_of_simplex(const Points& nodes, const Vector& u, const Index* ce
 }
 
 /// Cells are evaluated in packs: the one with the largest rotation is found, for every angle.
-TEST(RotationGauge, FindsTheLargestOfAllCells) {
+TEST(CellRotations, FindsTheLargestOfAllCells) {
   for (const CellShape shape : {CellShape::triangle, CellShape::tetrahedron}) {
     const auto test = large_body({shape, 1, 1});
-    const RotationGauge gauge(test->body);
+    const CellRotations gauge(test->body);
     const CellBlock& cells = test->space.cells.front();
     const auto largest = [&](const Vector& u) {
       double result = 0.0;

@@ -35,7 +35,7 @@ TEST(FacetMap, FindsThePlacesThatItGives) {
         // The shape functions of the displacement, which are those of the geometry, have the same places.
         Matrix values;
         map.displacement(facet, local, values);
-        const PlaceInBlocks place = locate_facet(test->space, facet);
+        const IndexInBlocks place = locate_facet(test->space, facet);
         const CellBlock& block = test->space.facets[place.block];
         Points sum = Points::Zero(d, local.cols());
         for (int k = 0; k < block.nodes_per_cell; ++k)

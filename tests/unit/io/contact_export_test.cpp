@@ -123,7 +123,7 @@ TEST(FailureBundle, HoldsTheStateAndTheProblem) {
   ContactSolution unsolved = solution();
   unsolved.outcome = ContactOutcome::not_converged;
   unsolved.reason = "it circles";
-  bundle.take_problem(problem(), unsolved, 7);
+  bundle.write_problem(problem(), unsolved, 7);
   Snapshot snapshot;
   snapshot.save("state.step", std::int64_t{6});
   const std::string note = bundle.write(7, snapshot, "step 7: what failed");
@@ -143,7 +143,7 @@ TEST(FailureBundle, HoldsTheStateAndTheProblem) {
   ContactProblem bounded = problem();
   bounded.friction_bound = Vector::Ones(2);
   FailureBundle other(directory.path, {"Title", "origin", 2, 0.5});
-  other.take_problem(bounded, unsolved, 8);
+  other.write_problem(bounded, unsolved, 8);
   EXPECT_NE(other.write(8, snapshot, "").find("the contact problem could not be written"), std::string::npos);
 }
 
@@ -154,9 +154,9 @@ TEST(FailureBundle, ForgetsTheProblemOfAStepThatWasSolved) {
   FailureBundle bundle(directory.path, {"Title", "origin", 2, 0.5});
   ContactSolution unsolved = solution();
   unsolved.outcome = ContactOutcome::not_converged;
-  bundle.take_problem(problem(), unsolved, 7);
+  bundle.write_problem(problem(), unsolved, 7);
   EXPECT_EQ(failure_files(directory.path).size(), 1u);
-  bundle.forget_problem();
+  bundle.remove_problem();
   EXPECT_TRUE(failure_files(directory.path).empty());
   Snapshot snapshot;
   EXPECT_EQ(bundle.write(9, snapshot, "").find("contact problem"), std::string::npos);

@@ -60,7 +60,7 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
       {"floor", {"the body"}, INFINITY, INFINITY, 0.5, {-INFINITY, 2.0}, 0.25, {"top", "left"}});
   summary.penetration.found.back().through_groups = {"inside"};
   summary.penetration.rims.push_back({"bottom", "floor", 0.75, {1.0, NAN}, {"left"}});
-  summary.penetration.looks_at_themselves = 17;
+  summary.penetration.self_penetration_checks = 17;
   summary.penetration.not_watched = {"this", "that"};
   summary.bodies.push_back({{}, 0.1});
   Impact impact;
@@ -89,8 +89,8 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   EXPECT_EQ(found.first_time, 0.25);
   EXPECT_EQ(found.groups, (std::vector<std::string>{"top", "left"}));
   EXPECT_EQ(found.through_groups, (std::vector<std::string>{"inside"}));
-  EXPECT_FALSE(found.is_in_itself());
-  EXPECT_EQ(back.penetration.looks_at_themselves, 17);
+  EXPECT_FALSE(found.is_self_penetration());
+  EXPECT_EQ(back.penetration.self_penetration_checks, 17);
   EXPECT_EQ(back.penetration.not_watched, (std::vector<std::string>{"this", "that"}));
   EXPECT_FALSE(back.penetration.is_complete());
   ASSERT_EQ(back.penetration.rims.size(), 1u);
@@ -112,7 +112,7 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   EXPECT_EQ(back.peak_stress->peak.von_mises, INFINITY);
   EXPECT_EQ(back.peak_stress->place, (std::vector<double>{1.5, 2.5}));
   EXPECT_EQ(back.peak_stress->element, 8);
-  EXPECT_EQ(back.peak_stress->peak.sits_on, StressRaiser::support_edge);
+  EXPECT_EQ(back.peak_stress->peak.raised_by, StressRaiser::support_edge);
   EXPECT_EQ(back.probe_sums, summary.probe_sums);
 }
 
@@ -159,7 +159,7 @@ TEST_F(SummaryTest, KeepsBothBodiesOfAnImpact) {
 TEST_F(SummaryTest, KeepsHowBodiesFaceAndSlide) {
   RunSummary summary;
   summary.contacts.push_back(
-      {"a", "b", "p1", 0.0, 0.0, {}, 0.0, true, false, FacingDescription{"b", "it is softer", 7}});
+      {"a", "b", "p1", 0.0, 0.0, {}, 0.0, true, false, PairingDescription{"b", "it is softer", 7}});
   summary.contacts[0].facing->covered = 0.5;
   summary.contacts[0].facing->largest_gap = 0.25;
   summary.contacts.push_back({"c", "floor", "nodal"});

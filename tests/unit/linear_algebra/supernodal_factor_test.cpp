@@ -64,11 +64,11 @@ TEST(SupernodalKernels, SolveWithEveryShape) {
       triangle.triangularView<Eigen::Lower>().solveInPlace(expected.head(columns));
       expected.tail(below) -= beneath * expected.head(columns);
       Vector in_four_places(rows + 1);
-      for (const ReadingPlaces places : {ReadingPlaces::four, ReadingPlaces::one}) {
+      for (const StreamCount places : {StreamCount::four, StreamCount::one}) {
         found << right, 0.0;
         EXPECT_EQ(supernode_forward(stream.data(), columns, rows, found.data(), places), stream.data() + stream.size());
         EXPECT_LE((found.head(rows) - expected).cwiseAbs().maxCoeff(), 1e-14) << columns << " " << below;
-        if (places == ReadingPlaces::four) in_four_places = found;
+        if (places == StreamCount::four) in_four_places = found;
         EXPECT_TRUE(found.head(rows) == in_four_places.head(rows)) << "forward solves have the same bits";
       }
 
@@ -83,7 +83,7 @@ TEST(SupernodalKernels, SolveWithEveryShape) {
       expected = right;
       expected.head(columns) -= beneath.transpose() * expected.tail(below);
       triangle.transpose().triangularView<Eigen::Upper>().solveInPlace(expected.head(columns));
-      for (const ReadingPlaces places : {ReadingPlaces::four, ReadingPlaces::one}) {
+      for (const StreamCount places : {StreamCount::four, StreamCount::one}) {
         found << right, 0.0;
         EXPECT_EQ(supernode_backward(stream.data() + stream.size(), columns, rows, found.data(), places),
                   stream.data());

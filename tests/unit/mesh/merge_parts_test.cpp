@@ -15,7 +15,7 @@ namespace {
 using PlacedCell = std::vector<std::vector<double>>;
 
 PlacedCell placed_cell(const Mesh& mesh, const std::vector<CellBlock>& blocks, Index number, double shift = 0.0) {
-  const PlaceInBlocks at = place_in_blocks(blocks, number);
+  const IndexInBlocks at = locate_in_blocks(blocks, number);
   PlacedCell result;
   for (int k = 0; k < blocks[at.block].nodes_per_cell; ++k) {
     const Vector position = mesh.nodes.col(blocks[at.block].cell(at.local)[k]);
@@ -117,7 +117,7 @@ TEST(MergeParts, FacetsThatNoFileHasStayWithoutNumber) {
   const Mesh mesh = merge_parts(parts);
   const Group& boundary = mesh.group("right.boundary", 1);
   const auto count = std::count_if(boundary.members.begin(), boundary.members.end(), [&](Index facet) {
-    const PlaceInBlocks at = place_in_blocks(mesh.facets, facet);
+    const IndexInBlocks at = locate_in_blocks(mesh.facets, facet);
     return mesh.facets[at.block].tags[static_cast<std::size_t>(at.local)] == 0;
   });
   EXPECT_EQ(count, 8);  // 12 sides, of which 4 are in the group of the file

@@ -154,7 +154,7 @@ TEST(ReversedCells, EveryFacetInsideTellsOnWhichSideItsCellsLie) {
   for (const std::string shape : {"triangle", "quadrilateral", "tetrahedron", "hexahedron", "mixed"}) {
     for (const std::string order : {"_o1_", "_o2_"}) {
       Mesh mesh = read_test_mesh(shape + order + "msh41_ascii.msh");
-      EXPECT_TRUE(folds(mesh.cells).empty()) << shape;
+      EXPECT_TRUE(folded_facets(mesh.cells).empty()) << shape;
       std::map<std::pair<std::size_t, Index>, std::size_t> inside;
       for (std::size_t b = 0; b < mesh.cells.size(); ++b) {
         for (Index cell = 0; cell < mesh.cells[b].size(); ++cell)
@@ -167,7 +167,7 @@ TEST(ReversedCells, EveryFacetInsideTellsOnWhichSideItsCellsLie) {
         const std::vector<Index> before(nodes, nodes + block.nodes_per_cell);
         const std::vector<int>& mirrored = mirrored_nodes(block.shape, mesh.degree);
         for (std::size_t k = 0; k < before.size(); ++k) nodes[k] = before[static_cast<std::size_t>(mirrored[k])];
-        EXPECT_EQ(folds(mesh.cells).size(), count) << shape;
+        EXPECT_EQ(folded_facets(mesh.cells).size(), count) << shape;
         std::copy(before.begin(), before.end(), nodes);
       }
     }

@@ -156,7 +156,7 @@ TEST(ContactLine, FollowsASideFromItsLeftEnd) {
     std::vector<CellBlock> facets{{CellShape::interval, degree + 1, {}, {}}};
     for (const char* name : {"y1", "y0"}) {
       for (const Index facet : body->mesh.group(name, 1).members) {
-        const PlaceInBlocks place = locate_facet(body->space, facet);
+        const IndexInBlocks place = locate_facet(body->space, facet);
         const Index* nodes = body->space.facets[place.block].cell(place.local);
         facets[0].nodes.insert(facets[0].nodes.end(), nodes, nodes + degree + 1);
         facets[0].tags.push_back(0);

@@ -61,7 +61,7 @@ TEST_P(FreeMotions, KeepEnergyAndAngularMomentumOfAStepTogether) {
   const Index d = GetParam();
   Stepped body(inertia(d));
   const SpaceVector spin = Three(3.0, 1.0, -2.0).tail(d == 2 ? 1 : 3);
-  body.velocity.segment(d, d) = body.motion.velocity_of_spin(spin, body.displacement);
+  body.velocity.segment(d, d) = body.motion.rotational_velocity(spin, body.displacement);
   EXPECT_LT((body.motion.spin(body.displacement, body.velocity) - spin).norm(), 1e-14);
   constexpr double h = 0.05;
   double largest = 0.0;
@@ -119,7 +119,7 @@ TEST(FreeMotion, TurnsLikeATop) {
   for (const int steps : {200, 400}) {
     Stepped body(own);
     const Three spin(1.0, 0.0, 2.0), momentum = own.moments.cwiseProduct(spin);
-    body.velocity.segment(3, 3) = body.motion.velocity_of_spin(spin, body.displacement);
+    body.velocity.segment(3, 3) = body.motion.rotational_velocity(spin, body.displacement);
     constexpr double end = 3.0;
     for (int n = 0; n < steps; ++n) body.step(end / steps, Three::Zero(), Three::Zero());
     body.motion.begin_step(body.displacement);

@@ -49,7 +49,7 @@ std::unique_ptr<ObstacleShape> shape_of(const std::string& type, Index dimension
 std::unique_ptr<Obstacle> placed(const std::string& type, Index dimension, const std::string& side = "outside") {
   const Vector velocity = Eigen::Vector3d(0.3, -0.2, 0.5).head(dimension);
   std::unique_ptr<ObstacleShape> shape = shape_of(type, dimension, side);
-  const double spin = shape->own_axis().exists ? 0.7 : 0.0;
+  const double spin = shape->symmetry_axis().exists ? 0.7 : 0.0;
   return std::make_unique<Obstacle>(std::move(shape), make_uniform_path(velocity), spin, Vector::Zero(dimension));
 }
 
@@ -311,7 +311,7 @@ TEST(Obstacle, TurnsAndIsWhereItsPoseSays) {
     ASSERT_TRUE(obstacle.turns());
     EXPECT_FALSE(obstacle.has_constant_normals());
     const double start = 0.2, end = 0.35;
-    const PlacedObstacle before = obstacle.at(start), after = obstacle.at(end);
+    const PosedObstacle before = obstacle.at(start), after = obstacle.at(end);
     int near = 0;
     for (int k = 0; k < 100; ++k) {
       SpaceVector of_shape(dimension), other(dimension);

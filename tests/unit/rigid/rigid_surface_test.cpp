@@ -326,7 +326,7 @@ TEST_F(RigidSurfaces, RefuseWhatHasNoInside) {
   // A surface that is inverted as a whole is reoriented.
   SurfaceFacets inside_out = block;
   for (auto& triangle : inside_out.corners) std::swap(triangle[0], triangle[1]);
-  EXPECT_TRUE(RigidSurface(inside_out, "block").was_turned_round());
+  EXPECT_TRUE(RigidSurface(inside_out, "block").was_reversed());
   EXPECT_NEAR(shape(inside_out)->gap(Three(0.5, 0.5, 1.25)), 0.25, 1e-15);
   EXPECT_NEAR(shape(inside_out)->gap(Three(1.5, 0.5, 1.5)), std::sqrt(0.5), 1e-15);
   EXPECT_NEAR(shape(inside_out)->gap(Three(0.9, 0.8, 0.9)), -0.1, 1e-15);

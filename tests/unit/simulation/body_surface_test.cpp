@@ -52,7 +52,7 @@ TEST(BoundaryFacets, AreThoseOfTheGroupThatNamesTheBoundary) {
       for (const CellFacet& facet : boundary_facets(space.cells))
         found.push_back(sorted(nodes_of_facet(space.cells, facet)));
       for (const Index facet : box->mesh.group("boundary", box->mesh.dimension - 1).members) {
-        const PlaceInBlocks place = locate_facet(space, facet);
+        const IndexInBlocks place = locate_facet(space, facet);
         const CellBlock& block = space.facets[place.block];
         wanted.push_back(sorted({block.cell(place.local), block.cell(place.local) + block.nodes_per_cell}));
       }

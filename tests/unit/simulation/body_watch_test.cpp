@@ -45,12 +45,12 @@ struct TwoSquares {
     ++bodies.count;
   }
 
-  [[nodiscard]] BodyWatch watch(const std::vector<KeptNode>& kept = {}) const {
+  [[nodiscard]] BodyWatch watch(const std::vector<ContactNodeAllowance>& kept = {}) const {
     return {positions, cells, boundary_facets(cells), bodies, size, kept};
   }
   /// Nodes of the facing sides of the two squares, as nodes of a contact with these allowances.
-  [[nodiscard]] std::vector<KeptNode> facing_nodes(double of_lower, double of_upper) const {
-    std::vector<KeptNode> result;
+  [[nodiscard]] std::vector<ContactNodeAllowance> facing_nodes(double of_lower, double of_upper) const {
+    std::vector<ContactNodeAllowance> result;
     for (Index node = 0; node < positions.cols(); ++node) {
       const auto entry = static_cast<Index>(result.size());
       const double y = positions(1, node);

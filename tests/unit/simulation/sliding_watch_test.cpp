@@ -102,7 +102,7 @@ TEST(SlidingWatch, BeginsAtPairAt) {
 TEST(PenetrationWatch, LeavesNodesOfAContactToItsGaps) {
   const CaseRun run(stack(lower_on_upper));
   PenetrationWatch watch(run.model().body, run.problem(), run.model().contact_pairs, {});
-  for (const double depth : {0.0, 0.2, 0.3}) watch.look_at_end(displaced(run, 0.0, -depth, true, depth));
+  for (const double depth : {0.0, 0.2, 0.3}) watch.check_end(displaced(run, 0.0, -depth, true, depth));
   EXPECT_TRUE(watch.report().found.empty());
 }
 
@@ -110,7 +110,7 @@ TEST(PenetrationWatch, LeavesNodesOfAContactToItsGaps) {
 TEST(PenetrationWatch, LooksAtAllOtherNodesOfTwoBodiesInContact) {
   const CaseRun run(stack(lower_on_upper));
   PenetrationWatch watch(run.model().body, run.problem(), run.model().contact_pairs, {});
-  watch.look_at_end(displaced(run, 0.9, -0.3, true, 0.5));
+  watch.check_end(displaced(run, 0.9, -0.3, true, 0.5));
   ASSERT_EQ(watch.report().found.size(), 1U);
   EXPECT_TRUE(watch.report().found[0].contact.empty());
   EXPECT_NEAR(watch.report().found[0].depth, 0.05, 1e-12) << "the second node of a side, 1/4 above the corner";

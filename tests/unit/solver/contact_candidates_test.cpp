@@ -53,7 +53,7 @@ TEST(ContactCandidates, TakeUpPointsInsideTheObstacleAndThoseWithinReachOfThem) 
   const Stage stage = stage_with_gaps(gaps({20.0, -1.0, 15.9, 0.5, 1.9}));
   EXPECT_TRUE(some_may_touch(candidates, stage));
   EXPECT_EQ(approaching(candidates, stage), (PointNumbers{1, 2, 3, 4}));
-  candidates.take_up({1, 2, 3, 4});
+  candidates.add_candidates({1, 2, 3, 4});
   EXPECT_EQ(approaching(candidates, stage), PointNumbers{});
   EXPECT_EQ(candidates.number(1), 0);
   EXPECT_EQ(candidates.number(4), 3);
@@ -85,7 +85,7 @@ TEST(ContactCandidates, NeverAreWhatMayNotTouch) {
 TEST(ContactCandidates, AreAskedForWhereOthersPenetrate) {
   ContactCandidates candidates(4);
   const Stage stage = stage_with_gaps(gaps({1.0, 1.0, 1.0, 1.0}));
-  candidates.take_up({0});
+  candidates.add_candidates({0});
   // 0 is a candidate: its gap is the solver's business. 2 is deepest, 1 less than half as deep, 3 only rounding inside.
   EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, -1.4, -2.0, -1.0 - 5e-16}), false), (PointNumbers{2}));
   EXPECT_EQ(candidates.penetrating(stage, gaps({0.0, -1.6, -2.0, 0.0}), false), (PointNumbers{2, 1}));
@@ -104,7 +104,7 @@ TEST(ContactCandidates, DoubleAtMost) {
        found = candidates.penetrating(stage, fallen, false), ++rounds) {
     EXPECT_LE(found.size(), std::max<std::size_t>(32, candidates.points().size()));
     EXPECT_EQ(found.front(), static_cast<Index>(candidates.points().size())) << "the deepest first";
-    candidates.take_up(found);
+    candidates.add_candidates(found);
   }
   EXPECT_EQ(candidates.points().size(), 1000U);
   EXPECT_LE(rounds, 6U);
@@ -114,7 +114,7 @@ TEST(ContactCandidates, AreDroppedWhenTheyHaveBeenFarForLong) {
   const Index count = 200;
   ContactCandidates candidates(count);
   Vector distance = Vector::Zero(count);
-  candidates.take_up(approaching(candidates, stage_with_gaps(distance)));
+  candidates.add_candidates(approaching(candidates, stage_with_gaps(distance)));
   ASSERT_EQ(candidates.points().size(), 200U);
   distance.tail(count - 3).setConstant(50.0);
   distance[0] = -0.01;
@@ -144,7 +144,7 @@ TEST(ContactCandidates, AreTheNearestOfManyThatMayTouch) {
   ASSERT_GE(taken.size(), 100U);
   EXPECT_LE(taken.size(), 600U);
   for (const Index point : taken) EXPECT_LE(distance[point], static_cast<double>(taken.size()));
-  candidates.take_up(taken);
+  candidates.add_candidates(taken);
   EXPECT_EQ(approaching(candidates, stage), PointNumbers{}) << "the others are asked for where they penetrate";
   // Many that carry a force have many around them.
   candidates.learn(stage, Vector::Constant(count, -1e5), 1000);
@@ -172,9 +172,9 @@ TEST(ContactCandidates, StayFewOnAWheelThatRolls) {
     const Stage stage = stage_with_gaps(now);
     if (const PointNumbers kept = worth_keeping(candidates, stage); !kept.empty()) {
       candidates.clear();
-      candidates.take_up(kept);
+      candidates.add_candidates(kept);
     }
-    candidates.take_up(approaching(candidates, stage));
+    candidates.add_candidates(approaching(candidates, stage));
     for (const Index point : candidates.points()) came[static_cast<std::size_t>(point)] = 1;
     most = std::max(most, candidates.points().size());
     candidates.learn(stage, height(static_cast<double>(step + 1) / steps) - now, 5);

@@ -100,7 +100,7 @@ TEST(BodyContact, PassesAUniformPressureBetweenMeshesThatDoNotMatch) {
       SCOPED_TRACE(name(p.lower) + name(p.upper) + std::to_string(p.degree) + multipliers +
                    (p.upper_carries ? "upper" : "lower"));
       const ContactPair pair = pair_of(*test, p.upper_carries, multipliers);
-      std::vector<PairFacing> facings;
+      std::vector<PairingSummary> facings;
       const ContactBoundary boundary = make_contact_boundary(test->body, {pair}, all_free, nullptr, &facings);
       const Vector expected = integrals(*test, pair.facets) - integrals(*test, pair.opposite_facets);
       const Vector found = forces_of_pressure(boundary);
@@ -151,7 +151,7 @@ TEST(BodyContact, PassesAUniformPressureWhereOnlyAPartIsCovered) {
       std::vector<Index> inside;
       const Vector low = turn(Vector::Zero(d));
       for (const Index facet : wide) {
-        const PlaceInBlocks place = place_in_blocks(test->mesh.facets, facet);
+        const IndexInBlocks place = locate_in_blocks(test->mesh.facets, facet);
         const CellBlock& block = test->mesh.facets[place.block];
         Vector centre = Vector::Zero(d);
         for (int k = 0; k < block.nodes_per_cell; ++k)

@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
-#include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/fem/cell_rotations.hpp"
 #include "support/box_mesh.hpp"
 
 /// @file Rigid motions: the null space of the stiffness, symmetry of the operators, the measured rotation.
@@ -97,7 +97,7 @@ Matrix rotation(int dimension, double angle) {
 TEST_P(RigidModes, AnyRotationBelowHalfATurnIsMeasured) {
   const auto test = make_body();
   const int d = test->mesh.dimension;
-  const RotationGauge gauge(test->body);
+  const CellRotations gauge(test->body);
   for (const double angle : {1e-6, 0.1, -0.7, 1.6, -2.5, 3.1, 3.1415}) {
     const Matrix h = rotation(d, angle) - Matrix::Identity(d, d);
     const double measured = gauge.largest(interpolate(test->space, affine_map(h, Vector::Ones(d))));
@@ -111,7 +111,7 @@ TEST_P(RigidModes, AnyRotationBelowHalfATurnIsMeasured) {
 TEST_P(RigidModes, OneCellThatTurnsIsSeen) {
   const auto test = make_body();
   const int d = test->mesh.dimension;
-  const RotationGauge gauge(test->body);
+  const CellRotations gauge(test->body);
   const Matrix h = rotation(d, 0.4) - Matrix::Identity(d, d);
   const Vector turned = interpolate(test->space, affine_map(h, Vector::Zero(d)));
   const CellBlock& block = test->space.cells[0];

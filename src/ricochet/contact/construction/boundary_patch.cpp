@@ -44,11 +44,11 @@ void make_obstacle_patch(const Body& body, const BoundaryNodes& nodes, BoundaryP
   // Multipliers that can only act on supports are omitted.
   std::erase_if(patch.kept,
                 [&](const Multiplier& multiplier) { return only_presses_supports(multiplier, patch.facets); });
-  take_obstacle_conditions(body, patch);
+  compute_obstacle_conditions(body, patch);
 }
 
 void make_body_patch(const Body& body, const ContactPair& pair, const FreeComponent& is_free, BoundaryPatch& patch,
-                     PairFacing& facing) {
+                     PairingSummary& facing) {
   const BodyPairing pairing(body, pair);
   patch.facets.parts.front().facets = pairing.facing_facets();
   patch.space = make_multiplier_space(patch.multipliers, patch.facets);
@@ -153,7 +153,7 @@ void number_points(const Patches& patches) {
 }  // namespace
 
 Patches make_patches(const Body& body, const std::vector<ContactPair>& pairs, const BoundaryNodes& nodes,
-                     const FreeComponent& is_free, std::vector<PairFacing>& facings) {
+                     const FreeComponent& is_free, std::vector<PairingSummary>& facings) {
   Patches patches = collect_patches(body, pairs);
   facings.assign(pairs.size(), {});
   const TiedNodes none;

@@ -5,7 +5,7 @@
 
 #include "ricochet/contact/construction/boundary_nodes.hpp"
 #include "ricochet/contact/mortar/body_contact.hpp"
-#include "ricochet/contact/turning_normal.hpp"
+#include "ricochet/contact/rotating_normal.hpp"
 #include "ricochet/fem/tied_nodes.hpp"
 
 /// @file Parts from which a contact boundary is assembled. Not part of the public interface.
@@ -25,7 +25,7 @@ struct BoundaryPatch {
   std::vector<BodyContact::Node> nodes;  ///< of both sides of a pair of bodies
   bool slides = false;                   ///< whether it is a pair of bodies with unlimited sliding
   /// Per kept multiplier its direction, between bodies of finite strain, and between those that slide.
-  std::vector<TurningNormal> turning;
+  std::vector<RotatingNormal> turning;
   std::vector<Index> reached;  ///< nodes in the traces, including tied ones
   /// Pressure recovery at the nodes of the group, and of the other side: entries (node, kept multiplier, value).
   std::vector<Eigen::Triplet<double>> recovery, opposite_recovery;
@@ -44,29 +44,29 @@ struct BoundaryPatch {
                                                                        const std::vector<ContactPair>& pairs,
                                                                        const BoundaryNodes& nodes,
                                                                        const FreeComponent& is_free,
-                                                                       std::vector<PairFacing>& facings);
+                                                                       std::vector<PairingSummary>& facings);
 
 /// Computes normals and gaps of the kept multipliers of a patch at an obstacle.
-void take_obstacle_conditions(const Body& body, BoundaryPatch& patch);
+void compute_obstacle_conditions(const Body& body, BoundaryPatch& patch);
 
 /// Creates the multipliers of a pair of bodies with unlimited sliding. Throws Error(invalid_input) if
 /// facets fold, or nodes are tied.
 void make_sliding_patch(const Body& body, const ContactPair& pair, const FreeComponent& is_free, BoundaryPatch& patch,
-                        PairFacing& facing);
+                        PairingSummary& facing);
 
 /// Creates the geometry of sliding pairs; null if there are none. Marks their points in the boundary.
-[[nodiscard]] std::unique_ptr<ContactGeometry> follow_sliding(
+[[nodiscard]] std::unique_ptr<ContactGeometry> make_sliding_geometry(
     const Body& body, const std::vector<ContactPair>& pairs, const std::vector<std::unique_ptr<BoundaryPatch>>& patches,
     const FreeComponent& is_free, ContactBoundary& boundary);
 
 /// Finds the directions of the kept multipliers between bodies of finite strain, from the facets around them whose
 /// vertices are untied contact nodes: own ones, or, if there are none, those of the other side. Multipliers without
 /// such facets, and those on an axis, keep their initial direction; the number of the former is logged.
-void find_turning_normals(const Body& body, const std::vector<ContactPair>& pairs,
-                          const std::vector<std::unique_ptr<BoundaryPatch>>& patches);
+void find_rotating_normals(const Body& body, const std::vector<ContactPair>& pairs,
+                           const std::vector<std::unique_ptr<BoundaryPatch>>& patches);
 
 /// Creates the geometry of these patches whose directions rotate with the bodies; null if there are none.
-[[nodiscard]] std::unique_ptr<ContactGeometry> turn_with_bodies(
+[[nodiscard]] std::unique_ptr<ContactGeometry> make_rotating_geometry(
     const Body& body, const std::vector<ContactPair>& pairs, const std::vector<std::unique_ptr<BoundaryPatch>>& patches,
     const FreeComponent& is_free, const ContactBoundary& boundary);
 

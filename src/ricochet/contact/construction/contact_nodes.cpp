@@ -50,8 +50,8 @@ class NodeTable {
     }
     boundary.own_point.assign(static_cast<std::size_t>(count), -1);
     if (places.empty()) return;
-    boundary.opposite_place.resize(count, body_.space->node_count());
-    boundary.opposite_place.setFromTriplets(places.begin(), places.end());
+    boundary.opposite_projection.resize(count, body_.space->node_count());
+    boundary.opposite_projection.setFromTriplets(places.begin(), places.end());
   }
 
   /// Registers points that are anchored at nodes, and pressure recovery.

@@ -165,7 +165,7 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
 }
 
 /// Returns the trace of the points whose directions rotate, at obstacles that are not free rigid bodies.
-std::shared_ptr<const SparseRowMatrix> turning_trace(const CurvedContactData& data) {
+std::shared_ptr<const SparseRowMatrix> rotating_trace(const CurvedContactData& data) {
   std::vector<char> turns(static_cast<std::size_t>(data.trace.rows()), 0);
   for (const CurvedContactData::Point& point : data.points)
     turns[static_cast<std::size_t>(point.number)] = data.obstacles[point.obstacle]->free_motion() == nullptr ? 1 : 0;
@@ -176,10 +176,10 @@ std::shared_ptr<const SparseRowMatrix> turning_trace(const CurvedContactData& da
 }
 
 /// Creates the geometry of points and nodes at curved obstacles; null if there are none.
-std::unique_ptr<ContactGeometry> follow_curved_obstacles(const Body& body, const Patches& patches,
-                                                         const std::vector<ContactPair>& pairs,
-                                                         const FreeComponent& is_free, const ContactBoundary& boundary,
-                                                         ContactRows& rows) {
+std::unique_ptr<ContactGeometry> make_curved_geometry(const Body& body, const Patches& patches,
+                                                      const std::vector<ContactPair>& pairs,
+                                                      const FreeComponent& is_free, const ContactBoundary& boundary,
+                                                      ContactRows& rows) {
   CurvedContactData data;
   const auto number_of = [&data](const Obstacle* obstacle) {
     const auto known = std::find(data.obstacles.begin(), data.obstacles.end(), obstacle);
@@ -205,7 +205,7 @@ std::unique_ptr<ContactGeometry> follow_curved_obstacles(const Body& body, const
   data.node_positions = body.space->nodes;
   data.node_normals = boundary.node_normals;
   data.trace = boundary.trace;
-  rows.turning_trace = turning_trace(data);
+  rows.rotating_trace = rotating_trace(data);
   return make_curved_contact(std::move(data));
 }
 
@@ -213,9 +213,9 @@ std::unique_ptr<ContactGeometry> follow_curved_obstacles(const Body& body, const
 void follow_motion(const Body& body, const Patches& patches, const std::vector<ContactPair>& pairs,
                    const FreeComponent& is_free, ContactRows& rows, ContactBoundary& boundary) {
   std::vector<std::unique_ptr<ContactGeometry>> parts;
-  parts.push_back(follow_curved_obstacles(body, patches, pairs, is_free, boundary, rows));
-  parts.push_back(turn_with_bodies(body, pairs, patches, is_free, boundary));
-  parts.push_back(follow_sliding(body, pairs, patches, is_free, boundary));
+  parts.push_back(make_curved_geometry(body, patches, pairs, is_free, boundary, rows));
+  parts.push_back(make_rotating_geometry(body, pairs, patches, is_free, boundary));
+  parts.push_back(make_sliding_geometry(body, pairs, patches, is_free, boundary));
   std::erase(parts, nullptr);
   if (parts.empty()) return;
   rows.revision.assign(static_cast<std::size_t>(rows.size()), 0);
@@ -257,12 +257,12 @@ Index freest_node(const BoundaryPatch& patch, std::size_t kept, int dimension, c
 
 ContactBoundary make_contact_boundary(const Body& body, const std::vector<ContactPair>& pairs,
                                       const FreeComponent& is_free, Index* held_nodes,
-                                      std::vector<PairFacing>* facings) {
+                                      std::vector<PairingSummary>* facings) {
   const BoundaryNodes nodes(body, pairs, is_free);
   if (held_nodes != nullptr) *held_nodes = nodes.held_count();
-  std::vector<PairFacing> found;
+  std::vector<PairingSummary> found;
   const Patches patches = make_patches(body, pairs, nodes, is_free, facings != nullptr ? *facings : found);
-  if (has_finite_strain(body)) find_turning_normals(body, pairs, patches);
+  if (has_finite_strain(body)) find_rotating_normals(body, pairs, patches);
   ContactBoundary boundary;
   boundary.dimension = body.space->dimension;
   boundary.facets = facets_of(pairs);

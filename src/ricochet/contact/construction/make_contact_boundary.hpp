@@ -7,7 +7,7 @@
 /// @file Construction of the contact boundary from the pairs of a case.
 namespace ricochet {
 
-struct PairFacing;
+struct PairingSummary;
 
 /// Builds the boundary. Multipliers of nodes that supports constrain along the normal are omitted, and so are those of
 /// facets whose nodes all are; `held_nodes` (may be null) receives the number of such nodes, each once per obstacle.
@@ -18,6 +18,6 @@ struct PairFacing;
 /// that do not face each other has no points.
 [[nodiscard]] ContactBoundary make_contact_boundary(const Body& body, const std::vector<ContactPair>& pairs,
                                                     const FreeComponent& is_free, Index* held_nodes = nullptr,
-                                                    std::vector<PairFacing>* facings = nullptr);
+                                                    std::vector<PairingSummary>* facings = nullptr);
 
 }  // namespace ricochet

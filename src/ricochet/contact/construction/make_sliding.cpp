@@ -26,15 +26,15 @@ class OwnNormals {
       of_facet_[facet.number] = -facet.area_vector.normalized();
   }
 
-  [[nodiscard]] TurningNormal at_node(Index node) const {
+  [[nodiscard]] RotatingNormal at_node(Index node) const {
     const Vector direction = -areas_.at(node).vector.normalized().head(body_.mesh->dimension);
-    if (is_on_axis(body_, node)) return TurningNormal(direction);
+    if (is_on_axis(body_, node)) return RotatingNormal(direction);
     return {*body_.space, around_.at(node), direction};
   }
-  [[nodiscard]] TurningNormal at_facet(Index facet) const {
+  [[nodiscard]] RotatingNormal at_facet(Index facet) const {
     return {*body_.space, {facet}, Vector(of_facet_.at(facet).head(body_.mesh->dimension))};
   }
-  [[nodiscard]] TurningNormal of(const Multiplier& multiplier) const {
+  [[nodiscard]] RotatingNormal of(const Multiplier& multiplier) const {
     return multiplier.node >= 0 ? at_node(multiplier.node) : at_facet(multiplier.facet);
   }
   /// Length of the mean of unit normals around a node: 1 if they agree.
@@ -48,7 +48,7 @@ class OwnNormals {
   std::map<Index, Eigen::Vector3d> of_facet_;
 };
 
-void check_normals(const Body& body, const ContactPair& pair, const OwnNormals& normals, PairFacing& facing) {
+void check_normals(const Body& body, const ContactPair& pair, const OwnNormals& normals, PairingSummary& facing) {
   for (const Index node : facet_nodes(*body.space, pair.facets)) {
     const double agreement = normals.agreement(node);
     if (agreement >= facing.agreement) continue;
@@ -108,7 +108,7 @@ SlidingPair::Data data_of(const Body& body, const ContactPair& pair, const Bound
 
 /// Evaluates the pairing at the initial positions, and sets offsets that close gaps there.
 void look_at_the_start(const Body& body, const ContactPair& pair, const FreeComponent& is_free, BoundaryPatch& patch,
-                       PairFacing& facing) {
+                       PairingSummary& facing) {
   patch.numbers.assign(patch.kept.size(), 0);
   const SlidingPair sliding(data_of(body, pair, patch, is_free));
   std::vector<SlidingView> views;
@@ -129,7 +129,7 @@ void look_at_the_start(const Body& body, const ContactPair& pair, const FreeComp
 }  // namespace
 
 void make_sliding_patch(const Body& body, const ContactPair& pair, const FreeComponent& is_free, BoundaryPatch& patch,
-                        PairFacing& facing) {
+                        PairingSummary& facing) {
   check_ties(body, pair);
   patch.slides = true;
   patch.space = make_multiplier_space(patch.multipliers, patch.facets);
@@ -146,7 +146,7 @@ void make_sliding_patch(const Body& body, const ContactPair& pair, const FreeCom
       ++facing.held;
       continue;
     }
-    TurningNormal normal = normals.of(multiplier);
+    RotatingNormal normal = normals.of(multiplier);
     const Eigen::Vector3d direction = normal.at(body.space->nodes, {});
     patch.conditions.push_back({direction.normalized().head(body.space->dimension), {}, 0.0, 0.0});
     patch.turning.push_back(std::move(normal));
@@ -164,9 +164,9 @@ void make_sliding_patch(const Body& body, const ContactPair& pair, const FreeCom
   look_at_the_start(body, pair, is_free, patch, facing);
 }
 
-std::unique_ptr<ContactGeometry> follow_sliding(const Body& body, const std::vector<ContactPair>& pairs,
-                                                const std::vector<std::unique_ptr<BoundaryPatch>>& patches,
-                                                const FreeComponent& is_free, ContactBoundary& boundary) {
+std::unique_ptr<ContactGeometry> make_sliding_geometry(const Body& body, const std::vector<ContactPair>& pairs,
+                                                       const std::vector<std::unique_ptr<BoundaryPatch>>& patches,
+                                                       const FreeComponent& is_free, ContactBoundary& boundary) {
   SlidingContactData data;
   boundary.opposite_node.assign(pairs.size(), -1);
   for (const auto& patch : patches) {
@@ -192,8 +192,8 @@ std::unique_ptr<ContactGeometry> follow_sliding(const Body& body, const std::vec
   data.node_positions = body.space->nodes;
   data.node_normals = boundary.node_normals;
   // In diameters of the model.
-  constexpr double out_of_sight = 1e3;
-  data.out_of_sight = boundary.out_of_sight = out_of_sight * enclosing_diameter(body.space->nodes);
+  constexpr double unpaired_gap = 1e3;
+  data.unpaired_gap = boundary.unpaired_gap = unpaired_gap * enclosing_diameter(body.space->nodes);
   return make_sliding_contact(std::move(data));
 }
 

@@ -44,7 +44,7 @@ std::map<Index, double> mean_gaps(const BoundaryPatch& patch) {
 
 /// If the displacement space contains the geometry, the trace of the nodes' gaps is
 /// exactly the mean gap against planes.
-void take_obstacle_conditions(const Body& body, BoundaryPatch& patch) {
+void compute_obstacle_conditions(const Body& body, BoundaryPatch& patch) {
   // Displacements result from solutions for the whole body, so that their rounding is relative to
   // its size, wherever a node is.
   const double body_size = extent(body.space->nodes);

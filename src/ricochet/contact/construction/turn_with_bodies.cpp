@@ -8,7 +8,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/contact/construction/boundary_patch.hpp"
 #include "ricochet/contact/mortar/paired_surfaces.hpp"
-#include "ricochet/contact/turning_pairs.hpp"
+#include "ricochet/contact/rotating_pairs.hpp"
 
 namespace ricochet {
 
@@ -69,10 +69,10 @@ double gap_at_start(const Body& body, const Vector& normal, const TiedNodes::Wei
   return gap;
 }
 
-TurningPairsData::Point turning_point(const Body& body, const BoundaryPatch& patch, std::size_t kept,
-                                      const FreeComponent& is_free) {
+RotatingPairsData::Point turning_point(const Body& body, const BoundaryPatch& patch, std::size_t kept,
+                                       const FreeComponent& is_free) {
   const PointConditions& conditions = patch.conditions[kept];
-  TurningPairsData::Point point{.number = patch.numbers[kept], .normal = patch.turning[kept]};
+  RotatingPairsData::Point point{.number = patch.numbers[kept], .normal = patch.turning[kept]};
   point.offset = conditions.gap - gap_at_start(body, conditions.normal, patch.free_traces[kept], conditions.opposite);
   const int d = body.space->dimension;
   const Index freest = freest_node(patch, kept, d, is_free);
@@ -88,7 +88,7 @@ TurningPairsData::Point turning_point(const Body& body, const BoundaryPatch& pat
 
 /// Adds nodes of the nodal output, which rotate with the facets around them.
 void add_nodes(const Body& body, const std::vector<ContactPair>& pairs, const ContactBoundary& boundary,
-               TurningPairsData& data) {
+               RotatingPairsData& data) {
   std::map<std::pair<int, bool>, FacetsAround> around_nodes;
   for (std::size_t i = 0; i < boundary.nodes.size(); ++i) {
     const int number = boundary.node_pair[i];
@@ -105,16 +105,16 @@ void add_nodes(const Body& body, const std::vector<ContactPair>& pairs, const Co
     const Index node = boundary.nodes[i];
     const Vector normal = boundary.node_normals.col(entry);
     TiedNodes::Weights seen;
-    for (SparseRowMatrix::InnerIterator at(boundary.opposite_place, entry); at; ++at)
+    for (SparseRowMatrix::InnerIterator at(boundary.opposite_projection, entry); at; ++at)
       seen.emplace_back(at.col(), at.value());
     const double offset = boundary.node_initial_gap[entry] - gap_at_start(body, normal, {{node, 1.0}}, seen);
-    data.nodes.push_back({entry, node, TurningNormal(*body.space, around(known->second, node), normal), offset});
+    data.nodes.push_back({entry, node, RotatingNormal(*body.space, around(known->second, node), normal), offset});
   }
 }
 
 }  // namespace
 
-void find_turning_normals(const Body& body, const std::vector<ContactPair>& pairs, const Patches& patches) {
+void find_rotating_normals(const Body& body, const std::vector<ContactPair>& pairs, const Patches& patches) {
   std::vector<char> marked = reached_by_traces(body, patches);
   if (body.tied != nullptr) {
     for (const TiedNodes::Tie& tie : body.tied->ties()) marked[static_cast<std::size_t>(tie.node)] = 0;
@@ -136,9 +136,9 @@ void find_turning_normals(const Body& body, const std::vector<ContactPair>& pair
       }
       const std::vector<Index> facets =
           multiplier.facet >= 0 ? std::vector{multiplier.facet} : around(own, multiplier.node);
-      TurningNormal turning =
-          TurningNormal::mean(TurningNormal(*body.space, of_marked_nodes(*body.space, facets, marked), normal),
-                              TurningNormal(*body.space, facets_seen(opposite, patch->conditions[i].opposite), normal));
+      RotatingNormal turning = RotatingNormal::mean(
+          RotatingNormal(*body.space, of_marked_nodes(*body.space, facets, marked), normal),
+          RotatingNormal(*body.space, facets_seen(opposite, patch->conditions[i].opposite), normal));
       if (!turning.turns()) ++constant;
       patch->turning.push_back(std::move(turning));
     }
@@ -150,10 +150,10 @@ void find_turning_normals(const Body& body, const std::vector<ContactPair>& pair
   }
 }
 
-std::unique_ptr<ContactGeometry> turn_with_bodies(const Body& body, const std::vector<ContactPair>& pairs,
-                                                  const Patches& patches, const FreeComponent& is_free,
-                                                  const ContactBoundary& boundary) {
-  TurningPairsData data;
+std::unique_ptr<ContactGeometry> make_rotating_geometry(const Body& body, const std::vector<ContactPair>& pairs,
+                                                        const Patches& patches, const FreeComponent& is_free,
+                                                        const ContactBoundary& boundary) {
+  RotatingPairsData data;
   for (const auto& patch : patches) {
     if (patch->turning.empty() || patch->slides) continue;
     for (std::size_t i = 0; i < patch->kept.size(); ++i) data.points.push_back(turning_point(body, *patch, i, is_free));
@@ -163,8 +163,8 @@ std::unique_ptr<ContactGeometry> turn_with_bodies(const Body& body, const std::v
   data.node_positions = body.space->nodes;
   data.node_normals = boundary.node_normals;
   data.trace = boundary.trace;
-  data.opposite_place = boundary.opposite_place;
-  return make_turning_pairs(std::move(data));
+  data.opposite_projection = boundary.opposite_projection;
+  return make_rotating_pairs(std::move(data));
 }
 
 }  // namespace ricochet

@@ -35,7 +35,7 @@ constexpr double rounding_of_files = 1e-6;
 
 }  // namespace
 
-void refuse_fold(const ContactPair& pair, const PairFacing& facing) {
+void refuse_fold(const ContactPair& pair, const PairingSummary& facing) {
   if (facing.agreement >= folded) return;
   throw Error(ErrorKind::invalid_input,
               fmt::format("contact group \"{}\": its facets around the node at ({:.6g}) fold so sharply that they "
@@ -79,16 +79,15 @@ struct BodyPairing::Implementation {
   [[nodiscard]] bool faces(std::size_t facet) const { return !direct[facet].segments.empty(); }
   [[nodiscard]] Vector in_mesh(const Three& values) const { return values.head(body.mesh->dimension); }
 
-  AnchorDirections find_directions(bool at_facets, PairFacing& found) const;
+  AnchorDirections find_directions(bool at_facets, PairingSummary& found) const;
   [[nodiscard]] AnchorDirections normals_seen(bool at_facets) const;
   [[nodiscard]] Three normal_between_nodes(const SegmentFinder::Hit& hit, const std::map<Index, AreaSum>& areas) const;
   [[nodiscard]] std::vector<std::pair<Index, Three>> normals_at_nodes(Index facet,
                                                                       const std::map<Index, AreaSum>& areas) const;
   [[nodiscard]] Three middle_direction(const Three& at, const Three& own_direction, const Three& seen, double height,
                                        const std::map<Index, AreaSum>* faced) const;
-  void take_functions(const MultiplierSpace& space, const AnchorDirections& directions, BodyContact& result) const;
-  void take_nodes_as_points(const MultiplierSpace& space, const AnchorDirections& directions,
-                            BodyContact& result) const;
+  void make_mortar_points(const MultiplierSpace& space, const AnchorDirections& directions, BodyContact& result) const;
+  void make_nodal_points(const MultiplierSpace& space, const AnchorDirections& directions, BodyContact& result) const;
   void leave_out_held(const FreeComponent& is_free, BodyContact& result) const;
   void summarize(bool has_gaps, BodyContact& result) const;
 };
@@ -97,7 +96,7 @@ struct BodyPairing::Implementation {
 /// surface that the anchor faces along it. The normals of a single side differ from those of the contact by their angle
 /// at the edges of a contact of curved bodies; the difference is of first order in a/R, has the opposite sign on the
 /// other side, and would cause friction between equal bodies that are only pressed together.
-AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, PairFacing& found) const {
+AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, PairingSummary& found) const {
   AnchorDirections directions;
   const std::map<Index, AreaSum> faced = areas_around_faced_nodes(surfaces, direct);
   const AnchorDirections seen = normals_seen(at_facets);
@@ -140,7 +139,7 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
 /// opposite side.
 std::vector<std::pair<Index, Three>> BodyPairing::Implementation::normals_at_nodes(
     Index facet, const std::map<Index, AreaSum>& areas) const {
-  const PlaceInBlocks place = locate_facet(*body.space, facet);
+  const IndexInBlocks place = locate_facet(*body.space, facet);
   const CellBlock& block = body.space->facets[place.block];
   std::vector<std::pair<Index, Three>> result;
   for (const std::vector<int>& vertices : node_vertices(block.shape, body.space->degree)) {
@@ -164,7 +163,7 @@ AnchorDirections BodyPairing::Implementation::normals_seen(bool at_facets) const
     for (const Index anchor : anchors) result.try_emplace(anchor, Three::Zero()).first->second += sum;
   }
   for (auto& [anchor, sum] : result) {
-    if (!at_facets) take_across_axis(body, anchor, sum);
+    if (!at_facets) remove_radial_part(body, anchor, sum);
     sum.normalize();
   }
   return result;
@@ -175,7 +174,7 @@ Three BodyPairing::Implementation::normal_between_nodes(const SegmentFinder::Hit
                                                         const std::map<Index, AreaSum>& areas) const {
   Matrix values;
   map.hats(hit.facet, hit.local, values);
-  const PlaceInBlocks place = locate_facet(*body.space, hit.facet);
+  const IndexInBlocks place = locate_facet(*body.space, hit.facet);
   const Index* const nodes = body.space->facets[place.block].cell(place.local);
   Three normal = Three::Zero();
   for (Index k = 0; k < values.rows(); ++k) {
@@ -211,8 +210,8 @@ Three BodyPairing::Implementation::middle_direction(const Three& at, const Three
   return direction && (*direction - own_direction).norm() > same_direction ? *direction : own_direction;
 }
 
-void BodyPairing::Implementation::take_functions(const MultiplierSpace& space, const AnchorDirections& directions,
-                                                 BodyContact& result) const {
+void BodyPairing::Implementation::make_mortar_points(const MultiplierSpace& space, const AnchorDirections& directions,
+                                                     BodyContact& result) const {
   PairIntegration integration(body, map, own, finder, space, directions);
   for (std::size_t k = 0; k < own.facets().size(); ++k) {
     if (faces(k)) integration.add_facet(static_cast<int>(k), normal_of(k), direct[k]);
@@ -234,8 +233,8 @@ void BodyPairing::Implementation::take_functions(const MultiplierSpace& space, c
 }
 
 /// Nodal forces: pairs each node with its projection onto the other surface.
-void BodyPairing::Implementation::take_nodes_as_points(const MultiplierSpace& space, const AnchorDirections& directions,
-                                                       BodyContact& result) const {
+void BodyPairing::Implementation::make_nodal_points(const MultiplierSpace& space, const AnchorDirections& directions,
+                                                    BodyContact& result) const {
   constexpr double at_node = 1e-6;
   for (Multiplier multiplier : space.multipliers()) {
     const BodyContact::Node facing = surfaces.node_facing(multiplier.node, true, directions.at(multiplier.node));
@@ -266,7 +265,7 @@ void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) 
   double height = std::numeric_limits<double>::infinity();
   for (const FacetSurface::Facet& facet : own.facets()) height = std::min(height, facet.height);
   const auto closes = [&](double gap) { return gap < 0.0 && (pair.closed_gaps || gap > -rounding_of_files * height); };
-  PairFacing& facing = result.facing;
+  PairingSummary& facing = result.facing;
   facing.points = static_cast<Index>(result.multipliers.size());
   for (std::size_t i = 0; i < result.multipliers.size(); ++i) {
     PointConditions& point = result.conditions[i];
@@ -320,9 +319,9 @@ BodyContact BodyPairing::make(const MultiplierSpace& space, const FreeComponent&
   const bool at_facets = anchor_of(own.pair.multipliers) == MultiplierAnchor::facet;
   const AnchorDirections directions = own.find_directions(at_facets, result.facing);
   if (space.has_functions()) {
-    own.take_functions(space, directions, result);
+    own.make_mortar_points(space, directions, result);
   } else {
-    own.take_nodes_as_points(space, directions, result);
+    own.make_nodal_points(space, directions, result);
   }
   own.leave_out_held(is_free, result);
   result.nodes = nodes_of_points(own.surfaces, own.direct, at_facets ? AnchorDirections{} : directions, result);

@@ -28,7 +28,7 @@ struct PointConditions {
 };
 
 /// Statistics of the pairing of two groups, for messages.
-struct PairFacing {
+struct PairingSummary {
   Index points = 0;                  ///< number of contact points
   Index uncovered = 0;               ///< number of multipliers that face nothing
   Index held = 0;                    ///< number of multipliers constrained by supports on both sides
@@ -44,7 +44,7 @@ struct PairFacing {
 };
 
 /// Throws Error(invalid_input) if facets fold so sharply around a node that their normals have no mean.
-void refuse_fold(const ContactPair& pair, const PairFacing& facing);
+void refuse_fold(const ContactPair& pair, const PairingSummary& facing);
 
 /// Contact points of one pair of groups, and the nodes on both sides.
 struct BodyContact {
@@ -60,7 +60,7 @@ struct BodyContact {
   std::vector<Node> nodes;                  ///< nodes of the own side, then those of the other side, ascending
   /// Pressure recovery on the other side: entries (node, number of the multiplier, value).
   std::vector<Eigen::Triplet<double>> opposite_recovery;
-  PairFacing facing;
+  PairingSummary facing;
 
   /// Removes the multipliers, with their conditions, for which `keeps(multiplier, conditions)` is false; returns their
   /// number. The order is preserved.

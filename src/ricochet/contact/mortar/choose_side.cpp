@@ -8,7 +8,7 @@
 #include <map>
 
 #include "ricochet/contact/mortar/facet_surface.hpp"
-#include "ricochet/contact/mortar/touching_turns.hpp"
+#include "ricochet/contact/mortar/normal_variation.hpp"
 
 namespace ricochet {
 
@@ -42,7 +42,7 @@ constexpr double largest_bend = 0.26 * 3.14159265358979323846;
 double curvature_of(const Body& body, const FacetSurface& surface, double most) {
   std::map<Index, std::vector<std::size_t>> around;
   for (std::size_t k = 0; k < surface.facets().size(); ++k) {
-    const PlaceInBlocks place = place_in_blocks(body.mesh->facets, surface.facets()[k].number);
+    const IndexInBlocks place = locate_in_blocks(body.mesh->facets, surface.facets()[k].number);
     const CellBlock& block = body.mesh->facets[place.block];
     for (int v = 0; v < vertex_count(block.shape); ++v) around[block.cell(place.local)[v]].push_back(k);
   }
@@ -95,7 +95,7 @@ double distance_from_curved(const Body& body, const ContactPair& pair) {
 
 std::optional<SideDoubt> doubt_side(const Body& body, const ContactPair& pair) {
   if (pair.tied || pair.is_self()) return std::nullopt;
-  const TouchingTurns turns = touching_turns(body, pair.facets, pair.opposite_facets);
+  const NormalVariation turns = normal_variation(body, pair.facets, pair.opposite_facets);
   if (!(turns.own_of_bends > doubtful_turn)) return std::nullopt;
   const double least = std::min(turns.own_of_bends, turns.opposite_of_bends);
   return SideDoubt{turns.own_of_bends, turns.opposite_of_bends,
@@ -109,7 +109,8 @@ SideChoice choose_side(const Body& body, const ContactPair& pair) {
     return SideChoice{
         opposite, fmt::format("{} ({:.3g} against {:.3g})", what, opposite ? others : own, opposite ? own : others)};
   };
-  const TouchingTurns turns = pair.tied ? TouchingTurns{} : touching_turns(body, pair.facets, pair.opposite_facets);
+  const NormalVariation turns =
+      pair.tied ? NormalVariation{} : normal_variation(body, pair.facets, pair.opposite_facets);
   // Normals vary most at edges, and it is not known beforehand which edges come into contact: edges are excluded if the
   // forces would be inaccurate even without them.
   const bool by_bends = std::max(turns.own_of_bends, turns.opposite_of_bends) > doubtful_turn;

@@ -13,7 +13,7 @@ struct SideChoice {
   std::string reason;     ///< "its mesh is finer (0.1 against 0.25)"
 };
 
-/// Selects the side with the smaller variation of normals within its facets (touching_turns.hpp): gaps are means over
+/// Selects the side with the smaller variation of normals within its facets (normal_variation.hpp): gaps are means over
 /// facets, and forces of surfaces that slide far have the normals of the other side, so that a round side carries the
 /// multipliers against a flat one, unless its facets are twice as large. If the variations are alike, and for tied
 /// surfaces, it selects the side with the finer mesh: the number of conditions then matches the resolution of the

@@ -61,7 +61,7 @@ FacetSurface::FacetSurface(const Body& body, const std::vector<Index>& facets, c
   for (std::size_t k = 0; k < facets.size(); ++k) {
     add_facet(body, facets[k], cells_[k]);
     const double height = facets_.back().height = heights[k];
-    const PlaceInBlocks place = locate_facet(*body.space, facets[k]);
+    const IndexInBlocks place = locate_facet(*body.space, facets[k]);
     const CellBlock& block = body.space->facets[place.block];
     for (int i = 0; i < block.nodes_per_cell; ++i) {
       double& least = node_height_.try_emplace(block.cell(place.local)[i], height).first->second;
@@ -103,7 +103,7 @@ void FacetSurface::place(Facet& facet) {
 
 void FacetSurface::add_facet(const Body& body, Index number, Index cell) {
   const Mesh& mesh = *body.mesh;
-  const PlaceInBlocks place = place_in_blocks(mesh.facets, number), behind = place_in_blocks(mesh.cells, cell);
+  const IndexInBlocks place = locate_in_blocks(mesh.facets, number), behind = locate_in_blocks(mesh.cells, cell);
   const CellBlock& block = mesh.facets[place.block];
   Three moved = Three::Zero(), inside = Three::Zero();
   moved.head(mesh.dimension) = shift_;

@@ -28,7 +28,7 @@ class FacetSurface {
     Three area_vector{0, 0, 0};  ///< ∫ N over the pieces, out of the body: a length in 2D, an area in 3D
     Three centre{0, 0, 0};       ///< the mean of its vertices
     double size = 0.0;           ///< the longest distance between corners
-    double height = 0.0;         ///< of the cell behind it, or as set by take_heights()
+    double height = 0.0;         ///< of the cell behind it, or as set by set_depths()
   };
 
   /// `facets`: numbered through all blocks, ascending. Their positions are displaced by `shift` (d; zero if empty).
@@ -40,7 +40,7 @@ class FacetSurface {
   void move(const Points& nodes);
 
   /// Sets the depth of the body behind each facet, if it is known better than by the height of its cell.
-  void take_heights(const std::vector<double>& heights) {
+  void set_depths(const std::vector<double>& heights) {
     for (std::size_t k = 0; k < facets_.size(); ++k) facets_[k].height = heights[k];
   }
 

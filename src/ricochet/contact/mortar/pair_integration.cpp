@@ -67,7 +67,7 @@ void PairIntegration::add_segments(int facet, const FacetSegments& segments, con
     const Index count = segment.weights.size();
     map_.displacement(segment.opposite, segment.opposite_local, values);
     map_.positions(segment.opposite, segment.opposite_local, positions);
-    const PlaceInBlocks place = locate_facet(*body_.space, segment.opposite);
+    const IndexInBlocks place = locate_facet(*body_.space, segment.opposite);
     const Index* const nodes = body_.space->facets[place.block].cell(place.local);
     const Matrix opposite = weighted.middleCols(begin, count) * values.transpose();
     const Points apart = at.positions.middleCols(begin, count) - positions;
@@ -91,7 +91,7 @@ void PressureTransfer::add_facet(Index facet, const FacetSegments& direct) {
   for (const SurfaceSegment& segment : direct.segments) {
     const Index count = segment.weights.size();
     map_.hats(segment.opposite, segment.opposite_local, hats_);
-    const PlaceInBlocks place = locate_facet(*body_.space, segment.opposite);
+    const IndexInBlocks place = locate_facet(*body_.space, segment.opposite);
     const Index* const nodes = body_.space->facets[place.block].cell(place.local);
     const Matrix weighted = hats_ * points_.quadrature.measure.segment(begin, count).asDiagonal();
     const Matrix products = weighted * points_.hats.middleCols(begin, count).transpose();

@@ -14,7 +14,7 @@ PressureRows rows_between_vertices(const PairedSurfaces& surfaces, const Pressur
   PressureRows middles;
   const DisplacementSpace& space = *surfaces.body.space;
   for (const FacetSurface::Facet& facet : surfaces.opposite.facets()) {
-    const PlaceInBlocks place = locate_facet(space, facet.number);
+    const IndexInBlocks place = locate_facet(space, facet.number);
     const CellBlock& block = space.facets[place.block];
     const auto& vertices_of = node_vertices(block.shape, space.degree);
     for (std::size_t k = 0; k < vertices_of.size(); ++k) {

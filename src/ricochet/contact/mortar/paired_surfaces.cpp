@@ -22,7 +22,7 @@ int segment_degree(const Body& body) {
 
 }  // namespace
 
-void take_across_axis(const Body& body, Index node, Eigen::Vector3d& vector) {
+void remove_radial_part(const Body& body, Index node, Eigen::Vector3d& vector) {
   if (is_on_axis(body, node)) vector[0] = 0.0;
 }
 
@@ -50,7 +50,7 @@ std::map<Index, AreaSum> areas_around_nodes(const Body& body, const FacetSurface
   std::map<Index, AreaSum> result;
   for (const FacetSurface::Facet& facet : surface.facets()) {
     if (only != nullptr && !only->contains(facet.number)) continue;
-    const PlaceInBlocks place = locate_facet(*body.space, facet.number);
+    const IndexInBlocks place = locate_facet(*body.space, facet.number);
     const CellBlock& block = body.space->facets[place.block];
     for (int k = 0; k < block.nodes_per_cell; ++k) {
       AreaSum& sum = result[block.cell(place.local)[k]];
@@ -58,7 +58,7 @@ std::map<Index, AreaSum> areas_around_nodes(const Body& body, const FacetSurface
       sum.size += facet.area;
     }
   }
-  for (auto& [node, sum] : result) take_across_axis(body, node, sum.vector);
+  for (auto& [node, sum] : result) remove_radial_part(body, node, sum.vector);
   return result;
 }
 
@@ -87,7 +87,7 @@ BodyContact::Node PairedSurfaces::node_facing(Index node, bool is_own, const Thr
   if (hit.facet < 0) return result;
   Matrix values;
   map.displacement(hit.facet, hit.local, values);
-  const PlaceInBlocks place = locate_facet(*body.space, hit.facet);
+  const IndexInBlocks place = locate_facet(*body.space, hit.facet);
   const Index* const nodes = body.space->facets[place.block].cell(place.local);
   Vector seen = body.space->nodes.col(node);
   std::map<Index, double> sums;

@@ -19,7 +19,7 @@ using NodeWeights = std::vector<std::pair<Index, double>>;
 
 /// Removes from the area vector at a node on the axis of an axisymmetric body the component that the mirror image
 /// cancels, and leaves the axial one. Does nothing at other nodes.
-void take_across_axis(const Body& body, Index node, Eigen::Vector3d& vector);
+void remove_radial_part(const Body& body, Index node, Eigen::Vector3d& vector);
 
 /// Facets (numbered through all blocks) around each node of the displacement.
 using FacetsAround = std::map<Index, std::vector<Index>>;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ricochet/mesh/search/seen_piece.hpp"
+#include "ricochet/mesh/search/projected_piece.hpp"
 
 namespace ricochet {
 
@@ -46,8 +46,8 @@ struct SegmentFinder::View {
   }
   [[nodiscard]] PlanePoint seen(const Three& point) const { return {first.dot(point), second.dot(point)}; }
 
-  [[nodiscard]] SeenPiece flatten(const FacetSurface::Piece& piece) const {
-    SeenPiece flat;
+  [[nodiscard]] ProjectedPiece flatten(const FacetSurface::Piece& piece) const {
+    ProjectedPiece flat;
     std::array<double, 3> heights{};
     for (std::size_t k = 0; k < 3; ++k) {
       flat.corners[k] = seen(piece.corners[k]);
@@ -75,8 +75,8 @@ struct SegmentFinder::View {
 /// Intersection of the projections of an own and an opposite piece.
 struct SegmentFinder::Cut {
   int own_piece, opposite_piece;
-  SeenPiece own, opposite;
-  SeenPolygon common;  ///< in 2D from corner 0 to corner 1
+  ProjectedPiece own, opposite;
+  ProjectedPolygon common;  ///< in 2D from corner 0 to corner 1
   double area = 0.0;
   [[nodiscard]] double gap_at(const PlanePoint& at) const { return own.height_at(at) - opposite.height_at(at); }
 };
@@ -106,7 +106,7 @@ SegmentFinder::SegmentFinder(const FacetMap& map, const FacetSurface& own, const
 void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std::vector<Cut>& cuts) const {
   const FacetSurface::Piece& piece = own_.pieces()[static_cast<std::size_t>(number)];
   if (-view.direction.dot(piece.normal) < edge_on) return;
-  const SeenPiece own = view.flatten(piece);
+  const ProjectedPiece own = view.flatten(piece);
   BoxTree::Box seen;  // plane coordinates and height
   for (const Three& corner : piece.corners) {
     const PlanePoint at = view.seen(corner);
@@ -124,7 +124,7 @@ void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std:
     if (view.direction.dot(candidate.normal) < edge_on || piece.normal.dot(candidate.normal) >= 0.0) return;
     if (!unseen_.empty() && is_among(unseen_[static_cast<std::size_t>(piece.facet)], candidate.facet)) return;
     Cut cut{number, other, own, view.flatten(candidate), {}, 0.0};
-    cut.common = common_part(own, cut.opposite, view.plane);
+    cut.common = intersect(own, cut.opposite, view.plane);
     if (cut.common.count == 0) return;
     cut.area = cut.common.area();
     if (!(cut.area > sliver * std::min(own.area, cut.opposite.area))) return;
@@ -236,7 +236,7 @@ SegmentFinder::Hit SegmentFinder::find_point(const Three& point, const Three& di
   const double height = direction.dot(point);
   Hit best;
   int best_piece = -1;
-  visit_pieces_at(view, at, beyond, [&](int number, const FacetSurface::Piece& piece, const SeenPiece& flat) {
+  visit_pieces_at(view, at, beyond, [&](int number, const FacetSurface::Piece& piece, const ProjectedPiece& flat) {
     const double gap = height - flat.height_at(at);
     if (gap < -reach || is_among(unseen, piece.facet) || !flat.covers(at, view.plane, beyond)) return;
     const bool is_nearer = best_piece < 0 || std::abs(gap) < std::abs(best.gap) ||
@@ -262,7 +262,7 @@ double SegmentFinder::thickness_behind(int facet) const {
   const PlanePoint at = view.seen(own.centre);
   const double height = direction.dot(own.centre);
   double nearest = std::numeric_limits<double>::infinity();
-  visit_pieces_at(view, at, on_rim, [&](int, const FacetSurface::Piece&, const SeenPiece& flat) {
+  visit_pieces_at(view, at, on_rim, [&](int, const FacetSurface::Piece&, const ProjectedPiece& flat) {
     const double behind = flat.height_at(at) - height;
     if (behind > 0.0 && flat.covers(at, view.plane, on_rim)) nearest = std::min(nearest, behind);
   });

@@ -137,7 +137,7 @@ TiedSurface tie_surfaces(const Body& body, const ContactPair& pair, const std::f
     const double distance = apart.norm() / own.height_at(tie.node);
     if (distance <= result.farthest_in_heights) continue;
     result.farthest_in_heights = distance;
-    result.farthest_place = body.space->nodes.col(tie.node);
+    result.farthest_position = body.space->nodes.col(tie.node);
   }
   return result;
 }

@@ -10,11 +10,11 @@ namespace ricochet {
 
 struct TiedSurface {
   std::vector<TiedNodes::Tie> ties;
-  PairFacing facing;
+  PairingSummary facing;
   /// Largest distance between the surfaces at a tied node, relative to the height of the
   /// cell behind it, and its location.
   double farthest_in_heights = 0.0;
-  Vector farthest_place;
+  Vector farthest_position;
 };
 
 /// With dual multipliers the mortar conditions C u_s = M̂ u_m are solved node by node where facets are

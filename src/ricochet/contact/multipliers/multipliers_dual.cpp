@@ -35,7 +35,7 @@ class DualMultipliers final : public MultiplierSpace {
     if (space.degree == 1) return;
     for (const ContactPatch::Part& part : patch.parts) {
       for (const Index facet : part.facets) {
-        const PlaceInBlocks place = locate_facet(space, facet);
+        const IndexInBlocks place = locate_facet(space, facet);
         const CellBlock& block = space.facets[place.block];
         const Index* nodes = block.cell(place.local);
         if (block.shape != CellShape::triangle && !ends_on_axis(nodes)) continue;

@@ -27,7 +27,7 @@ Vector nodal_weights(const Body& body, const std::vector<Index>& facets) {
 std::map<Index, std::vector<Index>> middle_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
   std::map<Index, std::vector<Index>> middles;
   for (const Index facet : facets) {
-    const PlaceInBlocks place = locate_facet(space, facet);
+    const IndexInBlocks place = locate_facet(space, facet);
     const CellBlock& block = space.facets[place.block];
     const Index* nodes = block.cell(place.local);
     const auto& support = node_vertices(block.shape, space.degree);

@@ -29,7 +29,7 @@ class P1Multipliers final : public MultiplierSpace {
     std::vector<Eigen::Triplet<double>> result;
     for (const ContactPatch::Part& part : patch().parts) {
       for (const Index facet : part.facets) {
-        const PlaceInBlocks place = locate_facet(space, facet);
+        const IndexInBlocks place = locate_facet(space, facet);
         const CellBlock& block = space.facets[place.block];
         const Index* nodes = block.cell(place.local);
         const auto& vertices_of = node_vertices(block.shape, space.degree);

@@ -54,7 +54,7 @@ MovingSurfaces::MovingSurfaces(const Body& body, const std::vector<Index>& facet
   moved_by_.setZero(body.space->dof_count());
 }
 
-void MovingSurfaces::see_itself() {
+void MovingSurfaces::enable_self_contact() {
   const DisplacementSpace& space = *body_.space;
   std::vector<std::vector<Index>> nodes_of;
   std::map<Index, std::vector<int>> at_node;
@@ -80,11 +80,11 @@ void MovingSurfaces::see_itself() {
     const double through = finder_.thickness_behind(facet);
     depths.push_back(std::isfinite(through) ? squeezed * through : height);
   }
-  for (const auto& [node, facets] : at_node) unseen_from_[node] = widen(facets);
+  for (const auto& [node, facets] : at_node) ignored_facets_of_[node] = widen(facets);
   facets_at_ = std::move(at_node);
   finder_.leave_out(std::move(unseen));
-  own_.take_heights(depths);
-  opposite_.take_heights(depths);
+  own_.set_depths(depths);
+  opposite_.set_depths(depths);
 }
 
 double MovingSurfaces::depth_at(Index node) const {
@@ -95,10 +95,10 @@ double MovingSurfaces::depth_at(Index node) const {
   return least;
 }
 
-const std::vector<int>& MovingSurfaces::unseen_from(Index node) const {
+const std::vector<int>& MovingSurfaces::ignored_facets_of(Index node) const {
   static const std::vector<int> none;
-  const auto known = unseen_from_.find(node);
-  return known != unseen_from_.end() ? known->second : none;
+  const auto known = ignored_facets_of_.find(node);
+  return known != ignored_facets_of_.end() ? known->second : none;
 }
 
 void MovingSurfaces::move(const Vector& displacement) {

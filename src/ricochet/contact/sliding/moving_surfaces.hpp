@@ -20,7 +20,7 @@ class MovingSurfaces {
 
   /// Prepares a surface for contact with itself: facets ignore those within two rings around them, and
   /// those on the far side of the body.
-  void see_itself();
+  void enable_self_contact();
 
   [[nodiscard]] const FacetMap& map() const { return map_; }
   [[nodiscard]] const FacetSurface& own() const { return own_; }
@@ -32,7 +32,7 @@ class MovingSurfaces {
   /// Least depth of the body behind the facets around a node of the own surface.
   [[nodiscard]] double depth_at(Index node) const;
   /// Facets of the opposite surface that a node of the own one ignores, by index; none if there are two surfaces.
-  [[nodiscard]] const std::vector<int>& unseen_from(Index node) const;
+  [[nodiscard]] const std::vector<int>& ignored_facets_of(Index node) const;
   /// Multiplies values, one per column, by the ratio of reference to current areas.
   void scale_to_reference(Index facet, const Points& local, Matrix& values) const;
 
@@ -44,8 +44,8 @@ class MovingSurfaces {
   FacetSurface own_, opposite_;
   SegmentFinder finder_;
   std::vector<Index> nodes_;
-  std::map<Index, std::vector<int>> facets_at_;    ///< per node; empty if there are two surfaces
-  std::map<Index, std::vector<int>> unseen_from_;  ///< per node; empty if there are two surfaces
+  std::map<Index, std::vector<int>> facets_at_;          ///< per node; empty if there are two surfaces
+  std::map<Index, std::vector<int>> ignored_facets_of_;  ///< per node; empty if there are two surfaces
   Vector moved_by_;
 };
 

@@ -48,7 +48,7 @@ Eigen::Vector3d momentum_of(const Places& places, const Eigen::Vector3d& middle,
 
 }  // namespace
 
-void take_off_rigid_part(const Places& places, bool plane, Places& motions) {
+void remove_rigid_part(const Places& places, bool plane, Places& motions) {
   if (places.empty()) return;
   const Eigen::Vector3d middle = mean_of(places), drift = mean_of(motions);
   for (Eigen::Vector3d& motion : motions) motion -= drift;

@@ -4,20 +4,20 @@
 #include <cmath>
 #include <limits>
 
-#include "ricochet/contact/sliding/apart_pairs.hpp"
-#include "ricochet/contact/sliding/row_places.hpp"
-#include "ricochet/contact/sliding/seen_points.hpp"
+#include "ricochet/contact/sliding/broad_phase.hpp"
+#include "ricochet/contact/sliding/pair_views.hpp"
 #include "ricochet/contact/sliding/sliding_couples.hpp"
 #include "ricochet/contact/sliding/sliding_rows.hpp"
+#include "ricochet/contact/sliding/surface_displacements.hpp"
 #include "ricochet/fem/displacement_space.hpp"
 
 namespace ricochet {
 
 namespace {
 
-using Seen = SeenPoints;
+using Seen = PairViews;
 using SlidingNode = SlidingContactData::Node;
-using Choice = ChosenPoints::Choice;
+using Choice = SelfContactSelection::Choice;
 
 /// Overlap, relative to the size of the model, above which it is not rounding error.
 constexpr double least_overlap = 1e-12;
@@ -44,16 +44,16 @@ class SlidingContact final : public ContactGeometry {
     apart_.move(displacement, start);
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
       if (seen_[k].is_apart && (is_held_ || apart_.are_apart(k))) {
-        for (const SlidingPair::Point& point : data_.pairs[k]->points()) gap[point.number] = data_.out_of_sight;
+        for (const SlidingPair::Point& point : data_.pairs[k]->points()) gap[point.number] = data_.unpaired_gap;
         continue;
       }
       if (is_held_) {
-        take_held_gaps(k, displacement, gap);
+        compute_frozen_gaps(k, displacement, gap);
         continue;
       }
       if (seen_[k].is_apart && start != nullptr) look_at_start(k, *start);
       // Forces may move points farther in the step than predicted when the rows were computed.
-      if (is_step_ && seen_[k].has_start) find_far(k, longest_way(*data_.pairs[k], displacement, seen_[k].start_at));
+      if (is_step_ && seen_[k].has_start) find_far(k, largest_motion(*data_.pairs[k], displacement, seen_[k].start_at));
       look_at_gaps(k, displacement);
       for (std::size_t i = 0; i < data_.pairs[k]->points().size(); ++i) gap[number(k, i)] = gap_of(seen_[k], i);
     }
@@ -78,7 +78,7 @@ class SlidingContact final : public ContactGeometry {
 
   void update(const Vector& displacement, double, const StepStart* start, ContactRows& rows) const override {
     if (is_held_ && start != nullptr) return;
-    take_choices(rows.places);
+    restore_selection(rows.places);
     at_update_ = displacement;
     is_step_ = start != nullptr;
     if (is_step_) start_at_update_ = start->displacement;
@@ -107,7 +107,7 @@ class SlidingContact final : public ContactGeometry {
     is_held_ = false;
     if (is_step_ && !has_told_) warn_of_long_step();
   }
-  [[nodiscard]] bool has_held() const override { return has_held_; }
+  [[nodiscard]] bool has_frozen() const override { return has_held_; }
 
   void allow_overlap(Vector& gap) const override {
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
@@ -164,7 +164,7 @@ class SlidingContact final : public ContactGeometry {
   }
   [[nodiscard]] double gap_of(const Seen& seen, std::size_t point) const {
     const SlidingView& view = seen.is_far(point) ? seen.at_start[point] : seen.gaps[point];
-    return view.faces ? view.gap : data_.out_of_sight;
+    return view.faces ? view.gap : data_.unpaired_gap;
   }
   [[nodiscard]] const SlidingNode* find_node(Index entry) const {
     const auto found = std::lower_bound(data_.nodes.begin(), data_.nodes.end(), entry,
@@ -176,7 +176,7 @@ class SlidingContact final : public ContactGeometry {
   }
 
   /// Continues the selection from that of the rows, even if other rows were computed in between.
-  void take_choices(const Vector& places) const {
+  void restore_selection(const Vector& places) const {
     Index at = places_.count();
     for (Seen& seen : seen_) {
       if (!seen.chosen || places.size() == 0) continue;
@@ -200,7 +200,7 @@ class SlidingContact final : public ContactGeometry {
   }
 
   /// Computes gaps linearized about the last update.
-  void take_held_gaps(std::size_t k, const Vector& displacement, Vector& gap) const {
+  void compute_frozen_gaps(std::size_t k, const Vector& displacement, Vector& gap) const {
     const Seen& seen = seen_[k];
     const Index d = dimension();
     for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
@@ -256,7 +256,7 @@ class SlidingContact final : public ContactGeometry {
 
   void warn_of_long_step() const {
     for (const auto& pair : data_.pairs)
-      has_told_ = has_told_ || warn_of_blind_step(*pair, at_update_, start_at_update_);
+      has_told_ = has_told_ || warn_of_undetected_contact(*pair, at_update_, start_at_update_);
   }
 
   /// Rows of surfaces that are far apart are those of planes perpendicular to the initial normals, at any displacement.
@@ -266,7 +266,7 @@ class SlidingContact final : public ContactGeometry {
     if (was_apart) return;
     const SlidingPair& pair = *data_.pairs[k];
     for (std::size_t i = 0; i < pair.points().size(); ++i) {
-      rows.gap[number(k, i)] = data_.out_of_sight;
+      rows.gap[number(k, i)] = data_.unpaired_gap;
       rows.gap_rounding[number(k, i)] = rounding(pair.points()[i], at_rest_);
       writer_.write_plane(pair.points()[i], pair.normal(i, at_rest_), rows);
     }
@@ -278,7 +278,7 @@ class SlidingContact final : public ContactGeometry {
     seen.is_apart = false;
     if (start != nullptr) {
       look_at_start(k, start->displacement);
-      find_far(k, longest_way(pair, displacement, start->displacement));
+      find_far(k, largest_motion(pair, displacement, start->displacement));
     } else {
       seen.any_depth.clear();
       seen.has_start = seen.has_gaps = false;
@@ -370,8 +370,8 @@ class SlidingContact final : public ContactGeometry {
   double extent_;
   Vector at_rest_;                  ///< zero displacement
   mutable std::vector<Seen> seen_;  ///< per pair
-  mutable ApartPairs apart_;
-  RowPlaces places_;
+  mutable BroadPhase apart_;
+  SurfaceDisplacements places_;
   mutable SlidingRows writer_;
   mutable Vector at_update_, start_at_update_, gap_at_update_;  ///< of the last update
   mutable bool is_held_ = false, was_held_ = false;             ///< the latter until the next step begins

@@ -28,13 +28,13 @@ struct SlidingContactData {
     Index entry = 0;  ///< in the contact boundary's nodes
     Index node = 0;
     std::size_t pair = 0;
-    TurningNormal normal;
+    RotatingNormal normal;
   };
   std::vector<std::unique_ptr<SlidingPair>> pairs;
   std::vector<Node> nodes;  ///< of own surfaces, ascending by entry
   Points node_positions;    ///< reference positions of all nodes
   Points node_normals;      ///< of the contact boundary's nodes, at the start
-  double out_of_sight = 0;  ///< the gap of a point that faces nothing
+  double unpaired_gap = 0;  ///< the gap of a point that faces nothing
 };
 
 [[nodiscard]] std::unique_ptr<ContactGeometry> make_sliding_contact(SlidingContactData data);

@@ -68,7 +68,7 @@ struct SlidingPair::Implementation {
   double sight = least_height;  ///< see SlidingPair::sight()
   /// Per own facet, in the order of the space's anchors there: number of the point, or −1.
   std::vector<std::vector<int>> points_of;
-  std::vector<TurningNormal> normals;  ///< per own facet, into its body
+  std::vector<RotatingNormal> normals;  ///< per own facet, into its body
   // State of the current evaluation.
   mutable Vector looked_at;
   mutable std::vector<Sums> sums;
@@ -88,7 +88,7 @@ struct SlidingPair::Implementation {
     for (const FacetSurface* const surface : {&surfaces.own(), &surfaces.opposite()}) {
       for (const FacetSurface::Facet& facet : surface->facets()) least_height = std::min(least_height, facet.height);
     }
-    if (is_self) surfaces.see_itself();
+    if (is_self) surfaces.enable_self_contact();
     for (const FacetSurface::Facet& facet : surfaces.own().facets())
       sight = std::min(sight, deepest_overlap * facet.height);
     find_points_of_facets();
@@ -119,17 +119,18 @@ struct SlidingPair::Implementation {
     }
   }
 
-  void look_from(int facet, Wanted wanted, const std::vector<char>& left_out, const std::vector<char>& any_depth,
-                 std::vector<SlidingView>& views) const;
+  void integrate_from(int facet, Wanted wanted, const std::vector<char>& left_out, const std::vector<char>& any_depth,
+                      std::vector<SlidingView>& views) const;
   void integrate(int facet, const FacetSegments& segments, const SlidingVector& n, Wanted wanted,
                  std::vector<SlidingView>& views) const;
-  void turn_with_facet(int facet, const SlidingVector& n, std::vector<SlidingView>& views) const;
+  void add_normal_derivative(int facet, const SlidingVector& n, std::vector<SlidingView>& views) const;
   void finish(std::size_t point, Wanted wanted, SlidingView& view) const;
 };
 
 /// Integrates once for the points that do not admit deep overlaps, and once for those that do.
-void SlidingPair::Implementation::look_from(int facet, Wanted wanted, const std::vector<char>& left_out,
-                                            const std::vector<char>& any_depth, std::vector<SlidingView>& views) const {
+void SlidingPair::Implementation::integrate_from(int facet, Wanted wanted, const std::vector<char>& left_out,
+                                                 const std::vector<char>& any_depth,
+                                                 std::vector<SlidingView>& views) const {
   const std::vector<int>& here = points_of[static_cast<std::size_t>(facet)];
   for (const bool deep : {false, true}) {
     takes_part.assign(here.size(), 0);
@@ -160,7 +161,7 @@ void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segm
   for (const SurfaceSegment& segment : segments.segments) {
     const PolynomialMap<3> map = surfaces.map().map_of(segment.opposite);
     surfaces.map().displacement(segment.opposite, segment.opposite_local, shapes);
-    const PlaceInBlocks place = locate_facet(*data.body.space, segment.opposite);
+    const IndexInBlocks place = locate_facet(*data.body.space, segment.opposite);
     const Index* const nodes = data.body.space->facets[place.block].cell(place.local);
     for (Index q = 0; q < segment.weights.size(); ++q) {
       const PolynomialMap<3>::Place seen = map.evaluate(segment.opposite_local.col(q).data());
@@ -192,12 +193,12 @@ void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segm
     }
     begin += segment.weights.size();
   }
-  if (wanted == Wanted::row) turn_with_facet(facet, n, views);
+  if (wanted == Wanted::row) add_normal_derivative(facet, n, views);
 }
 
 /// Adds −(∂n/∂x)ᵀ ∫ψ h ν/(n·ν).
-void SlidingPair::Implementation::turn_with_facet(int facet, const SlidingVector& n,
-                                                  std::vector<SlidingView>& views) const {
+void SlidingPair::Implementation::add_normal_derivative(int facet, const SlidingVector& n,
+                                                        std::vector<SlidingView>& views) const {
   const std::vector<int>& here = points_of[static_cast<std::size_t>(facet)];
   const double length = turning[static_cast<std::size_t>(facet)].norm();
   for (std::size_t k = 0; k < here.size(); ++k) {
@@ -290,7 +291,7 @@ void SlidingPair::look(const Vector& displacement, Wanted wanted, const std::vec
     view.row.clear();
   }
   for (std::size_t facet = 0; facet < own.points_of.size(); ++facet)
-    own.look_from(static_cast<int>(facet), wanted, left_out, any_depth, views);
+    own.integrate_from(static_cast<int>(facet), wanted, left_out, any_depth, views);
   for (std::size_t i = 0; i < views.size(); ++i) own.finish(i, wanted, views[i]);
 }
 
@@ -299,11 +300,11 @@ double SlidingPair::node_gap(Index node, const SlidingVector& direction, const V
   own.surfaces.move(displacement);
   const double reach = deepest_overlap * own.surfaces.depth_at(node);
   const SegmentFinder::Hit hit = own.surfaces.finder().find_point(
-      own.surfaces.position(node), direction, reach, SegmentFinder::on_rim, own.surfaces.unseen_from(node));
+      own.surfaces.position(node), direction, reach, SegmentFinder::on_rim, own.surfaces.ignored_facets_of(node));
   return hit.facet >= 0 ? hit.gap : std::numeric_limits<double>::quiet_NaN();
 }
 
-double longest_way(const SlidingPair& pair, const Vector& to, const Vector& from) {
+double largest_motion(const SlidingPair& pair, const Vector& to, const Vector& from) {
   const Index d = pair.dimension();
   const auto way = [&](Index node) -> SpaceVector { return to.segment(node * d, d) - from.segment(node * d, d); };
   SpaceVector mean = SpaceVector::Zero(d);
@@ -316,9 +317,9 @@ double longest_way(const SlidingPair& pair, const Vector& to, const Vector& from
   return longest;
 }
 
-bool warn_of_blind_step(const SlidingPair& pair, const Vector& to, const Vector& from) {
+bool warn_of_undetected_contact(const SlidingPair& pair, const Vector& to, const Vector& from) {
   if (!pair.is_self()) return false;
-  const double longest = longest_way(pair, to, from);
+  const double longest = largest_motion(pair, to, from);
   if (2.0 * longest <= pair.sight()) return false;
   log::warning(fmt::format(
       "a surface that may touch itself moves in a step by up to {:.3g} to either side of its mean motion, and "

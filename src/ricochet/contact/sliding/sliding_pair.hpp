@@ -9,7 +9,7 @@
 
 #include "ricochet/contact/mortar/body_contact.hpp"
 #include "ricochet/contact/mortar/surface_segments.hpp"
-#include "ricochet/contact/turning_normal.hpp"
+#include "ricochet/contact/rotating_normal.hpp"
 
 /// @file Two surfaces with unlimited sliding: the pairing is found anew at every displacement.
 ///
@@ -57,7 +57,7 @@ class SlidingPair {
   struct Point {
     Index number = 0;  ///< among all contact points
     Multiplier multiplier;
-    TurningNormal normal;           ///< of the facets around it, into the body
+    RotatingNormal normal;          ///< of the facets around it, into the body
     double offset = 0.0;            ///< added to the gap
     std::array<bool, 3> is_free{};  ///< components without support
   };
@@ -111,10 +111,10 @@ class SlidingPair {
 /// Largest displacement of a node of the pair between two displacements of all nodes; for a surface in contact with
 /// itself, relative to its mean motion. It decides which of its points are active and hence which are selected, and
 /// must not depend on the frame of the observer.
-[[nodiscard]] double longest_way(const SlidingPair& pair, const Vector& to, const Vector& from);
+[[nodiscard]] double largest_motion(const SlidingPair& pair, const Vector& to, const Vector& from);
 
 /// For a surface in contact with itself: parts that approach by more than its detectable depth in one step may pass
 /// through each other undetected. Logs a warning and returns true in that case.
-bool warn_of_blind_step(const SlidingPair& pair, const Vector& to, const Vector& from);
+bool warn_of_undetected_contact(const SlidingPair& pair, const Vector& to, const Vector& from);
 
 }  // namespace ricochet

@@ -44,7 +44,7 @@ void SlidingRows::correct(SlidingView& view, std::optional<double> change, doubl
   }
   const double missing = change.value_or(std::min(product, 0.0)) - product;
   if (std::abs(missing) <= 0.25 * rounding) return;
-  take_off_rigid_part(places_, d == 2, motions_);
+  remove_rigid_part(places_, d == 2, motions_);
   double square = 0.0;
   for (const SlidingVector& motion : motions_) square += motion.squaredNorm();
   if (!(std::sqrt(square) > least_motion * std::numeric_limits<double>::epsilon() * extent_)) return;

@@ -24,9 +24,9 @@ class ContactFields final : public FieldSource {
     gap_.assign(count, 0.0);
     status_.assign(count, 0);
     add_stresses(context, "contact_pressure", "friction_traction", stresses_);
-    if (context.wants("gap")) fields_.push_back({"gap", FieldPlace::nodes, 1, false, nodes, gap_.data()});
+    if (context.wants("gap")) fields_.push_back({"gap", FieldLocation::nodes, 1, false, nodes, gap_.data()});
     if (context.wants("contact_status"))
-      fields_.push_back({"contact_status", FieldPlace::nodes, 1, true, nodes, status_.data()});
+      fields_.push_back({"contact_status", FieldLocation::nodes, 1, true, nodes, status_.data()});
     if (deforms_) add_stresses(context, "nominal_contact_pressure", "nominal_friction_traction", nominal_);
   }
 
@@ -48,9 +48,9 @@ class ContactFields final : public FieldSource {
     stresses.traction.assign(static_cast<std::size_t>(3 * nodes), 0.0);
     stresses.wanted = context.wants_any({pressure, traction});
     if (context.wants(pressure))
-      fields_.push_back({pressure, FieldPlace::nodes, 1, false, nodes, stresses.pressure.data()});
+      fields_.push_back({pressure, FieldLocation::nodes, 1, false, nodes, stresses.pressure.data()});
     if (context.wants(traction) && has_friction_)
-      fields_.push_back({traction, FieldPlace::nodes, 3, false, nodes, stresses.traction.data()});
+      fields_.push_back({traction, FieldLocation::nodes, 3, false, nodes, stresses.traction.data()});
   }
   void find_true_reactions(const State& state);
   void evaluate(const ContactRows& rows, const Vector& normal, const Vector& tangential, Stresses& stresses);
@@ -183,7 +183,7 @@ void ContactFields::evaluate_friction(const ContactRows& rows, const Vector& tan
     });
   }
   problem_.ranks->accumulate(node_traction_);
-  take_vector(space_, node_traction_, traction);
+  copy_vector(space_, node_traction_, traction);
 }
 
 }  // namespace

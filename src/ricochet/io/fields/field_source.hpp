@@ -11,12 +11,12 @@
 /// @file Fields of a frame. To add some: a file with a class and its names, and one line in registry.cpp.
 namespace ricochet {
 
-enum class FieldPlace { nodes, cells };
+enum class FieldLocation { nodes, cells };
 
 /// Field at nodes, in the order of the mesh file, or on cells, through all blocks.
 struct Field {
   std::string name;
-  FieldPlace place = FieldPlace::nodes;
+  FieldLocation place = FieldLocation::nodes;
   int components = 1;            ///< 1: scalar; 3: vector; 6: symmetric tensor, see fem/stress.hpp
   bool whole = false;            ///< integers of 32 bits (int), otherwise reals (double)
   Index rows = 0;                ///< nodes or cells
@@ -50,6 +50,6 @@ struct FieldContext {
 [[nodiscard]] std::vector<std::string> wanted_fields(const std::vector<std::string>& names);
 
 /// Copies a vector of dofs to three components per node, also in the plane, in the order of the mesh file.
-void take_vector(const DisplacementSpace& space, const Vector& values, std::vector<double>& field);
+void copy_vector(const DisplacementSpace& space, const Vector& values, std::vector<double>& field);
 
 }  // namespace ricochet

@@ -15,11 +15,11 @@ class MotionFields final : public FieldSource {
   [[nodiscard]] std::vector<Field> fields() const override {
     std::vector<Field> result;
     for (const Motion& each : motions_)
-      result.push_back({each.name, FieldPlace::nodes, 3, false, space_.node_count(), each.values.data()});
+      result.push_back({each.name, FieldLocation::nodes, 3, false, space_.node_count(), each.values.data()});
     return result;
   }
   void evaluate(const State& state) override {
-    for (Motion& each : motions_) take_vector(space_, state.*each.member, each.values);
+    for (Motion& each : motions_) copy_vector(space_, state.*each.member, each.values);
   }
 
  private:

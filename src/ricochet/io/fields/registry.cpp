@@ -61,7 +61,7 @@ std::vector<std::string> wanted_fields(const std::vector<std::string>& names) {
   return {"displacement", "velocity", "contact_pressure", "friction_traction", "gap", "contact_status", "von_mises"};
 }
 
-void take_vector(const DisplacementSpace& space, const Vector& values, std::vector<double>& field) {
+void copy_vector(const DisplacementSpace& space, const Vector& values, std::vector<double>& field) {
   const Index d = space.dimension;
   for (Index node = 0; node < space.node_count(); ++node) {
     double* const to = field.data() + 3 * space.number[static_cast<std::size_t>(node)];

@@ -13,22 +13,22 @@ class StressFields final : public FieldSource {
       : stress_of_(context.body),
         wants_nodal_(context.wants_any({"nodal_stress", "nodal_von_mises", "nodal_principal_stress"})) {
     const Index cells = context.body.mesh->cell_count(), nodes = context.body.space->node_count();
-    const auto add = [&](const char* name, FieldPlace place, int components, std::vector<double>& values) {
-      const Index rows = place == FieldPlace::cells ? cells : nodes;
+    const auto add = [&](const char* name, FieldLocation place, int components, std::vector<double>& values) {
+      const Index rows = place == FieldLocation::cells ? cells : nodes;
       const bool wanted = context.wants(name);
       values.assign(static_cast<std::size_t>(components * rows), 0.0);
       if (wanted) fields_.push_back({name, place, components, false, rows, values.data()});
       return wanted;
     };
-    add("stress", FieldPlace::cells, tensor_components, stress_);
-    wants_von_mises_ = add("von_mises", FieldPlace::cells, 1, von_mises_);
-    wants_principal_ = add("principal_stress", FieldPlace::cells, 3, principal_);
-    add("strain_energy_density", FieldPlace::cells, 1, energy_density_);
+    add("stress", FieldLocation::cells, tensor_components, stress_);
+    wants_von_mises_ = add("von_mises", FieldLocation::cells, 1, von_mises_);
+    wants_principal_ = add("principal_stress", FieldLocation::cells, 3, principal_);
+    add("strain_energy_density", FieldLocation::cells, 1, energy_density_);
     if (!wants_nodal_) return;
     nodal_ = std::make_unique<NodalStress>(context.body);
-    add("nodal_stress", FieldPlace::nodes, tensor_components, nodal_stress_);
-    wants_nodal_von_mises_ = add("nodal_von_mises", FieldPlace::nodes, 1, nodal_von_mises_);
-    wants_nodal_principal_ = add("nodal_principal_stress", FieldPlace::nodes, 3, nodal_principal_);
+    add("nodal_stress", FieldLocation::nodes, tensor_components, nodal_stress_);
+    wants_nodal_von_mises_ = add("nodal_von_mises", FieldLocation::nodes, 1, nodal_von_mises_);
+    wants_nodal_principal_ = add("nodal_principal_stress", FieldLocation::nodes, 3, nodal_principal_);
   }
 
   [[nodiscard]] std::vector<Field> fields() const override { return fields_; }

@@ -36,7 +36,7 @@ class Cylinder final : public ObstacleShape {
     return sign_ > 0.0 ? radius_ : std::numeric_limits<double>::infinity();
   }
   [[nodiscard]] SpaceVector centre() const override { return centre_; }
-  [[nodiscard]] OwnAxis own_axis() const override { return {true, axis_}; }
+  [[nodiscard]] SymmetryAxis symmetry_axis() const override { return {true, axis_}; }
 
   /// Shows a piece of it beside the body along the axis.
   [[nodiscard]] ObstacleSurface surface(const Vector& centre, double radius) const override {

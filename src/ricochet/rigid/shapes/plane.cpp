@@ -21,7 +21,9 @@ class Plane final : public ObstacleShape {
   [[nodiscard]] SpaceVector normal_of_step(const SpaceVector&, const SpaceVector&) const override { return normal_; }
   [[nodiscard]] bool is_flat() const override { return true; }
   [[nodiscard]] SpaceVector centre() const override { return point_; }
-  [[nodiscard]] OwnAxis own_axis() const override { return normal_.size() == 3 ? OwnAxis{true, normal_} : OwnAxis{}; }
+  [[nodiscard]] SymmetryAxis symmetry_axis() const override {
+    return normal_.size() == 3 ? SymmetryAxis{true, normal_} : SymmetryAxis{};
+  }
   [[nodiscard]] ObstacleSurface surface(const Vector& centre, double radius) const override {
     const Vector middle = centre - gap(centre) * normal_;
     if (normal_.size() == 2) {

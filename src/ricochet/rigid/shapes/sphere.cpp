@@ -45,7 +45,7 @@ class Sphere final : public ObstacleShape {
     const double volume = 4.0 / 3.0 * pi * square * radius_;
     return Solid{volume, centre_, 0.4 * volume * square * Matrix::Identity(3, 3)};
   }
-  [[nodiscard]] OwnAxis own_axis() const override { return {centre_.size() == 2, {}}; }
+  [[nodiscard]] SymmetryAxis symmetry_axis() const override { return {centre_.size() == 2, {}}; }
   [[nodiscard]] double least_radius() const override {
     return sign_ > 0.0 ? radius_ : std::numeric_limits<double>::infinity();
   }

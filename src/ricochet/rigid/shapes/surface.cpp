@@ -235,7 +235,7 @@ std::vector<Key> surface_keys() {
 
 void tell_of(const RigidSurface& surface, const std::string& file) {
   const char* const noun = surface.in_space() ? "triangle" : "segment";
-  if (surface.was_turned_round())
+  if (surface.was_reversed())
     log::warning(fmt::format("{}: the surface was inside out, its normals pointing inwards; all {}s were turned round",
                              file, noun));
   if (surface.joined_count() > 0)

@@ -45,7 +45,7 @@ class Torus final : public ObstacleShape {
     const Eigen::Matrix3d inertia = across * Eigen::Matrix3d::Identity() + (along - across) * axis_ * axis_.transpose();
     return Solid{volume, centre_, volume * inertia};
   }
-  [[nodiscard]] OwnAxis own_axis() const override { return {true, axis_}; }
+  [[nodiscard]] SymmetryAxis symmetry_axis() const override { return {true, axis_}; }
 
   [[nodiscard]] ObstacleSurface surface(const Vector&, double) const override {
     const Eigen::Vector3d first = axis_.unitOrthogonal(), second = axis_.cross(first);

@@ -38,7 +38,7 @@ RigidSurface::RigidSurface(const SurfaceFacets& facets, const std::string& name)
     find_normals(name);
     find_edges(name);
   }
-  if (is_closed() && volume() < 0.0) turn_round();
+  if (is_closed() && volume() < 0.0) reverse_orientation();
   std::vector<BoxTree::Box> boxes(facets_.size());
   for (std::size_t i = 0; i < facets_.size(); ++i) {
     for (int k = 0; k < corner_count(); ++k) boxes[i].extend(corner(i, k));
@@ -197,7 +197,7 @@ void RigidSurface::find_edges(const std::string& name) {
     if (edge.normal.norm() > 0.0) edge.normal.normalize();
     edge.is_border = here.size() == 1;
     if (!edge.is_border) {
-      look_at_bend(here);
+      measure_bend(here);
     } else {
       if (border_count_++ == 0) border_place_ = middle_of(here[0]);
       corner_normals_[static_cast<std::size_t>(here[0].low)].is_border = true;
@@ -210,7 +210,7 @@ void RigidSurface::find_edges(const std::string& name) {
 }
 
 /// Accumulates the width of the facets at edges that bend, and the sharpest bend.
-void RigidSurface::look_at_bend(std::span<const Side> sides) {
+void RigidSurface::measure_bend(std::span<const Side> sides) {
   const auto facet_of = [&](int k) { return static_cast<std::size_t>(sides[static_cast<std::size_t>(k)].facet); };
   const double cosine = normals_[facet_of(0)].dot(normals_[facet_of(1)]);
   constexpr double flat = 1e-12;
@@ -247,7 +247,7 @@ void RigidSurface::find_corner_normals() {
   }
 }
 
-void RigidSurface::turn_round() {
+void RigidSurface::reverse_orientation() {
   turned_round_ = true;
   for (std::size_t i = 0; i < facets_.size(); ++i) {
     std::array<int, 3>& facet = facets_[i];

@@ -43,7 +43,7 @@ class RigidSurface {
   /// Number of edges with one facet, and the midpoint of one of them.
   [[nodiscard]] long border_count() const { return border_count_; }
   [[nodiscard]] const Three& border_place() const { return border_place_; }
-  [[nodiscard]] bool was_turned_round() const { return turned_round_; }
+  [[nodiscard]] bool was_reversed() const { return turned_round_; }
   /// Number of border corners that were merged with another one closer than a millionth of the surface's size.
   [[nodiscard]] long joined_count() const { return joined_count_; }
   /// Mean width of the facets across the edges, for a smoothly curved surface that bends by at most 30 degrees at every
@@ -85,9 +85,9 @@ class RigidSurface {
   void find_edges(const std::string& name);
   void check_edge(std::span<const Side> sides, const std::string& name) const;
   [[nodiscard]] bool join_borders();
-  void look_at_bend(std::span<const Side> sides);
+  void measure_bend(std::span<const Side> sides);
   void find_corner_normals();
-  void turn_round();
+  void reverse_orientation();
   [[nodiscard]] Three middle_of(const Side& side) const;
   [[nodiscard]] std::string text_of(int facet) const;
   [[nodiscard]] std::string place_text(const Three& place) const;

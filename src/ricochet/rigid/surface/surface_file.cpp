@@ -21,7 +21,7 @@ namespace {
 constexpr int header_of_stl = 80;  ///< bytes of the binary format without a meaning
 
 std::string contents(const std::string& file, int header = 0) {
-  const std::string why_not = why_no_input(file, header);
+  const std::string why_not = unreadable_reason(file, header);
   std::ifstream stream;
   if (why_not.empty()) stream.open(file, std::ios::binary);
   if (!why_not.empty() || !stream.is_open())

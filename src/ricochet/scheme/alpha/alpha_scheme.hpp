@@ -38,8 +38,8 @@ class AlphaScheme final : public Scheme {
  public:
   AlphaScheme(double step, const AlphaWeights& weights) : Scheme(step), weights_(weights) {}
 
-  [[nodiscard]] bool changes_step() const override { return true; }
-  [[nodiscard]] bool takes_nonlinear_force() const override { return true; }
+  [[nodiscard]] bool supports_step_changes() const override { return true; }
+  [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     return {{weights_.alpha, 1.0, damping_factor(problem)}};
   }

@@ -22,7 +22,7 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
   NonsmoothGeneralizedAlpha(double step, double spectral_radius, double restitution)
       : Scheme(step), weights_(generalized_alpha_weights(step, spectral_radius)), stages_(restitution) {}
 
-  [[nodiscard]] bool changes_step() const override { return true; }
+  [[nodiscard]] bool supports_step_changes() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     return {{weights_.alpha, 1.0, 0.0}, {1.0, 0.0, 0.0}};
   }

@@ -62,7 +62,7 @@ const StageSolution& NonsmoothStages::impulses(const SemidiscreteProblem& proble
   velocity = state.velocity + step * mean;
   base_ = state.displacement + motion;
   Stage& stage = unloaded_stage(problem, velocity_stage, stages);
-  observe_obstacles(problem, base_, {end}, stage);
+  evaluate_obstacle_velocity(problem, base_, {end}, stage);
   equations_.require_impact_law(problem, base_, end, velocity, state.velocity, restitution_, step, stage);
   stage.gap_factor = 1.0;
   for (Index i = 0; i < normal_.size(); ++i) {

@@ -42,7 +42,7 @@ void CentralScheme::advance(const SemidiscreteProblem& problem, State& state, St
   equations_.balance(problem, time, now_, velocity_, stage);  // Vⁿ = (Uⁿ−Uⁿ⁻¹)/h + δ/2h
   const auto to_next = [&](Index dof, double next) { return next - (now_[dof] + ahead[dof]); };
   equations_.prescribe(problem, time + h, to_next, stage);
-  observe_obstacles(problem, now_, {time, 2.0 * h}, stage);
+  evaluate_obstacle_velocity(problem, now_, {time, 2.0 * h}, stage);
   require_contact(problem, {time, state, now_, ahead, velocity_}, stage);
 
   const StageSolution& solution = stages.solve(0);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ricochet/scheme/reduced/stick_memory.hpp"
+#include "ricochet/scheme/reduced/sticking_drift.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
 /// @file Contact conditions at the end of a step, for schemes whose contact nodes have no inertia.
@@ -18,7 +18,7 @@ class EndContact {
   }
 
  private:
-  StickMemory stick_;
+  StickingDrift stick_;
   Vector rate_;
 };
 

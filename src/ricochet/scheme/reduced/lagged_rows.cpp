@@ -30,7 +30,7 @@ void LaggedRows::start(const State& state) {
   if (known->second.size() != row_value_count(*lagged_))
     Snapshot::refuse(memory_of_rows, "has a length that is none of this problem's");
   is_new_ = false;
-  if (take_row_values(known->second, *lagged_))
+  if (set_row_values(known->second, *lagged_))
     std::fill(lagged_->revision.begin(), lagged_->revision.end(), ++revision_);
 }
 

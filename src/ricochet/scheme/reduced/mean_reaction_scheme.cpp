@@ -1,4 +1,4 @@
-#include "ricochet/scheme/reduced/end_scheme.hpp"
+#include "ricochet/scheme/reduced/end_contact_scheme.hpp"
 
 namespace ricochet {
 
@@ -10,12 +10,12 @@ namespace {
 ///   E₁ − E₀ = work of loads, supports and obstacles,
 /// contact does no work, and momenta are exact; each step has one solution, however long it is. Beyond the time in
 /// which a wave crosses a cell the end reactions alternate: reduced-kane is for such steps.
-class MeanReactionScheme final : public EndScheme {
+class MeanReactionScheme final : public EndContactScheme {
  public:
-  explicit MeanReactionScheme(double step) : EndScheme("mean-reaction", step) {}
+  explicit MeanReactionScheme(double step) : EndContactScheme("mean-reaction", step) {}
 
   void analyse(const SemidiscreteProblem& problem) override {
-    EndScheme::analyse(problem);
+    EndContactScheme::analyse(problem);
     layer().require_frictionless_planes(problem);
   }
   [[nodiscard]] LongSteps long_steps(const SemidiscreteProblem&) const override {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "ricochet/base/log.hpp"
-#include "ricochet/scheme/reduced/end_scheme.hpp"
+#include "ricochet/scheme/reduced/end_contact_scheme.hpp"
 
 namespace ricochet {
 
@@ -16,31 +16,30 @@ namespace {
 ///   E₁ − E₀ = −r_N·g₀ − Σ F r_N |Δy_T| − ½ zᵀK_cc z + work of loads, supports, obstacles and damping,
 /// each of the first three parts ≤ 0 at each point, for every step and friction. With weight "adaptive" ρ̄ is a mean
 /// (mean_reaction.hpp) whose parts have the same signs, and which loses much less at impacts.
-class ReducedKane final : public EndScheme {
+class ReducedKane final : public EndContactScheme {
  public:
-  ReducedKane(double step, const std::string& weight) : EndScheme("reduced-kane", step), weight_(weight) {}
+  ReducedKane(double step, const std::string& weight) : EndContactScheme("reduced-kane", step), weight_(weight) {}
 
   void analyse(const SemidiscreteProblem& problem) override {
-    EndScheme::analyse(problem);
+    EndContactScheme::analyse(problem);
     if (weight_ == "end" || !problem.has_contact_dofs() || has_mean(problem)) return;
     if (weight_ == "automatic" && problem.contact.has_friction()) return;
     if (std::exchange(told_, true)) return;  // `validate` analyses first, and then starts a run
     log::info(fmt::format("time.reaction_weight = \"{}\": the reactions at the end of each step act, since {}", weight_,
                           problem.contact.follows_motion() ? "contact directions follow the motion"
-                          : takes_friction_of_finite_strain(problem)
+                          : has_finite_strain_friction(problem)
                               ? "the work of friction is that of the end at finite strain"
                               : "there is stiffness damping at contact nodes"));
   }
 
  private:
   /// True if the balance of a step has no term for the work of friction along a path (finite_layer.hpp).
-  [[nodiscard]] static bool takes_friction_of_finite_strain(const SemidiscreteProblem& problem) {
+  [[nodiscard]] static bool has_finite_strain_friction(const SemidiscreteProblem& problem) {
     return problem.contact.has_friction() && !problem.internal_force->is_linear();
   }
   /// True if a mean is possible: it requires linear gaps, and nodes without memory.
   [[nodiscard]] bool has_mean(const SemidiscreteProblem& problem) const {
-    return !problem.contact.follows_motion() && !layer().damps_contact_nodes() &&
-           !takes_friction_of_finite_strain(problem);
+    return !problem.contact.follows_motion() && !layer().damps_contact_nodes() && !has_finite_strain_friction(problem);
   }
   [[nodiscard]] ReactionMean mean(const SemidiscreteProblem& problem) const override {
     // Sliding without damping flutters, less so under the end reactions.

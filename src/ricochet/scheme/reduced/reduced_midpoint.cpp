@@ -1,5 +1,5 @@
 #include "ricochet/problem/contact_conditions.hpp"
-#include "ricochet/scheme/reduced/massless_layer.hpp"
+#include "ricochet/scheme/reduced/massless_contact_step.hpp"
 
 namespace ricochet {
 
@@ -18,12 +18,12 @@ class ReducedMidpoint final : public Scheme {
  public:
   explicit ReducedMidpoint(double step) : Scheme(step), layer_("reduced-midpoint", step) {}
 
-  [[nodiscard]] bool changes_step() const override { return true; }
-  [[nodiscard]] bool takes_nonlinear_force() const override { return true; }
-  [[nodiscard]] bool takes_relaxation() const override { return true; }
-  [[nodiscard]] bool keeps_moments_at_finite_strain() const override { return true; }
-  [[nodiscard]] const Vector* place_of_forces() const override { return layer_.place_of_forces(); }
-  [[nodiscard]] bool has_couples_between_bodies() const override { return layer_.place_of_forces() != nullptr; }
+  [[nodiscard]] bool supports_step_changes() const override { return true; }
+  [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
+  [[nodiscard]] bool supports_relaxation() const override { return true; }
+  [[nodiscard]] bool conserves_moments_at_finite_strain() const override { return true; }
+  [[nodiscard]] const Vector* displacement_of_forces() const override { return layer_.displacement_of_forces(); }
+  [[nodiscard]] bool has_couples_between_bodies() const override { return layer_.displacement_of_forces() != nullptr; }
   void analyse(const SemidiscreteProblem& problem) override {
     layer_.analyse(problem);
     layer_.require_frictionless_planes(problem);
@@ -44,11 +44,11 @@ class ReducedMidpoint final : public Scheme {
     }
     const double h = step(), middle = state.time + 0.5 * h;
     const bool has_layer = problem.has_contact_dofs();
-    const std::size_t number = MasslessLayer::midpoint_stage(problem);
+    const std::size_t number = MasslessContactStep::midpoint_stage(problem);
     Stage& stage = stages.stage(number);
     layer_.balance(problem, state, stage);
     require_no_penetration(problem, layer_.base(), middle, stage);
-    if (problem.has_moving_obstacles()) observe_obstacles(problem, layer_.base(), {middle, h, 1.0}, stage);
+    if (problem.has_moving_obstacles()) evaluate_obstacle_velocity(problem, layer_.base(), {middle, h, 1.0}, stage);
     if (has_layer) layer_.find_residual(problem, state);
     const StageSolution& solution = stages.solve(number);
     increment = h * state.velocity + 2.0 * solution.increment;
@@ -58,7 +58,7 @@ class ReducedMidpoint final : public Scheme {
     layer_.take_forces(problem, stage, result_, increment, state);
     corrections_ = {};
     if (has_layer)
-      corrections_.contact_work = -layer_.layer_work(problem, *stage.rows, result_, increment, stages).reactions;
+      corrections_.contact_work = -layer_.contact_node_work(problem, *stage.rows, result_, increment, stages).reactions;
   }
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
     return layer_.has_finite_strain() ? layer_.corrections() : corrections_;
@@ -75,12 +75,12 @@ class ReducedMidpoint final : public Scheme {
   void settle(const SemidiscreteProblem& problem, const State& state, StageSolve& stages, Vector& increment) {
     for (const Index dof : problem.contact_dofs) increment[dof] = step() * state.velocity[dof];
     layer_.stiffness().multiply(increment, row_force_);
-    Stage& stage = stages.stage(MasslessLayer::layer_stage);
+    Stage& stage = stages.stage(MasslessContactStep::layer_stage);
     row_force_ = layer_.residual() + layer_.load_change() - row_force_;
-    MasslessLayer::set_layer_force(problem, row_force_, stage);
+    MasslessContactStep::set_contact_force(problem, row_force_, stage);
     base_ = state.displacement + increment;
     require_no_penetration(problem, base_, state.time + step(), stage);
-    const StageSolution& end = stages.solve(MasslessLayer::layer_stage);
+    const StageSolution& end = stages.solve(MasslessContactStep::layer_stage);
     for (const Index dof : problem.contact_dofs) increment[dof] += end.increment[dof];
     result_.normal_reaction = end.normal_reaction;
     result_.contact_status = end.contact_status;
@@ -94,7 +94,7 @@ class ReducedMidpoint final : public Scheme {
     result_.contact_status = solution.contact_status;
   }
 
-  MasslessLayer layer_;
+  MasslessContactStep layer_;
   StepCorrections corrections_;
   StageSolution result_;
   Vector row_force_, base_;

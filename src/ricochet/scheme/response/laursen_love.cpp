@@ -14,7 +14,7 @@ namespace {
 /// impact of the contact nodes, which rebound: contact forces oscillate.
 class LaursenLove final : public Kane {
  public:
-  [[nodiscard]] bool takes_ranks() const override { return false; }
+  [[nodiscard]] bool supports_ranks() const override { return false; }
   explicit LaursenLove(double step) : Kane(step, "laursen-love") {}
 
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {

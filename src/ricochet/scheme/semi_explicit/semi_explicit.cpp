@@ -6,10 +6,10 @@
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/semi_explicit/contact_equilibrium.hpp"
 #include "ricochet/scheme/semi_explicit/explicit_motion.hpp"
-#include "ricochet/scheme/semi_explicit/followed_critical_step.hpp"
-#include "ricochet/scheme/semi_explicit/layer_equilibrium.hpp"
+#include "ricochet/scheme/semi_explicit/nonlinear_contact_equilibrium.hpp"
 #include "ricochet/scheme/semi_explicit/requirements.hpp"
 #include "ricochet/scheme/semi_explicit/supported_motion.hpp"
+#include "ricochet/scheme/semi_explicit/tracked_critical_step.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
 namespace ricochet {
@@ -56,9 +56,9 @@ class SemiExplicit final : public Scheme {
   }
   [[nodiscard]] WorkRule work_rule() const override { return {0.5, 0.5}; }
   [[nodiscard]] double critical_step() const override { return followed_ ? followed_->smallest() : critical_step_; }
-  [[nodiscard]] bool takes_nonlinear_force() const override { return true; }
-  [[nodiscard]] bool keeps_moments_at_finite_strain() const override { return true; }
-  [[nodiscard]] const Vector* place_of_forces() const override { return &end_; }
+  [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
+  [[nodiscard]] bool conserves_moments_at_finite_strain() const override { return true; }
+  [[nodiscard]] const Vector* displacement_of_forces() const override { return &end_; }
   [[nodiscard]] long history_every() const override { return 2; }
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
   [[nodiscard]] std::optional<double> stability_limit(const SemidiscreteProblem& problem) const override {
@@ -174,8 +174,8 @@ class SemiExplicit final : public Scheme {
   ExplicitMotion motion_;
   ContactEquilibrium contact_;
   // At finite strain:
-  std::optional<FollowedCriticalStep> followed_;
-  LayerEquilibrium layer_;
+  std::optional<TrackedCriticalStep> followed_;
+  NonlinearContactEquilibrium layer_;
   Vector end_, force_;     ///< displacement at the end of the last step, and the internal force there
   long energy_step_ = -1;  ///< step whose end energy_ belongs to
   double energy_ = 0.0, integration_error_ = 0.0;

@@ -62,7 +62,7 @@ void EnergyAccount::look_at_gaps(const State& state) {
   unsettled_gap_ = 0.0;
   for (Index i = 0; i < gap_now_.size(); ++i) {
     if (problem_.contact.slides(i) && state.forces.normal_reaction[i] > 0.0 &&
-        gap_now_[i] < problem_.contact.out_of_sight)
+        gap_now_[i] < problem_.contact.unpaired_gap)
       unsettled_gap_ = std::max(unsettled_gap_, std::abs(gap_now_[i]));
   }
 }
@@ -73,7 +73,7 @@ void EnergyAccount::enter_re_pairing(const StepForces& forces, double weight) {
   for (Index i = 0; i < normal.size(); ++i) {
     if (normal[i] == 0.0 || !problem_.contact.slides(i)) continue;
     // The change between facing nothing and facing a surface is no change of a gap.
-    if (std::max(gap_now_[i], gap_before_[i]) >= problem_.contact.out_of_sight) continue;
+    if (std::max(gap_now_[i], gap_before_[i]) >= problem_.contact.unpaired_gap) continue;
     works_.re_pairing += weight * normal[i] * (gap_increment_[i] - (gap_now_[i] - gap_before_[i]));
   }
 }

@@ -94,7 +94,7 @@ Columns HistoryRecorder::columns_of(const SemidiscreteProblem& problem,
   return columns;
 }
 
-HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const RotationGauge& rotation,
+HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const CellRotations& rotation,
                                  std::vector<std::shared_ptr<Sensor>> sensors, HistoryBodies bodies)
     : problem_(problem),
       rotation_(rotation),

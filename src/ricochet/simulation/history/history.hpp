@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/fem/cell_rotations.hpp"
 #include "ricochet/simulation/history/column_digest.hpp"
 #include "ricochet/simulation/history/energy_account.hpp"
 #include "ricochet/simulation/history/sensor.hpp"
@@ -53,7 +53,7 @@ struct HistoryBodies {
 
 class HistoryRecorder {
  public:
-  HistoryRecorder(const SemidiscreteProblem& problem, const RotationGauge& rotation,
+  HistoryRecorder(const SemidiscreteProblem& problem, const CellRotations& rotation,
                   std::vector<std::shared_ptr<Sensor>> sensors = {}, HistoryBodies bodies = {});
 
   /// Names of the columns, in the order of a row.
@@ -82,7 +82,7 @@ class HistoryRecorder {
   void add_contact_state(const Observation& observation);
 
   const SemidiscreteProblem& problem_;
-  const RotationGauge& rotation_;
+  const CellRotations& rotation_;
   Observer observer_;
   std::vector<std::shared_ptr<Sensor>> sensors_;
   HistoryBodies bodies_;

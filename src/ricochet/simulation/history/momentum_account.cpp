@@ -131,7 +131,7 @@ Resultant MomentumAccount::between_bodies(const StepForces& forces) {
   force_.setZero(problem_.dof_count());
   forces.rows->add_force(normal_, tangential_, force_);
   // Before the first step no force has acted at any position.
-  const Vector* const place = scheme_.has_couples_between_bodies() ? scheme_.place_of_forces() : nullptr;
+  const Vector* const place = scheme_.has_couples_between_bodies() ? scheme_.displacement_of_forces() : nullptr;
   if (place != nullptr && place->size() == problem_.dof_count() && problem_.contact.follows_motion())
     problem_.contact.geometry->add_couples(*place, *forces.rows, normal_, tangential_, force_);
   return part_of_nodes(force_);
@@ -235,7 +235,7 @@ void MomentumAccount::enter_step(const State& state) {
   bool at_both_ends = false;
   if (places_change()) {
     if (has_springs_) mean_ = 0.5 * (before_ + state.displacement);
-    const Vector* const place = scheme_.place_of_forces();
+    const Vector* const place = scheme_.displacement_of_forces();
     at_both_ends = place != nullptr && rule_.previous_weight != 0.0;
     if (place != nullptr) {
       before_ = *place;

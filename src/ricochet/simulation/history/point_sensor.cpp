@@ -56,7 +56,7 @@ class PointSensor final : public Sensor {
     if (has_gap_) {
       // With large sliding the node may face nothing at present.
       const double gap = observation.gap[probe_.contact_node];
-      row.push_back(part * (std::isnan(gap) ? problem_.contact.out_of_sight : gap));
+      row.push_back(part * (std::isnan(gap) ? problem_.contact.unpaired_gap : gap));
     }
     // Each rank contributes the force and the pressure of its contact points.
     for (const double value : {observation.pressure[probe_.contact_node], normal_force}) row.push_back(value);

@@ -1,5 +1,5 @@
 #include "ricochet/simulation/impact/impacts.hpp"
-#include "ricochet/simulation/impact/turn_growth.hpp"
+#include "ricochet/simulation/impact/rotation_growth.hpp"
 
 /// @file Rotation of bodies at the start of an impact, and its effect on the impact.
 namespace ricochet {
@@ -13,7 +13,7 @@ bool ImpactRecorder::grows_as_it_turns(int body) const {
 }
 
 /// Uses the state at the start of the step. Overwrites the motion of rigid_, which is therefore computed anew.
-void ImpactRecorder::take_turns(Interval& interval) {
+void ImpactRecorder::compute_rotations(Interval& interval) {
   const Place& place = places_[static_cast<std::size_t>(interval.place)];
   if (!problem_.internal_force->is_linear()) return;
   // The displacement is treated as a velocity, which yields its mean and its mean rotation.

@@ -31,10 +31,10 @@ ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme&
       rigid_(problem, std::move(body_of_node), static_cast<int>(separation.size())),
       separation_(std::move(separation)) {
   separation_.resize(rigid_.bodies().size(), 0.0);
-  find_places(pairs);
+  find_collision_pairs(pairs);
   open_.assign(places_.size(), Interval{});
   for (std::size_t place = 0; place < places_.size(); ++place) open_[place].place = static_cast<double>(place);
-  filed_.reserve(most_impacts);
+  completed_.reserve(most_impacts);
   current_.resize(places_.size());
   find_forces(state.forces, state.obstacle_increment, previous_);
   take_velocity(state, velocity_before_);
@@ -155,14 +155,14 @@ void ImpactRecorder::enter_step(const State& state, double method_energy) {
   motion_ = nullptr;
   if (state.step <= 1 && first_step_ == 0.0) first_step_ = scheme_.step();
   const double instant = state.time + scheme_.acting_instant() * scheme_.step();
-  for (std::size_t place = 0; place < places_.size(); ++place) enter_place(place, instant);
+  for (std::size_t place = 0; place < places_.size(); ++place) enter_collision_pair(place, instant);
   std::swap(previous_, current_);
   method_before_ = method_energy_;
   take_velocity(state, velocity_before_);
   displacement_before_ = state.displacement;
 }
 
-void ImpactRecorder::enter_place(std::size_t place, double instant) {
+void ImpactRecorder::enter_collision_pair(std::size_t place, double instant) {
   Interval& interval = open_[place];
   const Acting acting = acting_in(place);
   const bool touched = interval.phase == touching;
@@ -275,12 +275,12 @@ void ImpactRecorder::begin(Interval& interval, double time, const Force& first) 
   interval.before = motion_of(at.body);
   if (at.other >= 0) interval.other_before = motion_of(at.other);
   interval.method_before = method_before_;
-  take_turns(interval);
+  compute_rotations(interval);
 }
 
 void ImpactRecorder::file(const Interval& interval) {
-  if (filed_.size() < most_impacts) {
-    filed_.push_back(interval);
+  if (completed_.size() < most_impacts) {
+    completed_.push_back(interval);
   } else {
     ++left_out_;
   }
@@ -330,7 +330,7 @@ Impact ImpactRecorder::describe(const Interval& interval) const {
 
 std::vector<Impact> ImpactRecorder::impacts() const {
   std::vector<Impact> result;
-  for (const Interval& interval : filed_) result.push_back(describe(interval));
+  for (const Interval& interval : completed_) result.push_back(describe(interval));
   for (const Interval& interval : open_) {
     if (interval.phase != no_contact) result.push_back(describe(interval));
   }

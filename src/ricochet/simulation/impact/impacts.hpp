@@ -79,8 +79,8 @@ class ImpactRecorder {
     Motion before, after;
     Motion other_before, other_after;  ///< of the other body
     double method_before, method_after;
-    Three turn, other_turn;  ///< TurningBody::turn
-    Three other_arm;         ///< TurningBody::arm of the other body
+    Three turn, other_turn;  ///< RotatingBody::turn
+    Three other_arm;         ///< RotatingBody::arm of the other body
   };
   /// Phases of an interval, stored as numbers too.
   static constexpr double no_contact = 0.0, touching = 1.0, apart = 2.0;
@@ -121,8 +121,8 @@ class ImpactRecorder {
     double part;
   };
   class BodyOrder;
-  void find_places(const std::vector<ContactPair>& pairs);
-  void add_places_of_ranks(const std::vector<ContactPair>& pairs);
+  void find_collision_pairs(const std::vector<ContactPair>& pairs);
+  void add_collision_pairs_of_ranks(const std::vector<ContactPair>& pairs);
   [[nodiscard]] int free_body_of(Index point) const;
   void add_part(Index point, int body, int other, const std::string& obstacle, double part);
   void find_forces(const StepForces& acting, const ObstacleMotion& travel, std::vector<Force>& forces) const;
@@ -132,14 +132,14 @@ class ImpactRecorder {
                       const ObstacleMotion& travel, Force& force) const;
   [[nodiscard]] Acting acting_in(std::size_t place) const;
   void take_velocity(const State& state, Vector& velocity);
-  void enter_place(std::size_t place, double instant);
+  void enter_collision_pair(std::size_t place, double instant);
   [[nodiscard]] Motion motion_of(int body) const;
   [[nodiscard]] double separation_at(const Interval& interval) const;
   void let_go(Interval& interval) const;
   void touch(Interval& interval, const Acting& acting, double instant);
   void add_impulses(Interval& interval, std::size_t place) const;
   void begin(Interval& interval, double time, const Force& first);
-  void take_turns(Interval& interval);
+  void compute_rotations(Interval& interval);
   [[nodiscard]] bool grows_as_it_turns(int body) const;
   [[nodiscard]] double growth_in(const Interval& interval, const Impact& impact) const;
   [[nodiscard]] Three place_of(Index point) const;
@@ -160,8 +160,8 @@ class ImpactRecorder {
     std::vector<Force> forces;
   };
   std::vector<OtherForces> others_;
-  std::vector<Interval> open_;   ///< per collision pair
-  std::vector<Interval> filed_;  ///< completed
+  std::vector<Interval> open_;       ///< per collision pair
+  std::vector<Interval> completed_;  ///< completed
   long left_out_ = 0;
   double first_step_ = 0.0;                           ///< length of the first step, or of its first part
   double method_before_ = 0.0, method_energy_ = 0.0;  ///< at the start and the end of a step

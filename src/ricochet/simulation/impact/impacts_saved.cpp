@@ -30,7 +30,7 @@ void from_numbers(const Vector& numbers, std::vector<Structure>& values) {
 
 void ImpactRecorder::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".open", as_numbers(open_));
-  snapshot.save(name + ".filed", as_numbers(filed_));
+  snapshot.save(name + ".filed", as_numbers(completed_));
   snapshot.save(name + ".left_out", std::int64_t{left_out_});
   snapshot.save(name + ".method_energy", method_before_);
 }
@@ -44,10 +44,10 @@ void ImpactRecorder::load(const Snapshot& snapshot, const std::string& name) {
   from_numbers(snapshot.reals(name + ".open", size * static_cast<Index>(places_.size())), open_);
   const Vector& filed = snapshot.reals(name + ".filed");
   if (filed.size() % size != 0 || filed.size() / size > static_cast<Index>(most_impacts)) damaged();
-  from_numbers(filed, filed_);
+  from_numbers(filed, completed_);
   left_out_ = snapshot.integer(name + ".left_out");
   method_before_ = snapshot.real(name + ".method_energy");
-  for (const auto* list : {&open_, &filed_}) {
+  for (const auto* list : {&open_, &completed_}) {
     for (const Interval& interval : *list) {
       // Also false for NaN.
       if (!(interval.place >= 0.0 && interval.place < static_cast<double>(places_.size()))) damaged();

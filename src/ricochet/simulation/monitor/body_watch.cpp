@@ -19,7 +19,7 @@ constexpr double resolution_of_found = 4.0;
 
 BodyWatch::BodyWatch(const Points& positions, const std::vector<CellBlock>& cells,
                      const std::vector<CellFacet>& boundary, const ConnectedBodies& bodies,
-                     const std::vector<double>& size, const std::vector<KeptNode>& kept)
+                     const std::vector<double>& size, const std::vector<ContactNodeAllowance>& kept)
     : positions_(positions) {
   if (bodies.count < 2) return;
   std::vector<std::vector<CellFacet>> facets(static_cast<std::size_t>(bodies.count));
@@ -36,11 +36,11 @@ BodyWatch::BodyWatch(const Points& positions, const std::vector<CellBlock>& cell
     nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
   }
   seen_.setZero(static_cast<Index>(nodes_.size()) * positions.rows());
-  take_kept(kept, bodies);
+  set_allowances(kept, bodies);
 }
 
-void BodyWatch::take_kept(const std::vector<KeptNode>& kept, const ConnectedBodies& bodies) {
-  for (const KeptNode& one : kept) {
+void BodyWatch::set_allowances(const std::vector<ContactNodeAllowance>& kept, const ConnectedBodies& bodies) {
+  for (const ContactNodeAllowance& one : kept) {
     const int of = bodies.of_node[static_cast<std::size_t>(one.node)];
     const std::vector<Index>& nodes = surfaces_[static_cast<std::size_t>(of)].nodes();
     const auto at = std::lower_bound(nodes.begin(), nodes.end(), one.node);
@@ -98,10 +98,10 @@ double BodyWatch::look_at(int first, int second, double time) {
   const Eigen::AlignedBox3d& box = surfaces_[static_cast<std::size_t>(first)].box();
   const double apart = box.exteriorDistance(surfaces_[static_cast<std::size_t>(second)].box());
   if (apart > 0.0) return apart;
-  return std::min(look_at_nodes(first, second, time), look_at_nodes(second, first, time));
+  return std::min(check_nodes(first, second, time), check_nodes(second, first, time));
 }
 
-double BodyWatch::look_at_nodes(int of, int inside, double time) {
+double BodyWatch::check_nodes(int of, int inside, double time) {
   const BodySurface& own = surfaces_[static_cast<std::size_t>(of)];
   const BodySurface& other = surfaces_[static_cast<std::size_t>(inside)];
   const double size = std::min(size_[static_cast<std::size_t>(of)], size_[static_cast<std::size_t>(inside)]);

@@ -32,7 +32,8 @@ class BodyWatch {
  public:
   /// `positions`: d × nodes; `size`: per node, of the body to which it belongs; `kept`: the nodes of contacts.
   BodyWatch(const Points& positions, const std::vector<CellBlock>& cells, const std::vector<CellFacet>& boundary,
-            const ConnectedBodies& bodies, const std::vector<double>& size, const std::vector<KeptNode>& kept = {});
+            const ConnectedBodies& bodies, const std::vector<double>& size,
+            const std::vector<ContactNodeAllowance>& kept = {});
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
@@ -50,8 +51,8 @@ class BodyWatch {
   [[nodiscard]] bool is_due(const Vector& displacement) const;
   /// Returns a lower bound of the distance between two bodies; 0 if they are not separated.
   double look_at(int first, int second, double time);
-  double look_at_nodes(int of, int inside, double time);
-  void take_kept(const std::vector<KeptNode>& kept, const ConnectedBodies& bodies);
+  double check_nodes(int of, int inside, double time);
+  void set_allowances(const std::vector<ContactNodeAllowance>& kept, const ConnectedBodies& bodies);
   [[nodiscard]] bool has_found(int first, int second) const;
   BodyPair& pair_of(int first, int second);
 

@@ -40,7 +40,7 @@ namespace {
 
 /// Adds both sides of a pair with large sliding, as the facets that a node will face are not known beforehand.
 void add_sliding_nodes(const Body& body, const ContactBoundary& contact, const ContactPair& pair, int number,
-                       const std::vector<int>& body_of_node, std::vector<KeptNode>& result) {
+                       const std::vector<int>& body_of_node, std::vector<ContactNodeAllowance>& result) {
   const FacetSizes own = facet_sizes(body, pair.facets), opposite = facet_sizes(body, pair.opposite_facets);
   const double size = std::max(*std::max_element(own.largest.begin(), own.largest.end()),
                                *std::max_element(opposite.largest.begin(), opposite.largest.end()));
@@ -65,9 +65,10 @@ void add_sliding_nodes(const Body& body, const ContactBoundary& contact, const C
 
 }  // namespace
 
-std::vector<KeptNode> kept_nodes(const Body& body, const ContactBoundary& contact,
-                                 const std::vector<ContactPair>& pairs, const std::vector<int>& body_of_node) {
-  std::vector<KeptNode> result;
+std::vector<ContactNodeAllowance> contact_node_allowances(const Body& body, const ContactBoundary& contact,
+                                                          const std::vector<ContactPair>& pairs,
+                                                          const std::vector<int>& body_of_node) {
+  std::vector<ContactNodeAllowance> result;
   for (std::size_t number = 0; number < pairs.size(); ++number) {
     const ContactPair& pair = pairs[number];
     if (!pair.has_two_sides()) continue;
@@ -84,7 +85,7 @@ std::vector<KeptNode> kept_nodes(const Body& body, const ContactBoundary& contac
       const bool is_opposite = contact.is_opposite[entry] != 0;
       double size = (is_opposite ? opposite : own).largest[node];
       // The conditions may be those of the facets that the node faces, which may be coarser.
-      for (SparseRowMatrix::InnerIterator at(contact.opposite_place, static_cast<Index>(entry)); at; ++at)
+      for (SparseRowMatrix::InnerIterator at(contact.opposite_projection, static_cast<Index>(entry)); at; ++at)
         size = std::max(size, (is_opposite ? own : opposite).largest[static_cast<std::size_t>(at.col())]);
       for (const int other : is_opposite ? own_bodies : opposite_bodies) {
         if (other != body_of_node[node])

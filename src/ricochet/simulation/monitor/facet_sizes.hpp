@@ -14,7 +14,7 @@ struct FacetSizes {
 [[nodiscard]] FacetSizes facet_sizes(const Body& body, const std::vector<Index>& facets);
 
 /// Node at which a contact keeps its body out of another one, in the mean over facets.
-struct KeptNode {
+struct ContactNodeAllowance {
   Index node = 0;
   int other = 0;           ///< the other body
   int contact = 0;         ///< index of the ContactPair
@@ -22,9 +22,10 @@ struct KeptNode {
   double allowance = 0.0;  ///< admissible depth: half of the largest facet there
 };
 /// `body_of_node`: numbers of bodies.
-[[nodiscard]] std::vector<KeptNode> kept_nodes(const Body& body, const ContactBoundary& contact,
-                                               const std::vector<ContactPair>& pairs,
-                                               const std::vector<int>& body_of_node);
+[[nodiscard]] std::vector<ContactNodeAllowance> contact_node_allowances(const Body& body,
+                                                                        const ContactBoundary& contact,
+                                                                        const std::vector<ContactPair>& pairs,
+                                                                        const std::vector<int>& body_of_node);
 
 /// Half of the smallest facet, on either side, at each point between bodies; 0 at obstacles.
 [[nodiscard]] Vector slip_limits(const Body& body, const ContactBoundary& contact,

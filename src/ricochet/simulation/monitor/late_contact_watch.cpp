@@ -25,7 +25,8 @@ LateContactWatch::LateContactWatch(const Body& body, const SemidiscreteProblem& 
     : problem_(problem), pairs_(pairs) {
   const ContactBoundary& contact = problem.contact;
   std::map<int, std::vector<Node>> nodes;
-  for (const KeptNode& kept : kept_nodes(body, contact, pairs, find_connected_bodies(*body.space).of_node)) {
+  for (const ContactNodeAllowance& kept :
+       contact_node_allowances(body, contact, pairs, find_connected_bodies(*body.space).of_node)) {
     // Gaps are not known on the opposite side of a pair with large sliding.
     if (kept.entry >= 0) nodes[kept.contact].push_back({kept.entry, allowed * kept.allowance});
   }

@@ -68,9 +68,9 @@ void ObstacleWatch::look(const State& state) {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     if (obstacles_[k]->moves() || obstacles_[k]->free_motion() != nullptr)
       placed_[k] = obstacles_[k]->at(state.time, state.displacement);
-    for (const Index node : nodes_[k]) look_at_node(k, node, state);
+    for (const Index node : nodes_[k]) check_node(k, node, state);
   }
-  for (const RimFacet& facet : rim_) look_at_rim(facet, state);
+  for (const RimFacet& facet : rim_) check_rim(facet, state);
 }
 
 double ObstacleWatch::gap(std::size_t obstacle, Index node, const Vector& displacement) {
@@ -85,12 +85,12 @@ void ObstacleWatch::look_at_start(const State& state) {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     for (Index node = 0; node < problem_.nodes.cols(); ++node) {
       if (problem_.is_of_free_body(node)) break;
-      if (on_boundary[static_cast<std::size_t>(node)] == 0) look_at_node(k, node, state);
+      if (on_boundary[static_cast<std::size_t>(node)] == 0) check_node(k, node, state);
     }
   }
 }
 
-void ObstacleWatch::look_at_node(std::size_t obstacle, Index node, const State& state) {
+void ObstacleWatch::check_node(std::size_t obstacle, Index node, const State& state) {
   const double depth = -gap(obstacle, node, state.displacement);
   if (!(depth > deepest_[obstacle].depth) || depth <= rounding_of_depth * size_[static_cast<std::size_t>(node)] ||
       depth <= placed_[obstacle].gap_rounding(position_))
@@ -110,7 +110,7 @@ bool ObstacleWatch::is_pressed(std::size_t obstacle, Index contact_node, const S
   return gap(obstacle, node, state.displacement) <= rounding_of_depth * size_[static_cast<std::size_t>(node)];
 }
 
-void ObstacleWatch::look_at_rim(const RimFacet& facet, const State& state) {
+void ObstacleWatch::check_rim(const RimFacet& facet, const State& state) {
   const ContactBoundary& contact = problem_.contact;
   const Vector& u = state.displacement;
   for (const Index entry : facet.inside) {

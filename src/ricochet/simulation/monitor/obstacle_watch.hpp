@@ -54,8 +54,8 @@ class ObstacleWatch {
   [[nodiscard]] bool is_held_by_supports(std::size_t obstacle, Index node) const;
   /// Returns the gap of a node; sets position_.
   [[nodiscard]] double gap(std::size_t obstacle, Index node, const Vector& displacement);
-  void look_at_node(std::size_t obstacle, Index node, const State& state);
-  void look_at_rim(const RimFacet& facet, const State& state);
+  void check_node(std::size_t obstacle, Index node, const State& state);
+  void check_rim(const RimFacet& facet, const State& state);
   [[nodiscard]] bool is_pressed(std::size_t obstacle, Index contact_node, const State& state);
   [[nodiscard]] bool has_told(int pair) const;
 
@@ -66,7 +66,7 @@ class ObstacleWatch {
   std::vector<RimFacet> rim_;
   std::vector<DeepestPoint> deepest_;
   std::vector<RimContact> rims_;
-  std::vector<PlacedObstacle> placed_;  ///< each obstacle at the current time
+  std::vector<PosedObstacle> placed_;  ///< each obstacle at the current time
   Vector position_;
 };
 

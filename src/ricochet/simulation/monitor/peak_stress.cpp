@@ -15,7 +15,7 @@ constexpr double harder = 5e-3;
 
 }  // namespace
 
-double look_work(const Body& body) {
+double evaluation_work(const Body& body) {
   double work = 0.0;
   for (const CellBlock& block : body.space->cells) {
     const int d = body.mesh->dimension, geometry = body.mesh->degree, degree = body.space->degree;
@@ -41,7 +41,7 @@ PeakStress::PeakStress(const Body& body, double step_work, const Ranks& ranks, s
       ranks_(ranks),
       stress_(body),
       raisers_(std::move(raisers)),
-      looks_per_step_(std::min(1.0, share * step_work / ranks.sum(look_work(body)))) {}
+      looks_per_step_(std::min(1.0, share * step_work / ranks.sum(evaluation_work(body)))) {}
 
 void PeakStress::enter(const State& state, bool is_frame) {
   ++result_.states;
@@ -74,7 +74,7 @@ void PeakStress::look(const State& state) {
   result_.cell = largest.cell;
   result_.time = state.time;
   result_.step = state.step;
-  if (raisers_) result_.sits_on = raisers_->at(state, largest.cell);
+  if (raisers_) result_.raised_by = raisers_->at(state, largest.cell);
 }
 
 void PeakStress::save(Snapshot& snapshot, const std::string& name) const {
@@ -82,7 +82,7 @@ void PeakStress::save(Snapshot& snapshot, const std::string& name) const {
   numbers << looks_per_step_, saved_, since_look_, hardest_press_, result_.von_mises, result_.time;
   snapshot.save(name, numbers);
   snapshot.save(name + ".counts", Snapshot::Integers{result_.step, result_.cell, result_.looks, result_.states,
-                                                     last_look_, static_cast<std::int64_t>(result_.sits_on)});
+                                                     last_look_, static_cast<std::int64_t>(result_.raised_by)});
 }
 
 void PeakStress::load(const Snapshot& snapshot, const std::string& name) {
@@ -102,7 +102,7 @@ void PeakStress::load(const Snapshot& snapshot, const std::string& name) {
   result_.looks = counts[2];
   result_.states = counts[3];
   last_look_ = counts[4];
-  result_.sits_on = static_cast<StressRaiser>(counts[5]);
+  result_.raised_by = static_cast<StressRaiser>(counts[5]);
 }
 
 }  // namespace ricochet

@@ -52,7 +52,7 @@ class PeakStress {
 };
 
 /// Time of evaluating all cells relative to that of reading a number of a factor: measured, see docs/performance.md.
-[[nodiscard]] double look_work(const Body& body);
+[[nodiscard]] double evaluation_work(const Body& body);
 /// Numbers that a step reads at least: the factor twice, or the stiffness if there is no factor.
 [[nodiscard]] double step_work(Index dofs, std::size_t factor_entries);
 

@@ -14,7 +14,7 @@ struct PeakStressResult {
   long step = 0;
   Index cell = -1;             ///< numbered through all blocks; −1: not evaluated yet
   long looks = 0, states = 0;  ///< evaluated states, and all states
-  StressRaiser sits_on = StressRaiser::none;
+  StressRaiser raised_by = StressRaiser::none;
 };
 
 }  // namespace ricochet

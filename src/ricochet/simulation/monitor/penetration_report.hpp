@@ -26,7 +26,7 @@ struct UnwatchedPenetration {
   /// Boundary groups of the facet that the node has passed through, if a body is inside itself.
   std::vector<std::string> through_groups = {};
 
-  [[nodiscard]] bool is_in_itself() const { return obstacle.empty() && bodies.size() == 1; }
+  [[nodiscard]] bool is_self_penetration() const { return obstacle.empty() && bodies.size() == 1; }
 };
 
 /// Contact that continues beyond its group.
@@ -39,10 +39,10 @@ struct ContactBeyondRim {
 
 struct PenetrationReport {
   bool checked = false;  ///< false: results of a version without this check
-  long looks_at_obstacles = 0, looks_at_bodies = 0;
+  long obstacle_checks = 0, body_checks = 0;
   std::vector<UnwatchedPenetration> found = {};
   std::vector<ContactBeyondRim> rims = {};
-  long looks_at_themselves = 0;               ///< checks for self-penetration
+  long self_penetration_checks = 0;           ///< checks for self-penetration
   std::vector<std::string> not_watched = {};  ///< objects that were not checked, in words
 
   /// Returns whether everything was checked.

@@ -9,11 +9,11 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/simulation/monitor/penetration_words.hpp"
+#include "ricochet/simulation/monitor/penetration_phrases.hpp"
 
 namespace ricochet {
 
-namespace words = penetration_words;
+namespace words = penetration_phrases;
 
 namespace {
 
@@ -69,13 +69,13 @@ PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& 
       obstacles_(problem, body.space->cells, bodies_.boundary, obstacles_of(obstacles), size_),
       passages_(problem, nodes_of(bodies_.boundary, body.space->cells), obstacles_of(obstacles)),
       body_watch_(problem.nodes, body.space->cells, bodies_.boundary, bodies_.connected, size_,
-                  kept_nodes(body, problem.contact, pairs, bodies_.connected.of_node)),
+                  contact_node_allowances(body, problem.contact, pairs, bodies_.connected.of_node)),
       self_watch_(body, problem, pairs, bodies_, step_work),
       problem_(problem),
-      told_obstacle_(obstacles.size(), 0),
-      told_passage_(obstacles.size(), 0),
-      told_itself_(self_watch_.bodies().size(), 0),
-      told_itself_at_contact_(self_watch_.bodies().size(), 0) {
+      obstacle_warned_(obstacles.size(), 0),
+      tunnelling_warned_(obstacles.size(), 0),
+      self_penetration_warned_(self_watch_.bodies().size(), 0),
+      self_contact_warned_(self_watch_.bodies().size(), 0) {
   for (const Group& group : body.mesh->groups) {
     if (group.dimension == body.mesh->dimension - 1)
       boundary_groups_.push_back({group.name, facet_nodes(*body.space, group.members)});
@@ -87,11 +87,11 @@ void PenetrationWatch::look(const State& state) {
   ++looks_;
   obstacles_.look(state);
   passages_.look(state);
-  look_at_bodies(state, false);
+  check_bodies(state, false);
   tell();
 }
 
-void PenetrationWatch::look_at_bodies(const State& state, bool now) {
+void PenetrationWatch::check_bodies(const State& state, bool now) {
   // std::function stores two references without an allocation, but no more.
   const BodyWatch::NodeGaps gaps = [this, &state]() -> const Vector& {
     problem_.node_gaps(state.displacement, state.time, node_gap_);
@@ -101,53 +101,53 @@ void PenetrationWatch::look_at_bodies(const State& state, bool now) {
   self_watch_.look(state.displacement, state.time, now, gaps);
 }
 
-void PenetrationWatch::look_at_end(const State& state) {
-  look_at_bodies(state, true);
+void PenetrationWatch::check_end(const State& state) {
+  check_bodies(state, true);
   tell();
 }
 
 void PenetrationWatch::tell() {
   for (std::size_t k = 0; k < named_.size(); ++k) {
-    if (told_obstacle_[k] != 0 || !obstacles_.deepest()[k].found()) continue;
-    told_obstacle_[k] = 1;
+    if (obstacle_warned_[k] != 0 || !obstacles_.deepest()[k].found()) continue;
+    obstacle_warned_[k] = 1;
     const UnwatchedPenetration p = in_obstacle(k);
     log::warning(fmt::format("{} {} is {} inside obstacle \"{}\" at {}, where no contact keeps it out: {}; {}",
                              words::when(p.time), p.bodies.front(), words::depth_text(p), p.obstacle,
                              words::coordinates(p.place), advice(k), words::see_summary));
   }
   for (std::size_t k = 0; k < named_.size(); ++k) {
-    if (told_passage_[k] != 0 || !passages_.passages()[k].found()) continue;
-    told_passage_[k] = 1;
+    if (tunnelling_warned_[k] != 0 || !passages_.passages()[k].found()) continue;
+    tunnelling_warned_[k] = 1;
     const UnwatchedPenetration p = through_obstacle(k);
     log::warning(
         fmt::format("{} a node of {} at {} has gone through obstacle \"{}\" within one step, which no contact can "
                     "see; take a time.step in which bodies move by less than the obstacle is thick",
                     words::when(p.time), p.bodies.front(), words::coordinates(p.place), p.obstacle));
   }
-  for (; told_rims_ < obstacles_.rims().size(); ++told_rims_) {
-    const ContactBeyondRim rim = beyond(obstacles_.rims()[told_rims_]);
+  for (; rims_warned_ < obstacles_.rims().size(); ++rims_warned_) {
+    const ContactBeyondRim rim = beyond(obstacles_.rims()[rims_warned_]);
     log::warning(
         fmt::format("{} the contact of group \"{}\" with \"{}\" has reached the rim of the group, at {}: what lies "
                     "beyond it goes into the obstacle unhindered; add the boundary beyond it to the group{}",
                     words::when(rim.time), rim.group, rim.obstacle, words::coordinates(rim.place),
                     rim.groups.empty() ? "" : fmt::format(" ({})", join_names(rim.groups))));
   }
-  tell_bodies();
-  tell_of_themselves();
+  warn_of_bodies();
+  warn_of_self_penetration();
 }
 
-void PenetrationWatch::tell_bodies() {
+void PenetrationWatch::warn_of_bodies() {
   const std::vector<BodyPair>& pairs = body_watch_.pairs();
-  told_pairs_.resize(pairs.size(), 0);
-  told_contacts_.resize(pairs.size(), 0);
+  pairs_warned_.resize(pairs.size(), 0);
+  contacts_warned_.resize(pairs.size(), 0);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (told_pairs_[i] == 0 && pairs[i].deepest.found()) {
-      told_pairs_[i] = 1;
+    if (pairs_warned_[i] == 0 && pairs[i].deepest.found()) {
+      pairs_warned_[i] = 1;
       tell_of(pairs[i]);
     }
-    if (told_contacts_[i] == 0 && pairs[i].at_contact.found()) {
-      told_contacts_[i] = 1;
-      tell_at_contact(pairs[i]);
+    if (contacts_warned_[i] == 0 && pairs[i].at_contact.found()) {
+      contacts_warned_[i] = 1;
+      warn_at_contact(pairs[i]);
     }
   }
 }
@@ -171,7 +171,7 @@ void PenetrationWatch::tell_of(const BodyPair& pair) const {
 }
 
 /// With sliding = "large" pairs follow the motion, so that remedies for exceeded small sliding do not help.
-void PenetrationWatch::tell_at_contact(const BodyPair& pair) const {
+void PenetrationWatch::warn_at_contact(const BodyPair& pair) const {
   const UnwatchedPenetration p = at_contact(pair);
   const ContactPair& contact = pairs_[static_cast<std::size_t>(pair.contact)];
   const std::string why =
@@ -303,12 +303,12 @@ PenetrationReport PenetrationWatch::report() const {
     if (pair.deepest.found()) result.found.push_back(of_pair(pair));
     if (pair.at_contact.found()) result.found.push_back(at_contact(pair));
   }
-  for (const BodyInItself& body : self_watch_.bodies()) {
-    if (body.deepest.found()) result.found.push_back(in_itself(body));
-    if (body.at_contact.found()) result.found.push_back(in_itself_at_contact(body));
+  for (const SelfPenetration& body : self_watch_.bodies()) {
+    if (body.deepest.found()) result.found.push_back(self_penetration(body));
+    if (body.at_contact.found()) result.found.push_back(self_penetration_at_contact(body));
   }
   for (const RimContact& rim : obstacles_.rims()) result.rims.push_back(beyond(rim));
-  result.looks_at_themselves = self_watch_.looks();
+  result.self_penetration_checks = self_watch_.looks();
   const auto is_free = [](const NamedObstacle& one) { return one.obstacle->free_motion() != nullptr; };
   if (named_.size() > 1 && std::any_of(named_.begin(), named_.end(), is_free))
     result.not_watched.emplace_back("rigid bodies against each other and other obstacles");
@@ -337,21 +337,23 @@ void PenetrationWatch::load(const Snapshot& snapshot, const std::string& name) {
   self_watch_.load(snapshot, name + ".themselves");
   looks_ = snapshot.integer(name + ".looks");
   // Everything that was found has been reported at once.
-  for (std::size_t k = 0; k < told_obstacle_.size(); ++k) told_obstacle_[k] = obstacles_.deepest()[k].found() ? 1 : 0;
-  for (std::size_t k = 0; k < told_passage_.size(); ++k) told_passage_[k] = passages_.passages()[k].found() ? 1 : 0;
-  told_rims_ = obstacles_.rims().size();
-  told_pairs_.clear();
-  told_contacts_.clear();
+  for (std::size_t k = 0; k < obstacle_warned_.size(); ++k)
+    obstacle_warned_[k] = obstacles_.deepest()[k].found() ? 1 : 0;
+  for (std::size_t k = 0; k < tunnelling_warned_.size(); ++k)
+    tunnelling_warned_[k] = passages_.passages()[k].found() ? 1 : 0;
+  rims_warned_ = obstacles_.rims().size();
+  pairs_warned_.clear();
+  contacts_warned_.clear();
   for (const BodyPair& pair : body_watch_.pairs()) {
     if (pair.at_contact.found() && (pair.contact < 0 || pair.contact >= static_cast<int>(pairs_.size())))
       throw Error(ErrorKind::invalid_input, "the checkpoint's record of penetration is damaged");
-    told_pairs_.push_back(pair.deepest.found() ? 1 : 0);
-    told_contacts_.push_back(pair.at_contact.found() ? 1 : 0);
+    pairs_warned_.push_back(pair.deepest.found() ? 1 : 0);
+    contacts_warned_.push_back(pair.at_contact.found() ? 1 : 0);
   }
   for (std::size_t i = 0; i < self_watch_.bodies().size(); ++i) {
-    const BodyInItself& body = self_watch_.bodies()[i];
-    told_itself_[i] = body.deepest.found() ? 1 : 0;
-    told_itself_at_contact_[i] = body.at_contact.found() ? 1 : 0;
+    const SelfPenetration& body = self_watch_.bodies()[i];
+    self_penetration_warned_[i] = body.deepest.found() ? 1 : 0;
+    self_contact_warned_[i] = body.at_contact.found() ? 1 : 0;
   }
 }
 

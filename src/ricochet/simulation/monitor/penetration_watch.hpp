@@ -5,9 +5,9 @@
 
 #include "ricochet/simulation/monitor/body_watch.hpp"
 #include "ricochet/simulation/monitor/obstacle_watch.hpp"
-#include "ricochet/simulation/monitor/passage_watch.hpp"
 #include "ricochet/simulation/monitor/penetration_report.hpp"
 #include "ricochet/simulation/monitor/self_watch.hpp"
+#include "ricochet/simulation/monitor/tunnelling_watch.hpp"
 
 /// @file Penetration that no contact prevents: the whole boundary against every obstacle, bodies against each other and
 /// against themselves.
@@ -36,9 +36,9 @@ class PenetrationWatch {
   void look(const State& state);
   /// Checks the state after each part of a divided step, before look(): within the whole step a node may move round an
   /// edge.
-  void look_at_part(const State& state) { passages_.look(state); }
+  void check_part(const State& state) { passages_.look(state); }
   /// Checks the last state in addition: bodies even if none has moved far.
-  void look_at_end(const State& state);
+  void check_end(const State& state);
 
   /// Current report. A continuing run requests it repeatedly, so its cost does not grow with the mesh.
   [[nodiscard]] PenetrationReport report() const;
@@ -57,22 +57,22 @@ class PenetrationWatch {
   [[nodiscard]] UnwatchedPenetration through_obstacle(std::size_t obstacle) const;
   [[nodiscard]] UnwatchedPenetration of_pair(const BodyPair& pair) const;
   [[nodiscard]] UnwatchedPenetration at_contact(const BodyPair& pair) const;
-  [[nodiscard]] UnwatchedPenetration in_itself(const BodyInItself& found) const;
-  [[nodiscard]] UnwatchedPenetration in_itself_at_contact(const BodyInItself& found) const;
+  [[nodiscard]] UnwatchedPenetration self_penetration(const SelfPenetration& found) const;
+  [[nodiscard]] UnwatchedPenetration self_penetration_at_contact(const SelfPenetration& found) const;
   /// Boundary groups of the mesh to which all nodes of a facet belong; node −1 is absent.
   [[nodiscard]] std::vector<std::string> groups_of_facet(const std::array<Index, 3>& nodes) const;
   [[nodiscard]] std::vector<const ContactPair*> contacts_between(int first, int second) const;
   void tell_of(const BodyPair& pair) const;
-  void tell_at_contact(const BodyPair& pair) const;
+  void warn_at_contact(const BodyPair& pair) const;
   [[nodiscard]] ContactBeyondRim beyond(const RimContact& rim) const;
   /// Advice on a node that enters an obstacle without a contact.
   [[nodiscard]] std::string advice(std::size_t obstacle) const;
-  void look_at_bodies(const State& state, bool now);
+  void check_bodies(const State& state, bool now);
   void tell();
-  void tell_bodies();
-  void tell_of_themselves();
-  void tell_of(const BodyInItself& found) const;
-  void tell_at_contact(const BodyInItself& found) const;
+  void warn_of_bodies();
+  void warn_of_self_penetration();
+  void tell_of(const SelfPenetration& found) const;
+  void warn_at_contact(const SelfPenetration& found) const;
   /// Lines of a case that define a contact which keeps a body out of itself.
   [[nodiscard]] std::string contact_with_itself(int body, const UnwatchedPenetration& found) const;
 
@@ -82,7 +82,7 @@ class PenetrationWatch {
   BodiesOfMesh bodies_;
   std::vector<double> size_;  ///< per node, of its body
   ObstacleWatch obstacles_;
-  PassageWatch passages_;
+  TunnellingWatch passages_;
   BodyWatch body_watch_;
   SelfWatch self_watch_;
   const SemidiscreteProblem& problem_;
@@ -90,10 +90,10 @@ class PenetrationWatch {
   std::vector<BoundaryGroup> boundary_groups_;
   long looks_ = 0;
   // Warnings that have been logged.
-  std::vector<char> told_obstacle_, told_passage_;
-  std::size_t told_rims_ = 0;
-  std::vector<char> told_pairs_, told_contacts_;  ///< per pair of bodies
-  std::vector<char> told_itself_, told_itself_at_contact_;
+  std::vector<char> obstacle_warned_, tunnelling_warned_;
+  std::size_t rims_warned_ = 0;
+  std::vector<char> pairs_warned_, contacts_warned_;  ///< per pair of bodies
+  std::vector<char> self_penetration_warned_, self_contact_warned_;
 };
 
 }  // namespace ricochet

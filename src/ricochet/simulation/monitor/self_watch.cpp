@@ -29,7 +29,7 @@ constexpr Index numbers_of_body = 2 * DeepestPoint::numbers + 7;
 
 using BodyNumbers = Eigen::Matrix<double, numbers_of_body, 1>;
 
-BodyNumbers to_numbers(const BodyInItself& found) {
+BodyNumbers to_numbers(const SelfPenetration& found) {
   BodyNumbers result;
   result << found.deepest.to_numbers(), found.at_contact.to_numbers(), found.contact, static_cast<double>(found.own[0]),
       static_cast<double>(found.own[1]), static_cast<double>(found.own[2]), static_cast<double>(found.through[0]),
@@ -134,7 +134,7 @@ void SelfWatch::look(const Vector& displacement, double time, bool now, const No
   bool any = false;
   for (std::size_t number = 0; number < parts_.size(); ++number) {
     Part& part = parts_[number];
-    const BodyInItself& found = found_[number];
+    const SelfPenetration& found = found_[number];
     const bool is_known = found.deepest.found() || found.at_contact.found();
     const double limit = (is_known ? motion_once_found : motion_before_look) * part.surface.edge_length();
     const bool due = looks_ == 0 || (saved_ >= part.work && is_due(part, limit, displacement));
@@ -214,7 +214,7 @@ double SelfWatch::unseen_motion() const {
 
 void SelfWatch::look_at(std::size_t number, const Vector& displacement, double time, const NodeGaps& gaps) {
   Part& part = parts_[number];
-  BodyInItself& known = found_[number];
+  SelfPenetration& known = found_[number];
   part.surface.move(positions_, displacement);
   const SelfOverlap overlap(part.surface, axisymmetric_);
   const bool at_start = looks_ == 0;
@@ -325,7 +325,7 @@ void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
   const auto nodes = static_cast<double>(positions_.cols());
   for (std::size_t k = 0; k < found_.size(); ++k) {
     const BodyNumbers of = numbers.segment<numbers_of_body>(numbers_of_body * static_cast<Index>(k));
-    BodyInItself& found = found_[k];
+    SelfPenetration& found = found_[k];
     const auto rest = of.tail<7>();
     const double node_at_contact = of[DeepestPoint::numbers];
     const auto is_node = [&](double number) { return number >= -1.0 && number < nodes; };

@@ -17,7 +17,7 @@
 namespace ricochet {
 
 /// Body of which one part was found inside another part.
-struct BodyInItself {
+struct SelfPenetration {
   int body = 0;
   DeepestPoint deepest;                      ///< of the nodes without a contact
   std::array<Index, 3> own{-1, -1, -1};      ///< nodes of the facet at that node which faces `through`
@@ -53,7 +53,7 @@ class SelfWatch {
   void look(const Vector& displacement, double time, bool now, const NodeGaps& gaps);
 
   /// One entry per body; bodies with self-penetration have deepest.found() or at_contact.found().
-  [[nodiscard]] const std::vector<BodyInItself>& bodies() const { return found_; }
+  [[nodiscard]] const std::vector<SelfPenetration>& bodies() const { return found_; }
   [[nodiscard]] bool watches() const { return !parts_.empty(); }
   [[nodiscard]] long looks() const { return looks_; }
   /// Largest distance, in mean edges, that a node has moved between two checks relative to a rigid motion of its body,
@@ -103,7 +103,7 @@ class SelfWatch {
   const Points& positions_;
   bool axisymmetric_;
   std::vector<Part> parts_;                   ///< per body
-  std::vector<BodyInItself> found_;           ///< likewise
+  std::vector<SelfPenetration> found_;        ///< likewise
   double work_per_step_ = 0.0, saved_ = 0.0;  ///< admissible work of checks, and the unused part
   long looks_ = 0;
   int contacts_;  ///< number of ContactPairs

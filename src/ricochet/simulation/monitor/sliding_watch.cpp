@@ -19,7 +19,7 @@ SlidingWatch::SlidingWatch(const Body& body, const SemidiscreteProblem& problem,
   for (std::size_t number = 0; number < pairs.size(); ++number) {
     if (!pairs[number].has_two_sides()) continue;
     if (pairs[number].slides_far) {
-      add_far_contact(static_cast<int>(number));
+      add_large_sliding_contact(static_cast<int>(number));
       continue;
     }
     Largest largest;
@@ -33,11 +33,11 @@ SlidingWatch::SlidingWatch(const Body& body, const SemidiscreteProblem& problem,
   }
 }
 
-void SlidingWatch::add_far_contact(int number) {
+void SlidingWatch::add_large_sliding_contact(int number) {
   const ContactBoundary& contact = problem_.contact;
   const Index d = problem_.dimension;
   const Vector stiffness = problem_.internal_force->stiffness_diagonal();
-  FarContact& far = far_.emplace_back();
+  LargeSlidingContact& far = large_sliding_.emplace_back();
   far.contact = number;
   far.is_self = pairs_[static_cast<std::size_t>(number)].is_self();
   for (Index point = 0; point < contact.size(); ++point) {
@@ -65,33 +65,33 @@ double SlidingWatch::slip_of(Index point, const State& state) const {
 }
 
 /// A held step leaves a gap, or an overlap, at points that carry a force.
-void SlidingWatch::look_at_far_contacts(const State& state) {
-  tell_of_held(state);
+void SlidingWatch::check_large_sliding(const State& state) {
+  warn_of_held_step(state);
   if (state.step == 0) return;
-  const bool has_held = problem_.contact.geometry->has_held();
-  if (has_held) problem_.gaps(state.displacement, state.time, gap_);
-  for (FarContact& contact : far_) {
+  const bool has_frozen = problem_.contact.geometry->has_frozen();
+  if (has_frozen) problem_.gaps(state.displacement, state.time, gap_);
+  for (LargeSlidingContact& contact : large_sliding_) {
     double force = 0.0;
     for (const Index point : contact.points) force += std::max(0.0, state.forces.normal_reaction[point]);
     contact.largest_force = std::max(contact.largest_force, force);
-    if (!has_held) continue;
+    if (!has_frozen) continue;
     enter(contact, state);
-    if (contact.is_told || contact.share() <= UnsettledContact::doubtful) continue;
-    contact.is_told = true;
+    if (contact.is_warned || contact.share() <= UnsettledContact::doubtful) continue;
+    contact.is_warned = true;
     tell(contact);
   }
 }
 
 /// Enters a contact with the gaps at the end of a step. (On a surface that touches itself, other points stand for those
 /// without a force.)
-void SlidingWatch::enter(FarContact& contact, const State& state) const {
+void SlidingWatch::enter(LargeSlidingContact& contact, const State& state) const {
   constexpr double settled = 1e-9;
   double force = 0.0, missing = 0.0;
   Index widest = -1;
   for (std::size_t i = 0; i < contact.points.size(); ++i) {
     const Index point = contact.points[i];
     const double reaction = state.forces.normal_reaction[point], gap = gap_[point];
-    if (std::abs(gap) <= settled * size_ || gap >= problem_.contact.out_of_sight) continue;
+    if (std::abs(gap) <= settled * size_ || gap >= problem_.contact.unpaired_gap) continue;
     if (!(reaction > 0.0) && (gap > 0.0 || contact.is_self)) continue;
     if (gap > 0.0) force += reaction;
     if (gap < 0.0) missing -= gap * contact.stiffness[i];
@@ -107,7 +107,7 @@ void SlidingWatch::enter(FarContact& contact, const State& state) const {
   contact.point = widest;
 }
 
-void SlidingWatch::tell(const FarContact& contact) const {
+void SlidingWatch::tell(const LargeSlidingContact& contact) const {
   const ContactPair& pair = pairs_[static_cast<std::size_t>(contact.contact)];
   log::warning(fmt::format(
       "at t = {:.6g} what faces what of \"{}\" and \"{}\" changed from one iteration of the step to the next, and was "
@@ -120,9 +120,9 @@ void SlidingWatch::tell(const FarContact& contact) const {
 }
 
 /// Warns of the first held step, whatever its effect.
-void SlidingWatch::tell_of_held(const State& state) {
-  if (has_told_held_ || !problem_.contact.geometry->has_held()) return;
-  has_told_held_ = true;
+void SlidingWatch::warn_of_held_step(const State& state) {
+  if (held_step_warned_ || !problem_.contact.geometry->has_frozen()) return;
+  held_step_warned_ = true;
   log::warning(
       fmt::format("at t = {:.6g} what faces what of bodies that slide far changed from one iteration of a step to the "
                   "next, and was held: forces of such steps give no energy, but have a moment, which the angular "
@@ -131,7 +131,7 @@ void SlidingWatch::tell_of_held(const State& state) {
 }
 
 void SlidingWatch::look(const State& state) {
-  if (!far_.empty()) look_at_far_contacts(state);
+  if (!large_sliding_.empty()) check_large_sliding(state);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Index point = points_[i];
     if (!(state.forces.normal_reaction[point] > 0.0)) continue;
@@ -189,7 +189,7 @@ std::vector<PairSliding> SlidingWatch::report() const {
 
 std::vector<UnsettledContact> SlidingWatch::unsettled() const {
   std::vector<UnsettledContact> result;
-  for (const FarContact& far : far_) {
+  for (const LargeSlidingContact& far : large_sliding_) {
     if (far.steps == 0) continue;
     result.push_back({far.contact, far.share(), far.steps, far.first_time, far.time, far.gap, place_of(far.point)});
   }
@@ -204,12 +204,12 @@ void SlidingWatch::save(Snapshot& snapshot, const std::string& name) const {
         largest.time_beyond, static_cast<double>(largest.point), largest.is_beyond ? 1.0 : 0.0;
   }
   snapshot.save(name, numbers);
-  snapshot.save(name + ".has_told", std::int64_t{has_told_held_ ? 2 : 0});
-  Vector far(9 * static_cast<Index>(far_.size()));
-  for (std::size_t i = 0; i < far_.size(); ++i) {
-    const FarContact& each = far_[i];
+  snapshot.save(name + ".has_told", std::int64_t{held_step_warned_ ? 2 : 0});
+  Vector far(9 * static_cast<Index>(large_sliding_.size()));
+  for (std::size_t i = 0; i < large_sliding_.size(); ++i) {
+    const LargeSlidingContact& each = large_sliding_[i];
     far.segment<9>(9 * static_cast<Index>(i)) << each.largest_force, each.force, static_cast<double>(each.steps),
-        each.first_time, each.time, each.gap, static_cast<double>(each.point), each.is_told ? 1.0 : 0.0, each.missing;
+        each.first_time, each.time, each.gap, static_cast<double>(each.point), each.is_warned ? 1.0 : 0.0, each.missing;
   }
   snapshot.save(name + ".far", far);
 }
@@ -217,14 +217,14 @@ void SlidingWatch::save(Snapshot& snapshot, const std::string& name) const {
 /// Loads nothing from checkpoints of earlier versions, which contain no record of contacts with large sliding.
 void SlidingWatch::load_far(const Snapshot& snapshot, const std::string& name) {
   if (!snapshot.has(name)) return;
-  const Vector& numbers = snapshot.reals(name, 9 * static_cast<Index>(far_.size()));
-  for (std::size_t i = 0; i < far_.size(); ++i) {
+  const Vector& numbers = snapshot.reals(name, 9 * static_cast<Index>(large_sliding_.size()));
+  for (std::size_t i = 0; i < large_sliding_.size(); ++i) {
     const auto of = numbers.segment<9>(9 * static_cast<Index>(i));
     const bool fits = of.allFinite() && of[2] >= 0.0 && of[2] < 1e15 && of[6] >= -1.0 &&
                       of[6] < static_cast<double>(problem_.contact.size()) && of[6] == std::floor(of[6]) &&
                       (of[7] == 0.0 || of[7] == 1.0);
     if (!fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of sliding is damaged");
-    FarContact& far = far_[i];
+    LargeSlidingContact& far = large_sliding_[i];
     far.largest_force = of[0];
     far.force = of[1];
     far.steps = static_cast<long>(of[2]);
@@ -232,14 +232,14 @@ void SlidingWatch::load_far(const Snapshot& snapshot, const std::string& name) {
     far.time = of[4];
     far.gap = of[5];
     far.point = static_cast<Index>(of[6]);
-    far.is_told = of[7] != 0.0;
+    far.is_warned = of[7] != 0.0;
     far.missing = of[8];
   }
 }
 
 void SlidingWatch::load(const Snapshot& snapshot, const std::string& name) {
   const Vector& numbers = snapshot.reals(name, 7 * static_cast<Index>(largest_.size()));
-  has_told_held_ = (snapshot.integer(name + ".has_told") & 2) != 0;
+  held_step_warned_ = (snapshot.integer(name + ".has_told") & 2) != 0;
   load_far(snapshot, name + ".far");
   for (std::size_t i = 0; i < largest_.size(); ++i) {
     const auto of = numbers.segment<7>(7 * static_cast<Index>(i));

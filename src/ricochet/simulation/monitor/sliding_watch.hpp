@@ -30,7 +30,7 @@ class SlidingWatch {
 
  private:
   /// Record of a contact with large sliding.
-  struct FarContact {
+  struct LargeSlidingContact {
     int contact = 0;
     bool is_self = false;
     std::vector<Index> points;
@@ -41,7 +41,7 @@ class SlidingWatch {
     long steps = 0;
     double first_time = 0.0, time = 0.0, gap = 0.0;
     Index point = -1;
-    bool is_told = false;
+    bool is_warned = false;
     [[nodiscard]] double share() const { return force > 0.0 ? force / (largest_force + missing) : 0.0; }
   };
   /// Record of a contact between bodies.
@@ -51,14 +51,14 @@ class SlidingWatch {
     Index point = -1;
     bool is_beyond = false;
   };
-  void add_far_contact(int contact);
+  void add_large_sliding_contact(int contact);
   [[nodiscard]] double slip_of(Index point, const State& state) const;
   [[nodiscard]] std::vector<double> place_of(Index point) const;
   void tell(const Largest& largest) const;
-  void look_at_far_contacts(const State& state);
-  void enter(FarContact& contact, const State& state) const;
-  void tell(const FarContact& contact) const;
-  void tell_of_held(const State& state);
+  void check_large_sliding(const State& state);
+  void enter(LargeSlidingContact& contact, const State& state) const;
+  void tell(const LargeSlidingContact& contact) const;
+  void warn_of_held_step(const State& state);
   void load_far(const Snapshot& snapshot, const std::string& name);
 
   const SemidiscreteProblem& problem_;
@@ -67,9 +67,9 @@ class SlidingWatch {
   std::vector<Index> points_;    ///< between bodies
   std::vector<std::size_t> at_;  ///< per entry of points_: index into largest_
   std::vector<Largest> largest_;
-  std::vector<FarContact> far_;
+  std::vector<LargeSlidingContact> large_sliding_;
   double size_ = 0.0;  ///< of the model
-  bool has_told_held_ = false;
+  bool held_step_warned_ = false;
   Vector gap_;
 };
 

@@ -196,7 +196,7 @@ bool StressRaisers::touches_sharp_obstacle(const State& state, Nodes nodes, doub
       continue;
     const Obstacle* const obstacle = problem_.obstacles[static_cast<std::size_t>(contact.node_pair[entry])];
     if (obstacle == nullptr || obstacle->shape().is_flat()) continue;
-    const PlacedObstacle placed = obstacle->at(state.time, state.displacement);
+    const PosedObstacle placed = obstacle->at(state.time, state.displacement);
     const SpaceVector at = position(state, node), normal = placed.normal(at);
     for (int axis = 0; axis < d; ++axis) {
       SpaceVector side = SpaceVector::Unit(d, axis);
@@ -210,7 +210,7 @@ bool StressRaisers::touches_sharp_obstacle(const State& state, Nodes nodes, doub
 }
 
 StressRaiser StressRaisers::at(const State& state, Index cell) {
-  const PlaceInBlocks place = locate_cell(*body_.space, cell);
+  const IndexInBlocks place = locate_cell(*body_.space, cell);
   const CellBlock& block = body_.space->cells[place.block];
   const Nodes nodes(block.cell(place.local), static_cast<std::size_t>(block.nodes_per_cell));
   StressRaiser first = StressRaiser::none;

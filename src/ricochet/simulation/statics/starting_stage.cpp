@@ -25,7 +25,7 @@ Stage contact_stage(const SemidiscreteProblem& problem, const Vector& displaceme
   Stage stage;
   stage.right_hand_side = std::move(right_hand_side);
   stage.prescribed.setZero(problem.supports.size());
-  if (!problem.internal_force->is_linear()) stage.force_place = displacement;
+  if (!problem.internal_force->is_linear()) stage.force_base = displacement;
   require_no_penetration(problem, displacement, 0.0, stage);
   return stage;
 }

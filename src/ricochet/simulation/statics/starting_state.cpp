@@ -15,7 +15,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
-#include "ricochet/problem/points_inside.hpp"
+#include "ricochet/problem/penetrating_points.hpp"
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/simulation/statics/finite_equilibrium.hpp"
 #include "ricochet/simulation/statics/starting_stage.hpp"
@@ -64,7 +64,7 @@ void relax_contact_nodes(const SemidiscreteProblem& problem, double step, const 
                          State& state) {
   const auto solver = make_step_solver(problem, {{0.0, 1.0, 0.0, StageDofs::contact}}, options);
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
-  observe_obstacles(problem, state.displacement, {.factor = 1.0}, stage);
+  evaluate_obstacle_velocity(problem, state.displacement, {.factor = 1.0}, stage);
   require_friction(problem, state.velocity, 1.0 / step, stage);
   StageSolution solution;
   try {
@@ -97,7 +97,7 @@ std::vector<char> resting_points(const SemidiscreteProblem& problem, const State
   Stage here = contact_stage(problem, state.displacement, {});
   Vector rate;
   here.rows->normal_motion(state.velocity, rate);
-  observe_obstacles(problem, state.displacement, {}, here);
+  evaluate_obstacle_velocity(problem, state.displacement, {}, here);
   project_motion(*here.rows, here.obstacle);
   problem.trace_rounding(state.velocity, rate_rounding);
   if (here.obstacle.normal.size() > 0) {
@@ -162,12 +162,12 @@ void find_acceleration(const SemidiscreteProblem& problem, const Vector& support
   const auto solver = make_step_solver(problem, {{1.0, 0.0, 0.0, StageDofs::massive}}, once);
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
   stage.prescribed = support_acceleration;
-  stage.force_place.resize(0);  // the unknown is an acceleration
+  stage.force_base.resize(0);  // the unknown is an acceleration
   stage.eligible = std::move(resting);
   stage.motion.reset();
   find_curvature_term(problem, state, step, stage.gap_offset);  // the condition is on the sum of G a and this
   stage.gap_offset_rounding.setZero();
-  observe_obstacles(problem, state.displacement, {}, stage);
+  evaluate_obstacle_velocity(problem, state.displacement, {}, stage);
   require_friction(problem, state.velocity, step, stage);
   StageSolution solution;
   solver->solve(0, stage, solution);
@@ -195,7 +195,7 @@ namespace {
 
 /// Warns of small overlaps; deeper ones are refused (model_bodies.cpp).
 void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
-  const PointsInside inside = points_inside_at_start(problem, state.displacement);
+  const PenetratingPoints inside = initially_penetrating_points(problem, state.displacement);
   const Index points = problem.all_contact_points();
   if (inside.count == 0) return;
   log::warning(
@@ -248,7 +248,7 @@ namespace {
 
 /// A body that starts inside an obstacle or another body is pushed out at once, whatever the loads are: if that fails,
 /// the reasons given by the search concern the result rather than the cause.
-[[noreturn]] void refuse_static_from_inside(const SemidiscreteProblem& problem, const PointsInside& inside,
+[[noreturn]] void refuse_static_from_inside(const SemidiscreteProblem& problem, const PenetratingPoints& inside,
                                             const Error& reason) {
   constexpr std::string_view key = "initial.displacement = \"static\": ";
   std::string search = reason.what();
@@ -281,7 +281,7 @@ StaticEquilibrium find_static_equilibrium(const SemidiscreteProblem& problem, co
     warn_of_closed_gaps(problem, found.normal_reaction);
     return found;
   } catch (const Error& reason) {
-    const PointsInside inside = points_inside_at_start(problem, undeformed);
+    const PenetratingPoints inside = initially_penetrating_points(problem, undeformed);
     if (inside.count == 0) throw;
     refuse_static_from_inside(problem, inside, reason);
   }

@@ -71,7 +71,7 @@ class StaticFriction {
   StaticFriction(const SemidiscreteProblem& problem, const Vector& velocity) : problem_(problem) {
     if (!problem.contact.has_friction()) return;
     Stage stage = contact_stage(problem, Vector::Zero(problem.dof_count()), {});
-    observe_obstacles(problem, Vector::Zero(problem.dof_count()), {}, stage);
+    evaluate_obstacle_velocity(problem, Vector::Zero(problem.dof_count()), {}, stage);
     require_friction(problem, velocity, 1.0, stage);
     slide_.setZero(stage.slip_offset.size());
     sliding_.assign(static_cast<std::size_t>(problem.contact.size()), 0);

@@ -321,7 +321,7 @@ void ContactSystem::evaluate(ContactIterate& iterate) const {
   }
 }
 
-void ContactSystem::take_reaction(const Vector& reaction, Vector& scaled) const {
+void ContactSystem::scale_reaction(const Vector& reaction, Vector& scaled) const {
   scaled.setZero(rows());
   for (const ContactPoint& point : points_) {
     const double scale = reaction_scale(point.point);
@@ -330,7 +330,7 @@ void ContactSystem::take_reaction(const Vector& reaction, Vector& scaled) const 
   }
 }
 
-void ContactSystem::give_reaction(const Vector& scaled, Vector& reaction) const {
+void ContactSystem::unscale_reaction(const Vector& scaled, Vector& reaction) const {
   reaction.setZero(problem_row_offset_.back());
   for (const ContactPoint& point : points_) {
     const double scale = 1.0 / reaction_scale(point.point);
@@ -339,7 +339,7 @@ void ContactSystem::give_reaction(const Vector& scaled, Vector& reaction) const 
   }
 }
 
-void ContactSystem::give_motion(const Vector& scaled, Vector& motion) const {
+void ContactSystem::unscale_motion(const Vector& scaled, Vector& motion) const {
   motion.resize(rows());
   for (Index row = 0; row < rows(); ++row)
     motion[row] = scaled[row] / (data_scale_ * row_scale_[static_cast<std::size_t>(row)]);

@@ -112,10 +112,10 @@ class ContactSystem {
   [[nodiscard]] Floor floor_of(const ContactPoint& point, const ContactIterate& iterate) const;
 
   /// Convert from rows of the problem to those of the system and back; entries outside the system are zero.
-  void take_reaction(const Vector& reaction, Vector& scaled) const;
-  void give_reaction(const Vector& scaled, Vector& reaction) const;
+  void scale_reaction(const Vector& reaction, Vector& scaled) const;
+  void unscale_reaction(const Vector& scaled, Vector& reaction) const;
   /// Requires a system with all rows of the problem.
-  void give_motion(const Vector& scaled, Vector& motion) const;
+  void unscale_motion(const Vector& scaled, Vector& motion) const;
   /// Scaled residual of any eligible point of the problem, in or out of the system, from r and u in the problem's
   /// units.
   [[nodiscard]] double residual_of(const ContactProblem& problem, Index point, const Vector& reaction,

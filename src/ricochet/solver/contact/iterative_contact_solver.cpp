@@ -142,7 +142,7 @@ void IterativeContactSolver::put_on_law(const ContactSystem& system, const Vecto
 /// Computes u of the problem from its own W, unless the system has all of its rows.
 void IterativeContactSolver::find_motion(const ContactProblem& problem, ContactSolution& solution) const {
   if (system_.rows() == problem.rows()) {
-    system_.give_motion(finished_.motion, solution.motion);
+    system_.unscale_motion(finished_.motion, solution.motion);
     return;
   }
   const Matrix* w = problem.contact_operator->dense();
@@ -217,7 +217,7 @@ void IterativeContactSolver::run(const ContactOptions& options, ContactSolution&
   }
   std::swap(closest_, finished_);
   measure_ = best;
-  system_.give_reaction(finished_.reaction, solution.reaction);
+  system_.unscale_reaction(finished_.reaction, solution.reaction);
 }
 
 bool IterativeContactSolver::is_accepted(const ContactOptions& options) const {
@@ -281,7 +281,7 @@ void IterativeContactSolver::find_status(const ContactProblem& problem, ContactS
 void IterativeContactSolver::solve_on_wanted(const ContactProblem& problem, const ContactOptions& options,
                                              bool exchanges, ContactSolution& solution) {
   while (true) {
-    system_.take_reaction(solution.reaction, current_.reaction);
+    system_.scale_reaction(solution.reaction, current_.reaction);
     if (!current_.reaction.allFinite()) current_.reaction.setZero();  // scaled beyond the range of numbers
     start(current_.reaction);
     if (options.record) count_states(system_, current_.reaction, solution);

@@ -29,7 +29,7 @@ constexpr int patience = 100;
 
 }  // namespace
 
-void ContactCandidates::take_up(const std::vector<Index>& points) {
+void ContactCandidates::add_candidates(const std::vector<Index>& points) {
   for (const Index point : points) {
     number_[static_cast<std::size_t>(point)] = static_cast<Index>(points_.size());
     points_.push_back(point);

@@ -20,7 +20,7 @@ class ContactCandidates {
   [[nodiscard]] const std::vector<Index>& points() const { return points_; }
   /// Index of a point among them, or −1.
   [[nodiscard]] Index number(Index point) const { return number_[static_cast<std::size_t>(point)]; }
-  void take_up(const std::vector<Index>& points);
+  void add_candidates(const std::vector<Index>& points);
   void clear();
 
   /// Save and load everything except the points themselves, which are added separately.

@@ -23,7 +23,7 @@ FactoredStage::FactoredStage(const SemidiscreteProblem& problem, const OperatorC
                              const std::vector<int>& dofs, SparseCholesky factor, bool all_points, FactoredStage* layer)
     : factor_(factorized(std::move(factor), problem, coefficients, dofs)),
       contact_(problem, number_dofs(problem, dofs), factor_, all_points,
-               layer != nullptr ? std::make_unique<ContactLayer>(problem, coefficients, *layer) : nullptr) {
+               layer != nullptr ? std::make_unique<MasslessContactNodes>(problem, coefficients, *layer) : nullptr) {
   dof_at_.reserve(dofs.size());
   for (const int unknown : factor_.permutation()) dof_at_.push_back(dofs[static_cast<std::size_t>(unknown)]);
   factor_vector_.setZero(factor_.work_size());
@@ -53,7 +53,7 @@ void FactoredStage::solve(const Stage& stage, const Vector& right_hand_side, Sta
     contact_.solve(stage, factor_vector_, solution);
     factor_.solve_upper(factor_vector_);
     for (std::size_t i = 0; i < dof_at_.size(); ++i) increment[dof_at_[i]] = factor_vector_[static_cast<Index>(i)];
-  } while (contact_.take_up_penetrating(stage, increment, solution));
+  } while (contact_.add_penetrating(stage, increment, solution));
 }
 
 }  // namespace ricochet

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
-#include "ricochet/solver/delassus/condensed_contact.hpp"
+#include "ricochet/solver/delassus/delassus_problem.hpp"
 
 /// @file A stage on the dofs of one factor: forward solve, contact problem, back solve.
 namespace ricochet {
@@ -42,7 +42,7 @@ class FactoredStage {
  private:
   SparseCholesky factor_;
   std::vector<int> dof_at_;  ///< per row of the factor
-  CondensedContact contact_;
+  DelassusProblem contact_;
   Vector factor_vector_;
 };
 

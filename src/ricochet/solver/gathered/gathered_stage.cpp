@@ -63,7 +63,7 @@ SparseRowMatrix supported_part(const SemidiscreteProblem& problem, const StageTe
   for (const Index dof : problem.supports.dofs()) nodes.push_back(dof / d);
   if (nodes.empty()) return {0, problem.dof_count()};
   for (const NodeMatrix::Term& term : terms.all()) {
-    const std::vector<Index> more = layers_around(MatrixGraph(term.matrix->pattern()), nodes, 1).nodes;
+    const std::vector<Index> more = nodes_within(MatrixGraph(term.matrix->pattern()), nodes, 1).nodes;
     nodes.insert(nodes.end(), more.begin(), more.end());
   }
   std::sort(nodes.begin(), nodes.end());

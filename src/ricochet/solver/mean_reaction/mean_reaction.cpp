@@ -72,7 +72,7 @@ void MeanReaction::prepare(Matrix u, Matrix z, const std::vector<Index>& row_off
   mu_ = mean == ReactionMean::path ? 0.0 : least_end_weight(lambda, has_friction_ ? 0.0 : 0.5);
 }
 
-void MeanReaction::take_end(const Vector& reaction) {
+void MeanReaction::set_end_reaction(const Vector& reaction) {
   acting_ = reaction;
   acting_weight_ = 1.0;
   path_work_ = reaction.size() > 0 ? normals(reaction).dot(start_gap_) : 0.0;

@@ -35,7 +35,7 @@ class MeanReaction {
   /// True if some contact point can move at all; otherwise there are no means, and θ = 1.
   [[nodiscard]] bool is_usable() const { return usable_; }
   /// Sets the end reactions as those that act in this stage.
-  void take_end(const Vector& reaction);
+  void set_end_reaction(const Vector& reaction);
 
   /// Mean ρ̄, per row.
   [[nodiscard]] const Vector& mean() const { return acting_; }

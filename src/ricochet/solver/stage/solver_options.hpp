@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/linear_algebra/preconditioner_maker.hpp"
+#include "ricochet/linear_algebra/preconditioner_factory.hpp"
 
 /// @file Options of the step solver, the method chosen for each operator, and counts of iterations.
 namespace ricochet {
@@ -29,7 +29,7 @@ struct StepSolverOptions {
   /// Preconditioner of iterations: "block-jacobi", or a name known to `preconditioners`; "auto": the one that is
   /// expected to take less time.
   std::string preconditioner = "auto";
-  std::shared_ptr<const PreconditionerMaker> preconditioners = {};  ///< null if there are no others
+  std::shared_ptr<const PreconditionerFactory> preconditioners = {};  ///< null if there are no others
   /// Methods chosen earlier for these operators, one by one, which a resumed run keeps. Empty: chosen anew.
   std::vector<SolverMethod> chosen = {};
 };

@@ -21,7 +21,7 @@ constexpr int not_held = static_cast<int>(ErrorKind::expectation), refused = sta
 
 /// Returns the results of the expectations that apply to this run, if its case can be read.
 std::vector<ExpectationResult> expectations_of(const BenchmarkRun& run, const std::string& directory,
-                                               const BenchmarkOutcome& outcome) {
+                                               const BenchmarkRunResult& outcome) {
   const log::Silence silence;  // the run has issued the warnings
   std::vector<ExpectationResult> all;
   try {
@@ -36,7 +36,7 @@ std::vector<ExpectationResult> expectations_of(const BenchmarkRun& run, const st
   return all;
 }
 
-int status_of(const BenchmarkRun& run, const BenchmarkOutcome& outcome) {
+int status_of(const BenchmarkRun& run, const BenchmarkRunResult& outcome) {
   if (outcome.state.word() == "done") return outcome.holds() == outcome.applies() ? 0 : not_held;
   const int status = outcome.state.exit_status.value_or(0);
   return status == refused && !run.is_own_method ? 0 : status;
@@ -81,12 +81,12 @@ std::string title_of(const BenchmarkPlan& plan, const BenchmarkRun& run) {
 
 }  // namespace
 
-std::size_t BenchmarkOutcome::holds() const {
+std::size_t BenchmarkRunResult::holds() const {
   return static_cast<std::size_t>(
       std::count_if(expectations.begin(), expectations.end(), [](const ExpectationResult& e) { return e.holds; }));
 }
 
-std::string BenchmarkOutcome::word() const {
+std::string BenchmarkRunResult::word() const {
   const std::string word = state.word();
   if (word != "failed" || !state.summary) return word;
   const RunSummary& s = *state.summary;
@@ -96,7 +96,7 @@ std::string BenchmarkOutcome::word() const {
 BenchmarkResults read_benchmark_results(const BenchmarkPlan& plan) {
   BenchmarkResults results;
   for (const BenchmarkRun& run : plan.runs) {
-    BenchmarkOutcome& outcome = results.outcomes.emplace_back();
+    BenchmarkRunResult& outcome = results.outcomes.emplace_back();
     if (run.refusal.empty()) {
       outcome.state = read_run_state(plan.path(run));
       outcome.message = outcome.state.word() == "done" ? "" : short_reason(outcome.state.message);
@@ -147,7 +147,7 @@ std::vector<std::string> benchmark_notes(const BenchmarkPlan& plan, const Benchm
   std::size_t holds = 0, applies = 0;
   std::vector<std::string> notes;
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
-    const BenchmarkOutcome& outcome = results.outcomes[i];
+    const BenchmarkRunResult& outcome = results.outcomes[i];
     const bool is_refused = outcome.state.word() == "refused";
     if (is_refused && !plan.runs[i].is_own_method) continue;
     holds += outcome.holds();

@@ -12,7 +12,7 @@
 namespace ricochet {
 
 /// Result of one benchmark with one method.
-struct BenchmarkOutcome {
+struct BenchmarkRunResult {
   RunState state;
   std::vector<ExpectationResult> expectations;  ///< those that apply; none holds if the run is not done
   std::string message;                          ///< reason why the run is not done, or ""
@@ -24,7 +24,7 @@ struct BenchmarkOutcome {
 };
 
 struct BenchmarkResults {
-  std::vector<BenchmarkOutcome> outcomes;  ///< in the order of the plan's runs
+  std::vector<BenchmarkRunResult> outcomes;  ///< in the order of the plan's runs
   int worst_status = 0;  ///< 0: all hold; 5: some do not; else the worst of the runs. Refusals by a scheme other
                          ///< than that of the case do not count.
 };

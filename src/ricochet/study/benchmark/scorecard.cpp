@@ -19,12 +19,12 @@ std::string percent_text(double percent) {
   return percent < 9.95 ? fmt::format("{:.1f}", percent) : fmt::format("{:.0f}", percent);
 }
 
-bool is_done(const BenchmarkOutcome& outcome) {
+bool is_done(const BenchmarkRunResult& outcome) {
   return outcome.state.word() == "done";
 }
 
 /// Returns a text such as "14/15 +0.1 −3 %", with the energy created and lost if large enough to show.
-std::string done_text(const BenchmarkOutcome& outcome) {
+std::string done_text(const BenchmarkRunResult& outcome) {
   std::string text = fmt::format("{}/{}", outcome.holds(), outcome.applies());
   const double created = 100.0 * outcome.state.summary->creation_by_method();
   const double lost = 100.0 * outcome.state.summary->loss_by_method();
@@ -80,7 +80,7 @@ std::string MatrixMaker::masses_of(const std::string& method) const {
 }
 
 std::string MatrixMaker::cell_of(std::size_t run) {
-  const BenchmarkOutcome& outcome = results_.outcomes[run];
+  const BenchmarkRunResult& outcome = results_.outcomes[run];
   if (is_done(outcome)) return done_text(outcome);
   if (outcome.state.word() != "refused") return outcome.word();
   auto found = std::find(matrix_.reasons.begin(), matrix_.reasons.end(), outcome.message);
@@ -93,7 +93,7 @@ void MatrixMaker::add_totals(const std::string& method) {
   std::size_t holds = 0, applies = 0;
   double created = 0.0, lost = 0.0;
   for (const std::size_t i : runs_of(method)) {
-    const BenchmarkOutcome& outcome = results_.outcomes[i];
+    const BenchmarkRunResult& outcome = results_.outcomes[i];
     if (outcome.state.word() == "refused") {
       ++refused;
       continue;
@@ -161,7 +161,7 @@ ResultTable scorecard_table(const BenchmarkPlan& plan, const BenchmarkResults& r
     table.columns.push_back({name});
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
     const BenchmarkRun& run = plan.runs[i];
-    const BenchmarkOutcome& outcome = results.outcomes[i];
+    const BenchmarkRunResult& outcome = results.outcomes[i];
     std::vector<TableCell>& row = table.rows.emplace_back();
     row = {run.scheme, run.mass, run.benchmark.name};
     if (outcome.state.word() == "refused") {

@@ -15,9 +15,9 @@ BenchmarkRun run_of(const std::string& benchmark, const std::string& group, cons
   return run;
 }
 
-BenchmarkOutcome outcome_of(const std::string& status, double created, double lost,
-                            std::vector<ExpectationResult> expectations) {
-  BenchmarkOutcome outcome;
+BenchmarkRunResult outcome_of(const std::string& status, double created, double lost,
+                              std::vector<ExpectationResult> expectations) {
+  BenchmarkRunResult outcome;
   outcome.state.summary.emplace();
   outcome.state.summary->status = status;
   outcome.state.summary->steps = 30;
@@ -27,8 +27,8 @@ BenchmarkOutcome outcome_of(const std::string& status, double created, double lo
   return outcome;
 }
 
-BenchmarkOutcome refused(const std::string& why) {
-  BenchmarkOutcome outcome;
+BenchmarkRunResult refused(const std::string& why) {
+  BenchmarkRunResult outcome;
   outcome.state.exit_status = 2;
   outcome.message = why;
   return outcome;
@@ -57,7 +57,7 @@ struct Example {
     plan.runs = {run_of("bar", "bars", "kane", "lumped", false), run_of("slope", "friction", "kane", "", false),
                  run_of("bar", "bars", "bathe", "equivalent", true),
                  run_of("slope", "friction", "bathe", "consistent", true)};
-    BenchmarkOutcome failed = outcome_of("failed", 0.0, 0.0, {unknown});
+    BenchmarkRunResult failed = outcome_of("failed", 0.0, 0.0, {unknown});
     failed.state.exit_status = 3;
     failed.message = "step 31 did not converge";
     results.outcomes = {outcome_of("done", 0.12, 0.034, {right, wrong}), refused("takes no friction"),

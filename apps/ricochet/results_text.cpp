@@ -1,0 +1,190 @@
+#include "results_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "number_text.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/simulation/impact/restitution.hpp"
+#include "ricochet/simulation/impact/rotation_growth.hpp"
+#include "ricochet/simulation/monitor/stress_raisers.hpp"
+
+namespace ricochet::program {
+
+namespace {
+
+/// Returns the radius of gyration.
+double radius_of(const BodyDescription& body) {
+  return std::sqrt(body.rigid.inertia.diagonal().maxCoeff() / body.rigid.mass);
+}
+
+/// Returns a position of the mesh in its reference configuration.
+std::string place_text(const std::vector<double>& place, const RunSummary& summary) {
+  double size = 0.0;
+  for (const BodyDescription& body : summary.bodies) size = std::max(size, body.rigid.centre.norm() + radius_of(body));
+  return vector_text(Eigen::Map<const Vector>(place.data(), static_cast<Index>(place.size())), size, 5);
+}
+
+/// Returns a spin; in the plane it is a single number. Components smaller than `least` are 0.
+std::string spin_text(const Eigen::Vector3d& spin, int dimension, double least) {
+  const auto shown = [&](Index k) { return std::abs(spin[k]) > least ? spin[k] : 0.0; };
+  if (dimension == 2) return fmt::format("{:.4g}", shown(2));
+  return vector_text(Eigen::Vector3d(shown(0), shown(1), shown(2)), 0.0, 5);
+}
+
+/// Rounding of a spin, relative to the speed of the body and to the larger spin: a spin that moves the edge of the body
+/// more slowly counts as zero.
+constexpr double rounding_of_spin = 1e-6;
+
+/// Returns "" if the body does not spin.
+std::string spins_text(int body, const RigidMotionState& before, const RigidMotionState& after,
+                       const RunSummary& summary) {
+  const double largest = std::max(before.spin.norm(), after.spin.norm());
+  const double speed = std::max(before.velocity.norm(), after.velocity.norm());
+  const double radius = radius_of(summary.bodies[static_cast<std::size_t>(body)]);
+  if (!(largest * radius > rounding_of_spin * speed)) return "";
+  const double least = rounding_of_spin * std::max(largest, speed / radius);
+  return fmt::format("{} before and {} after", spin_text(before.spin, summary.dimension, least),
+                     spin_text(after.spin, summary.dimension, least));
+}
+
+std::string body_text(int number, const RunSummary& summary) {
+  const std::string& name = summary.bodies[static_cast<std::size_t>(number)].name;
+  return name.empty() ? fmt::format("body {}", number) : name;
+}
+
+std::string spins_text(const Impact& impact, const RunSummary& summary) {
+  if (!impact.ended) return "";
+  const std::string own = spins_text(impact.body, impact.before, impact.after, summary);
+  if (!impact.other) return own.empty() ? "" : ", spin " + own;
+  const std::string others = spins_text(impact.other->number, impact.other->before, impact.other->after, summary);
+  std::string text;
+  if (!own.empty()) text += fmt::format(", spin of {} {}", body_text(impact.body, summary), own);
+  if (!others.empty()) text += fmt::format(", spin of {} {}", body_text(impact.other->number, summary), others);
+  return text;
+}
+
+/// Returns bodies "one" and "two".
+std::string bodies_text(const Impact& impact, const RunSummary& summary) {
+  constexpr std::string_view prefix = "body ";
+  const std::string one = body_text(impact.body, summary), two = body_text(impact.other->number, summary);
+  const auto is_simple = [&](const std::string& name) {
+    return name.starts_with(prefix) && name.find(" and ") == std::string::npos;
+  };
+  if (!is_simple(one) || !is_simple(two)) return fmt::format("{} on {}", one, two);
+  return fmt::format("bodies {} and {}", one.substr(prefix.size()), two.substr(prefix.size()));
+}
+
+/// Returns "bodies "one" and "two" ", "body "left" on "floor" ", or only the obstacle if there is a single body.
+std::string parties_text(const Impact& impact, const RunSummary& summary) {
+  if (impact.other) return bodies_text(impact, summary) + " ";
+  const std::string on = fmt::format("on \"{}\" ", impact.obstacle);
+  return summary.bodies.size() > 1 ? body_text(impact.body, summary) + " " + on : on;
+}
+
+/// Returns the impulse of the normal contact forces, and the total impulse if friction makes it differ.
+std::string impulse_text(const Impact& impact) {
+  const std::string normal = fmt::format("{:.4g}", impact.normal_impulse.norm());
+  const std::string whole = fmt::format("{:.4g}", impact.impulse.norm());
+  return "normal impulse " + normal + (whole == normal ? "" : " (with friction " + whole + ")");
+}
+
+/// Returns how much of the mesh took part in the impact.
+std::string resolution_text(const Impact& impact) {
+  if (impact.contact_points == 0) return "";
+  const std::string points = fmt::format(", at most {} of {} at once", impact.contact_points,
+                                         counted(impact.all_contact_points, "contact point"));
+  if (!impact.is_coarse()) return points;
+  return points + ": the contact zone is too coarse to trust the largest force and the duration; refine the mesh there";
+}
+
+/// Returns, for a run in which cells rotate too far, whether they had done so when this impact ended.
+std::string rotation_text(std::size_t impact, const RunSummary& summary) {
+  if (!summary.rotation || !std::isfinite(summary.rotation->time_beyond)) return "";
+  if (impact >= summary.rotation->until_impact_end.size()) return "";
+  return fmt::format(", cells turned by up to {:.3g} rad until {}{}", summary.rotation->until_impact_end[impact],
+                     summary.impacts[impact].ended ? "its end" : "now",
+                     summary.cells_turn_little_in(impact) ? "" : " (BEYOND SMALL STRAIN)");
+}
+
+/// Returns a note if the energy error of the method is large compared with the loss that the restitution implies.
+std::string restitution_error_text(const Impact& impact) {
+  const RestitutionError error = restitution_error(impact);
+  if (!error.is_large) return "";
+  return fmt::format(" (inexact: of the energy of the approach the method {} {}, where {} {} {})",
+                     error.by_method < 0.0 ? "lost" : "created", percent(std::abs(error.by_method)),
+                     impact.other ? "the bodies" : "the body", error.by_impact < 0.0 ? "gained" : "lost",
+                     percent(std::abs(error.by_impact)));
+}
+
+/// Returns a note if the linear law has changed the restitution through the rotation of a body.
+std::string turning_text(const Impact& impact) {
+  if (!is_distorted_by_rotation(impact)) return "";
+  const double error = restitution_excess(impact);
+  return fmt::format(" (BEYOND SMALL STRAIN: too {} by about {:.2g}, as the linear law makes a body that turns grow)",
+                     error > 0.0 ? "large" : "small", std::abs(error));
+}
+
+std::string impact_text(std::size_t number, const RunSummary& summary) {
+  const Impact& impact = summary.impacts[number];
+  std::string text = parties_text(impact, summary);
+  if (!impact.first_place.empty()) text += fmt::format("first at {} ", place_text(impact.first_place, summary));
+  text += fmt::format("from t = {:.6g}", impact.begin);
+  if (impact.from_start) text += " (the start)";
+  if (impact.ended) {
+    text += fmt::format(" to {:.6g} (duration {:.4g})", impact.end, impact.end - impact.begin);
+  } else {
+    text += ", not ended";
+  }
+  if (const auto restitution = impact.restitution()) {
+    const char* const inward = impact.other ? " (their centres still come nearer after the last force)"
+                                            : " (its centre still goes towards the obstacle after the last force)";
+    text += fmt::format(", restitution {:.4g}{}{}{}", *restitution, *restitution < 0.0 ? inward : "",
+                        restitution_error_text(impact), turning_text(impact));
+  } else if (impact.ended) {
+    text += fmt::format(", no restitution ({})", why_no_restitution(impact));
+  }
+  text += fmt::format(", {}, largest force {:.4g} at {:.6g} (mean {:.4g})", impulse_text(impact), impact.largest_force,
+                      impact.largest_force_time, impact.mean_force());
+  return text + spins_text(impact, summary) + rotation_text(number, summary) + resolution_text(impact);
+}
+
+void print_no_contact(const RunSummary& summary) {
+  // Results of a version without impacts list no bodies either: nothing is known about contact.
+  if (summary.contacts.empty() || summary.bodies.empty() || summary.steps == 0) return;
+  if (!summary.impacts.empty() || summary.impacts_left_out > 0) return;
+  // As if a body touches itself.
+  if (summary.digest("active_contacts").maximum > 0.0) {
+    fmt::print("  contact forces have acted, but within one body: that is no impact\n");
+    return;
+  }
+  fmt::print("  no contact: no contact force {}\n",
+             summary.status == "done" ? "acted in this run" : "has acted in this run so far");
+}
+
+}  // namespace
+
+void print_impacts(const RunSummary& summary, std::size_t most) {
+  print_no_contact(summary);
+  const std::size_t count = summary.impacts.size();
+  const std::size_t shown = most == 0 ? count : std::min(most, count);
+  for (std::size_t i = 0; i < shown; ++i) fmt::print("  impact {}: {}\n", i + 1, impact_text(i, summary));
+  const auto others = static_cast<long>(count - shown) + summary.impacts_left_out;
+  if (others > 0) fmt::print("  {}{}\n", counted(others, "more impact"), most == 0 ? "" : ", see summary.json");
+}
+
+void print_peak_stress(const RunSummary& summary) {
+  if (!summary.peak_stress) return;
+  const PeakStressDescription& d = *summary.peak_stress;
+  const bool all = d.peak.looks >= d.peak.states;
+  fmt::print("  largest von Mises stress {}{:.6g} at t = {:.6g}, in \"{}\" at {} (mean of a cell; {})\n",
+             all ? "" : "≥ ", d.peak.von_mises, d.peak.time, d.material, place_text(d.place, summary),
+             all ? "looked at in every step" : fmt::format("looked at in {} of {} steps", d.peak.looks, d.peak.states));
+  if (d.peak.raised_by != StressRaiser::none)
+    fmt::print("    it grows with refinement: it sits on {}\n", name_of(d.peak.raised_by));
+}
+
+}  // namespace ricochet::program

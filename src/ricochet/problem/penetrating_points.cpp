@@ -1,0 +1,64 @@
+#include "ricochet/problem/penetrating_points.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace ricochet {
+
+namespace {
+
+/// Number, in the whole body, of the first node of a point. It breaks ties between equally deep points in favour of the
+/// lowest number, independent of the partition.
+double number_of(const SemidiscreteProblem& problem, Index point) {
+  Index lowest = std::numeric_limits<Index>::max();
+  problem.contact.visit_own_nodes(point, [&](Index node, double) {
+    lowest = std::min(lowest, static_cast<Index>(problem.ranks->number_of(node)));
+  });
+  return static_cast<double>(lowest);
+}
+
+/// Message of a rank to the others: number of points, then depth, number, pair and position of the deepest.
+std::vector<double> told_of(const SemidiscreteProblem& problem, const Vector& gap, const std::vector<Index>& points) {
+  if (points.empty()) return {0.0};
+  const Index deepest = *std::min_element(points.begin(), points.end(), [&](Index a, Index b) {
+    return gap[a] != gap[b] ? gap[a] < gap[b] : number_of(problem, a) < number_of(problem, b);
+  });
+  Vector place = Vector::Zero(problem.dimension);
+  problem.contact.visit_own_nodes(deepest,
+                                  [&](Index node, double weight) { place += weight * problem.nodes.col(node); });
+  std::vector<double> told{static_cast<double>(points.size()), -gap[deepest], number_of(problem, deepest),
+                           static_cast<double>(problem.contact.pair[static_cast<std::size_t>(deepest)])};
+  told.insert(told.end(), place.begin(), place.end());
+  return told;
+}
+
+}  // namespace
+
+PenetratingPoints penetrating_points(const SemidiscreteProblem& problem, const Vector& gap, std::optional<int> pair,
+                                     double depth) {
+  PenetratingPoints inside;
+  const ContactBoundary& contact = problem.contact;
+  for (Index i = 0; i < gap.size(); ++i) {
+    if (pair && contact.pair[static_cast<std::size_t>(i)] != *pair) continue;
+    if (gap[i] < -std::max(depth, contact.rows->gap_rounding[i])) inside.points.push_back(i);
+  }
+  double number = 0.0;
+  for (const std::vector<double>& told : problem.ranks->of_all(told_of(problem, gap, inside.points))) {
+    inside.count += static_cast<Index>(told[0]);
+    if (told.size() == 1 || told[1] < inside.deepest) continue;
+    if (told[1] == inside.deepest && told[2] > number) continue;
+    inside.deepest = told[1];
+    number = told[2];
+    inside.pair = static_cast<int>(told[3]);
+    inside.place = Eigen::Map<const Vector>(told.data() + 4, problem.dimension);
+  }
+  return inside;
+}
+
+PenetratingPoints initially_penetrating_points(const SemidiscreteProblem& problem, const Vector& displacement) {
+  Vector gap;
+  problem.gaps(displacement, 0.0, gap);
+  return penetrating_points(problem, gap);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,370 @@
+#include "ricochet/scheme/reduced/finite_strain_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/scheme/reduced/massless_contact_step.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Admissible energy defect of a step: relative to kinetic and elastic energy for acceptance, relative to the elastic
+/// energies for the choice of σ.
+constexpr double energy_tolerance = 1e-15;
+/// Likewise if σ hardly changes the work (EnergySecant::is_weak): another σ improves nothing but rounding there.
+constexpr double weak_energy_tolerance = 1e-14;
+/// The admissible defect of a substep is that of the full step times its fraction of it, which counts as at least this.
+constexpr double least_part = 0.1;
+/// Corrections, relative to the increment, from which on σ is sought: before, displacements are too inaccurate.
+constexpr double near_solution = 1e-2;
+
+double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vector& b) {
+  double sum = 0.0;
+  for (const Index dof : problem.contact_dofs) sum += a[dof] * b[dof];
+  return sum;
+}
+
+/// Work of forces on rigid bodies that move freely: part of the kinetic energy, as on everything that has inertia.
+double on_free_bodies(const SemidiscreteProblem& problem, const Vector& force, const Vector& end, const Vector& start) {
+  double sum = 0.0;
+  for (Index dof = problem.cell_node_count() * problem.dimension; dof < end.size(); ++dof)
+    sum += force[dof] * (end[dof] - start[dof]);
+  return sum;
+}
+
+}  // namespace
+
+void FiniteStrainStep::analyse(const SemidiscreteProblem& problem, double step) {
+  whole_step_ = step;
+  flight_ = std::make_unique<FlightPrediction>(problem);
+  velocity_correction_ = std::make_unique<VelocityCorrection>(problem, flight_->bodies());
+  layer_right_.resize(static_cast<Index>(problem.contact_dofs.size()));
+  layer_ = problem.internal_force_at_contact();
+}
+
+std::vector<OperatorCoefficients> FiniteStrainStep::operators(const SemidiscreteProblem& problem, double step,
+                                                              ReactionMean mean) {
+  OperatorCoefficients midpoint{.mass = 4.0 / (step * step), .stiffness = 1.0, .damping = 2.0 / step};
+  midpoint.relaxation_step = step;
+  if (!problem.has_contact_dofs()) return {midpoint};
+  midpoint.layer = static_cast<int>(MasslessContactStep::layer_stage);
+  midpoint.mean = mean;
+  OperatorCoefficients layer{.mass = 0.0, .stiffness = 1.0, .damping = 0.0, .dofs = StageDofs::contact};
+  layer.relaxation_step = step;
+  return {layer, midpoint};
+}
+
+void FiniteStrainStep::start(const SemidiscreteProblem& problem, double step, const State& state) {
+  loads_.start(problem, step, state);
+  base_ = state.displacement + (0.5 * step) * state.velocity;
+  flight_->predict(state.displacement, state.velocity, step, end_);
+  middle_ = 0.5 * (state.displacement + end_);
+  relaxed_ = state.displacement;
+  layer_energy_start_.reset();
+  sigma_.start();
+  kinetic_ = kinetic_start_ = 0.5 * problem.mass.form(state.velocity);
+  converged_ = corrects_velocity_ = false;
+  energy_defect_size_ = std::numeric_limits<double>::infinity();
+  part_ = std::clamp(step / whole_step_, least_part, 1.0);
+  vain_ = 0;
+  lacking_ = end_weight_ = dissipation_ = viscous_dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
+  has_reactions_ = false;
+  acceleration_.restart();
+  if (problem.contact.follows_motion()) lagged_.start(state);
+  row_force_.setZero(problem.dof_count());
+  nodal_.setZero(problem.dof_count());
+  mean_nodal_.setZero(problem.dof_count());
+  energy_start_ = energy_step_ == state.step
+                      ? kept_energy_
+                      : stored_energy(*problem.internal_force, state.displacement, state.internal_strain);
+}
+
+double FiniteStrainStep::tolerance() const {
+  return sigma_.is_weak() ? weak_energy_tolerance : energy_tolerance;
+}
+
+/// Computes f̄, p, f(u₁), and σ from the balance of energy at these.
+void FiniteStrainStep::evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near) {
+  const InternalForce& elastic = *problem.internal_force;
+  const ViscousForce* const viscous = elastic.viscous();
+  increment_ = end_ - state.displacement;
+  const BranchStep branches{middle_, increment_, end_, state.internal_strain, step};
+  if (near || sigma_.value() != 0.0) {
+    elastic.mean_forces(middle_, increment_, force_, strain_force_);
+  } else {
+    elastic.mean_force(middle_, increment_, force_);
+  }
+  if (viscous != nullptr) viscous->add_mean_force(branches, force_);
+  if (layer_) layer_->evaluate(end_, end_force_);
+  if (layer_ && layer_->viscous() != nullptr) layer_->viscous()->add_end_force(branches, end_force_);
+  loads_.evaluate(problem, middle_, end_, layer_ != nullptr);
+  if (!near) return;
+  if (viscous != nullptr) viscous_dissipation_ = viscous->advance_internal(branches, internal_);
+  energy_ = stored_energy(elastic, end_, internal_);
+  if (!std::isfinite(energy_)) {
+    elastic.evaluate(end_, product_);  // throws the error that names the inverted cell
+    throw Error(ErrorKind::not_converged, "the elastic energy at the end of the step is no number");
+  }
+  load_work_ = layer_ ? loads_.work_of_change(problem.contact_dofs, state.displacement, end_, middle_) : 0.0;
+  // P(x) on contact nodes is in neither term, since the work of D contains it, too.
+  const double wanted = (energy_ - energy_start_) + viscous_dissipation_ -
+                        on_contact(problem, loads_.mean(), increment_) - load_work_ - obstacle_work_ -
+                        end_weight_ * (work_at_end_ - dissipation_);
+  product_ = loads_.mean() + mean_nodal_;
+  const double has = force_.dot(increment_) - on_contact(problem, product_, increment_);
+  const double unit = strain_force_.dot(increment_);
+  lacking_ = wanted - has - sigma_.value() * unit;
+  const double size = std::abs(energy_start_ + energy_);
+  // A defect at the level of rounding carries no information, least of all if the body hardly moves.
+  if (std::abs(lacking_) <= tolerance() * size || unit <= energy_tolerance * energy_tolerance * size) return;
+  if (sigma_.choose((wanted - has) / unit, lacking_, near_rounding * size, converged_))
+    progress_.restart();  // the next correction is due to σ
+}
+
+/// Computes b of the stage: the residual at the middle.
+void FiniteStrainStep::balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage) {
+  product_ = middle_ - base_;
+  problem.mass.multiply(product_, right_);
+  kinetic_ = kinetic_start_ + (4.0 / step) * (state.velocity + (2.0 / step) * product_).dot(right_);
+  stage.right_hand_side = loads_.mean() - force_ - (4.0 / (step * step)) * right_;
+  loads_.add_pressure(stage.right_hand_side);
+  for (const auto& body : problem.free_bodies)
+    body->add_gyroscopic_force(end_, state.velocity, step, stage.right_hand_side);
+  if (sigma_.value() != 0.0) stage.right_hand_side -= sigma_.value() * strain_force_;
+  if (problem.has_damping()) {
+    product_ = middle_ - state.displacement;
+    problem.damping.evaluate(product_, damping_force_);
+    stage.right_hand_side -= (2.0 / step) * damping_force_;
+  }
+  if (problem.contact.follows_motion() && has_reactions_) {
+    row_force_.setZero();
+    lagged_.add_difference(reactions_.normal, reactions_.tangential, row_force_);
+    stage.right_hand_side += row_force_;
+    problem.contact.geometry->add_couples(middle_, *lagged_.exact(), reactions_.acting_normal,
+                                          reactions_.acting_tangential, stage.right_hand_side);
+  }
+  const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - middle_[dof]; };
+  equations_.prescribe(problem, state.time + step, half_way, stage);
+}
+
+/// Imposes contact at the end with the contact nodes, at δ = 0, at u_c1 + K_cc⁻¹ (L₁ + P_c(u₁) − f_c(u₁) − 2 b_c); b
+/// and L₁ contain the force of lagged rows.
+void FiniteStrainStep::require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step,
+                                       const State& state, StageSolve& stages, Stage& stage) {
+  right_ = loads_.mean() - end_force_ - 2.0 * stage.right_hand_side + row_force_;
+  if (loads_.change()) right_ += loads_.beside_at_end();
+  problem.take_contact(right_, layer_right_);
+  const Vector& shift = MasslessContactStep::solve_contact_nodes(problem, layer_right_, stages);
+  for (const Index dof : problem.contact_dofs) end_[dof] += shift[dof];
+  lagged_.let_go();
+  contact_.require(problem, mean, step, state, end_, equations_, stage);
+  if (!problem.contact.follows_motion()) return;
+  // Conditions are linear about the end of the previous iteration: −m there, in place of δ = 0.
+  product_.setZero();
+  for (const Index dof : problem.contact_dofs) product_[dof] = 0.5 * (last_end_[dof] - end_[dof]);
+  linearize_contact(problem, product_, stage);
+  lagged_.take_over(product_, stage);
+}
+
+/// Updates x += δ, u₁ += 2δ, on contact nodes 2m.
+FiniteStrainStep::Round FiniteStrainStep::correct(const SemidiscreteProblem& problem, const State& state,
+                                                  const StageSolution& solution) {
+  middle_ += solution.increment;
+  product_ = 2.0 * middle_ - state.displacement;
+  for (const Index dof : problem.contact_dofs) product_[dof] = end_[dof] + 2.0 * solution.contact_increment[dof];
+  Round round{(product_ - last_end_).lpNorm<Eigen::Infinity>(), 0.0};
+  round.correction = std::max(round.correction, 2.0 * (middle_ - last_middle_).lpNorm<Eigen::Infinity>());
+  end_ = product_;
+  has_reactions_ = true;
+  reactions_.normal = solution.normal_reaction;
+  reactions_.tangential = solution.tangential_reaction;
+  reactions_.acting_normal = solution.acting_normal();
+  reactions_.acting_tangential = solution.acting_tangential();
+  // Increment of the step less that of a free flight: the effect of forces.
+  round.increment = 2.0 * (middle_ - base_).lpNorm<Eigen::Infinity>();
+  return round;
+}
+
+/// Accelerates corrections that hardly shrink: displacements, with the reactions that acted on them.
+void FiniteStrainStep::accelerate(const SemidiscreteProblem& problem, const State& state) {
+  const auto contact = static_cast<Index>(problem.contact_dofs.size());
+  const Index middle = middle_.size(), places = middle + contact, points = reactions_.normal.size(),
+              slips = reactions_.tangential.size();
+  image_.resize(places + 2 * (points + slips));
+  image_.head(middle) = middle_;
+  problem.take_contact(end_, image_.segment(middle, contact));
+  image_.tail(2 * (points + slips)) << reactions_.normal, reactions_.acting_normal, reactions_.tangential,
+      reactions_.acting_tangential;
+  point_ = image_;
+  point_.head(middle) = last_middle_;
+  problem.take_contact(last_end_, point_.segment(middle, contact));
+  acceleration_.advance(point_, image_, image_);
+  middle_ = image_.head(middle);
+  end_ = 2.0 * middle_ - state.displacement;
+  problem.scatter_contact(image_.segment(middle, contact), end_);
+  reactions_.normal = image_.segment(places, points);
+  reactions_.acting_normal = image_.segment(places + points, points);
+  reactions_.tangential = image_.segment(places + 2 * points, slips);
+  reactions_.acting_tangential = image_.tail(slips);
+}
+
+/// Computes Hᵀρ and Hᵀρ̄ and, if the end reactions have a part in the mean, performs one iteration for u₀ + J.
+void FiniteStrainStep::follow_start(const SemidiscreteProblem& problem, double step, const State& state,
+                                    StageSolve& stages, Stage& stage, const StageSolution& solution) {
+  nodal_.setZero();
+  stage.rows->add_force(solution.normal_reaction, solution.tangential_reaction, nodal_);
+  mean_nodal_.setZero();
+  stage.rows->add_force(solution.acting_normal(), solution.acting_tangential(), mean_nodal_);
+  if (problem.contact.follows_motion()) {
+    problem.contact.geometry->add_couples(middle_, *stage.rows, solution.acting_normal(), solution.acting_tangential(),
+                                          mean_nodal_);
+  }
+  if (problem.has_rotating_obstacles())
+    equations_.observe_step(problem, state.displacement, state.time, end_, step, stage);
+  obstacle_work_ = obstacle_work(stage, solution.acting_normal(), solution.acting_tangential(), step) -
+                   on_free_bodies(problem, mean_nodal_, end_, state.displacement);
+  end_weight_ = solution.end_weight;
+  dissipation_ = work_at_end_ = 0.0;
+  if (end_weight_ == 0.0 || (solution.normal_reaction.isZero(0.0) && state.forces.normal_reaction.isZero(0.0))) {
+    if (!loads_.change()) {
+      relaxed_ = state.displacement;
+      end_weight_ = 0.0;
+      return;
+    }
+  }
+  layer_->evaluate(relaxed_, end_force_);
+  const ViscousForce* const viscous = layer_->viscous();
+  increment_ = end_ - state.displacement;
+  const BranchStep branches{middle_, increment_, end_, state.internal_strain, step};
+  if (viscous != nullptr) viscous->add_start_force(branches, relaxed_, end_force_);
+  at_start_ = loads_.mean() + nodal_;
+  if (loads_.change()) loads_.add_at_start(at_start_);
+  right_ = at_start_ - end_force_;
+  problem.take_contact(right_, layer_right_);
+  const Vector& change = MasslessContactStep::solve_contact_nodes(problem, layer_right_, stages);
+  for (const Index dof : problem.contact_dofs) relaxed_[dof] += change[dof];
+  // d: both energies are those of the cells at contact nodes, as the others are equal.
+  product_ = relaxed_ - state.displacement;
+  if (!layer_energy_start_) layer_energy_start_ = layer_->energy(state.displacement);
+  dissipation_ = on_contact(problem, at_start_, product_) - (layer_->energy(relaxed_) - *layer_energy_start_);
+  if (viscous != nullptr)
+    dissipation_ -= viscous->start_energy(branches, relaxed_) - viscous->start_energy(branches, state.displacement);
+  product_ = end_ - state.displacement;
+  work_at_end_ = on_contact(problem, nodal_, product_) -
+                 obstacle_work(stage, solution.normal_reaction, solution.tangential_reaction, step) +
+                 on_free_bodies(problem, nodal_, end_, state.displacement);
+}
+
+/// Work of reactions on the motion of the obstacles over the step.
+double FiniteStrainStep::obstacle_work(Stage& stage, const Vector& normal, const Vector& tangential, double step) {
+  if (stage.obstacle.normal.size() == 0) return 0.0;
+  project_motion(*stage.rows, stage.obstacle);
+  return step * (normal.dot(stage.obstacle.normal) -
+                 (tangential.size() > 0 ? tangential.dot(stage.obstacle.tangential) : 0.0));
+}
+
+void FiniteStrainStep::finish(const SemidiscreteProblem& problem, double step, State& state, Stage& stage,
+                              const StageSolution& solution, Vector& increment) {
+  increment = end_ - state.displacement;
+  before_ = state.displacement;
+  if (problem.has_rotating_obstacles()) equations_.observe_step(problem, before_, state.time, end_, step, stage);
+  product_ = middle_ - base_;
+  state.displacement = end_;
+  state.internal_strain = internal_;
+  state.velocity += (4.0 / step) * product_;
+  state.acceleration = (4.0 / (step * step)) * product_;
+  if (corrects_velocity_) {
+    state.velocity += velocity_correction_->value();
+    state.acceleration += (1.0 / step) * velocity_correction_->value();
+  }
+  follow_without_inertia(problem, increment, step, state);
+  equations_.take_contact(stage, solution, step, state);
+  loads_.take_varying(state.forces.varying_load);
+  if (problem.has_damping()) {
+    problem.damping.evaluate(increment, state.forces.damping_force);
+    state.forces.damping_force *= 1.0 / step;
+  }
+  contact_.learn(problem, before_, state);
+  if (problem.contact.follows_motion()) lagged_.remember(state);
+  energy_step_ = state.step + 1;
+  kept_energy_ = energy_;
+  corrections_ = {.load_work = load_work_,
+                  .numerical_dissipation = end_weight_ * dissipation_,
+                  .integration_error = corrects_velocity_ ? 0.0 : lacking_,
+                  .viscous_dissipation = viscous_dissipation_};
+  if (end_weight_ == 1.0) return;
+  // The mean does no work along the path; the end reactions' part of it does their work.
+  corrections_.contact_work = end_weight_ * work_at_end_ - (mean_nodal_.dot(increment) - obstacle_work_);
+}
+
+/// Solves the linear stage of an iteration.
+const StageSolution& FiniteStrainStep::solve_iteration(const SemidiscreteProblem& problem, ReactionMean mean,
+                                                       double step, const State& state, StageSolve& stages) {
+  const std::size_t number = MasslessContactStep::midpoint_stage(problem);
+  Stage& stage = stages.stage(number);
+  last_middle_ = middle_;
+  last_end_ = end_;
+  balance(problem, step, state, stage);
+  if (!problem.has_contact_dofs()) {
+    stage.eligible.clear();
+    stage.motion.reset();
+  } else {
+    require_contact(problem, mean, step, state, stages, stage);
+  }
+  const StageSolution* solution = nullptr;
+  try {
+    solution = &stages.solve(number);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::not_converged) name_inverted_cell(problem);
+    throw;
+  }
+  if (lagged_.exact() != nullptr) stage.rows = lagged_.exact();
+  return *solution;
+}
+
+void FiniteStrainStep::advance(const SemidiscreteProblem& problem, ReactionMean mean, double step, State& state,
+                               StageSolve& stages, Vector& increment) {
+  start(problem, step, state);
+  stages.follow(middle_);
+  evaluate(problem, step, state, false);
+  progress_.start(8.0 * std::numeric_limits<double>::epsilon() *
+                  (problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>()));
+  Stage& stage = stages.stage(MasslessContactStep::midpoint_stage(problem));
+  while (true) {
+    const StageSolution& solution = solve_iteration(problem, mean, step, state, stages);
+    const Round round = correct(problem, state, solution);
+    const NewtonProgress::Advice advice = progress_.judge(round.correction, round.increment);
+    // Once displacements have converged, which lasts while σ is sought, the solution is that of the equations.
+    if (!converged_ && progress_.wants_acceleration() && advice == NewtonProgress::Advice::go_on)
+      accelerate(problem, state);
+    converged_ = converged_ || advice == NewtonProgress::Advice::done;
+    if (problem.has_contact_dofs()) follow_start(problem, step, state, stages, stage, solution);
+    const bool near = round.correction <= near_solution * round.increment || converged_;
+    halve_where_inverted(problem, step, state, near);
+    try {
+      if (is_balanced(step, state, round, near)) {
+        finish(problem, step, state, stage, solution, increment);
+        return;
+      }
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::not_converged || !freeze_pairs(problem)) throw;
+      converged_ = false;
+      vain_ = 0;
+      energy_defect_size_ = std::numeric_limits<double>::infinity();
+      sigma_.start();
+      continue;
+    }
+    if (converged_ && sigma_.is_weak()) {  // with another σ now
+      converged_ = false;
+      progress_.restart();
+    } else if (!converged_) {
+      apply_advice(problem, advice, round, stages);
+    }
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,70 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/scheme/reduced/finite_strain_step.hpp"
+
+/// @file Energy balance of a step.
+namespace ricochet {
+
+/// Returns whether displacements have converged and the energy is balanced, as far as rounding of forces and energies
+/// permits. A step that creates or loses energy is not acceptable: throws Error(not_converged).
+bool FiniteStrainStep::is_balanced(double step, const State& state, const Round& round, bool near) {
+  if (!near) return false;  // the defect is not known
+  constexpr double most = 1e-8, most_corrected = 1e-6, most_snapped = 1e-4, most_created = 1e-11;
+  // Shorter substeps would have the same defect: contact nodes, which have no inertia, snap to another equilibrium, and
+  // the energy that this releases or absorbs is exchanged with the motion.
+  const bool is_short = step <= whole_step_ / 64.0;
+  const double size = std::max(kinetic_start_, kinetic_) + energy_start_ + energy_;
+  const bool is_exact = std::abs(lacking_) <= tolerance() * size;
+  const bool is_vain = std::abs(lacking_) > 0.5 * energy_defect_size_;
+  vain_ = converged_ && is_vain ? vain_ + 1 : 0;
+  energy_defect_size_ = std::abs(lacking_);
+  // Far from rounding one iteration may bring little, and the next one much.
+  const int most_vain = energy_defect_size_ <= 1e-13 * size ? 1 : 2;
+  const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : vain_ >= most_vain;
+  if (log::enabled(log::Level::debug)) {
+    log::debug(fmt::format(
+        "Newton: round {}, correction {:.2e} of {:.2e}, sigma {:.2e}, {:.2e} of the energy is "
+        "missing, {:.3g} of the reactions are the end's",
+        progress_.rounds(), round.correction, round.increment, sigma_.value(), lacking_ / size, end_weight_));
+  }
+  if (!converged_) return false;
+  if (!is_exact && !is_last) return false;
+  const bool is_done =
+      is_exact || energy_defect_size_ <= near_rounding * size ||
+      (energy_defect_size_ <= (is_short ? most_snapped : most_corrected) * size && correct_velocity(step, state));
+  if (end_weight_ * dissipation_ < -most_created * size) {
+    throw Error(ErrorKind::not_converged,
+                fmt::format("contact nodes have more than one place of equilibrium at the start of the step, and would "
+                            "go to one of more energy ({:.2g} of it)",
+                            -end_weight_ * dissipation_ / size));
+  }
+  if (is_done && corrects_velocity_ && energy_defect_size_ > most_corrected * size && !snap_logged_) {
+    snap_logged_ = true;
+    log::info(
+        fmt::format("step {}: contact nodes snap to another place of equilibrium; velocities make up for the {:.2g} of "
+                    "the energy that this sets free or takes (said once)",
+                    state.step + 1, energy_defect_size_ / size));
+  }
+  if (is_done || energy_defect_size_ <= part_ * most * size) return true;
+  throw Error(
+      ErrorKind::not_converged,
+      fmt::format("no force of the middle of the step has the work of the elastic energy: {:.2g} of the energy is "
+                  "missing, as strains change too much in one step",
+                  energy_defect_size_ / size));
+}
+
+/// Corrects the velocities at the end such that they balance the energy if no σ does.
+bool FiniteStrainStep::correct_velocity(double step, const State& state) {
+  product_ = middle_ - base_;
+  right_ = state.velocity + (4.0 / step) * product_;
+  corrects_velocity_ = velocity_correction_->find(right_, end_, -lacking_);
+  log::debug(fmt::format("velocities at the end are {}corrected", corrects_velocity_ ? "" : "not "));
+  return corrects_velocity_;
+}
+
+}  // namespace ricochet

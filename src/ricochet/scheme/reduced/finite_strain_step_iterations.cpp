@@ -1,0 +1,58 @@
+#include "ricochet/base/error.hpp"
+#include "ricochet/scheme/reduced/finite_strain_step.hpp"
+
+/// @file Treatment of iterations of a step that make no progress.
+namespace ricochet {
+
+namespace {
+
+/// Iterations after which pairs of facets that keep changing are held.
+constexpr int patience_of_pairs = 80;
+
+}  // namespace
+
+/// Holds pairs from now on, until the step is done. Returns false if there is nothing to hold, or it is held already.
+bool FiniteStrainStep::freeze_pairs(const SemidiscreteProblem& problem) {
+  if (!problem.contact.follows_motion() || !problem.contact.geometry->hold()) return false;
+  progress_.restart();
+  acceleration_.restart();
+  return true;
+}
+
+void FiniteStrainStep::apply_advice(const SemidiscreteProblem& problem, NewtonProgress::Advice advice,
+                                    const Round& round, StageSolve& stages) {
+  // Pairs may change from iteration to iteration.
+  const bool is_stuck = advice == NewtonProgress::Advice::failed ||
+                        (advice == NewtonProgress::Advice::renew && progress_.rounds() > patience_of_pairs);
+  if (is_stuck && freeze_pairs(problem)) return;
+  if (advice == NewtonProgress::Advice::failed) throw progress_.failure(round.correction);
+  if (advice != NewtonProgress::Advice::renew) return;
+  stages.renew(middle_, end_);
+  progress_.count_renewal();
+  progress_.restart();
+  acceleration_.restart();
+}
+
+/// Throws Error(not_converged), which names a cell inverted by the displacements of this iteration, if any: operators
+/// are meaningless there, and the error of a stage does not show the cause.
+void FiniteStrainStep::name_inverted_cell(const SemidiscreteProblem& problem) {
+  problem.internal_force->evaluate(end_, product_);
+  problem.internal_force->evaluate(middle_, product_);
+}
+
+void FiniteStrainStep::halve_where_inverted(const SemidiscreteProblem& problem, double step, const State& state,
+                                            bool near) {
+  constexpr int most_halvings = 5;
+  for (int halving = 0;; ++halving) {
+    try {
+      evaluate(problem, step, state, near);
+      return;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::not_converged || halving == most_halvings) throw;
+    }
+    middle_ = 0.5 * (middle_ + last_middle_);
+    end_ = 0.5 * (end_ + last_end_);
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+
+#include "ricochet/linear_algebra/anderson_acceleration.hpp"
+#include "ricochet/problem/newton_progress.hpp"
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/scheme/stage_solve.hpp"
+#include "ricochet/scheme/state.hpp"
+
+/// @file Contact nodes without inertia in an explicit step for an internal force f = ∂W/∂u that is nonlinear in the
+/// displacement: with c the contact nodes, and all others at their displacements at the end of the step,
+///   f_c(u_f, u_c) = L_c + Gᵀ r_N − B_Tᵀ r_T,   0 ≤ r_N ⟂ g(u) ≥ 0,   friction on B_T (u − uⁿ)/h.
+/// Newton's method with the run's factor of K_cc, which turns with the bodies (turned_frame.hpp) and is renewed if
+/// corrections shrink too slowly: K_cc δ = L_c − f_c + Hᵀρ, u_c += δ, with exact contact conditions in every iteration;
+/// accelerated after some iterations, since the factor is that of another strain. Forces are those of the cells at
+/// contact nodes alone. Iterations start from the displacements that contact nodes reach with the velocity of the last
+/// step.
+namespace ricochet {
+
+class NonlinearContactEquilibrium {
+ public:
+  void analyse(const SemidiscreteProblem& problem);
+  void start(State& state) const;
+  /// Moves contact nodes: `end` is the displacement at the end of the step and `increment` that of the step, on all
+  /// dofs. Returns null without contact dofs. Throws Error(not_converged).
+  const StageSolution* solve(const SemidiscreteProblem& problem, const State& state, const Vector& load, double step,
+                             StageSolve& stages, Vector& increment, Vector& end);
+
+  /// Renews the factor after a step that took many iterations, unless it is recent, so that the next steps take fewer.
+  /// Assembles the tangent of the whole body.
+  void renew_where_slow(const SemidiscreteProblem& problem, State& state, StageSolve& stages);
+
+ private:
+  void require(const SemidiscreteProblem& problem, const State& state, const Vector& load, double step,
+               const Vector& increment, const Vector& end, Stage& stage);
+  void evaluate(const SemidiscreteProblem& problem, const State& state, Vector& increment, Vector& end);
+  void move_to(const SemidiscreteProblem& problem, const State& state, const Vector& place, Vector& increment,
+               Vector& end);
+
+  std::shared_ptr<const InternalForce> layer_;  ///< of the cells at contact nodes
+  double reach_ = 0.0;                          ///< largest coordinate of the nodes
+  NewtonProgress progress_;
+  AndersonAcceleration acceleration_{6};
+  Vector force_, middle_, rate_;
+  /// Per contact dof: increment of an iteration, with its correction, and its last change.
+  Vector point_, image_, move_;
+  bool moved_ = false;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "ricochet/simulation/monitor/penetration_report.hpp"
+
+/// @file Text fragments of messages about penetration.
+namespace ricochet::penetration_phrases {
+
+/// "(1, 0.5)"
+[[nodiscard]] std::string coordinates(const std::vector<double>& place);
+/// "at the start", "at t = 0.2"
+[[nodiscard]] std::string when(double time);
+/// "3.1e-06 (0.00012 of its size)"
+[[nodiscard]] std::string depth_text(const UnwatchedPenetration& p);
+
+inline constexpr const char* see_summary = "\"unwatched_penetration\" in summary.json says how deep it gets";
+
+}  // namespace ricochet::penetration_phrases

@@ -1,0 +1,127 @@
+#include "ricochet/simulation/monitor/tunnelling_watch.hpp"
+
+#include <algorithm>
+
+namespace ricochet {
+
+namespace {
+
+/// Largest depth on a straight path between two positions in the frame of the shape.
+double deepest_between(const ObstacleShape& shape, const SpaceVector& from, const SpaceVector& to) {
+  constexpr int pieces = 16;
+  double depth = 0.0;
+  for (int k = 1; k < pieces; ++k) {
+    const double part = static_cast<double>(k) / pieces;
+    depth = std::max(depth, -shape.gap((1.0 - part) * from + part * to));
+  }
+  return depth;
+}
+
+/// Depth of a node that passes through; 0 otherwise. `gap_before` may be a lower bound.
+double depth_of_passage(const ObstacleShape& shape, const SpaceVector& before, double gap_before,
+                        const SpaceVector& now, double gap) {
+  if ((now - before).norm() <= std::max(gap, 0.0) + std::max(gap_before, 0.0)) return 0.0;
+  if (!(shape.normal(before).dot(shape.normal(now)) < 0.0)) return 0.0;
+  const double depth = deepest_between(shape, before, now);
+  return depth <= shape.gap_rounding(now) || gap < -depth || gap_before < -depth ? 0.0 : depth;
+}
+
+}  // namespace
+
+TunnellingWatch::TunnellingWatch(const SemidiscreteProblem& problem, std::vector<Index> nodes,
+                                 const std::vector<const Obstacle*>& obstacles, Of of)
+    : problem_(problem),
+      nodes_(std::move(nodes)),
+      of_(of),
+      obstacles_(obstacles),
+      seen_(obstacles.size()),
+      passages_(obstacles.size()) {}
+
+void TunnellingWatch::look(const State& state) {
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    // A node on the other side of a plane is inside.
+    if (!obstacles_[k]->shape().is_flat()) look_at(k, state);
+  }
+}
+
+void TunnellingWatch::look_at(std::size_t obstacle, const State& state) {
+  const ObstacleShape& shape = obstacles_[obstacle]->shape();
+  const PosedObstacle placed = obstacles_[obstacle]->at(state.time, state.displacement);
+  Seen& seen = seen_[obstacle];
+  const Index d = problem_.dimension;
+  const bool is_first = seen.gaps.size() == 0;
+  if (is_first) {
+    seen.places.resize(d, static_cast<Index>(nodes_.size()));
+    seen.gaps.resize(seen.places.cols());
+  }
+  for (Index i = 0; i < seen.places.cols(); ++i) {
+    const Index node = nodes_[static_cast<std::size_t>(i)];
+    const SpaceVector place = place_of(node, state);
+    const SpaceVector now = placed.pose().seen_from(place);
+    const SpaceVector before = is_first ? now : SpaceVector(seen.places.col(i));
+    const double way = (now - before).norm();
+    seen.places.col(i) = now;
+    if (!is_first && seen.gaps[i] > way) {
+      seen.gaps[i] -= way;
+      continue;
+    }
+    const double gap = shape.gap(now), gap_before = seen.gaps[i];
+    seen.gaps[i] = gap;
+    if (is_first || passages_[obstacle].found()) continue;
+    const double depth = depth_of_passage(shape, before, gap_before, now, gap);
+    if (!(depth > 0.0)) continue;
+    Eigen::Vector3d in_space = Eigen::Vector3d::Zero();
+    in_space.head(d) = place;
+    passages_[obstacle].enter(node, depth, state.time, in_space);
+  }
+}
+
+SpaceVector TunnellingWatch::place_of(Index node, const State& state) const {
+  const Index d = problem_.dimension;
+  const auto at = [&](Index one) -> SpaceVector {
+    return problem_.nodes.col(one) + state.displacement.segment(one * d, d);
+  };
+  if (of_ == Of::nodes) return at(node);
+  SpaceVector result = SpaceVector::Zero(d);
+  problem_.contact.visit_own_nodes(node, [&](Index one, double weight) { result += weight * at(one); });
+  return result;
+}
+
+bool TunnellingWatch::any_tunnels(const State& state, double time) const {
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const Seen& seen = seen_[k];
+    if (obstacles_[k]->shape().is_flat() || seen.gaps.size() == 0) continue;
+    const ObstacleShape& shape = obstacles_[k]->shape();
+    const PosedObstacle placed = obstacles_[k]->at(time, state.displacement);
+    for (Index i = 0; i < seen.places.cols(); ++i) {
+      const SpaceVector now = placed.pose().seen_from(place_of(nodes_[static_cast<std::size_t>(i)], state));
+      const SpaceVector before = seen.places.col(i);
+      if (seen.gaps[i] > (now - before).norm()) continue;
+      if (depth_of_passage(shape, before, seen.gaps[i], now, shape.gap(now)) > 0.0) return true;
+    }
+  }
+  return false;
+}
+
+void TunnellingWatch::save(Snapshot& snapshot, const std::string& name) const {
+  for (std::size_t k = 0; k < seen_.size(); ++k) {
+    const std::string own = name + "." + std::to_string(k);
+    snapshot.save(own + ".places", Vector(seen_[k].places.reshaped()));
+    snapshot.save(own + ".gaps", seen_[k].gaps);
+    snapshot.save(own + ".passage", Vector(passages_[k].to_numbers()));
+  }
+}
+
+void TunnellingWatch::load(const Snapshot& snapshot, const std::string& name) {
+  for (std::size_t k = 0; k < seen_.size(); ++k) {
+    const std::string own = name + "." + std::to_string(k);
+    seen_[k].gaps = snapshot.reals(own + ".gaps");
+    if (seen_[k].gaps.size() != 0 && seen_[k].gaps.size() != static_cast<Index>(nodes_.size()))
+      Snapshot::refuse(own + ".gaps", "has a length that is none of this problem's");
+    const Vector& places = snapshot.reals(own + ".places", problem_.dimension * seen_[k].gaps.size());
+    seen_[k].places = places.reshaped(problem_.dimension, seen_[k].gaps.size());
+    passages_[k] = DeepestPoint::from_numbers(snapshot.reals(own + ".passage", DeepestPoint::numbers));
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,89 @@
+#include "ricochet/solver/corotated/corotated_stage.hpp"
+
+namespace ricochet {
+
+namespace {
+
+class CorotatedStage final : public StageSolver {
+ public:
+  CorotatedStage(std::unique_ptr<StageSolver> solver, const CorotatedFrame& frame)
+      : solver_(std::move(solver)), frame_(frame) {}
+
+  void solve(const Stage& stage, StageSolution& solution) override {
+    take_rows(*stage.rows);
+    turned_.rows = rows_;
+    frame_.rotate_back(stage.right_hand_side, turned_.right_hand_side);
+    turned_.prescribed = stage.prescribed;
+    turned_.eligible = stage.eligible;
+    turned_.gap_offset = stage.gap_offset;
+    turned_.gap_offset_rounding = stage.gap_offset_rounding;
+    turned_.gap_factor = stage.gap_factor;
+    turned_.slip_factor = stage.slip_factor;
+    turned_.slip_offset = stage.slip_offset;
+    turned_.slip_offset_rounding = stage.slip_offset_rounding;
+    turned_.frictionless = stage.frictionless;
+    turned_.start_gap = stage.start_gap;
+    turned_.start_normal_reaction = stage.start_normal_reaction;
+    turned_.start_tangential_reaction = stage.start_tangential_reaction;
+    solver_->solve(turned_, solution);
+    frame_.turn(solution.increment);
+    frame_.turn(solution.contact_increment);
+  }
+  void show_contact() const override { solver_->show_contact(); }
+  void refactorize(const Vector& displacement) override { solver_->refactorize(displacement); }
+  void observe_contact(const ContactObserver& observer) override { solver_->observe_contact(observer); }
+  void save(Snapshot& snapshot, const std::string& name) const override { solver_->save(snapshot, name); }
+  void load(const Snapshot& snapshot, const std::string& name) override { solver_->load(snapshot, name); }
+  [[nodiscard]] IterationCounts iteration_counts() const override { return solver_->iteration_counts(); }
+  [[nodiscard]] double contact_seconds() const override { return solver_->contact_seconds(); }
+  [[nodiscard]] std::size_t factor_entries() const override { return solver_->factor_entries(); }
+  [[nodiscard]] FactoredStage* factored() override { return solver_->factored(); }
+
+ private:
+  /// Renews the rows if the frame has rotated or the rows of the stage have another revision: all of them, with a new
+  /// revision for those that changed.
+  void take_rows(const ContactRows& rows) {
+    const auto points = static_cast<std::size_t>(rows.size());
+    const bool follows = !rows.revision.empty();
+    const bool same_frame = rows_ != nullptr && frame_number_ == frame_.number();
+    if (same_frame && (follows ? source_revision_ == rows.revision : source_ == &rows)) return;
+    if (rows_ == nullptr) {
+      rows_ = std::make_shared<ContactRows>(rows);
+      rows_->revision.assign(points, 0);
+      source_revision_.assign(points, -1);
+    } else {
+      rows_->normals = rows.normals;
+      rows_->tangents = rows.tangents;
+      rows_->slips = rows.slips;
+      rows_->gap_rounding = rows.gap_rounding;
+      rows_->gap = rows.gap;
+    }
+    ++revision_;
+    for (std::size_t i = 0; i < points; ++i) {
+      const long now = follows ? rows.revision[i] : 0;
+      if (same_frame && now == source_revision_[i]) continue;
+      source_revision_[i] = now;
+      rows_->revision[i] = revision_;
+    }
+    frame_.rotate_back(rows.gap_operator, rows_->gap_operator);
+    frame_.rotate_back(rows.tangential_trace, rows_->tangential_trace);
+    frame_number_ = frame_.number();
+    source_ = &rows;
+  }
+
+  std::unique_ptr<StageSolver> solver_;
+  const CorotatedFrame& frame_;
+  Stage turned_;
+  std::shared_ptr<ContactRows> rows_;
+  const ContactRows* source_ = nullptr;
+  std::vector<long> source_revision_;
+  long frame_number_ = -1, revision_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<StageSolver> make_corotated_stage(std::unique_ptr<StageSolver> solver, const CorotatedFrame& frame) {
+  return std::make_unique<CorotatedStage>(std::move(solver), frame);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,352 @@
+#include "ricochet/solver/delassus/delassus_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/timer.hpp"
+
+namespace ricochet {
+
+DelassusProblem::DelassusProblem(const SemidiscreteProblem& problem, std::vector<int> unknown,
+                                 const SparseCholesky& factor, bool all_points,
+                                 std::unique_ptr<MasslessContactNodes> layer)
+    : problem_(problem),
+      factor_(factor),
+      unknown_(std::move(unknown)),
+      scale_(factor.scale()),
+      friction_(problem.contact.has_friction()),
+      all_points_(all_points),
+      rows_(problem.contact.rows.get()),
+      candidates_(problem.contact.size(), *problem.ranks),
+      columns_(factor),
+      layer_(std::move(layer)) {
+  contact_.reaction_scale = scale_;
+  std::vector<Index> points(all_points ? static_cast<std::size_t>(problem.contact.size()) : 0);
+  std::iota(points.begin(), points.end(), Index{0});
+  start_again_with(points);
+}
+
+Index DelassusProblem::rows_of(Index point) const {
+  const ContactBoundary& contact = problem_.contact;
+  const bool has_friction = contact.friction_coefficient[point] > 0.0 || contact.friction_bound[point] > 0.0;
+  return has_friction ? problem_.dimension : 1;
+}
+
+/// Columns of E, d for every point, cost a point without friction more than its one row does. They are worthwhile if
+/// the factor lasts.
+bool DelassusProblem::turns(Index point) const {
+  if (rows_->rotating_trace == nullptr || !SparseRowMatrix::InnerIterator(*rows_->rotating_trace, point)) return false;
+  return rows_of(point) == problem_.dimension || problem_.internal_force->is_linear();
+}
+
+/// Calls enter(row of the point, dof, value) for the entries of H.
+template <class Enter>
+void DelassusProblem::visit_rows(Index point, const Enter& enter) const {
+  const Index tangents = problem_.dimension - 1;
+  rows_->visit_normal(point, [&](Index dof, double value) { enter(Index{0}, dof, value); });
+  for (Index k = 1; k < rows_of(point); ++k)
+    rows_->visit_tangential(point * tangents + k - 1, [&](Index dof, double value) { enter(k, dof, value); });
+}
+
+void DelassusProblem::start_again_with(const std::vector<Index>& points) {
+  candidates_.clear();
+  revision_.clear();
+  candidate_counts_.clear();
+  columns_.clear();
+  turned_.clear();
+  if (layer_) layer_->clear();
+  condensed_.resize(0, 0);
+  contact_.contact_operator.reset();
+  contact_.row_offset.assign(1, 0);
+  solver_.reset();
+  if (!points.empty()) add_candidates(points);
+}
+
+/// Calls enter(row of the point, dof, value) for the entries of E.
+template <class Enter>
+void DelassusProblem::visit_columns(Index point, const Enter& enter) const {
+  if (!turns(point)) return visit_rows(point, enter);
+  const Index d = problem_.dimension;
+  for (SparseRowMatrix::InnerIterator entry(*rows_->rotating_trace, point); entry; ++entry) {
+    for (Index k = 0; k < d; ++k) enter(k, entry.col() * d + k, entry.value());
+  }
+}
+
+/// Sorts points by their position in the elimination tree: points whose dofs are close there have nearly the same
+/// columns.
+void DelassusProblem::sort_by_place(std::vector<Index>& points) const {
+  std::vector<Index> place(points.size(), 0);
+  std::vector<std::size_t> order(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    order[i] = i;
+    visit_rows(points[i], [&](Index, Index dof, double) {
+      const int unknown = unknown_[static_cast<std::size_t>(dof)];
+      if (unknown >= 0) place[i] = std::max(place[i], factor_.place(unknown));
+    });
+  }
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(place[a], points[a]) < std::pair(place[b], points[b]);
+  });
+  std::vector<Index> sorted;
+  for (const std::size_t i : order) sorted.push_back(points[i]);
+  points = std::move(sorted);
+}
+
+void DelassusProblem::add_candidates(std::vector<Index> points) {
+  sort_by_place(points);
+  append_candidates(points);
+}
+
+void DelassusProblem::append_candidates(const std::vector<Index>& points) {
+  Vector start = solver_ != nullptr ? contact_solution_.reaction : Vector();
+  candidates_.add_candidates(points);
+  candidate_counts_.push_back(static_cast<Index>(candidates_.points().size()));
+  Matrix w = release_column_product();
+  append_columns(points, w);
+  append_supported();
+  const auto count = static_cast<Index>(candidates_.points().size());
+  coefficient_.resize(count);
+  bound_.resize(count);
+  for (Index i = 0; i < count; ++i) {
+    const Index point = candidates_.points()[static_cast<std::size_t>(i)];
+    coefficient_[i] = problem_.contact.friction_coefficient[point];
+    bound_[i] = scale_ * problem_.contact.friction_bound[point];
+  }
+  contact_.point_numbers = candidates_.points();
+  contact_.friction_coefficient = coefficient_;
+  contact_.friction_bound = bound_;
+  contact_.offset.setZero(contact_.row_offset.back());
+  contact_.offset_rounding.setZero(contact_.row_offset.back());
+  contact_.eligible.assign(static_cast<std::size_t>(count), 1);
+  set_contact_operator(std::move(w));
+  if (solver_ == nullptr) solver_ = make_contact_solver();
+  solver_->analyse(contact_);
+  // Reactions of the former candidates, and none on the others.
+  const Index before = start.size();
+  start.conservativeResize(contact_.row_offset.back());
+  start.tail(start.size() - before).setZero();
+  solver_->set_warm_start(start);
+  contact_solution_.reaction = start;
+}
+
+void DelassusProblem::save(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name + ".candidates", candidates_.points());
+  snapshot.save(name + ".taken_up", candidate_counts_);
+  snapshot.save(name + ".scale", scale_);
+  candidates_.save_history(snapshot, name);
+  if (solver_ != nullptr) solver_->save(snapshot, name + ".solver");
+}
+
+void DelassusProblem::load(const Snapshot& snapshot, const std::string& name) {
+  const std::vector<Index>& points = snapshot.integers(name + ".candidates", 0, problem_.contact.size() - 1);
+  const auto count = static_cast<Index>(points.size());
+  // Scale of the factor that the state has: a solver whose reactions are rescaled loses its history.
+  scale_ = contact_.reaction_scale = factor_.scale();
+  start_again_with({});
+  for (const Index end : snapshot.integers(name + ".taken_up", 1, count)) {
+    const auto begin = static_cast<Index>(candidates_.points().size());
+    if (end > begin) append_candidates({points.begin() + begin, points.begin() + end});
+  }
+  candidates_.load_history(snapshot, name);
+  if (solver_ == nullptr) return;
+  solver_->load(snapshot, name + ".solver");
+  const double saved = snapshot.real(name + ".scale");
+  if (!(std::isnormal(saved) && saved > 0.0)) Snapshot::refuse(name + ".scale", "is no positive number");
+  scale_warm_start(scale_ / saved);
+  contact_solution_.reaction = solver_->warm_start();
+  if (contact_solution_.reaction.size() == 0) contact_solution_.reaction.setZero(contact_.row_offset.back());
+}
+
+/// Returns Eᵀ of some points, one after the other: unknowns × rows.
+SparseMatrix DelassusProblem::transposed_columns(const std::vector<Index>& points, const std::vector<int>& number,
+                                                 Index unknowns) const {
+  std::vector<Eigen::Triplet<double>> entries;
+  Index row = 0;
+  for (const Index point : points) {
+    visit_columns(point, [&](Index k, Index dof, double value) {
+      const int unknown = number[static_cast<std::size_t>(dof)];
+      if (unknown >= 0) entries.emplace_back(unknown, static_cast<int>(row + k), value);
+    });
+    row += turns(point) ? problem_.dimension : rows_of(point);
+  }
+  SparseMatrix transposed(unknowns, row);
+  transposed.setFromTriplets(entries.begin(), entries.end());
+  return transposed;
+}
+
+void DelassusProblem::append_columns(const std::vector<Index>& points, Matrix& w) {
+  for (const Index point : points) {
+    contact_.row_offset.push_back(contact_.row_offset.back() + rows_of(point));
+    turned_.append(*rows_, point, rows_of(point), turns(point));
+    revision_.push_back(rows_->revision.empty() ? -1 : rows_->revision[static_cast<std::size_t>(point)]);
+  }
+  columns_.append(transposed_columns(points, unknown_, factor_.size()), w);
+  if (layer_) layer_->append(transposed_columns(points, layer_->unknown(), layer_->size()));
+}
+
+void DelassusProblem::append_supported() {
+  std::vector<Eigen::Triplet<double>> entries;
+  const std::vector<Index>& dofs = problem_.supports.dofs();
+  for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
+    visit_rows(candidates_.points()[i], [&](Index k, Index dof, double value) {
+      const auto held = std::lower_bound(dofs.begin(), dofs.end(), dof);
+      if (held == dofs.end() || *held != dof) return;
+      entries.emplace_back(static_cast<int>(contact_.row_offset[i] + k), static_cast<int>(held - dofs.begin()), value);
+    });
+  }
+  supported_.resize(contact_.row_offset.back(), problem_.supports.size());
+  supported_.setFromTriplets(entries.begin(), entries.end());
+}
+
+void DelassusProblem::find_offsets(const Stage& stage, const Vector& y) {
+  columns_.motion(y, turned_.any() ? of_columns_ : contact_.offset);
+  if (turned_.any()) turned_.turn(of_columns_, contact_.offset);
+  if (supported_.nonZeros() > 0) contact_.offset.noalias() += supported_ * stage.prescribed;
+  const Index tangents = problem_.dimension - 1;
+  for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
+    const Index point = candidates_.points()[i];
+    const Index row = contact_.row_offset[i];
+    const Index count = contact_.row_offset[i + 1] - row - 1;
+    contact_.offset[row] += stage.gap_offset[point] / stage.gap_factor;
+    contact_.offset_rounding[row] = stage.gap_offset_rounding[point] / stage.gap_factor;
+    if (count == 0) continue;
+    if (stage.slip_offset.size() == 0) {
+      contact_.offset_rounding.segment(row + 1, count).setZero();
+      continue;
+    }
+    contact_.offset.segment(row + 1, count) +=
+        stage.slip_offset.segment(point * tangents, tangents) / stage.slip_factor;
+    contact_.offset_rounding.segment(row + 1, count).setConstant(stage.slip_offset_rounding[point] / stage.slip_factor);
+  }
+}
+
+void DelassusProblem::solve(const Stage& stage, Vector& y, StageSolution& solution) {
+  const Index points = problem_.contact.size();
+  solution.normal_reaction.setZero(points);
+  if (friction_) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
+  solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
+  asked_ = false;
+  iterations_ = 0;
+  solution.clear_mean();
+  take_rows(stage);
+  if (std::none_of(stage.eligible.begin(), stage.eligible.end(), [](char e) { return e != 0; })) return;
+  take_starting_points(stage);
+  if (!all_points_ && !choose_candidates(stage)) return;
+  take_starting_points(stage);  // candidates that were dropped
+  find_offsets(stage, y);
+  choose_friction(stage);
+  const bool has_mean = layer_ && layer_->mean() != ReactionMean::end;
+  if (has_mean) {
+    solve_mean(stage);
+  } else {
+    solve_contact();
+  }
+  asked_ = true;
+  const Vector& acting = has_mean ? mean_.mean() : contact_solution_.reaction;
+  if (turned_.any()) turned_.rotate_back(acting, of_columns_);
+  columns_.add_reaction(turned_.any() ? of_columns_ : acting, y);
+  give(stage, solution);
+}
+
+/// Returns false if nothing can touch.
+bool DelassusProblem::choose_candidates(const Stage& stage) {
+  candidates_.look_at(stage);
+  if (!candidates_required_ && !candidates_.some_may_touch(stage)) return false;
+  if (const std::vector<Index> kept = candidates_.worth_keeping(stage); !kept.empty()) start_again_with(kept);
+  if (const std::vector<Index> near = candidates_.approaching(stage); !near.empty()) add_candidates(near);
+  return !candidates_.points().empty();
+}
+
+void DelassusProblem::give(const Stage& stage, StageSolution& solution) const {
+  const Vector& reaction = contact_solution_.reaction;
+  solution.iterations += iterations_;
+  const Index tangents = problem_.dimension - 1;
+  for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
+    const Index point = candidates_.points()[i];
+    const Index row = contact_.row_offset[i];
+    solution.contact_status[static_cast<std::size_t>(point)] = contact_solution_.status[i];
+    solution.normal_reaction[point] = reaction[row] / scale_;
+    for (Index k = 1; row + k < contact_.row_offset[i + 1]; ++k)
+      solution.tangential_reaction[point * tangents + k - 1] = -reaction[row + k] / scale_;
+  }
+  if (layer_ && layer_->mean() != ReactionMean::end) write_mean_reactions(stage, solution);
+}
+
+bool DelassusProblem::add_penetrating(const Stage& stage, const Vector& increment, StageSolution& solution) {
+  if (layer_) layer_->find_motion(*stage.rows, solution, increment, solution.contact_increment);
+  stage.rows->normal_motion(layer_ ? solution.contact_increment : increment, motion_);
+  std::vector<Index> found = candidates_.penetrating(stage, motion_, !asked_);
+  candidates_required_ = !found.empty();
+  if (!candidates_required_) {
+    candidates_.learn(stage, motion_, asked_ ? closed_points() : 0);
+    return false;
+  }
+  std::erase_if(found, [&](Index point) { return candidates_.number(point) >= 0; });
+  if (!found.empty()) add_candidates(found);
+  return true;
+}
+
+std::size_t DelassusProblem::closed_points() const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i + 1 < contact_.row_offset.size(); ++i)
+    count += contact_solution_.reaction[contact_.row_offset[i]] > 0.0 ? 1 : 0;
+  return count;
+}
+
+/// Sets friction in stages that have a slip rate, at points where these do not leave it out.
+void DelassusProblem::choose_friction(const Stage& stage) {
+  for (std::size_t i = 0; i < candidates_.points().size(); ++i)
+    contact_.eligible[i] = stage.eligible[static_cast<std::size_t>(candidates_.points()[i])];
+  if (!friction_) return;
+  contact_.friction_coefficient = coefficient_;
+  contact_.friction_bound = bound_;
+  for (Index i = 0; i < coefficient_.size(); ++i) {
+    const auto point = static_cast<std::size_t>(candidates_.points()[static_cast<std::size_t>(i)]);
+    const bool left_out = !stage.frictionless.empty() && stage.frictionless[point] != 0;
+    if (stage.slip_offset.size() > 0 && !left_out) continue;
+    contact_.friction_coefficient[i] = 0.0;
+    contact_.friction_bound[i] = 0.0;
+  }
+}
+
+/// Returns false if the problem was not solved.
+bool DelassusProblem::try_contact() {
+  const Timer timer;
+  solver_->solve(contact_, {.record = log::enabled(log::Level::debug)}, contact_solution_);
+  solver_seconds_ += timer.seconds();
+  iterations_ += contact_solution_.iterations;
+  if (log::enabled(log::Level::debug)) log_iterations();
+  return contact_solution_.solved();
+}
+
+void DelassusProblem::solve_contact() {
+  if (try_contact()) return;
+  if (observer_) observer_(contact_, contact_solution_);
+  throw_not_solved();
+}
+
+/// Logs a line per iteration, which shows where a step spends its time or why it fails.
+void DelassusProblem::log_iterations() const {
+  if (contact_solution_.record.empty()) {
+    log::debug(fmt::format("contact: {} points, none that iterations were needed for", contact_.points()));
+    return;
+  }
+  for (std::size_t k = 0; k < contact_solution_.record.size(); ++k) {
+    const IterationRecord& line = contact_solution_.record[k];
+    log::debug(fmt::format("contact: {} points, iteration {} ({}): residual {:.2e}, {} closed{}, {} changed",
+                           contact_.points(), k + 1, line.phase, line.residual, line.closed,
+                           friction_ ? fmt::format(" ({} stick, {} slip)", line.sticking, line.slipping) : "",
+                           line.changed));
+  }
+}
+
+void DelassusProblem::report() const {
+  if (asked_ && observer_) observer_(contact_, contact_solution_);
+}
+
+}  // namespace ricochet

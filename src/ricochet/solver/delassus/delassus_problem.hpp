@@ -1,0 +1,125 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/problem/stage.hpp"
+#include "ricochet/solver/contact/contact_solver.hpp"
+#include "ricochet/solver/corotated/rotating_rows.hpp"
+#include "ricochet/solver/delassus/contact_candidates.hpp"
+#include "ricochet/solver/delassus/delassus_columns.hpp"
+#include "ricochet/solver/delassus/massless_contact_nodes.hpp"
+#include "ricochet/solver/mean_reaction/mean_reaction.hpp"
+
+/// @file Contact conditions of a stage, condensed on its candidates for contact.
+///
+/// With 2ᵏA = PᵀLLᵀP, y = L⁻¹P 2ᵏb and, for the rows H = [G; B_T] of the candidates (those of a point together),
+/// Y = L⁻¹PHᵀ and the Delassus operator W = YᵀY, a reaction ρ = 2ᵏ (r_N, −r_T) adds Yρ to y, and the contact problem is
+///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + W ρ.
+/// For a stage with massless contact nodes, with U = (1 − ℓ/2) V and Z = W − V, V = 2⁻ᵏ H A_c⁻¹ Hᵀ, it is
+///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + Z ρ̄ + U ρ.
+/// If directions turn, columns are those of E with H = D E (turned_rows.hpp).
+namespace ricochet {
+
+class DelassusProblem {
+ public:
+  /// `unknown` is per dof: its number among the unknowns of the factor, or −1 if the stage does not solve for it.
+  /// `all_points`: every contact point is a candidate from the start. Keeps references to the problem and the factor.
+  DelassusProblem(const SemidiscreteProblem& problem, std::vector<int> unknown, const SparseCholesky& factor,
+                  bool all_points = false, std::unique_ptr<MasslessContactNodes> layer = nullptr);
+
+  /// Computes the reactions on the candidates, adds Yρ to y and the iterations to those of the solution. Throws
+  /// Error(not_converged), and Error(invalid_input) if no motion of linear bodies meets the conditions of contact.
+  void solve(const Stage& stage, Vector& y, StageSolution& solution);
+  /// Checks the resulting increment: returns false if no other point penetrates. True: those that do are candidates
+  /// now, and the stage must be solved again. Completes the solution by m for a stage with massless contact nodes.
+  bool add_penetrating(const Stage& stage, const Vector& increment, StageSolution& solution);
+
+  /// Renews columns and W, with the rows of the next stage, after the factor has been made anew.
+  void take_factor();
+
+  /// Save and load the candidates in the order in which they were added, which decides the bits of W, and the contact
+  /// solver's warm start.
+  void save(Snapshot& snapshot, const std::string& name) const;
+  void load(const Snapshot& snapshot, const std::string& name);
+
+  /// Shows the contact problem of a solved stage, if it had one, to the observer (one that could not be solved is shown
+  /// at once).
+  void report() const;
+  /// Sets the observer; none if empty.
+  void observe(ContactObserver observer) { observer_ = std::move(observer); }
+  /// Time spent in the contact solver, in all calls so far.
+  [[nodiscard]] double solver_seconds() const { return solver_seconds_; }
+
+ private:
+  [[nodiscard]] Index rows_of(Index point) const;
+  [[nodiscard]] bool turns(Index point) const;
+  template <class Enter>
+  void visit_rows(Index point, const Enter& enter) const;
+  template <class Enter>
+  void visit_columns(Index point, const Enter& enter) const;
+  void take_rows(const Stage& stage);
+  void take_scale(double scale);
+  void scale_warm_start(double ratio);
+  void renew_columns(const std::vector<char>& is_new);
+  void use_condensed(Matrix w);
+  void add_candidates(std::vector<Index> points);
+  void append_candidates(const std::vector<Index>& points);
+  bool choose_candidates(const Stage& stage);
+  void start_again_with(const std::vector<Index>& points);
+  void sort_by_place(std::vector<Index>& points) const;
+  [[nodiscard]] SparseMatrix transposed_columns(const std::vector<Index>& points, const std::vector<int>& unknown,
+                                                Index unknowns) const;
+  [[nodiscard]] Matrix release_column_product();
+  void set_contact_operator(Matrix w);
+  void use_end_weight(double theta);
+  void take_starting_points(const Stage& stage);
+  void solve_mean(const Stage& stage);
+  void append_columns(const std::vector<Index>& points, Matrix& w);
+  void append_supported();
+  void hold_directions_without_trace(Matrix& w) const;
+  void find_offsets(const Stage& stage, const Vector& y);
+  void choose_friction(const Stage& stage);
+  [[nodiscard]] bool try_contact();
+  void solve_contact();
+  void log_iterations() const;
+  [[nodiscard]] std::size_t closed_points() const;
+  void give(const Stage& stage, StageSolution& solution) const;
+  void write_mean_reactions(const Stage& stage, StageSolution& solution) const;
+  [[noreturn]] void throw_no_mean() const;
+  [[noreturn]] void throw_not_solved() const;
+  [[noreturn]] void throw_contradiction(const std::vector<Index>& contradiction) const;
+
+  const SemidiscreteProblem& problem_;
+  const SparseCholesky& factor_;
+  std::vector<int> unknown_;
+  double scale_;
+  bool friction_;
+  bool all_points_;
+  bool candidates_required_ = false;  ///< points have penetrated where none was expected to touch
+  bool asked_ = false;                ///< the candidates took part in the last stage
+  bool has_new_factor_ = false;
+  const ContactRows* rows_;     ///< of the stage being solved
+  std::vector<long> revision_;  ///< of each candidate's rows in W; −1 for rows that never change
+  ContactCandidates candidates_;
+  std::vector<Index> candidate_counts_;  ///< number of candidates after each call of add_candidates
+  DelassusColumns columns_;
+  RotatingRows turned_;
+  Vector of_columns_;                            ///< per row of E
+  std::unique_ptr<MasslessContactNodes> layer_;  ///< null if the stage has no massless contact nodes
+  Matrix condensed_;  ///< of columns, with massless contact nodes or turning rows; else it is the contact operator
+                      ///< itself
+  MeanReaction mean_;
+  SparseRowMatrix supported_;   ///< H on supported dofs: rows × supports
+  Vector coefficient_, bound_;  ///< of friction, per candidate; the bound in units of r
+  ContactProblem contact_;      ///< W, q, and the friction of the stage
+  std::unique_ptr<ContactSolver> solver_;
+  ContactSolution contact_solution_;
+  Vector motion_;  ///< G δ, per contact point
+  ContactObserver observer_;
+  double solver_seconds_ = 0.0;
+  int iterations_ = 0;  ///< of all contact problems of the last stage: a mean may require several
+};
+
+}  // namespace ricochet

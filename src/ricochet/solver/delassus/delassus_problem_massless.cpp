@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/solver/delassus/delassus_problem.hpp"
+
+// Contact operator from YᵀY and massless contact nodes, if any, and the means of reactions that these permit.
+
+namespace ricochet {
+
+/// Updates the rows of the stage: for candidates with changed rows, renews W, and columns if rows do more than turn.
+void DelassusProblem::take_rows(const Stage& stage) {
+  rows_ = stage.rows.get();
+  const bool all_new = has_new_factor_;
+  has_new_factor_ = false;
+  if (all_new) take_scale(factor_.scale());
+  if (candidates_.points().empty() || (rows_->revision.empty() && !all_new)) return;
+  std::vector<char> is_new(static_cast<std::size_t>(turned_.size()), all_new ? 1 : 0);
+  bool any = all_new, have_columns = !all_new;
+  for (std::size_t i = 0; i < revision_.size() && !rows_->revision.empty(); ++i) {
+    const long revision = rows_->revision[static_cast<std::size_t>(candidates_.points()[i])];
+    if (revision == revision_[i]) continue;
+    revision_[i] = revision;
+    any = true;
+    turned_.take(*rows_, candidates_.points()[i], i);
+    if (turned_.turns(i)) continue;
+    have_columns = false;
+    std::fill(is_new.begin() + turned_.first(i), is_new.begin() + turned_.first(i + 1), char{1});
+  }
+  if (!any) return;
+  if (have_columns) {
+    use_condensed(release_column_product());
+  } else {
+    renew_columns(is_new);
+  }
+}
+
+void DelassusProblem::take_factor() {
+  has_new_factor_ = true;
+}
+
+/// Rescales by powers of two: nothing is rounded.
+void DelassusProblem::take_scale(double scale) {
+  const double ratio = scale / scale_;
+  scale_ = contact_.reaction_scale = scale;
+  if (ratio == 1.0 || solver_ == nullptr) return;
+  bound_ *= ratio;
+  contact_.friction_bound = bound_;
+  contact_solution_.reaction *= ratio;
+  scale_warm_start(ratio);
+}
+
+void DelassusProblem::scale_warm_start(double ratio) {
+  if (ratio != 1.0 && solver_->warm_start().size() > 0) solver_->set_warm_start(Vector(ratio * solver_->warm_start()));
+}
+
+void DelassusProblem::renew_columns(const std::vector<char>& is_new) {
+  Matrix w = release_column_product();
+  columns_.renew(transposed_columns(candidates_.points(), unknown_, factor_.size()), is_new, w);
+  if (layer_) layer_->renew(transposed_columns(candidates_.points(), layer_->unknown(), layer_->size()), is_new);
+  use_condensed(std::move(w));
+}
+
+/// Sets the operator for other rows of the same candidates; the contact solver keeps its memory.
+void DelassusProblem::use_condensed(Matrix w) {
+  append_supported();
+  set_contact_operator(std::move(w));
+  Snapshot memory;
+  solver_->save(memory, "solver");
+  solver_->analyse(contact_);
+  solver_->load(memory, "solver");
+}
+
+/// If B_T has no trace in a direction (a support holds the body there), any positive diagonal keeps W definite and
+/// makes the friction along it zero.
+void DelassusProblem::hold_directions_without_trace(Matrix& w) const {
+  for (std::size_t i = 0; i + 1 < contact_.row_offset.size(); ++i) {
+    const Index row = contact_.row_offset[i];
+    for (Index k = row + 1; k < contact_.row_offset[i + 1]; ++k) {
+      if (w(k, k) == 0.0) w(k, k) = w(row, row);
+    }
+  }
+}
+
+/// Returns YᵀY of the present candidates, on rows of E.
+Matrix DelassusProblem::release_column_product() {
+  if (layer_ || turned_.any()) return std::move(condensed_);
+  return contact_.contact_operator != nullptr ? *contact_.contact_operator->dense() : Matrix();
+}
+
+/// Sets the operator of the contact problem from YᵀY of all candidates.
+void DelassusProblem::set_contact_operator(Matrix w) {
+  if (turned_.any()) {
+    condensed_ = std::move(w);
+    w = turned_.product(condensed_);
+  }
+  if (!layer_) {
+    hold_directions_without_trace(w);
+    contact_.contact_operator = make_dense_operator(std::move(w));
+    return;
+  }
+  Matrix layer = layer_->compliance() / scale_;
+  if (turned_.any()) layer = turned_.product(layer);
+  mean_.prepare((1.0 - 0.5 * layer_->weight()) * layer, w - layer, contact_.row_offset, layer_->mean());
+  if (!turned_.any()) condensed_ = std::move(w);
+  use_end_weight(mean_.theta());
+}
+
+/// Sets the operator U + θ Z.
+void DelassusProblem::use_end_weight(double theta) {
+  Matrix w = mean_.combined(theta);
+  hold_directions_without_trace(w);
+  contact_.contact_operator = make_dense_operator(std::move(w));
+}
+
+void DelassusProblem::take_starting_points(const Stage& stage) {
+  std::vector<Index> pressing;
+  if (layer_) pressing = pressing_at_start(layer_->mean(), stage);
+  candidates_required_ = candidates_required_ || !pressing.empty();
+  std::erase_if(pressing, [&](Index point) { return candidates_.number(point) >= 0; });
+  if (!pressing.empty()) add_candidates(pressing);
+}
+
+void DelassusProblem::solve_mean(const Stage& stage) {
+  const Index tangents = problem_.dimension - 1;
+  Vector start_gap(contact_.points()), start = Vector::Zero(contact_.rows());
+  for (Index i = 0; i < contact_.points(); ++i) {
+    const Index point = candidates_.points()[static_cast<std::size_t>(i)];
+    const Index row = contact_.row_offset[static_cast<std::size_t>(i)];
+    start_gap[i] = stage.start_gap[point] / stage.gap_factor;
+    start[row] = scale_ * stage.start_normal_reaction[point];
+    for (Index k = 1; row + k < contact_.row_offset[static_cast<std::size_t>(i) + 1]; ++k)
+      start[row + k] = -scale_ * stage.start_tangential_reaction[point * tangents + k - 1];
+  }
+  const Vector offset = contact_.offset;
+  const auto solve = [&] { return try_contact(); };
+  // The problem that remains, and is exported, is the last one solved.
+  if (mean_.solve(contact_, offset, start_gap, start, solve, contact_solution_)) return;
+  contact_.offset = offset;
+  if (layer_->mean() == ReactionMean::path) throw_no_mean();
+  if (!mean_.is_usable()) {  // the operator is that of the end reactions
+    solve_contact();
+    mean_.set_end_reaction(contact_solution_.reaction);
+    return;
+  }
+  // The end reaction alone is always admissible.
+  log::debug(
+      fmt::format("contact: the mean of the reactions was not found ({}), the end reactions act", mean_.reason()));
+  const Vector last = solver_->warm_start();  // of the last problem solved
+  use_end_weight(1.0);
+  solver_->analyse(contact_);
+  solver_->set_warm_start(last);
+  solve_contact();
+  mean_.set_end_reaction(contact_solution_.reaction);
+  use_end_weight(mean_.theta());
+  solver_->analyse(contact_);
+  solver_->set_warm_start(contact_solution_.reaction);
+}
+
+void DelassusProblem::write_mean_reactions(const Stage& stage, StageSolution& solution) const {
+  const Index tangents = problem_.dimension - 1;
+  solution.mean_normal_reaction.setZero(solution.normal_reaction.size());
+  solution.mean_tangential_reaction = solution.tangential_reaction;
+  // Gaps and slips are gap_factor times the motions of the contact problem.
+  solution.path_contact_work = -stage.gap_factor * mean_.path_work() / scale_;
+  solution.path_friction_work = stage.gap_factor * mean_.friction_work() / scale_;
+  solution.end_weight = mean_.end_weight();
+  for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
+    const Index point = candidates_.points()[i], row = contact_.row_offset[i];
+    solution.mean_normal_reaction[point] = mean_.mean()[row] / scale_;
+    for (Index k = 1; row + k < contact_.row_offset[i + 1]; ++k)
+      solution.mean_tangential_reaction[point * tangents + k - 1] = -mean_.mean()[row + k] / scale_;
+  }
+}
+
+void DelassusProblem::throw_no_mean() const {
+  throw Error(ErrorKind::not_converged,
+              fmt::format("the mean of the reactions over the step was not found ({} points): {}; such steps are far "
+                          "longer than the time in which a wave crosses a cell: take shorter ones, or scheme "
+                          "\"reduced-kane\"",
+                          contact_.points(), mean_.reason()));
+}
+
+}  // namespace ricochet

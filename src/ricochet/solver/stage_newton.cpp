@@ -1,0 +1,122 @@
+#include "ricochet/solver/stage_newton.hpp"
+
+#include <limits>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
+
+namespace ricochet {
+
+void StageNewton::keep(const Stage& stage) {
+  place_ = stage.force_base;
+  pressure_time_ = stage.pressure_time;
+  pressure_part_ = stage.pressure_part;
+  evaluate(place_, force_at_place_);
+  right_hand_side_ = stage.right_hand_side;
+  prescribed_ = stage.prescribed;
+  gap_offset_ = stage.gap_offset;
+  slip_offset_ = stage.slip_offset;
+  if (!stage.motion) return;
+  motion_ = stage.motion->displacement;
+  velocity_ = stage.motion->velocity;
+  if (stage.motion->observes) observed_ = stage.motion->observed;
+}
+
+void StageNewton::evaluate(const Vector& displacement, Vector& force) {
+  problem_.internal_force->evaluate(displacement, force);
+  if (!problem_.pressure) return;
+  follower_load_.setZero(force.size());
+  problem_.pressure->add_force(displacement, pressure_time_, follower_load_, pressure_part_);
+  force -= follower_load_;
+}
+
+/// Updates δ by a correction; accelerated if corrections hardly shrink.
+void StageNewton::correct(const Vector& correction) {
+  before_ = total_;
+  total_ += correction;
+  if (progress_.wants_acceleration()) acceleration_.advance(before_, total_, total_);
+}
+
+/// Evaluates f(p + κδ). If a correction inverts a cell, half of it is taken, then half of that.
+void StageNewton::take_internal_force(double factor) {
+  constexpr int most_halvings = 5;
+  for (int halving = 0;; ++halving) {
+    displacement_ = place_ + factor * total_;
+    try {
+      evaluate(displacement_, force_);
+      return;
+    } catch (const Error& problem) {
+      if (problem.kind() != ErrorKind::not_converged || halving == most_halvings) throw;
+    }
+    total_ = 0.5 * (total_ + before_);
+  }
+}
+
+/// Sets the stage for a correction of δ = total.
+void StageNewton::linearize(const OperatorCoefficients& coefficients, Stage& stage) {
+  problem_.mass.multiply(total_, product_);
+  stage.right_hand_side = right_hand_side_ - coefficients.mass * product_ - (force_ - force_at_place_);
+  if (problem_.has_damping()) {
+    problem_.damping.evaluate(total_, product_);
+    stage.right_hand_side -= coefficients.damping * product_;
+  }
+  stage.prescribed = prescribed_;
+  for (Index i = 0; i < problem_.supports.size(); ++i)
+    stage.prescribed[i] -= total_[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
+  if (stage.motion) {
+    stage.motion->displacement = motion_ + stage.gap_factor * total_;
+    if (stage.slip_offset.size() > 0) stage.motion->velocity = velocity_ + stage.slip_factor * total_;
+    if (stage.motion->observes) stage.motion->observed = observed_ + stage.motion->instant.factor * total_;
+    product_.setZero(total_.size());
+    linearize_contact(problem_, product_, stage);
+    return;
+  }
+  stage.rows->normal_motion(total_, stage.gap_offset);
+  stage.gap_offset = gap_offset_ + stage.gap_factor * stage.gap_offset;
+  if (stage.slip_offset.size() == 0) return;
+  stage.rows->tangential_motion(total_, stage.slip_offset);
+  stage.slip_offset = slip_offset_ + stage.slip_factor * stage.slip_offset;
+}
+
+void StageNewton::solve(const OperatorCoefficients& coefficients, const SolveLinear& solve_linear, const Renew& renew,
+                        Stage& stage, StageSolution& solution) {
+  keep(stage);
+  total_.setZero(problem_.dof_count());
+  const double size = problem_.nodes.cwiseAbs().maxCoeff() + place_.lpNorm<Eigen::Infinity>();
+  progress_.start(4.0 * std::numeric_limits<double>::epsilon() * size);
+  acceleration_.restart();
+  before_ = total_;
+  int iterations = 0;
+  while (true) {
+    solve_linear(stage, solution);
+    iterations += solution.iterations;
+    const double correction = solution.increment.allFinite() ? solution.increment.lpNorm<Eigen::Infinity>()
+                                                             : std::numeric_limits<double>::infinity();
+    const NewtonProgress::Advice advice =
+        progress_.judge(correction, (total_ + solution.increment).lpNorm<Eigen::Infinity>());
+    if (advice == NewtonProgress::Advice::done) {
+      total_ += solution.increment;
+      break;
+    }
+    if (advice == NewtonProgress::Advice::failed) throw progress_.failure(correction);
+    if (std::isfinite(correction)) correct(solution.increment);
+    take_internal_force(coefficients.stiffness);
+    if (advice == NewtonProgress::Advice::renew) {
+      renew(displacement_);
+      progress_.count_renewal();
+      progress_.restart();
+      acceleration_.restart();
+    }
+    linearize(coefficients, stage);
+  }
+  solution.increment = total_;
+  if (problem_.pressure) {
+    displacement_ = place_ + coefficients.stiffness * total_;
+    solution.follower_load.setZero(total_.size());
+    problem_.pressure->add_force(displacement_, pressure_time_, solution.follower_load, pressure_part_);
+  }
+  solution.iterations = iterations;
+  solution.rounds = progress_.rounds();
+}
+
+}  // namespace ricochet

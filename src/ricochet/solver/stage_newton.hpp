@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+
+#include "ricochet/linear_algebra/anderson_acceleration.hpp"
+#include "ricochet/problem/newton_progress.hpp"
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/problem/stage.hpp"
+
+/// @file Stages whose internal force is nonlinear in the displacement.
+namespace ricochet {
+
+/// Solves αM δ + ηC δ + f(p + κδ) − f(p) = b + Hᵀρ with the contact conditions of the stage by Newton's method with a
+/// factor that is kept (f without follower loads, which are in b at p): A d = residual + Hᵀρ, δ += d, with exact
+/// contact conditions for δ + d in every iteration.
+class StageNewton {
+ public:
+  explicit StageNewton(const SemidiscreteProblem& problem) : problem_(problem) {}
+
+  /// Solvers of the linear stage, and of a new factor at a displacement.
+  using SolveLinear = std::function<void(Stage&, StageSolution&)>;
+  using Renew = std::function<void(const Vector& displacement)>;
+  /// Leaves the stage as in the last iteration. Throws Error(not_converged).
+  void solve(const OperatorCoefficients& coefficients, const SolveLinear& solve_linear, const Renew& renew,
+             Stage& stage, StageSolution& solution);
+
+ private:
+  void keep(const Stage& stage);
+  void linearize(const OperatorCoefficients& coefficients, Stage& stage);
+  void correct(const Vector& correction);
+  void take_internal_force(double factor);
+  /// Evaluates f less the follower loads.
+  void evaluate(const Vector& displacement, Vector& force);
+
+  const SemidiscreteProblem& problem_;
+  NewtonProgress progress_;
+  AndersonAcceleration acceleration_{8};
+  Vector total_, before_, displacement_, force_, product_, follower_load_;
+  // Data of the stage at δ = 0:
+  double pressure_time_ = 0.0, pressure_part_ = 1.0;
+  Vector place_, force_at_place_, right_hand_side_, prescribed_, gap_offset_, slip_offset_, motion_, velocity_,
+      observed_;
+};
+
+}  // namespace ricochet

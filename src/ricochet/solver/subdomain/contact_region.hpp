@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/base/snapshot.hpp"
+#include "ricochet/problem/stage.hpp"
+#include "ricochet/solver/contact/contact_solver.hpp"
+
+/// @file Part of a stage solved by iterations that is solved directly: the body near its contact.
+namespace ricochet {
+
+/// All functions are collective over the ranks, each with its own contact points.
+class ContactRegion {
+ public:
+  virtual ~ContactRegion() = default;
+  /// Makes subdomains for these points only. Throws Error(invalid_input) if A is not positive definite.
+  virtual void make(const std::vector<Index>& points) = 0;
+  virtual void clear() = 0;
+  [[nodiscard]] virtual bool are_made() const = 0;
+  /// Nodes of this rank that solve() may move, ascending.
+  [[nodiscard]] virtual const std::vector<Index>& nodes() const = 0;
+
+  /// Solves, from the residual b − A x of the whole body without reactions, for x near the contact and the reactions.
+  virtual void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) = 0;
+  /// For a stage with massless contact nodes: computes the contact motion m of the last solution (stage.hpp) on contact
+  /// nodes, from δ per dof.
+  virtual void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
+                           Vector& motion) = 0;
+
+  virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
+  /// Makes subdomains for these points, as they were saved.
+  virtual void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) = 0;
+  virtual void report() const = 0;
+  virtual void observe(const ContactObserver& observer) = 0;
+  [[nodiscard]] virtual double contact_seconds() const = 0;
+  [[nodiscard]] virtual std::size_t factor_entries() const = 0;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/solver/delassus/factored_stage.hpp"
+#include "ricochet/solver/stage/stage_product.hpp"
+
+/// @file Subdomain: part of a body near its contact, solved directly.
+///
+/// On the dofs P of some layers of nodes around contact points, with the rest R of the body fixed, a stage is
+///   A_PP c = (b − A x)_P + Hᵀ r̂,   x_P ← x_P + c,   with the contact conditions on x + c:
+/// a stage of its own, small enough for a factor. This is one step of Schwarz's alternating method; the other is
+/// conjugate gradients on the whole body with the reactions fixed. Inertia makes the influence of R on the contact
+/// decay within the distance of a wave in a time step, so a few iterations suffice.
+namespace ricochet {
+
+class Subdomain {
+ public:
+  struct Extent {
+    std::vector<Index> nodes;       ///< ascending
+    std::vector<Index> own_nodes;   ///< those moved by this subdomain, if there are others
+    std::vector<Index> points;      ///< whose conditions hold in the subdomain
+    std::vector<Index> own_points;  ///< those whose reactions are kept
+  };
+  /// `solved`, per dof: the stage solves for it. Keeps a reference to the problem only.
+  Subdomain(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+            const std::vector<char>& solved, const Extent& extent, const StageProduct& product, bool all_candidates,
+            FactoredStage* layer);
+
+  /// Solves for the correction c. `stage` is one on c; its eligible points are chosen here. `correction`, per dof of
+  /// the problem, is work space, zero before and after. x changes on the subdomain's own nodes; `solution` is that of
+  /// the subdomain.
+  void solve(Stage& stage, const std::vector<char>& eligible, const Vector& residual, Vector& correction, Vector& x,
+             StageSolution& solution);
+  /// Restricts a subdomain solution to the points it owns.
+  void restrict_to_own(const StageSolution& local, StageSolution& solution) const;
+
+  /// Save and load the data that the contact conditions leave for later stages.
+  void save(Snapshot& snapshot, const std::string& name) const { zone_->save(snapshot, name); }
+  void load(const Snapshot& snapshot, const std::string& name) { zone_->load(snapshot, name); }
+  void report() const { zone_->report(); }
+  void observe(const ContactObserver& observer) { zone_->observe(observer); }
+  [[nodiscard]] double contact_seconds() const { return zone_->contact_seconds(); }
+  [[nodiscard]] std::size_t factor_entries() const { return zone_->factor_entries(); }
+
+ private:
+  std::vector<char> has_;  ///< per contact point: it is in the subdomain
+  std::vector<Index> own_points_;
+  std::vector<int> own_dofs_;
+  std::unique_ptr<FactoredStage> zone_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,165 @@
+#include "ricochet/solver/subdomain/subdomains.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "ricochet/solver/stage/stage_operator.hpp"
+#include "ricochet/solver/subdomain/contact_clusters.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Contact points of the smallest clusters that are tried: smaller ones save no work.
+constexpr std::size_t least_cluster = 256;
+/// Entries of the contact problems, which are dense. With many layers and few points, clusters have nearly the same
+/// points around them, and a single subdomain is cheaper.
+double dense_work(const std::vector<Subdomain::Extent>& zones) {
+  double sum = 0.0;
+  for (const Subdomain::Extent& zone : zones)
+    sum += static_cast<double>(zone.points.size()) * static_cast<double>(zone.points.size());
+  return sum;
+}
+
+}  // namespace
+
+Subdomains::Subdomains(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                       const std::vector<char>& solved, const StageProduct& product, ContactNeighbourhood& nearby,
+                       bool all_points, FactoredStage* layer)
+    : problem_(problem),
+      coefficients_(coefficients),
+      solved_(solved),
+      product_(product),
+      nearby_(nearby),
+      all_points_(all_points),
+      layer_(layer) {
+  correction_.setZero(problem.dof_count());
+  if (layer != nullptr) motion_layer_ = std::make_unique<MasslessContactNodes>(problem, coefficients, *layer);
+}
+
+void Subdomains::clear() {
+  earlier_contact_seconds_ = contact_seconds();
+  zones_.clear();
+}
+
+/// Returns clusters of at most so many points with the layers around them, as subdomains.
+std::vector<Subdomain::Extent> Subdomains::subdomains_of(const std::vector<Index>& points, std::size_t most) {
+  std::vector<Subdomain::Extent> zones;
+  struct Owner {
+    std::size_t zone;
+    int layer;
+  };
+  std::unordered_map<Index, Owner> owners;
+  for (std::vector<Index>& cluster : cluster_points(problem_, points, most)) {
+    const NodeDistances reached = nodes_within(nearby_.graph(), nearby_.nodes_of(cluster), layers_);
+    for (std::size_t i = 0; i < reached.nodes.size(); ++i) {
+      Owner& owner = owners.try_emplace(reached.nodes[i], Owner{zones.size(), reached.layer[i]}).first->second;
+      if (reached.layer[i] < owner.layer) owner = {zones.size(), reached.layer[i]};
+    }
+    zones.push_back({.nodes = reached.ascending(), .own_nodes = {}, .points = {}, .own_points = std::move(cluster)});
+  }
+  for (std::size_t number = 0; number < zones.size(); ++number) {
+    Subdomain::Extent& zone = zones[number];
+    for (const Index node : zone.nodes) {
+      if (owners.at(node).zone == number) zone.own_nodes.push_back(node);
+    }
+    for (const Index point : points) {
+      bool inside = true;
+      problem_.contact.visit_nodes(point, [&](Index node, double) {
+        inside = inside && std::binary_search(zone.nodes.begin(), zone.nodes.end(), node);
+      });
+      if (inside) zone.points.push_back(point);
+    }
+  }
+  return zones;
+}
+
+std::size_t Subdomains::divide(const std::vector<Index>& points) {
+  clear();
+  if (layers_ == 0) layers_ = nearby_.layers_to_solve(points, coefficients_, product_);
+  nodes_ = nearby_.nodes_around(points, layers_);
+  // With massless contact nodes the motion of a contact node depends on all reactions near it.
+  extents_ = subdomains_of(points, points.size());
+  if (layer_ == nullptr) {
+    for (std::size_t most = least_cluster; most < points.size(); most *= 2) {
+      std::vector<Subdomain::Extent> others = subdomains_of(points, most);
+      if (dense_work(others) < dense_work(extents_)) extents_ = std::move(others);
+    }
+  }
+  is_one_ = extents_.size() == 1;
+  return extents_.size();
+}
+
+void Subdomains::make_share(std::size_t number, std::size_t count) {
+  for (std::size_t i = number; i < extents_.size(); i += count) {
+    zones_.push_back(
+        std::make_unique<Subdomain>(problem_, coefficients_, solved_, extents_[i], product_, all_points_, layer_));
+    zones_.back()->observe(observer_);
+  }
+  extents_.clear();
+}
+
+/// Solves the stage on the correction: q and p at x instead of at δ = 0. All subdomains start from the same residual.
+void Subdomains::solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) {
+  stage_ = stage;  // its right-hand side is not used; a copy does not omit later members
+  stage_.row_storage.clear();
+  stage_.prescribed.setZero(stage.prescribed.size());
+  stage.rows->normal_motion(x, motion_);
+  stage_.gap_offset += stage.gap_factor * motion_;
+  if (stage.slip_offset.size() > 0) {
+    stage.rows->tangential_motion(x, slip_);
+    stage_.slip_offset += stage.slip_factor * slip_;
+  }
+  if (is_one_) {
+    zones_.front()->solve(stage_, stage.eligible, residual, correction_, x, solution);
+    return;
+  }
+  for (const auto& zone : zones_) {
+    solution_.iterations = 0;
+    zone->solve(stage_, stage.eligible, residual, correction_, x, solution_);
+    zone->restrict_to_own(solution_, solution);
+    solution.iterations += solution_.iterations;
+  }
+}
+
+void Subdomains::save(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name + ".layers", layers_);
+  for (std::size_t i = 0; i < zones_.size(); ++i) zones_[i]->save(snapshot, fmt::format("{}.{}", name, i));
+}
+
+void Subdomains::load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) {
+  layers_ = static_cast<int>(snapshot.integers(name + ".layers", 1, ContactNeighbourhood::most_layers).at(0));
+  make(points);
+  load_made(snapshot, name);
+}
+
+void Subdomains::load_made(const Snapshot& snapshot, const std::string& name) {
+  for (std::size_t i = 0; i < zones_.size(); ++i) zones_[i]->load(snapshot, fmt::format("{}.{}", name, i));
+}
+
+void Subdomains::report() const {
+  for (const auto& zone : zones_) zone->report();
+}
+
+void Subdomains::observe(const ContactObserver& observer) {
+  observer_ = observer;
+  for (const auto& zone : zones_) zone->observe(observer);
+}
+
+double Subdomains::contact_seconds() const {
+  double sum = earlier_contact_seconds_;
+  for (const auto& zone : zones_) sum += zone->contact_seconds();
+  return sum;
+}
+
+std::size_t Subdomains::factor_entries() const {
+  std::size_t sum = 0;
+  for (const auto& zone : zones_) sum += zone->factor_entries();
+  return sum;
+}
+
+}  // namespace ricochet

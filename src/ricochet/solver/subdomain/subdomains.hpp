@@ -1,0 +1,81 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "ricochet/solver/stage/stage_product.hpp"
+#include "ricochet/solver/subdomain/contact_neighbourhood.hpp"
+#include "ricochet/solver/subdomain/contact_region.hpp"
+#include "ricochet/solver/subdomain/subdomain.hpp"
+
+/// @file Subdomains of a body near its contact, each solved directly, all from the same residual.
+namespace ricochet {
+
+/// A subdomain is a cluster of contact points with some layers of nodes around them, including the points of other
+/// clusters that it contains. From its solution only the reactions of its own points are kept, and the motion of the
+/// nodes that are nearer to its own points than to those of other subdomains: a restricted additive Schwarz method. All
+/// nodes of a point are moved by its subdomain, so contact and friction hold to rounding. Many points then do not form
+/// a large dense problem, and the cost of contact grows in proportion to their number.
+class Subdomains final : public ContactRegion {
+ public:
+  /// Keeps references to the problem, the product and the graph; `solved`, per dof: the stage solves for it.
+  Subdomains(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+             const std::vector<char>& solved, const StageProduct& product, ContactNeighbourhood& nearby,
+             bool all_points, FactoredStage* layer);
+
+  void make(const std::vector<Index>& points) override {
+    divide(points);
+    make_share(0, 1);
+  }
+  /// Performs make() in two parts, if others make subdomains, too: returns their number, and makes every `count`-th one
+  /// from `number` on.
+  std::size_t divide(const std::vector<Index>& points);
+  void make_share(std::size_t number, std::size_t count);
+  void clear() override;
+  [[nodiscard]] bool are_made() const override { return !zones_.empty(); }
+  [[nodiscard]] const std::vector<Index>& nodes() const override { return nodes_; }
+  void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
+  void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
+                   Vector& motion) override {
+    motion_layer_->find_motion(rows, solution, increment, motion);
+  }
+
+  /// Sets the number of layers of nodes around the points of a subdomain; 0: the number of cells that a wave crosses,
+  /// computed with the next subdomains.
+  void set_layers(int layers) { layers_ = layers; }
+  [[nodiscard]] int layers() const { return layers_; }
+  [[nodiscard]] std::size_t count() const { return zones_.size(); }
+
+  void save(Snapshot& snapshot, const std::string& name) const override;
+  void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) override;
+  /// Loads the data of subdomains that are made.
+  void load_made(const Snapshot& snapshot, const std::string& name);
+  void report() const override;
+  void observe(const ContactObserver& observer) override;
+  [[nodiscard]] double contact_seconds() const override;
+  [[nodiscard]] std::size_t factor_entries() const override;
+
+ private:
+  [[nodiscard]] std::vector<Subdomain::Extent> subdomains_of(const std::vector<Index>& points, std::size_t most);
+
+  const SemidiscreteProblem& problem_;
+  OperatorCoefficients coefficients_;
+  const std::vector<char>& solved_;
+  const StageProduct& product_;
+  ContactNeighbourhood& nearby_;
+  bool all_points_;
+  FactoredStage* layer_;
+  std::unique_ptr<MasslessContactNodes> motion_layer_;  ///< null if the stage has no massless contact nodes
+  int layers_ = 0;                                      ///< 0 if not known yet
+  std::vector<Index> nodes_;                            ///< of all subdomains
+  std::vector<Subdomain::Extent> extents_;              ///< of all subdomains, until they are made
+  bool is_one_ = false;                                 ///< there is no other subdomain, here or elsewhere
+  std::vector<std::unique_ptr<Subdomain>> zones_;
+  ContactObserver observer_;
+  double earlier_contact_seconds_ = 0.0;
+  Stage stage_;                        ///< on the correction
+  Vector correction_, motion_, slip_;  ///< correction; G x and B_T x at the start
+  StageSolution solution_;             ///< of one subdomain
+};
+
+}  // namespace ricochet

@@ -1,0 +1,108 @@
+#include "ricochet/solver/tangent_iterations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Iterations that settle by themselves take fewer.
+constexpr int plain_rounds = 6;
+constexpr int most_rounds = 400;
+/// Iterations without progress after which the acceleration is restarted, since points that touch and separate change
+/// the map; and after which the step fails.
+constexpr int patience_of_acceleration = 20, patience_of_rounds = 60;
+/// Iterations without progress after which pairs of facets are held.
+constexpr int patience_of_pairs = 25;
+/// After so many iterations, if the last ones brought no progress, the error may be a multiple of the rounding of the
+/// gaps: forces that turn with large surfaces keep it.
+constexpr int patient_rounds = 40, patience_of_rounding = 5;
+constexpr double rounding_left = 100.0;
+/// Largest error before a step fails: gaps have the rounding of everything that moves the points, and in narrow corners
+/// more than once.
+constexpr double most_rounding_left = 1e4;
+constexpr int last_rounds = 60;
+
+}  // namespace
+
+TangentIterations::TangentIterations(const SemidiscreteProblem& problem) : problem_(problem) {
+  if (!problem.ranks->are_several()) return;
+  Vector is_counted(static_cast<Index>(problem.contact_dofs.size()));
+  for (Index i = 0; i < is_counted.size(); ++i) {
+    const Index node = problem.contact_dofs[static_cast<std::size_t>(i)] / problem.dimension;
+    is_counted[i] = problem.ranks->is_owned(node) ? 1.0 : 0.0;
+  }
+  acceleration_.divide(*problem.ranks, std::move(is_counted));
+}
+
+void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution) {
+  int iterations = solution.iterations, last_progress = 0, last_start = 0;
+  double least = std::numeric_limits<double>::infinity();
+  linearized_at_.setZero(problem_.dof_count());  // no motion before the first iteration
+  for (int round = 0;; ++round) {
+    const LinearizationError left = linearization_error(problem_, solution, stage, gap_);
+    // Iterations that settle by themselves do so to the rounding of the gaps.
+    const double error = round <= plain_rounds ? left.beyond_rounding : left.beyond_all_rounding;
+    if (error <= 0.0) break;
+    if (error < 0.9 * least) {
+      least = error;
+      last_progress = round;
+    }
+    const bool is_last = round == most_rounds || round - last_progress > patience_of_rounds;
+    const Vector& rounding = stage.gap_offset_rounding;
+    const double of_rounding = error / problem_.ranks->maximum(rounding.size() > 0 ? rounding.maxCoeff() : 0.0);
+    if (round >= patient_rounds && round - last_progress >= patience_of_rounding && of_rounding <= rounding_left) break;
+    if (round >= last_rounds && of_rounding <= most_rounding_left) break;
+    // Pairs change from iteration to iteration: they are held, and the next iteration solves the then linear
+    // conditions.
+    const bool is_stuck = round - last_progress > patience_of_pairs || !std::isfinite(error) || round == most_rounds;
+    if (is_stuck && problem_.contact.follows_motion() && problem_.contact.geometry->hold()) {
+      least = std::numeric_limits<double>::infinity();
+      last_progress = last_start = round;
+      acceleration_.restart();
+      linearize_contact(problem_, linearized_at_, stage);
+      solver.solve(stage, solution);
+      iterations += solution.iterations;
+      continue;
+    }
+    if (is_last || !std::isfinite(error)) {
+      throw Error(ErrorKind::not_converged,
+                  fmt::format("the contact forces, which turn with what the bodies touch, did not settle in {} rounds "
+                              "({:.3g} is left of the gaps)",
+                              round, least));
+    }
+    if (round == plain_rounds || round - std::max(last_progress, last_start) > patience_of_acceleration) {
+      acceleration_.restart();
+      last_start = round;
+    }
+    linearize_at(solution.contact_motion(), round > plain_rounds);
+    linearize_contact(problem_, linearized_at_, stage);
+    solver.solve(stage, solution);
+    iterations += solution.iterations;
+  }
+  solution.iterations = iterations;
+}
+
+/// Sets the point of linearization, which does not matter away from the contact.
+void TangentIterations::linearize_at(const Vector& increment, bool accelerate) {
+  if (!accelerate) {
+    linearized_at_ = increment;
+    return;
+  }
+  point_.resize(static_cast<Index>(problem_.contact_dofs.size()));
+  image_.resize(point_.size());
+  problem_.take_contact(linearized_at_, point_);
+  problem_.take_contact(increment, image_);
+  acceleration_.advance(point_, image_, image_);
+  linearized_at_ = increment;
+  problem_.scatter_contact(image_, linearized_at_);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,147 @@
+#include "ricochet/study/requested_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/json.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/case/names.hpp"
+#include "ricochet/case/quantity.hpp"
+#include "ricochet/case/read_case.hpp"
+#include "ricochet/model/model.hpp"
+#include "ricochet/run/quantity_value.hpp"
+#include "ricochet/study/history_errors.hpp"
+
+namespace ricochet {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+struct AskedColumn {
+  std::string asked;   ///< such as "--quantity max(history.time)"
+  std::string column;  ///< column of history.csv
+};
+
+/// Requires an entry of summary.json at a dotted path. Only its first part is checked, as the contents of an entry
+/// depend on the results of the run.
+void require_summary_entry(const std::string& asked, const std::string& path) {
+  const Json summary = Json::parse(to_json(RunSummary{}));
+  Names known;
+  for (const auto& [name, value] : summary.items()) known.push_back(name);
+  const std::string name = path.substr(0, path.find('.')), near = nearest_name(name, known);
+  if (std::count(known.begin(), known.end(), name) > 0) return;
+  throw Error(ErrorKind::usage,
+              fmt::format("{}: summary.json has no entry \"{}\"; {}", asked, name,
+                          near.empty() ? "it has " + join_names(known) : fmt::format("did you mean \"{}\"?", near)));
+}
+
+std::vector<AskedColumn> columns_in(const StudyQuestions& questions) {
+  std::vector<AskedColumn> columns;
+  const auto add = [&](const std::string& option, const std::string& text) {
+    const Quantity quantity = parse_quantity(text);
+    const std::string asked = option + " " + text;
+    if (quantity.kind == Quantity::Kind::summary_value) return require_summary_entry(asked, quantity.name);
+    columns.push_back({asked, quantity.name});
+  };
+  for (const std::string& text : questions.quantities) add("--quantity", text);
+  for (const auto& [text, value] : questions.exact) add("--exact", text);
+  return columns;
+}
+
+bool is_run_of_study(const std::string& reference) {
+  return reference.starts_with("last:") || reference.starts_with("finest:");
+}
+
+/// Returns true if the runs may have different columns, which follow from meshes and probes.
+bool columns_vary(const StudyPlan& plan) {
+  const Names keys = varied_keys(plan);
+  return std::any_of(keys.begin(), keys.end(),
+                     [](const std::string& key) { return key.starts_with("mesh.") || key.starts_with("probe."); });
+}
+
+/// Returns true if a run has the column whatever its mesh.
+bool is_always_there(const std::string& column) {
+  const auto in = [&](int dimension) {
+    const Names names = names_of(HistoryRecorder::standard_columns(dimension));
+    return std::count(names.begin(), names.end(), column) > 0;
+  };
+  return in(2) && in(3);
+}
+
+std::optional<Case> first_valid_case(const Study& study) {
+  for (const StudyRun& run : study.runs) {
+    try {
+      return read_case(study.plan.case_path, run.planned.settings);
+    } catch (const Error&) {  // its row reports the error
+    }
+  }
+  return std::nullopt;
+}
+
+/// Returns the columns of runs of this case; none if it does not fit its mesh, which the runs will report.
+std::optional<Names> columns_of(const Case& input) {
+  const log::Silence silence;  // the runs issue the warnings
+  try {
+    const std::unique_ptr<Model> model = build_model(input);
+    return names_of(history_columns(*model));
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+[[noreturn]] void refuse(const AskedColumn& asked, const Case& input, const Names& columns) {
+  throw Error(ErrorKind::usage, fmt::format("{}: {}", asked.asked, no_such_column(input, asked.column, columns)));
+}
+
+/// Refuses a column that no run has, for runs whose meshes or probes differ.
+void require_possible_column(const AskedColumn& asked, const Case& input) {
+  const Names names = history_column_names();
+  if (std::count(names.begin(), names.end(), asked.column) > 0) return;
+  // A column of a probe, which may have another name in another run.
+  if (asked.column.find('.') != std::string::npos) return;
+  refuse(asked, input, names);
+}
+
+/// Returns a table without rows for find_compared.
+HistoryTable empty_table(const Names& columns) {
+  HistoryTable table{columns, {}};
+  for (const std::string& column : columns) table.columns[column];
+  return table;
+}
+
+}  // namespace
+
+void check_requested_columns(const Study& study) {
+  const StudyQuestions& questions = study.questions;
+  const std::vector<AskedColumn> asked = columns_in(questions);
+  const bool compares_own_runs = !questions.compare.empty() && is_run_of_study(questions.reference);
+  if (!questions.compare.empty() && !compares_own_runs) {
+    const std::string path = (std::filesystem::path(questions.reference) / "history.csv").string();
+    const HistoryTable reference = read_history(path, true);
+    for (const std::string& name : questions.compare) static_cast<void>(find_compared(name, reference));
+  }
+  const bool needs_runs = compares_own_runs || std::any_of(asked.begin(), asked.end(), [](const AskedColumn& a) {
+                            return !is_always_there(a.column);
+                          });
+  const std::optional<Case> input = needs_runs ? first_valid_case(study) : std::nullopt;
+  if (!input) return;
+  if (columns_vary(study.plan)) {
+    for (const AskedColumn& one : asked) require_possible_column(one, *input);
+    return;
+  }
+  const std::optional<Names> columns = columns_of(*input);
+  if (!columns) return;
+  for (const AskedColumn& one : asked) {
+    if (std::count(columns->begin(), columns->end(), one.column) == 0) refuse(one, *input, *columns);
+  }
+  if (!compares_own_runs) return;
+  for (const std::string& name : questions.compare) static_cast<void>(find_compared(name, empty_table(*columns)));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,56 @@
+#include "ricochet/contact/rotating_normal.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/box_mesh.hpp"
+
+/// @file A direction that turns with the facets around a point.
+namespace ricochet {
+namespace {
+
+/// Facets of a bent and distorted box around one of its corners, which are on several sides of it.
+std::vector<Index> facets_around(const DisplacementSpace& space, Index node) {
+  Index count = 0;
+  for (const CellBlock& block : space.facets) count += block.size();
+  std::vector<Index> result;
+  for (Index facet = 0; facet < count; ++facet) {
+    const std::vector<Index> nodes = facet_nodes(space, {facet});
+    if (std::find(nodes.begin(), nodes.end(), node) != nodes.end()) result.push_back(facet);
+  }
+  return result;
+}
+
+/// The order in which a mesh file has the facets says nothing about the surface.
+TEST(RotatingNormal, NoOrderOfFacetsMatters) {
+  for (const CellShape shape : test_support::all_cell_shapes) {
+    const int d = dimension(shape);
+    test_support::BoxMesh box = test_support::box_of(shape, std::vector<int>(static_cast<std::size_t>(d), 3));
+    box.map = test_support::bend_map();
+    const auto body = test_support::make_meshed_body(test_support::make_box_mesh(box), 1);
+    const DisplacementSpace& space = body->space;
+    Vector direction(d), displacement(space.dof_count());
+    for (Index k = 0; k < displacement.size(); ++k)
+      displacement[k] = 0.05 * std::sin(3.0 + 7.0 * static_cast<double>(k));
+    int turning = 0;
+    for (Index node = 0; node < space.node_count(); ++node) {
+      std::vector<Index> facets = facets_around(space, node);
+      if (facets.size() < 2) continue;
+      const Vector outward = space.nodes.col(node) - space.nodes.rowwise().mean();
+      direction = outward.normalized();
+      const RotatingNormal one(space, facets, direction);
+      std::reverse(facets.begin(), facets.end());
+      const RotatingNormal other(space, facets, direction);
+      EXPECT_EQ(one.turns(), other.turns());
+      EXPECT_LT((one.at(space.nodes, {}).head(d) - direction).norm(), 1e-14);
+      EXPECT_LT((one.at(space.nodes, displacement) - other.at(space.nodes, displacement)).norm(), 1e-13);
+      turning += one.turns() ? 1 : 0;
+    }
+    EXPECT_GT(turning, 4);
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
