@@ -241,8 +241,8 @@ void print_pairs(const Model& model, std::size_t entry) {
   std::size_t count = 0, nearest = 0;
   double gap = std::numeric_limits<double>::infinity();
   for (std::size_t pair = 0; pair < model.contacts.size(); ++pair) {
-    if (model.contacts[pair].entry != entry || model.contacts[pair].pair_of.empty()) continue;
-    all = &model.contacts[pair].pair_of;
+    if (model.contacts[pair].entry != entry || model.contacts[pair].all_pairs_group.empty()) continue;
+    all = &model.contacts[pair].all_pairs_group;
     ++count;
     const double least = model.pair_facings[pair].smallest_gap;
     if (!(least < gap)) continue;

@@ -98,7 +98,7 @@ void require_same_case_file(const Ranks& ranks, const std::string& path) {
     own = static_cast<double>(Checksum().add_bytes(text.data(), text.size()).value());
   } catch (const Error&) {  // reading the case reports the reason if no process can
   }
-  const Ranks::ForEach<double> all = ranks.of_all({own});
+  const Ranks::ForEach<double> all = ranks.all_gather({own});
   for (std::size_t i = 1; i < all.size(); ++i) {
     if (all[i] == all[0]) continue;
     const bool is_missing = all[i][0] == unreadable || all[0][0] == unreadable;
@@ -128,7 +128,7 @@ void warn_of_launcher(const Ranks& ranks) {
 int run(const RunArguments& given) {
   warn_of_launcher(*given.ranks);
   RunArguments arguments;
-  given.ranks->together([&] { arguments = with_origin(given); });
+  given.ranks->run_collectively([&] { arguments = with_origin(given); });
   if (given.ranks->are_several()) require_same_case_file(*given.ranks, arguments.case_file);
   RunOptions options;
   options.output_directory = arguments.output_directory;
@@ -153,7 +153,7 @@ int run(const RunArguments& given) {
   // Any process may have received the signal.
   if (summary.status == "interrupted") return 128 + static_cast<int>(arguments.ranks->maximum(stop_signal()));
   // The first process evaluates the expectations, and all end accordingly.
-  arguments.ranks->together([&summary] {
+  arguments.ranks->run_collectively([&summary] {
     for (const ExpectationResult& e : summary.expectations) {
       if (e.checked && !e.holds) {
         throw Error(ErrorKind::expectation,

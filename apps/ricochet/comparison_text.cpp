@@ -83,16 +83,16 @@ constexpr std::array<std::pair<const char*, const char*>, 6> meanings{{
 }};
 
 /// Numbers of a run for the table. Marks are added to `marks`.
-class Outcome {
+class ResultCells {
  public:
-  Outcome(const RunSummary& summary, std::set<std::string>& marks) : s_(summary), marks_(marks) {}
+  ResultCells(const RunSummary& summary, std::set<std::string>& marks) : s_(summary), marks_(marks) {}
 
   [[nodiscard]] std::string restitution() const {
     const auto first = std::find_if(s_.impacts.begin(), s_.impacts.end(),
                                     [](const Impact& impact) { return impact.restitution().has_value(); });
     if (first == s_.impacts.end()) return "-";
     const bool more = s_.impacts.size() > 1 || s_.impacts_left_out > 0;
-    return fmt::format("{:.4g}", *first->restitution()) + mark("*", more) + mark("?", turned_in(first)) +
+    return fmt::format("{:.4g}", *first->restitution()) + mark("*", more) + mark("?", rotated_too_far_in(first)) +
            mark("!", restitution_error(*first).is_large);
   }
 
@@ -103,24 +103,24 @@ class Outcome {
     });
     if (hardest == s_.impacts.end()) return "-";
     return fmt::format("{:.4g}", hardest->largest_force) + mark("~", hardest->is_coarse()) +
-           mark("?", turned_in(hardest));
+           mark("?", rotated_too_far_in(hardest));
   }
 
   [[nodiscard]] std::string peak_stress() const {
     if (!s_.peak_stress) return "-";
     const PeakStressResult& peak = s_.peak_stress->peak;
-    return mark("≥", peak.looks < peak.states) + (peak.looks < peak.states ? " " : "") +
-           fmt::format("{:.4g}", peak.von_mises) + mark("?", turned_until(peak.time)) +
+    return mark("≥", peak.evaluations < peak.states) + (peak.evaluations < peak.states ? " " : "") +
+           fmt::format("{:.4g}", peak.von_mises) + mark("?", rotated_too_far_by(peak.time)) +
            mark("^", peak.raised_by != StressRaiser::none);
   }
 
  private:
-  using Place = std::vector<Impact>::const_iterator;
+  using ImpactIterator = std::vector<Impact>::const_iterator;
   /// Returns true if cells or the body had rotated too far for small strain when the impact ended.
-  [[nodiscard]] bool turned_in(Place impact) const {
+  [[nodiscard]] bool rotated_too_far_in(ImpactIterator impact) const {
     return !s_.small_strain_holds_in(static_cast<std::size_t>(impact - s_.impacts.begin()));
   }
-  [[nodiscard]] bool turned_until(double time) const {
+  [[nodiscard]] bool rotated_too_far_by(double time) const {
     return s_.rotation ? s_.rotation->time_beyond <= time : s_.digest("max_rotation").maximum > s_.largest_rotation();
   }
   [[nodiscard]] std::string mark(const char* sign, bool applies) const {
@@ -133,12 +133,12 @@ class Outcome {
   std::set<std::string>& marks_;
 };
 
-void print_outcomes(const std::vector<Run>& runs, int width) {
+void print_run_results(const std::vector<Run>& runs, int width) {
   std::set<std::string> marks;
   fmt::print("\n{:<{}} {:>12} {:>14} {:>14} {:>16}\n", "run", width, "impacts", "restitution", "largest force",
              "largest stress");
   for (const auto& [directory, summary] : runs) {
-    const Outcome outcome(summary, marks);
+    const ResultCells outcome(summary, marks);
     const std::size_t impacts = summary.impacts.size() + static_cast<std::size_t>(summary.impacts_left_out);
     fmt::print("{:<{}} {:>12} {:>14} {:>14} {:>16}\n", directory, width, impacts, outcome.restitution(),
                outcome.largest_force(), outcome.peak_stress());
@@ -158,7 +158,7 @@ void print_comparison(const std::vector<std::string>& directories) {
     width = std::max(width, directory.size());
   }
   print_methods(runs, static_cast<int>(width));
-  print_outcomes(runs, static_cast<int>(width));
+  print_run_results(runs, static_cast<int>(width));
 }
 
 }  // namespace ricochet::program

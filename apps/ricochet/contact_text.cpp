@@ -43,21 +43,23 @@ std::string facing_text(const PairingDescription& facing) {
 void print_contacts(const std::vector<ContactDescription>& contacts) {
   std::string told;
   for (const ContactDescription& c : contacts) {
-    if (!c.pair_of.empty() && c.pair_of == told) continue;
-    told = c.pair_of;
+    if (!c.all_pairs_group.empty() && c.all_pairs_group == told) continue;
+    told = c.all_pairs_group;
     if (c.tied) {
       fmt::print("  \"{}\" tied to \"{}\"\n", c.group, c.opponent);
       continue;
     }
-    const auto pairs = std::count_if(contacts.begin(), contacts.end(),
-                                     [&](const ContactDescription& other) { return other.pair_of == c.pair_of; });
+    const auto pairs = std::count_if(contacts.begin(), contacts.end(), [&](const ContactDescription& other) {
+      return other.all_pairs_group == c.all_pairs_group;
+    });
     const std::string what =
-        c.pair_of.empty() ? fmt::format("\"{}\" {} \"{}\"", c.group, c.between_bodies ? "against" : "with", c.opponent)
+        c.all_pairs_group.empty()
+            ? fmt::format("\"{}\" {} \"{}\"", c.group, c.between_bodies ? "against" : "with", c.opponent)
         : c.opponent.empty()
-            ? fmt::format("every body of \"{}\" against every other", c.pair_of)
-            : fmt::format("every body of \"{}\" against every other, {}", c.pair_of, counted(pairs, "pair"));
+            ? fmt::format("every body of \"{}\" against every other", c.all_pairs_group)
+            : fmt::format("every body of \"{}\" against every other, {}", c.all_pairs_group, counted(pairs, "pair"));
     fmt::print("  contact of {}{}: {}, {} multipliers\n", what, motion_text(c), law_text(c), c.multipliers);
-    if (c.facing && c.pair_of.empty()) fmt::print("    {}\n", facing_text(*c.facing));
+    if (c.facing && c.all_pairs_group.empty()) fmt::print("    {}\n", facing_text(*c.facing));
   }
 }
 

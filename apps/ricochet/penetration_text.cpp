@@ -18,7 +18,7 @@ std::string found_text(const UnwatchedPenetration& p) {
       : p.contact.empty() ? "PENETRATION WITHOUT CONTACT"
                           : fmt::format("PENETRATION AT THE CONTACT of \"{}\" and \"{}\"", p.contact[0], p.contact[1]);
   return fmt::format("\n  {}: {}, {:.3g} deep at t = {:.6g} at ({:.4g})", kind, what, p.depth, p.time,
-                     fmt::join(p.place, ", "));
+                     fmt::join(p.position, ", "));
 }
 
 /// Slip, relative to its limit, below which it counts as none.

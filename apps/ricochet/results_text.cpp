@@ -22,7 +22,7 @@ double radius_of(const BodyDescription& body) {
 }
 
 /// Returns a position of the mesh in its reference configuration.
-std::string place_text(const std::vector<double>& place, const RunSummary& summary) {
+std::string position_text(const std::vector<double>& place, const RunSummary& summary) {
   double size = 0.0;
   for (const BodyDescription& body : summary.bodies) size = std::max(size, body.rigid.centre.norm() + radius_of(body));
   return vector_text(Eigen::Map<const Vector>(place.data(), static_cast<Index>(place.size())), size, 5);
@@ -131,7 +131,8 @@ std::string turning_text(const Impact& impact) {
 std::string impact_text(std::size_t number, const RunSummary& summary) {
   const Impact& impact = summary.impacts[number];
   std::string text = parties_text(impact, summary);
-  if (!impact.first_place.empty()) text += fmt::format("first at {} ", place_text(impact.first_place, summary));
+  if (!impact.first_position.empty())
+    text += fmt::format("first at {} ", position_text(impact.first_position, summary));
   text += fmt::format("from t = {:.6g}", impact.begin);
   if (impact.from_start) text += " (the start)";
   if (impact.ended) {
@@ -179,10 +180,11 @@ void print_impacts(const RunSummary& summary, std::size_t most) {
 void print_peak_stress(const RunSummary& summary) {
   if (!summary.peak_stress) return;
   const PeakStressDescription& d = *summary.peak_stress;
-  const bool all = d.peak.looks >= d.peak.states;
-  fmt::print("  largest von Mises stress {}{:.6g} at t = {:.6g}, in \"{}\" at {} (mean of a cell; {})\n",
-             all ? "" : "≥ ", d.peak.von_mises, d.peak.time, d.material, place_text(d.place, summary),
-             all ? "looked at in every step" : fmt::format("looked at in {} of {} steps", d.peak.looks, d.peak.states));
+  const bool all = d.peak.evaluations >= d.peak.states;
+  fmt::print(
+      "  largest von Mises stress {}{:.6g} at t = {:.6g}, in \"{}\" at {} (mean of a cell; {})\n", all ? "" : "≥ ",
+      d.peak.von_mises, d.peak.time, d.material, position_text(d.position, summary),
+      all ? "looked at in every step" : fmt::format("looked at in {} of {} steps", d.peak.evaluations, d.peak.states));
   if (d.peak.raised_by != StressRaiser::none)
     fmt::print("    it grows with refinement: it sits on {}\n", name_of(d.peak.raised_by));
 }

@@ -25,11 +25,11 @@ constexpr int patience = 1200;
 constexpr std::chrono::milliseconds same_request{250};
 
 std::atomic<int> received = 0;
-std::atomic<const char*> speaker = nullptr;  ///< null: no messages
+std::atomic<const char*> message_prefix = nullptr;  ///< null: no messages
 std::atomic<bool> steps_end = false;
 
 void say(const std::string& what) {
-  if (const char* name = speaker) interruption::say(fmt::format("\n{}: {}\n", name, what).c_str());
+  if (const char* name = message_prefix) interruption::write_to_stderr(fmt::format("\n{}: {}\n", name, what).c_str());
 }
 
 // SIGHUP: the terminal or the connection to it is gone.
@@ -102,7 +102,7 @@ void wait(const sigset_t& awaited) {
 }  // namespace
 
 void wait_for_stop_signals(const char* program_name) {
-  speaker = program_name;
+  message_prefix = program_name;
   // A file that reached its size limit is an error like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   sigset_t awaited;
@@ -120,7 +120,7 @@ void wait_for_stop_signals(const char* program_name) {
 }
 
 void set_signal_program_name(const char* program_name) {
-  speaker = program_name;
+  message_prefix = program_name;
 }
 
 void remove_step_time_limit() {

@@ -62,7 +62,7 @@ const std::array<Method, 27> methods{
      {"penalty-midpoint, consistent", "scheme = \"penalty-midpoint\"\n", "consistent", false},
      {"nitsche, consistent", "scheme = \"nitsche\"\n", "consistent", false}}};
 
-struct Outcome {
+struct CaseResult {
   std::string failure;
   double created = 0.0, lost = 0.0, penetration = 0.0, variation = 0.0, largest = 0.0;
 };
@@ -76,8 +76,8 @@ RandomCase make_case(const std::string& kind, unsigned number, const std::filesy
 
 /// Runs a case. Energy less the work of loads, supports and obstacles must not grow. All results are relative to the
 /// largest energy.
-Outcome run_case_with(const RandomCase& random_case, const Method& method) {
-  Outcome result;
+CaseResult run_case_with(const RandomCase& random_case, const Method& method) {
+  CaseResult result;
   const std::string text =
       random_case.text + fmt::format("[mass]\ntype = \"{}\"\n[time]\n{}step = {:.17g}\nend = {:.17g}\n", method.mass,
                                      method.time, random_case.step, random_case.step * random_case.steps);
@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
     for (const Method& method : methods) {
       if (!method.takes_friction && random_case.friction > 0.0) continue;
       if (std::string(method.name).find(wanted) == std::string::npos) continue;
-      const Outcome outcome = run_case_with(random_case, method);
+      const CaseResult outcome = run_case_with(random_case, method);
       fmt::print("{},\"{}\",{:.3g},{:.3g},\"{}\",{:.3e},{:.3e},{:.3e},{:.4e},{:.4e},\"{}\"\n", number,
                  random_case.description, random_case.friction, random_case.crossings, method.name, outcome.created,
                  outcome.lost, outcome.penetration, outcome.variation, outcome.largest, outcome.failure);

@@ -61,7 +61,7 @@ void run(const std::string& path, int threads) {
   session.build(nullptr);
   const SemidiscreteProblem& problem = session.model().problem;
   const OperatorCoefficients a = session.scheme().operators(problem).back();
-  const SparseMatrix matrix = a.stiffness * problem.internal_force->tangent() + a.mass * problem.mass.whole();
+  const SparseMatrix matrix = a.stiffness * problem.internal_force->tangent() + a.mass * problem.mass.to_sparse();
   SparseCholesky own, library;
   const double ordering = seconds([&] { own.analyse(matrix); });
   own.factorize();

@@ -62,7 +62,7 @@ std::unique_ptr<Limits> make_limits(const SemidiscreteProblem& problem, const Sc
   if (std::isfinite(scheme.critical_step())) return std::make_unique<ExplicitLimits>(problem, factor_entries);
   const OperatorCoefficients a = scheme.operators(problem).back();
   return std::make_unique<DirectLimits>(a.stiffness * problem.internal_force->tangent() +
-                                        a.mass * problem.mass.whole());
+                                        a.mass * problem.mass.to_sparse());
 }
 
 /// Returns the processor time of the surface operations in building a model: choice of sides, ties, and contact points
@@ -151,7 +151,7 @@ double run(const Options& options) {
 
   const double peak = limits ? peak_alone : peak_memory();
   const SemidiscreteProblem& problem = model.problem;
-  const double matrices = megabytes(problem.internal_force->tangent()) + megabytes(problem.mass.whole());
+  const double matrices = megabytes(problem.internal_force->tangent()) + megabytes(problem.mass.to_sparse());
   fmt::print(R"({{"case": "{}", "libraries": "{}", "dimension": {}, "dofs": {}, "contact_points": {}, "threads": {}, )",
              options.path, library_versions(), problem.dimension, problem.dof_count(), problem.contact.size(),
              thread_count());

@@ -69,7 +69,7 @@ template <class Number>
 
 /// Returns an array that takes over the ownership of its numbers.
 template <class Container>
-[[nodiscard]] auto give(Container numbers, Index rows, Index columns = 0) {
+[[nodiscard]] auto owned_array(Container numbers, Index rows, Index columns = 0) {
   auto* kept = new Container(std::move(numbers));
   const py::capsule owner(kept, [](void* object) { delete static_cast<Container*>(object); });
   using Number = std::remove_cvref_t<decltype(*kept->data())>;
@@ -82,7 +82,7 @@ template <class Container>
   std::vector<int> numbers;
   for (const ContactStatus one : status) numbers.push_back(static_cast<int>(one));
   const auto count = static_cast<Index>(numbers.size());
-  return give(std::move(numbers), count);
+  return owned_array(std::move(numbers), count);
 }
 
 /// Copy of a numpy array, or of any object that numpy converts to one, row by row.

@@ -66,8 +66,8 @@ py::dict solve(OpenSolver& open, const Numbers& offset, double tolerance, int it
   py::dict result;
   const auto points = static_cast<Index>(found.status.size());
   const Index rows = found.reaction.size() / std::max<Index>(points, 1);
-  result["reaction"] = give(Vector(found.reaction), points, rows);
-  result["motion"] = give(Vector(found.motion), points, rows);
+  result["reaction"] = owned_array(Vector(found.reaction), points, rows);
+  result["motion"] = owned_array(Vector(found.motion), points, rows);
   result["status"] = numbers_of(found.status);
   result["outcome"] = word(found.outcome);
   result["reason"] = found.reason;

@@ -53,7 +53,7 @@ py::array read_field(const RunData& run, Index frame, const std::string& name) {
     results.read(frame, field, values);
   }
   const Index rows = field.on_nodes ? results.nodes().cols() : results.cell_count();
-  return give(std::move(values), rows, field.components > 1 ? field.components : 0);
+  return owned_array(std::move(values), rows, field.components > 1 ? field.components : 0);
 }
 
 /// Returns meshio's name of a shape.
@@ -84,7 +84,7 @@ py::list cells_of(const std::vector<CellBlock>& blocks, int degree) {
       for (const int own : order) nodes.push_back(block.cell(cell)[own]);
     }
     const Index count = block.size();
-    result.append(py::make_tuple(kind_of(block), give(std::move(nodes), count, block.nodes_per_cell)));
+    result.append(py::make_tuple(kind_of(block), owned_array(std::move(nodes), count, block.nodes_per_cell)));
   }
   return result;
 }
@@ -99,8 +99,9 @@ py::tuple surface_of(const RunData& run, Index most) {
   }
   const auto nodes = static_cast<Index>(surface.nodes.size());
   const Index triangles = surface.triangle_count();
-  return py::make_tuple(give(std::move(surface.nodes), nodes), give(std::move(surface.triangles), triangles, 3),
-                        give(std::move(surface.cells), triangles));
+  return py::make_tuple(owned_array(std::move(surface.nodes), nodes),
+                        owned_array(std::move(surface.triangles), triangles, 3),
+                        owned_array(std::move(surface.cells), triangles));
 }
 
 /// Returns (cells × corners, points × 3, number of the obstacle of each cell) of the obstacles in a frame; None if
@@ -113,8 +114,8 @@ py::object obstacles_of(const RunData& run, std::size_t frame) {
   std::vector<int> obstacle = shown.obstacle;
   const auto count = static_cast<Index>(cells.size()) / shown.corners,
              points = static_cast<Index>(positions.size()) / 3;
-  return py::make_tuple(give(std::move(cells), count, shown.corners), give(std::move(positions), points, 3),
-                        give(std::move(obstacle), count));
+  return py::make_tuple(owned_array(std::move(cells), count, shown.corners),
+                        owned_array(std::move(positions), points, 3), owned_array(std::move(obstacle), count));
 }
 
 std::string describe_runs(const std::vector<std::string>& directories, const std::vector<std::string>& what,

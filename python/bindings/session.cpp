@@ -160,7 +160,7 @@ py::array_t<double> contact_places(OpenSession& open) {
     if (sum != 0.0) places.col(point) /= sum;
   }
   const Index rows = places.cols(), columns = places.rows();
-  return give(std::move(places), rows, columns);
+  return owned_array(std::move(places), rows, columns);
 }
 
 py::array_t<double> contact_force(OpenSession& open) {
@@ -168,7 +168,7 @@ py::array_t<double> contact_force(OpenSession& open) {
   const SemidiscreteProblem& problem = open.session.problem();
   Vector force = Vector::Zero(problem.dof_count());
   state.forces.rows->add_force(state.forces.acting_normal(), state.forces.acting_tangential(), force);
-  return give(std::move(force), nodes_of(problem), problem.dimension);
+  return owned_array(std::move(force), nodes_of(problem), problem.dimension);
 }
 
 py::dict energies(OpenSession& open) {
@@ -257,7 +257,7 @@ void bind_looks(Class& session) {
             const State& state = open.state();
             open.session.problem().gaps(state.displacement, state.time, gaps);
             const Index count = gaps.size();
-            return give(std::move(gaps), count);
+            return owned_array(std::move(gaps), count);
           },
           "Gaps of the contact points, positive if open.")
       .def_property_readonly(
@@ -290,7 +290,7 @@ void bind_problem(Class& session) {
           [](OpenSession& open) {
             const SemidiscreteProblem& problem = open.problem();
             Points points = problem.nodes.leftCols(nodes_of(problem));
-            return give(std::move(points), nodes_of(problem), problem.dimension);
+            return owned_array(std::move(points), nodes_of(problem), problem.dimension);
           },
           "Reference positions of the nodes, nodes x dimension.")
       .def_property_readonly(
@@ -300,11 +300,11 @@ void bind_problem(Class& session) {
             std::vector<Index> numbers = open.session.model().space.number;
             numbers.resize(static_cast<std::size_t>(nodes_of(open.session.problem())));
             const auto count = static_cast<Index>(numbers.size());
-            return give(std::move(numbers), count);
+            return owned_array(std::move(numbers), count);
           },
           "Numbers of the nodes in the mesh.")
       .def_property_readonly("contact_points", &contact_places, "Reference positions of the contact points.")
-      .def_property_readonly("mass_parts", [](OpenSession& open) { return parts_of(open.problem().mass.whole()); })
+      .def_property_readonly("mass_parts", [](OpenSession& open) { return parts_of(open.problem().mass.to_sparse()); })
       .def_property_readonly("mass_built",
                              [](OpenSession& open) {
                                (void)open.problem();
@@ -330,7 +330,7 @@ void bind_session(py::module_& module) {
       .def("_finish", &OpenSession::finish)
       .def("_keep",
            [](OpenSession& open) {
-             if (open.writes) open.alone([&] { open.session.keep(); });
+             if (open.writes) open.alone([&] { open.session.write_checkpoint_now(); });
            })
       .def("_save", &save)
       .def("_resume", &resume)

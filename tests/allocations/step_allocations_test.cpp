@@ -131,10 +131,10 @@ class WatchedRun {
     const long before = allocation_count();
     run_.simulation().advance();
     (void)recorder_.row(run_.state(), run_.simulation().account());
-    impacts_.enter_step(run_.state(), run_.simulation().account().of_method(run_.state()));
+    impacts_.enter_step(run_.state(), run_.simulation().account().method_energy(run_.state()));
     peak_.enter(run_.state(), false);
-    watch_.look(run_.state());
-    sliding_.look(run_.state());
+    watch_.check(run_.state());
+    sliding_.check(run_.state());
     momenta_.enter_step(run_.state());
     return warnings_.size() > told ? 0 : allocation_count() - before;
   }
@@ -238,7 +238,7 @@ TEST(PenetrationReports, CostTheSameInAFinerMesh) {
     // The disc is at the middle of the wall, which no contact names.
     const std::unique_ptr<Obstacle> obstacle = make_plane(Eigen::Vector2d(0.0, 1.0), Eigen::Vector2d(1.0, 0.0));
     PenetrationWatch watch(run.model().body, run.problem(), run.model().contact_pairs, {{"wall", obstacle.get()}});
-    watch.look(run.state());
+    watch.check(run.state());
     const long before = allocation_count();
     const PenetrationReport report = watch.report();
     counts.push_back(allocation_count() - before);

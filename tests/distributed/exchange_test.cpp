@@ -88,7 +88,7 @@ TEST_P(Exchange, SumsThePartsOfSharersInTheirOrder) {
 TEST_P(Exchange, EachNodeHasOneOwnerWhoseValuesSpread) {
   const NodeExchange exchange(world(), own(), mesh_.node_count());
   Vector values = Vector::Constant(static_cast<Index>(own().size()) * 3, world().rank());
-  exchange.spread(values);
+  exchange.copy_from_owners(values);
   Index owned = 0;
   for (std::size_t i = 0; i < own().size(); ++i) {
     int owner = 0;

@@ -75,7 +75,7 @@ TEST_P(Motion, IsThatOfOneRank) {
     EXPECT_LT((own.state().velocity - part_of(v)).lpNorm<Eigen::Infinity>(), 1e-10 * v.lpNorm<Eigen::Infinity>());
     // Motions have the same bits on all ranks that share a node.
     Vector owners = own.state().displacement;
-    exchange_.spread(owners);
+    exchange_.copy_from_owners(owners);
     EXPECT_EQ(owners, own.state().displacement);
     // Each rank has a part of energies and works.
     const Energies expected = simulation.account().energies(simulation.state()),

@@ -75,7 +75,7 @@ TEST_P(Pieces, HaveMatricesThatAddUp) {
   own.multiply(part_of(x), y);
   ranks_.accumulate(y);
   EXPECT_LT((y - part_of(expected)).lpNorm<Eigen::Infinity>(), 1e-12 * expected.lpNorm<Eigen::Infinity>());
-  EXPECT_NEAR(ranks_.sum(own.form(part_of(x))), x.dot(expected), 1e-12 * whole.norm() * x.squaredNorm());
+  EXPECT_NEAR(ranks_.sum(own.quadratic_form(part_of(x))), x.dot(expected), 1e-12 * whole.norm() * x.squaredNorm());
   EXPECT_NEAR(dot_product(part_of(x), part_of(expected), ranks_, d_), x.dot(expected),
               1e-12 * x.norm() * expected.norm());
 }
@@ -109,7 +109,7 @@ TEST_P(Pieces, HavePreconditionersOfTheWhole) {
     }
     // Ranks that share a node have the same bits.
     Vector owners = z;
-    exchange_.spread(owners);
+    exchange_.copy_from_owners(owners);
     EXPECT_EQ(owners, z);
     preconditioner->apply(other, of_other);
     const double one = dot_product(other, z, ranks_, d_), two = dot_product(of_other, image, ranks_, d_);
@@ -197,7 +197,7 @@ TEST_P(Pieces, AreSolvedAsTheWhole) {
   EXPECT_NEAR(iterations_found.second, iterations.second, 3);
   // Shared nodes have the same bits on all that share them.
   Vector owners = found;
-  exchange_.spread(owners);
+  exchange_.copy_from_owners(owners);
   EXPECT_EQ(owners, found);
 }
 

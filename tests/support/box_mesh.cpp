@@ -15,9 +15,9 @@ namespace ricochet::test_support {
 namespace {
 
 /// Position of a node in half box widths, so that midpoints are integers as well.
-using Place = std::array<int, 3>;
+using LatticePoint = std::array<int, 3>;
 
-Place corner(int k) {
+LatticePoint corner(int k) {
   return {2 * (k & 1), 2 * ((k >> 1) & 1), 2 * ((k >> 2) & 1)};
 }
 
@@ -75,10 +75,10 @@ class Builder {
   }
 
  private:
-  void add_cell(const Place& origin, const std::vector<int>& corners) {
-    std::vector<Place> vertices;
+  void add_cell(const LatticePoint& origin, const std::vector<int>& corners) {
+    std::vector<LatticePoint> vertices;
     for (const int k : corners) {
-      Place place = corner(k);
+      LatticePoint place = corner(k);
       for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += origin[axis];
       vertices.push_back(place);
     }
@@ -95,7 +95,7 @@ class Builder {
   }
 
   /// Keeps the facet if it lies on a side of the box.
-  void add_facet(const std::vector<Place>& vertices, const std::vector<Index>& nodes, std::size_t facet) {
+  void add_facet(const std::vector<LatticePoint>& vertices, const std::vector<Index>& nodes, std::size_t facet) {
     const auto& own = facet_nodes(box_.shape, 1)[facet];
     for (int axis = 0; axis < dimension_; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
@@ -114,8 +114,8 @@ class Builder {
     }
   }
 
-  Index node_between(const std::vector<Place>& vertices, const std::vector<int>& support) {
-    Place sum{};
+  Index node_between(const std::vector<LatticePoint>& vertices, const std::vector<int>& support) {
+    LatticePoint sum{};
     for (const int v : support) {
       for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += vertices[static_cast<std::size_t>(v)][axis];
     }
@@ -124,7 +124,7 @@ class Builder {
     return number(sum, [&] {
       Vector mean = Vector::Zero(dimension_);
       for (const int v : support) {
-        const Place& at = vertices[static_cast<std::size_t>(v)];
+        const LatticePoint& at = vertices[static_cast<std::size_t>(v)];
         mean += positions_[static_cast<std::size_t>(number(at, [&] { return distorted(at); }))];
       }
       return Vector(mean / static_cast<double>(support.size()));
@@ -132,7 +132,7 @@ class Builder {
   }
 
   template <class Position>
-  Index number(const Place& place, const Position& position) {
+  Index number(const LatticePoint& place, const Position& position) {
     const auto found = numbers_.find(place);
     if (found != numbers_.end()) return found->second;
     const Vector at = position();  // may number vertices itself
@@ -142,7 +142,7 @@ class Builder {
     return index;
   }
 
-  Vector distorted(const Place& place) {
+  Vector distorted(const LatticePoint& place) {
     Vector at(dimension_);
     for (int axis = 0; axis < dimension_; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
@@ -159,7 +159,7 @@ class Builder {
   std::mt19937 random_;  // the numbers of the engine are the same everywhere, those of distributions are not
   Mesh mesh_;
   std::vector<Vector> positions_;
-  std::map<Place, Index> numbers_;
+  std::map<LatticePoint, Index> numbers_;
 };
 
 }  // namespace

@@ -63,14 +63,14 @@ void CaseRun::run(const std::function<void()>& each, bool with_start) {
 double total_energy(const SemidiscreteProblem& problem, const Vector& displacement, const Vector& velocity) {
   Vector internal;
   problem.internal_force->evaluate(displacement, internal);
-  return 0.5 * problem.mass.form(velocity) + 0.5 * displacement.dot(internal) -
+  return 0.5 * problem.mass.quadratic_form(velocity) + 0.5 * displacement.dot(internal) -
          problem.loads.constant().dot(displacement);
 }
 
 double size_of_energy_terms(const SemidiscreteProblem& problem, const Vector& displacement, const Vector& velocity) {
   const Vector u = displacement.cwiseAbs();
   const Vector v = velocity.cwiseAbs();
-  return u.dot(problem.internal_force->tangent().cwiseAbs() * u) + v.dot(problem.mass.whole().cwiseAbs() * v) +
+  return u.dot(problem.internal_force->tangent().cwiseAbs() * u) + v.dot(problem.mass.to_sparse().cwiseAbs() * v) +
          u.dot(problem.loads.constant().cwiseAbs());
 }
 

@@ -105,7 +105,7 @@ FrictionProblem wedged_body(Index points, Index dimension, double friction, doub
   for (Index i = 0; i < points; ++i) {
     for (Index j = 0; j < points; ++j) {
       const Eigen::Vector3d apart =
-          places[static_cast<std::size_t>(i)].place - places[static_cast<std::size_t>(j)].place;
+          places[static_cast<std::size_t>(i)].position - places[static_cast<std::size_t>(j)].position;
       problem.w.block(dimension * i, dimension * j, dimension, dimension).diagonal().array() +=
           compliance * std::exp(-8.0 * apart.norm());
     }

@@ -13,7 +13,7 @@ namespace ricochet::test {
 /// A point of a rigid body, relative to the body's centre of mass, and the normal of the obstacle there (into the
 /// body).
 struct RigidPoint {
-  Eigen::Vector3d place, normal;
+  Eigen::Vector3d position, normal;
 };
 
 /// Returns the map from (v, ω) of the body to the velocities of the points in their frames (normal, tangents); in two

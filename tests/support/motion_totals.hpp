@@ -29,7 +29,7 @@ struct Momenta {
 /// Returns the kinetic and stored energy, less the work of constant loads.
 [[nodiscard]] inline double energy_of(const CaseRun& run) {
   const State& state = run.state();
-  return 0.5 * run.problem().mass.form(state.velocity) +
+  return 0.5 * run.problem().mass.quadratic_form(state.velocity) +
          stored_energy(*run.problem().internal_force, state.displacement, state.internal_strain) -
          run.problem().loads.constant().dot(state.displacement);
 }

@@ -11,26 +11,26 @@ namespace ricochet {
 
 namespace {
 
-using Three = Eigen::Vector3d;
-using Triangle = std::array<Three, 3>;
+using Vector3 = Eigen::Vector3d;
+using Triangle = std::array<Vector3, 3>;
 
 /// Orients a triangle such that its normal points away from a point.
-Triangle facing_away(Triangle triangle, const Three& from) {
-  const Three normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+Triangle facing_away(Triangle triangle, const Vector3& from) {
+  const Vector3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
   if (normal.dot(triangle[0] - from) < 0.0) std::swap(triangle[1], triangle[2]);
   return triangle;
 }
 
 }  // namespace
 
-SurfaceFacets block_surface(const Three& low, const Three& high, int n) {
+SurfaceFacets block_surface(const Vector3& low, const Vector3& high, int n) {
   SurfaceFacets result;
-  const Three middle = 0.5 * (low + high), size = high - low;
+  const Vector3 middle = 0.5 * (low + high), size = high - low;
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     for (const double at : {0.0, 1.0}) {
-      const auto corner = [&](int i, int k) -> Three {
-        Three part;
+      const auto corner = [&](int i, int k) -> Vector3 {
+        Vector3 part;
         part[axis] = at;
         part[u] = static_cast<double>(i) / n;
         part[v] = static_cast<double>(k) / n;
@@ -47,25 +47,25 @@ SurfaceFacets block_surface(const Three& low, const Three& high, int n) {
   return result;
 }
 
-SurfaceFacets sphere_surface(const Three& centre, double radius, int refinements) {
+SurfaceFacets sphere_surface(const Vector3& centre, double radius, int refinements) {
   const double g = 0.5 * (1.0 + std::sqrt(5.0));
-  const std::vector<Three> corners{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
-                                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  const std::vector<Vector3> corners{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                                     {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
   std::vector<Triangle> triangles;
   for (std::size_t a = 0; a < 12; ++a) {
     for (std::size_t b = a + 1; b < 12; ++b) {
       for (std::size_t c = b + 1; c < 12; ++c) {
         const auto near = [&](std::size_t i, std::size_t k) { return (corners[i] - corners[k]).norm() < 2.1; };
         if (near(a, b) && near(b, c) && near(a, c))
-          triangles.push_back(
-              facing_away({corners[a].normalized(), corners[b].normalized(), corners[c].normalized()}, Three::Zero()));
+          triangles.push_back(facing_away({corners[a].normalized(), corners[b].normalized(), corners[c].normalized()},
+                                          Vector3::Zero()));
       }
     }
   }
   for (int level = 0; level < refinements; ++level) {
     std::vector<Triangle> finer;
     for (const auto& [a, b, c] : triangles) {
-      const Three ab = (a + b).normalized(), bc = (b + c).normalized(), ca = (c + a).normalized();
+      const Vector3 ab = (a + b).normalized(), bc = (b + c).normalized(), ca = (c + a).normalized();
       finer.insert(finer.end(), {Triangle{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
     }
     triangles = std::move(finer);
@@ -95,7 +95,7 @@ void write_text_stl(const SurfaceFacets& facets, const std::string& file) {
   stream << "solid body\n";
   for (const Triangle& triangle : facets.corners) {
     stream << "facet normal 0 0 0\n outer loop\n";
-    for (const Three& corner : triangle)
+    for (const Vector3& corner : triangle)
       stream << fmt::format("  vertex {:.17g} {:.17g} {:.17g}\n", corner[0], corner[1], corner[2]);
     stream << " endloop\nendfacet\n";
   }

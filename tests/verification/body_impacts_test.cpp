@@ -35,7 +35,7 @@ std::vector<RigidMotionState> motion_of(const CaseRun& run) {
 
 std::vector<Impact> impacts_of(CaseRun& run) {
   ImpactRecorder recorder = make_recorder(run);
-  run.run([&] { recorder.enter_step(run.state(), run.simulation().account().of_method(run.state())); }, false);
+  run.run([&] { recorder.enter_step(run.state(), run.simulation().account().method_energy(run.state())); }, false);
   return recorder.impacts();
 }
 
@@ -242,9 +242,9 @@ TEST(BodyImpacts, GoOnFromASnapshot) {
   std::vector<ImpactRecorder> resumed;
   run.run(
       [&] {
-        const double of_method = run.simulation().account().of_method(run.state());
-        recorder.enter_step(run.state(), of_method);
-        for (ImpactRecorder& other : resumed) other.enter_step(run.state(), of_method);
+        const double method_energy = run.simulation().account().method_energy(run.state());
+        recorder.enter_step(run.state(), method_energy);
+        for (ImpactRecorder& other : resumed) other.enter_step(run.state(), method_energy);
         if (run.state().step % 10 != 0) return;
         Snapshot snapshot;
         recorder.save(snapshot, "impacts");

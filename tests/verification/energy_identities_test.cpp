@@ -55,7 +55,7 @@ TEST(EnergyIdentity, NewmarkWithAnyParametersAndMass) {
         CaseRun run(thrown_case(
             body, mass,
             "scheme = \"newmark\"\nbeta = " + std::to_string(beta) + "\ngamma = " + std::to_string(gamma) + "\n"));
-        const SparseMatrix m = run.problem().mass.whole();
+        const SparseMatrix m = run.problem().mass.to_sparse();
         const SparseMatrix& k = run.problem().internal_force->tangent();
         expect_identity(run, body.name + ", " + mass + ", beta " + std::to_string(beta),
                         [&, beta, gamma](const StepEnd& a, const StepEnd& b) {
@@ -104,7 +104,7 @@ TEST(EnergyIdentity, SemiExplicitIsNewmarkWithBetaZero) {
   for (const ThrownBody& body : thrown_bodies()) {
     CaseRun run(thrown_case(body, "equivalent-lumped", "scheme = \"semi-explicit\"\n"), {explicit_step(body)});
     const double h = run.scheme().step();
-    const SparseMatrix m = run.problem().mass.whole();
+    const SparseMatrix m = run.problem().mass.to_sparse();
     expect_identity(run, body.name, [&](const StepEnd& a, const StepEnd& b) {
       const double algorithmic = b.acceleration.dot(m * b.acceleration) - a.acceleration.dot(m * a.acceleration);
       return 0.5 * (a.normal.dot(b.gap) - b.normal.dot(a.gap)) + 0.125 * h * h * algorithmic;
@@ -121,7 +121,7 @@ TEST(EnergyIdentity, SemiExplicitAtHalfSteps) {
       const Vector v = (b.displacement - a.displacement) / run.scheme().step();
       Vector force;
       problem.internal_force->evaluate(b.displacement, force);
-      return 0.5 * problem.mass.form(v) + 0.5 * a.displacement.dot(force) -
+      return 0.5 * problem.mass.quadratic_form(v) + 0.5 * a.displacement.dot(force) -
              0.5 * problem.loads.constant().dot(a.displacement + b.displacement);
     };
     std::vector<StepEnd> last;

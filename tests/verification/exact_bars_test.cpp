@@ -154,7 +154,7 @@ Errors solve(const Problem& problem, int cells, int degree, bool triangles, cons
     if (state.step == 0) first_energy = energies.total();
     largest_energy = std::max({largest_energy, energies.kinetic, energies.elastic});
     largest_change = std::max(largest_change, std::abs(energies.total() - first_energy));
-    e.end_velocity = (run.problem().mass.whole() * state.velocity).sum() / (problem.density * problem.length * h);
+    e.end_velocity = (run.problem().mass.to_sparse() * state.velocity).sum() / (problem.density * problem.length * h);
     const double force = state.forces.normal_reaction.sum();
     add(3, force / run.problem().contact.weights.sum(), problem.exact.pressure(t), step);
     if ((force > 0.0) != touching) {

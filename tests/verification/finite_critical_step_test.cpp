@@ -31,7 +31,7 @@ double dense_critical_step(const SemidiscreteProblem& problem, const Vector& dis
 }
 
 double energy_of(const CaseRun& run) {
-  return 0.5 * run.problem().mass.form(run.state().velocity) +
+  return 0.5 * run.problem().mass.quadratic_form(run.state().velocity) +
          run.problem().internal_force->energy(run.state().displacement);
 }
 

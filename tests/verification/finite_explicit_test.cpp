@@ -188,7 +188,7 @@ TEST(FiniteExplicit, BouncingBalances) {
             EXPECT_LT(std::abs(reaction.dot(gap)), 1e-12) << what;
             contact_work += 0.5 * (reaction_before.dot(gap) - reaction.dot(gap_before));
             EXPECT_NEAR(run.simulation().account().works().contact, contact_work, 1e-12 * start) << what;
-            EXPECT_GT(run.state().newton_rounds, 0);
+            EXPECT_GT(run.state().newton_iterations, 0);
             reaction_before = reaction;
             gap_before = gap;
             largest_force = std::max(largest_force, reaction.sum());

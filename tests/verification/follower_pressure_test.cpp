@@ -316,7 +316,7 @@ TEST(FollowerPressure, ABodyThatBouncesUnderPressure) {
               }
               EXPECT_NEAR(account_error(run), 0.0, 1e-11 * size) << what;
               largest_force = std::max(largest_force, run.state().forces.normal_reaction.sum());
-              created = std::max(created, run.simulation().account().of_method(run.state()));
+              created = std::max(created, run.simulation().account().method_energy(run.state()));
             },
             false);
         EXPECT_GT(largest_force, 0.1) << scheme;

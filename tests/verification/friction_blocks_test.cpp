@@ -36,7 +36,7 @@ CaseRun run_case_file(const std::string& name, std::vector<std::string> override
 }
 
 double centre_velocity(const CaseRun& run, int component) {
-  const Vector momentum = run.problem().mass.whole() * run.state().velocity;
+  const Vector momentum = run.problem().mass.to_sparse() * run.state().velocity;
   double sum = 0.0;
   for (Index dof = component; dof < momentum.size(); dof += run.problem().dimension) sum += momentum[dof];
   return sum / block_mass;

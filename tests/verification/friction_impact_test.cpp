@@ -41,7 +41,7 @@ struct Balance {
 Vector momentum(CaseRun& run) {
   Vector displacement, velocity;
   run.scheme().energy_state(run.state(), displacement, velocity);
-  return run.problem().mass.whole() * velocity;
+  return run.problem().mass.to_sparse() * velocity;
 }
 
 /// Contact force and loads, per dof.

@@ -221,7 +221,7 @@ TEST(FrictionEnergy, MidpointAndNewmarkIdentitiesWithFriction) {
       const bool midpoint = method.gamma == 1.0;
       CaseRun run(thrown_case(body, method.mass, method.scheme, "friction = 0.3\n"));
       const std::string name = body.name + ", " + method.mass + ", " + method.scheme;
-      const SparseMatrix mass = run.problem().mass.whole();
+      const SparseMatrix mass = run.problem().mass.to_sparse();
       const double factor =
           method.mass == "equivalent-lumped" ? 0.125 * run.scheme().step() * run.scheme().step() : 0.0;
       StepEnd before(run);
@@ -315,7 +315,7 @@ TEST(FrictionMomentum, BalancesCloseToRounding) {
       const double h = run.input().time.step;
       const auto momentum = [&]() -> Vector {
         const Vector v = klr ? Vector(run.state().memory.at("increment_ahead") / h) : run.state().velocity;
-        return resultants(problem, problem.mass.whole() * v);
+        return resultants(problem, problem.mass.to_sparse() * v);
       };
       const auto force = [&] {
         Vector nodal = problem.loads.constant();

@@ -36,14 +36,14 @@ ImpactRecorder make_recorder(CaseRun& run) {
           bodies.of_node, wave_crossing_times(run.model().body, bodies)};
 }
 
-double of_method(CaseRun& run) {
-  return run.simulation().account().of_method(run.state());
+double method_energy(CaseRun& run) {
+  return run.simulation().account().method_energy(run.state());
 }
 
 std::vector<Impact> impacts_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
   CaseRun run(text, overrides);
   ImpactRecorder recorder = make_recorder(run);
-  run.run([&] { recorder.enter_step(run.state(), of_method(run)); }, false);
+  run.run([&] { recorder.enter_step(run.state(), method_energy(run)); }, false);
   return recorder.impacts();
 }
 
@@ -73,8 +73,8 @@ TEST(Impacts, OfABarAgainstAWall) {
     EXPECT_EQ(impact.contact_points, 2);
     EXPECT_EQ(impact.all_contact_points, 2);
     EXPECT_FALSE(impact.is_coarse());
-    ASSERT_EQ(impact.first_place.size(), 2u);
-    EXPECT_EQ(impact.first_place[0], 5.0);
+    ASSERT_EQ(impact.first_position.size(), 2u);
+    EXPECT_EQ(impact.first_position[0], 5.0);
     ASSERT_TRUE(impact.restitution().has_value());
     // The energy that is lost remains in the mesh as oscillations.
     const double error = std::abs(*impact.restitution() - 1.0);
@@ -144,7 +144,7 @@ TEST(Impacts, BalanceMomentumInEveryScheme) {
       MomentumAccount account(run.problem(), run.scheme(), run.state());
       run.run(
           [&] {
-            recorder.enter_step(run.state(), of_method(run));
+            recorder.enter_step(run.state(), method_energy(run));
             account.enter_step(run.state());
           },
           false);
@@ -256,8 +256,8 @@ TEST(Impacts, GoOnFromASnapshot) {
   std::vector<ImpactRecorder> resumed;
   run.run(
       [&] {
-        recorder.enter_step(run.state(), of_method(run));
-        for (ImpactRecorder& other : resumed) other.enter_step(run.state(), of_method(run));
+        recorder.enter_step(run.state(), method_energy(run));
+        for (ImpactRecorder& other : resumed) other.enter_step(run.state(), method_energy(run));
         if (run.state().step % 60 != 0) return;
         Snapshot snapshot;
         recorder.save(snapshot, "impacts");
@@ -298,17 +298,17 @@ TEST(PeakStress, IsThatOfTheStatesThatWereLookedAt) {
       if (is_frame) largest_of_frames = std::max(largest_of_frames, own);
     }
   });
-  EXPECT_EQ(all.result().looks, states);
+  EXPECT_EQ(all.result().evaluations, states);
   EXPECT_EQ(all.result().states, states);
   EXPECT_EQ(all.result().von_mises, largest);
   EXPECT_EQ(all.result().step, largest_step);
   // ν = 0: the stress of the front is E v/c = 300 along the bar and zero across; the mesh overshoots.
   EXPECT_GT(largest, 300.0);
   EXPECT_LT(largest, 600.0);
-  EXPECT_EQ(frames.result().looks, frame_count);
+  EXPECT_EQ(frames.result().evaluations, frame_count);
   EXPECT_EQ(frames.result().von_mises, largest_of_frames);
-  EXPECT_GT(some.result().looks, frame_count);
-  EXPECT_LT(some.result().looks, states);
+  EXPECT_GT(some.result().evaluations, frame_count);
+  EXPECT_LT(some.result().evaluations, states);
   EXPECT_LE(some.result().von_mises, largest);
   EXPECT_GE(some.result().von_mises, largest_of_frames);
   const CellLocation place = location_of_cell(run.model().mesh, all.result().cell);

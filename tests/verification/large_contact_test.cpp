@@ -28,8 +28,8 @@ std::string ball_case(const std::string& group) {
 }
 
 double matrix_share(const test_support::CaseRun& run, const test_support::CaseRun& of) {
-  return static_cast<double>(run.problem().mass.whole().nonZeros()) /
-         static_cast<double>(of.problem().mass.whole().nonZeros());
+  return static_cast<double>(run.problem().mass.to_sparse().nonZeros()) /
+         static_cast<double>(of.problem().mass.to_sparse().nonZeros());
 }
 
 TEST(LargeContact, AWholeSkinMakesNoLargerFactorThanACap) {

@@ -109,7 +109,7 @@ double momentum_residual(CaseRun& run) {
   Vector load, internal;
   problem.loads.total(state.time, load);
   problem.internal_force->evaluate(state.displacement, internal);
-  Vector residual = problem.mass.whole() * state.acceleration + internal - load;
+  Vector residual = problem.mass.to_sparse() * state.acceleration + internal - load;
   if (problem.has_damping()) residual += problem.damping.matrix() * state.velocity;
   state.forces.rows->add_force(-state.forces.normal_reaction, Vector(), residual);
   for (const Index dof : problem.supports.dofs()) residual[dof] = 0.0;

@@ -64,11 +64,12 @@ TEST(VelocityCorrection, ChangesTheEnergyAndNeitherMomentaNorSupports) {
       Vector velocity = Vector::Random(problem.dof_count()), displacement = 0.1 * Vector::Random(problem.dof_count());
       for (const Index dof : problem.supports.dofs()) velocity[dof] = displacement[dof] = 0.0;
       const Vector place = problem.nodes.reshaped() + displacement;
-      const double energy = 0.5 * problem.mass.form(velocity);
+      const double energy = 0.5 * problem.mass.quadratic_form(velocity);
       for (const double change : {1e-3 * energy, -1e-3 * energy, 1e-14 * energy}) {
         ASSERT_TRUE(correction.find(velocity, displacement, change)) << kind.name << mass;
         const Vector& added = correction.value();
-        EXPECT_NEAR(0.5 * problem.mass.form(velocity + added) - energy, change, 1e-15 * energy) << kind.name << mass;
+        EXPECT_NEAR(0.5 * problem.mass.quadratic_form(velocity + added) - energy, change, 1e-15 * energy)
+            << kind.name << mass;
         EXPECT_LT(momenta(problem, place, added).norm(), 1e-13 * added.norm()) << kind.name << mass;
         EXPECT_GT(added.norm(), 0.0);
         for (const Index dof : problem.supports.dofs()) EXPECT_EQ(added[dof], 0.0);
@@ -88,7 +89,7 @@ TEST(VelocityCorrection, TakesNothingOfRigidMotion) {
   Vector velocity(run.problem().dof_count());
   for (Index node = 0; node < run.problem().nodes.cols(); ++node)
     velocity.segment<2>(2 * node) << 3.0 - 2.0 * run.problem().nodes(1, node), 2.0 * run.problem().nodes(0, node);
-  const double energy = 0.5 * run.problem().mass.form(velocity);
+  const double energy = 0.5 * run.problem().mass.quadratic_form(velocity);
   EXPECT_FALSE(correction.find(velocity, Vector::Zero(velocity.size()), -1e-9 * energy));
 }
 

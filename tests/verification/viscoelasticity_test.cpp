@@ -275,7 +275,7 @@ TEST(Viscoelasticity, RestitutionFallsWithTheBranches) {
     CaseRun run("[mesh]\nfile = \"" + disc + "\"\n" + material("neo-hookean", branches) +
                 "[obstacle.floor]\ntype = \"plane\"\npoint = [0, -0.02]\nnormal = [0, 1]\n[[contact]]\ngroup = "
                 "\"rim\"\nobstacle = \"floor\"\n[initial]\nvelocity = [\"0\", \"-1\"]\n[time]\nstep = 0.01\nend = 1\n");
-    const double mass = run.problem().mass.form(Vector::Ones(run.problem().dof_count())) / 2.0;
+    const double mass = run.problem().mass.quadratic_form(Vector::Ones(run.problem().dof_count())) / 2.0;
     run.run([] {});
     EXPECT_TRUE(run.state().forces.normal_reaction.isZero(0.0));
     const double restitution = Momenta(run).linear[1] / mass;

@@ -36,7 +36,7 @@ class Archive {
     sink_(bytes_);
     bytes_.clear();
   }
-  [[nodiscard]] bool is_at_end() const { return place_ == bytes_.size(); }
+  [[nodiscard]] bool is_at_end() const { return position_ == bytes_.size(); }
 
   template <class... Values>
   void all(Values&... values) {
@@ -114,10 +114,10 @@ class Archive {
     const std::size_t length = size * sizeof(Value);
     if (length == 0) return;
     if (reads_) {
-      if (bytes_.size() - place_ < length)
+      if (bytes_.size() - position_ < length)
         throw Error(ErrorKind::invalid_input, "what another process has sent is not what was expected");
-      std::memcpy(values, bytes_.data() + place_, length);
-      place_ += length;
+      std::memcpy(values, bytes_.data() + position_, length);
+      position_ += length;
     } else {
       const char* const begin = reinterpret_cast<const char*>(values);
       if (sink_ && bytes_.size() + length > most_kept) finish();
@@ -134,7 +134,7 @@ class Archive {
   std::vector<char> bytes_;
   Sink sink_;
   bool reads_ = false;
-  std::size_t place_ = 0;
+  std::size_t position_ = 0;
 };
 
 }  // namespace ricochet

@@ -70,7 +70,7 @@ bool redirect(const char* path, int flags, int stream) {
 
 /// Returns whether the child has ended; with WNOHANG, without waiting. The child is not reaped, so its process id stays
 /// its own. Does not throw: if the state cannot be found out, returns true and sets `problem` to errno.
-bool look_for_end(pid_t process, int options, int& problem) {
+bool query_exit(pid_t process, int options, int& problem) {
   siginfo_t found{};
   while (waitid(P_PID, static_cast<id_t>(process), &found, WEXITED | WNOWAIT | options) != 0) {
     if (errno == EINTR) continue;
@@ -133,7 +133,7 @@ RunningChild::RunningChild(ChildProcess child) : error_(std::make_unique<SharedE
   };
   kill_when_interrupted_.emplace(start, [this] {
     int ignored = 0;
-    if (process_ > 0 && kill(-process_, SIGKILL) == 0) look_for_end(process_, 0, ignored);
+    if (process_ > 0 && kill(-process_, SIGKILL) == 0) query_exit(process_, 0, ignored);
   });
   if (process_ < 0) kill_when_interrupted_.reset();
 }
@@ -145,14 +145,14 @@ RunningChild::~RunningChild() {
 
 bool RunningChild::has_ended() {
   if (process_ < 0) return true;
-  if (!look_for_end(process_, WNOHANG, outcome_.spawn_error)) return false;
+  if (!query_exit(process_, WNOHANG, outcome_.spawn_error)) return false;
   collect();
   return true;
 }
 
 void RunningChild::wait() {
   if (process_ < 0) return;
-  look_for_end(process_, 0, outcome_.spawn_error);
+  query_exit(process_, 0, outcome_.spawn_error);
   collect();
 }
 

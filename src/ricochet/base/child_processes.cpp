@@ -30,7 +30,7 @@ void pause_between_looks() {
   std::this_thread::sleep_for(std::chrono::duration<double>(look_interval));
 }
 
-void take_leave_of_ended(std::list<NumberedChild>& running, const PoolWork& work) {
+void remove_ended(std::list<NumberedChild>& running, const PoolWork& work) {
   for (auto child = running.begin(); child != running.end();) {
     if (child->process.has_ended()) {
       work.ended(child->number, child->process.outcome());
@@ -44,9 +44,9 @@ void take_leave_of_ended(std::list<NumberedChild>& running, const PoolWork& work
 void end_all(std::list<NumberedChild>& running, const PoolWork& work) {
   for (NumberedChild& child : running) child.process.send(SIGTERM);
   for (const Timer timer; !running.empty() && timer.seconds() < longest_farewell; pause_between_looks())
-    take_leave_of_ended(running, work);
+    remove_ended(running, work);
   for (NumberedChild& child : running) child.process.send(SIGKILL);
-  for (; !running.empty(); pause_between_looks()) take_leave_of_ended(running, work);
+  for (; !running.empty(); pause_between_looks()) remove_ended(running, work);
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ int run_children(std::size_t count, std::size_t at_once, const PoolWork& work) {
       ++next;
     }
     pause_between_looks();
-    take_leave_of_ended(running, work);
+    remove_ended(running, work);
     if (work.watch && since_watch.seconds() >= watch_interval) {
       work.watch();
       since_watch.restart();

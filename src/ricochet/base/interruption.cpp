@@ -77,7 +77,7 @@ bool run_actions() {
   return true;
 }
 
-void say(const char* line) {
+void write_to_stderr(const char* line) {
   struct pollfd output {
     STDERR_FILENO, POLLOUT, 0
   };

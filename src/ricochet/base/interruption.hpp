@@ -48,7 +48,7 @@ void reach_stopping_point();
 [[nodiscard]] bool run_actions();
 
 /// Writes a line to standard error unless nobody reads it.
-void say(const char* line);
+void write_to_stderr(const char* line);
 
 }  // namespace interruption
 

@@ -115,16 +115,16 @@ class Json {
   }
   /// Returns the entry, or the default if there is none.
   template <class Type>
-  [[nodiscard]] Type value(std::string_view name, const Type& standard) const {
+  [[nodiscard]] Type value(std::string_view name, const Type& default_value) const {
     const Json* const found = find(name);
-    return found != nullptr ? found->get<Type>() : standard;
+    return found != nullptr ? found->get<Type>() : default_value;
   }
-  [[nodiscard]] std::string value(std::string_view name, const char* standard) const {
-    return value(name, std::string(standard));
+  [[nodiscard]] std::string value(std::string_view name, const char* default_value) const {
+    return value(name, std::string(default_value));
   }
-  [[nodiscard]] Json value(std::string_view name, const Json& standard) const {
+  [[nodiscard]] Json value(std::string_view name, const Json& default_value) const {
     const Json* const found = find(name);
-    return found != nullptr ? *found : standard;
+    return found != nullptr ? *found : default_value;
   }
 
  private:

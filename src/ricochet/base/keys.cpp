@@ -26,7 +26,7 @@ std::string one_of(const std::vector<std::string>& choices, bool quoted) {
 
 }  // namespace
 
-std::string wanted(const Key& key) {
+std::string admissible_values(const Key& key) {
   switch (key.type) {
     case KeyType::text:
       return key.required ? "a text that is not empty" : "a text";

@@ -45,14 +45,14 @@ struct Key {
   KeyType type = KeyType::text;
   std::string unit = {};  ///< the kind of unit ("length", "stress"; "1": dimensionless); empty if none
   bool required = false;
-  std::optional<std::string> standard = {};  ///< the default, as text
+  std::optional<std::string> default_value = {};  ///< the default, as text
   std::vector<std::string> choices = {};
   Range range = {};
   std::string variables = {};  ///< variables of expressions: "t", "x, y and z" or "x, y, z and t"
   std::vector<Key> keys = {};  ///< keys of a sub-table
   bool decides = false;        ///< its value decides which other keys exist: if it is refused, no other key is checked
   /// Section whose entries replace this key: if it has any, the key is refused; otherwise it may be required.
-  std::string gives_way_to = {};
+  std::string replaced_by = {};
   std::string doc;  ///< one line of documentation
   /// Types that have this key, filled in by the table; empty: it belongs to the section whatever the type.
   std::vector<std::string> only_for = {};
@@ -65,7 +65,7 @@ struct Key {
   return names;
 }
 /// Returns what the value of a key must be: "a positive number", `one of "a" or "b"`, …
-[[nodiscard]] std::string wanted(const Key& key);
+[[nodiscard]] std::string admissible_values(const Key& key);
 [[nodiscard]] bool is_within(const Range& range, double value);
 
 /// Sets of keys of which exactly one must be given, complete.

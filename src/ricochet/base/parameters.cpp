@@ -28,8 +28,8 @@ const Wanted& value_of(const std::map<std::string, Parameters::Value>& values, c
 
 Parameters::Value standard_value(const Key& key) {
   const bool is_number = key.type == KeyType::number || key.type == KeyType::integer;
-  if (is_number) return std::strtod(key.standard->c_str(), nullptr);
-  return *key.standard;
+  if (is_number) return std::strtod(key.default_value->c_str(), nullptr);
+  return *key.default_value;
 }
 
 bool fits(const Key& key, const Parameters::Value& value) {
@@ -75,14 +75,15 @@ void Parameters::complete(const std::vector<Key>& keys, const std::string& owner
   for (const Key& key : keys) {
     if (has(key.name)) {
       if (!fits(key, values_.at(key.name))) {
-        throw Error(ErrorKind::invalid_input, fmt::format("{}: the parameter \"{}\" is {}; it must be {}", owner,
-                                                          key.name, as_text(values_.at(key.name)), wanted(key)));
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("{}: the parameter \"{}\" is {}; it must be {}", owner, key.name,
+                                as_text(values_.at(key.name)), admissible_values(key)));
       }
       continue;
     }
     if (key.required)
       throw Error(ErrorKind::invalid_input, fmt::format("{} needs the parameter \"{}\"", owner, key.name));
-    if (key.standard) set(key.name, standard_value(key));
+    if (key.default_value) set(key.name, standard_value(key));
   }
 }
 

@@ -59,7 +59,7 @@ class ParameterCheck {
   /// Returns whether there is a value, default or not, and nothing is wrong with it.
   [[nodiscard]] virtual bool is_usable(const std::string& name) const = 0;
   /// Returns "file:line:column" of the value, or of the section if the key is absent.
-  [[nodiscard]] virtual std::string place(const std::string& name) const = 0;
+  [[nodiscard]] virtual std::string location(const std::string& name) const = 0;
   /// Adds a problem, for which the case is refused.
   virtual void add_problem(const std::string& name, const std::string& message) const = 0;
   /// Adds a warning; the case runs.

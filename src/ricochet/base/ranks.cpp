@@ -2,7 +2,7 @@
 
 namespace ricochet {
 
-void Ranks::together(const std::function<void()>& work) const {
+void Ranks::run_collectively(const std::function<void()>& work) const {
   if (!are_several()) {
     work();
     return;

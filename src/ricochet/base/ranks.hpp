@@ -71,7 +71,7 @@ class Ranks {
   [[nodiscard]] virtual ForEach<std::int64_t> exchange(ForEach<std::int64_t> to_each) const { return to_each; }
 
   /// Returns the values of every rank, on every rank.
-  [[nodiscard]] ForEach<double> of_all(const std::vector<double>& own) const {
+  [[nodiscard]] ForEach<double> all_gather(const std::vector<double>& own) const {
     return exchange(ForEach<double>(static_cast<std::size_t>(size()), own));
   }
   /// Returns the texts of all ranks on the first rank; none on the others.
@@ -85,7 +85,7 @@ class Ranks {
   /// Returns whether the value is true on some rank.
   [[nodiscard]] bool any(bool value) const { return maximum(value ? 1.0 : 0.0) > 0.0; }
   /// Runs work on each rank. If it throws an Error on some ranks, all ranks throw that of the first of them.
-  void together(const std::function<void()>& work) const;
+  void run_collectively(const std::function<void()>& work) const;
 
  private:
   [[nodiscard]] double reduced(double value, Reduction by) const {

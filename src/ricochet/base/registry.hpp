@@ -22,7 +22,7 @@ struct Registration {
   std::vector<Key> keys = {};  ///< of a case file, of this type alone
   KeySets alternatives = {};   ///< sets of these keys, of which one must be given
   /// Checks that involve several keys, made when a case file is read. May replace values by those that take effect.
-  std::function<void(const ParameterCheck& place, Parameters& values)> check = {};
+  std::function<void(const ParameterCheck& check, Parameters& values)> check = {};
 };
 
 /// Changes with every addition, so that tables made from registries are made again.

@@ -96,7 +96,7 @@ struct ContactSection {
   double friction_bound = 0.0;  ///< largest friction traction, a stress; 0: no bound
   std::string multipliers = "nodal";
   std::string multipliers_on = "automatic";  ///< between bodies: "automatic", "group" or "against"
-  bool slides_far = false;                   ///< sliding = "large"
+  bool large_sliding = false;                ///< sliding = "large"
   bool closed_gaps = false;                  ///< initial_gap = "closed"
   bool tied = false;
   std::vector<double> pair_at;  ///< empty: initial positions of the bodies

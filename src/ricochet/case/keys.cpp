@@ -75,7 +75,8 @@ void enter_key(const std::vector<std::string>& parts, std::size_t at, KeyPath& p
     path.member = join_rest(parts, at + 1);
     return;
   }
-  refuse(fmt::format("\"{}\" is {}: it has no part \"{}\"", path.key->name, wanted(*path.key), parts.back()));
+  refuse(
+      fmt::format("\"{}\" is {}: it has no part \"{}\"", path.key->name, admissible_values(*path.key), parts.back()));
 }
 
 }  // namespace
@@ -114,7 +115,8 @@ std::string section_title(const Section& section) {
 }
 
 std::string wanted_with_unit(const Key& key) {
-  return key.unit.empty() || key.unit == "1" ? wanted(key) : fmt::format("{} (unit: {})", wanted(key), key.unit);
+  return key.unit.empty() || key.unit == "1" ? admissible_values(key)
+                                             : fmt::format("{} (unit: {})", admissible_values(key), key.unit);
 }
 
 std::string nearest_key(std::string_view name, const std::vector<Key>& keys) {

@@ -26,14 +26,14 @@ struct TypeKeys {
   std::string name;
   std::vector<Key> keys;
   KeySets alternatives = {};
-  std::function<void(const ParameterCheck& place, Parameters& values)> check = {};
+  std::function<void(const ParameterCheck& check, Parameters& values)> check = {};
 };
 
 struct Section {
   std::string name;
   SectionKind kind = SectionKind::table;
   bool required = false;
-  std::string gives_way_to = {};  ///< not required if this section has entries
+  std::string replaced_by = {};  ///< not required if this section has entries
   KeySets alternatives = {};
   /// Tests for entries that need none of the alternatives, and their description for messages; null if there are none.
   bool (*stands_alone)(const TomlNode& entry) = nullptr;

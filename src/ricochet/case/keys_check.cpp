@@ -27,10 +27,10 @@ TomlNode default_node(const Key& key, const SourceLocation& location) {
   if (key.type == KeyType::table) return node;
   if (key.type == KeyType::flag) {
     node.kind = Kind::boolean;
-    node.boolean = *key.standard == "true";
+    node.boolean = *key.default_value == "true";
     return node;
   }
-  const std::string& value = *key.standard;
+  const std::string& value = *key.default_value;
   const bool is_number = key.type == KeyType::number || key.type == KeyType::formula;
   node.kind = key.type == KeyType::integer ? Kind::integer : is_number ? Kind::real : Kind::text;
   if (node.kind == Kind::text) node.text = value;
@@ -109,7 +109,7 @@ void TreeChecker::check_top() {
   for (const Key& key : top.keys) {
     if (TomlNode* value = root_.find(key.name)) {
       check_value(key, *value, problems_);
-    } else if (key.standard) {
+    } else if (key.default_value) {
       root_.children.push_back(default_node(key, root_.location));
     }
   }
@@ -135,7 +135,7 @@ void TreeChecker::check_top_member(const TomlNode& member) {
 void TreeChecker::check_section(const Section& section) {
   TomlNode* node = root_.find(section.name);
   if (node == nullptr) {
-    if (section.required && !is_replaced(section.gives_way_to)) return report_missing_section(section);
+    if (section.required && !is_replaced(section.replaced_by)) return report_missing_section(section);
     if (section.kind != SectionKind::table) return;
     // An absent section has its defaults nevertheless.
     node = &root_.children.emplace_back();
@@ -207,7 +207,7 @@ void TreeChecker::check_named(const Section& section, TomlNode& sections) {
 const TypeKeys* TreeChecker::find_type_of(const Section& section, TomlNode& table) {
   const Key& key = *find_key(section.keys, section.type_key);
   TomlNode* const value = table.find(key.name);
-  if (value == nullptr) return key.standard ? find_type(section, *key.standard) : nullptr;
+  if (value == nullptr) return key.default_value ? find_type(section, *key.default_value) : nullptr;
   check_value(key, *value, problems_);
   return value->is_refused ? nullptr : find_type(section, value->text);
 }
@@ -302,21 +302,21 @@ bool TreeChecker::is_replaced(const std::string& section) const {
 void TreeChecker::check_keys(const std::vector<Key>& keys, const std::string& title, TomlNode& table) {
   for (const Key& key : keys) {
     TomlNode* const value = table.find(key.name);
-    if (value != nullptr && has_entries(key.gives_way_to)) {
+    if (value != nullptr && has_entries(key.replaced_by)) {
       value->is_refused = true;
       problems_.add(
           value->location,
           fmt::format("\"{0}\" of {1} and {2} exclude each other: each {2} has a \"{0}\" of its own; leave it "
                       "out here",
-                      key.name, title, section_title(*find_section(key.gives_way_to))));
+                      key.name, title, section_title(*find_section(key.replaced_by))));
     } else if (value != nullptr) {
       check_key(key, title, *value);
-    } else if (is_misspelt(key, keys, table) || is_replaced(key.gives_way_to)) {
+    } else if (is_misspelt(key, keys, table) || is_replaced(key.replaced_by)) {
       continue;
     } else if (key.required) {
       problems_.add(table.location,
                     fmt::format("{} has no \"{}\": {}. {}", title, key.name, wanted_with_unit(key), key.doc));
-    } else if (key.standard || (key.type == KeyType::table && !needs_a_user(key))) {
+    } else if (key.default_value || (key.type == KeyType::table && !needs_a_user(key))) {
       TomlNode& added = table.children.emplace_back(default_node(key, table.location));
       if (key.type == KeyType::table) check_keys(key.keys, key.name, added);
     }
@@ -372,9 +372,9 @@ void TreeChecker::report_missing_section(const Section& section) {
   for (const Key& key : section.keys) {
     if (key.required && key.only_for.empty()) names.push_back(key.name);
   }
-  const std::string other = section.gives_way_to.empty()
+  const std::string other = section.replaced_by.empty()
                                 ? ""
-                                : fmt::format(", and no {} either", section_title(*find_section(section.gives_way_to)));
+                                : fmt::format(", and no {} either", section_title(*find_section(section.replaced_by)));
   problems_.add({root_.location.file, 1, 1},
                 fmt::format("there is no section {}, which must have {}{}. {}", section_title(section),
                             join_names(names), other, section.doc));

@@ -44,7 +44,8 @@ void check_choice(const Key& key, TomlNode& value, Problems& problems) {
   if (value.kind == Kind::text && is_choice(value.text, key.choices)) return;
   std::string more = suggestion(value, key.choices);
   if (key.decides && more.empty()) more = ". " + key.doc;
-  refuse(value, fmt::format("\"{}\" must be {}; found {}{}", key.name, wanted(key), describe(value), more), problems);
+  refuse(value, fmt::format("\"{}\" must be {}; found {}{}", key.name, admissible_values(key), describe(value), more),
+         problems);
 }
 
 void check_number(const Key& key, TomlNode& value, Problems& problems) {

@@ -17,7 +17,7 @@ Section top_section() {
   return {.name = "",
           .kind = SectionKind::top,
           .doc = "Before the first section.",
-          .keys = {{.name = "title", .standard = "", .doc = "A line about the case, repeated in its results."}}};
+          .keys = {{.name = "title", .default_value = "", .doc = "A line about the case, repeated in its results."}}};
 }
 
 std::vector<Section> make_sections() {

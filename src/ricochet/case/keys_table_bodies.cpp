@@ -48,13 +48,13 @@ std::vector<Key> file_keys() {
       {.name = "scale",
        .type = KeyType::number,
        .unit = "1",
-       .standard = "1",
+       .default_value = "1",
        .range = positive,
        .doc = "Multiplies all coordinates of the mesh."},
       {.name = "refine",
        .type = KeyType::integer,
        .unit = "1",
-       .standard = "0",
+       .default_value = "0",
        .range = {.at_least = 0, .at_most = 8},
        .doc = "So many times every cell is cut in four, in three dimensions in eight, once the mesh is read. New nodes "
               "lie "
@@ -113,21 +113,21 @@ bool names_bodies(const TomlNode& contact) {
 Section mesh_section() {
   Section section{.name = "mesh",
                   .required = true,
-                  .gives_way_to = "part",
+                  .replaced_by = "part",
                   .doc =
                       "The body and how it is discretized. With sections [part.NAME] only `degree` and `plane` are "
                       "given here, and hold for all parts.",
                   .keys = file_keys()};
-  for (Key& key : section.keys) key.gives_way_to = "part";
+  for (Key& key : section.keys) key.replaced_by = "part";
   section.keys.push_back({.name = "degree",
                           .type = KeyType::integer,
                           .unit = "1",
-                          .standard = "1",
+                          .default_value = "1",
                           .choices = {"1", "2"},
                           .doc = "Polynomial degree of the displacement."});
   section.keys.push_back({.name = "plane",
                           .type = KeyType::choice,
-                          .standard = "strain",
+                          .default_value = "strain",
                           .choices = {"strain", "stress", "axisymmetric"},
                           .doc = "In two dimensions: plane strain, plane stress, or the section through bodies that "
                                  "are the same all round the axis x = 0, x ≥ 0 (docs/axisymmetric.md)."});

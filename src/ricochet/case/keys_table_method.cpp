@@ -10,7 +10,7 @@ Section mass_section() {
       .doc = "The mass matrix.",
       .keys = {{.name = "type",
                 .type = KeyType::choice,
-                .standard = "equivalent",
+                .default_value = "equivalent",
                 .doc = "The equivalent masses have no inertia on contact nodes, and keep total mass, centre of gravity "
                        "and moments of inertia. \"equivalent-lumped\" is diagonal, for the scheme \"semi-explicit\". "
                        "\"equivalent\" is built as \"equivalent-cellwise\" in space, whose factors are those of "
@@ -28,7 +28,7 @@ Section time_section() {
       .keys = {
           {.name = "scheme",
            .type = KeyType::choice,
-           .standard = "reduced-kane",
+           .default_value = "reduced-kane",
            .doc = "The time scheme. The default creates no energy on planes at any step; it needs a mass without "
                   "inertia on the contact nodes (mass.type)."},
           {.name = "step",
@@ -75,7 +75,7 @@ Section solver_section() {
       .keys = {
           {.name = "method",
            .type = KeyType::choice,
-           .standard = "auto",
+           .default_value = "auto",
            .choices = {"auto", "direct", "iterative"},
            .doc = "\"direct\": a Cholesky factor, made once; exact to rounding. \"iterative\": conjugate gradients "
                   "with a direct solve near the contact; takes little memory and no time to factorize, and a few "
@@ -89,7 +89,7 @@ Section solver_section() {
           {.name = "tolerance",
            .type = KeyType::number,
            .unit = "1",
-           .standard = "1e-10",
+           .default_value = "1e-10",
            .range = {.above = 0.0, .at_most = 1e-3},
            .doc =
                "Allowed residual of the iterative method in a step, relative to the forces of the step, in the energy "
@@ -101,7 +101,7 @@ Section solver_section() {
            .doc = "Memory that factors may take when \"auto\" chooses. Default: half of the machine's memory."},
           {.name = "preconditioner",
            .type = KeyType::choice,
-           .standard = "auto",
+           .default_value = "auto",
            .choices = {"auto", "block-jacobi", "gamg", "boomeramg", "mumps"},
            .doc =
                "Of the iterative method. \"block-jacobi\": the diagonal blocks of the nodes. The others are those of "
@@ -111,7 +111,7 @@ Section solver_section() {
                "for it."},
           {.name = "contact_points",
            .type = KeyType::choice,
-           .standard = "near",
+           .default_value = "near",
            .choices = {"near", "all"},
            .doc = "\"near\": the points that may touch in a step take part in its contact problem; others are looked "
                   "at after it, and where one has penetrated the step is solved again with it. \"all\": all do, which "

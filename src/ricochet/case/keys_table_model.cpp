@@ -33,13 +33,13 @@ Key damping_key() {
           .keys = {{.name = "mass",
                     .type = KeyType::number,
                     .unit = "1/time",
-                    .standard = "0",
+                    .default_value = "0",
                     .range = nonnegative,
                     .doc = "Rayleigh damping proportional to the mass matrix."},
                    {.name = "stiffness",
                     .type = KeyType::number,
                     .unit = "time",
-                    .standard = "0",
+                    .default_value = "0",
                     .range = nonnegative,
                     .doc = "Rayleigh damping proportional to the stiffness matrix."}},
           .doc = "Rayleigh damping."};
@@ -92,12 +92,12 @@ Section material_section() {
                        .doc = "Mass per volume."},
                       {.name = "law",
                        .type = KeyType::choice,
-                       .standard = "linear",
+                       .default_value = "linear",
                        .doc = "The material law: \"linear\" for small strains and rotations, the others for any; all "
                               "materials of a case are of one or the other kind."},
                       {.name = "dilatation",
                        .type = KeyType::choice,
-                       .standard = "automatic",
+                       .default_value = "automatic",
                        .choices = {"automatic", "pointwise", "mean"},
                        .doc = "Of laws of finite strain: where the volume's part of the energy is taken, \"pointwise\" "
                               "or of a \"mean\" over each cell, which does not lock as Poisson's ratio nears 1/2; "
@@ -155,13 +155,13 @@ std::vector<Key> free_body_keys() {
       {.name = "rotation_spring",
        .type = KeyType::number,
        .unit = "force·length",
-       .standard = "0",
+       .default_value = "0",
        .range = nonnegative,
        .doc = "Torque per angle that turns the rigid body back to how it starts; in two dimensions only."},
       {.name = "rotation_damper",
        .type = KeyType::number,
        .unit = "force·length·time",
-       .standard = "0",
+       .default_value = "0",
        .range = nonnegative,
        .doc = "Torque per angular velocity of the rigid body."},
       {.name = "hold",
@@ -192,7 +192,7 @@ Section obstacle_section() {
           {.name = "rotation_rate",
            .type = KeyType::number,
            .unit = "angle/time",
-           .standard = "0",
+           .default_value = "0",
            .doc =
                "Rate in rad per time at which the obstacle turns about its own axis, right-handed: the normal of a "
                "plane through `point` (a turntable), the axis of a cylinder or a torus, in two dimensions the centre "
@@ -244,13 +244,13 @@ Section contact_section() {
           {.name = "friction",
            .type = KeyType::number,
            .unit = "1",
-           .standard = "0",
+           .default_value = "0",
            .range = nonnegative,
            .doc = "Coefficient F of Coulomb's law: the friction force is at most F times the normal force."},
           {.name = "friction_bound",
            .type = KeyType::number,
            .unit = "stress",
-           .standard = "0",
+           .default_value = "0",
            .range = nonnegative,
            .doc = "Largest friction traction; 0: no bound. With `friction`, Coulomb's law holds up to this bound. "
                   "Alone it is Tresca's law: the friction traction is at most this wherever the body is pressed."},
@@ -262,7 +262,7 @@ Section contact_section() {
                   "nodal with an obstacle, p1 between bodies."},
           {.name = "multipliers_on",
            .type = KeyType::choice,
-           .standard = "automatic",
+           .default_value = "automatic",
            .choices = {"automatic", "group", "against"},
            .doc =
                "Between bodies, the side that carries the multipliers. \"automatic\" takes the one within whose facets "
@@ -271,7 +271,7 @@ Section contact_section() {
                "the finer mesh, then the more curved, then the softer one."},
           {.name = "initial_gap",
            .type = KeyType::choice,
-           .standard = "geometry",
+           .default_value = "geometry",
            .choices = {"geometry", "closed"},
            .doc = "Between bodies, gaps at the start: those of the meshes, or zero where the meshes overlap. Facets of "
                   "curved surfaces that touch overlap by up to h²/8R."},
@@ -282,7 +282,7 @@ Section contact_section() {
                   "that face each other are found: where the bodies will meet. Absent: where they start."},
           {.name = "tied",
            .type = KeyType::flag,
-           .standard = "false",
+           .default_value = "false",
            .doc = "Between bodies: the surfaces are glued together for good, also where their meshes do not match. "
                   "Friction and multipliers have no part in it."},
           {.name = "sliding",
@@ -293,7 +293,7 @@ Section contact_section() {
                   "other large."},
           {.name = "unstable_multipliers",
            .type = KeyType::choice,
-           .standard = "refuse",
+           .default_value = "refuse",
            .choices = {"refuse", "allow"},
            .doc = "What to do with multipliers that do not go together with the displacement's degree (the inf-sup "
                   "condition fails, and pressures may oscillate). Allowed ones are warned of."},
@@ -314,7 +314,7 @@ Section support_section() {
               {.name = "value",
                .type = KeyType::formula,
                .unit = "length",
-               .standard = "0",
+               .default_value = "0",
                .variables = "t",
                .doc = "The displacement of these components."},
               parameters_key(),

@@ -101,20 +101,20 @@ Section output_section() {
                   "displacement, velocity, those of contact, and von_mises."},
           {.name = "format",
            .type = KeyType::choice,
-           .standard = "xdmf",
+           .default_value = "xdmf",
            .choices = {"xdmf", "vtkhdf"},
            .doc =
                "Files of the fields: results.h5 with results.xdmf, which ParaView and meshio read, or results.vtkhdf, "
                "one file with all frames for ParaView 5.12 and later."},
           {.name = "fields_precision",
            .type = KeyType::choice,
-           .standard = "double",
+           .default_value = "double",
            .choices = {"double", "single"},
            .doc = "Precision of the fields in results.h5 or results.vtkhdf: 64 or 32 bits. The mesh always has 64."},
           {.name = "compression",
            .type = KeyType::integer,
            .unit = "1",
-           .standard = "0",
+           .default_value = "0",
            .range = {.at_least = 0.0, .at_most = 9.0},
            .doc = "zlib level of results.h5 or results.vtkhdf, from 0 (off) to 9. Double precision compresses little, "
                   "single precision "
@@ -133,7 +133,7 @@ Section output_section() {
           {.name = "checkpoint_every",
            .type = KeyType::integer,
            .unit = "steps",
-           .standard = "0",
+           .default_value = "0",
            .range = nonnegative,
            .doc = "Steps between checkpoints, from which an interrupted run goes on (`run --resume`); 0: by time only. "
                   "A run that a signal stops writes one in any case, and one that ends does so unless this and "
@@ -141,7 +141,7 @@ Section output_section() {
           {.name = "checkpoint_seconds",
            .type = KeyType::number,
            .unit = "seconds",
-           .standard = "300",
+           .default_value = "300",
            .range = nonnegative,
            .doc = "Wall-clock time between checkpoints; 0: by steps only. Of the end of a run and its interruption see "
                   "`checkpoint_every`."},
@@ -159,20 +159,20 @@ Section check_section() {
           {.name = "energy_residual",
            .type = KeyType::number,
            .unit = "1",
-           .standard = "1e-8",
+           .default_value = "1e-8",
            .range = small,
            .doc = "Allowed energy_residual, relative to the largest energy so far; 0 disables the check."},
           {.name = "momentum",
            .type = KeyType::number,
            .unit = "1",
-           .standard = "1e-8",
+           .default_value = "1e-8",
            .range = small,
            .doc = "Allowed imbalance of momentum (its change less the impulses of all forces), relative to the largest "
                   "momentum and the sum of all impulses; 0 disables the check."},
           {.name = "angular_momentum",
            .type = KeyType::number,
            .unit = "1",
-           .standard = "1e-8",
+           .default_value = "1e-8",
            .range = small,
            .doc = "Allowed imbalance of angular momentum, relative to the scale of `momentum` times the largest "
                   "distance of "
@@ -180,7 +180,7 @@ Section check_section() {
                   "rotations."},
           {.name = "on_failure",
            .type = KeyType::choice,
-           .standard = "warn",
+           .default_value = "warn",
            .choices = {"warn", "stop"},
            .doc = "\"warn\" warns once per balance; \"stop\" ends the run with status 3."},
       }};
@@ -197,7 +197,11 @@ Section expect_section() {
           {.name = "name", .doc = "The quantity in words, for lists of expectations."},
           {.name = "quantity", .required = true, .doc = "A number from the results; see Quantities."},
           {.name = "over", .doc = "A quantity by which it is divided."},
-          {.name = "times", .type = KeyType::number, .unit = "1", .standard = "1", .doc = "Factor of the quantity."},
+          {.name = "times",
+           .type = KeyType::number,
+           .unit = "1",
+           .default_value = "1",
+           .doc = "Factor of the quantity."},
           {.name = "value", .type = KeyType::number, .unit = "of the quantity", .doc = "Expected value."},
           {.name = "relative",
            .type = KeyType::number,

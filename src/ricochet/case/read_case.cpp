@@ -112,7 +112,7 @@ Case read_case_text(const std::string& text, const std::string& path, const std:
   list_values(root, "", result);
   list_effective_values("time", *find_section("time"), result.time.parameters, result);
   for (std::size_t i = 0; i < result.contacts.size(); ++i)
-    result.values[fmt::format("contact.{}.sliding", i)] = result.contacts[i].slides_far ? "large" : "small";
+    result.values[fmt::format("contact.{}.sliding", i)] = result.contacts[i].large_sliding ? "large" : "small";
   problems.log_remarks();
   return result;
 }

@@ -80,7 +80,8 @@ ContactSection read_contact(const SectionReader& reader, Case& result) {
   if (contact.multipliers.empty()) contact.multipliers = contact.between_bodies() ? "p1" : "nodal";
   contact.multipliers_on = reader.text("multipliers_on");
   contact.closed_gaps = reader.text("initial_gap") == "closed";
-  contact.slides_far = reader.text("sliding") == "large" || (contact.is_of_all_pairs() && !reader.is_given("sliding"));
+  contact.large_sliding =
+      reader.text("sliding") == "large" || (contact.is_of_all_pairs() && !reader.is_given("sliding"));
   contact.pair_at = reader.vector("pair_at");
   contact.tied = reader.flag("tied");
   for (const char* const key : {"friction", "friction_bound", "multipliers", "initial_gap", "pair_at", "sliding"}) {
@@ -94,23 +95,23 @@ ContactSection read_contact(const SectionReader& reader, Case& result) {
     reader.add_problem(key, fmt::format("\"{}\" is of contact between {}; give \"against\", or leave it out", key,
                                         contact.is_of_all_pairs() ? "two groups" : "bodies"));
   }
-  if (contact.slides_far && reader.is_given("pair_at"))
+  if (contact.large_sliding && reader.is_given("pair_at"))
     reader.add_problem("pair_at",
                        "\"pair_at\" is of small sliding, whose pairs stay; with sliding = \"large\" they follow "
                        "the motion: leave it out");
-  if (contact.slides_far && contact.multipliers != "p1" && contact.multipliers != "p0")
+  if (contact.large_sliding && contact.multipliers != "p1" && contact.multipliers != "p0")
     reader.add_problem("multipliers",
                        fmt::format("multipliers \"{}\" do not go with sliding = \"large\", where facets are "
                                    "covered in part and by others in every step; take \"p1\", or \"p0\" "
                                    "with a displacement of degree 2",
                                    contact.multipliers));
-  if (reader.is_usable("against") && contact.against == contact.group && !contact.slides_far) {
+  if (reader.is_usable("against") && contact.against == contact.group && !contact.large_sliding) {
     reader.add_problem("against",
                        fmt::format("\"against\" is \"{}\", the group itself: a surface touches itself with sliding = "
                                    "\"large\" alone; set that, or name a group of another body",
                                    contact.against));
   }
-  if (contact.slides_far && contact.against == contact.group && reader.is_given("multipliers_on"))
+  if (contact.large_sliding && contact.against == contact.group && reader.is_given("multipliers_on"))
     reader.add_problem("multipliers_on",
                        "a surface that touches itself has no sides: which of its points carry the conditions is chosen "
                        "where it does; leave \"multipliers_on\" out");
@@ -129,7 +130,8 @@ void check_obstacle_name(const SectionReader& reader, const char* key, const std
                                                      : fmt::format("the obstacles are {}", join_names(obstacles))));
 }
 
-// Refuses the same text under the same key in two entries of a list; with `together`, only if that key agrees as well.
+// Refuses the same text under the same key in two entries of a list; with `run_collectively`, only if that key agrees
+// as well.
 void check_distinct(const std::vector<SectionReader>& readers, const std::string& section, const std::string& name,
                     const std::string& together = "") {
   for (std::size_t i = 0; i < readers.size(); ++i) {

@@ -146,19 +146,19 @@ std::string cell(std::string text) {
 
 std::string default_text(const Key& key) {
   if (key.required)
-    return key.gives_way_to.empty()
+    return key.replaced_by.empty()
                ? "**required**"
-               : fmt::format("**required** without `{}`", section_title(*find_section(key.gives_way_to)));
-  if (!key.standard) return "";
+               : fmt::format("**required** without `{}`", section_title(*find_section(key.replaced_by)));
+  if (!key.default_value) return "";
   const bool is_text = key.type == KeyType::text || key.type == KeyType::choice;
-  return is_text ? fmt::format("`\"{}\"`", *key.standard) : fmt::format("`{}`", *key.standard);
+  return is_text ? fmt::format("`\"{}\"`", *key.default_value) : fmt::format("`{}`", *key.default_value);
 }
 
 std::string rows(const std::vector<Key>& keys, const std::string& prefix) {
   std::string text;
   for (const Key& key : keys) {
-    text += fmt::format("| `{}{}` | {} | {} | {} | {} |\n", prefix, key.name, cell(wanted(key)), cell(key.unit),
-                        default_text(key), cell(key.doc));
+    text += fmt::format("| `{}{}` | {} | {} | {} | {} |\n", prefix, key.name, cell(admissible_values(key)),
+                        cell(key.unit), default_text(key), cell(key.doc));
     if (key.type == KeyType::table || key.type == KeyType::tables) text += rows(key.keys, prefix + key.name + ".");
   }
   return text;
@@ -169,8 +169,8 @@ std::string occurrence(const Section& section) {
     case SectionKind::top:
       return "";
     case SectionKind::table:
-      if (section.required && !section.gives_way_to.empty())
-        return fmt::format(" Required without `{}`.", section_title(*find_section(section.gives_way_to)));
+      if (section.required && !section.replaced_by.empty())
+        return fmt::format(" Required without `{}`.", section_title(*find_section(section.replaced_by)));
       return section.required ? " Required." : " Optional.";
     case SectionKind::list:
       return section.required ? " One or more of them." : " Any number of them.";

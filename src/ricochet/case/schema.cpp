@@ -102,7 +102,7 @@ Json type_schema(const Key& key) {
 
 Json default_value(const Key& key) {
   const bool is_number = key.type == KeyType::number || key.type == KeyType::integer || key.type == KeyType::formula;
-  return is_number || key.type == KeyType::flag ? Json::parse(*key.standard) : Json(*key.standard);
+  return is_number || key.type == KeyType::flag ? Json::parse(*key.default_value) : Json(*key.default_value);
 }
 
 Json key_schema(const Key& key) {
@@ -111,7 +111,7 @@ Json key_schema(const Key& key) {
   if (!key.variables.empty()) description += fmt::format(" Expressions in {}.", key.variables);
   if (!key.unit.empty()) description += fmt::format(" Unit: {}.", key.unit);
   schema["description"] = description;
-  if (key.standard) schema["default"] = default_value(key);
+  if (key.default_value) schema["default"] = default_value(key);
   return schema;
 }
 
@@ -120,7 +120,7 @@ Json keys_schema(const std::vector<Key>& keys) {
   Json required = Json::array();
   for (const Key& key : keys) {
     schema["properties"][key.name] = key_schema(key);
-    if (key.required && key.only_for.empty() && key.gives_way_to.empty()) required.push_back(key.name);
+    if (key.required && key.only_for.empty() && key.replaced_by.empty()) required.push_back(key.name);
   }
   if (!required.empty()) schema["required"] = required;
   schema["additionalProperties"] = false;
@@ -169,7 +169,7 @@ void add_types(const Section& section, Json& schema) {
     const Json then = type_conditions(section, type);
     if (then.empty()) continue;
     Json given{{"properties", {{section.type_key, {{"const", type.name}}}}}};
-    if (!find_key(section.keys, section.type_key)->standard) given["required"] = Json::array({section.type_key});
+    if (!find_key(section.keys, section.type_key)->default_value) given["required"] = Json::array({section.type_key});
     conditions.push_back({{"if", given}, {"then", then}});
   }
   if (!conditions.empty()) schema["allOf"] = conditions;
@@ -195,11 +195,11 @@ Json section_schema(const Section& section) {
 Json one_of_two(const Section& section) {
   Json required = Json::array(), given = Json::array();
   for (const Key& key : section.keys) {
-    if (key.gives_way_to.empty()) continue;
+    if (key.replaced_by.empty()) continue;
     if (key.required) required.push_back(key.name);
     given.push_back({{"required", Json::array({key.name})}});
   }
-  const std::string& other = section.gives_way_to;
+  const std::string& other = section.replaced_by;
   const Json alone{{"required", Json::array({section.name})},
                    {"properties", {{section.name, {{"required", required}}}, {other, {{"maxProperties", 0}}}}}};
   const Json replaced{{"required", Json::array({other})},
@@ -220,7 +220,7 @@ std::string case_schema() {
   for (const Section& section : sections) {
     if (section.kind == SectionKind::top) continue;
     schema["properties"][section.name] = section_schema(section);
-    if (!section.gives_way_to.empty()) {
+    if (!section.replaced_by.empty()) {
       schema["oneOf"] = one_of_two(section);
     } else if (section.required) {
       required.push_back(section.name);

@@ -59,7 +59,7 @@ class SectionReader final : public ParameterCheck {
 
   /// Location of the value, or of the section if the key is absent.
   [[nodiscard]] SourceLocation where(const std::string& name) const;
-  [[nodiscard]] std::string place(const std::string& name) const override { return where(name).text(); }
+  [[nodiscard]] std::string location(const std::string& name) const override { return where(name).text(); }
   void add_problem(const std::string& name, const std::string& message) const override;
   void add_warning(const std::string& name, const std::string& message) const override;
   void add_info(const std::string& name, const std::string& message) const override;

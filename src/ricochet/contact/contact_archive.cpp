@@ -4,7 +4,7 @@ namespace ricochet {
 
 void transfer(Archive& archive, ContactRows& rows) {
   archive.all(rows.normals, rows.tangents, rows.slips, rows.gap_rounding, rows.gap_operator, rows.tangential_trace,
-              rows.gap, rows.revision, rows.places);
+              rows.gap, rows.revision, rows.sliding_state);
   bool turns = rows.rotating_trace != nullptr;
   archive(turns);
   if (!turns) return;
@@ -15,7 +15,7 @@ void transfer(Archive& archive, ContactRows& rows) {
 void transfer(Archive& archive, ContactBoundary& contact) {
   archive.all(contact.dimension, contact.facets, contact.pair, contact.initial_gap, contact.weights,
               contact.friction_coefficient, contact.friction_bound, contact.trace, contact.own_trace, contact.net,
-              contact.slides_far, contact.reachable_nodes, contact.touches_itself, contact.has_friction_elsewhere,
+              contact.large_sliding, contact.reachable_nodes, contact.touches_itself, contact.has_friction_elsewhere,
               contact.unpaired_gap, contact.opposite_node, contact.nodes, contact.node_pair, contact.is_opposite,
               contact.own_point, contact.node_normals, contact.node_initial_gap, contact.opposite_projection,
               contact.pressure_recovery);

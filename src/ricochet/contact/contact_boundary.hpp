@@ -45,7 +45,7 @@ struct ContactPair {
   std::vector<Index> opposite_facets = {};
   Vector pair_at = {};           ///< displacement of the group's body at which facets are paired; empty if none
   bool closed_gaps = false;      ///< whether negative initial gaps count as zero
-  bool slides_far = false;       ///< whether facets are paired anew as the bodies move (sliding/sliding_pair.hpp)
+  bool large_sliding = false;    ///< whether facets are paired anew as the bodies move (sliding/sliding_pair.hpp)
   bool tied = false;             ///< whether the groups are glued (tied_surfaces.hpp); there are no contact points then
   bool exchanged = false;        ///< whether the case names `opposite_group` first; reports give forces on its body
   bool is_one_of_many = false;   ///< whether it is one of all pairs of bodies; surfaces far apart are then skipped
@@ -55,7 +55,7 @@ struct ContactPair {
   /// Whether the pair is between bodies and has contact points.
   [[nodiscard]] bool has_two_sides() const { return between_bodies() && !tied; }
   /// Whether the surface may come into contact with itself.
-  [[nodiscard]] bool is_self() const { return slides_far && facets == opposite_facets; }
+  [[nodiscard]] bool is_self() const { return large_sliding && facets == opposite_facets; }
   /// The two groups in the order of the case.
   [[nodiscard]] const std::string& first_group() const { return exchanged ? opposite_group : group; }
   [[nodiscard]] const std::string& second_group() const { return exchanged ? group : opposite_group; }
@@ -98,7 +98,7 @@ struct ContactBoundary {
   std::shared_ptr<const ContactRows> rows;          ///< at the start; constant if all obstacles are planes
   std::shared_ptr<const ContactGeometry> geometry;  ///< null if rows never change
   /// Between bodies that slide far: 1. For these `trace` contains c alone: the opposite nodes change with the motion.
-  std::vector<char> slides_far;
+  std::vector<char> large_sliding;
   std::vector<Index> reachable_nodes;   ///< of both surfaces of these pairs
   bool touches_itself = false;          ///< whether one of them is a single surface, whose points may be deactivated
   bool has_friction_elsewhere = false;  ///< whether points of other ranks have friction
@@ -142,7 +142,7 @@ struct ContactBoundary {
   }
   [[nodiscard]] bool between_bodies(Index point) const { return net[point] == 0.0; }
   [[nodiscard]] bool slides(Index point) const {
-    return !slides_far.empty() && slides_far[static_cast<std::size_t>(point)] != 0;
+    return !large_sliding.empty() && large_sliding[static_cast<std::size_t>(point)] != 0;
   }
   [[nodiscard]] bool has_sliding_pairs() const { return !reachable_nodes.empty(); }
   /// Calls visit(point, value) for the points from which the pressure at an entry of `nodes` is recovered.

@@ -37,7 +37,7 @@ std::vector<Index> rows_of(const std::vector<Index>& points, Index per) {
 
 SparseRowMatrix cut_trace(const SparseRowMatrix& whole, const ContactCut& part) {
   return cut_matrix(whole, part.points, part.nodes,
-                    [&](Index node) { return part.place_of[static_cast<std::size_t>(node)]; });
+                    [&](Index node) { return part.node_number[static_cast<std::size_t>(node)]; });
 }
 
 namespace {
@@ -45,7 +45,7 @@ namespace {
 ContactRows cut_rows(const ContactRows& whole, const ContactCut& part) {
   const Index d = whole.dimension();
   const auto place_of_dof = [&](Index dof) {
-    const Index node = part.place_of[static_cast<std::size_t>(dof / d)];
+    const Index node = part.node_number[static_cast<std::size_t>(dof / d)];
     return node < 0 ? -1 : node * d + dof % d;
   };
   const std::vector<Index> slip_rows = rows_of(part.points, d - 1);
@@ -68,12 +68,12 @@ ContactRows cut_rows(const ContactRows& whole, const ContactCut& part) {
 ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part) {
   if (whole.net.size() > 0 && whole.net.minCoeff() == 0.0)
     throw Error(ErrorKind::invalid_input, "contact between bodies cannot be divided");
-  const auto place_of_node = [&](Index node) { return part.place_of[static_cast<std::size_t>(node)]; };
+  const auto place_of_node = [&](Index node) { return part.node_number[static_cast<std::size_t>(node)]; };
   const std::vector<Index> point_place = inverse_indices(part.points, whole.size());
   ContactBoundary own;
   own.dimension = whole.dimension;
   for (const Index facet : whole.facets) {
-    const Index place = part.facet_place.empty() ? -1 : part.facet_place[static_cast<std::size_t>(facet)];
+    const Index place = part.facet_number.empty() ? -1 : part.facet_number[static_cast<std::size_t>(facet)];
     if (place >= 0) own.facets.push_back(place);
   }
   std::sort(own.facets.begin(), own.facets.end());
@@ -86,7 +86,7 @@ ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part
   own.trace = cut_trace(whole.trace, part);
   own.own_trace = cut_trace(whole.own_trace, part);
   own.net = chosen(whole.net, part.points);
-  own.slides_far = chosen(whole.slides_far, part.points);
+  own.large_sliding = chosen(whole.large_sliding, part.points);
   own.opposite_node = whole.opposite_node;
   for (const Index entry : part.entries) {
     const auto at = static_cast<std::size_t>(entry);

@@ -6,11 +6,11 @@
 namespace ricochet {
 
 struct ContactCut {
-  std::vector<Index> points;       ///< of the whole boundary, ascending
-  std::vector<Index> entries;      ///< of ContactBoundary::nodes, ascending
-  std::vector<Index> place_of;     ///< per node of the whole space: its number in the part, or −1
-  std::vector<Index> facet_place;  ///< per facet of the whole mesh: its number in the part, or −1
-  Index nodes = 0;                 ///< number of nodes in the space of the part
+  std::vector<Index> points;        ///< of the whole boundary, ascending
+  std::vector<Index> entries;       ///< of ContactBoundary::nodes, ascending
+  std::vector<Index> node_number;   ///< per node of the whole space: its number in the part, or −1
+  std::vector<Index> facet_number;  ///< per facet of the whole mesh: its number in the part, or −1
+  Index nodes = 0;                  ///< number of nodes in the space of the part
 };
 
 /// Restricts a boundary. The rows of the points must involve nodes of the part only. The pressure recovery of nodes is

@@ -31,9 +31,9 @@ class CombinedGeometry final : public ContactGeometry {
   void begin_step() const override {
     for (const auto& part : parts_) part->begin_step();
   }
-  bool hold() const override {
+  bool freeze() const override {
     bool any = false;
-    for (const auto& part : parts_) any = part->hold() || any;
+    for (const auto& part : parts_) any = part->freeze() || any;
     return any;
   }
   void end_step() const override {
@@ -45,8 +45,8 @@ class CombinedGeometry final : public ContactGeometry {
   void allow_overlap(Vector& gap) const override {
     for (const auto& part : parts_) part->allow_overlap(gap);
   }
-  void leave_out(std::vector<char>& eligible) const override {
-    for (const auto& part : parts_) part->leave_out(eligible);
+  void deactivate_points(std::vector<char>& eligible) const override {
+    for (const auto& part : parts_) part->deactivate_points(eligible);
   }
   void add_couples(const Vector& place, const ContactRows& rows, const Vector& normal, const Vector& tangential,
                    Vector& force) const override {

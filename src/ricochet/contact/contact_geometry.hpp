@@ -38,7 +38,7 @@ class ContactGeometry {
   /// Holds the rows for the remainder of the step, so that gaps are linear: for iterations of a step that do
   /// not converge because the pairing changes from one to the next. Returns false if there is nothing to
   /// hold, or rows are already held.
-  virtual bool hold() const { return false; }
+  virtual bool freeze() const { return false; }
   virtual void end_step() const {}
   /// Whether rows were held in some step of the run so far.
   [[nodiscard]] virtual bool has_frozen() const { return false; }
@@ -46,7 +46,7 @@ class ContactGeometry {
   /// behind, and removing it would create energy; it may only not grow.
   virtual void allow_overlap(Vector& /*gap*/) const {}
   /// Deactivates points whose conditions other points enforce since the last update (sets them to 0).
-  virtual void leave_out(std::vector<char>& /*eligible*/) const {}
+  virtual void deactivate_points(std::vector<char>& /*eligible*/) const {}
   /// Adds the difference between the forces of reactions at a displacement and those of the rows, if these are rows of
   /// a step: couples that cancel their moment about the positions there, on the nodes of bodies in contact with each
   /// other, and on free rigid bodies. Does nothing for other obstacles. `tangential` may be empty.

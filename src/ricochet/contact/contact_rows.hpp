@@ -22,7 +22,7 @@ struct ContactRows {
   std::vector<long> revision;        ///< per point: changes with its row; empty if rows never change
   /// For contact between bodies that slide far, whose rows involve other nodes as the bodies move: the displacements
   /// from which the rows were computed. Empty if rows have the same pattern for the whole run.
-  Vector places;
+  Vector sliding_state;
   /// c, points × nodes, for points whose rows have exactly the entries c ⊗ n and c ⊗ t, whatever their directions; the
   /// rows of all other points are empty. Null if the directions of all points are constant.
   std::shared_ptr<const SparseRowMatrix> rotating_trace;

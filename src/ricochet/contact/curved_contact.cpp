@@ -219,13 +219,13 @@ std::unique_ptr<ContactGeometry> CurvedContact::cut(const ContactCut& part) cons
   }
   for (CurvedContactData::Node node : data_.nodes) {
     node.entry = index_in(part.entries, node.entry);
-    node.node = part.place_of[static_cast<std::size_t>(node.node)];
+    node.node = part.node_number[static_cast<std::size_t>(node.node)];
     if (node.entry >= 0) own.nodes.push_back(node);
   }
   own.node_positions.resize(data_.node_positions.rows(), part.nodes);
-  for (std::size_t node = 0; node < part.place_of.size(); ++node) {
-    if (part.place_of[node] >= 0)
-      own.node_positions.col(part.place_of[node]) = data_.node_positions.col(static_cast<Index>(node));
+  for (std::size_t node = 0; node < part.node_number.size(); ++node) {
+    if (part.node_number[node] >= 0)
+      own.node_positions.col(part.node_number[node]) = data_.node_positions.col(static_cast<Index>(node));
   }
   own.node_normals = chosen_columns(data_.node_normals, part.entries);
   own.trace = cut_trace(data_.trace, part);

@@ -15,9 +15,9 @@ constexpr double least_cosine = 0.2;
 constexpr double least_independent = 0.05;
 
 /// Returns the eigenvectors, perpendicular to `normal`, of a symmetric matrix.
-std::pair<RotatingNormal::Three, RotatingNormal::Three> axes_across(const RotatingNormal::Three& normal,
-                                                                    const Eigen::Matrix3d& metric) {
-  const RotatingNormal::Three one = normal.unitOrthogonal(), other = normal.cross(one);
+std::pair<RotatingNormal::Vector3, RotatingNormal::Vector3> axes_across(const RotatingNormal::Vector3& normal,
+                                                                        const Eigen::Matrix3d& metric) {
+  const RotatingNormal::Vector3 one = normal.unitOrthogonal(), other = normal.cross(one);
   const double angle =
       0.5 * std::atan2(2.0 * one.dot(metric * other), one.dot(metric * one) - other.dot(metric * other));
   return {std::cos(angle) * one + std::sin(angle) * other, std::cos(angle) * other - std::sin(angle) * one};
@@ -31,7 +31,7 @@ RotatingNormal::RotatingNormal(const Vector& direction) {
 
 RotatingNormal::RotatingNormal(const DisplacementSpace& space, const std::vector<Index>& facets,
                                const Vector& direction) {
-  Three wanted = Three::Zero();
+  Vector3 wanted = Vector3::Zero();
   wanted.head(direction.size()) = direction;
   for (const Index facet : facets) add_facet(space, facet, wanted);
   if (crosses_.empty()) {
@@ -41,7 +41,7 @@ RotatingNormal::RotatingNormal(const DisplacementSpace& space, const std::vector
   }
 }
 
-void RotatingNormal::add_facet(const DisplacementSpace& space, Index facet, const Three& direction) {
+void RotatingNormal::add_facet(const DisplacementSpace& space, Index facet, const Vector3& direction) {
   const IndexInBlocks place = locate_facet(space, facet);
   const CellBlock& block = space.facets[place.block];
   const Index* const nodes = block.cell(place.local);
@@ -54,7 +54,7 @@ void RotatingNormal::add_facet(const DisplacementSpace& space, Index facet, cons
     // The diagonals; vertices of quadrilaterals are numbered row by row (reference_cell.hpp).
     area = {{nodes[0], nodes[3]}, {nodes[1], nodes[2]}, 0.5};
   }
-  const Three value = area.factor * vector(area.one, space.nodes, {}).cross(vector(area.other, space.nodes, {}));
+  const Vector3 value = area.factor * vector(area.one, space.nodes, {}).cross(vector(area.other, space.nodes, {}));
   const double cosine = value.dot(direction) / value.norm();
   if (!(std::abs(cosine) > least_cosine)) return;
   if (cosine < 0.0) area.factor = -area.factor;
@@ -63,21 +63,21 @@ void RotatingNormal::add_facet(const DisplacementSpace& space, Index facet, cons
 
 /// Computes s and c from sums over all facets and all their edges, so that the order of facets and
 /// of their nodes does not matter.
-void RotatingNormal::fit(const DisplacementSpace& space, const Three& direction) {
-  std::vector<Three> weights;  // whose products with c are the factors of the lines
+void RotatingNormal::fit(const DisplacementSpace& space, const Vector3& direction) {
+  std::vector<Vector3> weights;  // whose products with c are the factors of the lines
   Eigen::Matrix3d metric = Eigen::Matrix3d::Zero();
-  const auto add = [&](const Edge& edge, const Three& value, const Three& weight) {
+  const auto add = [&](const Edge& edge, const Vector3& value, const Vector3& weight) {
     lines_.push_back({edge, 0.0});
     weights.push_back(weight);
     metric += weight * value.transpose();
   };
   for (const Cross& cross : crosses_) {
-    const Three one = vector(cross.one, space.nodes, {}), other = vector(cross.other, space.nodes, {});
+    const Vector3 one = vector(cross.one, space.nodes, {}), other = vector(cross.other, space.nodes, {});
     const bool is_triangle = cross.one.from == cross.other.from;  // its third edge is the difference
-    add(cross.one, one, is_triangle ? Three(2.0 * one - other) : one);
-    if (cross.other.from >= 0) add(cross.other, other, is_triangle ? Three(2.0 * other - one) : other);
+    add(cross.one, one, is_triangle ? Vector3(2.0 * one - other) : one);
+    if (cross.other.from >= 0) add(cross.other, other, is_triangle ? Vector3(2.0 * other - one) : other);
   }
-  const Three sum = at(space.nodes, {}), normal = sum.normalized();
+  const Vector3 sum = at(space.nodes, {}), normal = sum.normalized();
   // In 2D one of the axes is normal to the plane; no component along it is required.
   if (space.dimension == 2) metric(2, 2) = metric.trace();
   const auto [one, other] = axes_across(normal, metric);
@@ -92,15 +92,15 @@ void RotatingNormal::fit(const DisplacementSpace& space, const Three& direction)
     constant_ = direction;
     return;
   }
-  const Three factors = units.partialPivLu().solve(direction).cwiseQuotient(lengths);
-  const Three along = factors[1] * one + factors[2] * other;
+  const Vector3 factors = units.partialPivLu().solve(direction).cwiseQuotient(lengths);
+  const Vector3 along = factors[1] * one + factors[2] * other;
   for (std::size_t k = 0; k < lines_.size(); ++k) lines_[k].factor = weights[k].dot(along);
   for (Cross& cross : crosses_) cross.factor *= factors[0];
 }
 
 RotatingNormal RotatingNormal::mean(const RotatingNormal& one, const RotatingNormal& other) {
-  if (!other.turns()) return one;
-  if (!one.turns()) return other;
+  if (!other.rotates()) return one;
+  if (!one.rotates()) return other;
   RotatingNormal result = one;
   result.crosses_.insert(result.crosses_.end(), other.crosses_.begin(), other.crosses_.end());
   result.lines_.insert(result.lines_.end(), other.lines_.begin(), other.lines_.end());
@@ -123,8 +123,8 @@ std::vector<Index> RotatingNormal::nodes() const {
   return result;
 }
 
-RotatingNormal::Three RotatingNormal::at(const Points& nodes, const Vector& displacement) const {
-  Three result = constant_;
+RotatingNormal::Vector3 RotatingNormal::at(const Points& nodes, const Vector& displacement) const {
+  Vector3 result = constant_;
   for (const Cross& cross : crosses_) {
     result += cross.factor * vector(cross.one, nodes, displacement).cross(vector(cross.other, nodes, displacement));
   }

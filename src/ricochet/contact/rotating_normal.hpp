@@ -17,7 +17,7 @@ namespace ricochet {
 /// order of facets or nodes does not matter. All vectors have three components; in 2D the third is 0.
 class RotatingNormal {
  public:
-  using Three = Eigen::Vector3d;
+  using Vector3 = Eigen::Vector3d;
 
   /// Constant `direction` (d).
   explicit RotatingNormal(const Vector& direction);
@@ -28,14 +28,14 @@ class RotatingNormal {
   /// Mean of the N of two surfaces that face each other. One that does not rotate is excluded.
   [[nodiscard]] static RotatingNormal mean(const RotatingNormal& one, const RotatingNormal& other);
 
-  [[nodiscard]] bool turns() const { return !crosses_.empty(); }
+  [[nodiscard]] bool rotates() const { return !crosses_.empty(); }
   /// Nodes on which N depends, each at least once.
   [[nodiscard]] std::vector<Index> nodes() const;
   /// N at X + U; `nodes`: X, d × count; `displacement`: zero if empty.
-  [[nodiscard]] Three at(const Points& nodes, const Vector& displacement) const;
+  [[nodiscard]] Vector3 at(const Points& nodes, const Vector& displacement) const;
   /// Calls visit(node, (∂N/∂x_node)ᵀ w) at X + U for all nodes on which N depends, some of them more than once.
   template <class Visit>
-  void visit_derivative(const Points& nodes, const Vector& displacement, const Three& w, const Visit& visit) const;
+  void visit_derivative(const Points& nodes, const Vector& displacement, const Vector3& w, const Visit& visit) const;
 
  private:
   /// x_to − x_from; if from < 0 the unit vector normal to the plane.
@@ -52,19 +52,20 @@ class RotatingNormal {
     double factor = 0.0;
   };
 
-  void add_facet(const DisplacementSpace& space, Index facet, const Three& direction);
-  void fit(const DisplacementSpace& space, const Three& direction);
-  [[nodiscard]] static Three vector(const Edge& edge, const Points& nodes, const Vector& displacement);
+  void add_facet(const DisplacementSpace& space, Index facet, const Vector3& direction);
+  void fit(const DisplacementSpace& space, const Vector3& direction);
+  [[nodiscard]] static Vector3 vector(const Edge& edge, const Points& nodes, const Vector& displacement);
 
-  Three constant_ = Three::Zero();
+  Vector3 constant_ = Vector3::Zero();
   std::vector<Cross> crosses_;
   std::vector<Line> lines_;
 };
 
-inline RotatingNormal::Three RotatingNormal::vector(const Edge& edge, const Points& nodes, const Vector& displacement) {
-  if (edge.from < 0) return Three::UnitZ();
+inline RotatingNormal::Vector3 RotatingNormal::vector(const Edge& edge, const Points& nodes,
+                                                      const Vector& displacement) {
+  if (edge.from < 0) return Vector3::UnitZ();
   const Index d = nodes.rows();
-  Three result = Three::Zero();
+  Vector3 result = Vector3::Zero();
   for (Index k = 0; k < d; ++k) result[k] = nodes(k, edge.to) - nodes(k, edge.from);
   if (displacement.size() == 0) return result;
   for (Index k = 0; k < d; ++k) result[k] += displacement[edge.to * d + k] - displacement[edge.from * d + k];
@@ -72,12 +73,12 @@ inline RotatingNormal::Three RotatingNormal::vector(const Edge& edge, const Poin
 }
 
 template <class Visit>
-void RotatingNormal::visit_derivative(const Points& nodes, const Vector& displacement, const Three& w,
+void RotatingNormal::visit_derivative(const Points& nodes, const Vector& displacement, const Vector3& w,
                                       const Visit& visit) const {
-  const auto along = [&](const Edge& edge, const Three& value) {
+  const auto along = [&](const Edge& edge, const Vector3& value) {
     if (edge.from < 0) return;
     visit(edge.to, value);
-    visit(edge.from, Three(-value));
+    visit(edge.from, Vector3(-value));
   };
   for (const Cross& cross : crosses_) {
     along(cross.one, cross.factor * vector(cross.other, nodes, displacement).cross(w));

@@ -8,7 +8,7 @@ namespace ricochet {
 
 namespace {
 
-using Three = Eigen::Vector3d;
+using Vector3 = Eigen::Vector3d;
 using Point = RotatingPairsData::Point;
 using Node = RotatingPairsData::Node;
 
@@ -27,7 +27,7 @@ class RotatingPairs final : public ContactGeometry {
 
   void node_gaps(const Vector& displacement, double, Vector& gap) const override {
     for (const Node& node : data_.nodes) {
-      Three apart = position(node.node, displacement);
+      Vector3 apart = position(node.node, displacement);
       for (SparseRowMatrix::InnerIterator entry(data_.opposite_projection, node.entry); entry; ++entry)
         apart -= entry.value() * position(entry.col(), displacement);
       gap[node.entry] = normal(node, displacement).dot(apart) + node.offset;
@@ -61,18 +61,18 @@ class RotatingPairs final : public ContactGeometry {
   void add_couples(const Vector& place, const ContactRows& rows, const Vector& normal, const Vector& tangential,
                    Vector& force) const override {
     const Index d = dimension();
-    const auto add = [&](Index node, const Three& value) { force.segment(node * d, d) += value.head(d); };
+    const auto add = [&](Index node, const Vector3& value) { force.segment(node * d, d) += value.head(d); };
     for (const Point& point : data_.points) {
       const double reaction = normal[point.number];
       if (reaction == 0.0 && (tangential.size() == 0 || tangential.segment(point.number * (d - 1), d - 1).isZero(0.0)))
         continue;
-      if (!point.normal.turns()) continue;
-      const Three turning = point.normal.at(data_.node_positions, place);
-      Three along = reaction * turning.normalized();
+      if (!point.normal.rotates()) continue;
+      const Vector3 turning = point.normal.at(data_.node_positions, place);
+      Vector3 along = reaction * turning.normalized();
       along.head(d) += rows.force(point.number, normal, tangential) - reaction * rows.normal(point.number);
       for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry)
         add(entry.col(), entry.value() * along);
-      const Three moment = across(point, place).cross(along);
+      const Vector3 moment = across(point, place).cross(along);
       point.normal.visit_derivative(data_.node_positions, place, turning.cross(moment) / turning.squaredNorm(), add);
       rows.visit_normal(point.number, [&](Index dof, double value) { force[dof] -= value * reaction; });
       if (tangential.size() == 0) continue;
@@ -117,21 +117,21 @@ class RotatingPairs final : public ContactGeometry {
     return found != data_.nodes.end() && found->entry == entry ? &*found : nullptr;
   }
   [[nodiscard]] Index dimension() const { return data_.node_positions.rows(); }
-  [[nodiscard]] Three position(Index node, const Vector& displacement) const {
+  [[nodiscard]] Vector3 position(Index node, const Vector& displacement) const {
     const Index d = dimension();
-    Three result = Three::Zero();
+    Vector3 result = Vector3::Zero();
     for (Index k = 0; k < d; ++k) result[k] = data_.node_positions(k, node) + displacement[node * d + k];
     return result;
   }
   /// Returns y.
-  [[nodiscard]] Three across(const Point& point, const Vector& displacement) const {
-    Three result = Three::Zero();
+  [[nodiscard]] Vector3 across(const Point& point, const Vector& displacement) const {
+    Vector3 result = Vector3::Zero();
     for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry)
       result += entry.value() * position(entry.col(), displacement);
     return result;
   }
   template <class Place>
-  [[nodiscard]] Three normal(const Place& place, const Vector& displacement) const {
+  [[nodiscard]] Vector3 normal(const Place& place, const Vector& displacement) const {
     return place.normal.at(data_.node_positions, displacement).normalized();
   }
   [[nodiscard]] static double* row_begin(const Point& point, ContactRows& rows) {
@@ -145,20 +145,20 @@ class RotatingPairs final : public ContactGeometry {
   const Vector& row_of_step(const Point& point, const Vector& before, const Vector& after) const {
     const Index d = dimension();
     row_.setZero(static_cast<Index>(point.nodes.size()) * d);
-    const auto add = [&](Index node, const Three& value) {
+    const auto add = [&](Index node, const Vector3& value) {
       const auto at = std::lower_bound(point.nodes.begin(), point.nodes.end(), node) - point.nodes.begin();
       row_.segment(at * d, d) += value.head(d);
     };
-    const Three start = point.normal.at(data_.node_positions, before),
-                end = point.normal.at(data_.node_positions, after);
+    const Vector3 start = point.normal.at(data_.node_positions, before),
+                  end = point.normal.at(data_.node_positions, after);
     const double start_length = start.norm(), end_length = end.norm();
     const double length = 0.5 * (start_length + end_length);
-    const Three mean = 0.5 * (start / start_length + end / end_length);
+    const Vector3 mean = 0.5 * (start / start_length + end / end_length);
     for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry)
       add(entry.col(), entry.value() * mean);
-    if (point.normal.turns()) {
-      const Three apart = 0.5 * (across(point, before) + across(point, after));
-      const Three w = (apart - (0.5 / length) * mean.dot(apart) * (start + end)) / length;
+    if (point.normal.rotates()) {
+      const Vector3 apart = 0.5 * (across(point, before) + across(point, after));
+      const Vector3 w = (apart - (0.5 / length) * mean.dot(apart) * (start + end)) / length;
       point.normal.visit_derivative(data_.node_positions, middle_, w, add);
     }
     normal_ = mean.normalized();
@@ -177,7 +177,7 @@ class RotatingPairs final : public ContactGeometry {
   RotatingPairsData data_;
   mutable Vector gap_;           ///< at the previous update
   mutable Vector middle_, row_;  ///< of the current step
-  mutable Three normal_ = Three::Zero();
+  mutable Vector3 normal_ = Vector3::Zero();
   mutable long revision_ = 0;  ///< number of the last update; different rows never share it
 };
 

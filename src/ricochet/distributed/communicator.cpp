@@ -14,9 +14,9 @@ namespace {
 constexpr int message_tag = 26, exchange_tag = 27;           ///< and the next tag
 constexpr std::size_t largest_piece = std::size_t{1} << 30;  ///< in bytes: MPI counts up to 2³¹
 /// Number of exchanges of all groups: a rank may already be in the next exchange, but never in the one after it.
-int exchanges = 0;
+int exchange_count = 0;
 /// Communicator for errors, apart from the run's own: other ranks may be in any barrier of the run.
-MPI_Comm ends = MPI_COMM_NULL;
+MPI_Comm error_communicator = MPI_COMM_NULL;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ Communicator Communicator::world() {
 Processes::Processes(int& count, char**& arguments) {
   int provided = 0;
   MPI_Init_thread(&count, &arguments, MPI_THREAD_FUNNELED, &provided);
-  MPI_Comm_dup(MPI_COMM_WORLD, &ends);
+  MPI_Comm_dup(MPI_COMM_WORLD, &error_communicator);
 }
 
 Processes::~Processes() {
@@ -48,7 +48,7 @@ Processes::~Processes() {
 
 bool Processes::all_arrive(double seconds) {
   MPI_Request request = MPI_REQUEST_NULL;
-  MPI_Ibarrier(ends, &request);
+  MPI_Ibarrier(error_communicator, &request);
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   int done = 0;
   do {
@@ -104,7 +104,7 @@ std::vector<char> Communicator::receive(int rank) const {
 template <class Number>
 std::vector<std::vector<Number>> Communicator::exchange_any(const std::vector<std::vector<Number>>& to_each) const {
   const MPI_Datatype type = std::is_same_v<Number, double> ? MPI_DOUBLE : MPI_INT64_T;
-  const int tag = exchange_tag + exchanges++ % 2;
+  const int tag = exchange_tag + exchange_count++ % 2;
   std::vector<std::vector<Number>> result(static_cast<std::size_t>(size_));
   std::vector<MPI_Request> requests;
   for (int to = 0; to < size_; ++to) {

@@ -26,8 +26,8 @@ namespace ricochet {
 namespace {
 
 /// Data that must live as long as a rank's model.
-struct OwnRanks {
-  OwnRanks(const Communicator& ranks, const std::vector<std::int64_t>& numbers, Index count)
+struct RankData {
+  RankData(const Communicator& ranks, const std::vector<std::int64_t>& numbers, Index count)
       : nodes(ranks, numbers, count), as_ranks(ranks, nodes) {}
   NodeExchange nodes;
   MpiRanks as_ranks;
@@ -72,8 +72,8 @@ void cut_probe_targets(const std::vector<ProbeTargets>& whole, const Piece& piec
 }
 
 /// Keeps the data that are needed to write the mesh; the whole body on the first rank only.
-std::unique_ptr<const Model::Written> what_is_written(Model& whole, const Piece& piece, int rank) {
-  auto result = std::make_unique<Model::Written>();
+std::unique_ptr<const Model::GlobalOutput> make_global_output(Model& whole, const Piece& piece, int rank) {
+  auto result = std::make_unique<Model::GlobalOutput>();
   result->node_rows = piece.space.number;
   result->cell_rows = piece.cell_number;
   if (rank != 0) return result;
@@ -113,7 +113,7 @@ ModelPart cut_model(Model& whole, const Division& division, int rank) {
   model.history_bodies.labels = whole.history_bodies.labels;
   model.history_bodies.of_node = chosen(whole.history_bodies.of_node, piece.node_number);
   cut_bodies(whole.bodies, whole, piece, model.bodies);
-  cut_probe_targets(whole.watched, piece, whole.problem.contact, model.problem.contact, model.watched);
+  cut_probe_targets(whole.probe_targets, piece, whole.problem.contact, model.problem.contact, model.probe_targets);
   model.contact_scales = whole.contact_scales;
   model.contacts = whole.contacts;
   for (ModelContact& contact : model.contacts) contact.facets.clear();
@@ -123,7 +123,7 @@ ModelPart cut_model(Model& whole, const Division& division, int rank) {
   model.body = whole.body;
   model.body.tied = nullptr;
   model.body.cell_material = chosen(whole.body.cell_material, piece.cell_number);
-  model.written = what_is_written(whole, piece, rank);
+  model.global_output = make_global_output(whole, piece, rank);
   if (rank == 0) model.obstacles = std::move(whole.obstacles);
   // The part numbers its own nodes only.
   std::iota(piece.space.number.begin(), piece.space.number.end(), Index{0});
@@ -145,7 +145,7 @@ void find_equilibrium(const Case& input, Model& whole) {
   release_freed_memory();
 }
 
-void tell_of_small_parts(const Model& whole, int processes) {
+void report_small_parts(const Model& whole, int processes) {
   constexpr Index few = 5000;  // dofs of a part
   const Index each = whole.space.dof_count() / processes;
   if (each >= few) return;
@@ -156,8 +156,8 @@ void tell_of_small_parts(const Model& whole, int processes) {
 }
 
 /// Sends each rank its part of the whole, which the first rank has.
-ModelPart hand_out(const Case& input, std::unique_ptr<Model> whole, std::optional<Division> division,
-                   const Communicator& ranks) {
+ModelPart scatter_parts(const Case& input, std::unique_ptr<Model> whole, std::optional<Division> division,
+                        const Communicator& ranks) {
   if (ranks.rank() > 0) return unpack(input, ranks.receive(0));
   for (int rank = 1; rank < ranks.size(); ++rank) {
     ModelPart part = cut_model(*whole, *division, rank);
@@ -183,21 +183,21 @@ std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator
   refuse_undividable_case(input);
   std::unique_ptr<Model> whole;
   std::optional<Division> division;
-  WorldRanks(ranks).together([&] {
+  WorldRanks(ranks).run_collectively([&] {
     if (ranks.rank() > 0) return;
     whole = build_model_without_forces(input, times);
     refuse_undividable_model(input, *whole, ranks.size());
-    tell_of_small_parts(*whole, ranks.size());
+    report_small_parts(*whole, ranks.size());
     if (whole->initial.static_equilibrium) find_equilibrium(input, *whole);
     division.emplace(whole->space, whole->problem,
                      partition_cells(whole->mesh, ranks.size(), options.method, options.seed));
   });
   Timer timer;
-  ModelPart part = hand_out(input, std::move(whole), std::move(division), ranks);
+  ModelPart part = scatter_parts(input, std::move(whole), std::move(division), ranks);
   std::unique_ptr<Model> model = std::move(part.model);
-  auto kept = std::make_shared<OwnRanks>(ranks, part.node_number, part.all_nodes);
-  model->problem.ranks = &kept->as_ranks;
-  model->kept = kept;
+  auto rank_data = std::make_shared<RankData>(ranks, part.node_number, part.all_nodes);
+  model->problem.ranks = &rank_data->as_ranks;
+  model->rank_data = rank_data;
   release_freed_memory();
   if (times != nullptr) times->model += timer.restart();
   assemble_forces(input, *model);

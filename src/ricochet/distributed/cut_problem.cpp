@@ -10,16 +10,16 @@ namespace {
 ContactCut contact_part(const SemidiscreteProblem& whole, const Division& division, const Piece& piece, int rank) {
   ContactCut part;
   part.points = division.points_of(rank);
-  part.place_of = inverse_indices(piece.node_number, whole.nodes.cols());
+  part.node_number = inverse_indices(piece.node_number, whole.nodes.cols());
   part.nodes = static_cast<Index>(piece.node_number.size());
   for (std::size_t entry = 0; entry < whole.contact.nodes.size(); ++entry) {
-    if (part.place_of[static_cast<std::size_t>(whole.contact.nodes[entry])] >= 0)
+    if (part.node_number[static_cast<std::size_t>(whole.contact.nodes[entry])] >= 0)
       part.entries.push_back(static_cast<Index>(entry));
   }
   const Index facets = whole.contact.facets.empty() ? 0 : whole.contact.facets.back() + 1;
-  part.facet_place.assign(static_cast<std::size_t>(facets), -1);
+  part.facet_number.assign(static_cast<std::size_t>(facets), -1);
   for (std::size_t i = 0; i < piece.facet_number.size() && piece.facet_number[i] < facets; ++i)
-    part.facet_place[static_cast<std::size_t>(piece.facet_number[i])] = static_cast<Index>(i);
+    part.facet_number[static_cast<std::size_t>(piece.facet_number[i])] = static_cast<Index>(i);
   return part;
 }
 

@@ -7,8 +7,8 @@ namespace ricochet {
 namespace {
 
 /// Converts pairs of node and rank to lists of ranks per node, in one array.
-void put_together(std::vector<std::pair<Index, int>>& pairs, Index nodes, std::vector<std::size_t>& begin,
-                  std::vector<int>& ranks) {
+void build_rank_lists(std::vector<std::pair<Index, int>>& pairs, Index nodes, std::vector<std::size_t>& begin,
+                      std::vector<int>& ranks) {
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   begin.assign(static_cast<std::size_t>(nodes) + 1, 0);
@@ -34,7 +34,7 @@ Division::Division(const DisplacementSpace& space, const SemidiscreteProblem& pr
         for (int k = 0; k < block.nodes_per_cell; ++k) pairs.emplace_back(block.cell(cell)[k], rank_of_cell_[number]);
       }
     }
-    put_together(pairs, space.node_count(), begin_, ranks_);
+    build_rank_lists(pairs, space.node_count(), begin_, ranks_);
   }
   std::vector<std::vector<Index>> more(static_cast<std::size_t>(size));
   for (Index point = 0; point < problem.contact.size(); ++point) {
@@ -52,7 +52,7 @@ Division::Division(const DisplacementSpace& space, const SemidiscreteProblem& pr
       if (!has(rank, node)) more[static_cast<std::size_t>(rank)].push_back(node);
     });
   }
-  give(more);
+  add_nodes(more);
   for (auto& nodes : more) nodes.clear();
   const NodePattern& pattern = problem.mass.pattern();
   pattern.visit_rows(0, pattern.parts(), [&](int node, Index first_block, const RowGroup& group) {
@@ -62,7 +62,7 @@ Division::Division(const DisplacementSpace& space, const SemidiscreteProblem& pr
       more[static_cast<std::size_t>(owner(std::min(node, other)))].push_back(std::max(node, other));
     }
   });
-  give(more);
+  add_nodes(more);
 }
 
 bool Division::has(int rank, Index node) const {
@@ -85,7 +85,7 @@ std::vector<Index> Division::points_of(int rank) const {
   return result;
 }
 
-void Division::give(const std::vector<std::vector<Index>>& more) {
+void Division::add_nodes(const std::vector<std::vector<Index>>& more) {
   if (std::all_of(more.begin(), more.end(), [](const auto& nodes) { return nodes.empty(); })) return;
   const auto nodes = static_cast<Index>(begin_.size()) - 1;
   std::vector<std::pair<Index, int>> pairs;
@@ -98,7 +98,7 @@ void Division::give(const std::vector<std::vector<Index>>& more) {
       more_nodes_[rank].push_back(node);
     }
   }
-  put_together(pairs, nodes, begin_, ranks_);
+  build_rank_lists(pairs, nodes, begin_, ranks_);
   for (auto& own : more_nodes_) {
     std::sort(own.begin(), own.end());
     own.erase(std::unique(own.begin(), own.end()), own.end());

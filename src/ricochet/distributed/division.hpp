@@ -35,7 +35,7 @@ class Division {
   }
 
  private:
-  void give(const std::vector<std::vector<Index>>& more);
+  void add_nodes(const std::vector<std::vector<Index>>& more);
 
   std::vector<int> rank_of_cell_, rank_of_point_;
   std::vector<std::size_t> begin_;

@@ -60,7 +60,7 @@ void transfer(Archive& archive, InitialConditions& initial) {
 }
 void transfer(Archive& archive, NodeMatrix& matrix) {
   int d = matrix.dimension();
-  SparseMatrix whole = archive.reads() ? SparseMatrix() : matrix.whole();
+  SparseMatrix whole = archive.reads() ? SparseMatrix() : matrix.to_sparse();
   archive.all(d, whole);
   if (archive.reads()) matrix = NodeMatrix(whole, d);
 }
@@ -119,7 +119,7 @@ void transfer_damping(Archive& archive, SemidiscreteProblem& problem) {
   bool is_damped = problem.damping.mass_part() != nullptr;
   archive(is_damped);
   if (!is_damped) return;
-  SparseMatrix matrix = archive.reads() ? SparseMatrix() : problem.damping.mass_part()->whole();
+  SparseMatrix matrix = archive.reads() ? SparseMatrix() : problem.damping.mass_part()->to_sparse();
   archive(matrix);
   if (archive.reads()) problem.damping.set_mass_part(matrix, problem.nodes);
 }
@@ -135,7 +135,7 @@ void transfer_problem(Archive& archive, const Case& input, Model& model) {
 }
 
 /// Rebuilds the data that follow from the case alone, given the mesh.
-void make_of_case(const Case& input, Model& model, std::vector<int> cell_material) {
+void rebuild_from_case(const Case& input, Model& model, std::vector<int> cell_material) {
   assign_materials(input, model);
   model.body.cell_material = std::move(cell_material);
   make_obstacles(input, model, model.mesh.dimension);
@@ -147,22 +147,22 @@ void transfer_model(Archive& archive, const Case& input, ModelPart& part) {
   std::vector<int> cell_material = model.body.cell_material;
   std::vector<Index> node_rows, cell_rows;
   if (!archive.reads()) {
-    node_rows = model.written->node_rows;
-    cell_rows = model.written->cell_rows;
+    node_rows = model.global_output->node_rows;
+    cell_rows = model.global_output->cell_rows;
   }
   archive.all(part.node_number, part.all_nodes, model.mesh, model.space, model.contact_scales, cell_material, node_rows,
               cell_rows);
   if (archive.reads()) {
-    make_of_case(input, model, std::move(cell_material));
-    auto written = std::make_unique<Model::Written>();
-    written->node_rows = std::move(node_rows);
-    written->cell_rows = std::move(cell_rows);
-    model.written = std::move(written);
+    rebuild_from_case(input, model, std::move(cell_material));
+    auto global_output = std::make_unique<Model::GlobalOutput>();
+    global_output->node_rows = std::move(node_rows);
+    global_output->cell_rows = std::move(cell_rows);
+    model.global_output = std::move(global_output);
   }
   transfer_problem(archive, input, model);
   transfer_geometry(archive, part.obstacles, model);
   archive.all(model.sizes, model.mass_built, model.contains_rotations, model.initial, model.bodies,
-              model.history_bodies, model.watched);
+              model.history_bodies, model.probe_targets);
   if (archive.reads()) model.pair_facings.resize(model.contact_pairs.size());
 }
 

@@ -64,7 +64,7 @@ NodeExchange::NodeExchange(const Communicator& ranks, const std::vector<std::int
   shared_.erase(std::unique(shared_.begin(), shared_.end()), shared_.end());
   for (std::size_t i = 0; i < neighbours_.size(); ++i) {
     for (const Index node : neighbours_[i].nodes)
-      neighbours_[i].gives.push_back(owner[static_cast<std::size_t>(node)] == messages_[i].rank ? 1 : 0);
+      neighbours_[i].owned_by_neighbour.push_back(owner[static_cast<std::size_t>(node)] == messages_[i].rank ? 1 : 0);
   }
   for (std::size_t node = 0; node < owner.size(); ++node) {
     if (owner[node] != ranks.rank()) not_owned_.push_back(static_cast<Index>(node));
@@ -123,14 +123,14 @@ void NodeExchange::accumulate_any(Values& values) const {
 template void NodeExchange::accumulate_any(Vector& values) const;
 template void NodeExchange::accumulate_any(Eigen::VectorXf& values) const;
 
-void NodeExchange::spread(Vector& values) const {
+void NodeExchange::copy_from_owners(Vector& values) const {
   if (neighbours_.empty()) return;
   const Index per_node = values.size() / std::max<Index>(1, nodes_);
   send_all(values, per_node);
   for (std::size_t i = 0; i < neighbours_.size(); ++i) {
     const Neighbour& neighbour = neighbours_[i];
     for (std::size_t k = 0; k < neighbour.nodes.size(); ++k) {
-      if (neighbour.gives[k] == 0) continue;
+      if (neighbour.owned_by_neighbour[k] == 0) continue;
       std::copy_n(messages_[i].in.data() + k * static_cast<std::size_t>(per_node), per_node,
                   values.data() + neighbour.nodes[k] * per_node);
     }

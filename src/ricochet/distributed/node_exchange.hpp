@@ -23,7 +23,7 @@ class NodeExchange {
   void accumulate(Vector& values) const { accumulate_any(values); }
   void accumulate(Eigen::VectorXf& values) const { accumulate_any(values); }
   /// Copies the values of a node's owner to all ranks that share it.
-  void spread(Vector& values) const;
+  void copy_from_owners(Vector& values) const;
 
   [[nodiscard]] bool is_owned(Index node) const {
     return !std::binary_search(not_owned_.begin(), not_owned_.end(), node);
@@ -38,8 +38,8 @@ class NodeExchange {
 
  private:
   struct Neighbour {
-    std::vector<Index> nodes;  ///< shared nodes, ordered by their numbers in the whole body
-    std::vector<char> gives;   ///< per node: owned by the neighbour
+    std::vector<Index> nodes;              ///< shared nodes, ordered by their numbers in the whole body
+    std::vector<char> owned_by_neighbour;  ///< per node: owned by the neighbour
   };
   template <class Values>
   void accumulate_any(Values& values) const;

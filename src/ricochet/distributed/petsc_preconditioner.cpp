@@ -24,7 +24,7 @@ Numbering number_nodes(Index count, int d, const Ranks& ranks) {
     if (ranks.is_owned(node)) result.own.push_back(node);
   }
   const auto own = static_cast<double>(result.own.size());
-  const Ranks::ForEach<double> counts = ranks.of_all({own});
+  const Ranks::ForEach<double> counts = ranks.all_gather({own});
   double next = 0.0;
   for (int rank = 0; rank < ranks.rank(); ++rank) next += counts[static_cast<std::size_t>(rank)].front();
   // The owner of a node sends its number to the other ranks.
@@ -61,8 +61,8 @@ class PetscPreconditioner final : public Preconditioner {
   ~PetscPreconditioner() override {
     PCDestroy(&preconditioner_);
     MatDestroy(&matrix_);
-    VecDestroy(&given_);
-    VecDestroy(&found_);
+    VecDestroy(&residual_);
+    VecDestroy(&correction_);
   }
   PetscPreconditioner(const PetscPreconditioner&) = delete;
   PetscPreconditioner& operator=(const PetscPreconditioner&) = delete;
@@ -113,7 +113,7 @@ class PetscPreconditioner final : public Preconditioner {
     PetscCall(MatSetValuesCOO(matrix_, entries.value.data(), INSERT_VALUES));
     entries = {};
     PetscCall(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
-    PetscCall(MatCreateVecs(matrix_, &given_, &found_));
+    PetscCall(MatCreateVecs(matrix_, &residual_, &correction_));
     PetscCall(set_rigid_motions(nodes));
     PetscCall(PCCreate(PETSC_COMM_WORLD, &preconditioner_));
     PetscCall(PCSetOptionsPrefix(preconditioner_, "ricochet_"));
@@ -155,7 +155,7 @@ class PetscPreconditioner final : public Preconditioner {
   PetscErrorCode set_rigid_motions(const Points& nodes) {
     PetscFunctionBeginUser;
     Vec places = nullptr;
-    PetscCall(VecDuplicate(given_, &places));
+    PetscCall(VecDuplicate(residual_, &places));
     PetscCall(VecSetBlockSize(places, d_));
     PetscScalar* values = nullptr;
     PetscCall(VecGetArray(places, &values));
@@ -174,18 +174,18 @@ class PetscPreconditioner final : public Preconditioner {
   PetscErrorCode apply_to_own(const Vector& r, Vector& z) const {
     PetscFunctionBeginUser;
     PetscScalar* values = nullptr;
-    PetscCall(VecGetArrayWrite(given_, &values));
+    PetscCall(VecGetArrayWrite(residual_, &values));
     for (const Index node : numbering_.own) {
       for (Index dof = node * d_; dof < (node + 1) * d_; ++dof) *values++ = r[dof];
     }
-    PetscCall(VecRestoreArrayWrite(given_, &values));
-    PetscCall(PCApply(preconditioner_, given_, found_));
+    PetscCall(VecRestoreArrayWrite(residual_, &values));
+    PetscCall(PCApply(preconditioner_, residual_, correction_));
     const PetscScalar* found = nullptr;
-    PetscCall(VecGetArrayRead(found_, &found));
+    PetscCall(VecGetArrayRead(correction_, &found));
     for (const Index node : numbering_.own) {
       for (Index dof = node * d_; dof < (node + 1) * d_; ++dof) z[dof] = *found++;
     }
-    PetscCall(VecRestoreArrayRead(found_, &found));
+    PetscCall(VecRestoreArrayRead(correction_, &found));
     PetscFunctionReturn(0);
   }
 
@@ -196,7 +196,7 @@ class PetscPreconditioner final : public Preconditioner {
   std::vector<Index> unsolved_;  ///< dofs
   Mat matrix_ = nullptr;
   PC preconditioner_ = nullptr;
-  Vec given_ = nullptr, found_ = nullptr;  ///< on own dofs
+  Vec residual_ = nullptr, correction_ = nullptr;  ///< on own dofs
 };
 
 class PetscPreconditioners final : public PreconditionerFactory {

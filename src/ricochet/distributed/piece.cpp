@@ -37,32 +37,32 @@ Cut cut_blocks(const std::vector<CellBlock>& blocks, const std::vector<char>& wa
 /// Indices of nodes in an ascending list.
 class Renumbering {
  public:
-  explicit Renumbering(Index count) : place_(static_cast<std::size_t>(count), -1) {}
+  explicit Renumbering(Index count) : index_(static_cast<std::size_t>(count), -1) {}
 
   void want(const std::vector<CellBlock>& blocks) {
     for (const CellBlock& block : blocks) {
-      for (const Index node : block.nodes) place_[static_cast<std::size_t>(node)] = 0;
+      for (const Index node : block.nodes) index_[static_cast<std::size_t>(node)] = 0;
     }
   }
-  void want(Index node) { place_[static_cast<std::size_t>(node)] = 0; }
+  void want(Index node) { index_[static_cast<std::size_t>(node)] = 0; }
   /// Returns the selected nodes, ascending.
   std::vector<Index> finish() {
     std::vector<Index> nodes;
-    for (std::size_t node = 0; node < place_.size(); ++node) {
-      if (place_[node] < 0) continue;
-      place_[node] = static_cast<Index>(nodes.size());
+    for (std::size_t node = 0; node < index_.size(); ++node) {
+      if (index_[node] < 0) continue;
+      index_[node] = static_cast<Index>(nodes.size());
       nodes.push_back(static_cast<Index>(node));
     }
     return nodes;
   }
   void apply(std::vector<CellBlock>& blocks) const {
     for (CellBlock& block : blocks) {
-      for (Index& node : block.nodes) node = place_[static_cast<std::size_t>(node)];
+      for (Index& node : block.nodes) node = index_[static_cast<std::size_t>(node)];
     }
   }
 
  private:
-  std::vector<Index> place_;
+  std::vector<Index> index_;
 };
 
 std::vector<char> facets_of_rank(const Mesh& mesh, const std::vector<int>& rank_of_cell, int rank) {

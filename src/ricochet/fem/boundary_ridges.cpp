@@ -70,7 +70,7 @@ class RidgeSides {
     return result;
   }
   /// Outward normal, oriented by the order of the facet's corners.
-  [[nodiscard]] Eigen::Vector3d normal(const CellFacet& facet, const PolynomialMap<3>::Place& at) const {
+  [[nodiscard]] Eigen::Vector3d normal(const CellFacet& facet, const PolynomialMap<3>::Evaluation& at) const {
     const std::vector<int>& corners = outward_facet_vertices(body_.space->cells[facet.block].shape)[facet.local];
     const Eigen::Vector3d side = position(facet, corners[1]) - position(facet, corners[0]);
     if (corners.size() == 2) {
@@ -102,8 +102,8 @@ std::vector<Ridge> boundary_ridges(const Body& body, const std::vector<CellFacet
     if (last - first != 2 || sides[first].ascends == sides[first + 1].ascends) continue;
     const RidgeSide& from = sides[sides[first].ascends ? first : first + 1];
     const RidgeSide& to = sides[sides[first].ascends ? first + 1 : first];
-    const double turn = std::atan2(from.normal.cross(to.normal).dot(from.along), from.normal.dot(to.normal));
-    ridges.push_back({from.nodes, {from.facet, to.facet}, {from.normal, to.normal}, turn, 0.0});
+    const double angle = std::atan2(from.normal.cross(to.normal).dot(from.along), from.normal.dot(to.normal));
+    ridges.push_back({from.nodes, {from.facet, to.facet}, {from.normal, to.normal}, angle, 0.0});
   }
   std::vector<std::vector<std::size_t>> of_facet(boundary.size());
   for (std::size_t k = 0; k < ridges.size(); ++k) {
@@ -112,17 +112,17 @@ std::vector<Ridge> boundary_ridges(const Body& body, const std::vector<CellFacet
   for (std::size_t k = 0; k < ridges.size(); ++k) {
     for (const std::size_t facet : ridges[k].facets) {
       for (const std::size_t other : of_facet[facet]) {
-        if (other != k) ridges[k].nearby = std::max(ridges[k].nearby, std::abs(ridges[other].turn));
+        if (other != k) ridges[k].adjacent_angle = std::max(ridges[k].adjacent_angle, std::abs(ridges[other].angle));
       }
     }
   }
   return ridges;
 }
 
-bool is_sharp(double turn, double nearby) {
+bool is_sharp(double angle, double adjacent_angle) {
   constexpr double degree = std::numbers::pi / 180.0, rounding = 1e-9;
-  const double size = std::abs(turn) + rounding;
-  return size >= 60.0 * degree || (size >= 30.0 * degree && size > 2.0 * nearby);
+  const double size = std::abs(angle) + rounding;
+  return size >= 60.0 * degree || (size >= 30.0 * degree && size > 2.0 * adjacent_angle);
 }
 
 }  // namespace ricochet

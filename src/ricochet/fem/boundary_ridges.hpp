@@ -16,8 +16,8 @@ struct Ridge {
   std::array<Eigen::Vector3d, 2> normals;  ///< outward normals of the facets at the ridge
   /// Angle between the outward normals of the two facets, positive if the body is convex: π
   /// minus the angle inside the body.
-  double turn = 0.0;
-  double nearby = 0.0;  ///< largest |turn| of the other ridges of the two facets
+  double angle = 0.0;
+  double adjacent_angle = 0.0;  ///< largest |turn| of the other ridges of the two facets
 };
 
 /// Returns all ridges at which exactly two facets meet. `boundary` has facets of the space's cells; curved facets have
@@ -26,6 +26,6 @@ struct Ridge {
 
 /// Whether an angle is that of an edge of the body, as opposed to a ridge between facets that approximate a smooth
 /// surface, where the angles are small or alike: 60° or more, or 30° and twice that of the adjacent ridges.
-[[nodiscard]] bool is_sharp(double turn, double nearby);
+[[nodiscard]] bool is_sharp(double angle, double adjacent_angle);
 
 }  // namespace ricochet

@@ -39,7 +39,7 @@ class CellPacks {
 
   /// Storage for the numbers of all parts, zero.
   template <int d>
-  [[nodiscard]] std::vector<double> room() const {
+  [[nodiscard]] std::vector<double> storage() const {
     return std::vector<double>(nodes_.size() * node_stride<d>, 0.0);
   }
   /// Index of the first number of a part in that storage.

@@ -21,14 +21,14 @@ struct ElasticCells::Blocks {
 
   Blocks(const Body& of, const NodeGraph* graph, const std::vector<int>& cells) : body(of), packs(of, graph, cells) {
     for (std::size_t b = 0; b < body.mesh->cells.size(); ++b) all.push_back(make(body.mesh->cells[b], packs.lanes(b)));
-    displacement = packs.template room<d>();
+    displacement = packs.template storage<d>();
     if (graph == nullptr) return;  // energies only, neither forces nor branches
     increment = force = strain_force = displacement;
     const auto relaxes = [](const Material& each) { return !each.relaxation.empty(); };
     if (std::any_of(body.materials.begin(), body.materials.end(), relaxes)) end = at = displacement;
   }
   /// Sets up the branches for a step of this length; 0: for an instant.
-  void take_branches(double step) const {
+  void set_branches(double step) const {
     branches.resize(body.materials.size());
     for (std::size_t m = 0; m < branches.size(); ++m) {
       const Material& of = body.materials[m];

@@ -46,7 +46,7 @@ void write_for_files(const Tensor& tensor, double* to) {
 }
 
 /// Adds the stress of the branches at a point; returns their energy and advances `internal` to the next point.
-double take_branches(const Material& material, const Tensor& strain, const double*& internal, Tensor& stress) {
+double add_branch_stress(const Material& material, const Tensor& strain, const double*& internal, Tensor& stress) {
   const Tensor deviator = deviator_of(strain);
   double energy = 0.0;
   for (const RelaxationBranch& branch : material.relaxation) {
@@ -77,7 +77,7 @@ void ElasticCells::cell_stress(std::size_t block, Index local, Index cell, const
       volume += weight;
       Tensor all = second;
       energy += weight * kernel.energy_at(q, strain);
-      if (at != nullptr) energy += weight * take_branches(material, strain, at, all);
+      if (at != nullptr) energy += weight * add_branch_stress(material, strain, at, all);
       mean += weight / determinant(deformation) * (deformation * all * deformation.transpose());
     });
     energy_density = energy / volume;

@@ -135,7 +135,7 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
 template <int d, class Find>
 void ElasticCells::add_up_branches(const BranchDisplacements& places, const Find& find, Vector& result) const {
   const Blocks<d>& all = blocks<d>();
-  all.take_branches(places.step != nullptr ? places.step->step : 0.0);
+  all.set_branches(places.step != nullptr ? places.step->step : 0.0);
   for_each_part<d, BranchStrips>([&](Index part, Index begin, BranchStrips<d>& strips) {
     all.packs.template clear<d>(part, all.force);
     strips.for_each_strip(part, begin, places, internal_begin_,
@@ -148,7 +148,7 @@ void ElasticCells::add_up_branches(const BranchDisplacements& places, const Find
 template <int d, class Find>
 double ElasticCells::sum_branches(const BranchDisplacements& places, const Find& find) const {
   const Blocks<d>& all = blocks<d>();
-  all.take_branches(places.step != nullptr ? places.step->step : 0.0);
+  all.set_branches(places.step != nullptr ? places.step->step : 0.0);
   std::array<double, most_node_parts> sums{};
   for_each_part<d, BranchStrips>([&](Index part, Index begin, BranchStrips<d>& strips) {
     double& sum = sums[static_cast<std::size_t>(part)];

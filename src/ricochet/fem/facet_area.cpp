@@ -51,7 +51,7 @@ FacetArea::FacetArea(const FacetShape& shape, const Places& places, const Places
       motion_(shape.displacement, motions) {}
 
 double FacetArea::density(const double* point) const {
-  const PolynomialMap<3>::Place at = geometry_.evaluate(point), moved = motion_.evaluate(point);
+  const PolynomialMap<3>::Evaluation at = geometry_.evaluate(point), moved = motion_.evaluate(point);
   const Eigen::Vector3d along = at.slopes[0] + moved.slopes[0];
   if (shape_.is_segment) return (axisymmetric_ ? ring_length(at.at[0] + moved.at[0]) : 1.0) * along.norm();
   return along.cross(at.slopes[1] + moved.slopes[1]).norm();

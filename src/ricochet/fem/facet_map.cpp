@@ -61,7 +61,7 @@ class PlaceFinder {
   const PolynomialMap<2>& seen_;
   bool is_segment_;
   Eigen::Vector2d centre_, at_, wanted_;
-  PolynomialMap<2>::Place here_;
+  PolynomialMap<2>::Evaluation here_;
   bool is_known_ = false;  ///< whether `at_` is the solution for `wanted_`
 };
 
@@ -71,7 +71,7 @@ void tabulate(const PolynomialShape& shape, const Points& local, Matrix& values)
 }
 
 /// Ratio of the area of a facet to that of its projection: axes in the columns, the second zero in 2D.
-double area_ratio(const PolynomialMap<3>::Place& at, const Eigen::Matrix<double, 3, 2>& axes, bool is_segment) {
+double area_ratio(const PolynomialMap<3>::Evaluation& at, const Eigen::Matrix<double, 3, 2>& axes, bool is_segment) {
   const auto& [along, across] = at.slopes;
   if (is_segment) return along.norm() / std::abs(axes.col(0).dot(along));
   const Eigen::Vector2d a = axes.transpose() * along, b = axes.transpose() * across;
@@ -141,7 +141,7 @@ void FacetMap::evaluate(Index facet, const Points& axes, const Vector& weights, 
   all_axes.topLeftCorner(d, d - 1) = axes;
   const PolynomialMap<3> map = geometry(place);
   for (Index q = 0; q < count; ++q) {
-    const PolynomialMap<3>::Place at = map.evaluate(points.local.col(q).data());
+    const PolynomialMap<3>::Evaluation at = map.evaluate(points.local.col(q).data());
     result.positions.col(q) = at.at.head(d);
     const double ring = is_axisymmetric(body_) ? ring_length(at.at[0]) : 1.0;
     result.measure[q] = weights[q] * area_ratio(at, all_axes, d == 2) * ring;
@@ -152,7 +152,7 @@ PolynomialMap<3> FacetMap::map_of(Index facet) const {
   return geometry(locate_facet(*body_.space, facet));
 }
 
-double FacetMap::density(const PolynomialMap<3>::Place& at) const {
+double FacetMap::density(const PolynomialMap<3>::Evaluation& at) const {
   const auto& [along, across] = at.slopes;
   const double area = body_.mesh->dimension == 2 ? along.norm() : along.cross(across).norm();
   return is_axisymmetric(body_) ? ring_length(at.at[0]) * area : area;

@@ -30,7 +30,7 @@ class FacetMap {
   /// facet are these times the ratio of the facet's area to that of its projection.
   void evaluate(Index facet, const Points& axes, const Vector& weights, FacetPoints& points) const;
   /// Area per reference area, in 2D length; in axisymmetric bodies that of the ring.
-  [[nodiscard]] double density(const PolynomialMap<3>::Place& at) const;
+  [[nodiscard]] double density(const PolynomialMap<3>::Evaluation& at) const;
   /// Map x(ξ) with its derivatives along the axes of the reference facet; the third component is 0 in 2D.
   [[nodiscard]] PolynomialMap<3> map_of(Index facet) const;
   /// Evaluate the shape functions of the displacement, and the hat functions of the

@@ -55,11 +55,11 @@ PolynomialMap<components>::PolynomialMap(const PolynomialShape& shape, const Nod
 }
 
 template <int components>
-auto PolynomialMap<components>::evaluate(const double* point) const -> Place {
+auto PolynomialMap<components>::evaluate(const double* point) const -> Evaluation {
   const double x = point[0], y = shape_.dimension_ == 2 ? point[1] : 0.0;
   const double of_x[3] = {1.0, x, x * x}, of_y[3] = {1.0, y, y * y};
   const double slope_x[3] = {0.0, 1.0, 2.0 * x}, slope_y[3] = {0.0, 1.0, 2.0 * y};
-  Place result{origin_, {At::Zero(), At::Zero()}};
+  Evaluation result{origin_, {At::Zero(), At::Zero()}};
   for (int t = 0; t < shape_.terms_; ++t) {
     const int i = shape_.powers_[t][0], j = shape_.powers_[t][1];
     const At& coefficient = coefficients_[static_cast<std::size_t>(t)];

@@ -40,12 +40,12 @@ class PolynomialMap {
   /// Keeps a reference to the shape.
   PolynomialMap(const PolynomialShape& shape, const NodePositions& places);
 
-  struct Place {
+  struct Evaluation {
     At at;                     ///< x
     std::array<At, 2> slopes;  ///< ∂x/∂ξ along the reference axes; zero along an axis that the cell does not have
   };
   /// `point` has one or two coordinates.
-  [[nodiscard]] Place evaluate(const double* point) const;
+  [[nodiscard]] Evaluation evaluate(const double* point) const;
 
  private:
   const PolynomialShape& shape_;

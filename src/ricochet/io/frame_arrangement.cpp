@@ -26,12 +26,12 @@ std::unique_ptr<const FrameArrangement> make_frame_arrangement(const std::vector
 }
 
 bool is_compressed(const DatasetLayout& layout, const FrameFileOptions& options) {
-  const Index bytes = entries_of(layout) * (layout.whole || options.single ? 4 : 8);
+  const Index bytes = entries_of(layout) * (layout.is_integer || options.single ? 4 : 8);
   return options.compression > 0 && bytes >= least_compressed;
 }
 
 bool is_as_in_memory(const DatasetLayout& layout, const FrameFileOptions& options) {
-  return !is_compressed(layout, options) && (layout.whole || !options.single);
+  return !is_compressed(layout, options) && (layout.is_integer || !options.single);
 }
 
 void check_written(const std::string& path, bool good, const std::string& what) {
@@ -48,7 +48,7 @@ Hdf5Handle hdf5_space(Index rows, Index columns) {
 }
 
 std::int64_t hdf5_type(const DatasetLayout& layout, const FrameFileOptions& options) {
-  return layout.whole ? H5T_STD_I32LE : options.single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
+  return layout.is_integer ? H5T_STD_I32LE : options.single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
 }
 
 void set_hdf5_frame_properties(std::int64_t properties, const DatasetLayout& layout, const FrameFileOptions& options,

@@ -15,7 +15,7 @@ namespace ricochet {
 /// Dataset in the file. In memory reals are double and integers int, row by row.
 struct DatasetLayout {
   std::string name;
-  bool whole = false;  ///< integers of 32 bits
+  bool is_integer = false;  ///< integers of 32 bits
   Index rows = 0;
   Index columns = 0;  ///< 0: a dataset of one dimension
 };

@@ -114,7 +114,7 @@ void FrameFile::check(std::string path, const std::vector<FixedDataset>& fixed, 
   FrameFile file(std::move(path), std::move(frame), options);
   file.arrangement_ = make_frame_arrangement(fixed, file.layout_, options);
   file.load(snapshot, name);
-  file.repair(fixed, Repair::look);
+  file.repair(fixed, Repair::verify);
 }
 
 void FrameFile::load(const Snapshot& snapshot, const std::string& name) {
@@ -265,7 +265,7 @@ void FrameFile::repair(const std::vector<FixedDataset>& fixed, Repair repair) co
     const auto size = static_cast<std::int64_t>(std::filesystem::file_size(pattern));
     require_length(path_, size);
     require_same(kept);
-    if (repair == Repair::look) {
+    if (repair == Repair::verify) {
       remove_pattern();
       return;
     }

@@ -50,7 +50,7 @@ class FrameFile {
   [[nodiscard]] std::uint32_t checksum(const std::vector<FrameExtent>& extents,
                                        const std::vector<const void*>* values) const;
   void require_same(const std::vector<FrameExtent>& extents) const;
-  enum class Repair { look, write };
+  enum class Repair { verify, write };
   void repair(const std::vector<FixedDataset>& fixed, Repair repair) const;
   [[nodiscard]] std::int64_t frame_bytes() const;
 

@@ -57,7 +57,7 @@ class FrameGroups : public FrameArrangement {
     const bool chunked = is_compressed(layout, options_);
     bool good = true;
     if (frame.values != nullptr) {
-      good = H5Dwrite(set, layout.whole ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+      good = H5Dwrite(set, layout.is_integer ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
                       (*frame.values)[i]) >= 0;
     } else if (chunked) {
       const std::vector<char> nothing(static_cast<std::size_t>(frame.stored_sizes[i]));

@@ -16,9 +16,9 @@ GatheredFields::GatheredFields(const Ranks& ranks, std::vector<Field> own, const
   integers_.resize(own_.size());
   for (std::size_t i = 0; ranks.is_first() && i < own_.size(); ++i) {
     Field field = own_[i];
-    field.rows = field.place == FieldLocation::nodes ? nodes : cells;
+    field.rows = field.location == FieldLocation::nodes ? nodes : cells;
     const auto count = static_cast<std::size_t>(field.rows * field.components);
-    if (field.whole) {
+    if (field.is_integer) {
       integers_[i].assign(count, 0);
       field.values = integers_[i].data();
     } else {
@@ -47,8 +47,8 @@ void GatheredFields::gather() {
     std::vector<double>& message = told.front();
     for (const Index row : rows.own) {
       for (Index k = row * n; k < (row + 1) * n; ++k)
-        message.push_back(field.whole ? static_cast<double>(static_cast<const int*>(field.values)[k])
-                                      : static_cast<const double*>(field.values)[k]);
+        message.push_back(field.is_integer ? static_cast<double>(static_cast<const int*>(field.values)[k])
+                                           : static_cast<const double*>(field.values)[k]);
     }
     const Ranks::ForEach<double> known = ranks_.exchange(std::move(told));
     if (!ranks_.is_first()) continue;
@@ -56,7 +56,7 @@ void GatheredFields::gather() {
       const double* from = known[rank].data();
       for (const Index row : rows.all[rank]) {
         for (Index k = row * n; k < (row + 1) * n; ++k, ++from) {
-          if (field.whole) {
+          if (field.is_integer) {
             integers_[i][static_cast<std::size_t>(k)] = static_cast<int>(*from);
           } else {
             reals_[i][static_cast<std::size_t>(k)] = *from;

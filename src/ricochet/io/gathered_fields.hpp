@@ -28,7 +28,7 @@ class GatheredFields {
   };
   [[nodiscard]] Rows rows_of(const std::vector<Index>& own, const std::vector<Index>& places) const;
   [[nodiscard]] const Rows& rows_of(const Field& field) const {
-    return field.place == FieldLocation::nodes ? nodes_ : cells_;
+    return field.location == FieldLocation::nodes ? nodes_ : cells_;
   }
 
   const Ranks& ranks_;

@@ -94,7 +94,7 @@ std::vector<Manifest> manifests(const std::string& directory) {
 
 void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, long step, const Snapshot& snapshot) {
   std::string checksum;
-  ranks.together([&] {
+  ranks.run_collectively([&] {
     std::error_code problem;
     const std::string own = folder_of_rank(directory, ranks.rank());
     fs::create_directories(own, problem);
@@ -106,7 +106,7 @@ void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, lon
     if (checksum.empty()) throw Error(ErrorKind::file_access, path + ": cannot be read after it was written");
   });
   const std::vector<std::string> checksums = ranks.gather_texts(checksum);
-  ranks.together([&] {
+  ranks.run_collectively([&] {
     if (!ranks.is_first()) return;
     const Manifest manifest{manifest_path(directory, step), step, checksums};
     write_durably(manifest.path, text_of(manifest));

@@ -63,7 +63,7 @@ ResultsWriter::Implementation::Implementation(const std::string& directory, cons
   if (snapshot != nullptr) frame_count = snapshot->integer(name + ".frame_count");
   gathered =
       std::make_unique<GatheredFields>(ranks, fields, whole.node_rows, whole.cell_rows, whole.nodes, whole.cells);
-  ranks.together([&] {
+  ranks.run_collectively([&] {
     if (!ranks.is_first()) return;
     open({directory, *whole.body, *whole.problem, gathered->fields(), options.file, snapshot, name}, options.format);
   });
@@ -98,7 +98,7 @@ void ResultsWriter::write(const State& state) {
   for (const auto& source : own.sources) source->evaluate(state);
   if (own.gathered) own.gathered->gather();
   ++own.frame_count;
-  own.ranks.together([&] {
+  own.ranks.run_collectively([&] {
     if (!own.output) return;
     if (!own.lock) own.lock.emplace(own.lock_path);  // the file exists by now
     const LockedFrames locked(*own.lock);

@@ -33,7 +33,7 @@ struct WholeBody {
 
 class ResultsWriter {
  public:
-  /// Opens the files in the directory. Keeps references to body and problem. Throws Error(file_access). `whole`: on
+  /// Opens the files in the directory. Keeps references to body and problem. Throws Error(file_access). `to_sparse`: on
   /// several ranks, which all write together.
   ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
                 const ResultsOptions& options, const WholeBody& whole = {});

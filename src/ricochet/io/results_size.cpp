@@ -12,8 +12,8 @@ ResultsSize results_size(const Body& body, const SemidiscreteProblem& problem, c
   const double real = options.file.single ? sizeof(float) : sizeof(double);
   for (const auto& source : make_field_sources({body, problem, wanted_fields(options.fields)})) {
     for (const Field& field : source->fields()) {
-      const auto rows = static_cast<double>(field.place == FieldLocation::nodes ? nodes : cells);
-      size.frame += header + rows * field.components * (field.whole ? sizeof(int) : real);
+      const auto rows = static_cast<double>(field.location == FieldLocation::nodes ? nodes : cells);
+      size.frame += header + rows * field.components * (field.is_integer ? sizeof(int) : real);
     }
   }
   double own = 0.0;

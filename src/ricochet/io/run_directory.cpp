@@ -35,12 +35,12 @@ int open_directory(const std::string& path) {
 }  // namespace
 
 RunDirectory::RunDirectory(std::string path, const Ranks& ranks) : path_(std::move(path)) {
-  ranks.together([&] {
-    if (ranks.is_first()) take();
+  ranks.run_collectively([&] {
+    if (ranks.is_first()) reserve();
   });
 }
 
-void RunDirectory::take() {
+void RunDirectory::reserve() {
   std::error_code problem;
   at_interruption_.emplace([&] { is_new_ = fs::create_directories(path_, problem); },
                            [this] {

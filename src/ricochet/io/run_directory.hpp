@@ -33,7 +33,7 @@ class RunDirectory {
   [[nodiscard]] static bool is_in_use(const std::string& path);
 
  private:
-  void take();
+  void reserve();
 
   std::string path_;
   int lock_ = -1;

@@ -68,7 +68,7 @@ Json contacts_to_json(const RunSummary& summary) {
                   {"obstacle_velocity", c.obstacle_velocity},
                   {"obstacle_rotation_rate", c.obstacle_rotation_rate}};
     if (c.between_bodies) entry["tied"] = c.tied;
-    if (!c.pair_of.empty()) entry["pair_of"] = c.pair_of;
+    if (!c.all_pairs_group.empty()) entry["pair_of"] = c.all_pairs_group;
     if (c.facing) {
       entry["facing"] = {{"multipliers_on", c.facing->multipliers_on},
                          {"reason", c.facing->reason},

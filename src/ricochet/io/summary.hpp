@@ -62,7 +62,7 @@ struct ContactDescription {
   bool between_bodies = false;
   bool tied = false;                              ///< no multipliers, no friction
   std::optional<PairingDescription> facing = {};  ///< null for an obstacle, or if unknown
-  std::string pair_of = {};                       ///< group of an entry for every body against every other; else empty
+  std::string all_pairs_group = {};               ///< group of an entry for every body against every other; else empty
 };
 
 /// Body of the mesh, and the time for which its contact must be lost for an impact to end.
@@ -100,8 +100,8 @@ struct IterationReport {
 /// Largest von Mises stress of a run and its location.
 struct PeakStressDescription {
   PeakStressResult peak;
-  std::vector<double> place;  ///< centre of the cell, reference configuration
-  std::int64_t element = 0;   ///< number of the cell in the mesh file
+  std::vector<double> position;  ///< centre of the cell, reference configuration
+  std::int64_t element = 0;      ///< number of the cell in the mesh file
   std::string material;
 };
 
@@ -203,7 +203,7 @@ struct RunSummary {
   [[nodiscard]] double creation_by_method() const;
   /// Returns false if cells had rotated too far for small strain when an impact (numbered from 0) ended.
   [[nodiscard]] bool cells_turn_little_in(std::size_t impact) const;
-  /// Also returns false if the rotation of the whole body has changed the impact (turn_growth.hpp).
+  /// Also returns false if the rotation of the whole body has changed the impact (rotation_growth.hpp).
   [[nodiscard]] bool small_strain_holds_in(std::size_t impact) const;
   /// Largest rotation for which the laws of this run hold; infinite at finite strain.
   [[nodiscard]] double largest_rotation() const;

@@ -95,7 +95,7 @@ Json unsettled_contacts_to_json(const RunSummary& summary) {
   Json result = Json::array();
   for (const UnsettledContact& contact : summary.unsettled) {
     Json place = Json::array();
-    for (const double coordinate : contact.place) place.push_back(Json::number(coordinate));
+    for (const double coordinate : contact.position) place.push_back(Json::number(coordinate));
     result.push_back({{"contact", contact.contact},
                       {"share_of_force", Json::number(contact.share)},
                       {"steps", contact.steps},

@@ -104,11 +104,11 @@ Json impact_to_json(const Impact& impact, int dimension) {
                  {"contact_points", impact.contact_points},
                  {"all_contact_points", impact.all_contact_points},
                  {"coarse", impact.is_coarse()},
-                 {"first_place", numbers(impact.first_place)},
+                 {"first_place", numbers(impact.first_position)},
                  {"restitution", restitution ? Json::number(*restitution) : Json()},
                  {"restitution_inexact", restitution_error(impact).is_large},
                  {"method_energy", impact.method_energy ? Json::number(*impact.method_energy) : Json()},
-                 {"turn_growth", Json::number(impact.turn_growth)},
+                 {"turn_growth", Json::number(impact.rotation_growth)},
                  {"restitution_by_turning", Json::number(restitution_excess(impact))},
                  {"why_no_restitution", restitution ? Json() : Json(why_no_restitution(impact))},
                  {"normal_velocity_before", Json::number(impact.normal_velocity_before())},
@@ -142,7 +142,7 @@ Json found_to_json(const UnwatchedPenetration& p) {
           {"depth", Json::number(p.depth)},
           {"relative_depth", Json::number(p.relative_depth)},
           {"time", Json::number(p.time)},
-          {"place", numbers(p.place)},
+          {"place", numbers(p.position)},
           {"first_time", Json::number(p.first_time)},
           {"groups", p.groups},
           {"contact", p.contact.empty() ? Json() : Json(p.contact)},
@@ -158,7 +158,7 @@ Json penetration_to_json(const PenetrationReport& report) {
     rims.push_back({{"group", rim.group},
                     {"obstacle", rim.obstacle},
                     {"time", Json::number(rim.time)},
-                    {"place", numbers(rim.place)},
+                    {"place", numbers(rim.position)},
                     {"groups", rim.groups}});
   }
   const UnwatchedPenetration* deepest = report.deepest();
@@ -180,7 +180,7 @@ Json sliding_to_json(const RunSummary& summary) {
                       {"slip", Json::number(pair.slip)},
                       {"limit", Json::number(pair.limit)},
                       {"time", Json::number(pair.time)},
-                      {"place", numbers(pair.place)},
+                      {"place", numbers(pair.position)},
                       {"time_beyond", std::isfinite(pair.time_beyond) ? Json::number(pair.time_beyond) : Json()}});
   }
   return result;
@@ -200,11 +200,11 @@ Json peak_stress_to_json(const RunSummary& summary) {
   return {{"von_mises", Json::number(d.peak.von_mises)},
           {"time", Json::number(d.peak.time)},
           {"step", d.peak.step},
-          {"place", numbers(d.place)},
+          {"place", numbers(d.position)},
           {"material", d.material},
           {"cell", d.peak.cell},
           {"element", d.element},
-          {"states_looked_at", d.peak.looks},
+          {"states_looked_at", d.peak.evaluations},
           {"states", d.peak.states},
           {"grows_with_refinement", d.peak.raised_by != StressRaiser::none},
           {"sits_on", d.peak.raised_by != StressRaiser::none ? Json(name_of(d.peak.raised_by)) : Json()}};
@@ -259,10 +259,10 @@ Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies,
   impact.largest_force_time = json.at("largest_force_time").to_number();
   impact.contact_points = json.value("contact_points", 0L);
   impact.all_contact_points = json.value("all_contact_points", 0L);
-  impact.first_place = to_numbers(json.value("first_place", Json::array()));
+  impact.first_position = to_numbers(json.value("first_place", Json::array()));
   const Json method_energy = json.value("method_energy", Json());
   if (method_energy.is_number() || method_energy.is_string()) impact.method_energy = method_energy.to_number();
-  impact.turn_growth = json.value("turn_growth", Json(0.0)).to_number();
+  impact.rotation_growth = json.value("turn_growth", Json(0.0)).to_number();
   const RigidBody& rigid = rigid_body(impact.body, bodies, path);
   impact.mass = rigid.mass;
   impact.held = rigid.held;
@@ -321,7 +321,7 @@ PairSliding sliding_from(const Json& json) {
   pair.slip = json.at("slip").to_number();
   pair.limit = json.at("limit").to_number();
   pair.time = json.at("time").to_number();
-  pair.place = to_numbers(json.at("place"));
+  pair.position = to_numbers(json.at("place"));
   if (json.at("time_beyond").is_number()) pair.time_beyond = json.at("time_beyond").to_number();
   return pair;
 }
@@ -351,7 +351,7 @@ PeakStressDescription peak_stress_from(const Json& json) {
                  json.at("states_looked_at"),
                  json.at("states"),
                  raiser_named(json.value("sits_on", Json()))};
-  result.place = to_numbers(json.at("place"));
+  result.position = to_numbers(json.at("place"));
   result.element = json.at("element");
   result.material = json.at("material");
   return result;

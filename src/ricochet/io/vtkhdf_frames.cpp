@@ -158,16 +158,16 @@ class VtkHdfFrames : public FrameArrangement {
     const DatasetLayout& layout = layout_[i];
     const Hdf5Handle set(H5Dopen2(root, layout.name.c_str(), H5P_DEFAULT), H5Dclose);
     const Index first = layout.rows * frame.number;
-    bool good = set >= 0 &&
-                write_rows(set, first, layout.rows, layout.columns, layout.whole ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE,
-                           frame.values != nullptr ? (*frame.values)[i] : nullptr);
+    bool good = set >= 0 && write_rows(set, first, layout.rows, layout.columns,
+                                       layout.is_integer ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE,
+                                       frame.values != nullptr ? (*frame.values)[i] : nullptr);
     if (good && frame.values == nullptr && is_compressed(layout, options_)) {
       const std::vector<char> nothing(static_cast<std::size_t>(frame.stored_sizes[i]));
       const hsize_t origin[2] = {static_cast<hsize_t>(first), 0};
       good = H5Dwrite_chunk(set, H5P_DEFAULT, 0, origin, nothing.size(), nothing.data()) >= 0;
     }
     // HDF5 searches all chunks for one, so the address is determined only if required.
-    FrameExtent extent{0, entries_of(layout) * (layout.whole || options_.single ? 4 : 8)};
+    FrameExtent extent{0, entries_of(layout) * (layout.is_integer || options_.single ? 4 : 8)};
     const bool is_wanted = frame.values == nullptr || !is_as_in_memory(layout, options_);
     if (layout.rows > 0 && is_wanted) extent = hdf5_chunk_extent(set, first, good);
     check_written(path, good, name(frame.number) + "/" + layout.name);

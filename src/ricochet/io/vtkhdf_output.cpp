@@ -36,8 +36,8 @@ class VtkValues {
 std::vector<DatasetLayout> vtkhdf_datasets_of(const std::vector<Field>& fields) {
   std::vector<DatasetLayout> result;
   for (const Field& field : fields) {
-    result.push_back({(field.place == FieldLocation::nodes ? "PointData/" : "CellData/") + field.name, field.whole,
-                      field.rows, field.components > 1 ? field.components : 0});
+    result.push_back({(field.location == FieldLocation::nodes ? "PointData/" : "CellData/") + field.name,
+                      field.is_integer, field.rows, field.components > 1 ? field.components : 0});
   }
   return result;
 }

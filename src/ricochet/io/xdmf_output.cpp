@@ -35,7 +35,7 @@ std::string geometry_of(const DisplacementSpace& space) {
 std::vector<DatasetLayout> datasets_of(const std::vector<Field>& fields) {
   std::vector<DatasetLayout> result;
   for (const Field& field : fields)
-    result.push_back({field.name, field.whole, field.rows, field.components > 1 ? field.components : 0});
+    result.push_back({field.name, field.is_integer, field.rows, field.components > 1 ? field.components : 0});
   return result;
 }
 
@@ -116,8 +116,8 @@ std::string XdmfOutput::grid(double time, long frame) const {
     text += fmt::format(
         "        <Attribute Name=\"{0}\" AttributeType=\"{1}\" Center=\"{2}\"><DataItem Format=\"HDF\" "
         "NumberType=\"{3}\" Precision=\"{4}\" Dimensions=\"{5}\">results.h5:{6}/{0}</DataItem></Attribute>\n",
-        field.name, xdmf_type(field.components), field.place == FieldLocation::nodes ? "Node" : "Cell",
-        field.whole ? "Int" : "Float", field.whole ? 4 : precision_,
+        field.name, xdmf_type(field.components), field.location == FieldLocation::nodes ? "Node" : "Cell",
+        field.is_integer ? "Int" : "Float", field.is_integer ? 4 : precision_,
         field.components > 1 ? fmt::format("{} {}", field.rows, field.components) : fmt::format("{}", field.rows),
         frame_group_name(frame));
   }

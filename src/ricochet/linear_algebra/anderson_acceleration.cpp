@@ -6,7 +6,7 @@
 
 namespace ricochet {
 
-void AndersonAcceleration::divide(const Ranks& ranks, Vector is_counted) {
+void AndersonAcceleration::distribute(const Ranks& ranks, Vector is_counted) {
   ranks_ = &ranks;
   is_counted_ = std::move(is_counted);
 }

@@ -14,7 +14,7 @@ class AndersonAcceleration {
   explicit AndersonAcceleration(int depth) : depth_(depth) {}
   /// Distributes the vectors over several ranks, each of which has some of the entries. `is_counted` is 1 for an entry
   /// on one of the ranks that have it and 0 on the others. All ranks then call advance() together.
-  void divide(const Ranks& ranks, Vector is_counted);
+  void distribute(const Ranks& ranks, Vector is_counted);
   void restart() { kept_ = -1; }
   /// Sets `next` to the next point; after a restart this is F(x). `next` may be `image`, F(x).
   void advance(const Vector& point, const Vector& image, Vector& next);

@@ -55,17 +55,17 @@ std::vector<Index> NodeDistances::ascending() const {
 NodeDistances nodes_within(const MatrixGraph& graph, const std::vector<Index>& first, int layers) {
   NodeDistances result;
   std::unordered_set<Index> reached;
-  const auto reach = [&](Index node, int layer) {
+  const auto reach = [&](Index node, int distance) {
     if (!reached.insert(node).second) return;
     result.nodes.push_back(node);
-    result.layer.push_back(layer);
+    result.distance.push_back(distance);
   };
   for (const Index node : first) reach(node, 0);
   std::size_t begin = 0;
-  for (int layer = 1; layer <= layers; ++layer) {
+  for (int distance = 1; distance <= layers; ++distance) {
     const std::size_t end = result.nodes.size();
     for (; begin < end; ++begin) {
-      for (const int other : graph.neighbours(result.nodes[begin])) reach(other, layer);
+      for (const int other : graph.neighbours(result.nodes[begin])) reach(other, distance);
     }
   }
   return result;

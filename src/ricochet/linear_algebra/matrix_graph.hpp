@@ -31,8 +31,8 @@ class MatrixGraph {
 
 /// Nodes in the neighbourhood of given ones, with the number of steps to the nearest of these.
 struct NodeDistances {
-  std::vector<Index> nodes;  ///< the given ones first, then layer after layer
-  std::vector<int> layer;    ///< of each of them
+  std::vector<Index> nodes;   ///< the given ones first, then layer after layer
+  std::vector<int> distance;  ///< of each of them
   [[nodiscard]] std::vector<Index> ascending() const;
 };
 /// Returns the nodes within `layers` steps of `first`, which may contain nodes more than once.

@@ -130,7 +130,7 @@ void NodeMatrix::multiply(const Vector& x, Vector& y) const {
   });
 }
 
-double NodeMatrix::form(const Vector& x) const {
+double NodeMatrix::quadratic_form(const Vector& x) const {
   std::array<double, most_node_parts> sums{};
   parallel_ranges(pattern_.parts(), [&](Index first, Index last) {
     for (Index part = first; part < last; ++part) {
@@ -206,7 +206,7 @@ bool NodeMatrix::is_diagonal() const {
   return result;
 }
 
-SparseMatrix NodeMatrix::whole() const {
+SparseMatrix NodeMatrix::to_sparse() const {
   std::vector<Index> all(pattern_.node.size());
   std::iota(all.begin(), all.end(), Index{0});
   return principal(all);

@@ -46,7 +46,7 @@ class NodeMatrix {
   /// Computes y = A x. `y` must be another vector; it is resized.
   void multiply(const Vector& x, Vector& y) const;
   /// Returns xᵀ A x without computing A x, which is faster.
-  [[nodiscard]] double form(const Vector& x) const;
+  [[nodiscard]] double quadratic_form(const Vector& x) const;
 
   /// Returns |x|ᵀ |A| |x|.
   [[nodiscard]] double absolute_quadratic_form(const Vector& x) const;
@@ -56,7 +56,7 @@ class NodeMatrix {
   /// Returns whether all entries off the diagonal are zero.
   [[nodiscard]] bool is_diagonal() const;
   /// Returns the matrix as it was given: whole, in compressed columns.
-  [[nodiscard]] SparseMatrix whole() const;
+  [[nodiscard]] SparseMatrix to_sparse() const;
   /// Returns the principal submatrix of these nodes, ascending, in compressed columns.
   [[nodiscard]] SparseMatrix principal(const std::vector<Index>& nodes) const;
   /// Returns the columns of these nodes, with all rows, in compressed columns.

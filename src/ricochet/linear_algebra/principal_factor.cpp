@@ -26,14 +26,14 @@ std::size_t count_differences(const std::vector<Index>& a, const std::vector<Ind
 void PrincipalFactor::reset() {
   base_.clear();
   indices_.clear();
-  came_.clear();
-  went_.clear();
+  added_.clear();
+  removed_.clear();
 }
 
 bool PrincipalFactor::set_base(const Matrix& w, const std::vector<Index>& indices) {
   base_ = indices_ = indices;
-  came_.clear();
-  went_.clear();
+  added_.clear();
+  removed_.clear();
   kept_a_.resize(indices.size());
   for (std::size_t k = 0; k < indices.size(); ++k) kept_a_[k] = static_cast<Index>(k);
   kept_b_ = kept_a_;
@@ -71,37 +71,37 @@ bool PrincipalFactor::set_indices(const Matrix& w, const std::vector<Index>& ind
 
 bool PrincipalFactor::border(const Matrix& w, const std::vector<Index>& indices) {
   indices_ = indices;
-  came_.clear();
-  went_.clear();
+  added_.clear();
+  removed_.clear();
   kept_a_.clear();
   kept_b_.clear();
   std::size_t a = 0, b = 0;
   while (a < indices.size() || b < base_.size()) {
     if (b == base_.size() || (a < indices.size() && indices[a] < base_[b])) {
-      came_.push_back(static_cast<Index>(a++));
+      added_.push_back(static_cast<Index>(a++));
     } else if (a == indices.size() || base_[b] < indices[a]) {
-      went_.push_back(static_cast<Index>(b++));
+      removed_.push_back(static_cast<Index>(b++));
     } else {
       kept_a_.push_back(static_cast<Index>(a++));
       kept_b_.push_back(static_cast<Index>(b++));
     }
   }
   const auto size = static_cast<Index>(base_.size());
-  const auto arrivals = static_cast<Index>(came_.size());
-  const auto changes = arrivals + static_cast<Index>(went_.size());
+  const auto arrivals = static_cast<Index>(added_.size());
+  const auto changes = arrivals + static_cast<Index>(removed_.size());
   if (changes == 0) return true;
   border_.setZero(size, changes);
   Matrix schur = Matrix::Zero(changes, changes);
   for (Index k = 0; k < arrivals; ++k) {
-    const Index index = indices[static_cast<std::size_t>(came_[static_cast<std::size_t>(k)])];
+    const Index index = indices[static_cast<std::size_t>(added_[static_cast<std::size_t>(k)])];
     const double* column = w.data() + index * w.rows();
     for (Index i = 0; i < size; ++i) border_(i, k) = scale_ * column[base_[static_cast<std::size_t>(i)]];
     for (Index l = 0; l < arrivals; ++l) {
-      const Index other = indices[static_cast<std::size_t>(came_[static_cast<std::size_t>(l)])];
+      const Index other = indices[static_cast<std::size_t>(added_[static_cast<std::size_t>(l)])];
       schur(l, k) = scale_ * column[other];
     }
   }
-  for (Index k = arrivals; k < changes; ++k) border_(went_[static_cast<std::size_t>(k - arrivals)], k) = 1.0;
+  for (Index k = arrivals; k < changes; ++k) border_(removed_[static_cast<std::size_t>(k - arrivals)], k) = 1.0;
   solved_ = factor_.solve(border_);
   schur.noalias() -= border_.transpose() * solved_;
   if (!schur.allFinite()) return false;
@@ -113,17 +113,17 @@ void PrincipalFactor::solve(const Vector& right, Vector& x) const {
   base_right_.setZero(static_cast<Index>(base_.size()));
   for (std::size_t k = 0; k < kept_a_.size(); ++k) base_right_[kept_b_[k]] = scale_ * right[kept_a_[k]];
   if (base_right_.size() > 0) factor_.solveInPlace(base_right_);
-  const auto arrivals = static_cast<Index>(came_.size());
-  const auto changes = arrivals + static_cast<Index>(went_.size());
+  const auto arrivals = static_cast<Index>(added_.size());
+  const auto changes = arrivals + static_cast<Index>(removed_.size());
   x.resize(right.size());
   if (changes > 0) {
     // (S)(x_D, λ) = (b_D, 0) − (W_DB; E_Rᵀ) W_BB⁻¹ b_B.
     border_right_.noalias() = border_.transpose() * base_right_;
     border_right_ = -border_right_;  // a product with a sign would be evaluated into a new vector
-    for (Index k = 0; k < arrivals; ++k) border_right_[k] += scale_ * right[came_[static_cast<std::size_t>(k)]];
+    for (Index k = 0; k < arrivals; ++k) border_right_[k] += scale_ * right[added_[static_cast<std::size_t>(k)]];
     border_solution_ = schur_.solve(border_right_);
     base_right_.noalias() -= solved_ * border_solution_;
-    for (Index k = 0; k < arrivals; ++k) x[came_[static_cast<std::size_t>(k)]] = border_solution_[k];
+    for (Index k = 0; k < arrivals; ++k) x[added_[static_cast<std::size_t>(k)]] = border_solution_[k];
   }
   for (std::size_t k = 0; k < kept_a_.size(); ++k) x[kept_a_[k]] = base_right_[kept_b_[k]];
 }

@@ -314,7 +314,7 @@ std::size_t SparseCholesky::factor_bytes() const {
 const std::vector<int>& SparseCholesky::permutation() const {
   return implementation_->permutation;
 }
-Index SparseCholesky::place(Index unknown) const {
+Index SparseCholesky::factor_index(Index unknown) const {
   return implementation_->places[static_cast<std::size_t>(unknown)];
 }
 const SupernodalFactor& SparseCholesky::supernodal() const {

@@ -56,7 +56,7 @@ class SparseCholesky {
   /// Permutation P: the unknown at each index of the factor.
   [[nodiscard]] const std::vector<int>& permutation() const;
   /// Index of an unknown in the factor.
-  [[nodiscard]] Index place(Index unknown) const;
+  [[nodiscard]] Index factor_index(Index unknown) const;
 
   /// Length of the vectors y below: `size` entries in factor order, followed by work space.
   [[nodiscard]] Index work_size() const;

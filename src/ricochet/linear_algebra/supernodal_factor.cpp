@@ -21,7 +21,7 @@ constexpr double parts_per_factor = 16.0;
 
 SupernodalFactor::SupernodalFactor(const SupernodalStructure& shape) {
   read_shape(shape);
-  divide();
+  partition();
   place_numbers(shape);
 }
 
@@ -72,7 +72,7 @@ std::vector<int> SupernodalFactor::subtrees(std::vector<double> weights, double 
 
 /// Divides the supernodes into parts. The division fixes the order of sums; it depends on the factor alone, and must
 /// not depend on the number of threads.
-void SupernodalFactor::divide() {
+void SupernodalFactor::partition() {
   const std::size_t count = supernodes_.size();
   std::vector<double> sizes(count);
   double total = 0.0;
@@ -95,8 +95,9 @@ void SupernodalFactor::divide() {
     if (part[s] < 0) ordered.push_back(supernodes_[s]);
   }
   supernodes_ = std::move(ordered);
-  place_.resize(count);
-  for (std::size_t k = 0; k < count; ++k) place_[static_cast<std::size_t>(supernodes_[k].number)] = static_cast<int>(k);
+  position_.resize(count);
+  for (std::size_t k = 0; k < count; ++k)
+    position_[static_cast<std::size_t>(supernodes_[k].number)] = static_cast<int>(k);
 }
 
 void SupernodalFactor::place_numbers(const SupernodalStructure& shape) {
@@ -223,11 +224,11 @@ FactorPath SupernodalFactor::path(const std::vector<Index>& rows) const {
   std::vector<char> reached(supernodes_.size(), 0);
   const auto first_beyond = [&](Index row) {
     // Columns ascend with the supernode's number.
-    return std::partition_point(place_.begin(), place_.end(),
+    return std::partition_point(position_.begin(), position_.end(),
                                 [&](int place) { return supernodes_[static_cast<std::size_t>(place)].first <= row; });
   };
   for (const Index row : rows) {
-    auto s = static_cast<int>(first_beyond(row) - place_.begin()) - 1;
+    auto s = static_cast<int>(first_beyond(row) - position_.begin()) - 1;
     for (; s >= 0 && reached[static_cast<std::size_t>(s)] == 0; s = parent_[static_cast<std::size_t>(s)])
       reached[static_cast<std::size_t>(s)] = 1;
   }
@@ -235,7 +236,7 @@ FactorPath SupernodalFactor::path(const std::vector<Index>& rows) const {
   path.offsets.push_back(0);
   for (std::size_t s = 0; s < reached.size(); ++s) {
     if (reached[s] == 0) continue;
-    const Supernode& node = supernodes_[static_cast<std::size_t>(place_[s])];
+    const Supernode& node = supernodes_[static_cast<std::size_t>(position_[s])];
     path.supernodes.push_back(static_cast<int>(s));
     path.first.push_back(node.first);
     path.offsets.push_back(path.offsets.back() + node.columns);
@@ -262,7 +263,7 @@ void SupernodalFactor::forward_on_path(const FactorPath& path, Matrix& columns) 
     eight.topRows(count) = columns.middleCols(first, count).transpose();
     for (std::size_t k = 0; k < path.supernodes.size(); ++k) {
       const Supernode& node =
-          supernodes_[static_cast<std::size_t>(place_[static_cast<std::size_t>(path.supernodes[k])])];
+          supernodes_[static_cast<std::size_t>(position_[static_cast<std::size_t>(path.supernodes[k])])];
       const int* rows = rows_.data() + node.rows;
       w.setZero(8, node.columns + node.below + 1);
       w.leftCols(node.columns) = eight.middleCols(path.offsets[k], node.columns);

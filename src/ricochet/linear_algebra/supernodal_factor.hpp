@@ -59,7 +59,7 @@ class SupernodalFactor {
   };
   [[nodiscard]] Index supernode_count() const { return static_cast<Index>(supernodes_.size()); }
   [[nodiscard]] const Supernode& supernode(Index number) const {
-    return supernodes_[static_cast<std::size_t>(place_[static_cast<std::size_t>(number)])];
+    return supernodes_[static_cast<std::size_t>(position_[static_cast<std::size_t>(number)])];
   }
   /// Numbers of a supernode in the layout of linear_algebra/supernode_layout.hpp.
   [[nodiscard]] double* numbers(const Supernode& node) { return stream_.data() + node.stream; }
@@ -85,7 +85,7 @@ class SupernodalFactor {
   };
 
   void read_shape(const SupernodalStructure& shape);
-  void divide();
+  void partition();
   void place_numbers(const SupernodalStructure& shape);
   void number_boundary(Part& part);
   void gather(const Supernode& node, const double* y, double* w) const;
@@ -95,7 +95,7 @@ class SupernodalFactor {
 
   Index size_ = 0, work_size_ = 0;
   std::vector<Supernode> supernodes_;  ///< in the order in which they are solved
-  std::vector<int> place_;             ///< per supernode in the order of columns: its index in supernodes_
+  std::vector<int> position_;          ///< per supernode in the order of columns: its index in supernodes_
   std::vector<int> parent_;            ///< per supernode in the order of columns; −1: a root
   std::vector<int> rows_;              ///< of all supernodes: rows of the factor, or indices in the work space
   std::vector<int> row_of_work_;       ///< per index in the work space: the row it stands for

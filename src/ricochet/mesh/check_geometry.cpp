@@ -123,7 +123,7 @@ void reverse_orientation(Index* cell, const std::vector<int>& mirrored, std::vec
 }
 
 /// Centre of a facet's vertices, as text.
-std::string place_of(const Mesh& mesh, const CellFacet& facet) {
+std::string facet_centre_text(const Mesh& mesh, const CellFacet& facet) {
   const CellBlock& block = mesh.cells[facet.block];
   const std::vector<int>& vertices = outward_facet_vertices(block.shape)[facet.local];
   Vector middle = Vector::Zero(mesh.dimension);
@@ -144,7 +144,7 @@ void check_folds(const Mesh& mesh) {
   std::string pairs;
   for (std::size_t i = 0; i < std::min(found.size(), most); ++i) {
     pairs += fmt::format("{}elements {} and {} at {}", i == 0 ? "" : ", ", tag(found[i].first), tag(found[i].second),
-                         place_of(mesh, found[i].first));
+                         facet_centre_text(mesh, found[i].first));
   }
   fail_mesh(
       mesh.source,

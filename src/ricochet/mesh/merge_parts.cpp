@@ -66,7 +66,7 @@ class BlockMerger {
   /// Appends the blocks of the next part.
   void append(std::size_t part, Index first_node, std::int64_t more) {
     for (const CellBlock& block : parts_[part].mesh.*of_) {
-      CellBlock& whole = merged_[place_of(block.shape)];
+      CellBlock& whole = merged_[block_of(block.shape)];
       whole.nodes_per_cell = block.nodes_per_cell;
       for (const Index node : block.nodes) whole.nodes.push_back(node + first_node);
       // Facets that the file does not contain have the tag 0.
@@ -78,13 +78,13 @@ class BlockMerger {
   [[nodiscard]] Index number(std::size_t part, Index in_part) const {
     const std::vector<CellBlock>& blocks = parts_[part].mesh.*of_;
     const IndexInBlocks place = locate_in_blocks(blocks, in_part);
-    return first_[part][place_of(blocks[place.block].shape)] + place.local;
+    return first_[part][block_of(blocks[place.block].shape)] + place.local;
   }
 
   [[nodiscard]] std::vector<CellBlock> take() { return std::move(merged_); }
 
  private:
-  [[nodiscard]] std::size_t place_of(CellShape shape) const {
+  [[nodiscard]] std::size_t block_of(CellShape shape) const {
     const auto found =
         std::find_if(merged_.begin(), merged_.end(), [shape](const CellBlock& block) { return block.shape == shape; });
     return static_cast<std::size_t>(found - merged_.begin());

@@ -135,14 +135,14 @@ std::string gmsh_options(const MeshFile& file) {
 }
 
 /// Path in the cache of a file that is made from a source with this key.
-fs::path place_of(const std::string& source, const std::string& key) {
+fs::path cache_path(const std::string& source, const std::string& key) {
   return cache_directory() / fmt::format("{}-{}.msh", fs::path(source).stem().string(), fnv1a_128(key));
 }
 
 /// Returns the file that `make` writes, or wrote earlier with the same key.
 fs::path kept(const std::string& source, const std::string& key, const char* doing,
               const std::function<void(const fs::path& workspace, const fs::path& output)>& make) {
-  const fs::path result = place_of(source, key);
+  const fs::path result = cache_path(source, key);
   if (fs::exists(result)) {
     log::debug(fmt::format("{}: made before, {}", source, result.string()));
     return result;
@@ -193,7 +193,7 @@ fs::path meshed_file(const MeshFile& file) {
 }
 
 std::optional<fs::path> meshed_before(const MeshFile& file) {
-  fs::path path = place_of(file.path, key_of(file, gmsh_options(file)));
+  fs::path path = cache_path(file.path, key_of(file, gmsh_options(file)));
   return fs::exists(path) ? std::optional(std::move(path)) : std::nullopt;
 }
 

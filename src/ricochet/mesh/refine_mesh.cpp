@@ -142,23 +142,23 @@ class NewNodes {
     Known& known = known_[kind];
     const Index found = known.table.find_or_add(vertices.data());
     if (found >= 0) return known.nodes[static_cast<std::size_t>(found)];
-    places_.push_back(place());
-    known.nodes.push_back(mesh_.node_count() + static_cast<Index>(places_.size()) - 1);
+    positions_.push_back(place());
+    known.nodes.push_back(mesh_.node_count() + static_cast<Index>(positions_.size()) - 1);
     return known.nodes.back();
   }
   /// Position of a node of the mesh or of a new one.
-  [[nodiscard]] Eigen::Vector3d place_of(Index node) const {
+  [[nodiscard]] Eigen::Vector3d position_of(Index node) const {
     Eigen::Vector3d result = Eigen::Vector3d::Zero();
-    if (node >= mesh_.node_count()) return places_[static_cast<std::size_t>(node - mesh_.node_count())];
+    if (node >= mesh_.node_count()) return positions_[static_cast<std::size_t>(node - mesh_.node_count())];
     result.head(mesh_.dimension) = mesh_.nodes.col(node);
     return result;
   }
   /// Adds the new nodes to the mesh.
   void add() {
     const Index before = mesh_.node_count();
-    mesh_.nodes.conservativeResize(Eigen::NoChange, before + static_cast<Index>(places_.size()));
-    for (std::size_t i = 0; i < places_.size(); ++i)
-      mesh_.nodes.col(before + static_cast<Index>(i)) = places_[i].head(mesh_.dimension);
+    mesh_.nodes.conservativeResize(Eigen::NoChange, before + static_cast<Index>(positions_.size()));
+    for (std::size_t i = 0; i < positions_.size(); ++i)
+      mesh_.nodes.col(before + static_cast<Index>(i)) = positions_[i].head(mesh_.dimension);
     mesh_.node_tags.resize(static_cast<std::size_t>(mesh_.nodes.cols()), 0);
   }
 
@@ -171,7 +171,7 @@ class NewNodes {
 
   Mesh& mesh_;
   std::array<Known, 3> known_;
-  std::vector<Eigen::Vector3d> places_;
+  std::vector<Eigen::Vector3d> positions_;
 };
 
 /// Cuts the elements of a mesh into parts, one shape after another.
@@ -199,7 +199,8 @@ class Cutter {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < diagonals.size(); ++i) {
       const auto [a, b, c, d] = diagonals[i];
-      const double length = (nodes_.place_of(node_at(pair_of(a, b))) - nodes_.place_of(node_at(pair_of(c, d)))).norm();
+      const double length =
+          (nodes_.position_of(node_at(pair_of(a, b))) - nodes_.position_of(node_at(pair_of(c, d)))).norm();
       // Of equal diagonals the first is chosen, independently of rounding.
       if (length < least * (1.0 - 1e-12)) {
         least = length;
@@ -215,7 +216,7 @@ class Cutter {
     for (const int vertex : mean) vertices.push_back(cell_[vertex]);
     return nodes_.at_mean(vertices, [&] {
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-      for (const Index vertex : vertices) sum += nodes_.place_of(vertex);
+      for (const Index vertex : vertices) sum += nodes_.position_of(vertex);
       return Eigen::Vector3d(sum / static_cast<double>(vertices.size()));
     });
   }
@@ -225,7 +226,7 @@ class Cutter {
     Eigen::Vector3d result = Eigen::Vector3d::Zero();
     const std::vector<std::vector<int>>& nodes = node_vertices(shape_, 2);
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      result += quadratic_function(shape_, nodes[i], at) * nodes_.place_of(cell_[i]);
+      result += quadratic_function(shape_, nodes[i], at) * nodes_.position_of(cell_[i]);
     return result;
   }
 

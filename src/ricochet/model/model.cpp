@@ -141,7 +141,7 @@ std::vector<Index> boundary_at(const Case& input, const std::string& key_path, c
 
 /// Reports supports at tied nodes. These supports are left out, because a tied node follows the other surface, which
 /// may or may not be supported there as well.
-void tell_of_supports_at_ties(const Model& model, const std::map<Index, Expression>& dofs) {
+void report_supports_at_ties(const Model& model, const std::map<Index, Expression>& dofs) {
   const int d = model.mesh.dimension;
   std::set<Index> follow, lost;
   for (const TiedNodes::Tie& tie : model.tied.ties()) {
@@ -198,7 +198,7 @@ void add_supports(const Case& input, Model& model) {
   add_axis_supports(input, model);
   hold_free_bodies(input, model);
   supports.finish();
-  tell_of_supports_at_ties(model, tied);
+  report_supports_at_ties(model, tied);
 }
 
 void add_initial_conditions(const Case& input, Model& model) {
@@ -301,7 +301,7 @@ std::unique_ptr<Model> build(const Case& input, bool with_forces, BuildTimes* ti
   check_dimensions(input, files.front().mesh.dimension);
   check_axisymmetry(input, files.front().mesh.dimension);
   make_obstacles(input, *model, files.front().mesh.dimension);
-  model->mesh = put_together(input, *model, std::move(files));
+  model->mesh = merge_meshes(input, *model, std::move(files));
   place_on_axis(input, model->mesh);
   complete_groups(input, model->mesh);
   model->space = make_displacement_space(model->mesh, input.mesh.degree);

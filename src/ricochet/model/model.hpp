@@ -31,7 +31,7 @@ struct ProbeTargets {
 struct ModelContact : ContactSection {
   std::size_t entry = 0;  ///< index of the [[contact]] entry
   std::vector<Index> facets, opposite_facets;
-  std::string pair_of = {};  ///< the `group` of an entry that pairs every body with every other; else empty
+  std::string all_pairs_group = {};  ///< the `group` of an entry that pairs every body with every other; else empty
 };
 
 /// Sizes of the whole body, also on a rank that holds only a part of it.
@@ -56,22 +56,22 @@ struct Model {
   InitialConditions initial;
   bool contains_rotations = true;  ///< false for degree 1 on curved cells and for axisymmetric bodies
   BodiesOfMesh bodies;
-  std::vector<ProbeTargets> watched;             ///< per [[probe]]
+  std::vector<ProbeTargets> probe_targets;       ///< per [[probe]]
   std::vector<std::shared_ptr<Sensor>> sensors;  ///< sensors with a column in history.csv
   HistoryBodies history_bodies;                  ///< bodies with columns of their own
   /// Sensors with a file of their own, by the number of steps between its rows.
   std::map<long, std::vector<std::shared_ptr<Sensor>>> sampled_sensors;
   std::unique_ptr<CellRotations> rotation;
   std::shared_ptr<const PreconditionerFactory> preconditioners;  ///< preconditioners of other libraries; null if none
-  std::shared_ptr<const void> kept;                              ///< data of the ranks, if the body is divided
+  std::shared_ptr<const void> rank_data;                         ///< data of the ranks, if the body is divided
   /// Positions of a divided body's nodes and cells in the output files and, on the first rank, the whole body.
-  struct Written {
+  struct GlobalOutput {
     std::vector<Index> node_rows, cell_rows;
     DisplacementSpace space;
     Body body;
     SemidiscreteProblem problem;  ///< nodes, obstacles and contact facets only
   };
-  std::unique_ptr<const Written> written;
+  std::unique_ptr<const GlobalOutput> global_output;
 
   Model() = default;
   Model(const Model&) = delete;  // body points into this

@@ -20,7 +20,7 @@ namespace {
 /// facets: facets that meet at an angle of more than 50 degrees.
 constexpr double sharp_edge = 0.9;
 
-std::string place_text(const Vector& place) {
+std::string position_text(const Vector& place) {
   return fmt::format("({:.6g})", fmt::join(place, ", "));
 }
 
@@ -30,7 +30,7 @@ std::string names_of_pair(const ContactPair& pair) {
 
 /// Overlap with an obstacle, relative to the mesh diameter, that straight facets in place of a curved surface may
 /// cause.
-constexpr double off_by_facets = 1e-3;
+constexpr double facet_deviation = 1e-3;
 
 /// Warns of bodies that overlap at the displacement pair_at: they have moved past the position where they meet, so that
 /// the facets that face each other there are not those that will touch.
@@ -47,7 +47,8 @@ void warn_of_overlap_where_paired(const Case& input, std::size_t number, const M
       "so that facets are paired past where they will meet; give the displacement at which the bodies begin to touch, "
       "or set initial_gap = \"closed\" where surfaces that touch overlap since their facets are flat",
       input.where(fmt::format("contact.{}.pair_at", model.contacts[number].entry)).text(), names_of_pair(pair),
-      counted(overlap.count, "contact point is", "contact points are"), overlap.deepest, place_text(overlap.place)));
+      counted(overlap.count, "contact point is", "contact points are"), overlap.deepest,
+      position_text(overlap.position)));
 }
 
 /// Refuses a side that spans several bodies: large sliding distinguishes surfaces by their bodies.
@@ -74,7 +75,7 @@ void warn_of_side(const ContactPair& pair, const SideDoubt& doubt, bool is_chose
   std::string advice;
   if (doubt.other_is_better && !is_chosen) {
     advice = fmt::format("leave multipliers_on out: with the multipliers on \"{}\" they turn by {:.2g}",
-                         pair.opposite_group, doubt.of_other);
+                         pair.opposite_group, doubt.other_variation);
     if (doubt.finer < 1.0) advice += fmt::format(", and facets there {:.2g} times as large", 0.9 * doubt.finer);
   } else {
     advice = fmt::format(
@@ -86,14 +87,14 @@ void warn_of_side(const ContactPair& pair, const SideDoubt& doubt, bool is_chose
       fmt::format("contact of \"{}\" against \"{}\": normals turn by {:.2g} rad in the mean within the facets "
                   "of \"{}\", which carries the multipliers, and forces of a contact that is no wider than a facet may "
                   "be off by up to as large a part; {}",
-                  pair.first_group(), pair.second_group(), doubt.turn, pair.group, advice));
+                  pair.first_group(), pair.second_group(), doubt.variation, pair.group, advice));
 }
 
 /// Reports facets that are covered in part. Contact ends within such a facet, but its nodal values extend beyond that
 /// end.
-void tell_of_partly_covered(const ContactPair& pair, const PairingSummary& facing) {
+void report_partly_covered(const ContactPair& pair, const PairingSummary& facing) {
   constexpr double felt = 0.02;
-  if (pair.tied || pair.slides_far || facing.partly_covered <= felt * facing.covered) return;
+  if (pair.tied || pair.large_sliding || facing.partly_covered <= felt * facing.covered) return;
   log::info(fmt::format(
       "{}: {:.2g} % of what faces lies on facets of \"{}\" that are covered in part: areas in contact count "
       "such facets as a whole, and pressures at their nodes are extrapolated (forces are right); let facets "
@@ -110,11 +111,11 @@ ContactPair body_pair(const Case& input, const ModelContact& section, const Mode
   pair.facets = section.facets;
   pair.opposite_group = section.against;
   pair.opposite_facets = section.opposite_facets;
-  pair.is_one_of_many = !section.pair_of.empty();
+  pair.is_one_of_many = !section.all_pairs_group.empty();
   pair.friction = {section.friction, section.friction_bound};
   pair.multipliers = section.multipliers;
   pair.closed_gaps = section.closed_gaps;
-  pair.slides_far = section.slides_far;
+  pair.large_sliding = section.large_sliding;
   pair.tied = section.tied;
   if (!section.pair_at.empty())
     pair.pair_at = Eigen::Map<const Vector>(section.pair_at.data(), static_cast<Index>(section.pair_at.size()));
@@ -127,7 +128,7 @@ ContactPair body_pair(const Case& input, const ModelContact& section, const Mode
                        "facets of one body in each",
                        section.group, section.against, counted(common.size(), "facet")));
   }
-  if (pair.slides_far && !pair.is_one_of_many) check_sliding_bodies(input, key, model, pair);
+  if (pair.large_sliding && !pair.is_one_of_many) check_sliding_bodies(input, key, model, pair);
   if (pair.is_self()) return pair;
   const bool is_chosen = section.multipliers_on == "automatic";
   const SideChoice choice =
@@ -152,7 +153,8 @@ ContactPair body_pair(const Case& input, const ModelContact& section, const Mode
 void check_facing(const Case& input, std::size_t number, const Model& model) {
   const ContactPair& pair = model.contact_pairs[number];
   const PairingSummary& facing = model.pair_facings[number];
-  if (pair.slides_far && !pair.is_one_of_many && facing.points + facing.held > 0 && facing.uncovered == facing.points) {
+  if (pair.large_sliding && !pair.is_one_of_many && facing.points + facing.held > 0 &&
+      facing.uncovered == facing.points) {
     log::info(fmt::format("{} do not face each other at the start: contact begins where they do", names_of_pair(pair)));
   }
   if (facing.points == 0 && facing.held == 0) {
@@ -173,7 +175,7 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
                              names_of_pair(pair), counted(facing.held, "multiplier is", "multipliers are"),
                              facing.held == 1 ? "point is" : "points are"));
   }
-  tell_of_partly_covered(pair, facing);
+  report_partly_covered(pair, facing);
   if (facing.lost > 0) {
     log::warning(
         fmt::format("{}: {} left out of the contact, as curved facets are seen edge-on there; refine the mesh "
@@ -199,17 +201,17 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
                           names_of_pair(pair), -facing.smallest_gap, counted(facing.closed, "contact point")));
   }
   const bool has_edge = facing.agreement < sharp_edge && anchor_of(pair.multipliers) == MultiplierAnchor::node;
-  if (has_edge && pair.slides_far) {
+  if (has_edge && pair.large_sliding) {
     if (pair.is_one_of_many) return;
     log::info(
         fmt::format("{}: facets of \"{}\" meet at edges, the sharpest at {}, where a contact point is the mean of both "
                     "sides: where an edge itself presses, the mesh there should be fine",
-                    names_of_pair(pair), pair.group, place_text(facing.edge)));
+                    names_of_pair(pair), pair.group, position_text(facing.edge)));
   } else if (has_edge) {
     log::warning(
         fmt::format("{}: facets of \"{}\" meet at an edge at {}, where the direction of contact is the mean of their "
                     "normals; give the facets of each side of the edge a contact of their own",
-                    names_of_pair(pair), pair.group, place_text(facing.edge)));
+                    names_of_pair(pair), pair.group, position_text(facing.edge)));
   }
   warn_of_overlap_where_paired(input, number, model);
   if (pair.multipliers == "nodal" && !facing.matches) {
@@ -236,7 +238,7 @@ void check_body_overlaps(const Case& input, const Model& model) {
                     "where surfaces that touch overlap since their facets are flat, or set initial.displacement = "
                     "\"static\" for a press fit",
                     names_of_pair(pair), counted(overlap.count, "contact point is", "contact points are"),
-                    overlap.deepest, place_text(overlap.place)));
+                    overlap.deepest, position_text(overlap.position)));
   }
 }
 
@@ -245,7 +247,7 @@ namespace {
 void refuse_overlap_with_obstacle(const Case& input, const Model& model, std::size_t number, const Vector& gap) {
   const ContactPair& pair = model.contact_pairs[number];
   const PenetratingPoints overlap =
-      penetrating_points(model.problem, gap, static_cast<int>(number), off_by_facets * model.sizes.diameter);
+      penetrating_points(model.problem, gap, static_cast<int>(number), facet_deviation * model.sizes.diameter);
   if (overlap.count == 0) return;
   refuse(input, fmt::format("contact.{}.group", model.contacts[number].entry),
          fmt::format("at the start {} of group \"{}\" {} inside of obstacle \"{}\", the deepest by {:.3g} at {}, and "
@@ -253,7 +255,7 @@ void refuse_overlap_with_obstacle(const Case& input, const Model& model, std::si
                      "the obstacle the body lies (a plane's normal points out of it, other shapes have a \"side\"), or "
                      "start from initial.displacement = \"static\"",
                      counted(overlap.count, "contact point"), pair.group, overlap.count == 1 ? "is" : "are",
-                     pair.obstacle_name, overlap.deepest, place_text(overlap.place)));
+                     pair.obstacle_name, overlap.deepest, position_text(overlap.position)));
 }
 
 }  // namespace

@@ -30,9 +30,9 @@ class PairFinder {
 
   /// Excludes pairs of bodies that have a contact of their own, and facets that are tied, from the contacts of all
   /// pairs.
-  void leave_out(const ModelContact& contact) {
+  void exclude(const ModelContact& contact) {
     for (const int one : bodies_on(contact.facets)) {
-      for (const int other : bodies_on(contact.opposite_facets)) known_.insert(std::minmax(one, other));
+      for (const int other : bodies_on(contact.opposite_facets)) excluded_pairs_.insert(std::minmax(one, other));
     }
     if (!contact.tied) return;
     for (const auto* const facets : {&contact.facets, &contact.opposite_facets}) {
@@ -54,7 +54,7 @@ class PairFinder {
       ++count;
       for (int j = i + 1; j < bodies_.count; ++j) {
         if (surfaces[static_cast<std::size_t>(j)].empty()) continue;
-        if (known_.contains({i, j})) {
+        if (excluded_pairs_.contains({i, j})) {
           ++left_out;
         } else {
           contacts.push_back(pair_of(of_all, i, j, surfaces));
@@ -82,7 +82,7 @@ class PairFinder {
   [[nodiscard]] ModelContact pair_of(const ModelContact& of_all, int one, int other,
                                      const std::vector<std::vector<Index>>& surfaces) const {
     ModelContact pair = of_all;
-    pair.pair_of = of_all.group;
+    pair.all_pairs_group = of_all.group;
     pair.group = short_name(names_[static_cast<std::size_t>(one)]);
     pair.against = short_name(names_[static_cast<std::size_t>(other)]);
     pair.facets = surfaces[static_cast<std::size_t>(one)];
@@ -104,7 +104,7 @@ class PairFinder {
   const Model& model_;
   ConnectedBodies bodies_;
   std::vector<std::string> names_;
-  std::set<std::pair<int, int>> known_;
+  std::set<std::pair<int, int>> excluded_pairs_;
   std::set<Index> tied_;
 };
 
@@ -124,7 +124,7 @@ std::vector<ModelContact> find_contacts(const Case& input, const Model& model) {
   if (!any) return entries;
   PairFinder finder(input, model);
   std::vector<ModelContact> contacts;
-  for (const ModelContact& contact : entries) finder.leave_out(contact);
+  for (const ModelContact& contact : entries) finder.exclude(contact);
   for (const ModelContact& contact : entries) {
     if (contact.is_of_all_pairs()) {
       finder.add(contact, contacts);

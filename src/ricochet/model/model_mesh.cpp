@@ -81,7 +81,7 @@ void check_placement(const Case& input, const CaseMeshFile& file, int dimension)
   }
 }
 
-Mesh put_together(const Case& input, const Model& model, std::vector<NamedMesh> files) {
+Mesh merge_meshes(const Case& input, const Model& model, std::vector<NamedMesh> files) {
   const std::vector<CaseMeshFile> places = mesh_files(input);
   for (std::size_t i = 0; i < files.size(); ++i) {
     place_mesh(files[i].mesh, places[i].placement);

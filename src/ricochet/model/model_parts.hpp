@@ -25,7 +25,7 @@ void check_dimensions(const Case& input, int dimension);
 /// Checks `turn` and `move` of a file.
 void check_placement(const Case& input, const CaseMeshFile& file, int dimension);
 /// Places each mesh as the case demands and merges them into one. The obstacles must exist.
-[[nodiscard]] Mesh put_together(const Case& input, const Model& model, std::vector<NamedMesh> files);
+[[nodiscard]] Mesh merge_meshes(const Case& input, const Model& model, std::vector<NamedMesh> files);
 /// Moves the mesh of a file, which is already turned and moved, to where it rests on its obstacle.
 void rest_on_obstacle(const Case& input, const CaseMeshFile& file, const Model& model, Mesh& mesh);
 

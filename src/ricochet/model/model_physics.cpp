@@ -49,7 +49,7 @@ void warn_of_long_steps(const Case& input, const Scheme& scheme, const Model& mo
 /// Warns of a body of degree 1 most of whose nodes are on its contact boundary: few are left inside to carry the
 /// inertia of those. The spin that friction gives a ball was wrong by 19 % with 405 contact nodes of 858, by 2.5 % with
 /// 1,250 of 3,525.
-void warn_of_thin_inside(const Model& model, std::size_t contact_nodes) {
+void warn_of_few_interior_nodes(const Model& model, std::size_t contact_nodes) {
   constexpr double most = 0.4;
   const Index nodes = model.space.node_count();
   const bool is_thin =
@@ -64,8 +64,8 @@ void warn_of_thin_inside(const Model& model, std::size_t contact_nodes) {
 
 /// Warns if few free nodes carry the inertia of many contact nodes: a thin tube with contact on both of its faces left
 /// its obstacle with e = 0.78 instead of 0.98 when 8·10⁴ times the inertia accumulated on some nodes.
-void warn_of_heaped_inertia(const Case& input, const std::string& built, const SparseMatrix& mass,
-                            const Vector& diagonal) {
+void warn_of_concentrated_inertia(const Case& input, const std::string& built, const SparseMatrix& mass,
+                                  const Vector& diagonal) {
   constexpr double most = 100.0;
   const double top = top_eigenvalue(mass, diagonal);
   if (top <= most) return;
@@ -202,7 +202,7 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
                           mass_input.contact_nodes.size(), choice.name, choice.reason));
   }
   if (construction->removes_contact_inertia())
-    warn_of_heaped_inertia(input, choice.name, *choice.mass, consistent.diagonal());
+    warn_of_concentrated_inertia(input, choice.name, *choice.mass, consistent.diagonal());
   finish_problem(model.problem, with_free_bodies(model, expand_to_components(*choice.mass, d)),
                  construction->removes_contact_inertia());
   choice.mass.reset();
@@ -240,7 +240,7 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
   }
   warn_of_creep(input, *scheme, model.problem);
   if (!input.time.adaptive) warn_of_long_steps(input, *scheme, model);
-  warn_of_thin_inside(model, mass_input.contact_nodes.size());
+  warn_of_few_interior_nodes(model, mass_input.contact_nodes.size());
   warn_of_jumping_supports(input, *scheme);
 }
 

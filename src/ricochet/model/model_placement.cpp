@@ -27,15 +27,15 @@ constexpr double out_of_reach = 1e3;
 
 struct Nearest {
   double gap = std::numeric_limits<double>::infinity();
-  SpaceVector place;
+  SpaceVector position;
 };
 
 Nearest nearest_to(const Obstacle& obstacle, const Points& nodes, const SpaceVector& shift) {
   Nearest result;
   for (Index i = 0; i < nodes.cols(); ++i) {
-    const SpaceVector place = nodes.col(i) + shift;
-    const double gap = obstacle.gap(place);
-    if (gap < result.gap) result = {gap, place};
+    const SpaceVector position = nodes.col(i) + shift;
+    const double gap = obstacle.gap(position);
+    if (gap < result.gap) result = {gap, position};
   }
   return result;
 }
@@ -58,7 +58,7 @@ Points boundary_nodes(const Mesh& mesh) {
 SpaceVector direction_of(const Case& input, const std::string& key, const Obstacle& obstacle, const Nearest& nearest) {
   const std::vector<double>& gravity = input.load.gravity;
   const bool falls = std::any_of(gravity.begin(), gravity.end(), [](double g) { return g != 0.0; });
-  SpaceVector direction = obstacle.normal(nearest.place);
+  SpaceVector direction = obstacle.normal(nearest.position);
   if (!obstacle.shape().is_flat() && falls) direction = -vector_of(gravity).stableNormalized();
   if (!is_axisymmetric(input)) return direction;
   direction[0] = 0.0;
@@ -80,7 +80,7 @@ void rest_on_obstacle(const Case& input, const CaseMeshFile& file, const Model& 
   const Vector sides = nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff();
   const double limit = out_of_reach * (sides.norm() + std::abs(nearest.gap) + file.rest_gap);
   double way = 0.0;
-  for (int round = 0; std::abs(nearest.gap - file.rest_gap) > obstacle.gap_rounding(nearest.place); ++round) {
+  for (int round = 0; std::abs(nearest.gap - file.rest_gap) > obstacle.gap_rounding(nearest.position); ++round) {
     const double before = way;
     way -= nearest.gap - file.rest_gap;
     if (way == before) break;

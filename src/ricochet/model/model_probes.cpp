@@ -29,14 +29,14 @@ class ProbeFinder {
   ProbeFinder(const Case& input, Model& model) : input_(input), model_(model) {}
 
   ProbeTargets find(std::size_t number) {
-    places_ = {};
+    targets_ = {};
     const ProbeSection& section = input_.probes[number];
     const std::string key = fmt::format("probe.{}", number);
     if (!section.at.empty()) add_point(section);
     if (!section.from.empty()) add_segment(section, key);
     if (!section.boundary.empty()) add_boundary(section, key);
     if (section.contact) check_contact(section, key);
-    return std::move(places_);
+    return std::move(targets_);
   }
 
  private:
@@ -56,9 +56,9 @@ class ProbeFinder {
           "one at the start",
           name, entries, model_.contact_pairs[pair].opponent(model_.problem.contact.is_opposite[first] != 0)));
     }
-    places_.columns.push_back(make_point_sensor(model_.problem, probe)->columns());
-    places_.probes.push_back(std::move(probe));
-    places_.positions.emplace_back(model_.space.nodes.col(node));
+    targets_.columns.push_back(make_point_sensor(model_.problem, probe)->columns());
+    targets_.probes.push_back(std::move(probe));
+    targets_.positions.emplace_back(model_.space.nodes.col(node));
   }
 
   /// Returns the entry of a node in ContactBoundary::nodes; among several, the one with the smallest initial gap, the
@@ -165,14 +165,14 @@ class ProbeFinder {
                       "are inside of one body",
                       section.name, section.boundary));
     }
-    places_.nodes = nodes;
-    places_.sums = sums_of_boundary(nodes);
-    log::info(fmt::format("probe \"{}\": {}", section.name, places_.sums));
+    targets_.nodes = nodes;
+    targets_.sums = describe_boundary_forces(nodes);
+    log::info(fmt::format("probe \"{}\": {}", section.name, targets_.sums));
   }
 
   /// Describes which forces act at these nodes. At nodes that contact and a support share, only the sum of both is
   /// known.
-  [[nodiscard]] std::string sums_of_boundary(const std::vector<Index>& nodes) const {
+  [[nodiscard]] std::string describe_boundary_forces(const std::vector<Index>& nodes) const {
     const SemidiscreteProblem& problem = model_.problem;
     const auto among = [&nodes](Index node) { return std::binary_search(nodes.begin(), nodes.end(), node); };
     const std::vector<Index>& dofs = problem.supports.dofs();
@@ -201,10 +201,10 @@ class ProbeFinder {
                          "\"group\" for stresses near the surface",
                          *section.contact));
     }
-    places_.sums = sums_of_contact(*section.contact);
+    targets_.sums = describe_contact_forces(*section.contact);
   }
 
-  [[nodiscard]] std::string sums_of_contact(long entry) const {
+  [[nodiscard]] std::string describe_contact_forces(long entry) const {
     std::vector<const ContactPair*> pairs;
     for (std::size_t i = 0; i < model_.contacts.size(); ++i) {
       if (static_cast<long>(model_.contacts[i].entry) == entry) pairs.push_back(&model_.contact_pairs[i]);
@@ -225,7 +225,7 @@ class ProbeFinder {
 
   const Case& input_;
   Model& model_;
-  ProbeTargets places_;
+  ProbeTargets targets_;
 };
 
 class SensorMaker {
@@ -234,7 +234,7 @@ class SensorMaker {
 
   void make(std::size_t number) {
     const ProbeSection& section = input_.probes[number];
-    const ProbeTargets& places = model_.watched[number];
+    const ProbeTargets& places = model_.probe_targets[number];
     for (std::size_t i = 0; i < places.probes.size(); ++i) {
       const Probe& probe = places.probes[i];
       add(section, probe.node < 0 ? make_absent_sensor(places.columns[i]) : make_point_sensor(model_.problem, probe));
@@ -333,7 +333,7 @@ Columns history_columns(const Model& model) {
 
 void find_probes(const Case& input, Model& model) {
   ProbeFinder finder(input, model);
-  for (std::size_t i = 0; i < input.probes.size(); ++i) model.watched.push_back(finder.find(i));
+  for (std::size_t i = 0; i < input.probes.size(); ++i) model.probe_targets.push_back(finder.find(i));
 }
 
 void add_sensors(const Case& input, Model& model) {

@@ -84,19 +84,19 @@ class TieCollection {
     check_tie(input_, model_.contacts[contact].entry, pair, surface);
     for (TiedNodes::Tie& tie : surface.ties) {
       tied_by_[static_cast<std::size_t>(tie.node)] = static_cast<int>(contact);
-      place_[tie.node] = ties_.size();
+      tie_index_[tie.node] = ties_.size();
       ties_.push_back(std::move(tie));
     }
   }
-  [[nodiscard]] std::vector<TiedNodes::Tie> take() { return std::move(ties_); }
+  [[nodiscard]] std::vector<TiedNodes::Tie> release_ties() { return std::move(ties_); }
 
  private:
   [[nodiscard]] bool is_tied(Index node) const { return tied_by_[static_cast<std::size_t>(node)] >= 0; }
   /// Returns true if one of these nodes is the node itself or follows it.
   [[nodiscard]] bool leads_to(const TiedNodes::Weights& weights, Index node) const {
     return std::any_of(weights.begin(), weights.end(), [&](const auto& entry) {
-      const auto at = place_.find(entry.first);
-      return entry.first == node || (at != place_.end() && leads_to(ties_[at->second].weights, node));
+      const auto at = tie_index_.find(entry.first);
+      return entry.first == node || (at != tie_index_.end() && leads_to(ties_[at->second].weights, node));
     });
   }
   [[nodiscard]] TiedSurface tie(std::size_t contact, const std::set<Index>& taken) const {
@@ -122,7 +122,7 @@ class TieCollection {
   const Case& input_;
   const Model& model_;
   std::vector<int> tied_by_;  ///< contact, or −1
-  std::map<Index, std::size_t> place_;
+  std::map<Index, std::size_t> tie_index_;
   std::vector<TiedNodes::Tie> ties_;
 };
 
@@ -152,7 +152,7 @@ void add_ties(const Case& input, Model& model) {
   for (std::size_t i = 0; i < model.contact_pairs.size(); ++i) {
     if (model.contact_pairs[i].tied) collection.add(i);
   }
-  std::vector<TiedNodes::Tie> ties = collection.take();
+  std::vector<TiedNodes::Tie> ties = collection.release_ties();
   if (ties.empty()) return;
   try {
     model.tied = TiedNodes(std::move(ties), model.space.node_count());

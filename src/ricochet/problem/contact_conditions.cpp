@@ -10,7 +10,7 @@ namespace {
 
 /// Rows of the stage that may be overwritten because no one else refers to them. A completed step keeps the rows with
 /// which it was solved, so there are as many as there are steps and stages in use, and only the first ones allocate.
-ContactRows& own_rows(const SemidiscreteProblem& problem, Stage& stage) {
+ContactRows& writable_rows(const SemidiscreteProblem& problem, Stage& stage) {
   for (std::shared_ptr<ContactRows>& rows : stage.row_storage) {
     if (rows.use_count() > 1 && stage.rows != rows) continue;
     if (rows.use_count() > 2) continue;
@@ -27,29 +27,31 @@ ContactRows& own_rows(const SemidiscreteProblem& problem, Stage& stage) {
 }
 
 /// Updates the rows to a displacement and a time, or to the step that ends there.
-void take_rows(const SemidiscreteProblem& problem, const Vector& displacement, double time, const StepStart* start,
-               Stage& stage) {
+void update_rows(const SemidiscreteProblem& problem, const Vector& displacement, double time, const StepStart* start,
+                 Stage& stage) {
   if (!problem.contact.follows_motion()) {
     if (stage.rows != problem.contact.rows) stage.rows = problem.contact.rows;
     return;
   }
-  problem.contact.geometry->update(displacement, time, start, own_rows(problem, stage));
+  problem.contact.geometry->update(displacement, time, start, writable_rows(problem, stage));
 }
 
 /// Makes every point eligible except those whose condition another point enforces.
-void take_eligible(const SemidiscreteProblem& problem, Stage& stage) {
+void set_eligible(const SemidiscreteProblem& problem, Stage& stage) {
   stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 1);
-  if (problem.contact.follows_motion()) problem.contact.geometry->leave_out(stage.eligible);
+  if (problem.contact.follows_motion()) problem.contact.geometry->deactivate_points(stage.eligible);
 }
 
 /// Computes the gaps at the end of a step, or at an instant.
-void take_gaps(const SemidiscreteProblem& problem, const Vector& displacement, double time, bool of_step, Vector& gap) {
+void compute_gaps(const SemidiscreteProblem& problem, const Vector& displacement, double time, bool of_step,
+                  Vector& gap) {
   problem.gaps(displacement, time, gap);
   if (of_step && problem.contact.follows_motion()) problem.contact.geometry->allow_overlap(gap);
 }
 
 /// Computes the slip rate at δ = 0 and its rounding error.
-void take_slip(const SemidiscreteProblem& problem, const Vector& velocity, const Vector& obstacle, Stage& stage) {
+void compute_slip_offset(const SemidiscreteProblem& problem, const Vector& velocity, const Vector& obstacle,
+                         Stage& stage) {
   stage.rows->tangential_motion(velocity, stage.slip_offset);
   problem.trace_rounding(velocity, stage.slip_offset_rounding);
   if (obstacle.size() == 0) return;
@@ -66,9 +68,9 @@ void take_slip(const SemidiscreteProblem& problem, const Vector& velocity, const
 constexpr double same_velocity = 1e-10;
 
 /// Computes the obstacle velocities at the contact points displaced by an increment.
-void take_obstacle_velocity(const SemidiscreteProblem& problem, const Vector& increment, ContactMotion& motion,
-                            ObstacleMotion& velocity) {
-  motion.solution = motion.observed + motion.instant.factor * increment;
+void obstacle_velocity_at(const SemidiscreteProblem& problem, const Vector& increment, ContactMotion& motion,
+                          ObstacleMotion& velocity) {
+  motion.solution = motion.obstacle_displacement + motion.instant.factor * increment;
   problem.obstacle_velocity(motion.solution, motion.instant.time, motion.instant.span, velocity);
 }
 
@@ -76,7 +78,7 @@ void take_obstacle_velocity(const SemidiscreteProblem& problem, const Vector& in
 /// conditions, at points that carry a force. Negative if they agree.
 double obstacle_error(const SemidiscreteProblem& problem, const StageSolution& solution, const Vector& increment,
                       const Stage& stage, ContactMotion& motion) {
-  take_obstacle_velocity(problem, increment, motion, motion.obstacle);
+  obstacle_velocity_at(problem, increment, motion, motion.obstacle);
   project_motion(*stage.rows, motion.obstacle);
   const bool has_friction = stage.slip_offset.size() > 0;
   const double duration = has_friction ? stage.gap_factor / stage.slip_factor : motion.instant.span;
@@ -100,24 +102,24 @@ void evaluate_obstacle_velocity(const SemidiscreteProblem& problem, const Vector
                                 const ObstacleInstant& instant, Stage& stage) {
   problem.obstacle_velocity(displacement, instant.time, instant.span, stage.obstacle);
   if (!stage.motion || !problem.has_rotating_obstacles()) return;
-  stage.motion->observes = true;
-  stage.motion->observed = displacement;
+  stage.motion->reevaluates_obstacles = true;
+  stage.motion->obstacle_displacement = displacement;
   stage.motion->instant = instant;
 }
 
 void require_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage,
                             const StepStart* start) {
-  take_rows(problem, base, time, start, stage);
-  take_gaps(problem, base, time, start != nullptr, stage.gap_offset);
+  update_rows(problem, base, time, start, stage);
+  compute_gaps(problem, base, time, start != nullptr, stage.gap_offset);
   stage.gap_offset_rounding = stage.rows->gap_rounding;
   stage.gap_factor = 1.0;
-  take_eligible(problem, stage);
+  set_eligible(problem, stage);
   if (!problem.contact.follows_motion() && !problem.has_rotating_obstacles()) return;
   if (!stage.motion) stage.motion.emplace();
   ContactMotion& motion = *stage.motion;
   motion.displacement = base;
   motion.time = time;
-  motion.observes = false;
+  motion.reevaluates_obstacles = false;
   if (start == nullptr) {
     motion.start.resize(0);
     return;
@@ -128,13 +130,13 @@ void require_no_penetration(const SemidiscreteProblem& problem, const Vector& ba
 
 void require_no_approach(const SemidiscreteProblem& problem, const Vector& displacement, double time,
                          const Vector& velocity, ObstacleMotion& obstacle, double step, Stage& stage) {
-  take_rows(problem, displacement, time, nullptr, stage);
+  update_rows(problem, displacement, time, nullptr, stage);
   stage.motion.reset();
   problem.gaps(displacement, time, stage.gap_offset);
   // A displacement is the sum of its increments, and this condition on velocities corrects none of their rounding
   // errors: a point that slides or rests drifts by one unit of rounding per step.
   problem.trace_rounding(displacement, stage.gap_offset_rounding);
-  take_eligible(problem, stage);
+  set_eligible(problem, stage);
   for (Index i = 0; i < problem.contact.size(); ++i) {
     const bool touches = stage.gap_offset[i] <= stage.rows->gap_rounding[i] + stage.gap_offset_rounding[i];
     if (!touches) stage.eligible[static_cast<std::size_t>(i)] = 0;
@@ -151,7 +153,7 @@ void require_friction(const SemidiscreteProblem& problem, const Vector& velocity
   if (!problem.contact.has_friction()) return;
   stage.slip_factor = slip_factor;
   project_motion(*stage.rows, stage.obstacle);
-  take_slip(problem, velocity, stage.obstacle.tangential, stage);
+  compute_slip_offset(problem, velocity, stage.obstacle.tangential, stage);
   if (stage.motion) stage.motion->velocity = velocity;
 }
 
@@ -159,15 +161,15 @@ void linearize_contact(const SemidiscreteProblem& problem, const Vector& increme
   ContactMotion& motion = *stage.motion;
   motion.solution = motion.displacement + stage.gap_factor * increment;
   const StepStart start{motion.start, motion.start_time};
-  take_rows(problem, motion.solution, motion.time, motion.start.size() > 0 ? &start : nullptr, stage);
-  take_eligible(problem, stage);
-  take_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, stage.gap_offset);
+  update_rows(problem, motion.solution, motion.time, motion.start.size() > 0 ? &start : nullptr, stage);
+  set_eligible(problem, stage);
+  compute_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, stage.gap_offset);
   stage.rows->normal_motion(increment, motion.gap_change);
   stage.gap_offset -= stage.gap_factor * motion.gap_change;
-  if (motion.observes) take_obstacle_velocity(problem, increment, motion, stage.obstacle);
+  if (motion.reevaluates_obstacles) obstacle_velocity_at(problem, increment, motion, stage.obstacle);
   project_motion(*stage.rows, stage.obstacle);
   if (stage.slip_offset.size() == 0) return;
-  take_slip(problem, motion.velocity, stage.obstacle.tangential, stage);
+  compute_slip_offset(problem, motion.velocity, stage.obstacle.tangential, stage);
 }
 
 LinearizationError linearization_error(const SemidiscreteProblem& problem, const StageSolution& solution, Stage& stage,
@@ -175,7 +177,7 @@ LinearizationError linearization_error(const SemidiscreteProblem& problem, const
   ContactMotion& motion = *stage.motion;
   const Vector& increment = solution.contact_motion();
   motion.solution = motion.displacement + stage.gap_factor * increment;
-  take_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, gap);
+  compute_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, gap);
   stage.rows->normal_motion(increment, motion.gap_change);
   problem.trace_rounding(increment, motion.gap_change_rounding);
   constexpr double none = -std::numeric_limits<double>::infinity();
@@ -191,7 +193,7 @@ LinearizationError linearization_error(const SemidiscreteProblem& problem, const
     error.beyond_all_rounding = std::max(error.beyond_all_rounding,
                                          wrong - 2.0 * (rounding + stage.gap_factor * motion.gap_change_rounding[i]));
   }
-  if (motion.observes) {
+  if (motion.reevaluates_obstacles) {
     const double obstacle = obstacle_error(problem, solution, increment, stage, motion);
     error.beyond_rounding = std::max(error.beyond_rounding, obstacle);
     error.beyond_all_rounding = std::max(error.beyond_all_rounding, obstacle);

@@ -28,7 +28,7 @@ void Damping::evaluate(const Vector& velocity, Vector& force) const {
 SparseMatrix Damping::matrix() const {
   SparseMatrix result;
   const auto add = [&](const SparseMatrix& part) { result = result.rows() == 0 ? part : SparseMatrix(result + part); };
-  if (mass_part_) add(mass_part_->whole());
+  if (mass_part_) add(mass_part_->to_sparse());
   if (stiffness_part_) add(stiffness_part_->tangent());
   if (ground_.size() > 0) add(diagonal_matrix(ground_));
   return result;

@@ -15,7 +15,7 @@ FiniteElasticity::FiniteElasticity(const Body& body, NodeGraph graph, std::vecto
     : body_(body), graph_(std::move(graph)), cells_(body, &graph_, std::move(cells)) {}
 
 /// Includes the nodes that are tied to the requested ones.
-std::shared_ptr<const InternalForce> FiniteElasticity::near(const std::vector<char>& nodes) const {
+std::shared_ptr<const InternalForce> FiniteElasticity::restricted_to(const std::vector<char>& nodes) const {
   std::vector<char> wanted = nodes;
   if (body_.tied != nullptr) {
     for (const TiedNodes::Tie& tie : body_.tied->ties()) {

@@ -19,7 +19,7 @@ class FiniteElasticity final : public InternalForce, public ViscousForce {
   using InternalForce::energy;
   [[nodiscard]] double energy(const Vector& displacement) const override;
   void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const override;
-  [[nodiscard]] std::shared_ptr<const InternalForce> near(const std::vector<char>& nodes) const override;
+  [[nodiscard]] std::shared_ptr<const InternalForce> restricted_to(const std::vector<char>& nodes) const override;
   [[nodiscard]] bool is_linear() const override { return false; }
   using InternalForce::tangent;
   [[nodiscard]] SparseMatrix tangent(const Vector& displacement) const override;

@@ -34,7 +34,7 @@ template <class Visit>
 void FlightPrediction::visit_nodes(const Visit& visit) const {
   for (Index node = 0; node < problem_.nodes.cols(); ++node) {
     const int body = bodies_.body_of_node(node);
-    if (body >= 0 && bodies_.turns(body)) visit(node, static_cast<std::size_t>(body));
+    if (body >= 0 && bodies_.rotates(body)) visit(node, static_cast<std::size_t>(body));
   }
 }
 

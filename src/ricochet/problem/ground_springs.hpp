@@ -18,8 +18,8 @@ class GroundSprings final : public InternalForce {
   void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const override;
   void mean_force(const Vector& middle, const Vector& increment, Vector& force) const override;
   void mean_forces(const Vector& middle, const Vector& increment, Vector& force, Vector& of_strain) const override;
-  [[nodiscard]] std::shared_ptr<const InternalForce> near(const std::vector<char>& nodes) const override {
-    return bodies_->near(nodes);
+  [[nodiscard]] std::shared_ptr<const InternalForce> restricted_to(const std::vector<char>& nodes) const override {
+    return bodies_->restricted_to(nodes);
   }
   void add_ground_force(const Vector& displacement, Vector& force) const override { add(displacement, force); }
   [[nodiscard]] const ViscousForce* viscous() const override { return bodies_->viscous(); }

@@ -24,7 +24,7 @@ void InternalForce::mean_forces(const Vector& middle, const Vector& increment, V
   strain_force(middle, increment, of_strain);
 }
 
-std::shared_ptr<const InternalForce> InternalForce::near(const std::vector<char>&) const {
+std::shared_ptr<const InternalForce> InternalForce::restricted_to(const std::vector<char>&) const {
   throw_linear();
 }
 
@@ -64,7 +64,7 @@ void LinearElasticity::strain_force(const Vector&, const Vector& increment, Vect
 
 double LinearElasticity::energy(const Vector& displacement) const {
   rigid_.remove(displacement, deformation_);
-  return 0.5 * stiffness_.form(deformation_);
+  return 0.5 * stiffness_.quadratic_form(deformation_);
 }
 
 double LinearElasticity::energy_terms(const Vector& displacement) const {

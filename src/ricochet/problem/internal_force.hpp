@@ -37,7 +37,7 @@ class InternalForce {
   virtual void mean_forces(const Vector& middle, const Vector& increment, Vector& force, Vector& of_strain) const;
   /// Returns the contribution of the cells at some nodes (per node, 1: included): their forces and the energy of these
   /// cells alone. Only for nonlinear forces.
-  [[nodiscard]] virtual std::shared_ptr<const InternalForce> near(const std::vector<char>& nodes) const;
+  [[nodiscard]] virtual std::shared_ptr<const InternalForce> restricted_to(const std::vector<char>& nodes) const;
   /// Adds the contribution that acts from the ground and is no stress: the force of springs at a displacement, as in
   /// evaluate().
   virtual void add_ground_force(const Vector& /*displacement*/, Vector& /*force*/) const {}
@@ -75,7 +75,7 @@ class LinearElasticity final : public InternalForce {
   void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const override;
   [[nodiscard]] bool is_linear() const override { return true; }
   using InternalForce::tangent;
-  [[nodiscard]] SparseMatrix tangent(const Vector&) const override { return stiffness_.whole(); }
+  [[nodiscard]] SparseMatrix tangent(const Vector&) const override { return stiffness_.to_sparse(); }
   [[nodiscard]] const NodeMatrix* constant_tangent() const override { return &stiffness_; }
   [[nodiscard]] double energy_terms(const Vector& displacement) const override;
 

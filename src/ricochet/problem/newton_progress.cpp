@@ -7,7 +7,7 @@ namespace ricochet {
 Error NewtonProgress::failure(double correction) const {
   return {ErrorKind::not_converged,
           fmt::format("Newton's method did not converge in {} iterations (the last correction moves a node by {:.3g})",
-                      all_rounds_, correction)};
+                      total_iterations_, correction)};
 }
 
 }  // namespace ricochet

@@ -20,23 +20,23 @@ class NewtonProgress {
   /// Begins a solution; `rounding`: rounding error of the positions, the smallest meaningful correction.
   void start(double rounding) {
     rounding_ = rounding;
-    renewals_ = all_rounds_ = 0;
+    renewals_ = total_iterations_ = 0;
     accelerates_ = false;
     restart();
   }
   /// Resets the rates after a new factorization.
   void restart() {
-    rounds_ = 0;
+    iterations_ = 0;
     last_ = least_ = std::numeric_limits<double>::infinity();
     slow_ = growing_ = 0;
   }
   /// Assesses an iteration by the largest entries of its correction and of the increment so far.
   Advice judge(double correction, double increment) {
-    ++rounds_;
-    ++all_rounds_;
+    ++iterations_;
+    ++total_iterations_;
     if (!std::isfinite(correction)) return renew_or_fail();
     if (correction <= rounding_) return Advice::done;
-    if (rounds_ == 1) {
+    if (iterations_ == 1) {
       last_ = least_ = correction;
       return Advice::go_on;
     }
@@ -55,7 +55,7 @@ class NewtonProgress {
     // If earlier factorizations did not help, another one does not either, and iterations
     // that still converge may continue.
     const bool is_worth_one = slow_ >= (accelerates_ ? long_patience : patience) && renewals_ < helpful_renewals;
-    if (is_worth_one || diverges || rounds_ >= most_rounds) return renew_or_fail();
+    if (is_worth_one || diverges || iterations_ >= max_iterations) return renew_or_fail();
     return Advice::go_on;
   }
   void count_renewal() { ++renewals_; }
@@ -64,7 +64,7 @@ class NewtonProgress {
   /// (linear_algebra/anderson_acceleration.hpp).
   [[nodiscard]] bool wants_acceleration() const { return accelerates_; }
   [[nodiscard]] Error failure(double correction) const;
-  [[nodiscard]] int rounds() const { return all_rounds_; }
+  [[nodiscard]] int iterations() const { return total_iterations_; }
 
  private:
   static constexpr double tolerance = 1e-13;       ///< relative to the increment
@@ -73,13 +73,13 @@ class NewtonProgress {
   static constexpr double stalled = 0.7;
   static constexpr double slow_rate = 0.5;
   static constexpr double divergence = 1e3;
-  static constexpr int most_growing = 2, patience = 3, long_patience = 15, most_rounds = 60, helpful_renewals = 3,
+  static constexpr int most_growing = 2, patience = 3, long_patience = 15, max_iterations = 60, helpful_renewals = 3,
                        most_renewals = 6;
 
   [[nodiscard]] Advice renew_or_fail() const { return renewals_ < most_renewals ? Advice::renew : Advice::failed; }
 
   double rounding_ = 0.0, last_ = 0.0, least_ = 0.0;
-  int rounds_ = 0, all_rounds_ = 0, slow_ = 0, growing_ = 0, renewals_ = 0;
+  int iterations_ = 0, total_iterations_ = 0, slow_ = 0, growing_ = 0, renewals_ = 0;
   bool accelerates_ = false;
 };
 

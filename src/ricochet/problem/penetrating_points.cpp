@@ -18,7 +18,8 @@ double number_of(const SemidiscreteProblem& problem, Index point) {
 }
 
 /// Message of a rank to the others: number of points, then depth, number, pair and position of the deepest.
-std::vector<double> told_of(const SemidiscreteProblem& problem, const Vector& gap, const std::vector<Index>& points) {
+std::vector<double> message_of(const SemidiscreteProblem& problem, const Vector& gap,
+                               const std::vector<Index>& points) {
   if (points.empty()) return {0.0};
   const Index deepest = *std::min_element(points.begin(), points.end(), [&](Index a, Index b) {
     return gap[a] != gap[b] ? gap[a] < gap[b] : number_of(problem, a) < number_of(problem, b);
@@ -43,14 +44,14 @@ PenetratingPoints penetrating_points(const SemidiscreteProblem& problem, const V
     if (gap[i] < -std::max(depth, contact.rows->gap_rounding[i])) inside.points.push_back(i);
   }
   double number = 0.0;
-  for (const std::vector<double>& told : problem.ranks->of_all(told_of(problem, gap, inside.points))) {
+  for (const std::vector<double>& told : problem.ranks->all_gather(message_of(problem, gap, inside.points))) {
     inside.count += static_cast<Index>(told[0]);
     if (told.size() == 1 || told[1] < inside.deepest) continue;
     if (told[1] == inside.deepest && told[2] > number) continue;
     inside.deepest = told[1];
     number = told[2];
     inside.pair = static_cast<int>(told[3]);
-    inside.place = Eigen::Map<const Vector>(told.data() + 4, problem.dimension);
+    inside.position = Eigen::Map<const Vector>(told.data() + 4, problem.dimension);
   }
   return inside;
 }

@@ -14,7 +14,7 @@ struct PenetratingPoints {
   Index count = 0;
   double deepest = 0.0;  ///< length, positive
   int pair = -1;         ///< of the deepest point, as in ContactBoundary::pair
-  Vector place;          ///< undeformed position of the deepest point; empty if there is none
+  Vector position;       ///< undeformed position of the deepest point; empty if there is none
 };
 
 /// Returns the contact points with a gap below −`depth` (≥ 0) and below zero by more than rounding, of one pair or of

@@ -102,7 +102,7 @@ void SemidiscreteProblem::trace_rounding(const Vector& values, Vector& rounding)
   }
 }
 
-void SemidiscreteProblem::take_contact(const Vector& values, Eigen::Ref<Vector> on_contact) const {
+void SemidiscreteProblem::gather_contact(const Vector& values, Eigen::Ref<Vector> on_contact) const {
   for (std::size_t i = 0; i < contact_dofs.size(); ++i) on_contact[static_cast<Index>(i)] = values[contact_dofs[i]];
 }
 
@@ -114,7 +114,7 @@ std::shared_ptr<const InternalForce> SemidiscreteProblem::internal_force_at_cont
   if (contact_dofs.empty()) return nullptr;
   std::vector<char> wanted(static_cast<std::size_t>(nodes.cols()), 0);
   for (const Index dof : contact_dofs) wanted[static_cast<std::size_t>(dof / dimension)] = 1;
-  return internal_force->near(wanted);
+  return internal_force->restricted_to(wanted);
 }
 
 std::vector<Index> contact_node_dofs(const SemidiscreteProblem& problem) {

@@ -64,12 +64,12 @@ struct SemidiscreteProblem {
   [[nodiscard]] bool has_singular_mass() const { return has_massless_elsewhere || !massless_dofs.empty(); }
   /// Global properties, of all ranks; collective calls.
   [[nodiscard]] bool has_diagonal_mass() const { return !ranks->any(!mass.is_diagonal()); }
-  [[nodiscard]] Index all_contact_points() const {
+  [[nodiscard]] Index global_contact_point_count() const {
     return static_cast<Index>(ranks->sum(static_cast<double>(contact.size())));
   }
   [[nodiscard]] bool has_contact_dofs() const { return has_contact_elsewhere || !contact_dofs.empty(); }
   /// Gather values per dof at contact_dofs, and scatter them back. (Eigen's indexed views copy their indices.)
-  void take_contact(const Vector& values, Eigen::Ref<Vector> on_contact) const;
+  void gather_contact(const Vector& values, Eigen::Ref<Vector> on_contact) const;
   void scatter_contact(const Eigen::Ref<const Vector>& on_contact, Vector& values) const;
   /// Returns the internal force of the cells at contact_dofs alone, exact at the nodes of these
   /// dofs; null if there are none.

@@ -47,7 +47,8 @@ struct OperatorCoefficients {
   double stiffness = 0.0;  ///< κ
   double damping = 0.0;    ///< η
   StageDofs dofs = StageDofs::all;
-  int layer = -1;  ///< index of the operator A_c on the contact dofs, which precedes this one; −1 if the stage has none
+  int condensed_operator =
+      -1;  ///< index of the operator A_c on the contact dofs, which precedes this one; −1 if the stage has none
   double condensed_weight = 1.0;  ///< ℓ
   ReactionMean mean = ReactionMean::end;
   /// h if stress of viscoelastic branches relaxes over the stage (viscous_force.hpp): K then contains
@@ -71,8 +72,8 @@ struct ContactMotion {
   double start_time = 0.0;
   /// Whether the obstacle velocities depend on δ. They are then evaluated at observed + instant.factor δ, see
   /// evaluate_obstacle_velocity().
-  bool observes = false;
-  Vector observed;
+  bool reevaluates_obstacles = false;
+  Vector obstacle_displacement;
   ObstacleInstant instant;
   Vector solution, gap_change, gap_change_rounding;  ///< work space: displacement + s δ, G δ
   ObstacleMotion obstacle;                           ///< work space
@@ -113,7 +114,7 @@ struct StageSolution {
   Vector support_reaction;                    ///< on supported dofs
   std::vector<ContactStatus> contact_status;  ///< per contact point
   int iterations = 0;                         ///< of the contact solver, not of Newton's method
-  int rounds = 1;                             ///< Newton iterations; 1 if the internal force is linear
+  int newton_iterations = 1;                  ///< Newton iterations; 1 if the internal force is linear
   Vector follower_load;                       ///< loads that follow the surface, at p + κδ; empty if there are none
   Vector contact_increment;                   ///< m on contact nodes, if the operator has an A_c; else empty
   /// ρ̄; empty if it equals ρ.

@@ -106,17 +106,17 @@ void BodyFrames::read_frames() {
       if (field.components > 3 || (is_contact(field.name) && line_.nodes.empty())) continue;
       results_.read(frame, field, values);
       if (field.name == "displacement") {
-        take_displacement(values);
+        store_displacement(values);
       } else if (is_contact(field.name)) {
-        take_contact(field, values);
+        store_contact(field, values);
       } else {
-        take_field(field, values);
+        store_field(field, values);
       }
     }
   }
 }
 
-void BodyFrames::take_displacement(const std::vector<float>& field) {
+void BodyFrames::store_displacement(const std::vector<float>& field) {
   std::array<double, 3> mean{};
   for (std::size_t i = 0; i < field.size(); ++i) mean[i % 3] += static_cast<double>(field[i]);
   for (double& component : mean) component /= static_cast<double>(field.size() / 3);
@@ -131,12 +131,12 @@ void BodyFrames::take_displacement(const std::vector<float>& field) {
   }
 }
 
-void BodyFrames::take_contact(const ResultField& field, const std::vector<float>& values) {
+void BodyFrames::store_contact(const ResultField& field, const std::vector<float>& values) {
   Values& own = *std::find_if(contact_.begin(), contact_.end(), [&](const Values& v) { return v.name == field.name; });
   for (const Index node : line_.nodes) own.values.push_back(magnitude(values, field.components, node));
 }
 
-void BodyFrames::take_field(const ResultField& field, const std::vector<float>& values) {
+void BodyFrames::store_field(const ResultField& field, const std::vector<float>& values) {
   for (Part* part : {&outside_, &inside_}) {
     Values& own =
         *std::find_if(part->fields.begin(), part->fields.end(), [&](const Values& v) { return v.name == field.name; });

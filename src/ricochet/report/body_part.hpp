@@ -99,9 +99,9 @@ class BodyFrames {
   void choose();
   void make_inside(std::size_t bytes);
   void read_frames();
-  void take_displacement(const std::vector<float>& field);
-  void take_contact(const ResultField& field, const std::vector<float>& values);
-  void take_field(const ResultField& field, const std::vector<float>& values);
+  void store_displacement(const std::vector<float>& field);
+  void store_contact(const ResultField& field, const std::vector<float>& values);
+  void store_field(const ResultField& field, const std::vector<float>& values);
   /// Returns the rows of the frames that a stride leaves, always including the last.
   [[nodiscard]] std::vector<std::size_t> kept(std::size_t stride) const;
   [[nodiscard]] std::vector<int> frames_of(const std::vector<std::size_t>& rows) const;

@@ -22,7 +22,7 @@ class Translations {
  public:
   explicit Translations(const ObstacleFrame& first)
       : first_(points_of(first)), obstacle_(first.positions.size() / 3, 0) {
-    seen_ = smallest_seen * (first_.rowwise().maxCoeff() - first_.rowwise().minCoeff()).maxCoeff();
+    visible_distance_ = smallest_seen * (first_.rowwise().maxCoeff() - first_.rowwise().minCoeff()).maxCoeff();
     const auto corners = static_cast<std::size_t>(first.corners);
     for (std::size_t k = 0; k < first.cells.size(); ++k)
       obstacle_[static_cast<std::size_t>(first.cells[k])] = first.obstacle[k / corners];
@@ -38,7 +38,8 @@ class Translations {
     for (Index k = 0; k < way.cols(); ++k) mean.col(obstacle(k)) += way.col(k) / count_[obstacle(k)];
     const double rounding = file_rounding * (first_.cwiseAbs().maxCoeff() + points.cwiseAbs().maxCoeff());
     for (Index k = 0; k < way.cols(); ++k) {
-      if (!((way.col(k) - mean.col(obstacle(k))).cwiseAbs().maxCoeff() <= seen_ + 2.0 * rounding)) return std::nullopt;
+      if (!((way.col(k) - mean.col(obstacle(k))).cwiseAbs().maxCoeff() <= visible_distance_ + 2.0 * rounding))
+        return std::nullopt;
     }
     return mean;
   }
@@ -49,7 +50,7 @@ class Translations {
   Eigen::Map<const Points> first_;
   std::vector<int> obstacle_;  ///< per point
   Vector count_;               ///< points per obstacle
-  double seen_ = 0.0;
+  double visible_distance_ = 0.0;
 };
 
 /// Returns one row per frame; none if an obstacle does not merely translate.

@@ -24,7 +24,7 @@ namespace {
 
 /// Position of the data in the viewer's page, and the mark with which every report begins.
 constexpr std::string_view data_begin = "<script type=\"application/json\" id=\"ricochet-runs\">";
-constexpr std::string_view data_place = "<!--RICOCHET-DATA-->", report_mark = "<!-- ricochet report -->";
+constexpr std::string_view data_mark = "<!--RICOCHET-DATA-->", report_mark = "<!-- ricochet report -->";
 /// Format of the data; the viewer's page begins with the one that it reads.
 constexpr int data_format = 5;
 /// Limit for all bodies together, and the number that each may have in any case.
@@ -280,7 +280,7 @@ std::string PageBuilder::data() {
 
 Report make_report(const std::vector<std::string>& directories, const ReportOptions& options) {
   const std::string viewer = read_file(options.viewer);
-  const std::size_t place = viewer.find(data_place);
+  const std::size_t place = viewer.find(data_mark);
   if (place == std::string::npos ||
       viewer.find(fmt::format("<!-- data format {} -->", data_format)) == std::string::npos) {
     throw Error(ErrorKind::file_access,
@@ -288,7 +288,7 @@ Report make_report(const std::vector<std::string>& directories, const ReportOpti
   }
   PageBuilder builder(read_runs(directories, true), options.most_bytes - std::min(options.most_bytes, viewer.size()));
   Report report;
-  report.html = viewer.substr(0, place) + builder.data() + viewer.substr(place + data_place.size());
+  report.html = viewer.substr(0, place) + builder.data() + viewer.substr(place + data_mark.size());
   report.thinned = builder.thinned();
   return report;
 }

@@ -92,13 +92,13 @@ std::vector<Index> used_nodes(const std::vector<Triangle>& triangles) {
 std::vector<Triangle> merged(const Points& nodes, const std::vector<Triangle>& triangles, double boxes) {
   const NodeGrid grid(nodes, boxes);
   std::map<std::array<std::uint32_t, 3>, Index> first;
-  std::vector<Index> stands_for(static_cast<std::size_t>(nodes.cols()), -1);
+  std::vector<Index> representative(static_cast<std::size_t>(nodes.cols()), -1);
   for (const Index node : used_nodes(triangles))
-    stands_for[static_cast<std::size_t>(node)] = first.try_emplace(grid.box(nodes, node), node).first->second;
+    representative[static_cast<std::size_t>(node)] = first.try_emplace(grid.box(nodes, node), node).first->second;
   std::vector<Triangle> result;
   std::map<std::array<Index, 3>, bool> seen;
   for (Triangle t : triangles) {
-    for (Index& corner : t.corners) corner = stands_for[static_cast<std::size_t>(corner)];
+    for (Index& corner : t.corners) corner = representative[static_cast<std::size_t>(corner)];
     std::array<Index, 3> key = t.corners;
     std::sort(key.begin(), key.end());
     if (key[0] == key[1] || key[1] == key[2] || !seen.try_emplace(key, true).second) continue;

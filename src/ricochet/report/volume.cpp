@@ -125,12 +125,12 @@ std::vector<Index> used_nodes(const std::vector<Tetrahedron>& tetrahedra) {
 std::vector<Tetrahedron> merged(const Points& nodes, const std::vector<Tetrahedron>& tetrahedra, double boxes) {
   const NodeGrid grid(nodes, boxes);
   std::map<GridBox, Index> first;
-  std::vector<Index> stands_for(static_cast<std::size_t>(nodes.cols()), -1);
+  std::vector<Index> representative(static_cast<std::size_t>(nodes.cols()), -1);
   for (const Index node : used_nodes(tetrahedra))
-    stands_for[static_cast<std::size_t>(node)] = first.try_emplace(grid.box(nodes, node), node).first->second;
+    representative[static_cast<std::size_t>(node)] = first.try_emplace(grid.box(nodes, node), node).first->second;
   std::vector<Tetrahedron> result;
   for (Tetrahedron t : tetrahedra) {
-    for (Index& corner : t.corners) corner = stands_for[static_cast<std::size_t>(corner)];
+    for (Index& corner : t.corners) corner = representative[static_cast<std::size_t>(corner)];
     std::array<Index, 4> key = t.corners;
     std::sort(key.begin(), key.end());
     if (std::adjacent_find(key.begin(), key.end()) != key.end()) continue;

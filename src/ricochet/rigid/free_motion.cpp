@@ -7,11 +7,11 @@ namespace ricochet {
 
 namespace {
 
-using Three = Eigen::Vector3d;
+using Vector3 = Eigen::Vector3d;
 
 /// Cross product a × b; for vectors in the plane its third component.
 SpaceVector cross(const SpaceVector& a, const SpaceVector& b) {
-  if (a.size() == 3) return Three(a).cross(Three(b));
+  if (a.size() == 3) return Vector3(a).cross(Vector3(b));
   return SpaceVector::Constant(1, a[0] * b[1] - a[1] * b[0]);
 }
 
@@ -43,19 +43,19 @@ FreeMotion::FreeMotion(Inertia inertia, Index node)
   const Index d = dimension();
   if (inertia_.principal.size() == 0) inertia_.principal = Pose::Rotation::Identity(d, d);
   axes_ = inertia_.principal;
-  turned_ = SpaceVector::Zero(gyration_.size());
+  rotation_at_start_ = SpaceVector::Zero(gyration_.size());
 }
 
-SpaceVector FreeMotion::turn(const Vector& displacement) const {
+SpaceVector FreeMotion::step_rotation(const Vector& displacement) const {
   const SpaceVector now = displacement.segment(rotation_node() * dimension(), gyration_.size());
-  return (now - turned_).cwiseQuotient(gyration_);
+  return (now - rotation_at_start_).cwiseQuotient(gyration_);
 }
 
 void FreeMotion::begin_step(const Vector& displacement) {
   const SpaceVector now = displacement.segment(rotation_node() * dimension(), gyration_.size());
-  if (now == turned_) return;
+  if (now == rotation_at_start_) return;
   axes_ = axes(displacement);
-  turned_ = now;
+  rotation_at_start_ = now;
   // A product of rotations is a rotation only up to rounding errors, which accumulate.
   if (dimension() == 3) {
     const Eigen::Quaterniond unit(Eigen::Matrix3d{axes_});
@@ -67,17 +67,17 @@ void FreeMotion::begin_step(const Vector& displacement) {
 
 void FreeMotion::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".axes", Vector(axes_.reshaped()));
-  snapshot.save(name + ".turned", Vector(turned_));
+  snapshot.save(name + ".turned", Vector(rotation_at_start_));
 }
 
 void FreeMotion::load(const Snapshot& snapshot, const std::string& name) {
   const Index d = dimension();
   axes_ = snapshot.reals(name + ".axes", d * d).reshaped(d, d);
-  turned_ = snapshot.reals(name + ".turned", gyration_.size());
+  rotation_at_start_ = snapshot.reals(name + ".turned", gyration_.size());
 }
 
 Pose::Rotation FreeMotion::axes(const Vector& displacement) const {
-  const SpaceVector rotation = turn(displacement);
+  const SpaceVector rotation = step_rotation(displacement);
   return rotation.isZero(0.0) ? axes_ : Pose::Rotation(axes_ * cayley(rotation));
 }
 
@@ -114,7 +114,7 @@ SpaceVector FreeMotion::angular_momentum(const Vector& displacement, const Vecto
   return turned(axes(displacement), inertia_.mass * own.cwiseProduct(gyration_));
 }
 
-SpaceVector FreeMotion::spin(const Vector& displacement, const Vector& velocity) const {
+SpaceVector FreeMotion::angular_velocity(const Vector& displacement, const Vector& velocity) const {
   const SpaceVector own = velocity.segment(rotation_node() * dimension(), gyration_.size());
   return turned(axes(displacement), own.cwiseQuotient(gyration_));
 }
@@ -129,14 +129,14 @@ SpaceVector FreeMotion::rotational_velocity(const SpaceVector& spin, const Vecto
 /// g = (1 − ½Θ^)⁻¹ [2J(Θ − hW₀) + Θ × JΘ]/h² − 2J(Θ − hW₀)/h².
 void FreeMotion::add_gyroscopic_force(const Vector& end, const Vector& velocity, double step, Vector& force) const {
   if (!has_gyroscopic_force()) return;
-  const Three rotation = turn(end), moments = inertia_.moments;
-  const Three spin = Three(velocity.segment<3>(rotation_node() * 3)).cwiseQuotient(Three(gyration_));
-  const Three linear = 2.0 * moments.cwiseProduct(rotation - step * spin);
-  const Three sum = linear + rotation.cross(Three(moments.cwiseProduct(rotation)));
+  const Vector3 rotation = step_rotation(end), moments = inertia_.moments;
+  const Vector3 spin = Vector3(velocity.segment<3>(rotation_node() * 3)).cwiseQuotient(Vector3(gyration_));
+  const Vector3 linear = 2.0 * moments.cwiseProduct(rotation - step * spin);
+  const Vector3 sum = linear + rotation.cross(Vector3(moments.cwiseProduct(rotation)));
   // (1 − ½Θ^)⁻¹ v = (v + ½Θ×v + ¼Θ(Θ·v))/(1 + ¼Θ²)
-  const Three solved =
+  const Vector3 solved =
       (sum + 0.5 * rotation.cross(sum) + 0.25 * rotation.dot(sum) * rotation) / (1.0 + 0.25 * rotation.squaredNorm());
-  force.segment<3>(rotation_node() * 3) -= 1.0 / (step * step) * (solved - linear).cwiseQuotient(Three(gyration_));
+  force.segment<3>(rotation_node() * 3) -= 1.0 / (step * step) * (solved - linear).cwiseQuotient(Vector3(gyration_));
 }
 
 }  // namespace ricochet

@@ -61,7 +61,7 @@ class FreeMotion {
   /// Angular momentum about the centre at a displacement with this velocity, in the same components.
   [[nodiscard]] SpaceVector angular_momentum(const Vector& displacement, const Vector& velocity) const;
   /// Angular velocity in space.
-  [[nodiscard]] SpaceVector spin(const Vector& displacement, const Vector& velocity) const;
+  [[nodiscard]] SpaceVector angular_velocity(const Vector& displacement, const Vector& velocity) const;
   /// Velocity V of the second node for an angular velocity in space, at a displacement.
   [[nodiscard]] SpaceVector rotational_velocity(const SpaceVector& spin, const Vector& displacement) const;
 
@@ -70,13 +70,13 @@ class FreeMotion {
   [[nodiscard]] bool has_gyroscopic_force() const { return dimension() == 3; }
 
  private:
-  [[nodiscard]] SpaceVector turn(const Vector& displacement) const;
+  [[nodiscard]] SpaceVector step_rotation(const Vector& displacement) const;
 
   Inertia inertia_;
   Index node_;
   SpaceVector gyration_;
-  Pose::Rotation axes_;  ///< A₀
-  SpaceVector turned_;   ///< the second node's displacement at the start of the step
+  Pose::Rotation axes_;            ///< A₀
+  SpaceVector rotation_at_start_;  ///< the second node's displacement at the start of the step
 };
 
 /// Cayley transform cay(Θ); in the plane Θ has one component.

@@ -42,7 +42,7 @@ constexpr double least_half_cosine = 0.01;
 
 double PosedObstacle::gap_rounding(const SpaceVector& position) const {
   const double moved = pose_.shift.size() > 0 ? pose_.shift.lpNorm<1>() : 0.0;
-  return shape_->gap_rounding(pose_.seen_from(position)) +
+  return shape_->gap_rounding(pose_.to_body_frame(position)) +
          eight_roundings(moved + (pose_.turns() ? position.lpNorm<1>() : 0.0));
 }
 
@@ -58,7 +58,7 @@ SpaceVector motion_at(const Pose& start, const Pose& end, const SpaceVector& mid
   if (!start.turns() && !end.turns()) return after - before;
   const Pose::Rotation first = rotation_of(start, d), last = rotation_of(end, d);
   const SpaceVector of_shape = half_cosine(first, last) < least_half_cosine
-                                   ? end.seen_from(middle)
+                                   ? end.to_body_frame(middle)
                                    : solve(0.5 * (first + last), middle - 0.5 * (before + after));
   return (last - first) * of_shape + after - before;
 }
@@ -66,16 +66,16 @@ SpaceVector motion_at(const Pose& start, const Pose& end, const SpaceVector& mid
 SpaceVector normal_of_step(const PosedObstacle& start, const SpaceVector& from, const PosedObstacle& end,
                            const SpaceVector& to) {
   const ObstacleShape& shape = *end.shape_;
-  const SpaceVector seen_before = start.pose_.seen_from(from), seen_after = end.pose_.seen_from(to);
+  const SpaceVector seen_before = start.pose_.to_body_frame(from), seen_after = end.pose_.to_body_frame(to);
   if (!end.pose_.turns() && !start.pose_.turns()) return shape.normal_of_step(seen_before, seen_after);
   const Pose::Rotation first = rotation_of(start.pose_, to.size()), last = rotation_of(end.pose_, to.size());
   const SpaceVector at_start = first * shape.normal(seen_before), at_end = last * shape.normal(seen_after);
   const SpaceVector middle = shape.gradient(0.5 * (seen_before + seen_after));
   const SpaceVector own = middle.norm() * ((first + last) * middle).normalized();
-  const SpaceVector way = to - from - motion_at(start.pose_, end.pose_, 0.5 * (from + to));
+  const SpaceVector relative_step = to - from - motion_at(start.pose_, end.pose_, 0.5 * (from + to));
   const double change = shape.gap(seen_after) - shape.gap(seen_before);
   const double rounding = start.gap_rounding(from) + end.gap_rounding(to);
-  return corrected_normal(own, way, change, rounding, at_start, at_end);
+  return corrected_normal(own, relative_step, change, rounding, at_start, at_end);
 }
 
 Obstacle::Obstacle(std::unique_ptr<ObstacleShape> shape, std::unique_ptr<const ObstaclePath> path, double spin,
@@ -139,8 +139,8 @@ SpaceVector Obstacle::surface_velocity(const SpaceVector& position, double time,
 
 ObstacleSurface Obstacle::surface(const Vector& centre, double radius) const {
   const Pose start = pose(0.0);
-  ObstacleSurface result = shape_->surface(start.seen_from(centre), radius);
-  for (auto point : result.points.colwise()) point = start.in_space(SpaceVector(point));
+  ObstacleSurface result = shape_->surface(start.to_body_frame(centre), radius);
+  for (auto point : result.points.colwise()) point = start.to_space(SpaceVector(point));
   return result;
 }
 
@@ -148,7 +148,7 @@ Points Obstacle::surface_points(const Points& at_start, double time, const Vecto
   Points result = at_start;
   if (free_ != nullptr) {
     const Pose now = free_->pose(displacement);
-    for (auto point : result.colwise()) point = now.in_space(SpaceVector(point));
+    for (auto point : result.colwise()) point = now.to_space(SpaceVector(point));
     return result;
   }
   if (has_constant_normals()) {
@@ -163,7 +163,7 @@ Points Obstacle::surface_points(const Points& at_start, double time, const Vecto
   }
   if (path_ == nullptr) return result;
   const Pose start = pose(0.0), now = pose(time);
-  for (auto point : result.colwise()) point = now.in_space(start.seen_from(SpaceVector(point)));
+  for (auto point : result.colwise()) point = now.to_space(start.to_body_frame(SpaceVector(point)));
   return result;
 }
 

@@ -17,9 +17,9 @@ class PosedObstacle {
   PosedObstacle(const ObstacleShape& shape, Pose pose) : shape_(&shape), pose_(std::move(pose)) {}
   [[nodiscard]] const Pose& pose() const { return pose_; }
   /// Signed distance to the surface, positive where bodies may be, and the unit normal towards them.
-  [[nodiscard]] double gap(const SpaceVector& position) const { return shape_->gap(pose_.seen_from(position)); }
+  [[nodiscard]] double gap(const SpaceVector& position) const { return shape_->gap(pose_.to_body_frame(position)); }
   [[nodiscard]] SpaceVector normal(const SpaceVector& position) const {
-    return pose_.direction(shape_->normal(pose_.seen_from(position)));
+    return pose_.direction(shape_->normal(pose_.to_body_frame(position)));
   }
   [[nodiscard]] double gap_rounding(const SpaceVector& position) const;
 

@@ -36,11 +36,11 @@ bool agree(const SpaceVector& a, const SpaceVector& b) {
 namespace {
 
 /// Returns the normal of a step so long that its midpoint is not representative: the normal at the end, unless a force
-/// along it would create energy; then the direction perpendicular to `way` that is nearest to it.
-SpaceVector normal_of_long_step(const SpaceVector& way, double change, const SpaceVector& at_start,
+/// along it would create energy; then the direction perpendicular to `relative_step` that is nearest to it.
+SpaceVector normal_of_long_step(const SpaceVector& relative_step, double change, const SpaceVector& at_start,
                                 const SpaceVector& at_end) {
-  if (at_end.dot(way) * change >= 0.0) return at_end;
-  const SpaceVector along = way.normalized();
+  if (at_end.dot(relative_step) * change >= 0.0) return at_end;
+  const SpaceVector along = relative_step.normalized();
   constexpr double least = 0.1;
   for (const SpaceVector& normal : {at_end, at_start}) {
     const SpaceVector across = normal - normal.dot(along) * along;
@@ -64,19 +64,21 @@ SpaceVector ObstacleShape::normal_at_middle(const SpaceVector& from, const Space
   return normal_of_long_step(to - from, gap(to) - gap(from), start, end);
 }
 
-SpaceVector corrected_normal(SpaceVector gradient, const SpaceVector& way, double change, double rounding,
+SpaceVector corrected_normal(SpaceVector gradient, const SpaceVector& relative_step, double change, double rounding,
                              const SpaceVector& at_start, const SpaceVector& at_end) {
-  const double square = way.squaredNorm(), missing = change - gradient.dot(way);
+  const double square = relative_step.squaredNorm(), missing = change - gradient.dot(relative_step);
   // Not switched at once beyond rounding: iterations in which a point hardly moves, and crosses the threshold back and
   // forth, would alternate between two normals. A displacement that is itself little more than rounding, as for a point
   // that sticks to a rotating obstacle, has no direction.
   const double part = std::clamp(std::abs(missing) / rounding - 1.0, 0.0, 1.0) *
                       std::clamp(std::sqrt(square) / (least_way * rounding) - 1.0, 0.0, 1.0);
-  if (square > 0.0 && part > 0.0) gradient += part * missing / square * way;
+  if (square > 0.0 && part > 0.0) gradient += part * missing / square * relative_step;
   const double length = gradient.norm();
-  if (!(length > 0.0)) return normal_of_long_step(way, change, at_start, at_end);
+  if (!(length > 0.0)) return normal_of_long_step(relative_step, change, at_start, at_end);
   const SpaceVector normal = gradient / length;
-  return agree(normal, at_end) && agree(normal, at_start) ? normal : normal_of_long_step(way, change, at_start, at_end);
+  return agree(normal, at_end) && agree(normal, at_start)
+             ? normal
+             : normal_of_long_step(relative_step, change, at_start, at_end);
 }
 
 SpaceVector ObstacleShape::normal_of_step(const SpaceVector& from, const SpaceVector& to) const {
@@ -93,12 +95,12 @@ Vector unit_vector(const Vector& direction, const std::string& what) {
   return direction.stableNormalized();
 }
 
-void check_direction(const ParameterCheck& place, const Parameters& values, const std::string& key,
+void check_direction(const ParameterCheck& check, const Parameters& values, const std::string& key,
                      const std::string& meaning) {
-  if (!place.is_usable(key)) return;
+  if (!check.is_usable(key)) return;
   const std::vector<double>& direction = values.vector(key);
   if (std::all_of(direction.begin(), direction.end(), [](double n) { return n == 0.0; }))
-    place.add_problem(key, '"' + key + "\" must not be zero: it " + meaning);
+    check.add_problem(key, '"' + key + "\" must not be zero: it " + meaning);
 }
 
 void require_space(const Parameters& parameters, const std::string& key, const std::string& what,
@@ -108,7 +110,11 @@ void require_space(const Parameters& parameters, const std::string& key, const s
 }
 
 Key obstacle_side_key(const std::string& doc) {
-  return {.name = "side", .type = KeyType::choice, .standard = "outside", .choices = {"outside", "inside"}, .doc = doc};
+  return {.name = "side",
+          .type = KeyType::choice,
+          .default_value = "outside",
+          .choices = {"outside", "inside"},
+          .doc = doc};
 }
 
 double obstacle_side(const Parameters& parameters) {

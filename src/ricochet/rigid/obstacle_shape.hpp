@@ -110,18 +110,18 @@ using ObstacleRegistration = Registration<ObstacleConstructor>;
 /// Normalizes a vector of any length but zero; throws Error(invalid_input) that says which vector is zero.
 [[nodiscard]] Vector unit_vector(const Vector& direction, const std::string& what);
 /// Adds a problem if a vector of the case is zero.
-void check_direction(const ParameterCheck& place, const Parameters& values, const std::string& key,
+void check_direction(const ParameterCheck& check, const Parameters& values, const std::string& key,
                      const std::string& meaning);
 /// Throws Error(invalid_input) if a vector has two components: "a cylinder is in space; in two dimensions …".
 void require_space(const Parameters& parameters, const std::string& key, const std::string& what,
                    const std::string& instead);
-/// Returns the direction of a gradient of the gap, corrected along a displacement `way` to be consistent with the
-/// change of the gap over it:
+/// Returns the direction of a gradient of the gap, corrected along a displacement `relative_step` to be consistent with
+/// the change of the gap over it:
 ///   gradient + (change − gradient·way) way/|way|²,
 /// or that of the gradient if the bracket is of the size of rounding errors, with a part of the correction up to twice
 /// that size; for long steps see ObstacleShape::normal_of_step.
-[[nodiscard]] SpaceVector corrected_normal(SpaceVector gradient, const SpaceVector& way, double change, double rounding,
-                                           const SpaceVector& at_start, const SpaceVector& at_end);
+[[nodiscard]] SpaceVector corrected_normal(SpaceVector gradient, const SpaceVector& relative_step, double change,
+                                           double rounding, const SpaceVector& at_start, const SpaceVector& at_end);
 /// Eight rounding units of a number of this size.
 [[nodiscard]] inline double eight_roundings(double size) {
   return 8.0 * std::numeric_limits<double>::epsilon() * size;

@@ -13,12 +13,12 @@ struct Pose {
 
   [[nodiscard]] bool turns() const { return rotation.size() > 0; }
   /// Returns X for a point in space.
-  [[nodiscard]] SpaceVector seen_from(SpaceVector position) const {
+  [[nodiscard]] SpaceVector to_body_frame(SpaceVector position) const {
     if (shift.size() > 0) position -= shift;
     return turns() ? SpaceVector(rotation.transpose() * position) : position;
   }
   /// Returns x for a point of the obstacle.
-  [[nodiscard]] SpaceVector in_space(SpaceVector position) const {
+  [[nodiscard]] SpaceVector to_space(SpaceVector position) const {
     if (turns()) position = SpaceVector(rotation * position);
     if (shift.size() > 0) position += shift;
     return position;

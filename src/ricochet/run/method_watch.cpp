@@ -43,8 +43,8 @@ void MethodWatch::load(const Snapshot& snapshot, const std::string& name) {
   end_steps_ = steps[1];
 }
 
-void MethodWatch::enter_step(const State& state, double of_method) {
-  last_ = of_method;
+void MethodWatch::enter_step(const State& state, double method_energy) {
+  last_ = method_energy;
   least_ = std::min(least_, last_);
   largest_ = std::max(largest_, last_);
   if (acting_ && *acting_ != ReactionMean::end) enter_weight(state.forces);

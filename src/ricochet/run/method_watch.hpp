@@ -19,8 +19,8 @@ class MethodWatch {
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
-  /// Enters a step with EnergyAccount::of_method at its end. Allocates nothing.
-  void enter_step(const State& state, double of_method);
+  /// Enters a step with EnergyAccount::method_energy at its end. Allocates nothing.
+  void enter_step(const State& state, double method_energy);
   /// Returns the energies relative to the largest energy.
   [[nodiscard]] MethodEnergy energy(double largest_energy) const;
   [[nodiscard]] std::optional<ActingReactions> reactions() const;

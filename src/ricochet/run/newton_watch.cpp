@@ -41,13 +41,13 @@ bool NewtonWatch::enter_step(int iterations, double seconds) {
   weight_ += 1.0;
   ++steps_;
   seconds_ += seconds;
-  if (is_told_ || weight_ < several) return false;
-  is_told_ = true;
+  if (has_warned_ || weight_ < several) return false;
+  has_warned_ = true;
   return true;
 }
 
 void NewtonWatch::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name, Vector(Eigen::Vector4d(weight_, static_cast<double>(steps_), seconds_, is_told_ ? 1.0 : 0.0)));
+  snapshot.save(name, Vector(Eigen::Vector4d(weight_, static_cast<double>(steps_), seconds_, has_warned_ ? 1.0 : 0.0)));
 }
 
 void NewtonWatch::load(const Snapshot& snapshot, const std::string& name) {
@@ -58,7 +58,7 @@ void NewtonWatch::load(const Snapshot& snapshot, const std::string& name) {
   weight_ = numbers[0];
   steps_ = static_cast<long>(numbers[1]);
   seconds_ = numbers[2];
-  is_told_ = numbers[3] != 0.0;
+  has_warned_ = numbers[3] != 0.0;
 }
 
 ExplicitRun try_explicit(const Case& input) {

@@ -27,7 +27,7 @@ class NewtonWatch {
   double weight_ = 0.0;  ///< number of such steps, less a fraction of the number of others
   long steps_ = 0;       ///< number of steps with very many iterations
   double seconds_ = 0.0;
-  bool is_told_ = false;
+  bool has_warned_ = false;
 };
 
 /// Trial of a case with the scheme that solves no system of the whole body.

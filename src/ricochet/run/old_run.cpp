@@ -69,7 +69,7 @@ void refuse_old_run(const RunDirectory& directory, const RunOptions& options) {
 namespace {
 
 /// Returns an empty origin if neither summary nor checkpoint states it.
-RunOrigin remembered_origin(const std::string& directory) {
+RunOrigin read_origin(const std::string& directory) {
   const std::string summary_path = (std::filesystem::path(directory) / "summary.json").string();
   try {
     const RunSummary summary = read_summary(summary_path);
@@ -93,7 +93,7 @@ RunOrigin find_origin(const std::string& directory) {
   };
   std::error_code problem;
   if (!std::filesystem::is_directory(directory, problem)) refuse("there is no such directory");
-  RunOrigin origin = remembered_origin(directory);
+  RunOrigin origin = read_origin(directory);
   if (origin.case_path.empty()) refuse("no run is in this directory that says which case it is of");
   if (!std::filesystem::exists(origin.case_path, problem))
     refuse(fmt::format("its case file {} is not there any more", origin.case_path));

@@ -18,7 +18,7 @@ namespace {
 constexpr double same_time = 1e-6;
 
 /// A column over time, linear between its points.
-struct Course {
+struct TimeSeries {
   std::vector<double> times, values;
 
   [[nodiscard]] std::size_t size() const { return times.size(); }
@@ -29,7 +29,7 @@ struct Course {
 };
 
 /// Position between a point and the next one.
-struct Place {
+struct TimePosition {
   std::size_t point = 0;
   double fraction = 0.0;  ///< fraction of the interval; 0 at the point itself
 };
@@ -52,7 +52,7 @@ double value_in_row(const std::vector<double>& column, const Quantity& quantity)
   return column[static_cast<std::size_t>(row)];
 }
 
-Place place_of(const Course& course, double time, const std::string& column) {
+TimePosition locate_time(const TimeSeries& course, double time, const std::string& column) {
   const std::vector<double>& times = course.times;
   if (times.size() > 1) {
     const auto later = std::upper_bound(times.begin() + 1, times.end() - 1, time);
@@ -70,14 +70,14 @@ Place place_of(const Course& course, double time, const std::string& column) {
                           column, time, times.front(), times.back()));
 }
 
-double value_at(const Course& course, Place place) {
+double value_at(const TimeSeries& course, TimePosition place) {
   const double value = course.values[place.point];
   return place.fraction == 0.0 ? value : value + place.fraction * (course.values[place.point + 1] - value);
 }
 
-Course part_of(const Course& whole, const TimeInterval& interval, const std::string& column) {
-  const Place begin = place_of(whole, interval.begin, column), end = place_of(whole, interval.end, column);
-  Course part;
+TimeSeries part_of(const TimeSeries& whole, const TimeInterval& interval, const std::string& column) {
+  const TimePosition begin = locate_time(whole, interval.begin, column), end = locate_time(whole, interval.end, column);
+  TimeSeries part;
   part.add(interval.begin, value_at(whole, begin));
   const std::size_t last = end.point + (end.fraction > 0.0 ? 1 : 0);
   for (std::size_t i = begin.point + 1; i < last; ++i) part.add(whole.times[i], whole.values[i]);
@@ -85,31 +85,31 @@ Course part_of(const Course& whole, const TimeInterval& interval, const std::str
   return part;
 }
 
-double integral(const Course& course) {
+double integral(const TimeSeries& course) {
   double sum = 0.0;
   for (std::size_t i = 1; i < course.size(); ++i)
     sum += 0.5 * (course.values[i] + course.values[i - 1]) * (course.times[i] - course.times[i - 1]);
   return sum;
 }
 
-double mean(const Course& course) {
+double mean(const TimeSeries& course) {
   const double duration = course.times.back() - course.times.front();
   return course.size() == 1 ? course.values.front() : integral(course) / duration;
 }
 
-double total_variation(const Course& course) {
+double total_variation(const TimeSeries& course) {
   double sum = 0.0;
   for (std::size_t i = 1; i < course.size(); ++i) sum += std::abs(course.values[i] - course.values[i - 1]);
   return sum;
 }
 
-double largest_absolute(const Course& course) {
+double largest_absolute(const TimeSeries& course) {
   double largest = 0.0;
   for (const double value : course.values) largest = std::max(largest, std::abs(value));
   return largest;
 }
 
-[[noreturn]] void throw_never(const Course& course, const Quantity& quantity) {
+[[noreturn]] void throw_no_event(const TimeSeries& course, const Quantity& quantity) {
   const auto [least, largest] = std::minmax_element(course.values.begin(), course.values.end());
   const bool above = quantity.threshold.above;
   throw Error(ErrorKind::invalid_input,
@@ -119,7 +119,7 @@ double largest_absolute(const Course& course) {
 }
 
 /// Returns the first or the last time at which a threshold is exceeded.
-double time_of_event(const Course& course, const Quantity& quantity) {
+double time_of_event(const TimeSeries& course, const Quantity& quantity) {
   const auto [level, above] = quantity.threshold;
   const bool first = quantity.kind == Quantity::Kind::first_time;
   const std::size_t size = course.size();
@@ -131,10 +131,10 @@ double time_of_event(const Course& course, const Quantity& quantity) {
     const double time_before = course.times[point(i - 1)], value_before = course.values[point(i - 1)];
     return time_before + (time - time_before) * (level - value_before) / (value - value_before);
   }
-  throw_never(course, quantity);
+  throw_no_event(course, quantity);
 }
 
-double value_of_course(const Quantity& quantity, const Course& course) {
+double value_of_course(const Quantity& quantity, const TimeSeries& course) {
   switch (quantity.kind) {
     case Quantity::Kind::maximum:
       return *std::max_element(course.values.begin(), course.values.end());
@@ -152,7 +152,7 @@ double value_of_course(const Quantity& quantity, const Course& course) {
     case Quantity::Kind::last_time:
       return time_of_event(course, quantity);
     case Quantity::Kind::value_at_time:
-      return value_at(course, place_of(course, quantity.time, quantity.name));
+      return value_at(course, locate_time(course, quantity.time, quantity.name));
     case Quantity::Kind::history_value:
     case Quantity::Kind::summary_value:
       break;
@@ -183,7 +183,7 @@ double value_of(const Quantity& quantity, const HistoryTable& history, const std
   if (quantity.kind == Quantity::Kind::summary_value) return summary_value(summary_json, quantity.name);
   const std::vector<double>& column = column_of(history, quantity.name);
   if (quantity.kind == Quantity::Kind::history_value) return value_in_row(column, quantity);
-  const Course whole{column_of(history, "time"), column};
+  const TimeSeries whole{column_of(history, "time"), column};
   return value_of_course(quantity, quantity.interval ? part_of(whole, *quantity.interval, quantity.name) : whole);
 }
 

@@ -22,7 +22,7 @@ std::unique_ptr<HistoryWriter> open_history(const Ranks& ranks, const std::strin
                                             const std::vector<std::string>& columns, const Snapshot* snapshot,
                                             const std::string& name) {
   std::unique_ptr<HistoryWriter> result;
-  ranks.together([&] {
+  ranks.run_collectively([&] {
     if (!ranks.is_first()) return;
     result = snapshot != nullptr ? std::make_unique<HistoryWriter>(path, *snapshot, name)
                                  : std::make_unique<HistoryWriter>(path, columns);
@@ -51,9 +51,13 @@ std::unique_ptr<ResultsWriter> open_results(const OutputSection& output, const M
                                             const std::string& directory, const Snapshot* snapshot) {
   const ResultsOptions options = results_options(output);
   WholeBody whole;
-  if (model.written)
-    whole = {&model.written->body,     &model.written->problem, model.written->node_rows,
-             model.written->cell_rows, model.sizes.nodes,       model.sizes.cells};
+  if (model.global_output)
+    whole = {&model.global_output->body,
+             &model.global_output->problem,
+             model.global_output->node_rows,
+             model.global_output->cell_rows,
+             model.sizes.nodes,
+             model.sizes.cells};
   if (snapshot != nullptr)
     return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, *snapshot, "results", whole);
   return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, whole);
@@ -115,28 +119,28 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
 }
 
 /// Sums over all ranks.
-double Recording::of_method(const State& state, EnergyAccount& account) const {
-  return model_.problem.ranks->sum(account.of_method(state));
+double Recording::method_energy(const State& state, EnergyAccount& account) const {
+  return model_.problem.ranks->sum(account.method_energy(state));
 }
 
 void Recording::enter_part(const State& state, EnergyAccount& account) {
   checks_.enter_part(state);
   penetration_.check_part(state);
-  impacts_.enter_step(state, of_method(state, account));
+  impacts_.enter_step(state, method_energy(state, account));
 }
 
 void Recording::record(const State& state, EnergyAccount& account) {
   Timer timer;
   if (state.step > 0) {
-    method_.enter_step(state, of_method(state, account));
+    method_.enter_step(state, method_energy(state, account));
   }
   const bool is_frame = results_ && fields_.includes(state);
   peak_stress_.enter(state, is_frame);
   if (state.step % history_every_ == 0) write_row(state, account);
   const Timer watch_timer;
-  penetration_.look(state);
-  sliding_.look(state);
-  late_.look(state);
+  penetration_.check(state);
+  sliding_.check(state);
+  late_.check(state);
   watch_seconds_ += watch_timer.seconds();
   for (Sampled& sampled : sampled_) {
     if (state.step % sampled.every == 0) write_row_of(sampled, state);
@@ -169,7 +173,7 @@ void Recording::record_end(const State& state, EnergyAccount& account) {
 void Recording::write_row(const State& state, EnergyAccount& account) {
   const std::vector<double>& row = recorder_.row(state, account);
   check_finite(row);
-  model_.problem.ranks->together([&] {
+  model_.problem.ranks->run_collectively([&] {
     if (history_) history_->write(row);
   });
   digest_.add(row);
@@ -179,7 +183,7 @@ void Recording::write_row(const State& state, EnergyAccount& account) {
 
 void Recording::write_row_of(Sampled& sampled, const State& state) {
   const std::vector<double>& row = sampled.recorder.row(state);
-  model_.problem.ranks->together([&] {
+  model_.problem.ranks->run_collectively([&] {
     if (sampled.file) sampled.file->write(row);
   });
 }
@@ -253,7 +257,7 @@ void Recording::describe_peak_stress(RunSummary& summary) const {
   const CellLocation place = location_of_cell(*body.mesh, peak.cell);
   const auto material = static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(peak.cell)]);
   PeakStressResult told = peak;
-  if (model_.written) told.cell = model_.written->cell_rows[static_cast<std::size_t>(peak.cell)];
+  if (model_.global_output) told.cell = model_.global_output->cell_rows[static_cast<std::size_t>(peak.cell)];
   summary.peak_stress = PeakStressDescription{
       told, {place.centre.data(), place.centre.data() + place.centre.size()}, place.tag, body.materials[material].name};
 }

@@ -51,7 +51,7 @@ class Recording {
   [[nodiscard]] double watch_seconds() const { return watch_seconds_; }
 
  private:
-  [[nodiscard]] double of_method(const State& state, EnergyAccount& account) const;
+  [[nodiscard]] double method_energy(const State& state, EnergyAccount& account) const;
   void write_row(const State& state, EnergyAccount& account);
   void check_finite(const std::vector<double>& row) const;
   void describe_bodies(RunSummary& summary) const;

@@ -33,42 +33,42 @@ RotationWatch::RotationWatch(const Body& body, const Ranks& ranks, std::size_t c
       limit_(has_finite_strain(body) ? std::numeric_limits<double>::infinity() : rotation_limit) {
   // No rotation exceeds π.
   const double most = std::log(std::numbers::pi / least_noted) / std::log(noted_growth);
-  growth_.reserve(static_cast<std::size_t>(most) + 3);
+  records_.reserve(static_cast<std::size_t>(most) + 3);
 }
 
 void RotationWatch::save(Snapshot& snapshot, const std::string& name) const {
-  Vector numbers(2 * static_cast<Index>(growth_.size()));
-  for (std::size_t i = 0; i < growth_.size(); ++i)
-    numbers.segment<2>(2 * static_cast<Index>(i)) << growth_[i].time, growth_[i].rotation;
+  Vector numbers(2 * static_cast<Index>(records_.size()));
+  for (std::size_t i = 0; i < records_.size(); ++i)
+    numbers.segment<2>(2 * static_cast<Index>(i)) << records_[i].time, records_[i].rotation;
   snapshot.save(name, numbers);
 }
 
 void RotationWatch::load(const Snapshot& snapshot, const std::string& name) {
   const Vector& numbers = snapshot.reals(name);
-  const auto most = static_cast<Index>(2 * growth_.capacity());
+  const auto most = static_cast<Index>(2 * records_.capacity());
   bool fits = numbers.size() % 2 == 0 && numbers.size() <= most && numbers.allFinite();
   for (Index i = 2; fits && i < numbers.size(); ++i) fits = numbers[i] > numbers[i - 2];
   if (!fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of rotations is damaged");
-  growth_.clear();
-  for (Index i = 0; i < numbers.size(); i += 2) growth_.push_back({numbers[i], numbers[i + 1]});
+  records_.clear();
+  for (Index i = 0; i < numbers.size(); i += 2) records_.push_back({numbers[i], numbers[i + 1]});
 }
 
 double RotationWatch::time_beyond_limit() const {
-  const auto first =
-      std::find_if(growth_.begin(), growth_.end(), [this](const Noted& noted) { return noted.rotation > limit_; });
-  return first == growth_.end() ? std::numeric_limits<double>::infinity() : first->time;
+  const auto first = std::find_if(records_.begin(), records_.end(),
+                                  [this](const RotationRecord& noted) { return noted.rotation > limit_; });
+  return first == records_.end() ? std::numeric_limits<double>::infinity() : first->time;
 }
 
 double RotationWatch::largest_until(double time) const {
   const auto after =
-      std::find_if(growth_.begin(), growth_.end(), [time](const Noted& noted) { return noted.time > time; });
-  return after == growth_.begin() ? 0.0 : std::prev(after)->rotation;
+      std::find_if(records_.begin(), records_.end(), [time](const RotationRecord& noted) { return noted.time > time; });
+  return after == records_.begin() ? 0.0 : std::prev(after)->rotation;
 }
 
 void RotationWatch::watch(const std::vector<double>& row, const State& state) {
-  const double rotation = row[column_], before = growth_.empty() ? 0.0 : growth_.back().rotation;
+  const double rotation = row[column_], before = records_.empty() ? 0.0 : records_.back().rotation;
   const bool passes = before <= limit_ && rotation > limit_;
-  if (passes || (rotation > least_noted && rotation > noted_growth * before)) growth_.push_back({row[1], rotation});
+  if (passes || (rotation > least_noted && rotation > noted_growth * before)) records_.push_back({row[1], rotation});
   if (!passes) return;
   log::warning(fmt::format(
       "at t = {:.6g} a cell has rotated by {:.3g} rad: above {} rad small strain no longer holds; it takes this "

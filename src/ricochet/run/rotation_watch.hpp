@@ -30,14 +30,14 @@ class RotationWatch {
   [[nodiscard]] double largest_until(double time) const;
 
  private:
-  struct Noted {
+  struct RotationRecord {
     double time, rotation;
   };
   const Body& body_;
   const Ranks& ranks_;
   std::size_t column_;
   double limit_;
-  std::vector<Noted> growth_;
+  std::vector<RotationRecord> records_;
 };
 
 }  // namespace ricochet

@@ -66,15 +66,15 @@ void Run::begin() {
   // Many quiet runs may execute at once; their warnings need a name.
   log::set_run_name(options_.quiet ? options_.output_directory : "");
   check_export(input_, options_, steps_);
-  ranks_.together([&] {
+  ranks_.run_collectively([&] {
     if (ranks_.is_first()) refuse_overwriting_inputs(directory_, options_, input_);
   });
   if (options_.resume) {
-    ranks_.together([&] { is_already_complete_ = is_complete(); });
+    ranks_.run_collectively([&] { is_already_complete_ = is_complete(); });
     if (is_already_complete_) return;
     find_checkpoint();
   } else if (!options_.force) {
-    ranks_.together([&] {
+    ranks_.run_collectively([&] {
       if (ranks_.is_first()) refuse_old_run(directory_, options_);
     });
   }
@@ -128,9 +128,9 @@ bool Run::is_complete() {
 
 void Run::find_checkpoint() {
   const std::string& directory = options_.output_directory;
-  ranks_.together([&] { require_ranks_of_checkpoints(directory, ranks_.size()); });
+  ranks_.run_collectively([&] { require_ranks_of_checkpoints(directory, ranks_.size()); });
   snapshot_ = ranks_.are_several() ? newest_rank_checkpoint(ranks_, directory) : newest_checkpoint(directory);
-  ranks_.together([&] { check_snapshot(); });
+  ranks_.run_collectively([&] { check_snapshot(); });
 }
 
 void Run::check_snapshot() {
@@ -215,7 +215,7 @@ void Run::begin_session() {
     log::info("resumed after " + step_in_words());
   } else {
     const std::lock_guard files(files_);
-    ranks_.together([&] {
+    ranks_.run_collectively([&] {
       if (ranks_.is_first()) replace_old_run(directory_, options_, summary_);
     });
     reported_ = summary_;
@@ -263,7 +263,7 @@ void Run::start_recording() {
                      options_.output_directory, steps_, entries_of_whole_body(), snapshot_ ? &*snapshot_ : nullptr);
   if (!snapshot_) recording_->record(session_.simulation().state(), session_.simulation().account());
   // Only now is it certain that the files of the run are as it left them.
-  ranks_.together([&] {
+  ranks_.run_collectively([&] {
     if (snapshot_ && ranks_.is_first()) remove_files(directory_.leftover_files(session_.simulation().state().step));
   });
   snapshot_.reset();
@@ -286,7 +286,7 @@ void Run::enter_impulse(const Vector& impulse) {
   recording_->enter_impulse(session_.state(), impulse);
 }
 
-void Run::keep() {
+void Run::write_checkpoint_now() {
   if (is_already_complete_ || has_ended_) return;
   const std::lock_guard files(files_);
   write_checkpoint();
@@ -329,7 +329,7 @@ bool Run::advance() {
   step_seconds_ = timer.seconds();
   times_.steps += step_seconds_;
   failure_bundle_->remove_problem();
-  if (newton_.enter_step(simulation.state().newton_rounds, step_seconds_)) warn_of_many_iterations();
+  if (newton_.enter_step(simulation.state().newton_iterations, step_seconds_)) warn_of_many_iterations();
   const std::lock_guard files(files_);
   recording_->record(simulation.state(), simulation.account());
   progress_->update(simulation.state().step, simulation.state().time);

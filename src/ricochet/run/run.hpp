@@ -36,7 +36,7 @@ class Run {
   /// Enters an impulse per dof by which a program has changed the velocity.
   void enter_impulse(const Vector& impulse);
   /// Writes a checkpoint of the present state, unless the run has ended.
-  void keep();
+  void write_checkpoint_now();
   /// Computes and records one step. Returns false at the end, after a failure, or after a signal.
   bool take_step();
   /// Returns the summary; throws the error that ended the steps.

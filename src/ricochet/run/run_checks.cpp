@@ -72,9 +72,9 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
   work_scale_ = numbers[13];
   const Snapshot::Integers& told = snapshot->integers("checks.told", 0, 1);
   if (told.size() != 3) return;
-  energy_.told = told[0] != 0;
-  linear_.told = told[1] != 0;
-  angular_.told = told[2] != 0;
+  energy_.warned = told[0] != 0;
+  linear_.warned = told[1] != 0;
+  angular_.warned = told[2] != 0;
 }
 
 void RunChecks::save(Snapshot& snapshot, const std::string& name) const {
@@ -83,7 +83,8 @@ void RunChecks::save(Snapshot& snapshot, const std::string& name) const {
   numbers << start_.force, start_.moment, energy_scale_, momentum_scale_, ignored_scale_, energy_.result.largest,
       linear_.result.largest, angular_.result.largest, has_start_ ? 1.0 : 0.0, work_scale_;
   snapshot.save(name + ".state", numbers);
-  snapshot.save(name + ".told", Snapshot::Integers{energy_.told ? 1 : 0, linear_.told ? 1 : 0, angular_.told ? 1 : 0});
+  snapshot.save(name + ".told",
+                Snapshot::Integers{energy_.warned ? 1 : 0, linear_.warned ? 1 : 0, angular_.warned ? 1 : 0});
 }
 
 double RunChecks::size_of_momenta(const std::vector<double>& row, const Resultant& all) const {
@@ -141,7 +142,7 @@ void RunChecks::judge(Account& account, double residual, double scale, const std
   constexpr double least_scale = 1e-280;
   if (!(scale > least_scale)) return;
   const bool broken = result.limit > 0.0 && residual > result.limit * scale;
-  if (broken && &account == &energy_ && !account.told) {
+  if (broken && &account == &energy_ && !account.warned) {
     // Tested again only after the energy has grown tenfold, as the test takes as long as some steps.
     if (scale < 10.0 * ignored_scale_) return;
     if (is_rounding_of_energy(scale, model_.problem, state)) {
@@ -150,8 +151,8 @@ void RunChecks::judge(Account& account, double residual, double scale, const std
     }
   }
   result.largest = std::max(result.largest, residual / scale);
-  if (!broken || account.told) return;
-  account.told = true;
+  if (!broken || account.warned) return;
+  account.warned = true;
   const std::string what = &account == &energy_ ? "energy" : &account == &linear_ ? "momentum" : "angular momentum";
   const std::string message = fmt::format(
       "at t = {:.6g} (step {:.0f}) the balance of {} is violated by {:.2g} of the largest {}, more than "

@@ -29,7 +29,7 @@ class RunChecks {
   struct Account {
     CheckResult result;
     std::string advice;
-    bool told = false;
+    bool warned = false;
   };
   void judge(Account& account, double residual, double scale, const std::vector<double>& row, const State& state);
   [[nodiscard]] Resultant momentum(const std::vector<double>& row) const;

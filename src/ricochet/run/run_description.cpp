@@ -14,12 +14,13 @@ namespace ricochet {
 
 namespace {
 
-ContactDescription describe_contact(const Case& input, const ContactSection& contact, const std::string& pair_of) {
+ContactDescription describe_contact(const Case& input, const ContactSection& contact,
+                                    const std::string& all_pairs_group) {
   ContactDescription result{contact.group, contact.against, contact.multipliers, contact.friction,
                             contact.friction_bound};
   result.between_bodies = contact.between_bodies();
   result.tied = contact.tied;
-  result.pair_of = pair_of;
+  result.all_pairs_group = all_pairs_group;
   if (result.between_bodies) return result;
   const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),
                                      [&](const ObstacleSection& o) { return o.name == contact.obstacle; });
@@ -84,10 +85,10 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   summary.energy_instant = scheme.energy_instant();
   summary.force_instant = scheme.force_instant();
   for (const ModelContact& contact : model.contacts)
-    summary.contacts.push_back(describe_contact(input, contact, contact.pair_of));
+    summary.contacts.push_back(describe_contact(input, contact, contact.all_pairs_group));
   for (std::size_t i = 0; i < summary.contacts.size(); ++i) summary.contacts[i].facing = describe_facing(model, i);
-  for (std::size_t number = 0; number < model.watched.size(); ++number) {
-    const ProbeTargets& places = model.watched[number];
+  for (std::size_t number = 0; number < model.probe_targets.size(); ++number) {
+    const ProbeTargets& places = model.probe_targets[number];
     if (!places.sums.empty()) summary.probe_sums.emplace_back(input.probes[number].name, places.sums);
     for (std::size_t i = 0; i < places.probes.size(); ++i) {
       Probe& probe = summary.probes.emplace_back(places.probes[i]);

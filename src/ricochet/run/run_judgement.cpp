@@ -172,7 +172,7 @@ void judge_rotation_growth(const RunSummary& summary) {
       "the restitution of impact {} is too {} by about {:.2g}, its force and duration are wrong by about a third of "
       "that part: the linear law makes a body that turns grow, here at a speed of {:.2g} towards the contact, as if an "
       "obstacle moved; take law = \"neo-hookean\" in [[material]], which holds for any rotation",
-      worst + 1, error > 0.0 ? "large" : "small", largest, summary.impacts[worst].turn_growth));
+      worst + 1, error > 0.0 ? "large" : "small", largest, summary.impacts[worst].rotation_growth));
 }
 
 }  // namespace ricochet

@@ -81,7 +81,7 @@ void Run::end_on_interruption() {
     ricochet::write_checkpoint(options_.output_directory, summary.checkpoint_step, *before_step_);
   }
   write_summary(summary_path(), summary);
-  interruption::say(fmt::format("ricochet: {}\n", log::with_run_name(summary.message)).c_str());
+  interruption::write_to_stderr(fmt::format("ricochet: {}\n", log::with_run_name(summary.message)).c_str());
 }
 
 /// Keeps the state before a step if steps take longer than a user who stops the run should have to wait: a checkpoint
@@ -138,8 +138,8 @@ void Run::describe_progress(RunSummary& summary) {
   summary.factor_entries = session_.simulation().factor_entries();
   const IterationCounts counts = session_.simulation().iteration_counts();
   const auto new_steps = static_cast<double>(std::max(1L, session_.simulation().state().step - first_step_));
-  if (counts.rounds > 0)
-    summary.iterations = IterationReport{static_cast<double>(counts.rounds) / new_steps,
+  if (counts.schwarz_iterations > 0)
+    summary.iterations = IterationReport{static_cast<double>(counts.schwarz_iterations) / new_steps,
                                          static_cast<double>(counts.gradients) / new_steps};
   summary.critical_step = session_.scheme().critical_step();
   summary.steps = session_.simulation().state().step;
@@ -220,7 +220,7 @@ void Run::report_progress() {
   RunSummary summary = summary_;
   summary.status = "running";
   describe_progress(summary);
-  ranks_.together([&] { write_own_summary(summary); });
+  ranks_.run_collectively([&] { write_own_summary(summary); });
   reported_ = std::move(summary);
   since_report_.restart();
 }
@@ -258,7 +258,7 @@ void Run::write_end() {
       if (!failure_) throw;
     }
   };
-  attempt([this] { ranks_.together([this] { recording_->flush(); }); });
+  attempt([this] { ranks_.run_collectively([this] { recording_->flush(); }); });
   attempt([this] { write_own_summary(summary_); });
 }
 

@@ -144,7 +144,7 @@ void Session::set_velocity(const Vector& velocity) {
   const log::CollectWarnings collect(warnings_);
   Simulation& running = simulation();
   check_values(problem(), velocity, "velocity");
-  if (!std::isfinite(problem().mass.form(velocity)))
+  if (!std::isfinite(problem().mass.quadratic_form(velocity)))
     throw Error(ErrorKind::invalid_input, "session: the velocity is so large that its energy is no finite number");
   const Vector impulse = running.set_velocity(velocity);
   if (run_ == nullptr) return;
@@ -250,10 +250,10 @@ void Session::write_to(RunOptions options) {
   run_ = std::move(run);
 }
 
-void Session::keep() {
+void Session::write_checkpoint_now() {
   if (run_ == nullptr) refuse_use("it writes nothing: there is nothing that a checkpoint could go on with");
   const log::CollectWarnings collect(warnings_);
-  run_->keep();
+  run_->write_checkpoint_now();
 }
 
 RunSummary Session::finish() {

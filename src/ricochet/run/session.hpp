@@ -100,7 +100,7 @@ class Session {
   void write_to(RunOptions options);
   /// Writes a checkpoint of the present state of a session that writes: --resume goes on from it whatever happens to
   /// this process. Has no effect after the end of the run.
-  void keep();
+  void write_checkpoint_now();
   /// Returns true if the run that write_to was to resume was complete already, so that there is no state.
   [[nodiscard]] bool is_complete_already() const;
   /// Returns true if a program has set a load or steers obstacles.

@@ -37,12 +37,13 @@ class Bathe final : public Scheme {
     second_ = first_ / 3.0 + (h / 9.0) * (4.0 * velocity_ - state.velocity);  // at δ = 0
     rate_ = (4.0 * velocity_ - state.velocity) / 3.0;                         // V₁ at δ = 0
     middle_ = state.displacement + first_;
-    base_ = middle_ + second_;
+    end_base_ = middle_ + second_;
     Stage& stage = stages.stage(1);
-    equations_.balance(problem, state.time + h, base_, rate_, stage);
-    equations_.prescribe_from(problem, state.time + h, base_, stage);
-    require_no_penetration(problem, base_, state.time + h, stage);
-    if (problem.has_moving_obstacles()) evaluate_obstacle_velocity(problem, base_, {state.time + h, 0.0, 1.0}, stage);
+    equations_.balance(problem, state.time + h, end_base_, rate_, stage);
+    equations_.prescribe_from(problem, state.time + h, end_base_, stage);
+    require_no_penetration(problem, end_base_, state.time + h, stage);
+    if (problem.has_moving_obstacles())
+      evaluate_obstacle_velocity(problem, end_base_, {state.time + h, 0.0, 1.0}, stage);
     require_friction(problem, rate_, 3.0 / h, stage);
     const StageSolution& solution = stages.solve(1);
     second_ += solution.increment;            // U₁ − U_½
@@ -53,9 +54,9 @@ class Bathe final : public Scheme {
     state.displacement = middle_ + second_;
     state.velocity = rate_;
     state.acceleration = (9.0 / (h * h)) * solution.increment;
-    change_ = first_ + second_;
-    follow_without_inertia(problem, change_, h, state);
-    equations_.take_forces(problem, stage, solution, h, rate_, 1.0, state);
+    total_increment_ = first_ + second_;
+    follow_without_inertia(problem, total_increment_, h, state);
+    equations_.store_forces(problem, stage, solution, h, rate_, 1.0, state);
   }
 
  private:
@@ -70,11 +71,11 @@ class Bathe final : public Scheme {
     first_ = (0.5 * h) * state.velocity + (h * h / 16.0) * state.acceleration;
     velocity_ = state.velocity + (0.25 * h) * state.acceleration;
     damped_ = problem.has_singular_mass() ? (2.0 / h) * first_ : 1.0 * velocity_;
-    base_ = state.displacement + first_;
+    middle_base_ = state.displacement + first_;
     Stage& stage = stages.stage(0);
-    middle_equations_.balance(problem, time, base_, damped_, stage);
-    middle_equations_.prescribe_from(problem, time, base_, stage);
-    require_no_penetration(problem, base_, time, stage);
+    middle_equations_.balance(problem, time, middle_base_, damped_, stage);
+    middle_equations_.prescribe_from(problem, time, middle_base_, stage);
+    require_no_penetration(problem, middle_base_, time, stage);
     middle_equations_.require_friction_over_step(problem, state, first_, 0.5 * h, stage);
     middle_solution_ = &stages.solve(0);
     first_ += middle_solution_->increment;
@@ -85,12 +86,14 @@ class Bathe final : public Scheme {
 
   void dissipate(const SemidiscreteProblem& problem, const State& state) {
     const Vector& load = problem.loads.constant();
-    change_ = rate_ - velocity_;
-    dissipation_ = 0.5 * (elastic_product(problem, second_, second_, force_) + problem.mass.form(change_));
-    change_ = middle_ + second_;
-    dissipation_ -= (elastic_product(problem, change_, first_, force_) - first_.dot(load)) / 3.0;
-    change_ = state.displacement + middle_;
-    dissipation_ += step() / 12.0 * (elastic_product(problem, change_, rate_, force_) - 2.0 * rate_.dot(load));
+    velocity_change_ = rate_ - velocity_;
+    dissipation_ =
+        0.5 * (elastic_product(problem, second_, second_, force_) + problem.mass.quadratic_form(velocity_change_));
+    end_displacement_ = middle_ + second_;
+    dissipation_ -= (elastic_product(problem, end_displacement_, first_, force_) - first_.dot(load)) / 3.0;
+    displacement_sum_ = state.displacement + middle_;
+    dissipation_ +=
+        step() / 12.0 * (elastic_product(problem, displacement_sum_, rate_, force_) - 2.0 * rate_.dot(load));
   }
 
   /// Stores the forces of the start and the middle, before the state receives those of the end.
@@ -99,13 +102,14 @@ class Bathe final : public Scheme {
     start.forces = state.forces;
     start.weight = middle.weight = 1.0 / 3.0;
     start.increment = middle.increment = 1.5 * first_ + (0.25 * step()) * rate_;
-    middle_equations_.take_part(problem, stages.stage(0), *middle_solution_, step(), damped_, 1.0, middle);
+    middle_equations_.store_part(problem, stages.stage(0), *middle_solution_, step(), damped_, 1.0, middle);
     start.obstacle_increment = middle.obstacle_increment;
   }
 
   double dissipation_ = 0.0;
   std::array<StepPart, 2> parts_;
-  Vector first_, second_, velocity_, damped_, rate_, base_, middle_, force_, change_;
+  Vector first_, second_, velocity_, damped_, rate_, middle_base_, end_base_, middle_, force_, total_increment_,
+      velocity_change_, end_displacement_, displacement_sum_;
   StepEquations equations_, middle_equations_;
   const StageSolution* middle_solution_ = nullptr;
 };

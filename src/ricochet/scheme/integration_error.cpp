@@ -26,10 +26,10 @@ double MidpointIntegrationError::of_step(const SemidiscreteProblem& problem, con
   if (problem.internal_force->is_linear()) return 0.0;
   const double before = step_ == state.step ? energy_ : problem.internal_force->energy(state.displacement);
   step_ = -1;
-  place_ = state.displacement + 0.5 * increment;
-  problem.internal_force->evaluate(place_, force_);
-  place_ = state.displacement + increment;
-  energy_ = problem.internal_force->energy(place_);
+  displacement_ = state.displacement + 0.5 * increment;
+  problem.internal_force->evaluate(displacement_, force_);
+  displacement_ = state.displacement + increment;
+  energy_ = problem.internal_force->energy(displacement_);
   step_ = state.step + 1;
   return (energy_ - before) - increment.dot(force_);
 }

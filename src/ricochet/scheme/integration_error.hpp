@@ -35,7 +35,7 @@ class MidpointIntegrationError {
  private:
   long step_ = -1;
   double energy_ = 0.0;
-  Vector place_, force_;
+  Vector displacement_, force_;
 };
 
 }  // namespace ricochet

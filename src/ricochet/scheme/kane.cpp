@@ -26,21 +26,21 @@ void Kane::require_contact(const SemidiscreteProblem& problem, const State& stat
   equations_.require_friction_over_step(problem, state, predicted_, step(), stage);
 }
 
-void Kane::take(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, State& state,
-                Vector& increment) {
+void Kane::advance_state(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
+                         State& state, Vector& increment) {
   const double h = step();
   increment = predicted_ + solution.increment;
   integration_error_ = error_.of_step(problem, state, increment);
   state.displacement += increment;
   state.velocity += (2.0 / h) * solution.increment;
   state.acceleration = (2.0 / (h * h)) * solution.increment;  // (V₁−V₀)/h
-  equations_.take_forces(problem, stage, solution, h, increment, 1.0 / h, state);
+  equations_.store_forces(problem, stage, solution, h, increment, 1.0 / h, state);
 }
 
 void Kane::advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) {
   Stage& stage = balance(problem, state, stages);
   require_contact(problem, state, stage);
-  take(problem, stage, stages.solve(0), state, increment);
+  advance_state(problem, stage, stages.solve(0), state, increment);
 }
 
 SchemeRegistration kane_scheme() {

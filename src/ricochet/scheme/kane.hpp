@@ -41,8 +41,8 @@ class Kane : public Scheme {
   /// Adds the contact conditions.
   void require_contact(const SemidiscreteProblem& problem, const State& state, Stage& stage);
   /// Advances the state to the end of the step.
-  void take(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, State& state,
-            Vector& increment);
+  void advance_state(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
+                     State& state, Vector& increment);
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const Vector& base() const { return base_; }
   [[nodiscard]] StepEquations& equations() { return equations_; }

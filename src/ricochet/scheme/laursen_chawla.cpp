@@ -47,7 +47,7 @@ class LaursenChawla final : public Scheme {
     state.displacement += increment;
     state.velocity += (4.0 / h) * solution.increment;
     state.acceleration = (4.0 / (h * h)) * solution.increment;  // (V₁−V₀)/h
-    equations_.take_forces(problem, stage, solution, h, increment, 1.0 / h, state);
+    equations_.store_forces(problem, stage, solution, h, increment, 1.0 / h, state);
   }
 
  private:

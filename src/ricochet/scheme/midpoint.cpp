@@ -51,7 +51,7 @@ class Midpoint final : public Scheme {
     state.velocity += (4.0 / h) * solution.increment;           // 2 (U₁−U₀)/h − V₀
     state.acceleration = (4.0 / (h * h)) * solution.increment;  // (V₁−V₀)/h
     follow_without_inertia(problem, increment, h, state);
-    equations_.take_forces(problem, stage, solution, h, increment, 1.0 / h, state);
+    equations_.store_forces(problem, stage, solution, h, increment, 1.0 / h, state);
   }
 
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {

@@ -45,14 +45,14 @@ class MoreauJean final : public Scheme {
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step(), instant = state.time + theta_ * h;
     Stage& stage = stages.stage(0);
-    place_ = state.displacement + (theta_ * h) * state.velocity;
-    equations_.balance(problem, instant, place_, state.velocity, stage);
+    work_displacement_ = state.displacement + (theta_ * h) * state.velocity;
+    equations_.balance(problem, instant, work_displacement_, state.velocity, stage);
     const auto to_end = [&](Index dof, double end) { return end - state.displacement[dof] - h * state.velocity[dof]; };
     equations_.prescribe(problem, state.time + h, to_end, stage);
-    place_ = state.displacement + (0.5 * h) * state.velocity;
-    evaluate_obstacle_velocity(problem, place_, {state.time + 0.5 * h, h}, stage);
-    equations_.require_impact_law(problem, place_, state.time + 0.5 * h, state.velocity, state.velocity, restitution_,
-                                  h, stage);
+    work_displacement_ = state.displacement + (0.5 * h) * state.velocity;
+    evaluate_obstacle_velocity(problem, work_displacement_, {state.time + 0.5 * h, h}, stage);
+    equations_.require_impact_law(problem, work_displacement_, state.time + 0.5 * h, state.velocity, state.velocity,
+                                  restitution_, h, stage);
     stage.gap_factor = 1.0 / (theta_ * h);
     equations_.require_friction_beside_rates(problem, state.velocity, 1.0 / ((slip_at_end_ ? theta_ : 1.0) * h), stage);
 
@@ -63,20 +63,21 @@ class MoreauJean final : public Scheme {
     state.displacement += increment;
     state.velocity += rate_;
     state.acceleration = rate_ / h;
-    equations_.take_forces(problem, stage, solution, h, increment, 1.0 / h, state);
+    equations_.store_forces(problem, stage, solution, h, increment, 1.0 / h, state);
   }
 
  private:
   void dissipate(const SemidiscreteProblem& problem, const Vector& increment) {
     dissipation_ = 0.0;
     if (theta_ == 0.5) return;
-    dissipation_ = (theta_ - 0.5) * (problem.mass.form(rate_) + elastic_product(problem, increment, increment, place_));
+    dissipation_ = (theta_ - 0.5) * (problem.mass.quadratic_form(rate_) +
+                                     elastic_product(problem, increment, increment, work_displacement_));
   }
 
   double theta_, restitution_;
   bool slip_at_end_;
   double dissipation_ = 0.0;
-  Vector place_, rate_;
+  Vector work_displacement_, rate_;
   StepEquations equations_;
 };
 
@@ -92,13 +93,13 @@ SchemeRegistration moreau_jean_scheme() {
           {{.name = "theta",
             .type = KeyType::number,
             .unit = "1",
-            .standard = "0.5",
+            .default_value = "0.5",
             .range = {.at_least = 0.5, .at_most = 1.0},
             .doc = "Where in the step forces are taken: 1/2 is the midpoint, more damps."},
            restitution_key(),
            {.name = "slip",
             .type = KeyType::choice,
-            .standard = "end",
+            .default_value = "end",
             .choices = {"end", "theta"},
             .doc = "Of which instant Coulomb's law takes the slip rate; at \"theta\" friction never creates energy."}}};
 }

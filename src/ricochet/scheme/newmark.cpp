@@ -70,13 +70,13 @@ class Newmark final : public Scheme {
     state.acceleration = acceleration_;
     follow_without_inertia(problem, increment, h, state);
     if (problem.has_damping()) velocity_ += damping_factor(problem) * solution.increment;
-    equations_.take_forces(problem, stage, solution, h, velocity_, 1.0, state);
+    equations_.store_forces(problem, stage, solution, h, velocity_, 1.0, state);
   }
 
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override {
     const double factor = 0.5 * step() * step() * (beta_ - 0.5 * gamma_);
     if (factor == 0.0) return 0.0;
-    return factor * problem.mass.form(state.acceleration);
+    return factor * problem.mass.quadratic_form(state.acceleration);
   }
 
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
@@ -101,8 +101,8 @@ class Newmark final : public Scheme {
     if (problem.internal_force->is_linear())
       dissipation_ = (gamma_ - 0.5) * elastic_product(problem, increment, increment, force_);
     difference_ = acceleration_ - state.acceleration;
-    dissipation_ +=
-        0.5 * step() * step() * (beta_ - 0.5 * gamma_) * (2.0 * gamma_ - 1.0) * problem.mass.form(difference_);
+    dissipation_ += 0.5 * step() * step() * (beta_ - 0.5 * gamma_) * (2.0 * gamma_ - 1.0) *
+                    problem.mass.quadratic_form(difference_);
   }
 
   double beta_, gamma_;

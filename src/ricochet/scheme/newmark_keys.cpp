@@ -29,21 +29,21 @@ std::vector<std::string> preset_names() {
 }
 
 /// Returns whether either beta and gamma or a preset are given; otherwise adds a problem.
-bool is_complete(const ParameterCheck& place) {
-  const bool has_preset = place.is_given("preset");
+bool is_complete(const ParameterCheck& check) {
+  const bool has_preset = check.is_given("preset");
   for (const std::string name : {"beta", "gamma"}) {
-    if (has_preset && place.is_given(name) && place.is_override(name) == place.is_override("preset")) {
-      place.add_problem("preset",
+    if (has_preset && check.is_given(name) && check.is_override(name) == check.is_override("preset")) {
+      check.add_problem("preset",
                         fmt::format("\"preset\" and \"{}\" are given together: \"preset\" stands for beta and "
                                     "gamma, leave out one or the other",
                                     name));
       return false;
     }
-    if (!has_preset && !place.is_given(name)) {
+    if (!has_preset && !check.is_given(name)) {
       std::vector<std::string> texts;
       for (const Preset& preset : presets)
         texts.push_back(fmt::format("\"{}\" (beta = {}, gamma = {})", preset.name, preset.beta, preset.gamma));
-      place.add_problem("scheme", fmt::format("the scheme \"newmark\" needs \"beta\" and \"gamma\", or a \"preset\": "
+      check.add_problem("scheme", fmt::format("the scheme \"newmark\" needs \"beta\" and \"gamma\", or a \"preset\": "
                                               "{}; \"{}\" is missing",
                                               join_names(texts, " or ", false), name));
       return false;
@@ -53,11 +53,11 @@ bool is_complete(const ParameterCheck& place) {
 }
 
 /// Chooses between a preset and a given beta or gamma: the one from --set takes precedence.
-void choose(const ParameterCheck& place, const std::string& name, double of_preset, Parameters& values) {
-  const bool own_counts = place.is_usable(name) && place.is_override(name);
-  if (place.is_usable(name)) {
+void choose(const ParameterCheck& check, const std::string& name, double of_preset, Parameters& values) {
+  const bool own_counts = check.is_usable(name) && check.is_override(name);
+  if (check.is_usable(name)) {
     const std::string loser = own_counts ? "preset" : name, winner = own_counts ? name : "preset";
-    place.add_info(loser, fmt::format("\"{}\" is overridden by {}", loser, place.place(winner)));
+    check.add_info(loser, fmt::format("\"{}\" is overridden by {}", loser, check.location(winner)));
   }
   if (own_counts) {
     values.erase("preset");
@@ -86,20 +86,20 @@ std::vector<Key> newmark_keys() {
                   "gamma = 1/2."}};
 }
 
-void check_newmark(const ParameterCheck& place, Parameters& values) {
-  if (!is_complete(place)) return;
-  if (place.is_usable("preset")) {
+void check_newmark(const ParameterCheck& check, Parameters& values) {
+  if (!is_complete(check)) return;
+  if (check.is_usable("preset")) {
     const Preset& preset = find_preset(values.text("preset"));
-    choose(place, "beta", preset.beta, values);
-    choose(place, "gamma", preset.gamma, values);
+    choose(check, "beta", preset.beta, values);
+    choose(check, "gamma", preset.gamma, values);
   }
   if (!values.has("beta") || !values.has("gamma")) return;  // refused
   const double beta = values.number("beta"), gamma = values.number("gamma");
-  const std::string at = place.is_given("gamma") ? "gamma" : "preset";
+  const std::string at = check.is_given("gamma") ? "gamma" : "preset";
   if (gamma < 0.5) {
-    place.add_warning(at, fmt::format("Newmark's scheme is unstable with gamma = {} (below 1/2)", gamma));
+    check.add_warning(at, fmt::format("Newmark's scheme is unstable with gamma = {} (below 1/2)", gamma));
   } else if (2.0 * beta < gamma) {
-    place.add_warning(at, fmt::format("Newmark's scheme is only conditionally stable with beta = {}, gamma = {} "
+    check.add_warning(at, fmt::format("Newmark's scheme is only conditionally stable with beta = {}, gamma = {} "
                                       "(2 beta < gamma): the step must be small enough",
                                       beta, gamma));
   }

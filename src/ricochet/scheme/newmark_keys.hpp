@@ -13,7 +13,7 @@ struct NewmarkParameters {
 
 [[nodiscard]] std::vector<Key> newmark_keys();
 /// Resolves a preset: afterwards `values` contains the effective beta and gamma, and the preset if both come from it.
-void check_newmark(const ParameterCheck& place, Parameters& values);
+void check_newmark(const ParameterCheck& check, Parameters& values);
 [[nodiscard]] NewmarkParameters newmark_parameters(const Parameters& values);
 
 }  // namespace ricochet

@@ -9,7 +9,7 @@ namespace ricochet {
   return {.name = "restitution",
           .type = KeyType::number,
           .unit = "1",
-          .standard = "0",
+          .default_value = "0",
           .range = {.at_least = 0.0, .at_most = 1.0},
           .doc = "Newton's coefficient of restitution of each contact point; an elastic body bounces without it."};
 }

@@ -35,7 +35,7 @@ void save(const SemidiscreteProblem& problem, const State& state, Snapshot& snap
   snapshot.save(name + ".obstacle_increment.tangential", state.obstacle_increment.tangential);
   snapshot.save(name + ".obstacle_increment.in_space", Vector(state.obstacle_increment.in_space.reshaped()));
   snapshot.save(name + ".iterations", state.iterations);
-  snapshot.save(name + ".newton_rounds", state.newton_rounds);
+  snapshot.save(name + ".newton_rounds", state.newton_iterations);
   Snapshot::Texts names;
   for (const auto& [key, values] : state.memory) {
     names.push_back(key);
@@ -91,7 +91,7 @@ State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, c
   const Vector& in_space = snapshot.reals(name + ".obstacle_increment.in_space", points * problem.dimension, 0);
   state.obstacle_increment.in_space = in_space.reshaped(problem.dimension, in_space.size() / problem.dimension);
   state.iterations = static_cast<int>(snapshot.integer(name + ".iterations"));
-  state.newton_rounds = static_cast<int>(snapshot.integer(name + ".newton_rounds"));
+  state.newton_iterations = static_cast<int>(snapshot.integer(name + ".newton_rounds"));
   const Index row_values = row_value_count(*problem.contact.rows);
   for (const std::string& key : snapshot.texts(name + ".memory"))
     state.memory[key] = memory(snapshot, name + ".memory." + key,

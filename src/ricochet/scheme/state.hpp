@@ -45,8 +45,8 @@ struct State {
   std::vector<ContactStatus> contact_status;  ///< per contact point, at the instant of the forces
   /// Displacement of the obstacles at the contact points over the increment of the last step.
   ObstacleMotion obstacle_increment;
-  int iterations = 0;     ///< of the contact solver in the last step
-  int newton_rounds = 0;  ///< Newton iterations of the last step, with all attempts and substeps; 0 if linear
+  int iterations = 0;         ///< of the contact solver in the last step
+  int newton_iterations = 0;  ///< Newton iterations of the last step, with all attempts and substeps; 0 if linear
   /// Further memory of the scheme by name, so that a checkpoint can contain it: one value per dof, per supported dof,
   /// (d−1) per contact point, per value of the rows of G and B_T, or `memory_numbers` of them.
   static constexpr Index memory_numbers = 5;

@@ -68,19 +68,19 @@ void StepEquations::require_friction_over_step(const SemidiscreteProblem& proble
   require_friction(problem, rate_, 1.0 / step, stage);
 }
 
-void StepEquations::take_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
-                                double step, const Vector& motion, double rate, State& state) const {
-  take_contact(stage, solution, step, state);
+void StepEquations::store_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
+                                 double step, const Vector& motion, double rate, State& state) const {
+  store_contact(stage, solution, step, state);
   take_loads(problem, solution, motion, rate, state.forces);
 }
 
-void StepEquations::take_contact(const Stage& stage, const StageSolution& solution, double step, State& state) {
+void StepEquations::store_contact(const Stage& stage, const StageSolution& solution, double step, State& state) {
   take_reactions(stage, solution, step, state.forces, state.obstacle_increment);
   state.contact_status = solution.contact_status;
 }
 
-void StepEquations::take_part(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
-                              double step, const Vector& motion, double rate, StepPart& part) const {
+void StepEquations::store_part(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
+                               double step, const Vector& motion, double rate, StepPart& part) const {
   take_reactions(stage, solution, step, part.forces, part.obstacle_increment);
   take_loads(problem, solution, motion, rate, part.forces);
 }

@@ -63,13 +63,13 @@ class StepEquations {
 
   /// Transfers to the state reactions, contact status and the motion of the obstacles over the step; the loads at the
   /// instant of the last balance(); and the damping force at that instant, rate · C motion.
-  void take_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, double step,
-                   const Vector& motion, double rate, State& state) const;
+  void store_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, double step,
+                    const Vector& motion, double rate, State& state) const;
   /// Transfers the contact data alone.
-  static void take_contact(const Stage& stage, const StageSolution& solution, double step, State& state);
-  /// Transfers, like take_forces(), the forces of a stage that are not those of the state.
-  void take_part(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, double step,
-                 const Vector& motion, double rate, StepPart& part) const;
+  static void store_contact(const Stage& stage, const StageSolution& solution, double step, State& state);
+  /// Transfers, like store_forces(), the forces of a stage that are not those of the state.
+  void store_part(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, double step,
+                  const Vector& motion, double rate, StepPart& part) const;
 
  private:
   /// Subtracts the damping force C v from the right-hand side.

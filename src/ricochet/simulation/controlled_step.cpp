@@ -16,12 +16,12 @@ constexpr int shortest_look_ahead = 4;
 
 /// Returns kinetic and elastic energy, summed over ranks.
 double Simulation::energy_of_motion() const {
-  return problem_.ranks->sum(0.5 * problem_.mass.form(state_.velocity) +
+  return problem_.ranks->sum(0.5 * problem_.mass.quadratic_form(state_.velocity) +
                              stored_energy(*problem_.internal_force, state_.displacement, state_.internal_strain));
 }
 
 double Simulation::take_controlled_step() {
-  before_ = state_;
+  state_before_attempt_ = state_;
   while (true) {
     use_level(control_->level());
     try {
@@ -31,8 +31,8 @@ double Simulation::take_controlled_step() {
       continue;
     }
     const double energy = energy_of_motion();
-    if (control_->accept(before_, state_, energy)) return energy;
-    state_ = before_;
+    if (control_->accept(state_before_attempt_, state_, energy)) return energy;
+    state_ = state_before_attempt_;
     if (control_->needs_trial_step()) take_trial_step();
   }
 }
@@ -47,22 +47,22 @@ void Simulation::take_trial_step() {
   int level = 0;
   for (bool is_solved = false; !is_solved && level <= shortest; level += is_solved ? 0 : 1) {
     use_level(level);
-    const double created_before = account_->of_method(state_);
+    const double created_before = account_->method_energy(state_);
     try {
       take_step(false);
       is_solved = true;
     } catch (const Error& problem) {
       if (problem.kind() != ErrorKind::not_converged) throw;
-      state_ = before_;
+      state_ = state_before_attempt_;
       continue;
     }
     state_.time += scheme_.step();
     complete_tied();
     account_->enter_step(increment_, state_);
-    const double created = problem_.ranks->sum(account_->of_method(state_) - created_before);
+    const double created = problem_.ranks->sum(account_->method_energy(state_) - created_before);
     energy = energy_of_motion() - std::max(created, 0.0);
   }
-  state_ = before_;
+  state_ = state_before_attempt_;
   use_level(control_->level());
   account_ = std::make_unique<EnergyAccount>(account);
   control_->set_energy_ahead(std::min(level, shortest), energy);

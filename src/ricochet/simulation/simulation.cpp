@@ -39,7 +39,7 @@ constexpr const char* nameless = "this time scheme";
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
                        const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
     : problem_(problem),
-      contact_points_(problem.all_contact_points()),
+      contact_points_(problem.global_contact_point_count()),
       scheme_(scheme),
       options_(options),
       whole_step_(scheme.step()) {
@@ -63,7 +63,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const Snapshot& snapshot,
                        const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
     : problem_(problem),
-      contact_points_(problem.all_contact_points()),
+      contact_points_(problem.global_contact_point_count()),
       scheme_(scheme),
       options_(options),
       whole_step_(scheme.step()) {
@@ -166,7 +166,7 @@ const StageSolution& Simulation::solve(std::size_t number) {
   iterations_ += solution.iterations;
   // Stages of contact nodes alone, if there are other stages, are solved within the iterations of these.
   const bool counts = dofs != StageDofs::contact || current_->stages.size() == 1;
-  if (!problem_.internal_force->is_linear() && counts) newton_iterations_ += solution.rounds;
+  if (!problem_.internal_force->is_linear() && counts) newton_iterations_ += solution.newton_iterations;
   return solution;
 }
 
@@ -195,7 +195,7 @@ void Simulation::set_up_tunnelling_watches() {
     if (std::vector<Index>& others = points[obstacle]; !others.empty())
       guards_.emplace_back(problem_, std::move(others), std::vector{obstacle}, TunnellingWatch::Of::contact_points);
   }
-  for (TunnellingWatch& guard : guards_) guard.look(state_);
+  for (TunnellingWatch& guard : guards_) guard.check(state_);
   has_guards_ = problem_.ranks->any(!guards_.empty());
 }
 
@@ -247,7 +247,7 @@ void Simulation::attempt_step() {
   }
   if (problem_.contact.follows_motion()) problem_.contact.geometry->end_step();
   state_.iterations = iterations_;
-  state_.newton_rounds = newton_iterations_;
+  state_.newton_iterations = newton_iterations_;
 }
 
 /// Factorizes operators that are needed for the first time.
@@ -281,7 +281,7 @@ double Simulation::length_of(int level) const {
 void Simulation::end_part(const std::function<void(const State&)>& each_part) {
   complete_tied();
   account_->enter_step(increment_, state_);
-  for (TunnellingWatch& guard : guards_) guard.look(state_);
+  for (TunnellingWatch& guard : guards_) guard.check(state_);
   if (each_part) each_part(state_);
 }
 
@@ -360,7 +360,7 @@ void Simulation::advance(const std::function<void(const State&)>& each_part) {
   state_.step += 1;
   state_.time = control_ ? control_->time() : static_cast<double>(state_.step) * whole_step_;
   if (!in_parts) end_part(each_part);
-  if (control_) control_->watch(energy, problem_.ranks->sum(account_->of_method(state_)));
+  if (control_) control_->watch(energy, problem_.ranks->sum(account_->method_energy(state_)));
 }
 
 }  // namespace ricochet

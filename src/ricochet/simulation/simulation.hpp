@@ -108,7 +108,7 @@ class Simulation : private StageSolve {
   bool has_guards_ = false;              ///< on this or another rank
   State unguarded_;                      ///< state at the start of a step, with guards
   bool has_tunnelled_ = false;           ///< true if the last attempt was refused for tunnelling
-  State before_;                         ///< state before an attempt, with control
+  State state_before_attempt_;           ///< state before an attempt, with control
   std::unique_ptr<EnergyAccount> account_;
   int iterations_ = 0;         ///< of the contact solver in the last attempt
   int newton_iterations_ = 0;  ///< Newton iterations, of all attempts and parts of this step

@@ -61,7 +61,7 @@ void StepControl::find_inertia() {
 }
 
 double StepControl::energy_of_change() {
-  if (inertia_.size() == 0) return problem_.ranks->sum(0.5 * problem_.mass.form(change_));
+  if (inertia_.size() == 0) return problem_.ranks->sum(0.5 * problem_.mass.quadratic_form(change_));
   problem_.mass.multiply(change_, force_);
   at_nodes_ = force_;
   problem_.ranks->accumulate(at_nodes_);

@@ -39,32 +39,32 @@ constexpr const char *block_jacobi = "block-jacobi", *multigrid = "gamg";
 class IterativeStage final : public StageSolver {
  public:
   IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                 const StepSolverOptions& options, FactoredStage* layer, GatheredContact* gathered);
+                 const StepSolverOptions& options, FactoredStage* condensed, GatheredContact* gathered);
 
   void solve(const Stage& stage, StageSolution& solution) override;
   void refactorize(const Vector& displacement) override;
   void show_contact() const override {
-    if (touches_) zones_->report();
+    if (touches_) subdomains_->report();
   }
-  void observe_contact(const ContactObserver& observer) override { zones_->observe(observer); }
+  void observe_contact(const ContactObserver& observer) override { subdomains_->observe(observer); }
   void save(Snapshot& snapshot, const std::string& name) const override;
   void load(const Snapshot& snapshot, const std::string& name) override;
-  [[nodiscard]] double contact_seconds() const override { return zones_->contact_seconds(); }
+  [[nodiscard]] double contact_seconds() const override { return subdomains_->contact_seconds(); }
   [[nodiscard]] IterationCounts iteration_counts() const override { return counts_; }
-  [[nodiscard]] std::size_t factor_entries() const override { return zones_->factor_entries(); }
+  [[nodiscard]] std::size_t factor_entries() const override { return subdomains_->factor_entries(); }
 
  private:
   void make_preconditioner();
-  bool turn_to_multigrid();
+  bool switch_to_multigrid();
   void begin(const Stage& stage, StageSolution& solution);
   [[nodiscard]] bool are_outside(const std::vector<Index>& points) const;
   void make_subdomains(const Stage& stage, const std::vector<Index>& points);
-  void keep_columns() { moved_.make(product_, zones_->nodes(), problem_.nodes.cols(), problem_.dimension); }
+  void keep_columns() { moved_.make(product_, subdomains_->nodes(), problem_.nodes.cols(), problem_.dimension); }
   void find_residual();
   void solve_subdomains(const Stage& stage, StageSolution& solution);
   void find_reactions(const Stage& stage, const StageSolution& solution);
   void mask(Vector& values) const;
-  void put_together(Vector& force) const;
+  void accumulate(Vector& force) const;
   [[nodiscard]] double forces(const Stage& stage);
   void solve_linear(double norm, double target);
   void watch_single_precision();
@@ -84,9 +84,9 @@ class IterativeStage final : public StageSolver {
   std::unique_ptr<SinglePrecisionCg> single_;  ///< null if A is not stored in blocks
   bool single_is_trusted_ = true;              ///< in this stage
   double promised_ = 0.0;                      ///< norm of the residual that they reported
-  ContactCandidates near_;                     ///< points for which the subdomains were made
-  ContactNeighbourhood nearby_;
-  std::unique_ptr<ContactRegion> zones_;
+  ContactCandidates candidates_;               ///< points for which the subdomains were made
+  ContactNeighbourhood neighbourhood_;
+  std::unique_ptr<ContactRegion> subdomains_;
   MovedProduct moved_;             ///< of the motion of the subdomains
   bool may_touch_ = false;         ///< some point may touch in this stage
   bool presses_at_start_ = false;  ///< points with reactions at the start of the step are part of a mean
@@ -100,18 +100,19 @@ class IterativeStage final : public StageSolver {
 };
 
 IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                               const StepSolverOptions& options, FactoredStage* layer, GatheredContact* gathered)
+                               const StepSolverOptions& options, FactoredStage* condensed, GatheredContact* gathered)
     : problem_(problem),
       coefficients_(coefficients),
       options_(options),
       gradients_(problem.dimension, *problem.ranks),
-      near_(problem.contact.size(), *problem.ranks),
-      nearby_(problem) {
+      candidates_(problem.contact.size(), *problem.ranks),
+      neighbourhood_(problem) {
   if (gathered != nullptr) {
-    zones_ = make_gathered_subdomains(problem, coefficients, solved_, product_, nearby_, options.all_points, *gathered,
-                                      layer);
+    subdomains_ = make_gathered_subdomains(problem, coefficients, solved_, product_, neighbourhood_, options.all_points,
+                                           *gathered, condensed);
   } else {
-    zones_ = std::make_unique<Subdomains>(problem, coefficients, solved_, product_, nearby_, options.all_points, layer);
+    subdomains_ = std::make_unique<Subdomains>(problem, coefficients, solved_, product_, neighbourhood_,
+                                               options.all_points, condensed);
   }
   const auto count = static_cast<std::size_t>(problem.dof_count());
   solved_.assign(count, 0);
@@ -133,9 +134,9 @@ void IterativeStage::refactorize(const Vector& displacement) {
   product_ = StageProduct();  // released before the new one is made
   product_ = StageProduct(problem_, coefficients_, displacement);
   make_preconditioner();
-  zones_->clear();
+  subdomains_->clear();
   moved_.clear();
-  near_.clear();
+  candidates_.clear();
 }
 
 void IterativeStage::make_preconditioner() {
@@ -157,7 +158,7 @@ void IterativeStage::make_preconditioner() {
 }
 
 /// Replaces diagonal blocks, which need too many iterations, by multigrid. All ranks see the same number.
-bool IterativeStage::turn_to_multigrid() {
+bool IterativeStage::switch_to_multigrid() {
   if (options_.preconditioner != "auto" || !options_.preconditioners || kind_ == multigrid) return false;
   log::info("the step is long for the mesh: iterations are preconditioned by multigrid (gamg) from now on");
   kind_ = multigrid;
@@ -171,26 +172,26 @@ void IterativeStage::mask(Vector& values) const {
 
 /// Returns whether some of these points are in no subdomain.
 bool IterativeStage::are_outside(const std::vector<Index>& points) const {
-  return std::any_of(points.begin(), points.end(), [&](Index point) { return near_.number(point) < 0; });
+  return std::any_of(points.begin(), points.end(), [&](Index point) { return candidates_.number(point) < 0; });
 }
 
 /// Makes subdomains for these points and those near them, and for those of the last subdomains unless there are too
 /// many: a body that rolls leaves them behind.
 void IterativeStage::make_subdomains(const Stage& stage, const std::vector<Index>& wanted) {
   std::vector<Index> points = wanted;
-  if (problem_.ranks->any(near_.are_too_many())) {
-    const std::vector<Index> nearest = near_.nearest(stage);
+  if (problem_.ranks->any(candidates_.are_too_many())) {
+    const std::vector<Index> nearest = candidates_.nearest(stage);
     points.insert(points.end(), nearest.begin(), nearest.end());
-    near_.clear();
+    candidates_.clear();
   }
-  points = nearby_.points_around(points);
-  points.insert(points.end(), near_.points().begin(), near_.points().end());
+  points = neighbourhood_.points_around(points);
+  points.insert(points.end(), candidates_.points().begin(), candidates_.points().end());
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
-  near_.clear();
-  near_.add_candidates(points);
+  candidates_.clear();
+  candidates_.add_candidates(points);
   try {
-    zones_->make(points);
+    subdomains_->make(points);
     keep_columns();
   } catch (const Error& problem) {
     // The tangent at a displacement that an iteration reaches is no error of the case.
@@ -204,32 +205,32 @@ void IterativeStage::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".previous", previous_);
   snapshot.save(name + ".has_previous", has_previous_);
   snapshot.save(name + ".preconditioner", kind_);
-  near_.save_history(snapshot, name + ".near");
-  snapshot.save(name + ".has_zone", zones_->are_made());
-  if (!zones_->are_made()) return;
-  snapshot.save(name + ".near.points", near_.points());
-  zones_->save(snapshot, name + ".zones");
+  candidates_.save_history(snapshot, name + ".near");
+  snapshot.save(name + ".has_zone", subdomains_->are_made());
+  if (!subdomains_->are_made()) return;
+  snapshot.save(name + ".near.points", candidates_.points());
+  subdomains_->save(snapshot, name + ".zones");
 }
 
 void IterativeStage::load(const Snapshot& snapshot, const std::string& name) {
   increment_ = snapshot.reals(name + ".increment", problem_.dof_count());
   previous_ = snapshot.reals(name + ".previous", problem_.dof_count());
   has_previous_ = snapshot.flag(name + ".has_previous");
-  if (snapshot.text(name + ".preconditioner") == multigrid) turn_to_multigrid();
+  if (snapshot.text(name + ".preconditioner") == multigrid) switch_to_multigrid();
   if (snapshot.flag(name + ".has_zone")) {
     const std::vector<Index>& points = snapshot.integers(name + ".near.points", 0, problem_.contact.size() - 1);
-    near_.clear();
-    near_.add_candidates(points);
-    zones_->load(snapshot, name + ".zones", points);
+    candidates_.clear();
+    candidates_.add_candidates(points);
+    subdomains_->load(snapshot, name + ".zones", points);
     keep_columns();
   }
-  near_.load_history(snapshot, name + ".near");
+  candidates_.load_history(snapshot, name + ".near");
 }
 
 /// Sets the initial guess: increments of a smooth motion continue. Supports are exact.
 void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   right_hand_side_ = stage.right_hand_side;
-  put_together(right_hand_side_);
+  accumulate(right_hand_side_);
   guess_ = increment_;
   if (has_previous_) guess_ += increment_ - previous_;
   for (const int dof : unsolved_) guess_[dof] = 0.0;
@@ -239,20 +240,20 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   if (!problem_.ranks->any(is_loaded)) guess_.setZero();
   solution.open_all(problem_.contact.size(), problem_.contact.has_friction() ? problem_.dimension - 1 : 0);
   std::vector<Index> pressing;
-  if (coefficients_.layer >= 0) pressing = pressing_at_start(coefficients_.mean, stage);
+  if (coefficients_.condensed_operator >= 0) pressing = pressing_at_start(coefficients_.mean, stage);
   const Ranks& ranks = *problem_.ranks;
   presses_at_start_ = ranks.any(!pressing.empty());
-  near_.look_at(stage);
-  may_touch_ = ranks.any(near_.some_may_touch(stage));
+  candidates_.estimate_reach(stage);
+  may_touch_ = ranks.any(candidates_.some_may_touch(stage));
   if (may_touch_) {
-    const std::vector<Index> approaching = near_.approaching(stage);
+    const std::vector<Index> approaching = candidates_.approaching(stage);
     if (ranks.any(!approaching.empty())) make_subdomains(stage, approaching);
   }
   if (presses_at_start_ && ranks.any(are_outside(pressing))) make_subdomains(stage, pressing);
 }
 
 /// Accumulates a force over the ranks that hold parts of it, on the dofs that are solved for.
-void IterativeStage::put_together(Vector& force) const {
+void IterativeStage::accumulate(Vector& force) const {
   problem_.ranks->accumulate(force);
   mask(force);
 }
@@ -261,23 +262,23 @@ void IterativeStage::put_together(Vector& force) const {
 /// equilibrium, and would leave their rounding in every residual.
 void IterativeStage::find_residual() {
   product_.multiply(guess_, residual_);
-  put_together(residual_);
+  accumulate(residual_);
   residual_ = right_hand_side_ - residual_;
 }
 
 /// Solves the subdomains and updates the residual. They move few nodes, so that these columns of A suffice.
 void IterativeStage::solve_subdomains(const Stage& stage, StageSolution& solution) {
   moved_.begin(guess_);
-  zones_->solve(stage, residual_, guess_, solution);
+  subdomains_->solve(stage, residual_, guess_, solution);
   moved_.multiply(guess_, work_);
-  put_together(work_);
+  accumulate(work_);
   residual_ -= work_;
 }
 
 void IterativeStage::find_reactions(const Stage& stage, const StageSolution& solution) {
   reactions_.setZero(problem_.dof_count());
   stage.rows->add_force(solution.acting_normal(), solution.acting_tangential(), reactions_);
-  put_together(reactions_);
+  accumulate(reactions_);
 }
 
 /// Norm of all forces, those of moving supports included: the reference of the residual.
@@ -287,7 +288,7 @@ double IterativeStage::forces(const Stage& stage) {
     prescribed_.setZero(problem_.dof_count());
     prescribe(problem_, stage, prescribed_);
     product_.multiply(prescribed_, supported_force_);
-    put_together(supported_force_);
+    accumulate(supported_force_);
     work_ -= supported_force_;
   }
   const double given = gradients_.norm(*preconditioner_, work_);
@@ -298,7 +299,7 @@ double IterativeStage::forces(const Stage& stage) {
 void IterativeStage::solve_linear(double norm, double target) {
   const auto product = [&](const Vector& x, Vector& y) {
     product_.multiply(x, y);
-    put_together(y);
+    accumulate(y);
   };
   if (single_ && single_is_trusted_) {
     const auto result = single_->solve(residual_, std::max(target / norm, single_reduction), iteration_limit, guess_);
@@ -310,7 +311,7 @@ void IterativeStage::solve_linear(double norm, double target) {
   promised_ = 0.0;
   const auto result = gradients_.solve(product, *preconditioner_, target, iteration_limit, residual_, guess_);
   counts_.gradients += result.iterations;
-  if (result.converged || turn_to_multigrid()) return;
+  if (result.converged || switch_to_multigrid()) return;
   throw Error(ErrorKind::not_converged,
               fmt::format("conjugate gradients stopped after {} iterations at {:.2g} of the residual asked for; "
                           "set solver.method = \"direct\" if memory allows",
@@ -334,10 +335,10 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
   double target = 0.0;
   bool must_touch = false;  // points have penetrated where none was expected to touch
   for (int round = 0; round < round_limit; ++round) {
-    ++counts_.rounds;
+    ++counts_.schwarz_iterations;
     find_residual();
     watch_single_precision();
-    const bool touches = zones_->are_made() && (must_touch || presses_at_start_ || may_touch_);
+    const bool touches = subdomains_->are_made() && (must_touch || presses_at_start_ || may_touch_);
     if (touches) {
       solve_subdomains(stage, solution);
       find_reactions(stage, solution);
@@ -346,10 +347,10 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
     if (target == 0.0) target = options_.tolerance * forces(stage);
     const double norm = gradients_.norm(*preconditioner_, residual_);
     if (norm <= target) {
-      const bool has_layer = coefficients_.layer >= 0;
-      if (has_layer) zones_->find_motion(*stage.rows, solution, guess_, solution.contact_increment);
-      stage.rows->normal_motion(has_layer ? solution.contact_increment : guess_, motion_);
-      const std::vector<Index> penetrating = near_.penetrating(stage, motion_, !touches);
+      const bool has_condensation = coefficients_.condensed_operator >= 0;
+      if (has_condensation) subdomains_->find_motion(*stage.rows, solution, guess_, solution.contact_increment);
+      stage.rows->normal_motion(has_condensation ? solution.contact_increment : guess_, motion_);
+      const std::vector<Index> penetrating = candidates_.penetrating(stage, motion_, !touches);
       if (!problem_.ranks->any(!penetrating.empty())) {
         touches_ = touches;
         return end(stage, solution);
@@ -370,8 +371,9 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
 }
 
 void IterativeStage::end(const Stage& stage, StageSolution& solution) {
-  if (counts_.gradients - gradients_before_ > iterations_for_multigrid) turn_to_multigrid();
-  near_.learn(stage, motion_, static_cast<std::size_t>((solution.normal_reaction.array() > 0.0).count()));
+  if (counts_.gradients - gradients_before_ > iterations_for_multigrid) switch_to_multigrid();
+  candidates_.update_history(stage, motion_,
+                             static_cast<std::size_t>((solution.normal_reaction.array() > 0.0).count()));
   previous_ = increment_;
   increment_ = guess_;
   has_previous_ = true;
@@ -390,9 +392,9 @@ void IterativeStage::end(const Stage& stage, StageSolution& solution) {
 
 std::unique_ptr<StageSolver> make_iterative_stage(const SemidiscreteProblem& problem,
                                                   const OperatorCoefficients& coefficients,
-                                                  const StepSolverOptions& options, FactoredStage* layer,
+                                                  const StepSolverOptions& options, FactoredStage* condensed,
                                                   GatheredContact* gathered) {
-  return std::make_unique<IterativeStage>(problem, coefficients, options, layer, gathered);
+  return std::make_unique<IterativeStage>(problem, coefficients, options, condensed, gathered);
 }
 
 }  // namespace ricochet

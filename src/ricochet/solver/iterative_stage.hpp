@@ -10,11 +10,11 @@ namespace ricochet {
 class GatheredContact;
 
 /// Conjugate gradients on all dofs around a direct solve near the contact. `gathered`, to which a reference is kept, is
-/// required on several ranks with contact on some; `layer` is then at its root.
+/// required on several ranks with contact on some; `condensed_stage` is then at its root.
 [[nodiscard]] std::unique_ptr<StageSolver> make_iterative_stage(const SemidiscreteProblem& problem,
                                                                 const OperatorCoefficients& coefficients,
                                                                 const StepSolverOptions& options,
-                                                                FactoredStage* layer = nullptr,
+                                                                FactoredStage* condensed_stage = nullptr,
                                                                 GatheredContact* gathered = nullptr);
 
 }  // namespace ricochet

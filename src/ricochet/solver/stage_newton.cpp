@@ -8,10 +8,10 @@
 namespace ricochet {
 
 void StageNewton::keep(const Stage& stage) {
-  place_ = stage.force_base;
+  base_ = stage.force_base;
   pressure_time_ = stage.pressure_time;
   pressure_part_ = stage.pressure_part;
-  evaluate(place_, force_at_place_);
+  evaluate(base_, force_at_place_);
   right_hand_side_ = stage.right_hand_side;
   prescribed_ = stage.prescribed;
   gap_offset_ = stage.gap_offset;
@@ -19,7 +19,7 @@ void StageNewton::keep(const Stage& stage) {
   if (!stage.motion) return;
   motion_ = stage.motion->displacement;
   velocity_ = stage.motion->velocity;
-  if (stage.motion->observes) observed_ = stage.motion->observed;
+  if (stage.motion->reevaluates_obstacles) observed_ = stage.motion->obstacle_displacement;
 }
 
 void StageNewton::evaluate(const Vector& displacement, Vector& force) {
@@ -41,7 +41,7 @@ void StageNewton::correct(const Vector& correction) {
 void StageNewton::take_internal_force(double factor) {
   constexpr int most_halvings = 5;
   for (int halving = 0;; ++halving) {
-    displacement_ = place_ + factor * total_;
+    displacement_ = base_ + factor * total_;
     try {
       evaluate(displacement_, force_);
       return;
@@ -54,11 +54,11 @@ void StageNewton::take_internal_force(double factor) {
 
 /// Sets the stage for a correction of δ = total.
 void StageNewton::linearize(const OperatorCoefficients& coefficients, Stage& stage) {
-  problem_.mass.multiply(total_, product_);
-  stage.right_hand_side = right_hand_side_ - coefficients.mass * product_ - (force_ - force_at_place_);
+  problem_.mass.multiply(total_, inertial_force_);
+  stage.right_hand_side = right_hand_side_ - coefficients.mass * inertial_force_ - (force_ - force_at_place_);
   if (problem_.has_damping()) {
-    problem_.damping.evaluate(total_, product_);
-    stage.right_hand_side -= coefficients.damping * product_;
+    problem_.damping.evaluate(total_, damping_force_);
+    stage.right_hand_side -= coefficients.damping * damping_force_;
   }
   stage.prescribed = prescribed_;
   for (Index i = 0; i < problem_.supports.size(); ++i)
@@ -66,9 +66,10 @@ void StageNewton::linearize(const OperatorCoefficients& coefficients, Stage& sta
   if (stage.motion) {
     stage.motion->displacement = motion_ + stage.gap_factor * total_;
     if (stage.slip_offset.size() > 0) stage.motion->velocity = velocity_ + stage.slip_factor * total_;
-    if (stage.motion->observes) stage.motion->observed = observed_ + stage.motion->instant.factor * total_;
-    product_.setZero(total_.size());
-    linearize_contact(problem_, product_, stage);
+    if (stage.motion->reevaluates_obstacles)
+      stage.motion->obstacle_displacement = observed_ + stage.motion->instant.factor * total_;
+    zero_motion_.setZero(total_.size());
+    linearize_contact(problem_, zero_motion_, stage);
     return;
   }
   stage.rows->normal_motion(total_, stage.gap_offset);
@@ -82,7 +83,7 @@ void StageNewton::solve(const OperatorCoefficients& coefficients, const SolveLin
                         Stage& stage, StageSolution& solution) {
   keep(stage);
   total_.setZero(problem_.dof_count());
-  const double size = problem_.nodes.cwiseAbs().maxCoeff() + place_.lpNorm<Eigen::Infinity>();
+  const double size = problem_.nodes.cwiseAbs().maxCoeff() + base_.lpNorm<Eigen::Infinity>();
   progress_.start(4.0 * std::numeric_limits<double>::epsilon() * size);
   acceleration_.restart();
   before_ = total_;
@@ -111,12 +112,12 @@ void StageNewton::solve(const OperatorCoefficients& coefficients, const SolveLin
   }
   solution.increment = total_;
   if (problem_.pressure) {
-    displacement_ = place_ + coefficients.stiffness * total_;
+    displacement_ = base_ + coefficients.stiffness * total_;
     solution.follower_load.setZero(total_.size());
     problem_.pressure->add_force(displacement_, pressure_time_, solution.follower_load, pressure_part_);
   }
   solution.iterations = iterations;
-  solution.rounds = progress_.rounds();
+  solution.newton_iterations = progress_.iterations();
 }
 
 }  // namespace ricochet

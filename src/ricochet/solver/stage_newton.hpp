@@ -35,10 +35,10 @@ class StageNewton {
   const SemidiscreteProblem& problem_;
   NewtonProgress progress_;
   AndersonAcceleration acceleration_{8};
-  Vector total_, before_, displacement_, force_, product_, follower_load_;
+  Vector total_, before_, displacement_, force_, inertial_force_, damping_force_, zero_motion_, follower_load_;
   // Data of the stage at δ = 0:
   double pressure_time_ = 0.0, pressure_part_ = 1.0;
-  Vector place_, force_at_place_, right_hand_side_, prescribed_, gap_offset_, slip_offset_, motion_, velocity_,
+  Vector base_, force_at_place_, right_hand_side_, prescribed_, gap_offset_, slip_offset_, motion_, velocity_,
       observed_;
 };
 

@@ -27,7 +27,7 @@ PathsToRoots find_paths(const SparseMatrix& matrix, const SparseCholesky& factor
   PathsToRoots paths{std::vector<int>(count, 1), std::vector<int>(count)};
   for (std::size_t place = 0; place < count; ++place) {
     for (SparseMatrix::InnerIterator entry(matrix, factor.permutation()[place]); entry; ++entry) {
-      auto row = static_cast<int>(factor.place(entry.row()));
+      auto row = static_cast<int>(factor.factor_index(entry.row()));
       while (row >= 0 && row < static_cast<int>(place)) {
         const int next = ancestor[static_cast<std::size_t>(row)];
         ancestor[static_cast<std::size_t>(row)] = static_cast<int>(place);
@@ -59,7 +59,7 @@ double column_entries(const SemidiscreteProblem& problem, const AnalysedOperator
     problem.contact.rows->visit_normal(k * points / samples, [&](Index dof, double) {
       const int unknown = number[static_cast<std::size_t>(dof)];
       if (unknown < 0) return;
-      const auto place = static_cast<std::size_t>(analysed.factor.place(unknown));
+      const auto place = static_cast<std::size_t>(analysed.factor.factor_index(unknown));
       int& of_tree = longest[paths.root[place]];
       of_tree = std::max(of_tree, paths.length[place]);
     });

@@ -45,7 +45,7 @@ class StagesStepSolver final : public StepSolver {
  public:
   StagesStepSolver(const SemidiscreteProblem& problem, const std::vector<OperatorCoefficients>& operators,
                    const StepSolverOptions& options)
-      : problem_(problem), operators_(operators), rounds_(problem), newton_(problem) {
+      : problem_(problem), operators_(operators), tangent_iterations_(problem), newton_(problem) {
     if (!problem.internal_force->is_linear()) frame_ = std::make_unique<CorotatedFrame>(problem);
     const bool is_divided = problem.ranks->are_several();
     if (is_divided && problem.ranks->any(problem.contact.size() > 0))
@@ -63,7 +63,7 @@ class StagesStepSolver final : public StepSolver {
     StageSolver& solver = *stages_.at(number);
     const auto solve_linear = [&](Stage& linear, StageSolution& result) {
       solver.solve(linear, result);
-      if (linear.motion) rounds_.follow_motion(solver, linear, result);
+      if (linear.motion) tangent_iterations_.follow_motion(solver, linear, result);
     };
     if (stage.force_base.size() > 0) {
       follow(stage.force_base);
@@ -72,7 +72,7 @@ class StagesStepSolver final : public StepSolver {
           stage, solution);
     } else {
       solve_linear(stage, solution);
-      solution.rounds = 1;
+      solution.newton_iterations = 1;
     }
     solver.show_contact();
   }
@@ -80,15 +80,15 @@ class StagesStepSolver final : public StepSolver {
     stages_.at(number)->refactorize(displacement);
   }
   void renew(const Vector& displacement, const Vector& of_contact_nodes) override {
-    if (problem_.pressure) pressure_at_ = problem_.pressure->last();
+    if (problem_.pressure) factor_pressure_ = problem_.pressure->last();
     if (!make_factors(displacement, of_contact_nodes) && !leave_pressure_out(displacement, of_contact_nodes) &&
         !go_half_way(displacement, of_contact_nodes)) {
-      made_at_.resize(0);
-      contact_made_at_.resize(0);
-      refactorize_all(made_at_, made_at_);
+      factor_displacement_.resize(0);
+      contact_factor_displacement_.resize(0);
+      refactorize_all(factor_displacement_, factor_displacement_);
     }
     if (!frame_) return;
-    frame_->restart(made_at_);
+    frame_->restart(factor_displacement_);
     frame_->follow(displacement);
   }
   void follow(const Vector& displacement) override {
@@ -117,12 +117,12 @@ class StagesStepSolver final : public StepSolver {
     for (const ChosenMethod& chosen : methods_) methods.push_back(static_cast<std::int64_t>(chosen.method));
     snapshot.save(name + methods_entry, std::move(methods));
     if (frame_) {
-      snapshot.save(name + made_at_entry, made_at_);
-      snapshot.save(name + contact_made_at_entry, contact_made_at_);
+      snapshot.save(name + made_at_entry, factor_displacement_);
+      snapshot.save(name + contact_made_at_entry, contact_factor_displacement_);
       if (problem_.pressure)
         snapshot.save(name + pressure_at_entry,
-                      Vector(Eigen::Vector4d(pressure_at_.time, pressure_at_.part, problem_.pressure->last().time,
-                                             problem_.pressure->last().part)));
+                      Vector(Eigen::Vector4d(factor_pressure_.time, factor_pressure_.part,
+                                             problem_.pressure->last().time, problem_.pressure->last().part)));
       frame_->save(snapshot, name + frame_entry);
     }
     for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->save(snapshot, fmt::format("{}.{}", name, i));
@@ -149,16 +149,16 @@ class StagesStepSolver final : public StepSolver {
       if (problem.kind() != ErrorKind::invalid_input) throw;
       return false;
     }
-    made_at_ = displacement;
-    contact_made_at_ = of_contact_nodes;
+    factor_displacement_ = displacement;
+    contact_factor_displacement_ = of_contact_nodes;
     return true;
   }
   /// The stiffness of a pressure is symmetric except at the edges of its surface; the contribution of these has no
   /// sign, and may push a body that only contact holds.
   bool leave_pressure_out(const Vector& displacement, const Vector& of_contact_nodes) {
     if (!problem_.pressure) return false;
-    pressure_at_.part = 0.0;
-    problem_.pressure->set_last(pressure_at_);
+    factor_pressure_.part = 0.0;
+    problem_.pressure->set_last(factor_pressure_);
     return make_factors(displacement, of_contact_nodes);
   }
   /// The tangent of a body squeezed against an obstacle may be indefinite, as contact is not part of it. (Half of a
@@ -179,9 +179,11 @@ class StagesStepSolver final : public StepSolver {
       methods_.push_back({.method = SolverMethod::direct, .reason = "on one of the processes"});
       return;
     }
-    FactoredStage* const layer =
-        coefficients.layer >= 0 ? stages_.at(static_cast<std::size_t>(coefficients.layer))->factored() : nullptr;
-    stages_.push_back(make_iterative_stage(problem, coefficients, options, layer, gathered_.get()));
+    FactoredStage* const condensed_stage =
+        coefficients.condensed_operator >= 0
+            ? stages_.at(static_cast<std::size_t>(coefficients.condensed_operator))->factored()
+            : nullptr;
+    stages_.push_back(make_iterative_stage(problem, coefficients, options, condensed_stage, gathered_.get()));
     const std::string kind = options.preconditioner == "auto" ? "" : ", preconditioned by " + options.preconditioner;
     methods_.push_back({.method = SolverMethod::iterative, .reason = "the body is divided among processes" + kind});
   }
@@ -205,17 +207,19 @@ class StagesStepSolver final : public StepSolver {
       chosen.ordering_seconds = timer.restart();
       if (chosen.method == SolverMethod::iterative) log_iterations(chosen);
     }
-    FactoredStage* const layer =
-        coefficients.layer >= 0 ? stages_.at(static_cast<std::size_t>(coefficients.layer))->factored() : nullptr;
-    if (coefficients.layer >= 0 && layer == nullptr)
+    FactoredStage* const condensed_stage =
+        coefficients.condensed_operator >= 0
+            ? stages_.at(static_cast<std::size_t>(coefficients.condensed_operator))->factored()
+            : nullptr;
+    if (coefficients.condensed_operator >= 0 && condensed_stage == nullptr)
       throw std::logic_error("the layer of a stage needs a factor, and its operator is solved by iterations");
     if (chosen.method == SolverMethod::direct) {
       log_factorization(chosen, analysed.dofs.size());
-      stages_.push_back(make_direct_stage(problem, coefficients, std::move(analysed), options, layer));
+      stages_.push_back(make_direct_stage(problem, coefficients, std::move(analysed), options, condensed_stage));
       chosen.factorization_seconds = timer.seconds();
     } else {
       analysed = {};
-      stages_.push_back(make_iterative_stage(problem, coefficients, options, layer));
+      stages_.push_back(make_iterative_stage(problem, coefficients, options, condensed_stage));
     }
     if (frame_) stages_.back() = make_corotated_stage(std::move(stages_.back()), *frame_);
     methods_.push_back(chosen);
@@ -224,9 +228,10 @@ class StagesStepSolver final : public StepSolver {
   const SemidiscreteProblem& problem_;
   std::vector<OperatorCoefficients> operators_;
   std::unique_ptr<CorotatedFrame> frame_;  ///< null if the internal force is linear
-  Vector made_at_, contact_made_at_;       ///< displacement of the factors; empty: the undeformed body
-  FollowerPressure::Instant pressure_at_;  ///< likewise
-  TangentIterations rounds_;
+  Vector factor_displacement_,
+      contact_factor_displacement_;            ///< displacement of the factors; empty: the undeformed body
+  FollowerPressure::Instant factor_pressure_;  ///< likewise
+  TangentIterations tangent_iterations_;
   StageNewton newton_;
   std::unique_ptr<GatheredContact> gathered_;  ///< on several ranks with contact
   std::vector<std::unique_ptr<StageSolver>> stages_;

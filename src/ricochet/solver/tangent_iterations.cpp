@@ -39,7 +39,7 @@ TangentIterations::TangentIterations(const SemidiscreteProblem& problem) : probl
     const Index node = problem.contact_dofs[static_cast<std::size_t>(i)] / problem.dimension;
     is_counted[i] = problem.ranks->is_owned(node) ? 1.0 : 0.0;
   }
-  acceleration_.divide(*problem.ranks, std::move(is_counted));
+  acceleration_.distribute(*problem.ranks, std::move(is_counted));
 }
 
 void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution) {
@@ -63,7 +63,7 @@ void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSo
     // Pairs change from iteration to iteration: they are held, and the next iteration solves the then linear
     // conditions.
     const bool is_stuck = round - last_progress > patience_of_pairs || !std::isfinite(error) || round == most_rounds;
-    if (is_stuck && problem_.contact.follows_motion() && problem_.contact.geometry->hold()) {
+    if (is_stuck && problem_.contact.follows_motion() && problem_.contact.geometry->freeze()) {
       least = std::numeric_limits<double>::infinity();
       last_progress = last_start = round;
       acceleration_.restart();
@@ -98,8 +98,8 @@ void TangentIterations::linearize_at(const Vector& increment, bool accelerate) {
   }
   point_.resize(static_cast<Index>(problem_.contact_dofs.size()));
   image_.resize(point_.size());
-  problem_.take_contact(linearized_at_, point_);
-  problem_.take_contact(increment, image_);
+  problem_.gather_contact(linearized_at_, point_);
+  problem_.gather_contact(increment, image_);
   acceleration_.advance(point_, image_, image_);
   linearized_at_ = increment;
   problem_.scatter_contact(image_, linearized_at_);

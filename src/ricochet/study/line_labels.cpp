@@ -72,18 +72,20 @@ Texts kinds_along(const StudyAxis& axis, const std::string& shown) {
 
 Texts labels_in_study(const Texts& directories) {
   namespace fs = std::filesystem;
-  std::string home;
+  std::string study_folder;
   Texts folders;
   for (const std::string& directory : directories) {
     fs::path path = fs::absolute(directory).lexically_normal();
     if (!path.has_filename()) path = path.parent_path();  // a trailing slash
     const std::string study = path.parent_path().parent_path().string();
-    if (path.parent_path().filename() != "runs" || !holds_study(study) || (!home.empty() && home != study)) return {};
-    home = study;
+    if (path.parent_path().filename() != "runs" || !holds_study(study) ||
+        (!study_folder.empty() && study_folder != study))
+      return {};
+    study_folder = study;
     folders.push_back(path.filename().string());
   }
-  if (home.empty()) return {};
-  const Study study = read_study(home);
+  if (study_folder.empty()) return {};
+  const Study study = read_study(study_folder);
   std::vector<const PlannedRun*> runs;
   for (const std::string& folder : folders) {
     const auto found =

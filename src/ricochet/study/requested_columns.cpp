@@ -23,31 +23,31 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-struct AskedColumn {
-  std::string asked;   ///< such as "--quantity max(history.time)"
-  std::string column;  ///< column of history.csv
+struct RequestedColumn {
+  std::string request;  ///< such as "--quantity max(history.time)"
+  std::string column;   ///< column of history.csv
 };
 
 /// Requires an entry of summary.json at a dotted path. Only its first part is checked, as the contents of an entry
 /// depend on the results of the run.
-void require_summary_entry(const std::string& asked, const std::string& path) {
+void require_summary_entry(const std::string& request, const std::string& path) {
   const Json summary = Json::parse(to_json(RunSummary{}));
   Names known;
   for (const auto& [name, value] : summary.items()) known.push_back(name);
   const std::string name = path.substr(0, path.find('.')), near = nearest_name(name, known);
   if (std::count(known.begin(), known.end(), name) > 0) return;
   throw Error(ErrorKind::usage,
-              fmt::format("{}: summary.json has no entry \"{}\"; {}", asked, name,
+              fmt::format("{}: summary.json has no entry \"{}\"; {}", request, name,
                           near.empty() ? "it has " + join_names(known) : fmt::format("did you mean \"{}\"?", near)));
 }
 
-std::vector<AskedColumn> columns_in(const StudyQuestions& questions) {
-  std::vector<AskedColumn> columns;
+std::vector<RequestedColumn> columns_in(const StudyQuestions& questions) {
+  std::vector<RequestedColumn> columns;
   const auto add = [&](const std::string& option, const std::string& text) {
     const Quantity quantity = parse_quantity(text);
-    const std::string asked = option + " " + text;
-    if (quantity.kind == Quantity::Kind::summary_value) return require_summary_entry(asked, quantity.name);
-    columns.push_back({asked, quantity.name});
+    const std::string request = option + " " + text;
+    if (quantity.kind == Quantity::Kind::summary_value) return require_summary_entry(request, quantity.name);
+    columns.push_back({request, quantity.name});
   };
   for (const std::string& text : questions.quantities) add("--quantity", text);
   for (const auto& [text, value] : questions.exact) add("--exact", text);
@@ -95,17 +95,17 @@ std::optional<Names> columns_of(const Case& input) {
   }
 }
 
-[[noreturn]] void refuse(const AskedColumn& asked, const Case& input, const Names& columns) {
-  throw Error(ErrorKind::usage, fmt::format("{}: {}", asked.asked, no_such_column(input, asked.column, columns)));
+[[noreturn]] void refuse(const RequestedColumn& request, const Case& input, const Names& columns) {
+  throw Error(ErrorKind::usage, fmt::format("{}: {}", request.request, no_such_column(input, request.column, columns)));
 }
 
 /// Refuses a column that no run has, for runs whose meshes or probes differ.
-void require_possible_column(const AskedColumn& asked, const Case& input) {
+void require_possible_column(const RequestedColumn& request, const Case& input) {
   const Names names = history_column_names();
-  if (std::count(names.begin(), names.end(), asked.column) > 0) return;
+  if (std::count(names.begin(), names.end(), request.column) > 0) return;
   // A column of a probe, which may have another name in another run.
-  if (asked.column.find('.') != std::string::npos) return;
-  refuse(asked, input, names);
+  if (request.column.find('.') != std::string::npos) return;
+  refuse(request, input, names);
 }
 
 /// Returns a table without rows for find_compared.
@@ -119,25 +119,25 @@ HistoryTable empty_table(const Names& columns) {
 
 void check_requested_columns(const Study& study) {
   const StudyQuestions& questions = study.questions;
-  const std::vector<AskedColumn> asked = columns_in(questions);
+  const std::vector<RequestedColumn> request = columns_in(questions);
   const bool compares_own_runs = !questions.compare.empty() && is_run_of_study(questions.reference);
   if (!questions.compare.empty() && !compares_own_runs) {
     const std::string path = (std::filesystem::path(questions.reference) / "history.csv").string();
     const HistoryTable reference = read_history(path, true);
     for (const std::string& name : questions.compare) static_cast<void>(find_compared(name, reference));
   }
-  const bool needs_runs = compares_own_runs || std::any_of(asked.begin(), asked.end(), [](const AskedColumn& a) {
-                            return !is_always_there(a.column);
-                          });
+  const bool needs_runs =
+      compares_own_runs ||
+      std::any_of(request.begin(), request.end(), [](const RequestedColumn& a) { return !is_always_there(a.column); });
   const std::optional<Case> input = needs_runs ? first_valid_case(study) : std::nullopt;
   if (!input) return;
   if (columns_vary(study.plan)) {
-    for (const AskedColumn& one : asked) require_possible_column(one, *input);
+    for (const RequestedColumn& one : request) require_possible_column(one, *input);
     return;
   }
   const std::optional<Names> columns = columns_of(*input);
   if (!columns) return;
-  for (const AskedColumn& one : asked) {
+  for (const RequestedColumn& one : request) {
     if (std::count(columns->begin(), columns->end(), one.column) == 0) refuse(one, *input, *columns);
   }
   if (!compares_own_runs) return;

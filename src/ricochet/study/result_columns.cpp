@@ -39,17 +39,17 @@ bool is_strained(const RunSummary& s, Impacts::const_iterator impact) {
 
 /// Returns a coordinate of the position of the largest stress, for each of the dimensions.
 TableCell peak_coordinate(const RunSummary& s, std::size_t k) {
-  return s.peak_stress && k < s.peak_stress->place.size() ? TableCell(s.peak_stress->place[k]) : TableCell();
+  return s.peak_stress && k < s.peak_stress->position.size() ? TableCell(s.peak_stress->position[k]) : TableCell();
 }
 
 /// A column and the function that fills its cells.
-struct OutcomeColumn {
+struct ResultColumn {
   TableColumn column;
   std::function<TableCell(const std::string& run, const RunState& state)> cell;
 };
 
 /// Makes a column that is empty for a run without a summary.
-OutcomeColumn of_summary(TableColumn column, TableCell (*cell)(const RunSummary&)) {
+ResultColumn of_summary(TableColumn column, TableCell (*cell)(const RunSummary&)) {
   return {std::move(column), [cell](const std::string&, const RunState& state) {
             return state.summary ? cell(*state.summary) : TableCell();
           }};
@@ -73,10 +73,10 @@ TableCell exit_status_of(const RunState& state) {
 using Summary = const RunSummary&;
 
 /// Returns all columns in their order.
-const std::vector<OutcomeColumn>& all_columns() {
-  static const std::vector<OutcomeColumn> columns{
+const std::vector<ResultColumn>& all_columns() {
+  static const std::vector<ResultColumn> columns{
       {{"run", false}, [](const std::string& run, const RunState&) { return TableCell(run); }},
-      {{"status"}, [](const std::string&, const RunState& state) { return TableCell(state.word()); }},
+      {{"status"}, [](const std::string&, const RunState& state) { return TableCell(state.status_text()); }},
       {{"exit_status", false}, [](const std::string&, const RunState& state) { return exit_status_of(state); }},
       of_summary({"steps"}, [](Summary s) { return TableCell(s.steps); }),
       of_summary({"time", false}, [](Summary s) { return TableCell(s.time()); }),
@@ -111,7 +111,7 @@ std::string doubts_of(const RunSummary& s) {
   }
   if (const auto most = hardest(s.impacts); most != s.impacts.end() && most->is_coarse())
     doubts.emplace_back("largest_force: coarse contact");
-  if (s.peak_stress && s.peak_stress->peak.looks < s.peak_stress->peak.states)
+  if (s.peak_stress && s.peak_stress->peak.evaluations < s.peak_stress->peak.states)
     doubts.emplace_back("peak_von_mises: at least");
   if (s.peak_stress && s.peak_stress->peak.raised_by != StressRaiser::none)
     doubts.emplace_back("peak_von_mises: grows with refinement");
@@ -122,13 +122,13 @@ std::string doubts_of(const RunSummary& s) {
 
 std::vector<TableColumn> result_columns() {
   std::vector<TableColumn> columns;
-  for (const OutcomeColumn& one : all_columns()) columns.push_back(one.column);
+  for (const ResultColumn& one : all_columns()) columns.push_back(one.column);
   return columns;
 }
 
 std::vector<TableCell> result_cells(const std::string& run, const RunState& state) {
   std::vector<TableCell> cells;
-  for (const OutcomeColumn& one : all_columns()) cells.push_back(one.cell(run, state));
+  for (const ResultColumn& one : all_columns()) cells.push_back(one.cell(run, state));
   return cells;
 }
 

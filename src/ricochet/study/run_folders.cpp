@@ -30,7 +30,7 @@ bool looks_like_run(const fs::path& folder) {
   std::error_code problem;
   if (fs::is_empty(folder, problem) && !problem) return true;
   return holds_run(folder.string()) || fs::exists(folder / messages_file, problem) ||
-         fs::exists(folder / outcome_file, problem);
+         fs::exists(folder / exit_status_file, problem);
 }
 
 void require_folder(const fs::path& path) {

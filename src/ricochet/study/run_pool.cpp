@@ -43,7 +43,7 @@ RunPool::RunPool(const std::vector<PooledRun>& runs, const RunPoolOptions& optio
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunState state = read_run_state(runs[i].directory);
     const NextAction action = next_action(state);
-    kept += action == NextAction::nothing && state.word() != "done";
+    kept += action == NextAction::nothing && state.status_text() != "done";
     if (action == NextAction::nothing) continue;
     pending_.push_back(i);
     actions_.push_back(action);

@@ -19,8 +19,8 @@ constexpr int refused_status = static_cast<int>(ErrorKind::invalid_input),
               failed_status = static_cast<int>(ErrorKind::not_converged),
               unexpected_status = static_cast<int>(ErrorKind::expectation);
 
-std::string outcome_path(const std::string& directory) {
-  return (std::filesystem::path(directory) / outcome_file).string();
+std::string exit_status_path(const std::string& directory) {
+  return (std::filesystem::path(directory) / exit_status_file).string();
 }
 
 bool is_done(const RunState& state) {
@@ -51,7 +51,7 @@ std::optional<int> RunState::final_status() const {
   return exit_status;
 }
 
-std::string RunState::word() const {
+std::string RunState::status_text() const {
   const std::optional<int> status = final_status();
   if (status == 0 || status == unexpected_status) return "done";
   if (status) return status == refused_status ? "refused" : "failed";
@@ -59,7 +59,7 @@ std::string RunState::word() const {
 }
 
 NextAction next_action(const RunState& state) {
-  if (state.word() == "done") return NextAction::nothing;
+  if (state.status_text() == "done") return NextAction::nothing;
   if (state.exit_status == refused_status) return NextAction::nothing;
   // Status 3 without a summary that states the failure: out of memory, which may not recur.
   const bool knows = state.summary && state.summary->status == "failed";
@@ -80,9 +80,9 @@ RunState read_run_state(const std::string& directory) {
     }
   }
   state.has_checkpoint = std::filesystem::is_directory(directory, ignored) && !checkpoint_files(directory).empty();
-  if (!std::filesystem::exists(outcome_path(directory), ignored)) return state;
+  if (!std::filesystem::exists(exit_status_path(directory), ignored)) return state;
   try {
-    const Json json = Json::parse(read_file(outcome_path(directory)));
+    const Json json = Json::parse(read_file(exit_status_path(directory)));
     // A summary that has changed means that somebody has resumed the run by hand, and the status of the earlier process
     // no longer matters. (Some versions did not record the checksum of the summary.)
     const std::string of_summary = json.value("summary", "");
@@ -96,10 +96,10 @@ RunState read_run_state(const std::string& directory) {
 
 void record_exit_status(const std::string& directory, int exit_status, const std::string& message) {
   std::error_code ignored;
-  std::filesystem::remove(outcome_path(directory), ignored);
+  std::filesystem::remove(exit_status_path(directory), ignored);
   if (exit_status == 0) return;
   const Json outcome{{"exit_status", exit_status}, {"message", message}, {"summary", summary_checksum(directory)}};
-  write_durably(outcome_path(directory), outcome.dump(2) + "\n");
+  write_durably(exit_status_path(directory), outcome.dump(2) + "\n");
 }
 
 std::string last_error(const std::string& messages, const std::string& run_name) {

@@ -9,7 +9,7 @@
 namespace ricochet {
 
 /// File in the directory of a run that states how its process ended.
-inline constexpr const char* outcome_file = "outcome.json";
+inline constexpr const char* exit_status_file = "outcome.json";
 
 /// State of a run, read from its directory.
 struct RunState {
@@ -23,7 +23,7 @@ struct RunState {
   /// 0, or 5 if an expectation does not hold. None if the run has not ended.
   [[nodiscard]] std::optional<int> final_status() const;
   /// Returns "done", "refused", "failed", "interrupted" or "not run".
-  [[nodiscard]] std::string word() const;
+  [[nodiscard]] std::string status_text() const;
 };
 
 enum class NextAction {

@@ -82,7 +82,7 @@ std::vector<std::vector<double>> vectors_of(const ResultTable& table, std::size_
 }
 
 /// Interprets "initial.velocity.y" as a component of the values of "initial.velocity".
-void take_part(const ResultTable& table, StudyPanel& panel) {
+void select_component(const ResultTable& table, StudyPanel& panel) {
   const std::size_t dot = panel.x.rfind('.');
   if (dot == std::string::npos || table.find(panel.x) < table.columns.size()) return;
   const std::string whole = panel.x.substr(0, dot), part = panel.x.substr(dot + 1);
@@ -126,7 +126,7 @@ std::vector<StudyPanel> panels_of(const std::string& what, const Study& study, c
                                   bool logarithmic) {
   if (const std::size_t at = what.find(against); at != std::string::npos) {
     StudyPanel panel{what.substr(at + against.size()), what.substr(0, at)};
-    take_part(table, panel);
+    select_component(table, panel);
     require_column(what, panel.x, table);
     require_column(what, panel.y, table);
     panel.axis = axis_of(panel.x, study);
@@ -252,7 +252,7 @@ bool spans_much(const std::vector<StudyLine>& lines) {
 
 /// Returns the position of each row on the axis: its number, that of a component of its vector, or the index of a word
 /// among `categories`.
-std::vector<double> places_of(const ResultTable& table, StudyPanel& panel, std::vector<std::string>& categories) {
+std::vector<double> axis_positions(const ResultTable& table, StudyPanel& panel, std::vector<std::string>& categories) {
   const std::size_t column = table.find(panel.x);
   if (const auto vectors = vectors_of(table, column); !vectors.empty()) return numbers_of(vectors, panel.part);
   std::vector<double> numbers, places;
@@ -278,7 +278,7 @@ std::string label_of_part(const StudyPanel& panel) {
 
 Json describe_panel(StudyPanel panel, const Study& study, const ResultTable& table, const std::string& what) {
   std::vector<std::string> categories;
-  const std::vector<double> numbers = places_of(table, panel, categories);
+  const std::vector<double> numbers = axis_positions(table, panel, categories);
   const std::vector<StudyLine> lines = lines_of(panel, study, table, numbers);
   if (lines.empty()) refuse_figure(what, fmt::format("no run has numbers under {} and {}", panel.x, panel.y));
   Json json{{"kind", "lines"},

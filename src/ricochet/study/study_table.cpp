@@ -57,7 +57,7 @@ class StudyTableMaker {
   using CellOf = std::function<TableCell(std::size_t run)>;
   void add_column(TableColumn column, CellOf cell);
   void fill_columns();
-  void add_outcomes();
+  void add_result_columns();
   void add_quantities();
   void add_exact_errors();
   void add_history_errors();
@@ -77,8 +77,8 @@ class StudyTableMaker {
   std::vector<CellOf> new_columns_;
   std::map<std::string, std::string> problems_;  ///< error per option that requests a value runs do not have
   std::set<std::string> answered_;               ///< such options for which some run has a value
-  std::map<std::string, int> lacking_;           ///< number of runs without the value
-  bool has_unanswered_ = false;
+  std::map<std::string, int> missing_counts_;    ///< number of runs without the value
+  bool has_missing_quantity_ = false;
   StudyResults results_;
 };
 
@@ -104,19 +104,20 @@ void StudyTableMaker::fill_columns() {
 /// question is wrong.
 void StudyTableMaker::note_problems() {
   for (const auto& [question, problem] : problems_) {
-    if (answered_.contains(question) && lacking_.contains(question)) {
-      log::warning(fmt::format("{}: {} of {} lack it", question, lacking_[question], counted(results_.done, "run")));
+    if (answered_.contains(question) && missing_counts_.contains(question)) {
+      log::warning(
+          fmt::format("{}: {} of {} lack it", question, missing_counts_[question], counted(results_.done, "run")));
       continue;
     }
     log::warning(fmt::format("{}: {}", question, problem));
     if (answered_.contains(question)) continue;
     results_.notes.push_back(fmt::format("{}: {}.", question, problem));
-    has_unanswered_ = true;
+    has_missing_quantity_ = true;
   }
   problems_.clear();
 }
 
-void StudyTableMaker::add_outcomes() {
+void StudyTableMaker::add_result_columns() {
   results_.table.key_columns = varied_keys(study_.plan).size();
   for (const std::string& key : varied_keys(study_.plan)) results_.table.columns.push_back({key});
   for (TableColumn& column : result_columns()) results_.table.columns.push_back(std::move(column));
@@ -126,7 +127,7 @@ void StudyTableMaker::add_outcomes() {
     for (const std::string& value : run.planned.values) row.emplace_back(value);
     for (TableCell& cell : result_cells(run.folder, states_.back())) row.push_back(std::move(cell));
     const std::optional<int> status = states_.back().final_status();
-    results_.done += states_.back().word() == "done";
+    results_.done += states_.back().status_text() == "done";
     results_.worst_status = worse_status(results_.worst_status, status.value_or(0));
   }
 }
@@ -147,7 +148,7 @@ const RunHistory* StudyTableMaker::history_of(const std::string& directory) {
 
 /// Returns the value of a quantity. If an option requests it, runs without the value are reported.
 TableCell StudyTableMaker::value_of(const std::string& quantity, std::size_t run, const std::string& option) {
-  if (states_[run].word() != "done") return {};
+  if (states_[run].status_text() != "done") return {};
   const std::string question = option + " " + quantity;
   try {
     const RunHistory* history = history_of(study_.path(study_.runs[run]));
@@ -159,7 +160,7 @@ TableCell StudyTableMaker::value_of(const std::string& quantity, std::size_t run
   } catch (const Error& problem) {
     if (option.empty()) return {};
     problems_[question] = problem.what();
-    ++lacking_[question];
+    ++missing_counts_[question];
     return {};
   }
 }
@@ -241,7 +242,7 @@ void StudyTableMaker::add_history_errors() {
   for (const ComparedQuantity& quantity : compared()) {
     add_column({error_prefix + quantity.name, true, 3, 2}, [quantity, this](std::size_t run) -> TableCell {
       const std::string own = study_.path(study_.runs[run]), directory = reference_of(run);
-      if (own == directory || states_[run].word() != "done") return {};
+      if (own == directory || states_[run].status_text() != "done") return {};
       const RunHistory *history = history_of(own), *reference = history_of(directory);
       const std::string question = "--compare " + quantity.name;
       if (reference == nullptr || reference->summary.status != "done") {
@@ -294,7 +295,7 @@ void StudyTableMaker::note_warnings() {
 }
 
 StudyResults StudyTableMaker::make() {
-  add_outcomes();
+  add_result_columns();
   add_quantities();
   add_exact_errors();
   add_history_errors();
@@ -304,7 +305,7 @@ StudyResults StudyTableMaker::make() {
   fill_columns();
   note_messages();
   note_warnings();
-  if (has_unanswered_ && results_.worst_status == 0) results_.worst_status = static_cast<int>(ErrorKind::usage);
+  if (has_missing_quantity_ && results_.worst_status == 0) results_.worst_status = static_cast<int>(ErrorKind::usage);
   return std::move(results_);
 }
 

@@ -28,10 +28,10 @@ void expect_keys(const Json& schema, const std::vector<Key>& keys) {
     SCOPED_TRACE(key.name);
     const Json& found = schema.at("properties").at(key.name);
     EXPECT_NE(found.at("description").get<std::string>().find(key.doc), std::string::npos);
-    EXPECT_EQ(found.contains("default"), key.standard.has_value());
+    EXPECT_EQ(found.contains("default"), key.default_value.has_value());
     const Json required = schema.value("required", Json::array());
     // A key of one type among several is required where that type is named; one that gives way, without the others.
-    const bool always = key.required && key.only_for.empty() && key.gives_way_to.empty();
+    const bool always = key.required && key.only_for.empty() && key.replaced_by.empty();
     EXPECT_EQ(std::find(required.begin(), required.end(), key.name) != required.end(), always);
     if (key.type == KeyType::table) expect_keys(found, key.keys);
   }
@@ -119,7 +119,7 @@ TEST(CaseKeys, AreDocumentedAndHaveUnits) {
                              key.type == KeyType::formulas || key.type == KeyType::axial ||
                              key.type == KeyType::axial_formulas;
       EXPECT_EQ(!key.unit.empty(), is_number) << section.name << '.' << key.name;
-      EXPECT_FALSE(key.required && key.standard.has_value()) << section.name << '.' << key.name;
+      EXPECT_FALSE(key.required && key.default_value.has_value()) << section.name << '.' << key.name;
     }
   }
 }

@@ -160,9 +160,9 @@ Measures measures_of(const Mesh& mesh, const Change& change) {
   pair.facets = mesh.group(below, d - 1).members;
   pair.opposite_facets = mesh.group(above, d - 1).members;
   all["distance of facets from curved surfaces"] = {{distance_from_curved(body, pair)}, 1};
-  for (const bool slides_far : {false, true}) {
-    pair.slides_far = slides_far;
-    all[slides_far ? "choice of side, sliding far" : "choice of side"] = {
+  for (const bool large_sliding : {false, true}) {
+    pair.large_sliding = large_sliding;
+    all[large_sliding ? "choice of side, sliding far" : "choice of side"] = {
         {choose_side(body, pair).opposite ? 1.0 : 0.0}};
   }
   const NormalVariation turns = normal_variation(body, pair.facets, pair.opposite_facets);

@@ -33,7 +33,7 @@ struct Pair {
   explicit Pair(const StackedBoxes& stack) : body(make_meshed_body(make_stack(stack), stack.geometry_degree)) {
     pair.facets = body->mesh.group("lower.y1", 1).members;
     pair.opposite_facets = body->mesh.group("upper.y0", 1).members;
-    pair.slides_far = true;
+    pair.large_sliding = true;
   }
   [[nodiscard]] NormalVariation turns() const {
     return normal_variation(body->body, pair.facets, pair.opposite_facets);
@@ -84,8 +84,8 @@ TEST(NormalVariation, DoubtASideWhoseFacetsSpanALargeTurn) {
   const std::optional<SideDoubt> flat = doubt_side(test.body->body, test.pair);
   ASSERT_TRUE(flat);
   EXPECT_TRUE(flat->other_is_better);
-  EXPECT_NEAR(flat->turn, 2.0 / (3.0 * radius), 0.02);
-  EXPECT_NEAR(flat->of_other, 1.0 / (3.0 * radius), 0.01);
+  EXPECT_NEAR(flat->variation, 2.0 / (3.0 * radius), 0.02);
+  EXPECT_NEAR(flat->other_variation, 1.0 / (3.0 * radius), 0.01);
   EXPECT_EQ(flat->finer, 1.0);
   std::swap(test.pair.facets, test.pair.opposite_facets);
   EXPECT_FALSE(doubt_side(test.body->body, test.pair));

@@ -43,10 +43,10 @@ TEST(RotatingNormal, NoOrderOfFacetsMatters) {
       const RotatingNormal one(space, facets, direction);
       std::reverse(facets.begin(), facets.end());
       const RotatingNormal other(space, facets, direction);
-      EXPECT_EQ(one.turns(), other.turns());
+      EXPECT_EQ(one.rotates(), other.rotates());
       EXPECT_LT((one.at(space.nodes, {}).head(d) - direction).norm(), 1e-14);
       EXPECT_LT((one.at(space.nodes, displacement) - other.at(space.nodes, displacement)).norm(), 1e-13);
-      turning += one.turns() ? 1 : 0;
+      turning += one.rotates() ? 1 : 0;
     }
     EXPECT_GT(turning, 4);
   }

@@ -33,8 +33,8 @@ TEST(StickingNormal, DoesNotFollowRounding) {
     if (wedge.shape().gradient(at).norm() < 0.99) ++rounded;
     const double time = 1.0 + number();
     const PosedObstacle before = wedge.at(time), after = wedge.at(time + 0.05);
-    const SpaceVector from = before.pose().in_space(at), noise = 1e-15 * Eigen::Vector2d(number(), number());
-    const SpaceVector to = after.pose().in_space(at) + noise;
+    const SpaceVector from = before.pose().to_space(at), noise = 1e-15 * Eigen::Vector2d(number(), number());
+    const SpaceVector to = after.pose().to_space(at) + noise;
     const SpaceVector normal = normal_of_step(before, from, after, to);
     // That of the middle of the turn.
     const SpaceVector mean = (before.normal(from) + after.normal(to)).normalized();

@@ -72,7 +72,7 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   impact.largest_force_time = 0.375;
   impact.contact_points = 5;
   impact.all_contact_points = 9;
-  impact.first_place = {1.5, -INFINITY};
+  impact.first_position = {1.5, -INFINITY};
   impact.before.velocity = {INFINITY, -INFINITY, 0.0};
   summary.impacts.push_back(impact);
   summary.peak_stress =
@@ -85,7 +85,7 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   EXPECT_EQ(found.depth, INFINITY);
   EXPECT_EQ(found.relative_depth, INFINITY);
   EXPECT_EQ(found.time, 0.5);
-  EXPECT_EQ(found.place, (std::vector<double>{-INFINITY, 2.0}));
+  EXPECT_EQ(found.position, (std::vector<double>{-INFINITY, 2.0}));
   EXPECT_EQ(found.first_time, 0.25);
   EXPECT_EQ(found.groups, (std::vector<std::string>{"top", "left"}));
   EXPECT_EQ(found.through_groups, (std::vector<std::string>{"inside"}));
@@ -95,9 +95,9 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   EXPECT_FALSE(back.penetration.is_complete());
   ASSERT_EQ(back.penetration.rims.size(), 1u);
   EXPECT_EQ(back.penetration.rims[0].time, 0.75);
-  ASSERT_EQ(back.penetration.rims[0].place.size(), 2u);
-  EXPECT_EQ(back.penetration.rims[0].place[0], 1.0);
-  EXPECT_TRUE(std::isnan(back.penetration.rims[0].place[1]));
+  ASSERT_EQ(back.penetration.rims[0].position.size(), 2u);
+  EXPECT_EQ(back.penetration.rims[0].position[0], 1.0);
+  EXPECT_TRUE(std::isnan(back.penetration.rims[0].position[1]));
   ASSERT_EQ(back.impacts.size(), 1u);
   EXPECT_EQ(back.impacts[0].begin, 0.25);
   EXPECT_EQ(back.impacts[0].end, 0.5);
@@ -106,11 +106,11 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   EXPECT_EQ(back.impacts[0].largest_force_time, 0.375);
   EXPECT_EQ(back.impacts[0].contact_points, 5);
   EXPECT_EQ(back.impacts[0].all_contact_points, 9);
-  EXPECT_EQ(back.impacts[0].first_place, (std::vector<double>{1.5, -INFINITY}));
+  EXPECT_EQ(back.impacts[0].first_position, (std::vector<double>{1.5, -INFINITY}));
   EXPECT_EQ(back.impacts[0].before.velocity[1], -INFINITY);
   ASSERT_TRUE(back.peak_stress.has_value());
   EXPECT_EQ(back.peak_stress->peak.von_mises, INFINITY);
-  EXPECT_EQ(back.peak_stress->place, (std::vector<double>{1.5, 2.5}));
+  EXPECT_EQ(back.peak_stress->position, (std::vector<double>{1.5, 2.5}));
   EXPECT_EQ(back.peak_stress->element, 8);
   EXPECT_EQ(back.peak_stress->peak.raised_by, StressRaiser::support_edge);
   EXPECT_EQ(back.probe_sums, summary.probe_sums);
@@ -175,7 +175,7 @@ TEST_F(SummaryTest, KeepsHowBodiesFaceAndSlide) {
   EXPECT_EQ(back.unsettled[0].first_time, 0.25);
   EXPECT_EQ(back.unsettled[0].time, 0.75);
   EXPECT_EQ(back.unsettled[0].gap, -0.125);
-  EXPECT_EQ(back.unsettled[0].place, (std::vector<double>{4.0, 5.0}));
+  EXPECT_EQ(back.unsettled[0].position, (std::vector<double>{4.0, 5.0}));
   ASSERT_TRUE(back.contacts.at(0).facing.has_value());
   EXPECT_FALSE(back.contacts[0].tied);
   EXPECT_TRUE(back.contacts.at(2).tied);
@@ -188,7 +188,7 @@ TEST_F(SummaryTest, KeepsHowBodiesFaceAndSlide) {
   ASSERT_EQ(back.sliding.size(), 2U);
   EXPECT_TRUE(back.sliding[0].is_beyond());
   EXPECT_EQ(back.sliding[0].time_beyond, 0.75);
-  EXPECT_EQ(back.sliding[0].place, (std::vector<double>{2.0, 3.0}));
+  EXPECT_EQ(back.sliding[0].position, (std::vector<double>{2.0, 3.0}));
   EXPECT_EQ(back.sliding[1].time_beyond, INFINITY);
 }
 
@@ -225,9 +225,9 @@ TEST_F(SummaryTest, KnowsWhichImpactTheTurnOfABodyHasChanged) {
     impact.impulse = impact.normal_impulse = {0.0, 4.0, 0.0};
   }
   summary.rotation = RotationReport{0.1, INFINITY, {0.05, 0.05}};
-  summary.impacts[1].turn_growth = 0.0078125;
+  summary.impacts[1].rotation_growth = 0.0078125;
   const RunSummary back = read_back(summary);
-  EXPECT_EQ(back.impacts[1].turn_growth, 0.0078125);
+  EXPECT_EQ(back.impacts[1].rotation_growth, 0.0078125);
   EXPECT_TRUE(back.small_strain_holds_in(0));
   EXPECT_FALSE(back.small_strain_holds_in(1));
   EXPECT_FALSE(back.small_strain_holds_in_impacts());

@@ -43,7 +43,7 @@ void expect_product(const NodeMatrix& matrix, const SparseMatrix& whole, const V
   ASSERT_EQ(y.size(), expected.size());
   constexpr double rounding = 20.0 * std::numeric_limits<double>::epsilon();
   for (Index i = 0; i < y.size(); ++i) EXPECT_LE(std::abs(y[i] - expected[i]), rounding * terms[i]) << i;
-  EXPECT_LE(std::abs(matrix.form(x) - x.dot(expected)), rounding * x.cwiseAbs().dot(terms));
+  EXPECT_LE(std::abs(matrix.quadratic_form(x) - x.dot(expected)), rounding * x.cwiseAbs().dot(terms));
 }
 
 TEST(NodeMatrix, MultipliesAsTheWholeMatrixDoes) {
@@ -63,7 +63,7 @@ TEST(NodeMatrix, MultipliesAsTheWholeMatrixDoes) {
     for (const auto& [stored, given] : {std::pair{&blocks, &stiffness}, std::pair{&scalars, &mass}}) {
       EXPECT_EQ(stored->diagonal(), Vector(given->diagonal()));
       EXPECT_FALSE(stored->is_diagonal());
-      const SparseMatrix whole = stored->whole();
+      const SparseMatrix whole = stored->to_sparse();
       ASSERT_EQ(whole.nonZeros(), given->nonZeros());
       for (Index k = 0; k < whole.nonZeros(); ++k) {
         ASSERT_EQ(whole.innerIndexPtr()[k], given->innerIndexPtr()[k]);
@@ -93,7 +93,7 @@ TEST(NodeMatrix, AddsUp) {
     expected = add_sparse(expected, SparseMatrix(2.5 * wide));
     const Vector x = Vector::Random(expected.cols());
     expect_product(sum, expected, x);
-    const SparseMatrix difference = SparseMatrix(sum.whole() - expected);
+    const SparseMatrix difference = SparseMatrix(sum.to_sparse() - expected);
     EXPECT_EQ(difference.norm(), 0.0);
     EXPECT_EQ(sum.pattern().column, NodeMatrix(expected, d).pattern().column);
     EXPECT_EQ(sum.diagonal(), Vector(expected.diagonal()));
@@ -160,13 +160,13 @@ TEST(NodeMatrix, GivesTheSameBitsForAnyNumberOfThreads) {
     for (const NodeMatrix* matrix : {&stiffness, &mass}) {
       Vector alone, several;
       matrix->multiply(x, alone);
-      const double form = matrix->form(x);
+      const double form = matrix->quadratic_form(x);
       for (const int threads : {2, 3}) {
         set_thread_count(threads);
         matrix->multiply(x, several);
         EXPECT_EQ(alone, several) << threads;
-        EXPECT_EQ(matrix->form(x), form) << threads;
-        const NodeMatrix again(matrix->whole(), d);
+        EXPECT_EQ(matrix->quadratic_form(x), form) << threads;
+        const NodeMatrix again(matrix->to_sparse(), d);
         again.multiply(x, several);
         EXPECT_EQ(alone, several) << "made by " << threads;
         set_thread_count(1);
@@ -185,7 +185,7 @@ TEST(NodeMatrix, ScalesByPowersOfTwoToTheBit) {
   matrix.multiply(x, y);
   scaled.multiply(std::ldexp(1.0, -33) * x, scaled_y);
   EXPECT_EQ(Vector(std::ldexp(1.0, 37) * y), scaled_y);
-  EXPECT_EQ(std::ldexp(1.0, 4) * matrix.form(x), scaled.form(std::ldexp(1.0, -33) * x));
+  EXPECT_EQ(std::ldexp(1.0, 4) * matrix.quadratic_form(x), scaled.quadratic_form(std::ldexp(1.0, -33) * x));
 }
 
 /// Matrices that are not of the form m ⊗ I, although they begin as it, or whose blocks are not full.
@@ -217,7 +217,7 @@ TEST(NodeMatrix, TakesAnySymmetricPattern) {
     const Vector values = Vector::LinSpaced(x.size() / 2, 1.0, 3.0);
     SparseMatrix scaled = diagonal;
     for (Index i = 0; i < x.size(); ++i) scaled.coeffRef(i, i) = values[i / 2];
-    EXPECT_NEAR(NodeMatrix(scaled, 2).form(x), x.dot(scaled * x), 1e-14 * x.dot(scaled * x));
+    EXPECT_NEAR(NodeMatrix(scaled, 2).quadratic_form(x), x.dot(scaled * x), 1e-14 * x.dot(scaled * x));
     EXPECT_EQ(matrix.diagonal(), Vector(Vector::Ones(x.size())));
     Vector y;
     matrix.multiply(x, y);
@@ -239,8 +239,8 @@ TEST(NodeMatrix, TakesAnySymmetricPattern) {
     Vector y;
     matrix.multiply(x, y);
     EXPECT_EQ(y, Vector(Vector::Zero(x.size())));
-    EXPECT_EQ(matrix.form(x), 0.0);
-    EXPECT_EQ(matrix.whole().nonZeros(), 0);
+    EXPECT_EQ(matrix.quadratic_form(x), 0.0);
+    EXPECT_EQ(matrix.to_sparse().nonZeros(), 0);
     EXPECT_EQ(matrix.diagonal(), Vector(Vector::Zero(x.size())));
   }
 }

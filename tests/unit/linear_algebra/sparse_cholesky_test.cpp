@@ -71,7 +71,7 @@ TEST(SparseCholesky, PredictsWhatTheFactorizationTakes) {
 TEST(SparseCholesky, KnowsThePlaceOfEveryUnknown) {
   const SparseCholesky factor(random_matrix(40, 8));
   for (Index place = 0; place < 40; ++place)
-    EXPECT_EQ(factor.place(factor.permutation()[static_cast<std::size_t>(place)]), place);
+    EXPECT_EQ(factor.factor_index(factor.permutation()[static_cast<std::size_t>(place)]), place);
 }
 
 /// Adding L⁻¹P f between the two solves has the effect of the force f.

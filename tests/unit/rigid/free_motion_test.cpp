@@ -12,14 +12,15 @@
 namespace ricochet {
 namespace {
 
-using Three = Eigen::Vector3d;
+using Vector3 = Eigen::Vector3d;
 
 FreeMotion::Inertia inertia(Index dimension) {
   FreeMotion::Inertia result;
   result.mass = 2.0;
-  result.centre = Three(1.0, -2.0, 0.5).head(dimension);
-  result.moments = Three(0.5, 0.8, 1.1).head(dimension == 2 ? 1 : 3);
-  if (dimension == 3) result.principal = Eigen::AngleAxisd(0.7, Three(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
+  result.centre = Vector3(1.0, -2.0, 0.5).head(dimension);
+  result.moments = Vector3(0.5, 0.8, 1.1).head(dimension == 2 ? 1 : 3);
+  if (dimension == 3)
+    result.principal = Eigen::AngleAxisd(0.7, Vector3(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
   return result;
 }
 
@@ -60,14 +61,14 @@ class FreeMotions : public testing::TestWithParam<Index> {};
 TEST_P(FreeMotions, KeepEnergyAndAngularMomentumOfAStepTogether) {
   const Index d = GetParam();
   Stepped body(inertia(d));
-  const SpaceVector spin = Three(3.0, 1.0, -2.0).tail(d == 2 ? 1 : 3);
+  const SpaceVector spin = Vector3(3.0, 1.0, -2.0).tail(d == 2 ? 1 : 3);
   body.velocity.segment(d, d) = body.motion.rotational_velocity(spin, body.displacement);
-  EXPECT_LT((body.motion.spin(body.displacement, body.velocity) - spin).norm(), 1e-14);
+  EXPECT_LT((body.motion.angular_velocity(body.displacement, body.velocity) - spin).norm(), 1e-14);
   constexpr double h = 0.05;
   double largest = 0.0;
   for (int n = 0; n < 100; ++n) {
-    const SpaceVector force = Three(0.3, std::cos(0.2 * n), -0.1).head(d);
-    const SpaceVector torque = Three(0.1 * std::sin(n * h), 0.2, -0.1).tail(d == 2 ? 1 : 3);
+    const SpaceVector force = Vector3(0.3, std::cos(0.2 * n), -0.1).head(d);
+    const SpaceVector torque = Vector3(0.1 * std::sin(n * h), 0.2, -0.1).tail(d == 2 ? 1 : 3);
     const double energy = body.energy();
     const SpaceVector momentum = body.motion.angular_momentum(body.displacement, body.velocity);
     body.step(h, force, torque);
@@ -91,14 +92,15 @@ TEST_P(FreeMotions, MovePointsAsTheirRowsSay) {
   Stepped body(inertia(d));
   for (double& v : body.velocity) v = number();
   if (d == 2) body.velocity[3] = 0.0;
-  for (int n = 0; n < 5; ++n) body.step(0.3, Three(1.0, 0.0, 2.0).head(d), Three(0.4, -0.3, 0.2).tail(d == 2 ? 1 : 3));
+  for (int n = 0; n < 5; ++n)
+    body.step(0.3, Vector3(1.0, 0.0, 2.0).head(d), Vector3(0.4, -0.3, 0.2).tail(d == 2 ? 1 : 3));
   const Vector way = body.displacement - body.before;
   const Pose before = body.motion.pose(body.before), after = body.motion.pose(body.displacement);
   for (int k = 0; k < 20; ++k) {
     SpaceVector of_shape(d), direction(d);
     for (double& x : of_shape) x = number();
     for (double& x : direction) x = number();
-    const SpaceVector from = before.in_space(of_shape), to = after.in_space(of_shape), middle = 0.5 * (from + to);
+    const SpaceVector from = before.to_space(of_shape), to = after.to_space(of_shape), middle = 0.5 * (from + to);
     const SpaceVector arm = middle - 0.5 * (body.motion.centre(body.before) + body.motion.centre(body.displacement));
     Vector row(2 * d);
     body.motion.write_row(direction, arm, body.motion.axes_at_start(), row.data());
@@ -113,19 +115,19 @@ INSTANTIATE_TEST_SUITE_P(Dimensions, FreeMotions, testing::Values(Index{2}, Inde
 TEST(FreeMotion, TurnsLikeATop) {
   FreeMotion::Inertia own;
   own.mass = 1.0;
-  own.centre = Three::Zero();
-  own.moments = Three(0.4, 0.4, 0.7);
+  own.centre = Vector3::Zero();
+  own.moments = Vector3(0.4, 0.4, 0.7);
   double error_before = 0.0;
   for (const int steps : {200, 400}) {
     Stepped body(own);
-    const Three spin(1.0, 0.0, 2.0), momentum = own.moments.cwiseProduct(spin);
+    const Vector3 spin(1.0, 0.0, 2.0), momentum = own.moments.cwiseProduct(spin);
     body.velocity.segment(3, 3) = body.motion.rotational_velocity(spin, body.displacement);
     constexpr double end = 3.0;
-    for (int n = 0; n < steps; ++n) body.step(end / steps, Three::Zero(), Three::Zero());
+    for (int n = 0; n < steps; ++n) body.step(end / steps, Vector3::Zero(), Vector3::Zero());
     body.motion.begin_step(body.displacement);
     EXPECT_LT((body.motion.angular_momentum(body.displacement, body.velocity) - SpaceVector(momentum)).norm(), 1e-12);
-    const Three axis = body.motion.axes_at_start() * Three::UnitZ();
-    const Three exact = Eigen::AngleAxisd(end * momentum.norm() / 0.4, momentum.normalized()) * Three::UnitZ();
+    const Vector3 axis = body.motion.axes_at_start() * Vector3::UnitZ();
+    const Vector3 exact = Eigen::AngleAxisd(end * momentum.norm() / 0.4, momentum.normalized()) * Vector3::UnitZ();
     const double error = (axis - exact).norm();
     EXPECT_LT(error, 2e-3);
     if (steps == 400) {

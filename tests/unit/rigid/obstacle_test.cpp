@@ -318,9 +318,9 @@ TEST(Obstacle, TurnsAndIsWhereItsPoseSays) {
       for (double& x : of_shape) x = 1.5 * number();
       for (double& x : other) x = 0.2 * number();
       other += of_shape;
-      const SpaceVector from = before.pose().in_space(of_shape), to = after.pose().in_space(other);
+      const SpaceVector from = before.pose().to_space(of_shape), to = after.pose().to_space(other);
       EXPECT_NEAR(before.gap(from), obstacle.shape().gap(of_shape), type == "implicit" ? 1e-11 : 1e-13);
-      EXPECT_LT((before.pose().seen_from(from) - of_shape).norm(), 1e-14);
+      EXPECT_LT((before.pose().to_body_frame(from) - of_shape).norm(), 1e-14);
       const SpaceVector normal = normal_of_step(before, from, after, to);
       EXPECT_NEAR(normal.norm(), 1.0, 1e-14);
       // The velocity of the material at the mean position, over the step and at an instant.
@@ -328,8 +328,8 @@ TEST(Obstacle, TurnsAndIsWhereItsPoseSays) {
           (end - start) * obstacle.surface_velocity(0.5 * (from + to), 0.5 * (start + end), end - start);
       EXPECT_LT((own - motion_at(before.pose(), after.pose(), 0.5 * (from + to))).norm(), 1e-14);
       const SpaceVector at_start = obstacle.surface_velocity(from, start);
-      const SpaceVector ahead = obstacle.pose(start + 1e-5).in_space(of_shape),
-                        behind = obstacle.pose(start - 1e-5).in_space(of_shape);
+      const SpaceVector ahead = obstacle.pose(start + 1e-5).to_space(of_shape),
+                        behind = obstacle.pose(start - 1e-5).to_space(of_shape);
       EXPECT_LT((at_start - (ahead - behind) / 2e-5).norm(), 1e-5);
       const double change = after.gap(to) - before.gap(from);
       EXPECT_GE(normal.dot(to - from - own) * change, -1e-12);

@@ -19,12 +19,12 @@
 namespace ricochet {
 namespace {
 
-using Three = Eigen::Vector3d;
+using Vector3 = Eigen::Vector3d;
 
 class RigidSurfaces : public testing::Test {
  protected:
   [[nodiscard]] double number() { return 2.0 * static_cast<double>(random_()) / 4294967296.0 - 1.0; }
-  [[nodiscard]] Three point(double reach) { return reach * Three(number(), number(), number()); }
+  [[nodiscard]] Vector3 point(double reach) { return reach * Vector3(number(), number(), number()); }
   [[nodiscard]] std::unique_ptr<ObstacleShape> shape(const SurfaceFacets& facets, Parameters parameters = {}) {
     write_text_stl(facets, folder_.file("body.stl"));
     parameters.set("file", folder_.file("body.stl"));
@@ -35,18 +35,18 @@ class RigidSurfaces : public testing::Test {
 };
 
 /// Signed distance to a block, coordinate by coordinate.
-double distance_to_block(const Three& at, const Three& low, const Three& high) {
-  const Three q = (at - 0.5 * (low + high)).cwiseAbs() - 0.5 * (high - low);
+double distance_to_block(const Vector3& at, const Vector3& low, const Vector3& high) {
+  const Vector3 q = (at - 0.5 * (low + high)).cwiseAbs() - 0.5 * (high - low);
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
 }
 
 TEST_F(RigidSurfaces, HaveTheDistancesOfABlockInsideAndOutside) {
-  const Three low(-0.3, 0.1, -0.6), high(0.5, 0.4, 0.2);
+  const Vector3 low(-0.3, 0.1, -0.6), high(0.5, 0.4, 0.2);
   for (const int n : {1, 3}) {
     const auto outside = shape(block_surface(low, high, n)),
                inside = shape(block_surface(low, high, n), {{"side", std::string("inside")}});
     for (int k = 0; k < 2000; ++k) {
-      const Three at = point(1.0);
+      const Vector3 at = point(1.0);
       const double exact = distance_to_block(at, low, high);
       ASSERT_NEAR(outside->gap(SpaceVector(at)), exact, 1e-14) << at.transpose();
       ASSERT_NEAR(inside->gap(SpaceVector(at)), -exact, 1e-14);
@@ -59,7 +59,7 @@ TEST_F(RigidSurfaces, KnowInsideFromOutsideAtEdgesThatGoIn) {
   // Outline of the L as one polygon in the plane, extruded along the third axis by hand.
   const std::vector<Eigen::Vector2d> outline{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
   SurfaceFacets facets;
-  const auto at = [&](std::size_t i, double z) { return Three(outline[i][0], outline[i][1], z); };
+  const auto at = [&](std::size_t i, double z) { return Vector3(outline[i][0], outline[i][1], z); };
   for (std::size_t i = 0; i < 6; ++i) {
     const std::size_t k = (i + 1) % 6;
     facets.corners.push_back({at(i, 0), at(k, 0), at(k, 1)});
@@ -74,7 +74,7 @@ TEST_F(RigidSurfaces, KnowInsideFromOutsideAtEdgesThatGoIn) {
   EXPECT_NEAR(surface.volume(), 3.0, 1e-14);
   const auto shown = shape(facets);
   for (int k = 0; k < 5000; ++k) {
-    const Three p = Three(1.0, 1.0, 0.5) + point(1.5);
+    const Vector3 p = Vector3(1.0, 1.0, 0.5) + point(1.5);
     const bool inside = p[2] > 0 && p[2] < 1 && p[0] > 0 && p[1] > 0 && p[0] < 2 && p[1] < 2 && (p[0] < 1 || p[1] < 1);
     const double gap = shown->gap(SpaceVector(p));
     ASSERT_EQ(gap < 0.0, inside) << p.transpose() << ": " << gap;
@@ -92,7 +92,7 @@ TEST_F(RigidSurfaces, FindTheNearestOfAllFacets) {
   EXPECT_EQ(surface.facets().size(), 1280U);
   EXPECT_EQ(surface.corners().size(), 642U);
   for (int k = 0; k < 300; ++k) {
-    const Three at = point(1.5);
+    const Vector3 at = point(1.5);
     double least = 1e300;
     for (const auto& [a, b, c] : facets.corners)
       least = std::min(least, (closest_on_triangle(at, a, b, c).position - at).norm());
@@ -109,9 +109,9 @@ TEST_F(RigidSurfaces, TendToASphere) {
     double gap = 0.0, normal = 0.0;
     random_.seed(7);
     for (int k = 0; k < 400; ++k) {
-      const Three out = point(1.0).normalized(), at = 1.01 * out;
+      const Vector3 out = point(1.0).normalized(), at = 1.01 * out;
       gap = std::max(gap, std::abs(sphere->gap(SpaceVector(at)) - 0.01));
-      normal = std::max(normal, (Three(sphere->normal(SpaceVector(Three(1.0 * out)))) - out).norm());
+      normal = std::max(normal, (Vector3(sphere->normal(SpaceVector(Vector3(1.0 * out)))) - out).norm());
     }
     if (level > 2) {
       EXPECT_GT(gap_before / gap, 3.4);
@@ -127,8 +127,8 @@ TEST_F(RigidSurfaces, TendToASphere) {
 /// Compares weights with integrals over the facet, computed by a fine sum.
 TEST_F(RigidSurfaces, WeighFacetsExactly) {
   for (int k = 0; k < 20; ++k) {
-    const std::array<Three, 3> corners{point(1.0), point(1.0), point(1.0)};
-    const Three at = point(0.7), normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    const std::array<Vector3, 3> corners{point(1.0), point(1.0), point(1.0)};
+    const Vector3 at = point(0.7), normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     constexpr double radius = 0.8;
     constexpr int n = 600;
     double sum = 0.0;
@@ -136,7 +136,7 @@ TEST_F(RigidSurfaces, WeighFacetsExactly) {
       for (int j = 0; i + j < n; ++j) {
         for (const double third : {1.0 / 3.0, 2.0 / 3.0}) {
           if (third > 0.5 && i + j + 1 >= n) continue;
-          const Three y =
+          const Vector3 y =
               corners[0] + (i + third) / n * (corners[1] - corners[0]) + (j + third) / n * (corners[2] - corners[0]);
           sum += std::max(radius * radius - (y - at).squaredNorm(), 0.0);
         }
@@ -147,18 +147,18 @@ TEST_F(RigidSurfaces, WeighFacetsExactly) {
     EXPECT_NEAR(weight.value, sum, 2e-5);
     double line = 0.0;
     for (int i = 0; i < 4000; ++i) {
-      const Three y = corners[0] + (i + 0.5) / 4000 * (corners[1] - corners[0]);
+      const Vector3 y = corners[0] + (i + 0.5) / 4000 * (corners[1] - corners[0]);
       line += std::max(radius * radius - (y - at).squaredNorm(), 0.0) * (corners[1] - corners[0]).norm() / 4000;
     }
     const FacetWeight on_line = weight_of_segment(corners[0], corners[1], at, radius);
     EXPECT_NEAR(on_line.value, line, 1e-5);
     for (Eigen::Index i = 0; i < 3; ++i) {
       constexpr double h = 1e-5;
-      const Three ahead = at + h * Three::Unit(i), behind = at - h * Three::Unit(i);
-      const auto triangle = [&](const Three& x) {
+      const Vector3 ahead = at + h * Vector3::Unit(i), behind = at - h * Vector3::Unit(i);
+      const auto triangle = [&](const Vector3& x) {
         return weight_of_triangle(corners, normal.normalized(), x, radius).value;
       };
-      const auto segment = [&](const Three& x) { return weight_of_segment(corners[0], corners[1], x, radius).value; };
+      const auto segment = [&](const Vector3& x) { return weight_of_segment(corners[0], corners[1], x, radius).value; };
       EXPECT_NEAR(weight.gradient[i], (triangle(ahead) - triangle(behind)) / (2.0 * h), 1e-7);
       EXPECT_NEAR(on_line.gradient[i], (segment(ahead) - segment(behind)) / (2.0 * h), 1e-6);
     }
@@ -167,24 +167,24 @@ TEST_F(RigidSurfaces, WeighFacetsExactly) {
 
 /// For any triangles: the mean height above a plane, whose derivative rotates around edges without a jump.
 TEST_F(RigidSurfaces, HaveMeanHeightsWhoseDerivativesTurnAroundEdges) {
-  const Three low(-1, -1, -1), high(1, 1, 1);
+  const Vector3 low(-1, -1, -1), high(1, 1, 1);
   const RigidSurface coarse(block_surface(low, high), "coarse"), fine(block_surface(low, high, 7), "fine");
   constexpr double radius = 0.3;
   for (const RigidSurface* surface : {&coarse, &fine}) {
     const RigidSurface::Height above = surface->mean_height({0.2, 0.1, 1.05}, radius);
     EXPECT_NEAR(above.value, 0.05, 1e-15);
-    EXPECT_LT((above.gradient - Three(0, 0, 1)).norm(), 1e-14);
+    EXPECT_LT((above.gradient - Vector3(0, 0, 1)).norm(), 1e-14);
     EXPECT_LT(
-        (surface->mean_height({1.0, 0.1, 1.0}, radius).gradient.normalized() - Three(1, 0, 1).normalized()).norm(),
+        (surface->mean_height({1.0, 0.1, 1.0}, radius).gradient.normalized() - Vector3(1, 0, 1).normalized()).norm(),
         1e-14);
     EXPECT_LT(
-        (surface->mean_height({1.0, 1.0, 1.0}, radius).gradient.normalized() - Three(1, 1, 1).normalized()).norm(),
+        (surface->mean_height({1.0, 1.0, 1.0}, radius).gradient.normalized() - Vector3(1, 1, 1).normalized()).norm(),
         1e-14);
   }
-  Three before = coarse.mean_height({0.6, 0.35, 1.0}, radius).gradient;
+  Vector3 before = coarse.mean_height({0.6, 0.35, 1.0}, radius).gradient;
   double off = 0.0;
   for (int k = 1; k <= 400; ++k) {
-    const Three at(0.6 + 0.001 * k, 0.35, 1.0);
+    const Vector3 at(0.6 + 0.001 * k, 0.35, 1.0);
     const RigidSurface::Height on_coarse = coarse.mean_height(at, radius), on_fine = fine.mean_height(at, radius);
     ASSERT_LT((on_coarse.gradient - on_fine.gradient).norm(), 1e-12);
     ASSERT_NEAR(on_coarse.value, on_fine.value, 1e-14);
@@ -253,7 +253,7 @@ TEST_F(RigidSurfaces, HaveNormalsOfStepsThatDoNotFollowRounding) {
 TEST_F(RigidSurfaces, AreTheSameFromTextAndFromBytes) {
   SurfaceFacets facets = sphere_surface({0, 0, 0}, 0.5, 2);
   for (auto& triangle : facets.corners) {
-    for (Three& corner : triangle) corner = corner.cast<float>().cast<double>();
+    for (Vector3& corner : triangle) corner = corner.cast<float>().cast<double>();
   }
   write_text_stl(facets, folder_.file("a.stl"));
   write_binary_stl(facets, folder_.file("b.stl"));
@@ -327,14 +327,14 @@ TEST_F(RigidSurfaces, RefuseWhatHasNoInside) {
   SurfaceFacets inside_out = block;
   for (auto& triangle : inside_out.corners) std::swap(triangle[0], triangle[1]);
   EXPECT_TRUE(RigidSurface(inside_out, "block").was_reversed());
-  EXPECT_NEAR(shape(inside_out)->gap(Three(0.5, 0.5, 1.25)), 0.25, 1e-15);
-  EXPECT_NEAR(shape(inside_out)->gap(Three(1.5, 0.5, 1.5)), std::sqrt(0.5), 1e-15);
-  EXPECT_NEAR(shape(inside_out)->gap(Three(0.9, 0.8, 0.9)), -0.1, 1e-15);
+  EXPECT_NEAR(shape(inside_out)->gap(Vector3(0.5, 0.5, 1.25)), 0.25, 1e-15);
+  EXPECT_NEAR(shape(inside_out)->gap(Vector3(1.5, 0.5, 1.5)), std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR(shape(inside_out)->gap(Vector3(0.9, 0.8, 0.9)), -0.1, 1e-15);
   // A triangle without area, with two coinciding corners.
   SurfaceFacets flat = block;
   flat.corners.push_back({block.corners[0][0], block.corners[0][0], block.corners[0][1]});
   EXPECT_EQ(RigidSurface(flat, "block").flat_count(), 1);
-  EXPECT_NEAR(shape(flat)->gap(Three(0.5, 0.5, 1.25)), 0.25, 1e-15);
+  EXPECT_NEAR(shape(flat)->gap(Vector3(0.5, 0.5, 1.25)), 0.25, 1e-15);
 }
 
 TEST_F(RigidSurfaces, SayWhereAFileIsWrong) {

@@ -8,11 +8,11 @@ namespace ricochet {
 namespace {
 
 /// A step at whose end this was put in so far, with a mean of this weight that acts on a point, or on none.
-void enter(MethodWatch& watch, double of_method, double weight = 0.0, double reaction = 1.0) {
+void enter(MethodWatch& watch, double method_energy, double weight = 0.0, double reaction = 1.0) {
   State state;
   state.forces.mean_normal_reaction = Vector::Constant(1, reaction);
   state.forces.end_weight = weight;
-  watch.enter_step(state, of_method);
+  watch.enter_step(state, method_energy);
 }
 
 TEST(MethodWatch, TellsLossAndCreationAndWhatIsLeftOfThem) {

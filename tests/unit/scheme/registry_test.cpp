@@ -33,12 +33,12 @@ SchemeRegistration drag_scheme() {
           {{.name = "drag",
             .type = KeyType::number,
             .unit = "1/time",
-            .standard = "2",
+            .default_value = "2",
             .range = nonnegative,
             .doc = "Rate of decay."}},
           {},
-          [](const ParameterCheck& place, const Parameters& values) {
-            if (place.is_usable("drag") && values.number("drag") > 1e3) place.add_warning("drag", "nothing will move");
+          [](const ParameterCheck& check, const Parameters& values) {
+            if (check.is_usable("drag") && values.number("drag") > 1e3) check.add_warning("drag", "nothing will move");
           }};
 }
 
@@ -148,7 +148,7 @@ TEST(Registry, RefusesKeysThatATypeCannotHave) {
     return registration;
   };
   EXPECT_THROW(scheme_registry().add(with({.name = "f", .type = KeyType::formula, .doc = "?"})), Error);
-  EXPECT_THROW(scheme_registry().add(with({.name = "v", .type = KeyType::vector, .standard = "0, 0", .doc = "?"})),
+  EXPECT_THROW(scheme_registry().add(with({.name = "v", .type = KeyType::vector, .default_value = "0, 0", .doc = "?"})),
                Error);
   EXPECT_THROW(scheme_registry().add(with({.name = "drag", .type = KeyType::number, .doc = "?"})), Error);
   EXPECT_THROW(scheme_registry().remove("keys"), Error) << "nothing was added";

@@ -78,8 +78,8 @@ TEST(BodyWatch, FindsBodiesThatGoThroughEachOther) {
   const double speed = 1.0, step = 1e-3;
   long steps = 0;
   for (; static_cast<double>(steps) * step < 0.35; ++steps) {
-    watch.look(squares.displacement(0.0, -speed * static_cast<double>(steps) * step), static_cast<double>(steps) * step,
-               false);
+    watch.check(squares.displacement(0.0, -speed * static_cast<double>(steps) * step),
+                static_cast<double>(steps) * step, false);
     const double depth = static_cast<double>(steps) * step - 0.2;
     if (depth < 0.0) {
       EXPECT_TRUE(watch.pairs().empty()) << depth;
@@ -90,9 +90,9 @@ TEST(BodyWatch, FindsBodiesThatGoThroughEachOther) {
       EXPECT_GE(watch.pairs()[0].deepest.depth, depth - edge - speed * step);
     }
   }
-  EXPECT_LT(watch.looks(), steps / 8);
+  EXPECT_LT(watch.checks(), steps / 8);
   const double end = static_cast<double>(steps - 1) * step;
-  watch.look(squares.displacement(0.0, -speed * end), end, true);
+  watch.check(squares.displacement(0.0, -speed * end), end, true);
   ASSERT_EQ(watch.pairs().size(), 1U);
   const BodyPair& pair = watch.pairs()[0];
   EXPECT_EQ(pair.first, 0);
@@ -106,16 +106,16 @@ TEST(BodyWatch, SaysNothingOfBodiesThatPassOrTouch) {
   const TwoSquares squares;
   BodyWatch watch = squares.watch();
   // Down beside it, then along its side with coinciding nodes, in touch.
-  for (int i = 0; i <= 200; ++i) watch.look(squares.displacement(0.8, -0.01 * i), i, false);
-  for (int i = 0; i <= 200; ++i) watch.look(squares.displacement(0.7, -0.01 * i), i, true);
+  for (int i = 0; i <= 200; ++i) watch.check(squares.displacement(0.8, -0.01 * i), i, false);
+  for (int i = 0; i <= 200; ++i) watch.check(squares.displacement(0.7, -0.01 * i), i, true);
   EXPECT_TRUE(watch.pairs().empty());
-  EXPECT_GT(watch.looks(), 5);
+  EXPECT_GT(watch.checks(), 5);
 }
 
 TEST(BodyWatch, SeesAnOverlapOfTheStart) {
   const TwoSquares squares;
   BodyWatch watch = squares.watch();
-  watch.look(squares.displacement(0.0, -0.3), 0.0, false);
+  watch.check(squares.displacement(0.0, -0.3), 0.0, false);
   ASSERT_EQ(watch.pairs().size(), 1U);
   EXPECT_NEAR(watch.pairs()[0].deepest.depth, 0.1, 1e-14);
 }
@@ -127,26 +127,26 @@ TEST(BodyWatch, LetsNodesOfAContactBeInsideByTheirAllowance) {
   Vector gap = Vector::Constant(100, std::nan(""));
   const auto gaps = [&]() -> const Vector& { return gap; };
   BodyWatch watch = squares.watch(squares.facing_nodes(0.05, 0.06));
-  watch.look(squares.displacement(0.0, -0.2 - 0.049), 0.25, true, gaps);
+  watch.check(squares.displacement(0.0, -0.2 - 0.049), 0.25, true, gaps);
   EXPECT_TRUE(watch.pairs().empty());
-  watch.look(squares.displacement(0.0, -0.2 - 0.055), 0.5, true, gaps);
+  watch.check(squares.displacement(0.0, -0.2 - 0.055), 0.5, true, gaps);
   ASSERT_EQ(watch.pairs().size(), 1U);
   EXPECT_FALSE(watch.pairs()[0].deepest.found());
   EXPECT_EQ(watch.pairs()[0].contact, 7);
   EXPECT_NEAR(watch.pairs()[0].at_contact.depth, 0.055, 1e-12);
-  EXPECT_NEAR(watch.pairs()[0].at_contact.place[1], 1.0, 1e-12) << "a node of the lower one";
+  EXPECT_NEAR(watch.pairs()[0].at_contact.position[1], 1.0, 1e-12) << "a node of the lower one";
   // Penetration that the contact itself detects is not reported.
   gap.setConstant(-0.04);
   BodyWatch knowing = squares.watch(squares.facing_nodes(0.05, 0.05));
-  knowing.look(squares.displacement(0.0, -0.2 - 0.089), 0.25, true, gaps);
+  knowing.check(squares.displacement(0.0, -0.2 - 0.089), 0.25, true, gaps);
   EXPECT_TRUE(knowing.pairs().empty());
-  knowing.look(squares.displacement(0.0, -0.2 - 0.091), 0.5, true, gaps);
+  knowing.check(squares.displacement(0.0, -0.2 - 0.091), 0.5, true, gaps);
   ASSERT_EQ(knowing.pairs().size(), 1U);
   EXPECT_NEAR(knowing.pairs()[0].at_contact.depth, 0.091, 1e-12);
   // All other nodes are checked as before: here the second row of the upper square.
   EXPECT_FALSE(knowing.pairs()[0].deepest.found());
   gap.setConstant(-1.0);
-  knowing.look(squares.displacement(0.0, -0.2 - 0.11), 0.75, true, gaps);
+  knowing.check(squares.displacement(0.0, -0.2 - 0.11), 0.75, true, gaps);
   EXPECT_NEAR(knowing.pairs()[0].deepest.depth, 0.01, 1e-12);
   EXPECT_NEAR(knowing.pairs()[0].at_contact.depth, 0.091, 1e-12);
   // Both are kept where a run goes on.
@@ -166,15 +166,15 @@ TEST(BodyWatch, GoesOnWhereItWasSaved) {
   std::unique_ptr<BodyWatch> parts = std::make_unique<BodyWatch>(squares.watch());
   for (int i = 0; i <= 300; ++i) {
     const Vector now = squares.displacement(0.0, -0.002 * i);
-    whole.look(now, i, i == 300);
-    parts->look(now, i, i == 300);
+    whole.check(now, i, i == 300);
+    parts->check(now, i, i == 300);
     if (i % 37 != 0) continue;
     Snapshot snapshot;
     parts->save(snapshot, "watch");
     parts = std::make_unique<BodyWatch>(squares.watch());
     parts->load(snapshot, "watch");
   }
-  EXPECT_EQ(parts->looks(), whole.looks());
+  EXPECT_EQ(parts->checks(), whole.checks());
   ASSERT_EQ(parts->pairs().size(), 1U);
   EXPECT_EQ(parts->pairs()[0].deepest.to_numbers(), whole.pairs()[0].deepest.to_numbers());
 }

@@ -91,7 +91,7 @@ TEST(DeepestPoint, KeepsTheWorstAndTheFirst) {
   EXPECT_EQ(again.node, 5);
   EXPECT_EQ(again.depth, 0.3);
   EXPECT_EQ(again.time, 2.0);
-  EXPECT_EQ(again.place[0], 2.0);
+  EXPECT_EQ(again.position[0], 2.0);
   EXPECT_EQ(again.first_time, 1.0);
 }
 

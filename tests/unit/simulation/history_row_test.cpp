@@ -22,7 +22,7 @@ struct Wanted {
 
 Wanted wanted_of(const SemidiscreteProblem& problem, const Vector& displacement, const Vector& velocity) {
   Wanted result;
-  const SparseMatrix mass = problem.mass.whole();
+  const SparseMatrix mass = problem.mass.to_sparse();
   const Vector momentum = mass * velocity;
   result.kinetic = 0.5 * velocity.dot(momentum);
   result.elastic = problem.internal_force->energy(displacement);
@@ -84,7 +84,7 @@ TEST(HistoryRow, HasEnergiesAndMomentaByTheirFormulas) {
 TEST(HistoryRow, TakesAMassThatCouplesComponents) {
   CaseRun run(test_support::thrown_case(test_support::one_sided_block(), "consistent", "scheme = \"midpoint\"\n"));
   SemidiscreteProblem problem = run.problem();
-  SparseMatrix mass = problem.mass.whole();
+  SparseMatrix mass = problem.mass.to_sparse();
   mass.coeffRef(0, 1) = mass.coeffRef(1, 0) = 0.3 * mass.coeff(0, 0);
   mass.makeCompressed();
   problem.mass = NodeMatrix(mass, problem.dimension);

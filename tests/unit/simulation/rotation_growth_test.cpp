@@ -23,11 +23,11 @@ RotatingBody disc(double radius, double turn, double before, double after) {
 TEST(TurnGrowth, OfASteadySpinIsThatOfTheRadius) {
   const double radius = 9.525e-3, spin = 800.0, duration = 54e-6, turn = 0.01;
   const double before = radius * turn * spin, after = radius * (turn + spin * duration) * spin;
-  EXPECT_NEAR(turn_growth(disc(radius, turn, spin, spin), down, duration), 0.5 * (before + after), 1e-12);
-  EXPECT_NEAR(turn_growth(disc(radius, 0.0, -spin, -spin), down, duration), 0.5 * radius * spin * spin * duration,
+  EXPECT_NEAR(rotation_growth(disc(radius, turn, spin, spin), down, duration), 0.5 * (before + after), 1e-12);
+  EXPECT_NEAR(rotation_growth(disc(radius, 0.0, -spin, -spin), down, duration), 0.5 * radius * spin * spin * duration,
               1e-12);
-  EXPECT_LT(turn_growth(disc(radius, turn, -spin, -spin), down, 1e-9), 0.0) << "turns back";
-  EXPECT_EQ(turn_growth(disc(radius, 0.0, 0.0, 0.0), down, duration), 0.0);
+  EXPECT_LT(rotation_growth(disc(radius, turn, -spin, -spin), down, 1e-9), 0.0) << "turns back";
+  EXPECT_EQ(rotation_growth(disc(radius, 0.0, 0.0, 0.0), down, duration), 0.0);
 }
 
 /// A rotation about the normal moves no point along it, and a point on the axis not at all.
@@ -35,13 +35,13 @@ TEST(TurnGrowth, IsThatAcrossTheAxis) {
   RotatingBody top = disc(1.0, 0.0, 0.0, 0.0);
   top.turn = 0.1 * up;
   top.spin_before = top.spin_after = 2.0 * up;
-  EXPECT_EQ(turn_growth(top, down, 0.25), 0.0);
+  EXPECT_EQ(rotation_growth(top, down, 0.25), 0.0);
   top.arm = {0.5, -1.0, 0.0};
-  EXPECT_NEAR(turn_growth(top, down, 0.25), 0.0, 1e-16);
+  EXPECT_NEAR(rotation_growth(top, down, 0.25), 0.0, 1e-16);
   RotatingBody aslant = top;
   aslant.turn = {0.0, 0.1, 0.1};
   aslant.spin_before = aslant.spin_after = {0.0, 0.0, 0.0};
-  EXPECT_EQ(turn_growth(aslant, down, 0.25), 0.0) << "it does not turn any more";
+  EXPECT_EQ(rotation_growth(aslant, down, 0.25), 0.0) << "it does not turn any more";
 }
 
 /// Velocity with which a mass on a spring leaves a floor that it reached at 1, with a radius that grows.
@@ -68,7 +68,7 @@ TEST(TurnGrowth, GivesTheVelocityAfter) {
       const double x = std::min(t, pi), s = 0.5 * (1.0 - std::cos(x)), spin = from + s * change;
       return (turn + from * x + 0.5 * change * (x - std::sin(x))) * spin;
     };
-    const double expected = 2.0 * turn_growth(disc(1.0, turn, before, after), down, pi);
+    const double expected = 2.0 * rotation_growth(disc(1.0, turn, before, after), down, pi);
     EXPECT_NEAR(velocity_after(growth) - 1.0, expected, 0.03 * expected) << before << " to " << after;
   }
 }
@@ -81,10 +81,10 @@ TEST(TurnGrowth, ChangesARestitutionByTwiceItsPartOfTheApproach) {
   impact.impulse = impact.normal_impulse = 1.5 * up;
   EXPECT_EQ(restitution_excess(impact), 0.0) << "of older results";
   for (const double sign : {-1.0, 1.0}) {
-    impact.turn_growth = sign * 0.002;
+    impact.rotation_growth = sign * 0.002;
     EXPECT_NEAR(restitution_excess(impact), sign * 0.008, 1e-16);
     EXPECT_FALSE(is_distorted_by_rotation(impact));
-    impact.turn_growth = sign * 0.003;
+    impact.rotation_growth = sign * 0.003;
     EXPECT_TRUE(is_distorted_by_rotation(impact));
   }
   impact.ended = false;

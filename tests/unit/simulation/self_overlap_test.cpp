@@ -10,7 +10,7 @@ namespace ricochet {
 namespace self_overlap_test {
 
 using Two = Eigen::Vector2d;
-using Three = Eigen::Vector3d;
+using Vector3 = Eigen::Vector3d;
 
 /// Corners, each edge in so many parts.
 std::vector<Two> refined(const std::vector<Two>& corners, int parts, bool closed = true) {
@@ -115,7 +115,7 @@ TEST(SelfOverlap, IsTheSameInSpace) {
     for (Index z = 0; z < layers; ++z) {
       for (Index i = 0; i < count; ++i) {
         const Two point = closed(reference[static_cast<std::size_t>(i)], overlap);
-        nodes.col(z * count + i) = Three(point[0], point[1], 0.3 * static_cast<double>(z));
+        nodes.col(z * count + i) = Vector3(point[0], point[1], 0.3 * static_cast<double>(z));
         const Index a = z * count + i, b = z * count + (i + 1) % count;
         if (z + 1 == layers) continue;
         pieces.push_back({a, b, b + count});

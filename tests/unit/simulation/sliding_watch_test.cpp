@@ -56,16 +56,16 @@ TEST(SlidingWatch, TellsOnceWhatSlidesByMoreThanHalfOfTheSmallerFacet) {
   std::vector<std::string> told;
   const log::CollectWarnings collecting(told);
   const log::Silence silence;
-  watch.look(displaced(run, 0.3, 0.0, false, 0.25));
+  watch.check(displaced(run, 0.3, 0.0, false, 0.25));
   ASSERT_EQ(watch.report().size(), 1U);
   EXPECT_EQ(watch.report()[0].slip, 0.0) << "open points may slide";
-  watch.look(displaced(run, 0.124, 0.0, true, 0.5));
+  watch.check(displaced(run, 0.124, 0.0, true, 0.5));
   EXPECT_NEAR(watch.report()[0].slip, 0.124, 1e-12);
   EXPECT_NEAR(watch.report()[0].limit, 0.125, 1e-12) << "facets of 1/2 and 1/4";
   EXPECT_FALSE(watch.report()[0].is_beyond());
   EXPECT_TRUE(told.empty());
-  watch.look(displaced(run, 0.126, -0.01, true, 0.75));
-  watch.look(displaced(run, -0.2, 0.0, true, 1.0));
+  watch.check(displaced(run, 0.126, -0.01, true, 0.75));
+  watch.check(displaced(run, -0.2, 0.0, true, 1.0));
   ASSERT_EQ(told.size(), 1U);
   EXPECT_NE(told[0].find("\"lower.y1\" and \"upper.y0\""), std::string::npos) << told[0];
   EXPECT_NE(told[0].find("at t = 0.75"), std::string::npos) << told[0];
@@ -73,14 +73,14 @@ TEST(SlidingWatch, TellsOnceWhatSlidesByMoreThanHalfOfTheSmallerFacet) {
   EXPECT_NEAR(watch.report()[0].slip, 0.2, 1e-12);
   EXPECT_EQ(watch.report()[0].time, 1.0);
   EXPECT_EQ(watch.report()[0].time_beyond, 0.75);
-  ASSERT_EQ(watch.report()[0].place.size(), 2U);
-  EXPECT_NEAR(watch.report()[0].place[1], 1.0 + gap, 1e-12) << "of the finer side";
+  ASSERT_EQ(watch.report()[0].position.size(), 2U);
+  EXPECT_NEAR(watch.report()[0].position[1], 1.0 + gap, 1e-12) << "of the finer side";
   // What it was is known where a run goes on, and not told again.
   Snapshot snapshot;
   watch.save(snapshot, "sliding");
   SlidingWatch resumed(run.model().body, run.problem(), run.model().contact_pairs);
   resumed.load(snapshot, "sliding");
-  resumed.look(displaced(run, 0.15, 0.0, true, 1.25));
+  resumed.check(displaced(run, 0.15, 0.0, true, 1.25));
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(resumed.report()[0].time_beyond, 0.75);
   EXPECT_NEAR(resumed.report()[0].slip, 0.2, 1e-12);
@@ -91,9 +91,9 @@ TEST(SlidingWatch, BeginsAtPairAt) {
   for (const std::string side : {"group", "against"}) {
     const CaseRun run(stack(lower_on_upper + "pair_at = [-0.1, 0.0]\nmultipliers_on = \"" + side + "\"\n"));
     SlidingWatch watch(run.model().body, run.problem(), run.model().contact_pairs);
-    watch.look(displaced(run, 0.1, 0.0, true, 0.5));
+    watch.check(displaced(run, 0.1, 0.0, true, 0.5));
     EXPECT_NEAR(watch.report()[0].slip, 0.0, 1e-12) << side;
-    watch.look(displaced(run, 0.0, 0.0, true, 0.5));
+    watch.check(displaced(run, 0.0, 0.0, true, 0.5));
     EXPECT_NEAR(watch.report()[0].slip, 0.1, 1e-12) << side;
   }
 }

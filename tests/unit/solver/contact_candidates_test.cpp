@@ -25,17 +25,17 @@ Vector gaps(std::initializer_list<double> values) {
 using PointNumbers = std::vector<Index>;
 
 bool some_may_touch(ContactCandidates& candidates, const Stage& stage) {
-  candidates.look_at(stage);
+  candidates.estimate_reach(stage);
   return candidates.some_may_touch(stage);
 }
 
 PointNumbers approaching(ContactCandidates& candidates, const Stage& stage) {
-  candidates.look_at(stage);
+  candidates.estimate_reach(stage);
   return candidates.approaching(stage);
 }
 
 PointNumbers worth_keeping(ContactCandidates& candidates, const Stage& stage) {
-  candidates.look_at(stage);
+  candidates.estimate_reach(stage);
   return candidates.worth_keeping(stage);
 }
 
@@ -64,7 +64,7 @@ TEST(ContactCandidates, ReachIsWhatTheLastStageMovedPointsBy) {
   ContactCandidates candidates(2);
   Stage stage = stage_with_gaps(gaps({1.5, 100.0}));
   EXPECT_FALSE(some_may_touch(candidates, stage));
-  candidates.learn(stage, gaps({-1.0, 0.2}), 0);
+  candidates.update_history(stage, gaps({-1.0, 0.2}), 0);
   EXPECT_TRUE(some_may_touch(candidates, stage));
   EXPECT_EQ(approaching(candidates, stage), (PointNumbers{0}));
   stage.gap_factor = 0.5;  // y = q + s G δ
@@ -139,7 +139,7 @@ TEST(ContactCandidates, AreTheNearestOfManyThatMayTouch) {
   Vector distance(count);
   for (Index i = 0; i < count; ++i) distance[i] = static_cast<double>(i * 7919 % count + 1);
   const Stage stage = stage_with_gaps(distance);
-  candidates.learn(stage, Vector::Constant(count, -1e5), 0);
+  candidates.update_history(stage, Vector::Constant(count, -1e5), 0);
   const PointNumbers taken = approaching(candidates, stage);
   ASSERT_GE(taken.size(), 100U);
   EXPECT_LE(taken.size(), 600U);
@@ -147,7 +147,7 @@ TEST(ContactCandidates, AreTheNearestOfManyThatMayTouch) {
   candidates.add_candidates(taken);
   EXPECT_EQ(approaching(candidates, stage), PointNumbers{}) << "the others are asked for where they penetrate";
   // Many that carry a force have many around them.
-  candidates.learn(stage, Vector::Constant(count, -1e5), 1000);
+  candidates.update_history(stage, Vector::Constant(count, -1e5), 1000);
   const std::size_t all = taken.size() + approaching(candidates, stage).size();
   EXPECT_GE(all, 2000U);
   EXPECT_LE(all, 4000U);
@@ -177,7 +177,7 @@ TEST(ContactCandidates, StayFewOnAWheelThatRolls) {
     candidates.add_candidates(approaching(candidates, stage));
     for (const Index point : candidates.points()) came[static_cast<std::size_t>(point)] = 1;
     most = std::max(most, candidates.points().size());
-    candidates.learn(stage, height(static_cast<double>(step + 1) / steps) - now, 5);
+    candidates.update_history(stage, height(static_cast<double>(step + 1) / steps) - now, 5);
   }
   EXPECT_EQ(std::count(came.begin(), came.end(), 1), count);
   EXPECT_LE(most, 3000U);

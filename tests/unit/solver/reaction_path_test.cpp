@@ -163,7 +163,7 @@ TEST(PressingSet, KeepsTheInverse) {
       char& mark = marks[static_cast<std::size_t>(engine() % count)];
       mark = mark == 0 ? 1 : 0;
     }
-    ASSERT_TRUE(set.take(marks));
+    ASSERT_TRUE(set.set_points(marks));
     const Vector q = Vector::NullaryExpr(count, [&] { return number(engine); });
     Vector r, y = q;
     set.solve(q, r);

@@ -106,7 +106,7 @@ TEST(RotatingRows, AreThoseOfConstantColumnsInOtherDirections) {
     EXPECT_TRUE(w == w.transpose());
     const Vector motion = Vector::NullaryExpr(h.cols(), [&] { return points.number(); });
     Vector result;
-    turned.turn(e * motion, result);
+    turned.rotate(e * motion, result);
     EXPECT_LE((result - h * motion).norm(), 1e-14 * motion.norm());
     const Vector reaction = Vector::NullaryExpr(h.rows(), [&] { return points.number(); });
     turned.rotate_back(reaction, result);

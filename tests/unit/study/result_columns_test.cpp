@@ -36,7 +36,7 @@ RunState finished_run() {
   s.peak_stress.emplace();
   s.peak_stress->peak.von_mises = 1234.5;
   s.peak_stress->peak.time = 6.25;
-  s.peak_stress->place = {0.1, 0.2};
+  s.peak_stress->position = {0.1, 0.2};
   s.penetration.found.push_back({});
   s.penetration.found.back().depth = 0.03;
   s.rotation.emplace().limit = 0.1;
@@ -57,7 +57,7 @@ std::map<std::string, TableCell> by_name(const std::string& run, const RunState&
 TEST(OutcomeColumns, DoubtARestitutionThatTheTurnOfABodyHasChanged) {
   RunSummary summary = *finished_run().summary;
   EXPECT_EQ(doubts_of(summary).find("restitution: the body turned"), std::string::npos);
-  summary.impacts[1].turn_growth = 0.0125;
+  summary.impacts[1].rotation_growth = 0.0125;
   EXPECT_NE(doubts_of(summary).find("restitution: the body turned"), std::string::npos) << doubts_of(summary);
 }
 

@@ -38,17 +38,17 @@ TEST(RunState, DecidesWhatIsStillToBeDone) {
 }
 
 TEST(RunState, SaysWhatHasBecomeOfIt) {
-  EXPECT_EQ(state("").word(), "not run");
-  EXPECT_EQ(state("running").word(), "interrupted");
-  EXPECT_EQ(state("done").word(), "done");
-  EXPECT_EQ(state("", 2).word(), "refused");
-  EXPECT_EQ(state("failed", 3).word(), "failed");
-  EXPECT_EQ(state("done", 139).word(), "failed");
+  EXPECT_EQ(state("").status_text(), "not run");
+  EXPECT_EQ(state("running").status_text(), "interrupted");
+  EXPECT_EQ(state("done").status_text(), "done");
+  EXPECT_EQ(state("", 2).status_text(), "refused");
+  EXPECT_EQ(state("failed", 3).status_text(), "failed");
+  EXPECT_EQ(state("done", 139).status_text(), "failed");
   EXPECT_EQ(state("done", 139).final_status(), 139);
   RunState unexpected = state("done");
   unexpected.summary->expectations.push_back({.quantity = "a", .holds = false});
   EXPECT_EQ(unexpected.final_status(), 5);
-  EXPECT_EQ(unexpected.word(), "done");
+  EXPECT_EQ(unexpected.status_text(), "done");
   unexpected.summary->expectations.front().checked = false;
   EXPECT_EQ(unexpected.final_status(), 0);
 }
@@ -56,7 +56,7 @@ TEST(RunState, SaysWhatHasBecomeOfIt) {
 TEST(RunState, IsReadFromItsDirectory) {
   const TemporaryFolder folder(std::filesystem::temp_directory_path(), "ricochet-test");
   const std::string directory = folder.path().string();
-  EXPECT_EQ(read_run_state(directory + "/nowhere").word(), "not run");
+  EXPECT_EQ(read_run_state(directory + "/nowhere").status_text(), "not run");
   record_exit_status(directory, 2, "case.toml:3:1: no");
   EXPECT_EQ(read_run_state(directory).exit_status, 2);
   EXPECT_EQ(read_run_state(directory).message, "case.toml:3:1: no");

@@ -223,8 +223,8 @@ TEST(ManufacturedSolutionInTime, IsOfSecondOrder) {
     for (int i = 0; i < steps; ++i) simulation.advance();
     last.push_back(simulation.state().displacement);
   }
-  const double before = problem.mass.form(last[2] - last[1]);
-  const double after = problem.mass.form(last[3] - last[2]);
+  const double before = problem.mass.quadratic_form(last[2] - last[1]);
+  const double after = problem.mass.quadratic_form(last[3] - last[2]);
   const double order = 0.5 * std::log2(before / after);
   std::printf("order in the time step: %.2f\n", order);
   EXPECT_NEAR(order, 2.0, 0.25);

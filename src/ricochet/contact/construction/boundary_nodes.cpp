@@ -68,7 +68,7 @@ BoundaryNodes::BoundaryNodes(const Body& body, const std::vector<ContactPair>& p
   check_coincidence(body, pairs);
 }
 
-bool BoundaryNodes::is_held(Index node, const Obstacle* obstacle) const {
+bool BoundaryNodes::is_supported(Index node, const Obstacle* obstacle) const {
   return nodes_.at({node, obstacle}).held;
 }
 

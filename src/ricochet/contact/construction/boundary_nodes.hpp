@@ -18,7 +18,7 @@ class BoundaryNodes {
   BoundaryNodes(const Body& body, const std::vector<ContactPair>& pairs, const FreeComponent& is_free);
 
   /// Whether supports constrain the node along the obstacle's normal.
-  [[nodiscard]] bool is_held(Index node, const Obstacle* obstacle) const;
+  [[nodiscard]] bool is_supported(Index node, const Obstacle* obstacle) const;
   [[nodiscard]] Index held_count() const { return held_count_; }
   /// Number of the first pair of this obstacle that contains the node; −1 if none does.
   [[nodiscard]] int first_pair(Index node, const Obstacle* obstacle) const;

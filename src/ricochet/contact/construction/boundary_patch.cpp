@@ -38,7 +38,7 @@ Patches collect_patches(const Body& body, const std::vector<ContactPair>& pairs)
 
 void make_obstacle_patch(const Body& body, const BoundaryNodes& nodes, BoundaryPatch& patch) {
   const Obstacle* const obstacle = patch.obstacle;
-  patch.facets.is_held = [&nodes, obstacle](Index node) { return nodes.is_held(node, obstacle); };
+  patch.facets.is_supported = [&nodes, obstacle](Index node) { return nodes.is_supported(node, obstacle); };
   patch.space = make_multiplier_space(patch.multipliers, patch.facets);
   patch.kept = patch.space->multipliers();
   // Multipliers that can only act on supports are omitted.
@@ -161,7 +161,7 @@ Patches make_patches(const Body& body, const std::vector<ContactPair>& pairs, co
     const auto first = static_cast<std::size_t>(patch->first_pair());
     if (patch->obstacle != nullptr) {
       make_obstacle_patch(body, nodes, *patch);
-    } else if (pairs[first].slides_far) {
+    } else if (pairs[first].large_sliding) {
       make_sliding_patch(body, pairs[first], is_free, *patch, facings[first]);
     } else {
       make_body_patch(body, pairs[first], is_free, *patch, facings[first]);

@@ -25,7 +25,7 @@ struct BoundaryPatch {
   std::vector<BodyContact::Node> nodes;  ///< of both sides of a pair of bodies
   bool slides = false;                   ///< whether it is a pair of bodies with unlimited sliding
   /// Per kept multiplier its direction, between bodies of finite strain, and between those that slide.
-  std::vector<RotatingNormal> turning;
+  std::vector<RotatingNormal> rotating_normals;
   std::vector<Index> reached;  ///< nodes in the traces, including tied ones
   /// Pressure recovery at the nodes of the group, and of the other side: entries (node, kept multiplier, value).
   std::vector<Eigen::Triplet<double>> recovery, opposite_recovery;
@@ -34,7 +34,7 @@ struct BoundaryPatch {
   /// Whether rows follow the motion: at obstacles whose gap is a nonlinear function of the position, and
   /// between bodies of finite strain.
   [[nodiscard]] bool follows_motion() const {
-    return obstacle != nullptr ? !obstacle->has_constant_normals() : !turning.empty();
+    return obstacle != nullptr ? !obstacle->has_constant_normals() : !rotating_normals.empty();
   }
 };
 

@@ -38,7 +38,7 @@ void resize(ContactBoundary& boundary, ContactRows& rows, Index count) {
   boundary.initial_gap.resize(count);
   boundary.weights.resize(count);
   boundary.net.resize(count);
-  boundary.slides_far.assign(static_cast<std::size_t>(count), 0);
+  boundary.large_sliding.assign(static_cast<std::size_t>(count), 0);
   boundary.friction_coefficient.resize(count);
   boundary.friction_bound.resize(count);
 }
@@ -158,9 +158,10 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
     }
     boundary.weights[number] = multiplier.weight;
     boundary.net[number] = patch.obstacle != nullptr ? 1.0 : 0.0;
-    operators.add(number, multiplier, patch.free_traces[i], conditions, tangents, patch.follows_motion(),
-                  patch.turning.empty() || patch.slides ? std::vector<Index>{} : patch.turning[i].nodes(),
-                  nodes_of_body(patch));
+    operators.add(
+        number, multiplier, patch.free_traces[i], conditions, tangents, patch.follows_motion(),
+        patch.rotating_normals.empty() || patch.slides ? std::vector<Index>{} : patch.rotating_normals[i].nodes(),
+        nodes_of_body(patch));
   }
 }
 
@@ -226,7 +227,7 @@ void follow_motion(const Body& body, const Patches& patches, const std::vector<C
   boundary.initial_gap = gap;
   rows.gap = gap;
   const auto reaches_more = [](const ContactPair& pair) {
-    return pair.slides_far || (pair.obstacle != nullptr && pair.obstacle->free_motion() != nullptr);
+    return pair.large_sliding || (pair.obstacle != nullptr && pair.obstacle->free_motion() != nullptr);
   };
   if (std::none_of(pairs.begin(), pairs.end(), reaches_more)) return;
   // Creates, at points in contact, the entries of free rigid bodies, and those of opposite surfaces.

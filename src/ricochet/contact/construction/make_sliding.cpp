@@ -88,7 +88,7 @@ SlidingPair::Point sliding_point(const BoundaryPatch& patch, std::size_t kept, i
                                  const FreeComponent& is_free) {
   SlidingPair::Point point{.number = patch.numbers[kept],
                            .multiplier = patch.kept[kept],
-                           .normal = patch.turning[kept],
+                           .normal = patch.rotating_normals[kept],
                            .offset = patch.conditions[kept].gap};
   for (int k = 0; k < dimension; ++k) {
     point.is_free[static_cast<std::size_t>(k)] =
@@ -112,7 +112,7 @@ void look_at_the_start(const Body& body, const ContactPair& pair, const FreeComp
   patch.numbers.assign(patch.kept.size(), 0);
   const SlidingPair sliding(data_of(body, pair, patch, is_free));
   std::vector<SlidingView> views;
-  sliding.look(Vector::Zero(body.space->dof_count()), SlidingPair::Wanted::gap, {}, {}, views);
+  sliding.compute_views(Vector::Zero(body.space->dof_count()), SlidingPair::Wanted::gap, {}, {}, views);
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (!views[i].faces) {
       ++facing.uncovered;
@@ -149,7 +149,7 @@ void make_sliding_patch(const Body& body, const ContactPair& pair, const FreeCom
     RotatingNormal normal = normals.of(multiplier);
     const Eigen::Vector3d direction = normal.at(body.space->nodes, {});
     patch.conditions.push_back({direction.normalized().head(body.space->dimension), {}, 0.0, 0.0});
-    patch.turning.push_back(std::move(normal));
+    patch.rotating_normals.push_back(std::move(normal));
     patch.kept.push_back(std::move(multiplier));
   }
   facing.points = static_cast<Index>(patch.kept.size());
@@ -184,7 +184,7 @@ std::unique_ptr<ContactGeometry> make_sliding_geometry(const Body& body, const s
     data.pairs.push_back(std::make_unique<SlidingPair>(data_of(body, pair, *patch, is_free)));
     const std::vector<Index>& reached = data.pairs.back()->nodes();
     boundary.reachable_nodes.insert(boundary.reachable_nodes.end(), reached.begin(), reached.end());
-    for (const int point : patch->numbers) boundary.slides_far[static_cast<std::size_t>(point)] = 1;
+    for (const int point : patch->numbers) boundary.large_sliding[static_cast<std::size_t>(point)] = 1;
   }
   if (data.pairs.empty()) return nullptr;
   std::sort(data.nodes.begin(), data.nodes.end(),

@@ -72,7 +72,7 @@ double gap_at_start(const Body& body, const Vector& normal, const TiedNodes::Wei
 RotatingPairsData::Point turning_point(const Body& body, const BoundaryPatch& patch, std::size_t kept,
                                        const FreeComponent& is_free) {
   const PointConditions& conditions = patch.conditions[kept];
-  RotatingPairsData::Point point{.number = patch.numbers[kept], .normal = patch.turning[kept]};
+  RotatingPairsData::Point point{.number = patch.numbers[kept], .normal = patch.rotating_normals[kept]};
   point.offset = conditions.gap - gap_at_start(body, conditions.normal, patch.free_traces[kept], conditions.opposite);
   const int d = body.space->dimension;
   const Index freest = freest_node(patch, kept, d, is_free);
@@ -93,7 +93,7 @@ void add_nodes(const Body& body, const std::vector<ContactPair>& pairs, const Co
   for (std::size_t i = 0; i < boundary.nodes.size(); ++i) {
     const int number = boundary.node_pair[i];
     const ContactPair& pair = pairs[static_cast<std::size_t>(number)];
-    if (!pair.has_two_sides() || pair.slides_far || std::isnan(boundary.node_initial_gap[static_cast<Index>(i)]))
+    if (!pair.has_two_sides() || pair.large_sliding || std::isnan(boundary.node_initial_gap[static_cast<Index>(i)]))
       continue;
     const bool opposite = boundary.is_opposite[i] != 0;
     auto known = around_nodes.find({number, opposite});
@@ -131,16 +131,16 @@ void find_rotating_normals(const Body& body, const std::vector<ContactPair>& pai
       const Multiplier& multiplier = patch->kept[i];
       const Vector& normal = patch->conditions[i].normal;
       if (multiplier.node >= 0 && is_on_axis(body, multiplier.node)) {
-        patch->turning.emplace_back(normal);
+        patch->rotating_normals.emplace_back(normal);
         continue;
       }
       const std::vector<Index> facets =
           multiplier.facet >= 0 ? std::vector{multiplier.facet} : around(own, multiplier.node);
-      RotatingNormal turning = RotatingNormal::mean(
+      RotatingNormal rotating_normals = RotatingNormal::mean(
           RotatingNormal(*body.space, of_marked_nodes(*body.space, facets, marked), normal),
           RotatingNormal(*body.space, facets_seen(opposite, patch->conditions[i].opposite), normal));
-      if (!turning.turns()) ++constant;
-      patch->turning.push_back(std::move(turning));
+      if (!rotating_normals.rotates()) ++constant;
+      patch->rotating_normals.push_back(std::move(rotating_normals));
     }
     if (constant == 0) continue;
     log::warning(fmt::format(
@@ -155,7 +155,7 @@ std::unique_ptr<ContactGeometry> make_rotating_geometry(const Body& body, const 
                                                         const ContactBoundary& boundary) {
   RotatingPairsData data;
   for (const auto& patch : patches) {
-    if (patch->turning.empty() || patch->slides) continue;
+    if (patch->rotating_normals.empty() || patch->slides) continue;
     for (std::size_t i = 0; i < patch->kept.size(); ++i) data.points.push_back(turning_point(body, *patch, i, is_free));
   }
   if (data.points.empty()) return nullptr;

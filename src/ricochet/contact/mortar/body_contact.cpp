@@ -19,7 +19,7 @@ namespace ricochet {
 
 namespace {
 
-using Three = Eigen::Vector3d;
+using Vector3 = Eigen::Vector3d;
 
 /// Difference up to which directions are identified: those of a flat surface.
 constexpr double same_direction = 1e-13;
@@ -51,9 +51,9 @@ struct BodyPairing::Implementation {
   const FacetMap& map = surfaces.map;
   const FacetSurface &own = surfaces.own, &opposite = surfaces.opposite;
   const SegmentFinder& finder = surfaces.finder;
-  std::vector<Three> normals;              ///< per own facet
-  std::map<Index, Three> opposite_normal;  ///< of opposite facets, by number
-  std::vector<FacetSegments> direct;       ///< per own facet, along its own normal
+  std::vector<Vector3> normals;              ///< per own facet
+  std::map<Index, Vector3> opposite_normal;  ///< of opposite facets, by number
+  std::vector<FacetSegments> direct;         ///< per own facet, along its own normal
   std::vector<Index> facing;
 
   Implementation(const Body& of_body, const ContactPair& of_pair)
@@ -67,9 +67,9 @@ struct BodyPairing::Implementation {
     }
   }
 
-  [[nodiscard]] const Three& normal_of(std::size_t facet) const { return normals[facet]; }
+  [[nodiscard]] const Vector3& normal_of(std::size_t facet) const { return normals[facet]; }
   /// Reuses a recent normal that differs by no more than rounding: all facets of a plane have an identical normal.
-  [[nodiscard]] Three known_normal(const Three& normal) const {
+  [[nodiscard]] Vector3 known_normal(const Vector3& normal) const {
     constexpr std::size_t memory = 16;
     for (std::size_t k = normals.size(); k > 0 && k + memory > normals.size(); --k) {
       if ((normals[k - 1] - normal).norm() <= same_direction) return normals[k - 1];
@@ -77,15 +77,16 @@ struct BodyPairing::Implementation {
     return normal;
   }
   [[nodiscard]] bool faces(std::size_t facet) const { return !direct[facet].segments.empty(); }
-  [[nodiscard]] Vector in_mesh(const Three& values) const { return values.head(body.mesh->dimension); }
+  [[nodiscard]] Vector in_mesh(const Vector3& values) const { return values.head(body.mesh->dimension); }
 
   AnchorDirections find_directions(bool at_facets, PairingSummary& found) const;
   [[nodiscard]] AnchorDirections normals_seen(bool at_facets) const;
-  [[nodiscard]] Three normal_between_nodes(const SegmentFinder::Hit& hit, const std::map<Index, AreaSum>& areas) const;
-  [[nodiscard]] std::vector<std::pair<Index, Three>> normals_at_nodes(Index facet,
-                                                                      const std::map<Index, AreaSum>& areas) const;
-  [[nodiscard]] Three middle_direction(const Three& at, const Three& own_direction, const Three& seen, double height,
-                                       const std::map<Index, AreaSum>* faced) const;
+  [[nodiscard]] Vector3 normal_between_nodes(const SegmentFinder::Hit& hit,
+                                             const std::map<Index, AreaSum>& areas) const;
+  [[nodiscard]] std::vector<std::pair<Index, Vector3>> normals_at_nodes(Index facet,
+                                                                        const std::map<Index, AreaSum>& areas) const;
+  [[nodiscard]] Vector3 middle_direction(const Vector3& at, const Vector3& own_direction, const Vector3& seen,
+                                         double height, const std::map<Index, AreaSum>* faced) const;
   void make_mortar_points(const MultiplierSpace& space, const AnchorDirections& directions, BodyContact& result) const;
   void make_nodal_points(const MultiplierSpace& space, const AnchorDirections& directions, BodyContact& result) const;
   void leave_out_held(const FreeComponent& is_free, BodyContact& result) const;
@@ -102,7 +103,7 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
   const AnchorDirections seen = normals_seen(at_facets);
   const std::set<Index> own_facing(facing.begin(), facing.end());
   const std::map<Index, AreaSum> own_areas = areas_around_nodes(body, own, &own_facing);
-  const auto near = [](const Three& known, const Three& found) {
+  const auto near = [](const Vector3& known, const Vector3& found) {
     return (found - known).norm() > same_direction ? found : known;
   };
   if (at_facets) {
@@ -128,7 +129,7 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
       directions.try_emplace(node, near(-normal_of(k), -normal));
   }
   for (auto& [node, direction] : directions) {
-    Three at = surfaces.position(node);
+    Vector3 at = surfaces.position(node);
     at.head(body.mesh->dimension) += own.shift();
     direction = middle_direction(at, direction, seen.at(node), own.height_at(node), &faced);
   }
@@ -137,13 +138,13 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
 
 /// Returns the normals at the nodes of a facet: between vertices the mean of theirs, consistent with the normals of the
 /// opposite side.
-std::vector<std::pair<Index, Three>> BodyPairing::Implementation::normals_at_nodes(
+std::vector<std::pair<Index, Vector3>> BodyPairing::Implementation::normals_at_nodes(
     Index facet, const std::map<Index, AreaSum>& areas) const {
   const IndexInBlocks place = locate_facet(*body.space, facet);
   const CellBlock& block = body.space->facets[place.block];
-  std::vector<std::pair<Index, Three>> result;
+  std::vector<std::pair<Index, Vector3>> result;
   for (const std::vector<int>& vertices : node_vertices(block.shape, body.space->degree)) {
-    Three sum = Three::Zero();
+    Vector3 sum = Vector3::Zero();
     for (const int v : vertices) sum += areas.at(block.cell(place.local)[v]).vector.normalized();
     result.emplace_back(block.cell(place.local)[result.size()], sum.normalized());
   }
@@ -155,12 +156,12 @@ AnchorDirections BodyPairing::Implementation::normals_seen(bool at_facets) const
   AnchorDirections result;
   for (std::size_t k = 0; k < own.facets().size(); ++k) {
     if (!faces(k)) continue;
-    Three sum = Three::Zero();
+    Vector3 sum = Vector3::Zero();
     for (const SurfaceSegment& segment : direct[k].segments)
       sum += segment.weights.sum() * opposite_normal.at(segment.opposite);
     const Index facet = own.facets()[k].number;
     const std::vector<Index> anchors = at_facets ? std::vector{facet} : facet_nodes(*body.space, {facet});
-    for (const Index anchor : anchors) result.try_emplace(anchor, Three::Zero()).first->second += sum;
+    for (const Index anchor : anchors) result.try_emplace(anchor, Vector3::Zero()).first->second += sum;
   }
   for (auto& [anchor, sum] : result) {
     if (!at_facets) remove_radial_part(body, anchor, sum);
@@ -170,13 +171,13 @@ AnchorDirections BodyPairing::Implementation::normals_seen(bool at_facets) const
 }
 
 /// Interpolates the normals at the vertices, which follow from the areas around them.
-Three BodyPairing::Implementation::normal_between_nodes(const SegmentFinder::Hit& hit,
-                                                        const std::map<Index, AreaSum>& areas) const {
+Vector3 BodyPairing::Implementation::normal_between_nodes(const SegmentFinder::Hit& hit,
+                                                          const std::map<Index, AreaSum>& areas) const {
   Matrix values;
   map.hats(hit.facet, hit.local, values);
   const IndexInBlocks place = locate_facet(*body.space, hit.facet);
   const Index* const nodes = body.space->facets[place.block].cell(place.local);
-  Three normal = Three::Zero();
+  Vector3 normal = Vector3::Zero();
   for (Index k = 0; k < values.rows(); ++k) {
     const auto around = areas.find(nodes[k]);
     if (around != areas.end()) normal += values(k, 0) * around->second.vector.normalized();
@@ -188,20 +189,21 @@ Three BodyPairing::Implementation::normal_between_nodes(const SegmentFinder::Hit
 /// the normal of the facet there if `faced` is null. Surfaces that are mirror images thus have the normal of the
 /// mirror, at any gap; along the own direction another point would be hit, shifted by the gap times its slope. If the
 /// iterations find no such point, the point hit along the own direction is used, or that direction alone.
-Three BodyPairing::Implementation::middle_direction(const Three& at, const Three& own_direction, const Three& seen,
-                                                    double height, const std::map<Index, AreaSum>* faced) const {
-  constexpr int most_rounds = 30;
-  const auto from = [&](const Three& direction) -> std::optional<Three> {
+Vector3 BodyPairing::Implementation::middle_direction(const Vector3& at, const Vector3& own_direction,
+                                                      const Vector3& seen, double height,
+                                                      const std::map<Index, AreaSum>* faced) const {
+  constexpr int max_iterations = 30;
+  const auto from = [&](const Vector3& direction) -> std::optional<Vector3> {
     SegmentFinder::Hit hit = finder.find_point(at, direction, 0.5 * height);
     if (hit.facet < 0) hit = finder.find_point(at, direction, 0.5 * height, beyond_rim);
     if (hit.facet < 0) return {};
-    const Three normal = faced != nullptr ? normal_between_nodes(hit, *faced) : opposite_normal.at(hit.facet);
+    const Vector3 normal = faced != nullptr ? normal_between_nodes(hit, *faced) : opposite_normal.at(hit.facet);
     if (!(normal.dot(own_direction) > 0.0)) return {};
     return (own_direction + normal.normalized()).normalized();
   };
-  std::optional<Three> direction = (own_direction + seen).normalized();
-  for (int round = 0; round < most_rounds && direction; ++round) {
-    const std::optional<Three> next = from(*direction);
+  std::optional<Vector3> direction = (own_direction + seen).normalized();
+  for (int round = 0; round < max_iterations && direction; ++round) {
+    const std::optional<Vector3> next = from(*direction);
     if (next && (*next - *direction).norm() <= same_direction)
       return (*next - own_direction).norm() > same_direction ? *next : own_direction;
     direction = next;

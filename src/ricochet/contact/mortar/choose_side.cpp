@@ -50,7 +50,7 @@ double curvature_of(const Body& body, const FacetSurface& surface, double most) 
   double sum = 0.0;
   Index count = 0;
   const auto add = [&](const FacetSurface::Facet& a, const FacetSurface::Facet& b) {
-    const FacetSurface::Three one = a.area_vector.normalized(), other = b.area_vector.normalized();
+    const FacetSurface::Vector3 one = a.area_vector.normalized(), other = b.area_vector.normalized();
     const double angle = std::atan2(one.cross(other).norm(), one.dot(other)), distance = (a.centre - b.centre).norm();
     sum += angle > rounding && angle <= most && distance > 0.0 ? angle / distance : 0.0;
     ++count;
@@ -118,7 +118,7 @@ SideChoice choose_side(const Body& body, const ContactPair& pair) {
                others = by_bends ? turns.opposite_of_bends : turns.opposite;
   if (std::max(own, others) > std::max(flat, alike_turns * std::min(own, others)))
     return choice(others < own, "normals turn less within its facets", own, others);
-  if (pair.slides_far && smaller_from * std::min(one.area, other.area) < std::max(one.area, other.area)) {
+  if (pair.large_sliding && smaller_from * std::min(one.area, other.area) < std::max(one.area, other.area)) {
     const bool is_other = other.area < one.area;
     if ((is_other ? other.size : one.size) < coarsest * (is_other ? one.size : other.size))
       return choice(is_other, "its surface is smaller", one.area, other.area);

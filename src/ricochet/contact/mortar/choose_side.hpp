@@ -28,7 +28,7 @@ struct SideChoice {
 /// Doubt about the side that carries the multipliers, `pair.facets`: the mean variation of normals within its facets
 /// where surfaces bend, and its value with the multipliers on the other side. Empty if there is no doubt.
 struct SideDoubt {
-  double turn = 0.0, of_other = 0.0;  ///< rad
+  double variation = 0.0, other_variation = 0.0;  ///< rad
   bool other_is_better = false;
   double finer = 1.0;  ///< refinement factor of the facets of the better side that resolves the doubt
 };

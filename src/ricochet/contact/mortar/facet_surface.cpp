@@ -12,22 +12,22 @@ namespace ricochet {
 
 namespace {
 
-using Three = FacetSurface::Three;
+using Vector3 = FacetSurface::Vector3;
 
 /// Distance, relative to the facet's size, up to which a node counts as lying at the mean of its vertices.
 constexpr double straight = 1e-12;
 
-Three in_space(const Points& positions, Index node) {
-  Three result = Three::Zero();
+Vector3 in_space(const Points& positions, Index node) {
+  Vector3 result = Vector3::Zero();
   result.head(positions.rows()) = positions.col(node);
   return result;
 }
 
 /// Whether the nodes of a second-order facet lie on the straight facet, whose pieces it then has.
-bool is_straight(CellShape shape, const std::vector<Three>& nodes, double size) {
+bool is_straight(CellShape shape, const std::vector<Vector3>& nodes, double size) {
   const auto& vertices_of = node_vertices(shape, 2);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    Three mean = Three::Zero();
+    Vector3 mean = Vector3::Zero();
     for (const int v : vertices_of[k])
       mean += nodes[static_cast<std::size_t>(v)] / static_cast<double>(vertices_of[k].size());
     if ((nodes[k] - mean).norm() > straight * size) return false;
@@ -37,8 +37,8 @@ bool is_straight(CellShape shape, const std::vector<Three>& nodes, double size) 
 
 /// Area vector of a triangle, or length vector of a segment, along the normal on the side from which the nodes are in
 /// counter-clockwise order, or to the right of the direction of travel.
-Three area_vector(const std::array<Three, 3>& corners, bool plane) {
-  const Three along = corners[1] - corners[0];
+Vector3 area_vector(const std::array<Vector3, 3>& corners, bool plane) {
+  const Vector3 along = corners[1] - corners[0];
   if (plane) return {along[1], -along[0], 0.0};
   return 0.5 * along.cross(corners[2] - corners[0]);
 }
@@ -70,7 +70,7 @@ FacetSurface::FacetSurface(const Body& body, const std::vector<Index>& facets, c
   }
   boxes_.resize(pieces_.size());
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
-    for (const Three& corner : pieces_[p].corners) boxes_[p].extend(corner);
+    for (const Vector3& corner : pieces_[p].corners) boxes_[p].extend(corner);
   }
   if (!boxes_.empty()) tree_ = BoxTree(boxes_);
 }
@@ -94,7 +94,7 @@ void FacetSurface::place(Facet& facet) {
   facet.area_vector.setZero();
   for (int p = facet.first_piece; p < facet.first_piece + facet.piece_count; ++p) {
     Piece& piece = pieces_[static_cast<std::size_t>(p)];
-    const Three area = area_vector(piece.corners, plane_);
+    const Vector3 area = area_vector(piece.corners, plane_);
     facet.area += area.norm();
     facet.area_vector += area;
     piece.normal = area.normalized();
@@ -105,19 +105,19 @@ void FacetSurface::add_facet(const Body& body, Index number, Index cell) {
   const Mesh& mesh = *body.mesh;
   const IndexInBlocks place = locate_in_blocks(mesh.facets, number), behind = locate_in_blocks(mesh.cells, cell);
   const CellBlock& block = mesh.facets[place.block];
-  Three moved = Three::Zero(), inside = Three::Zero();
+  Vector3 moved = Vector3::Zero(), inside = Vector3::Zero();
   moved.head(mesh.dimension) = shift_;
   const CellBlock& cells = mesh.cells[behind.block];
   for (int v = 0; v < vertex_count(cells.shape); ++v)
     inside += (in_space(mesh.nodes, cells.cell(behind.local)[v]) + moved) / vertex_count(cells.shape);
-  std::vector<Three> nodes;
+  std::vector<Vector3> nodes;
   for (int k = 0; k < block.nodes_per_cell; ++k)
     nodes.push_back(in_space(mesh.nodes, block.cell(place.local)[k]) + moved);
   Facet facet{number, static_cast<int>(pieces_.size())};
   facet.size = facet_diameter(mesh, number);
   const bool as_straight = mesh.degree == 1 || (!moves_ && is_straight(block.shape, nodes, facet.size));
   for (const FlatPiece& local : flat_pieces(block.shape, as_straight ? 1 : 2)) {
-    Piece piece{static_cast<int>(facets_.size()), {}, {}, Three::Zero()};
+    Piece piece{static_cast<int>(facets_.size()), {}, {}, Vector3::Zero()};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto node = static_cast<std::size_t>(local[k] >= 0 ? local[k] : local[1]);
       piece.corners[k] = nodes[node];

@@ -13,22 +13,22 @@ namespace ricochet {
 /// All vectors have three components; in 2D the third is 0.
 class FacetSurface {
  public:
-  using Three = Eigen::Vector3d;
+  using Vector3 = Eigen::Vector3d;
   /// Segment or, in 3D, triangle between nodes of a facet.
   struct Piece {
     int facet = 0;               ///< its index in facets()
     std::array<Index, 3> nodes;  ///< of the mesh, at the corners
-    std::array<Three, 3> corners;
-    Three normal;  ///< out of the body, of length 1
+    std::array<Vector3, 3> corners;
+    Vector3 normal;  ///< out of the body, of length 1
   };
   struct Facet {
     Index number = 0;  ///< through all blocks
     int first_piece = 0, piece_count = 0;
-    double area = 0.0;           ///< of the pieces
-    Three area_vector{0, 0, 0};  ///< ∫ N over the pieces, out of the body: a length in 2D, an area in 3D
-    Three centre{0, 0, 0};       ///< the mean of its vertices
-    double size = 0.0;           ///< the longest distance between corners
-    double height = 0.0;         ///< of the cell behind it, or as set by set_depths()
+    double area = 0.0;             ///< of the pieces
+    Vector3 area_vector{0, 0, 0};  ///< ∫ N over the pieces, out of the body: a length in 2D, an area in 3D
+    Vector3 centre{0, 0, 0};       ///< the mean of its vertices
+    double size = 0.0;             ///< the longest distance between corners
+    double height = 0.0;           ///< of the cell behind it, or as set by set_depths()
   };
 
   /// `facets`: numbered through all blocks, ascending. Their positions are displaced by `shift` (d; zero if empty).

@@ -12,7 +12,7 @@ namespace ricochet {
 
 namespace {
 
-using Three = FacetSurface::Three;
+using Vector3 = FacetSurface::Vector3;
 
 /// Facets whose normals differ by less than `level` are coplanar; neighbours at more than `edge` meet at an edge.
 constexpr double level = 1e-6, edge = 0.25 * std::numbers::pi;
@@ -20,12 +20,12 @@ constexpr double level = 1e-6, edge = 0.25 * std::numbers::pi;
 /// Angle, in angles between two facets, up to which a normal counts as included beyond the last of them.
 constexpr double past_end = 0.75;
 
-double angle_between(const Three& one, const Three& other) {
+double angle_between(const Vector3& one, const Vector3& other) {
   return std::atan2(one.cross(other).norm(), one.dot(other));
 }
 
-BoxTree::Box box_around(const Three& centre, double reach) {
-  return {centre - Three::Constant(reach), centre + Three::Constant(reach)};
+BoxTree::Box box_around(const Vector3& centre, double reach) {
+  return {centre - Vector3::Constant(reach), centre + Vector3::Constant(reach)};
 }
 
 /// Mean or sum over facets that can touch the other surface: their angles per length, with edges and without.
@@ -56,7 +56,7 @@ class TurningSurface {
 
   /// Connected coplanar facets, or one facet.
   struct Plane {
-    Three normal = Three::Zero();
+    Vector3 normal = Vector3::Zero();
     Bend bend;  ///< a mean; its weight is the area
   };
   [[nodiscard]] const std::vector<Plane>& planes() const { return planes_; }
@@ -66,7 +66,7 @@ class TurningSurface {
     bool is_level = false;
   };
   /// Finds facets with this normal; if there are none, those between whose normals it lies.
-  [[nodiscard]] Sight look(const Three& normal) const {
+  [[nodiscard]] Sight look(const Vector3& normal) const {
     const auto may_have = [&](const BoxTree::Box& box) { return box.contains(normal); };
     Sight result;
     plane_tree_.visit(may_have, [&](int number) {
@@ -91,7 +91,7 @@ class TurningSurface {
   /// Finds joints whose normals include a given one; if there are none, those adjacent to it: a surface that ends at a
   /// plane of symmetry touches its counterpart across that plane with half of a facet.
   template <class MayHave>
-  [[nodiscard]] Bend look_at_joints(const Three& normal, const MayHave& may_have) const {
+  [[nodiscard]] Bend look_at_joints(const Vector3& normal, const MayHave& may_have) const {
     Bend within, beside;
     joint_tree_.visit(may_have, [&](int number) {
       const Joint& joint = joints_[static_cast<std::size_t>(number)];
@@ -126,7 +126,7 @@ class TurningSurface {
     }
     std::vector<BoxTree::Box> boxes;
     for (const Joint& joint : joints_) {
-      const Three &a = normals_[joint.one], &b = normals_[joint.other];
+      const Vector3 &a = normals_[joint.one], &b = normals_[joint.other];
       boxes.push_back(box_around(0.5 * (a + b), (0.5 + past_end) * angle_between(a, b) + 2.0 * level));
     }
     if (!boxes.empty()) joint_tree_ = BoxTree(boxes);
@@ -167,7 +167,7 @@ class TurningSurface {
   }
 
   FacetSurface surface_;
-  std::vector<Three> normals_;
+  std::vector<Vector3> normals_;
   std::vector<Bend> turns_;  ///< per facet, towards its neighbours: sums
   std::vector<Joint> joints_;
   DisjointSets sets_{0};

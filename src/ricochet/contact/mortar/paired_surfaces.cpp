@@ -7,7 +7,7 @@ namespace ricochet {
 
 namespace {
 
-using Three = Eigen::Vector3d;
+using Vector3 = Eigen::Vector3d;
 
 /// Degree of the rule on segments. On straight simplices products of two shape functions are polynomials of the
 /// position. On quadrilaterals they are rational functions, and the rule is exact to nine digits
@@ -70,15 +70,15 @@ PairedSurfaces::PairedSurfaces(const Body& of_body, const ContactPair& pair)
       finder(map, own, opposite, segment_degree(of_body)),
       back(map, opposite, own, segment_degree(of_body)) {}
 
-Three PairedSurfaces::position(Index node) const {
-  Three result = Three::Zero();
+Vector3 PairedSurfaces::position(Index node) const {
+  Vector3 result = Vector3::Zero();
   result.head(body.mesh->dimension) = body.space->nodes.col(node);
   return result;
 }
 
-BodyContact::Node PairedSurfaces::node_facing(Index node, bool is_own, const Three& direction) const {
+BodyContact::Node PairedSurfaces::node_facing(Index node, bool is_own, const Vector3& direction) const {
   const FacetSurface& surface = is_own ? own : opposite;
-  Three at = position(node);
+  Vector3 at = position(node);
   at.head(body.mesh->dimension) += surface.shift();
   BodyContact::Node result{
       node, is_own, direction.head(body.mesh->dimension), std::numeric_limits<double>::quiet_NaN(), {}};

@@ -10,7 +10,7 @@ namespace ricochet {
 
 namespace {
 
-using Three = Eigen::Vector3d;
+using Vector3 = Eigen::Vector3d;
 
 /// Cosine of the angle to the direction below which a piece is seen edge-on.
 constexpr double edge_on = 0.1;
@@ -24,17 +24,17 @@ constexpr double doubly = 1e-9;
 /// Plane onto which surfaces are projected along a direction.
 struct SegmentFinder::View {
   bool plane;  ///< whether the problem is 2D
-  Three direction;
-  Three first, second;  ///< axes; the second is 0 in 2D
+  Vector3 direction;
+  Vector3 first, second;  ///< axes; the second is 0 in 2D
 
-  View(int dimension, const Three& along) : plane(dimension == 2), direction(along), second(Three::Zero()) {
+  View(int dimension, const Vector3& along) : plane(dimension == 2), direction(along), second(Vector3::Zero()) {
     if (plane) {
       first = {along[1], -along[0], 0.0};
       return;
     }
     Index axis = 0;
     along.cwiseAbs().minCoeff(&axis);
-    first = Three::Unit(axis).cross(along).normalized();
+    first = Vector3::Unit(axis).cross(along).normalized();
     second = along.cross(first);
   }
   [[nodiscard]] Points axes() const {
@@ -44,7 +44,7 @@ struct SegmentFinder::View {
     if (!plane) result.col(1) = second;
     return result;
   }
-  [[nodiscard]] PlanePoint seen(const Three& point) const { return {first.dot(point), second.dot(point)}; }
+  [[nodiscard]] PlanePoint seen(const Vector3& point) const { return {first.dot(point), second.dot(point)}; }
 
   [[nodiscard]] ProjectedPiece flatten(const FacetSurface::Piece& piece) const {
     ProjectedPiece flat;
@@ -88,7 +88,7 @@ bool is_among(const std::vector<int>& places, int facet) {
 }
 
 /// Whether the extent of a box along a unit vector overlaps the interval.
-bool overlaps(const BoxTree::Box& box, const Three& along, double from, double to) {
+bool overlaps(const BoxTree::Box& box, const Vector3& along, double from, double to) {
   const double centre = along.dot(box.center()), half = along.cwiseAbs().dot(0.5 * box.sizes());
   return centre - half <= to && centre + half >= from;
 }
@@ -108,9 +108,9 @@ void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std:
   if (-view.direction.dot(piece.normal) < edge_on) return;
   const ProjectedPiece own = view.flatten(piece);
   BoxTree::Box seen;  // plane coordinates and height
-  for (const Three& corner : piece.corners) {
+  for (const Vector3& corner : piece.corners) {
     const PlanePoint at = view.seen(corner);
-    seen.extend(Three(at[0], at[1], view.direction.dot(corner)));
+    seen.extend(Vector3(at[0], at[1], view.direction.dot(corner)));
   }
   constexpr double infinite = std::numeric_limits<double>::infinity();
   const double own_height = any_depth ? infinite : own_.facets()[static_cast<std::size_t>(piece.facet)].height;
@@ -122,7 +122,8 @@ void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std:
   opposite_.tree().visit(may_face, [&](int other) {
     const FacetSurface::Piece& candidate = opposite_.pieces()[static_cast<std::size_t>(other)];
     if (view.direction.dot(candidate.normal) < edge_on || piece.normal.dot(candidate.normal) >= 0.0) return;
-    if (!unseen_.empty() && is_among(unseen_[static_cast<std::size_t>(piece.facet)], candidate.facet)) return;
+    if (!ignored_facets_.empty() && is_among(ignored_facets_[static_cast<std::size_t>(piece.facet)], candidate.facet))
+      return;
     Cut cut{number, other, own, view.flatten(candidate), {}, 0.0};
     cut.common = intersect(own, cut.opposite, view.plane);
     if (cut.common.count == 0) return;
@@ -193,7 +194,7 @@ bool SegmentFinder::find_coordinates(Index facet, const Points& axes, SurfaceSeg
          map_.invert(segment.opposite, axes, seen_at(opposite_.shift()), segment.opposite_local);
 }
 
-FacetSegments SegmentFinder::find(int facet, const Three& direction, bool any_depth) const {
+FacetSegments SegmentFinder::find(int facet, const Vector3& direction, bool any_depth) const {
   const View view(static_cast<int>(own_.shift().size()), direction);
   FacetSegments result;
   result.axes = view.axes();
@@ -229,8 +230,8 @@ void SegmentFinder::visit_pieces_at(const View& view, const PlanePoint& at, doub
   });
 }
 
-SegmentFinder::Hit SegmentFinder::find_point(const Three& point, const Three& direction, double reach, double beyond,
-                                             const std::vector<int>& unseen) const {
+SegmentFinder::Hit SegmentFinder::find_point(const Vector3& point, const Vector3& direction, double reach,
+                                             double beyond, const std::vector<int>& unseen) const {
   const View view(static_cast<int>(own_.shift().size()), direction);
   const PlanePoint at = view.seen(point);
   const double height = direction.dot(point);
@@ -257,7 +258,7 @@ SegmentFinder::Hit SegmentFinder::find_point(const Three& point, const Three& di
 
 double SegmentFinder::thickness_behind(int facet) const {
   const FacetSurface::Facet& own = own_.facets()[static_cast<std::size_t>(facet)];
-  const Three direction = -own.area_vector.normalized();
+  const Vector3 direction = -own.area_vector.normalized();
   const View view(static_cast<int>(own_.shift().size()), direction);
   const PlanePoint at = view.seen(own.centre);
   const double height = direction.dot(own.centre);

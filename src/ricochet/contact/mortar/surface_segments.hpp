@@ -40,7 +40,7 @@ class SegmentFinder {
 
   /// Sets for each own facet the opposite facets to be ignored, by their indices in facets(), ascending: those in its
   /// neighbourhood if both surfaces are one.
-  void leave_out(std::vector<std::vector<int>> unseen) { unseen_ = std::move(unseen); }
+  void set_ignored_facets(std::vector<std::vector<int>> unseen) { ignored_facets_ = std::move(unseen); }
 
   /// Finds the segments of own facet number `facet` in own.facets(). `direction`: unit, out of the opposite surface.
   /// Pieces that are seen nearly edge-on, or do not face each other, are ignored, and so are those that overlap by more
@@ -77,7 +77,7 @@ class SegmentFinder {
   const FacetMap& map_;
   const FacetSurface &own_, &opposite_;
   QuadratureRule interval_, triangle_;
-  std::vector<std::vector<int>> unseen_;  ///< empty if no facet is ignored
+  std::vector<std::vector<int>> ignored_facets_;  ///< empty if no facet is ignored
 };
 
 }  // namespace ricochet

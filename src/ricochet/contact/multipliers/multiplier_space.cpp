@@ -36,10 +36,10 @@ bool is_stable(const std::string& multipliers, CellShape facet, int displacement
 }
 
 bool only_presses_supports(const Multiplier& multiplier, const ContactPatch& patch) {
-  if (!patch.is_held) return false;
-  if (multiplier.node >= 0) return patch.is_held(multiplier.node);
+  if (!patch.is_supported) return false;
+  if (multiplier.node >= 0) return patch.is_supported(multiplier.node);
   return std::all_of(multiplier.trace.begin(), multiplier.trace.end(),
-                     [&](const auto& entry) { return patch.is_held(entry.first); });
+                     [&](const auto& entry) { return patch.is_supported(entry.first); });
 }
 
 std::vector<Multiplier> integrate_multipliers(const MultiplierSpace& space, MultiplierAnchor anchored) {

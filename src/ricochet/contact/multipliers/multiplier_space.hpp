@@ -22,8 +22,9 @@ struct ContactPatch {
     std::vector<Index> facets;  ///< numbered through all blocks
   };
   const Body* body = nullptr;
-  std::vector<Part> parts;                       ///< pairs ascending
-  std::function<bool(Index node)> is_held = {};  ///< whether supports constrain the node along the normal; empty: none
+  std::vector<Part> parts;  ///< pairs ascending
+  std::function<bool(Index node)> is_supported =
+      {};  ///< whether supports constrain the node along the normal; empty: none
 };
 
 enum class MultiplierAnchor { node, facet };
@@ -67,7 +68,7 @@ class MultiplierSpace {
   virtual void evaluate(const FacetQuadrature& facet, FacetMultipliers& result) const = 0;
 
   [[nodiscard]] const ContactPatch& patch() const { return *patch_; }
-  [[nodiscard]] bool is_held(Index node) const { return patch_->is_held && patch_->is_held(node); }
+  [[nodiscard]] bool is_supported(Index node) const { return patch_->is_supported && patch_->is_supported(node); }
 
  private:
   const ContactPatch* patch_;

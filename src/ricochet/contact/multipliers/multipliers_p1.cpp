@@ -56,7 +56,7 @@ class P1Multipliers final : public MultiplierSpace {
     std::vector<Index> free;
     Eigen::RowVectorXd held = Eigen::RowVectorXd::Zero(facet.measure.size());
     for (Index v = 0; v < facet.vertex_count(); ++v) {
-      if (is_held(facet.nodes[v])) {
+      if (is_supported(facet.nodes[v])) {
         held += facet.hats->row(v);
         continue;
       }

@@ -82,7 +82,7 @@ void MovingSurfaces::enable_self_contact() {
   }
   for (const auto& [node, facets] : at_node) ignored_facets_of_[node] = widen(facets);
   facets_at_ = std::move(at_node);
-  finder_.leave_out(std::move(unseen));
+  finder_.set_ignored_facets(std::move(unseen));
   own_.set_depths(depths);
   opposite_.set_depths(depths);
 }

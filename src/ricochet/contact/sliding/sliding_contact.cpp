@@ -28,14 +28,14 @@ class SlidingContact final : public ContactGeometry {
       : data_(std::move(data)),
         extent_(extent(data_.node_positions)),
         at_rest_(Vector::Zero(data_.node_positions.size())),
-        seen_(data_.pairs.size()),
+        pair_views_(data_.pairs.size()),
         apart_(data_.pairs, data_.node_positions),
         places_(data_.pairs, data_.node_positions.rows()),
         writer_(data_.node_positions),
         couples_(data_.node_positions) {
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
       const SlidingPair& pair = *data_.pairs[k];
-      if (pair.is_self()) seen_[k].chosen.emplace(pair, data_.node_positions.cols(), pair.degree());
+      if (pair.is_self()) pair_views_[k].chosen.emplace(pair, data_.node_positions.cols(), pair.degree());
     }
   }
 
@@ -43,19 +43,20 @@ class SlidingContact final : public ContactGeometry {
     const Vector* const start = is_step_ ? &start_at_update_ : nullptr;
     apart_.move(displacement, start);
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
-      if (seen_[k].is_apart && (is_held_ || apart_.are_apart(k))) {
+      if (pair_views_[k].is_apart && (is_frozen_ || apart_.are_apart(k))) {
         for (const SlidingPair::Point& point : data_.pairs[k]->points()) gap[point.number] = data_.unpaired_gap;
         continue;
       }
-      if (is_held_) {
+      if (is_frozen_) {
         compute_frozen_gaps(k, displacement, gap);
         continue;
       }
-      if (seen_[k].is_apart && start != nullptr) look_at_start(k, *start);
+      if (pair_views_[k].is_apart && start != nullptr) update_start_views(k, *start);
       // Forces may move points farther in the step than predicted when the rows were computed.
-      if (is_step_ && seen_[k].has_start) find_far(k, largest_motion(*data_.pairs[k], displacement, seen_[k].start_at));
-      look_at_gaps(k, displacement);
-      for (std::size_t i = 0; i < data_.pairs[k]->points().size(); ++i) gap[number(k, i)] = gap_of(seen_[k], i);
+      if (is_step_ && pair_views_[k].has_start)
+        find_far(k, largest_motion(*data_.pairs[k], displacement, pair_views_[k].start_at));
+      update_gap_views(k, displacement);
+      for (std::size_t i = 0; i < data_.pairs[k]->points().size(); ++i) gap[number(k, i)] = gap_of(pair_views_[k], i);
     }
   }
 
@@ -77,16 +78,16 @@ class SlidingContact final : public ContactGeometry {
   [[nodiscard]] bool has_node(Index entry) const override { return find_node(entry) != nullptr; }
 
   void update(const Vector& displacement, double, const StepStart* start, ContactRows& rows) const override {
-    if (is_held_ && start != nullptr) return;
-    restore_selection(rows.places);
+    if (is_frozen_ && start != nullptr) return;
+    restore_selection(rows.sliding_state);
     at_update_ = displacement;
     is_step_ = start != nullptr;
     if (is_step_) start_at_update_ = start->displacement;
     writer_.begin(displacement, is_step_ ? &start_at_update_ : nullptr);
     apart_.move(displacement, is_step_ ? &start_at_update_ : nullptr);
-    Index flag = rows.places.size() - apart_.count();
+    Index flag = rows.sliding_state.size() - apart_.count();
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
-      const bool was_apart = apart_.may_be_apart(k) && flag >= 0 && rows.places[flag++] != 0.0;
+      const bool was_apart = apart_.may_be_apart(k) && flag >= 0 && rows.sliding_state[flag++] != 0.0;
       apart_.are_apart(k) ? set_apart(k, was_apart, rows) : update_pair(k, displacement, start, rows);
     }
     writer_.finish(rows);
@@ -95,37 +96,37 @@ class SlidingContact final : public ContactGeometry {
   }
 
   void begin_step() const override {
-    is_held_ = was_held_ = false;
+    is_frozen_ = was_frozen_ = false;
     is_step_ = false;
   }
-  bool hold() const override {
-    if (is_held_ || !is_step_) return false;
-    is_held_ = was_held_ = has_held_ = true;
+  bool freeze() const override {
+    if (is_frozen_ || !is_step_) return false;
+    is_frozen_ = was_frozen_ = has_frozen_ = true;
     return true;
   }
   void end_step() const override {
-    is_held_ = false;
+    is_frozen_ = false;
     if (is_step_ && !has_told_) warn_of_long_step();
   }
-  [[nodiscard]] bool has_frozen() const override { return has_held_; }
+  [[nodiscard]] bool has_frozen() const override { return has_frozen_; }
 
   void allow_overlap(Vector& gap) const override {
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
-      const Seen& seen = seen_[k];
+      const Seen& seen = pair_views_[k];
       if (seen.is_apart) continue;
       for (std::size_t i = 0; i < seen.at_start.size(); ++i) {
         const double before = seen.at_start[i].faces ? seen.at_start[i].gap : 0.0;
         // Held gaps of points that enter already include it.
-        const bool has_it = is_held_ && seen.enters(i);
+        const bool has_it = is_frozen_ && seen.enters(i);
         if (before < -least_overlap * extent_ && !seen.is_far(i) && !has_it) gap[number(k, i)] -= before;
       }
     }
   }
 
-  void leave_out(std::vector<char>& eligible) const override {
+  void deactivate_points(std::vector<char>& eligible) const override {
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
-      if (!seen_[k].chosen) continue;
-      const std::vector<Choice>& choices = seen_[k].chosen->choices();
+      if (!pair_views_[k].chosen) continue;
+      const std::vector<Choice>& choices = pair_views_[k].chosen->choices();
       for (std::size_t i = 0; i < choices.size(); ++i) {
         if (choices[i] == Choice::left_out) eligible[static_cast<std::size_t>(number(k, i))] = 0;
       }
@@ -134,7 +135,7 @@ class SlidingContact final : public ContactGeometry {
 
   void add_couples(const Vector& place, const ContactRows& rows, const Vector& normal, const Vector& tangential,
                    Vector& force) const override {
-    if (was_held_) return;  // forces are those of the rows
+    if (was_frozen_) return;  // forces are those of the rows
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) add_couples_of(k, place, rows, normal, tangential, force);
   }
 
@@ -142,17 +143,17 @@ class SlidingContact final : public ContactGeometry {
   /// points and the pairs that were skipped.
   [[nodiscard]] Index row_value_count() const override {
     Index points = 0;
-    for (const Seen& seen : seen_) points += seen.chosen ? static_cast<Index>(seen.chosen->choices().size()) : 0;
+    for (const Seen& seen : pair_views_) points += seen.chosen ? static_cast<Index>(seen.chosen->choices().size()) : 0;
     return places_.count() + points + apart_.count();
   }
   [[nodiscard]] Vector row_values(const ContactRows& rows) const override {
-    return rows.places.size() > 0 ? rows.places : Vector(Vector::Zero(row_value_count()));
+    return rows.sliding_state.size() > 0 ? rows.sliding_state : Vector(Vector::Zero(row_value_count()));
   }
   void restore(const Points&, const Vector&, const Vector& row_values, ContactRows& rows) const override {
     Vector end = Vector::Zero(data_.node_positions.size()), before = end;
     const bool is_step = places_.read(row_values, end, before);
-    rows.places = row_values;
-    rows.places.tail(apart_.count()).setZero();  // forces their rows to be written
+    rows.sliding_state = row_values;
+    rows.sliding_state.tail(apart_.count()).setZero();  // forces their rows to be written
     const StepStart start{before, 0.0};
     update(end, 0.0, is_step ? &start : nullptr, rows);
   }
@@ -178,7 +179,7 @@ class SlidingContact final : public ContactGeometry {
   /// Continues the selection from that of the rows, even if other rows were computed in between.
   void restore_selection(const Vector& places) const {
     Index at = places_.count();
-    for (Seen& seen : seen_) {
+    for (Seen& seen : pair_views_) {
       if (!seen.chosen || places.size() == 0) continue;
       std::vector<Choice> choices(seen.chosen->choices().size());
       for (Choice& choice : choices) choice = static_cast<Choice>(std::lround(std::clamp(places[at++], 0.0, 2.0)));
@@ -187,21 +188,21 @@ class SlidingContact final : public ContactGeometry {
   }
 
   void remember(const Vector& displacement, const StepStart* start, ContactRows& rows) const {
-    rows.places.setZero(row_value_count());
-    places_.write(displacement, start != nullptr ? &start->displacement : nullptr, rows.places);
+    rows.sliding_state.setZero(row_value_count());
+    places_.write(displacement, start != nullptr ? &start->displacement : nullptr, rows.sliding_state);
     Index at = places_.count();
-    for (const Seen& seen : seen_) {
+    for (const Seen& seen : pair_views_) {
       if (!seen.chosen) continue;
-      for (const Choice choice : seen.chosen->choices()) rows.places[at++] = static_cast<double>(choice);
+      for (const Choice choice : seen.chosen->choices()) rows.sliding_state[at++] = static_cast<double>(choice);
     }
-    for (std::size_t k = 0; k < seen_.size(); ++k) {
-      if (apart_.may_be_apart(k)) rows.places[at++] = seen_[k].is_apart ? 1.0 : 0.0;
+    for (std::size_t k = 0; k < pair_views_.size(); ++k) {
+      if (apart_.may_be_apart(k)) rows.sliding_state[at++] = pair_views_[k].is_apart ? 1.0 : 0.0;
     }
   }
 
   /// Computes gaps linearized about the last update.
   void compute_frozen_gaps(std::size_t k, const Vector& displacement, Vector& gap) const {
-    const Seen& seen = seen_[k];
+    const Seen& seen = pair_views_[k];
     const Index d = dimension();
     for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
       const Index point = number(k, i);
@@ -217,19 +218,19 @@ class SlidingContact final : public ContactGeometry {
     }
   }
 
-  void look_at_gaps(std::size_t k, const Vector& displacement) const {
-    Seen& seen = seen_[k];
+  void update_gap_views(std::size_t k, const Vector& displacement) const {
+    Seen& seen = pair_views_[k];
     if (seen.has_gaps && seen.gaps_at == displacement) return;
-    data_.pairs[k]->look(displacement, SlidingPair::Wanted::gap, seen.far, seen.any_depth, seen.gaps);
+    data_.pairs[k]->compute_views(displacement, SlidingPair::Wanted::gap, seen.far, seen.any_depth, seen.gaps);
     seen.gaps_at = displacement;
     seen.has_gaps = true;
   }
 
   /// Records which points face something at the start of the step: these admit any depth wherever the step ends.
-  void look_at_start(std::size_t k, const Vector& displacement) const {
-    Seen& seen = seen_[k];
+  void update_start_views(std::size_t k, const Vector& displacement) const {
+    Seen& seen = pair_views_[k];
     if (seen.has_start && seen.start_at == displacement) return;
-    data_.pairs[k]->look(displacement, SlidingPair::Wanted::gap, {}, {}, seen.at_start);
+    data_.pairs[k]->compute_views(displacement, SlidingPair::Wanted::gap, {}, {}, seen.at_start);
     seen.start_at = displacement;
     seen.has_start = true;
     seen.any_depth.resize(seen.at_start.size());
@@ -241,7 +242,7 @@ class SlidingContact final : public ContactGeometry {
   /// displacement. Infinite: none is far.
   void find_far(std::size_t k, double way) const {
     const SlidingPair& pair = *data_.pairs[k];
-    Seen& seen = seen_[k];
+    Seen& seen = pair_views_[k];
     std::vector<char>& far = left_out_;
     far.assign(pair.points().size(), 0);
     if (std::isfinite(way)) {
@@ -261,8 +262,8 @@ class SlidingContact final : public ContactGeometry {
 
   /// Rows of surfaces that are far apart are those of planes perpendicular to the initial normals, at any displacement.
   void set_apart(std::size_t k, bool was_apart, ContactRows& rows) const {
-    seen_[k].is_apart = true;
-    seen_[k].has_start = seen_[k].has_gaps = false;
+    pair_views_[k].is_apart = true;
+    pair_views_[k].has_start = pair_views_[k].has_gaps = false;
     if (was_apart) return;
     const SlidingPair& pair = *data_.pairs[k];
     for (std::size_t i = 0; i < pair.points().size(); ++i) {
@@ -274,17 +275,17 @@ class SlidingContact final : public ContactGeometry {
 
   void update_pair(std::size_t k, const Vector& displacement, const StepStart* start, ContactRows& rows) const {
     const SlidingPair& pair = *data_.pairs[k];
-    Seen& seen = seen_[k];
+    Seen& seen = pair_views_[k];
     seen.is_apart = false;
     if (start != nullptr) {
-      look_at_start(k, start->displacement);
+      update_start_views(k, start->displacement);
       find_far(k, largest_motion(pair, displacement, start->displacement));
     } else {
       seen.any_depth.clear();
       seen.has_start = seen.has_gaps = false;
       find_far(k, std::numeric_limits<double>::infinity());
     }
-    look_at_gaps(k, displacement);
+    update_gap_views(k, displacement);
     seen.left_out.assign(seen.gaps.size(), 0);
     bool any_near = false;
     for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
@@ -294,7 +295,8 @@ class SlidingContact final : public ContactGeometry {
       seen.left_out[i] = seen.is_far(i) || !seen.gaps[i].faces ? 1 : 0;
       any_near = any_near || seen.left_out[i] == 0;
     }
-    if (any_near) pair.look(writer_.middle(), SlidingPair::Wanted::row, seen.left_out, seen.any_depth, seen.middle);
+    if (any_near)
+      pair.compute_views(writer_.middle(), SlidingPair::Wanted::row, seen.left_out, seen.any_depth, seen.middle);
     if (any_near && start != nullptr) look_at_entering(pair, displacement, seen);
     if (seen.chosen) choose(start != nullptr, seen);
     for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
@@ -332,7 +334,7 @@ class SlidingContact final : public ContactGeometry {
       if (seen.enters(i)) left_out_[i] = 0;
       any = any || seen.enters(i);
     }
-    if (any) pair.look(displacement, SlidingPair::Wanted::row, left_out_, seen.any_depth, seen.entering);
+    if (any) pair.compute_views(displacement, SlidingPair::Wanted::row, left_out_, seen.any_depth, seen.entering);
   }
 
   /// Rounding error of sums over segments of differences of positions.
@@ -346,7 +348,7 @@ class SlidingContact final : public ContactGeometry {
   void add_couples_of(std::size_t k, const Vector& place, const ContactRows& rows, const Vector& normal,
                       const Vector& tangential, Vector& force) const {
     const SlidingPair& pair = *data_.pairs[k];
-    Seen& seen = seen_[k];
+    Seen& seen = pair_views_[k];
     if (seen.is_apart) return;
     const Index tangents = dimension() - 1;
     left_out_.assign(pair.points().size(), 0);
@@ -359,7 +361,7 @@ class SlidingContact final : public ContactGeometry {
       any = any || acts;
     }
     if (!any) return;
-    pair.look(place, SlidingPair::Wanted::row, left_out_, seen.any_depth, seen.other);
+    pair.compute_views(place, SlidingPair::Wanted::row, left_out_, seen.any_depth, seen.other);
     for (std::size_t i = 0; i < left_out_.size(); ++i) {
       if (left_out_[i] == 0 && seen.other[i].faces)
         couples_.add(number(k, i), seen.other[i], place, rows, normal, tangential, force);
@@ -368,14 +370,14 @@ class SlidingContact final : public ContactGeometry {
 
   SlidingContactData data_;
   double extent_;
-  Vector at_rest_;                  ///< zero displacement
-  mutable std::vector<Seen> seen_;  ///< per pair
+  Vector at_rest_;                        ///< zero displacement
+  mutable std::vector<Seen> pair_views_;  ///< per pair
   mutable BroadPhase apart_;
   SurfaceDisplacements places_;
   mutable SlidingRows writer_;
   mutable Vector at_update_, start_at_update_, gap_at_update_;  ///< of the last update
-  mutable bool is_held_ = false, was_held_ = false;             ///< the latter until the next step begins
-  mutable bool has_held_ = false;                               ///< in the run so far
+  mutable bool is_frozen_ = false, was_frozen_ = false;         ///< the latter until the next step begins
+  mutable bool has_frozen_ = false;                             ///< in the run so far
   mutable bool is_step_ = false;                                ///< whether the last update was of a step
   mutable bool has_told_ = false;                               ///< whether the warning of too long steps was logged
   mutable std::vector<char> left_out_;

@@ -40,7 +40,7 @@ struct Sight {
   SlidingVector normal;  ///< along ν, with n·normal = 1
   double part;           ///< weight, which vanishes gradually for points that are seen nearly edge-on and may disappear
 };
-Sight sight_of(const PolynomialMap<3>::Place& at, bool plane, const SlidingVector& n) {
+Sight sight_of(const PolynomialMap<3>::Evaluation& at, bool plane, const SlidingVector& n) {
   const auto& [along, across] = at.slopes;
   const SlidingVector normal = plane ? SlidingVector(along[1], -along[0], 0.0) : SlidingVector(along.cross(across));
   const double product = n.dot(normal);
@@ -65,7 +65,7 @@ struct SlidingPair::Implementation {
   bool is_self;
   mutable MovingSurfaces surfaces;
   double least_height = std::numeric_limits<double>::infinity();
-  double sight = least_height;  ///< see SlidingPair::sight()
+  double detection_depth = least_height;  ///< see SlidingPair::sight()
   /// Per own facet, in the order of the space's anchors there: number of the point, or −1.
   std::vector<std::vector<int>> points_of;
   std::vector<RotatingNormal> normals;  ///< per own facet, into its body
@@ -90,7 +90,7 @@ struct SlidingPair::Implementation {
     }
     if (is_self) surfaces.enable_self_contact();
     for (const FacetSurface::Facet& facet : surfaces.own().facets())
-      sight = std::min(sight, deepest_overlap * facet.height);
+      detection_depth = std::min(detection_depth, deepest_overlap * facet.height);
     find_points_of_facets();
     for (const FacetSurface::Facet& facet : surfaces.own().facets()) {
       const Vector direction = -facet.area_vector.normalized().head(data.body.space->dimension);
@@ -164,7 +164,7 @@ void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segm
     const IndexInBlocks place = locate_facet(*data.body.space, segment.opposite);
     const Index* const nodes = data.body.space->facets[place.block].cell(place.local);
     for (Index q = 0; q < segment.weights.size(); ++q) {
-      const PolynomialMap<3>::Place seen = map.evaluate(segment.opposite_local.col(q).data());
+      const PolynomialMap<3>::Evaluation seen = map.evaluate(segment.opposite_local.col(q).data());
       const auto [normal, part_seen] = sight_of(seen, plane, n);
       if (part_seen == 0.0) continue;
       const double gap = n.head(d).dot(at.positions.col(begin + q) - seen.at.head(d));
@@ -249,8 +249,8 @@ bool SlidingPair::is_self() const {
   return implementation_->is_self;
 }
 
-double SlidingPair::sight() const {
-  return implementation_->sight;
+double SlidingPair::detection_depth() const {
+  return implementation_->detection_depth;
 }
 
 int SlidingPair::dimension() const {
@@ -273,8 +273,8 @@ SlidingVector SlidingPair::normal(std::size_t point, const Vector& displacement)
   return points()[point].normal.at(implementation_->data.body.space->nodes, displacement).normalized();
 }
 
-void SlidingPair::look(const Vector& displacement, Wanted wanted, const std::vector<char>& left_out,
-                       const std::vector<char>& any_depth, std::vector<SlidingView>& views) const {
+void SlidingPair::compute_views(const Vector& displacement, Wanted wanted, const std::vector<char>& left_out,
+                                const std::vector<char>& any_depth, std::vector<SlidingView>& views) const {
   const Implementation& own = *implementation_;
   own.surfaces.move(displacement);
   own.looked_at = displacement;
@@ -320,12 +320,12 @@ double largest_motion(const SlidingPair& pair, const Vector& to, const Vector& f
 bool warn_of_undetected_contact(const SlidingPair& pair, const Vector& to, const Vector& from) {
   if (!pair.is_self()) return false;
   const double longest = largest_motion(pair, to, from);
-  if (2.0 * longest <= pair.sight()) return false;
+  if (2.0 * longest <= pair.detection_depth()) return false;
   log::warning(fmt::format(
       "a surface that may touch itself moves in a step by up to {:.3g} to either side of its mean motion, and "
       "sees no more than {:.3g} deep into itself: its parts may pass through each other unseen; take a "
       "time.step that is {:.2g} times smaller",
-      longest, pair.sight(), rounded_up(2.0 * longest / pair.sight(), 2)));
+      longest, pair.detection_depth(), rounded_up(2.0 * longest / pair.detection_depth(), 2)));
   return true;
 }
 

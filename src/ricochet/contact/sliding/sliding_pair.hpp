@@ -82,7 +82,7 @@ class SlidingPair {
   [[nodiscard]] const std::vector<Point>& points() const { return data().points; }
   [[nodiscard]] bool is_self() const;
   /// For a surface in contact with itself: smallest detectable depth of penetration over all facets.
-  [[nodiscard]] double sight() const;
+  [[nodiscard]] double detection_depth() const;
   /// Degree of the displacement.
   [[nodiscard]] int degree() const;
   [[nodiscard]] int dimension() const;
@@ -97,8 +97,8 @@ class SlidingPair {
   /// Computes the views of all points that are not left out (empty: all): `views` has one for each point. Overlaps
   /// deeper than half a cell are ignored, except for points of `any_depth` (empty: none). If both surfaces are one,
   /// overlaps deeper than a quarter of the body's initial thickness are ignored for every point.
-  void look(const Vector& displacement, Wanted wanted, const std::vector<char>& left_out,
-            const std::vector<char>& any_depth, std::vector<SlidingView>& views) const;
+  void compute_views(const Vector& displacement, Wanted wanted, const std::vector<char>& left_out,
+                     const std::vector<char>& any_depth, std::vector<SlidingView>& views) const;
 
   /// Distance of a node of the own surface along a direction (unit, into its body); NaN if it faces nothing.
   [[nodiscard]] double node_gap(Index node, const SlidingVector& direction, const Vector& displacement) const;

@@ -33,20 +33,20 @@ ElasticConstants lame_parameters(double young, double poisson) {
 
 }  // namespace
 
-void check_elastic_constants(const ParameterCheck& place, Parameters& values) {
-  if (place.is_usable("lambda") && place.is_usable("mu")) {
+void check_elastic_constants(const ParameterCheck& check, Parameters& values) {
+  if (check.is_usable("lambda") && check.is_usable("mu")) {
     const double bulk = 3.0 * values.number("lambda") + 2.0 * values.number("mu");
     if (!(bulk > 0.0)) {
-      place.add_problem(
+      check.add_problem(
           "lambda",
           fmt::format("3 lambda + 2 mu must be positive (the bulk modulus is a third of it); it is {}", bulk));
     }
   }
-  if (!place.is_usable("young") || !place.is_usable("poisson")) return;
+  if (!check.is_usable("young") || !check.is_usable("poisson")) return;
   const double young = values.number("young"), poisson = values.number("poisson");
   const ElasticConstants lame = lame_parameters(young, poisson);
   if (!std::isfinite(lame.lambda) || !std::isfinite(lame.mu)) {
-    place.add_problem("poisson", fmt::format("young = {} and poisson = {} give infinite lambda or mu", young, poisson));
+    check.add_problem("poisson", fmt::format("young = {} and poisson = {} give infinite lambda or mu", young, poisson));
   }
 }
 

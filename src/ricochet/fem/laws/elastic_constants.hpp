@@ -17,7 +17,7 @@ struct ElasticConstants {
 /// The two pairs of constants, either of which determines the law.
 [[nodiscard]] KeySets elastic_constant_pairs();
 /// Checks that 3 lambda + 2 mu is positive and lambda finite.
-void check_elastic_constants(const ParameterCheck& place, Parameters& values);
+void check_elastic_constants(const ParameterCheck& check, Parameters& values);
 [[nodiscard]] ElasticConstants elastic_constants(const Parameters& parameters);
 
 }  // namespace ricochet

@@ -117,24 +117,24 @@ std::vector<Key> mooney_rivlin_keys() {
            .doc = "Bulk modulus at zero strain."}};
 }
 
-void check_mooney_rivlin(const ParameterCheck& place, Parameters& values) {
-  if (!place.is_usable("c10") || !place.is_usable("c01")) return;
+void check_mooney_rivlin(const ParameterCheck& check, Parameters& values) {
+  if (!check.is_usable("c10") || !check.is_usable("c01")) return;
   const double sum = values.number("c10") + values.number("c01");
   if (!(sum > 0.0)) {
-    place.add_problem("c01", fmt::format("c10 + c01 must be positive; it is {:g}", sum));
+    check.add_problem("c01", fmt::format("c10 + c01 must be positive; it is {:g}", sum));
     return;
   }
   const char* const negative = values.number("c10") < 0.0 ? "c10" : "c01";
   if (values.number(negative) < 0.0) {
-    place.add_warning(negative,
+    check.add_warning(negative,
                       fmt::format("{} is negative: at large strains such a body resists no more, and steps find "
                                   "no solution",
                                   negative));
   }
-  if (!place.is_usable("bulk_modulus")) return;
+  if (!check.is_usable("bulk_modulus")) return;
   const double bulk = values.number("bulk_modulus"), shear = 2.0 * sum;
   if (bulk < 2.0 / 3.0 * shear) {
-    place.add_warning(
+    check.add_warning(
         "bulk_modulus",
         fmt::format("the bulk modulus {:.3g} is small beside the shear modulus 2 (c10 + c01) = {:.3g}: "
                     "Poisson's ratio is {:.3g}, below zero; check the units (rubber has a bulk modulus of "

@@ -16,9 +16,9 @@ enum class FieldLocation { nodes, cells };
 /// Field at nodes, in the order of the mesh file, or on cells, through all blocks.
 struct Field {
   std::string name;
-  FieldLocation place = FieldLocation::nodes;
+  FieldLocation location = FieldLocation::nodes;
   int components = 1;            ///< 1: scalar; 3: vector; 6: symmetric tensor, see fem/stress.hpp
-  bool whole = false;            ///< integers of 32 bits (int), otherwise reals (double)
+  bool is_integer = false;       ///< integers of 32 bits (int), otherwise reals (double)
   Index rows = 0;                ///< nodes or cells
   const void* values = nullptr;  ///< row by row; the address does not change
 };

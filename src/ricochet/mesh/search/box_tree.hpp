@@ -19,7 +19,7 @@ class BoxTree {
     int first = 0, count = 0;  ///< items (in `order`) of a leaf; count 0: two children, the next node and `second`
     int second = 0;
   };
-  static constexpr std::size_t deepest = 64;  ///< longest path from the root to a leaf
+  static constexpr std::size_t max_depth = 64;  ///< longest path from the root to a leaf
 
   BoxTree() = default;
   /// `boxes` must not be empty.
@@ -38,7 +38,7 @@ class BoxTree {
   template <class MayTouch, class Visit>
   void visit(const MayTouch& may_touch, const Visit& visit) const {
     if (nodes_.empty()) return;
-    std::array<int, deepest> waiting{};
+    std::array<int, max_depth> waiting{};
     std::size_t count = 1;
     while (count > 0) {
       const int number = waiting[--count];

@@ -82,8 +82,8 @@ std::vector<Key> cylinder_keys() {
           obstacle_side_key("Where bodies are: \"outside\" of a shaft, or \"inside\" of a bore.")};
 }
 
-void check_cylinder(const ParameterCheck& place, const Parameters& values) {
-  check_direction(place, values, "axis", "is the direction of the cylinder's axis");
+void check_cylinder(const ParameterCheck& check, const Parameters& values) {
+  check_direction(check, values, "axis", "is the direction of the cylinder's axis");
 }
 
 }  // namespace

@@ -57,8 +57,8 @@ std::vector<Key> plane_keys() {
        .doc = "Normal of the plane, out of the obstacle; of any length but zero."}};
 }
 
-void check_plane(const ParameterCheck& place, const Parameters& values) {
-  check_direction(place, values, "normal", "points out of the obstacle");
+void check_plane(const ParameterCheck& check, const Parameters& values) {
+  check_direction(check, values, "normal", "points out of the obstacle");
 }
 
 }  // namespace

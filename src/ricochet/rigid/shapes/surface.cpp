@@ -16,7 +16,7 @@ namespace ricochet {
 
 namespace {
 
-using Three = RigidSurface::Three;
+using Vector3 = RigidSurface::Vector3;
 
 /// Default radius as a fraction of the distance between contact nodes: contact cannot resolve smaller features.
 constexpr double part_of_spacing = 0.25;
@@ -26,8 +26,8 @@ constexpr double least_length = 0.1;
 constexpr std::size_t most_shown = 6000;
 constexpr double most_of_reach = 6.0;
 
-Three in_three(const SpaceVector& point) {
-  Three result = Three::Zero();
+Vector3 in_three(const SpaceVector& point) {
+  Vector3 result = Vector3::Zero();
   result.head(point.size()) = point;
   return result;
 }
@@ -47,13 +47,13 @@ class Surface final : public ObstacleShape {
     if (given_radius_) radius_ = *given_radius_;
   }
 
-  [[nodiscard]] double gap(const SpaceVector& position) const override { return look(in_three(position)).gap; }
+  [[nodiscard]] double gap(const SpaceVector& position) const override { return evaluate(in_three(position)).gap; }
   [[nodiscard]] SpaceVector normal(const SpaceVector& position) const override {
-    const Three unit = look(in_three(position)).gradient.normalized();
+    const Vector3 unit = evaluate(in_three(position)).gradient.normalized();
     return unit.head(position.size());
   }
   [[nodiscard]] SpaceVector gradient(const SpaceVector& position) const override {
-    return look(in_three(position)).gradient.head(position.size());
+    return evaluate(in_three(position)).gradient.head(position.size());
   }
   [[nodiscard]] double gap_rounding(const SpaceVector& position) const override {
     const BoxTree::Box box = surface_.box();
@@ -72,7 +72,7 @@ class Surface final : public ObstacleShape {
   void fit(const ContactScale& scale) override {
     if (!given_radius_) radius_ = std::min(part_of_spacing * scale.spacing, surface_.width_of_smooth());
     if (!surface_.is_closed()) return;
-    const Three sides = surface_.block_sides();
+    const Vector3 sides = surface_.block_sides();
     const double width = surface_.in_space() ? sides[1] : sides[2], least = surface_.in_space() ? sides[0] : sides[1];
     if (width < scale.spacing) {
       log::warning(
@@ -95,13 +95,13 @@ class Surface final : public ObstacleShape {
   [[nodiscard]] ObstacleSurface surface(const Vector& centre, double radius) const override;
 
  private:
-  struct Look {
+  struct GapAndGradient {
     double gap;
-    Three gradient;
+    Vector3 gradient;
   };
-  [[nodiscard]] Look look(const Three& at) const {
+  [[nodiscard]] GapAndGradient evaluate(const Vector3& at) const {
     const RigidSurface::Foot foot = surface_.nearest(at);
-    const Look exact = exact_look(at, foot);
+    const GapAndGradient exact = evaluate_exact(at, foot);
     const double distance = std::abs(exact.gap) / radius_;
     if (!(distance < 1.0) || foot.on_border) return exact;
     const RigidSurface::Height mean = surface_.mean_height(at, radius_);
@@ -111,19 +111,19 @@ class Surface final : public ObstacleShape {
     const double part = t * t * (3.0 - 2.0 * t), slope = 12.0 * t * (1.0 - t) / radius_;
     const double height = side_ * mean.value;
     const double away = exact.gap < 0.0 ? -1.0 : 1.0;
-    const Three turned = (1.0 - part) * side_ * mean.gradient + part * exact.gradient +
-                         slope * away * (exact.gap - height) * exact.gradient;
+    const Vector3 turned = (1.0 - part) * side_ * mean.gradient + part * exact.gradient +
+                           slope * away * (exact.gap - height) * exact.gradient;
     if (!(turned.norm() > least_length)) return exact;
     return {(1.0 - part) * height + part * exact.gap, turned};
   }
   /// Returns the distance and its derivative: the direction towards the point, or the normal of the edge if the two are
   /// too near to distinguish. Beyond a border no point is behind the surface.
-  [[nodiscard]] Look exact_look(const Three& at, const RigidSurface::Foot& foot) const {
-    const Three away = at - foot.position;
+  [[nodiscard]] GapAndGradient evaluate_exact(const Vector3& at, const RigidSurface::Foot& foot) const {
+    const Vector3 away = at - foot.position;
     const double along = away.dot(foot.normal), distance = away.norm();
     if (foot.on_facet) return {side_ * along, side_ * foot.normal};
     constexpr double near = 1e-10;
-    const Three size = at.cwiseAbs() + foot.position.cwiseAbs();
+    const Vector3 size = at.cwiseAbs() + foot.position.cwiseAbs();
     if (distance <= near * size.maxCoeff()) return {side_ * (along < 0.0 ? -distance : distance), side_ * foot.normal};
     if (foot.on_border) return {distance, away / distance};
     const double sign = along < 0.0 ? -side_ : side_;
@@ -142,13 +142,13 @@ class Surface final : public ObstacleShape {
 /// width are merged at their mean.
 ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& facets, double width, double side) {
   std::map<std::array<long, 3>, int> numbers;
-  std::vector<Three> sums;
+  std::vector<Vector3> sums;
   std::vector<int> counts;
   std::map<int, int> number_of;  // of each corner
   const auto point_of = [&](int corner) {
     const auto [known, is_new] = number_of.try_emplace(corner, 0);
     if (!is_new) return known->second;
-    const Three& at = surface.corners()[static_cast<std::size_t>(corner)];
+    const Vector3& at = surface.corners()[static_cast<std::size_t>(corner)];
     std::array<long, 3> key{corner, -1, -1};
     if (width > 0.0) {
       for (std::size_t k = 0; k < 3; ++k)
@@ -156,7 +156,7 @@ ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& 
     }
     const auto [entry, added] = numbers.try_emplace(key, static_cast<int>(sums.size()));
     if (added) {
-      sums.push_back(Three::Zero());
+      sums.push_back(Vector3::Zero());
       counts.push_back(0);
     }
     sums[static_cast<std::size_t>(entry->second)] += at;
@@ -187,7 +187,7 @@ ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& 
 /// Shows the nearby facets; if they are too many, coarsened no more than necessary, so that features that protrude from
 /// a plate remain visible.
 ObstacleSurface Surface::surface(const Vector& centre, double radius) const {
-  const Three middle = in_three(SpaceVector(centre));
+  const Vector3 middle = in_three(SpaceVector(centre));
   const double reach = radius + std::abs(gap(SpaceVector(centre)));
   // A surface that is not much larger is shown whole.
   const bool is_small = surface_.box().diagonal().norm() < most_of_reach * reach;
@@ -218,7 +218,7 @@ std::vector<Key> surface_keys() {
       {.name = "scale",
        .type = KeyType::number,
        .unit = "1",
-       .standard = "1",
+       .default_value = "1",
        .range = positive,
        .doc = "Factor on all coordinates of the file: 1e-3 for millimetres in a case in metres."},
       {.name = "edge_radius",
@@ -247,7 +247,7 @@ void tell_of(const RigidSurface& surface, const std::string& file) {
     log::info(fmt::format("{}: {} {}s without {} touch nothing but by their neighbours", file, surface.flat_count(),
                           noun, surface.in_space() ? "an area" : "a length"));
   if (surface.is_closed()) return;
-  const Three& place = surface.border_place();
+  const Vector3& place = surface.border_place();
   log::info(
       fmt::format("{}: the surface is not closed: {} {} to one {} only, one of them at ({:.4g}, {:.4g}, {:.4g}); "
                   "what is behind it counts as inside of the obstacle",
@@ -265,7 +265,7 @@ ObstacleRegistration surface_obstacle() {
     for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
     RigidSurface surface(extension == ".stl" ? read_stl(file, scale) : read_polygons(file, scale), file);
     if (side < 0.0 && !surface.is_closed()) {
-      const Three& place = surface.border_place();
+      const Vector3& place = surface.border_place();
       throw Error(
           ErrorKind::invalid_input,
           fmt::format("{}: bodies are to be inside of this surface, but it is not closed: {} of its {} belong to "
@@ -277,7 +277,7 @@ ObstacleRegistration surface_obstacle() {
     std::optional<double> radius;
     if (parameters.has("edge_radius")) radius = parameters.number("edge_radius");
     Checksum sum;
-    for (const Three& corner : surface.corners()) sum.add(corner.data(), 3);
+    for (const Vector3& corner : surface.corners()) sum.add(corner.data(), 3);
     return std::make_unique<Surface>(std::move(surface), side, radius, sum.text(), file);
   };
   return {"surface", make, surface_keys()};

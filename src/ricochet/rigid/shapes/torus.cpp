@@ -96,11 +96,11 @@ std::vector<Key> torus_keys() {
       obstacle_side_key("Where bodies are: \"outside\" of a ring, or \"inside\" of a pipe.")};
 }
 
-void check_torus(const ParameterCheck& place, const Parameters& values) {
-  check_direction(place, values, "axis", "is the direction of the torus' axis");
-  if (place.is_usable("ring_radius") && place.is_usable("tube_radius") &&
+void check_torus(const ParameterCheck& check, const Parameters& values) {
+  check_direction(check, values, "axis", "is the direction of the torus' axis");
+  if (check.is_usable("ring_radius") && check.is_usable("tube_radius") &&
       values.number("tube_radius") >= values.number("ring_radius"))
-    place.add_problem("tube_radius", "\"tube_radius\" must be less than \"ring_radius\": the torus would meet itself");
+    check.add_problem("tube_radius", "\"tube_radius\" must be less than \"ring_radius\": the torus would meet itself");
 }
 
 }  // namespace

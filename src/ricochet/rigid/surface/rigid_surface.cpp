@@ -18,13 +18,13 @@ namespace ricochet {
 
 namespace {
 
-using Three = Eigen::Vector3d;
+using Vector3 = Eigen::Vector3d;
 
 /// Angle of a triangle at corner k.
-double angle_at(const std::array<Three, 3>& corners, int k) {
-  const Three& at = corners[static_cast<std::size_t>(k)];
-  const Three a = corners[static_cast<std::size_t>((k + 1) % 3)] - at;
-  const Three b = corners[static_cast<std::size_t>((k + 2) % 3)] - at;
+double angle_at(const std::array<Vector3, 3>& corners, int k) {
+  const Vector3& at = corners[static_cast<std::size_t>(k)];
+  const Vector3 a = corners[static_cast<std::size_t>((k + 1) % 3)] - at;
+  const Vector3 b = corners[static_cast<std::size_t>((k + 2) % 3)] - at;
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
@@ -51,7 +51,7 @@ void RigidSurface::join_corners(const SurfaceFacets& facets) {
   const auto per_facet = static_cast<std::size_t>(corner_count());
   std::vector<std::size_t> order(facets.corners.size() * per_facet);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto at = [&](std::size_t i) -> const Three& { return facets.corners[i / per_facet][i % per_facet]; };
+  const auto at = [&](std::size_t i) -> const Vector3& { return facets.corners[i / per_facet][i % per_facet]; };
   const auto before = [&](std::size_t a, std::size_t b) {
     return std::lexicographical_compare(at(a).begin(), at(a).end(), at(b).begin(), at(b).end());
   };
@@ -75,8 +75,8 @@ bool RigidSurface::join_borders() {
   const auto places = Eigen::Map<const Points>(corners_.front().data(), 3, static_cast<Index>(corners_.size()));
   const double reach = near * enclosing_diameter(places);
   // A direction along which few corners of usual surfaces have equal heights.
-  const Three direction = Three(0.6182, 0.5432, 0.5681).normalized();
-  const auto at = [&](int corner) -> const Three& { return corners_[static_cast<std::size_t>(corner)]; };
+  const Vector3 direction = Vector3(0.6182, 0.5432, 0.5681).normalized();
+  const auto at = [&](int corner) -> const Vector3& { return corners_[static_cast<std::size_t>(corner)]; };
   const auto height = [&](int corner) { return direction.dot(at(corner)); };
   std::sort(order.begin(), order.end(),
             [&](int a, int b) { return std::pair(height(a), a) < std::pair(height(b), b); });
@@ -98,13 +98,13 @@ void RigidSurface::find_normals(const std::string& name) {
   normals_.resize(facets_.size());
   flat_count_ = 0;
   for (std::size_t i = 0; i < facets_.size(); ++i) {
-    const Three a = corner(i, 1) - corner(i, 0);
-    const Three normal = in_space_ ? Three(a.cross(corner(i, 2) - corner(i, 0))) : Three(-a[1], a[0], 0.0);
+    const Vector3 a = corner(i, 1) - corner(i, 0);
+    const Vector3 normal = in_space_ ? Vector3(a.cross(corner(i, 2) - corner(i, 0))) : Vector3(-a[1], a[0], 0.0);
     const double length = normal.stableNorm(),
                  size = std::max(a.squaredNorm(), (corner(i, 2) - corner(i, 0)).squaredNorm());
     constexpr double least = 1e-12;
     const bool is_flat = in_space_ ? length <= least * size : length == 0.0;
-    normals_[i] = is_flat ? Three(Three::Zero()) : Three(normal / length);
+    normals_[i] = is_flat ? Vector3(Vector3::Zero()) : Vector3(normal / length);
     flat_count_ += is_flat ? 1 : 0;
   }
   if (flat_count_ == static_cast<long>(facets_.size()))
@@ -112,15 +112,15 @@ void RigidSurface::find_normals(const std::string& name) {
                                                       in_space_ ? "an area" : "a length"));
 }
 
-std::string RigidSurface::place_text(const Three& place) const {
+std::string RigidSurface::place_text(const Vector3& place) const {
   return in_space_ ? fmt::format("({:.6g}, {:.6g}, {:.6g})", place[0], place[1], place[2])
                    : fmt::format("({:.6g}, {:.6g})", place[0], place[1]);
 }
 
 std::string RigidSurface::text_of(int facet) const {
   const auto i = static_cast<std::size_t>(facet);
-  const Three middle = in_space_ ? Three((corner(i, 0) + corner(i, 1) + corner(i, 2)) / 3.0)
-                                 : Three(0.5 * (corner(i, 0) + corner(i, 1)));
+  const Vector3 middle = in_space_ ? Vector3((corner(i, 0) + corner(i, 1) + corner(i, 2)) / 3.0)
+                                   : Vector3(0.5 * (corner(i, 0) + corner(i, 1)));
   return fmt::format("{} {} at {}", in_space_ ? "triangle" : "segment", facet + 1, place_text(middle));
 }
 
@@ -153,7 +153,7 @@ void RigidSurface::check_edge(std::span<const Side> sides, const std::string& na
                           place_text(middle_of(sides[0])), text_of(sides[0].facet)));
 }
 
-RigidSurface::Three RigidSurface::middle_of(const Side& side) const {
+RigidSurface::Vector3 RigidSurface::middle_of(const Side& side) const {
   return 0.5 * (corners_[static_cast<std::size_t>(side.low)] + corners_[static_cast<std::size_t>(side.high)]);
 }
 
@@ -217,7 +217,7 @@ void RigidSurface::measure_bend(std::span<const Side> sides) {
   if (cosine > 1.0 - flat || normals_[facet_of(0)].isZero(0.0) || normals_[facet_of(1)].isZero(0.0)) return;
   least_cosine_ = std::min(least_cosine_, cosine);
   for (const int k : {0, 1}) {
-    const Three a = corner(facet_of(k), 1) - corner(facet_of(k), 0);
+    const Vector3 a = corner(facet_of(k), 1) - corner(facet_of(k), 0);
     if (in_space_) {
       const double edge =
           (corners_[static_cast<std::size_t>(sides[0].high)] - corners_[static_cast<std::size_t>(sides[0].low)]).norm();
@@ -273,12 +273,12 @@ double RigidSurface::volume() const {
 /// A/12 (s sᵀ + a aᵀ + b bᵀ).
 RigidSurface::Moments RigidSurface::moments() const {
   BoxTree::Box box;
-  for (const Three& point : corners_) box.extend(point);
-  const Three middle = box.center();
+  for (const Vector3& point : corners_) box.extend(point);
+  const Vector3 middle = box.center();
   Moments sum;
   for (std::size_t i = 0; i < facets_.size(); ++i) {
-    const Three a = corner(i, 0) - middle, b = corner(i, 1) - middle;
-    const Three c = in_space_ ? Three(corner(i, 2) - middle) : Three(Three::Zero()), s = a + b + c;
+    const Vector3 a = corner(i, 0) - middle, b = corner(i, 1) - middle;
+    const Vector3 c = in_space_ ? Vector3(corner(i, 2) - middle) : Vector3(Vector3::Zero()), s = a + b + c;
     const double part = in_space_ ? a.dot(b.cross(c)) / 6.0 : -0.5 * (a[0] * b[1] - a[1] * b[0]);
     sum.volume += part;
     sum.centre += part / (in_space_ ? 4.0 : 3.0) * s;
@@ -292,14 +292,14 @@ RigidSurface::Moments RigidSurface::moments() const {
   return sum;
 }
 
-RigidSurface::Three RigidSurface::block_sides() const {
+RigidSurface::Vector3 RigidSurface::block_sides() const {
   const Moments sums = moments();
-  if (sums.volume == 0.0) return Three::Zero();
+  if (sums.volume == 0.0) return Vector3::Zero();
   // For a block with sides a, b, c they are a²/12, b²/12, c²/12.
   return symmetric_eigenvalues(Eigen::Matrix3d(12.0 / sums.volume * sums.second)).cwiseMax(0.0).cwiseSqrt();
 }
 
-RigidSurface::Foot RigidSurface::nearest(const Three& point) const {
+RigidSurface::Foot RigidSurface::nearest(const Vector3& point) const {
   double least = std::numeric_limits<double>::infinity();
   ClosestPoint closest;
   std::size_t at = 0;
@@ -318,7 +318,7 @@ RigidSurface::Foot RigidSurface::nearest(const Three& point) const {
     int node;
     double square;
   };
-  std::array<Waiting, BoxTree::deepest> waiting;
+  std::array<Waiting, BoxTree::max_depth> waiting;
   std::size_t count = 0;
   waiting[count++] = {0, 0.0};
   while (count > 0) {
@@ -348,16 +348,16 @@ RigidSurface::Foot RigidSurface::nearest(const Three& point) const {
   return {closest.position, edge.normal, false, edge.is_border};
 }
 
-FacetWeight RigidSurface::weight_near(std::size_t facet, const Three& at, double radius) const {
+FacetWeight RigidSurface::weight_near(std::size_t facet, const Vector3& at, double radius) const {
   return in_space_
              ? weight_of_triangle({corner(facet, 0), corner(facet, 1), corner(facet, 2)}, normals_[facet], at, radius)
              : weight_of_segment(corner(facet, 0), corner(facet, 1), at, radius);
 }
 
-RigidSurface::Height RigidSurface::mean_height(const Three& point, double radius) const {
+RigidSurface::Height RigidSurface::mean_height(const Vector3& point, double radius) const {
   double heights = 0.0;
   Height sum;
-  Three turned = Three::Zero(), weights = Three::Zero();  // Σ h ∇w + w N, Σ ∇w
+  Vector3 turned = Vector3::Zero(), weights = Vector3::Zero();  // Σ h ∇w + w N, Σ ∇w
   const double square = radius * radius;
   tree_.visit([&](const BoxTree::Box& box) { return box.squaredExteriorDistance(point) < square; },
               [&](int facet) {

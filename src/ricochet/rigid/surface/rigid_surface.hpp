@@ -17,32 +17,32 @@ namespace ricochet {
 /// coordinates; in the plane the third is 0.
 class RigidSurface {
  public:
-  using Three = Eigen::Vector3d;
+  using Vector3 = Eigen::Vector3d;
   /// `name`: name of the file, for messages. Facets without area are kept, without a normal. Throws
   /// Error(invalid_input) that names the facet and its position if an edge has more than two facets, if a facet occurs
   /// twice, or if neighbours have opposite orientations. A closed surface that is inside out as a whole is reversed.
   RigidSurface(const SurfaceFacets& facets, const std::string& name);
 
   struct Foot {
-    Three position;  ///< the nearest point
-    Three normal;    ///< unit normal of the facet, edge or corner that contains it
-    bool on_facet;   ///< in the interior of a facet: the gap is a linear function nearby
-    bool on_border;  ///< on an edge that has one facet only
+    Vector3 position;  ///< the nearest point
+    Vector3 normal;    ///< unit normal of the facet, edge or corner that contains it
+    bool on_facet;     ///< in the interior of a facet: the gap is a linear function nearby
+    bool on_border;    ///< on an edge that has one facet only
   };
-  [[nodiscard]] Foot nearest(const Three& point) const;
+  [[nodiscard]] Foot nearest(const Vector3& point) const;
   /// Mean height of a point above the planes of the facets, f = Σ w_k h_k / Σ w_k with w_k = ∫ (ρ² − |y − x|²) over the
   /// part of facet k within distance ρ, and its derivative. It is continuous for any facets, and equals the height
   /// above a plane if all nearby facets lie in one. Zero weight: no facet is within ρ.
   struct Height {
     double value = 0.0, weight = 0.0;
-    Three gradient = Three::Zero();
+    Vector3 gradient = Vector3::Zero();
   };
-  [[nodiscard]] Height mean_height(const Three& point, double radius) const;
+  [[nodiscard]] Height mean_height(const Vector3& point, double radius) const;
 
   [[nodiscard]] bool is_closed() const { return border_count_ == 0; }
   /// Number of edges with one facet, and the midpoint of one of them.
   [[nodiscard]] long border_count() const { return border_count_; }
-  [[nodiscard]] const Three& border_place() const { return border_place_; }
+  [[nodiscard]] const Vector3& border_place() const { return border_place_; }
   [[nodiscard]] bool was_reversed() const { return turned_round_; }
   /// Number of border corners that were merged with another one closer than a millionth of the surface's size.
   [[nodiscard]] long joined_count() const { return joined_count_; }
@@ -51,27 +51,27 @@ class RigidSurface {
   [[nodiscard]] double width_of_smooth() const;
   /// Number of facets without area.
   [[nodiscard]] long flat_count() const { return flat_count_; }
-  [[nodiscard]] const std::vector<Three>& corners() const { return corners_; }
+  [[nodiscard]] const std::vector<Vector3>& corners() const { return corners_; }
   [[nodiscard]] const std::vector<std::array<int, 3>>& facets() const { return facets_; }
   [[nodiscard]] bool in_space() const { return in_space_; }
   [[nodiscard]] const BoxTree& tree() const { return tree_; }
   /// Sides, ascending, of the block with the second moments of the region that a closed surface encloses; the first is
   /// 0 in the plane. Unlike the sides of the bounding box they do not depend on the axes.
-  [[nodiscard]] Three block_sides() const;
+  [[nodiscard]] Vector3 block_sides() const;
   [[nodiscard]] BoxTree::Box box() const { return tree_.nodes().front().box; }
   /// Volume, or area in the plane, of the region that a closed surface encloses.
   [[nodiscard]] double volume() const;
   /// Volume, centre, and ∫ r rᵀ about the centre.
   struct Moments {
     double volume = 0.0;
-    Three centre = Three::Zero();
+    Vector3 centre = Vector3::Zero();
     Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
   };
   [[nodiscard]] Moments moments() const;
 
  private:
   struct Edge {
-    Three normal = Three::Zero();
+    Vector3 normal = Vector3::Zero();
     bool is_border = false;
   };
   /// Side of a facet between two corners; `number`: from its corner of this number to the next.
@@ -88,25 +88,25 @@ class RigidSurface {
   void measure_bend(std::span<const Side> sides);
   void find_corner_normals();
   void reverse_orientation();
-  [[nodiscard]] Three middle_of(const Side& side) const;
+  [[nodiscard]] Vector3 middle_of(const Side& side) const;
   [[nodiscard]] std::string text_of(int facet) const;
-  [[nodiscard]] std::string place_text(const Three& place) const;
+  [[nodiscard]] std::string place_text(const Vector3& place) const;
   [[nodiscard]] int corner_count() const { return in_space_ ? 3 : 2; }
-  [[nodiscard]] const Three& corner(std::size_t facet, int k) const {
+  [[nodiscard]] const Vector3& corner(std::size_t facet, int k) const {
     return corners_[static_cast<std::size_t>(facets_[facet][static_cast<std::size_t>(k)])];
   }
-  [[nodiscard]] FacetWeight weight_near(std::size_t facet, const Three& at, double radius) const;
+  [[nodiscard]] FacetWeight weight_near(std::size_t facet, const Vector3& at, double radius) const;
 
   bool in_space_;
-  std::vector<Three> corners_;              ///< each once
+  std::vector<Vector3> corners_;            ///< each once
   std::vector<std::array<int, 3>> facets_;  ///< in the plane the last two corners are equal
-  std::vector<Three> normals_;              ///< of facets; zero: without area
+  std::vector<Vector3> normals_;            ///< of facets; zero: without area
   std::vector<Edge> edges_;
   std::vector<std::array<int, 3>> edge_of_;  ///< of each facet: between corners 0 and 1, 1 and 2, 2 and 0
   std::vector<Edge> corner_normals_;
   long border_count_ = 0, flat_count_ = 0, joined_count_ = 0;
   double bent_width_ = 0.0, bent_count_ = 0.0, least_cosine_ = 1.0;
-  Three border_place_ = Three::Zero();
+  Vector3 border_place_ = Vector3::Zero();
   bool turned_round_ = false;
   BoxTree tree_;
 };

@@ -49,7 +49,7 @@ void AlphaScheme::advance(const SemidiscreteProblem& problem, State& state, Stag
   state.acceleration = weights_.alpha * solution.increment;
   follow_without_inertia(problem, increment, h, state);
   if (problem.has_damping()) velocity_ += damping_factor(problem) * solution.increment;
-  equations_.take_forces(problem, stage, solution, h, velocity_, 1.0, state);
+  equations_.store_forces(problem, stage, solution, h, velocity_, 1.0, state);
 }
 
 /// Computes the velocity that damping acts on, at δ = 0.
@@ -74,7 +74,7 @@ void AlphaScheme::dissipate(const SemidiscreteProblem& problem, const Vector& in
 double AlphaScheme::algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const {
   return weights_.energy_factor == 0.0
              ? 0.0
-             : weights_.energy_factor * problem.mass.form(state.memory.at(algorithmic_acceleration));
+             : weights_.energy_factor * problem.mass.quadratic_form(state.memory.at(algorithmic_acceleration));
 }
 
 bool AlphaScheme::momentum_acceleration(const State& state, Vector& acceleration) const {
@@ -87,7 +87,7 @@ Key spectral_radius_key(double least) {
   return {.name = "spectral_radius",
           .type = KeyType::number,
           .unit = "1",
-          .standard = "0.8",
+          .default_value = "0.8",
           .range = {.at_least = least, .at_most = 1.0},
           .doc =
               "What a step leaves of vibrations much faster than it: 1 damps none; at least 1/2 for hht-alpha, 0 "

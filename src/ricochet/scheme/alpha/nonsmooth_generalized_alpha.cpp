@@ -31,7 +31,7 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
     return weights_.gamma > 0.5 ? JumpResponse::fades : JumpResponse::alternates;
   }
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override {
-    return weights_.energy_factor * problem.mass.form(state.memory.at(algorithmic_acceleration));
+    return weights_.energy_factor * problem.mass.quadratic_form(state.memory.at(algorithmic_acceleration));
   }
   bool momentum_acceleration(const State& state, Vector& acceleration) const override {
     acceleration = (0.5 - weights_.force) * state.memory.at(algorithmic_acceleration);
@@ -57,7 +57,7 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
     const StageSolution& impact = stages_.impulses(problem, state, h, weights_, stages);
     increment = (0.5 * h) * (state.velocity + stages_.velocity + impact.increment);  // on which Λ/h does work
     account(problem, state.time, impact, increment, state.memory[smooth_varying_load]);
-    take_forces(problem, stages, impact, state);
+    store_forces(problem, stages, impact, state);
     state.displacement += stages_.motion;
     state.velocity = stages_.velocity + impact.increment;
     state.acceleration = stages_.smooth;
@@ -96,11 +96,11 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
     corrections_.numerical_dissipation += (stages_.jump - (0.5 * h) * impact.increment).dot(force_);
   }
 
-  void take_forces(const SemidiscreteProblem& problem, StageSolve& stages, const StageSolution& impact, State& state) {
+  void store_forces(const SemidiscreteProblem& problem, StageSolve& stages, const StageSolution& impact, State& state) {
     solution_.normal_reaction = impact.normal_reaction / step();
     solution_.support_reaction = stages_.mean_support + impact.support_reaction / step();
     solution_.contact_status = impact.contact_status;
-    stages_.equations().take_contact(stages.stage(NonsmoothStages::velocity_stage), solution_, step(), state);
+    stages_.equations().store_contact(stages.stage(NonsmoothStages::velocity_stage), solution_, step(), state);
     if (problem.loads.varies()) state.forces.varying_load = load_;
   }
 

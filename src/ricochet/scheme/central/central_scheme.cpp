@@ -51,7 +51,7 @@ void CentralScheme::advance(const SemidiscreteProblem& problem, State& state, St
   ahead += solution.increment;
   state.velocity = increment / h;
   state.acceleration = solution.increment / (h * h);
-  equations_.take_forces(problem, stage, solution, h, state.velocity, 1.0, state);
+  equations_.store_forces(problem, stage, solution, h, state.velocity, 1.0, state);
 }
 
 /// Changes the coming increment, too: the velocity is that of the step ahead.

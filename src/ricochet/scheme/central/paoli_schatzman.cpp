@@ -55,7 +55,7 @@ SchemeRegistration paoli_schatzman_scheme() {
           {restitution_key(),
            {.name = "stiffness",
             .type = KeyType::choice,
-            .standard = "implicit",
+            .default_value = "implicit",
             .choices = {"implicit", "explicit"},
             .doc = "Elastic forces of a mean of three instants, or of the middle one, which needs mass \"lumped\" and "
                    "a short step."}}};

@@ -13,8 +13,8 @@ class EndContact {
   void require(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
                const Vector& place, StepEquations& equations, Stage& stage);
   /// Updates the memory of sticking points after the step. `before` is the displacement at its start.
-  void learn(const SemidiscreteProblem& problem, const Vector& before, State& state) {
-    stick_.learn(problem, before, state);
+  void update_drift(const SemidiscreteProblem& problem, const Vector& before, State& state) {
+    stick_.update_drift(problem, before, state);
   }
 
  private:

@@ -10,18 +10,22 @@ namespace ricochet {
 
 class EndContactScheme : public Scheme {
  public:
-  EndContactScheme(const std::string& name, double step) : Scheme(step), layer_(name, step) {}
+  EndContactScheme(const std::string& name, double step) : Scheme(step), massless_step_(name, step) {}
 
   [[nodiscard]] bool supports_step_changes() const override { return true; }
   [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
   [[nodiscard]] bool supports_relaxation() const override { return true; }
   [[nodiscard]] bool supports_free_bodies() const override { return true; }
   [[nodiscard]] bool conserves_moments_at_finite_strain() const override { return true; }
-  [[nodiscard]] const Vector* displacement_of_forces() const override { return layer_.displacement_of_forces(); }
-  [[nodiscard]] bool has_couples_between_bodies() const override { return layer_.displacement_of_forces() != nullptr; }
-  void analyse(const SemidiscreteProblem& problem) override { layer_.analyse(problem); }
+  [[nodiscard]] const Vector* displacement_of_forces() const override {
+    return massless_step_.displacement_of_forces();
+  }
+  [[nodiscard]] bool has_couples_between_bodies() const override {
+    return massless_step_.displacement_of_forces() != nullptr;
+  }
+  void analyse(const SemidiscreteProblem& problem) override { massless_step_.analyse(problem); }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
-    return layer_.operators(problem, mean_of(problem));
+    return massless_step_.operators(problem, mean_of(problem));
   }
   [[nodiscard]] double acting_instant() const override { return -0.5; }
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
@@ -30,15 +34,15 @@ class EndContactScheme : public Scheme {
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
-    layer_.advance(problem, mean_of(problem), state, stages, increment);
+    massless_step_.advance(problem, mean_of(problem), state, stages, increment);
   }
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return layer_.corrections();
+    return massless_step_.corrections();
   }
 
  protected:
-  [[nodiscard]] const MasslessContactStep& layer() const { return layer_; }
-  void step_changed(const SemidiscreteProblem& problem) override { layer_.change_step(problem, step()); }
+  [[nodiscard]] const MasslessContactStep& massless_step() const { return massless_step_; }
+  void step_changed(const SemidiscreteProblem& problem) override { massless_step_.change_step(problem, step()); }
 
  private:
   /// Mean that acts over a step if there are contact dofs.
@@ -47,7 +51,7 @@ class EndContactScheme : public Scheme {
     return !problem.has_contact_dofs() ? ReactionMean::end : mean(problem);
   }
 
-  MasslessContactStep layer_;
+  MasslessContactStep massless_step_;
 };
 
 }  // namespace ricochet

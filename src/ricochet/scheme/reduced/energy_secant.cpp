@@ -21,23 +21,23 @@ void EnergySecant::start() {
   sigma_ = 0.0;
   sigma_before_ = asked_before_ = slope_ = std::numeric_limits<double>::quiet_NaN();
   is_weak_ = false;
-  settling_ = vain_ = 0;
+  settling_ = stalled_changes_ = 0;
   least_lacking_ = std::numeric_limits<double>::infinity();
 }
 
-bool EnergySecant::choose(double asked, double lacking, double near_rounding, bool has_converged) {
+bool EnergySecant::choose(double required, double defect, double near_rounding, bool has_converged) {
   if (is_settled()) return false;
   if (is_weak_ && !has_converged && ++settling_ < settling_rounds) return false;
   settling_ = 0;
-  if (std::abs(lacking) > near_rounding) slope_ = (asked - asked_before_) / (sigma_ - sigma_before_);
-  double next = asked;
+  if (std::abs(defect) > near_rounding) slope_ = (required - asked_before_) / (sigma_ - sigma_before_);
+  double next = required;
   if (std::isfinite(slope_) && slope_ > -steepest && slope_ < 1.0 - (is_weak_ ? least_left_settled : least_left))
-    next = (asked - slope_ * sigma_) / (1.0 - slope_);
-  if (is_weak_) vain_ = std::abs(lacking) > 0.5 * least_lacking_ ? vain_ + 1 : 0;
-  least_lacking_ = std::min(least_lacking_, std::abs(lacking));
+    next = (required - slope_ * sigma_) / (1.0 - slope_);
+  if (is_weak_) stalled_changes_ = std::abs(defect) > 0.5 * least_lacking_ ? stalled_changes_ + 1 : 0;
+  least_lacking_ = std::min(least_lacking_, std::abs(defect));
   is_weak_ = is_weak_ || (std::isfinite(slope_) && slope_ > weak);
   sigma_before_ = sigma_;
-  asked_before_ = asked;
+  asked_before_ = required;
   sigma_ = std::clamp(next, -largest_sigma, largest_sigma);
   return is_weak_;
 }

@@ -13,15 +13,15 @@ class EnergySecant {
  public:
   /// Starts a step with σ = 0.
   void start();
-  /// Updates σ from the value `asked` that the balance requires at displacements found with value(), the energy defect
-  /// `lacking` of that balance, the size below which a defect is too near to rounding to determine a slope, and whether
-  /// these displacements have converged. Returns true if a weak σ was changed: corrections of displacements are then
-  /// judged anew.
-  bool choose(double asked, double lacking, double near_rounding, bool has_converged);
+  /// Updates σ from the value `required` that the balance requires at displacements found with value(), the energy
+  /// defect `defect` of that balance, the size below which a defect is too near to rounding to determine a slope, and
+  /// whether these displacements have converged. Returns true if a weak σ was changed: corrections of displacements are
+  /// then judged anew.
+  bool choose(double required, double defect, double near_rounding, bool has_converged);
   [[nodiscard]] double value() const { return sigma_; }
   [[nodiscard]] bool is_weak() const { return is_weak_; }
   /// True if several changes in a row brought no progress: σ stays as it is.
-  [[nodiscard]] bool is_settled() const { return vain_ >= most_vain; }
+  [[nodiscard]] bool is_settled() const { return stalled_changes_ >= most_vain; }
 
  private:
   static constexpr int most_vain = 3;  ///< changes in a row that do not halve the energy defect
@@ -31,7 +31,7 @@ class EnergySecant {
   double sigma_before_ = 0.0, asked_before_ = 0.0;
   double slope_ = 0.0;  ///< last dσ_required/dσ; not finite if none
   bool is_weak_ = false;
-  int settling_ = 0, vain_ = 0;  ///< iterations with this σ; changes in a row without progress
+  int settling_ = 0, stalled_changes_ = 0;  ///< iterations with this σ; changes in a row without progress
   double least_lacking_ = 0.0;
 };
 

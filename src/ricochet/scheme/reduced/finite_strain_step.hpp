@@ -73,7 +73,7 @@ class FiniteStrainStep {
   [[nodiscard]] const Vector& middle() const { return middle_; }
 
  private:
-  struct Round {
+  struct Iteration {
     double correction = 0.0;  ///< largest entry of the last correction
     double increment = 0.0;   ///< largest entry of the increment so far
   };
@@ -87,7 +87,7 @@ class FiniteStrainStep {
   void evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near);
   const StageSolution& solve_iteration(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                        const State& state, StageSolve& stages);
-  [[nodiscard]] bool is_balanced(double step, const State& state, const Round& round, bool near);
+  [[nodiscard]] bool is_balanced(double step, const State& state, const Iteration& iteration, bool near);
   [[nodiscard]] bool correct_velocity(double step, const State& state);
   /// Admissible energy defect, relative to the energies.
   [[nodiscard]] double tolerance() const;
@@ -95,23 +95,23 @@ class FiniteStrainStep {
   /// already.
   [[nodiscard]] bool freeze_pairs(const SemidiscreteProblem& problem);
   /// Follows the advice on the progress of an iteration. Throws Error(not_converged).
-  void apply_advice(const SemidiscreteProblem& problem, NewtonProgress::Advice advice, const Round& round,
+  void apply_advice(const SemidiscreteProblem& problem, NewtonProgress::Advice advice, const Iteration& iteration,
                     StageSolve& stages);
   void balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
   void require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
                        StageSolve& stages, Stage& stage);
-  Round correct(const SemidiscreteProblem& problem, const State& state, const StageSolution& solution);
+  Iteration correct(const SemidiscreteProblem& problem, const State& state, const StageSolution& solution);
   void accelerate(const SemidiscreteProblem& problem, const State& state);
   [[nodiscard]] static double obstacle_work(Stage& stage, const Vector& normal, const Vector& tangential, double step);
-  void follow_start(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages,
+  void update_start(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages,
                     Stage& stage, const StageSolution& solution);
   void finish(const SemidiscreteProblem& problem, double step, State& state, Stage& stage,
               const StageSolution& solution, Vector& increment);
-  void name_inverted_cell(const SemidiscreteProblem& problem);
-  void halve_where_inverted(const SemidiscreteProblem& problem, double step, const State& state, bool near);
+  void throw_if_inverted(const SemidiscreteProblem& problem);
+  void evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state, bool near);
 
   std::unique_ptr<FlightPrediction> flight_;
-  std::shared_ptr<const InternalForce> layer_;  ///< of the cells at contact nodes alone
+  std::shared_ptr<const InternalForce> contact_cells_;  ///< of the cells at contact nodes alone
   NewtonProgress progress_;
   EnergySecant sigma_;
   std::unique_ptr<VelocityCorrection> velocity_correction_;
@@ -128,22 +128,30 @@ class FiniteStrainStep {
   double kept_energy_ = 0.0;                  ///< V there
   std::optional<double> layer_energy_start_;  ///< of the cells at contact nodes, on demand
   double viscous_dissipation_ = 0.0;          ///< 𝒟
-  double energy_ = 0.0, energy_start_ = 0.0, lacking_ = 0.0, end_weight_ = 0.0, dissipation_ = 0.0;
+  double energy_ = 0.0, energy_start_ = 0.0, energy_defect_ = 0.0, end_weight_ = 0.0, dissipation_ = 0.0;
   bool converged_ = false;                          ///< displacements
   double kinetic_start_ = 0.0, kinetic_ = 0.0;      ///< at the start; at the end, in the previous iteration
-  double energy_defect_size_ = 0.0;                 ///< |lacking_| at the last test of the balance
+  double energy_defect_size_ = 0.0;                 ///< |energy_defect_| at the last test of the balance
   double whole_step_ = 0.0;                         ///< length of a full step
   double part_ = 1.0;                               ///< fraction of it that this step covers
-  int vain_ = 0;                                    ///< iterations in a row that did not halve the energy defect
+  int stalled_iterations_ = 0;                      ///< iterations in a row that did not halve the energy defect
   double work_at_end_ = 0.0, obstacle_work_ = 0.0;  ///< ρ·HΔ_c less the obstacles' motion; work of ρ̄ on that motion
   double load_work_ = 0.0;                          ///< of changing loads, besides that of their mean on the increment
-  Vector base_, middle_, end_, increment_, force_, strain_force_, end_force_, nodal_, mean_nodal_;
-  Vector at_start_;  ///< L₀ + P₀ + Hᵀρ
-  Vector internal_;  ///< A₁
-  Vector relaxed_;   ///< u₀ + J
-  Vector product_, right_, layer_right_, damping_force_, before_, last_middle_, last_end_;
-  Vector point_, image_;  ///< of an accelerated iteration
-  Vector row_force_;      ///< of the reactions, along rows less the lagged ones
+  Vector base_, middle_, end_, increment_, force_, strain_force_, end_force_, end_contact_force_, mean_contact_force_;
+  Vector at_start_;                            ///< L₀ + P₀ + Hᵀρ
+  Vector internal_;                            ///< A₁
+  Vector jumped_displacement_;                 ///< u₀ + J
+  Vector inertial_increment_;                  ///< x − (u₀ + ½h v₀), so that v₁ − v₀ = (4/h)(x − base)
+  Vector inertial_force_;                      ///< M times that
+  Vector half_increment_;                      ///< x − u₀
+  Vector mean_external_force_;                 ///< L̄ + Hᵀρ̄
+  Vector linearization_motion_;                ///< contact motion about which conditions are linear
+  Vector contact_residual_;                    ///< L₁ + P_c(u₁) − f_c(u₁) − 2 b_c
+  Vector jump_, jump_force_, start_residual_;  ///< J; f(u₀ + J); L₀ + P₀ + Hᵀρ − f(u₀ + J)
+  Vector end_velocity_, next_end_, layer_right_, damping_force_, before_, last_middle_, last_end_;
+  Vector scratch_;           ///< a force that is evaluated for its error alone
+  Vector point_, image_;     ///< of an accelerated iteration
+  Vector lagged_row_force_;  ///< of the reactions, along rows less the lagged ones
 };
 
 }  // namespace ricochet

@@ -12,25 +12,26 @@ namespace ricochet {
 
 /// Returns whether displacements have converged and the energy is balanced, as far as rounding of forces and energies
 /// permits. A step that creates or loses energy is not acceptable: throws Error(not_converged).
-bool FiniteStrainStep::is_balanced(double step, const State& state, const Round& round, bool near) {
+bool FiniteStrainStep::is_balanced(double step, const State& state, const Iteration& iteration, bool near) {
   if (!near) return false;  // the defect is not known
   constexpr double most = 1e-8, most_corrected = 1e-6, most_snapped = 1e-4, most_created = 1e-11;
   // Shorter substeps would have the same defect: contact nodes, which have no inertia, snap to another equilibrium, and
   // the energy that this releases or absorbs is exchanged with the motion.
   const bool is_short = step <= whole_step_ / 64.0;
   const double size = std::max(kinetic_start_, kinetic_) + energy_start_ + energy_;
-  const bool is_exact = std::abs(lacking_) <= tolerance() * size;
-  const bool is_vain = std::abs(lacking_) > 0.5 * energy_defect_size_;
-  vain_ = converged_ && is_vain ? vain_ + 1 : 0;
-  energy_defect_size_ = std::abs(lacking_);
+  const bool is_exact = std::abs(energy_defect_) <= tolerance() * size;
+  const bool is_vain = std::abs(energy_defect_) > 0.5 * energy_defect_size_;
+  stalled_iterations_ = converged_ && is_vain ? stalled_iterations_ + 1 : 0;
+  energy_defect_size_ = std::abs(energy_defect_);
   // Far from rounding one iteration may bring little, and the next one much.
   const int most_vain = energy_defect_size_ <= 1e-13 * size ? 1 : 2;
-  const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : vain_ >= most_vain;
+  const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : stalled_iterations_ >= most_vain;
   if (log::enabled(log::Level::debug)) {
-    log::debug(fmt::format(
-        "Newton: round {}, correction {:.2e} of {:.2e}, sigma {:.2e}, {:.2e} of the energy is "
-        "missing, {:.3g} of the reactions are the end's",
-        progress_.rounds(), round.correction, round.increment, sigma_.value(), lacking_ / size, end_weight_));
+    log::debug(
+        fmt::format("Newton: round {}, correction {:.2e} of {:.2e}, sigma {:.2e}, {:.2e} of the energy is "
+                    "missing, {:.3g} of the reactions are the end's",
+                    progress_.iterations(), iteration.correction, iteration.increment, sigma_.value(),
+                    energy_defect_ / size, end_weight_));
   }
   if (!converged_) return false;
   if (!is_exact && !is_last) return false;
@@ -60,9 +61,9 @@ bool FiniteStrainStep::is_balanced(double step, const State& state, const Round&
 
 /// Corrects the velocities at the end such that they balance the energy if no σ does.
 bool FiniteStrainStep::correct_velocity(double step, const State& state) {
-  product_ = middle_ - base_;
-  right_ = state.velocity + (4.0 / step) * product_;
-  corrects_velocity_ = velocity_correction_->find(right_, end_, -lacking_);
+  inertial_increment_ = middle_ - base_;
+  end_velocity_ = state.velocity + (4.0 / step) * inertial_increment_;
+  corrects_velocity_ = velocity_correction_->find(end_velocity_, end_, -energy_defect_);
   log::debug(fmt::format("velocities at the end are {}corrected", corrects_velocity_ ? "" : "not "));
   return corrects_velocity_;
 }

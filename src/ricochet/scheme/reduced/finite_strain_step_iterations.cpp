@@ -13,19 +13,19 @@ constexpr int patience_of_pairs = 80;
 
 /// Holds pairs from now on, until the step is done. Returns false if there is nothing to hold, or it is held already.
 bool FiniteStrainStep::freeze_pairs(const SemidiscreteProblem& problem) {
-  if (!problem.contact.follows_motion() || !problem.contact.geometry->hold()) return false;
+  if (!problem.contact.follows_motion() || !problem.contact.geometry->freeze()) return false;
   progress_.restart();
   acceleration_.restart();
   return true;
 }
 
 void FiniteStrainStep::apply_advice(const SemidiscreteProblem& problem, NewtonProgress::Advice advice,
-                                    const Round& round, StageSolve& stages) {
+                                    const Iteration& iteration, StageSolve& stages) {
   // Pairs may change from iteration to iteration.
   const bool is_stuck = advice == NewtonProgress::Advice::failed ||
-                        (advice == NewtonProgress::Advice::renew && progress_.rounds() > patience_of_pairs);
+                        (advice == NewtonProgress::Advice::renew && progress_.iterations() > patience_of_pairs);
   if (is_stuck && freeze_pairs(problem)) return;
-  if (advice == NewtonProgress::Advice::failed) throw progress_.failure(round.correction);
+  if (advice == NewtonProgress::Advice::failed) throw progress_.failure(iteration.correction);
   if (advice != NewtonProgress::Advice::renew) return;
   stages.renew(middle_, end_);
   progress_.count_renewal();
@@ -35,13 +35,13 @@ void FiniteStrainStep::apply_advice(const SemidiscreteProblem& problem, NewtonPr
 
 /// Throws Error(not_converged), which names a cell inverted by the displacements of this iteration, if any: operators
 /// are meaningless there, and the error of a stage does not show the cause.
-void FiniteStrainStep::name_inverted_cell(const SemidiscreteProblem& problem) {
-  problem.internal_force->evaluate(end_, product_);
-  problem.internal_force->evaluate(middle_, product_);
+void FiniteStrainStep::throw_if_inverted(const SemidiscreteProblem& problem) {
+  problem.internal_force->evaluate(end_, scratch_);
+  problem.internal_force->evaluate(middle_, scratch_);
 }
 
-void FiniteStrainStep::halve_where_inverted(const SemidiscreteProblem& problem, double step, const State& state,
-                                            bool near) {
+void FiniteStrainStep::evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state,
+                                             bool near) {
   constexpr int most_halvings = 5;
   for (int halving = 0;; ++halving) {
     try {

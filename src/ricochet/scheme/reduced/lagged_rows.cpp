@@ -14,7 +14,7 @@ const std::string memory_of_rows = "lagged_rows";
 
 void LaggedRows::start(const State& state) {
   exact_ = nullptr;
-  is_stale_ = state.forces.rows->places.size() > 0;
+  is_stale_ = state.forces.rows->sliding_state.size() > 0;
   if (is_stale_) return;
   const auto known = state.memory.find(memory_of_rows);
   if (known == state.memory.end()) {
@@ -83,7 +83,7 @@ void LaggedRows::add_difference(const Vector& normal, const Vector& tangential, 
 }
 
 void LaggedRows::remember(State& state) const {
-  if (!is_new_ || lagged_->places.size() > 0) return;
+  if (!is_new_ || lagged_->sliding_state.size() > 0) return;
   state.memory[memory_of_rows] = row_values(*lagged_);
 }
 

@@ -26,7 +26,7 @@ class LaggedRows {
   void take_over(const Vector& motion, Stage& stage);
   [[nodiscard]] const std::shared_ptr<const ContactRows>& exact() const { return exact_; }
   /// Releases H, which may be overwritten from now on.
-  void let_go() { exact_ = nullptr; }
+  void release() { exact_ = nullptr; }
   /// Adds (H − Ĥ)ᵀρ; `tangential` is empty without friction.
   void add_difference(const Vector& normal, const Vector& tangential, Vector& force);
   void remember(State& state) const;

@@ -84,7 +84,7 @@ std::vector<OperatorCoefficients> MasslessContactStep::operators(const Semidiscr
   if (!problem.has_contact_dofs()) return {midpoint};
   const OperatorCoefficients layer{
       .mass = 0.0, .stiffness = 1.0, .damping = one_damping_ ? 1.0 / h : 2.0 / h, .dofs = StageDofs::contact};
-  midpoint.layer = static_cast<int>(layer_stage);
+  midpoint.condensed_operator = static_cast<int>(condensed_stage);
   midpoint.condensed_weight = one_damping_ ? 1.0 / (1.0 + 2.0 * eta_ / h) : 1.0;
   midpoint.mean = mean;
   return {layer, midpoint};
@@ -94,14 +94,14 @@ void MasslessContactStep::balance(const SemidiscreteProblem& problem, const Stat
   load_ = problem.loads.constant();
   load_change_.setZero(static_cast<Index>(problem.contact_dofs.size()));
   if (problem.loads.varies()) {
-    problem.loads.varying(state.time, middle_);
-    problem.loads.varying(state.time + step_, next_varying_);
+    problem.loads.varying(state.time, previous_varying_);
+    problem.loads.varying(state.time + step_, mean_varying_);
     for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
       const Index dof = problem.contact_dofs[i];
-      load_change_[static_cast<Index>(i)] = next_varying_[dof] - middle_[dof];
+      load_change_[static_cast<Index>(i)] = mean_varying_[dof] - previous_varying_[dof];
     }
-    next_varying_ = 0.5 * (middle_ + next_varying_);  // the mean, from now on
-    load_ += next_varying_;
+    mean_varying_ = 0.5 * (previous_varying_ + mean_varying_);  // the mean, from now on
+    load_ += mean_varying_;
   }
   base_ = state.displacement + (0.5 * step_) * state.velocity;
   equations_.balance_with(problem, load_, base_, state.velocity, stage);
@@ -129,11 +129,11 @@ void MasslessContactStep::set_contact_force(const SemidiscreteProblem& problem, 
 
 const Vector& MasslessContactStep::solve_contact_nodes(const SemidiscreteProblem& problem, const Vector& right,
                                                        StageSolve& stages) {
-  Stage& stage = stages.stage(layer_stage);
+  Stage& stage = stages.stage(condensed_stage);
   set_contact_force(problem, right, stage);
   stage.motion.reset();
   stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 0);
-  return stages.solve(layer_stage).increment;
+  return stages.solve(condensed_stage).increment;
 }
 
 void MasslessContactStep::advance(const SemidiscreteProblem& problem, ReactionMean mean, State& state,
@@ -143,11 +143,11 @@ void MasslessContactStep::advance(const SemidiscreteProblem& problem, ReactionMe
     return;
   }
   const double h = step_;
-  const bool has_layer = problem.has_contact_dofs();
+  const bool has_contact_nodes = problem.has_contact_dofs();
   Stage& stage = stages.stage(midpoint_stage(problem));
   balance(problem, state, stage);
   contact_base_ = state.displacement + h * state.velocity;  // at the end, at δ = 0
-  if (has_layer) {
+  if (has_contact_nodes) {
     find_residual(problem, state);
     const double eta_part = one_damping_ ? eta_ / h : 0.0, weight = 1.0 / (1.0 + 2.0 * eta_part);
     right_ = residual_ - eta_part * load_change_;
@@ -160,11 +160,11 @@ void MasslessContactStep::advance(const SemidiscreteProblem& problem, ReactionMe
   increment = h * state.velocity + 2.0 * solution.increment;
   for (const Index dof : problem.contact_dofs)
     increment[dof] = contact_base_[dof] - state.displacement[dof] + 2.0 * solution.contact_increment[dof];
-  before_ = state.displacement;
+  start_displacement_ = state.displacement;
   move(problem, solution.increment, increment, state);
-  take_forces(problem, stage, solution, increment, state);
-  contact_.learn(problem, before_, state);
-  if (has_layer) correct(problem, mean, stage, solution, increment, state, stages);
+  store_forces(problem, stage, solution, increment, state);
+  contact_.update_drift(problem, start_displacement_, state);
+  if (has_contact_nodes) correct(problem, mean, stage, solution, increment, state, stages);
 }
 
 /// Repeats the solve while the gyroscopic force of rigid bodies changes: it depends on their rotation in the step.
@@ -172,24 +172,26 @@ const StageSolution& MasslessContactStep::solve(const SemidiscreteProblem& probl
                                                 StageSolve& stages) {
   const StageSolution* solution = &stages.solve(midpoint_stage(problem));
   if (problem.free_bodies.empty() || !problem.free_bodies.front()->has_gyroscopic_force()) return *solution;
-  row_force_.setZero(problem.dof_count());
+  gyroscopic_force_.setZero(problem.dof_count());
   constexpr int most_rounds = 100;
   // Torques stop converging at the rounding of the stage; if their change is below this, they have settled.
   constexpr double near = 1e-11;
   double last = std::numeric_limits<double>::infinity();
   for (int round = 0;; ++round) {
-    before_ = state.displacement + step_ * state.velocity + 2.0 * solution->increment;
-    nodal_.setZero(problem.dof_count());
-    for (const auto& body : problem.free_bodies) body->add_gyroscopic_force(before_, state.velocity, step_, nodal_);
-    const double size = stage.right_hand_side.lpNorm<Eigen::Infinity>() + nodal_.lpNorm<Eigen::Infinity>();
-    const double change = (nodal_ - row_force_).lpNorm<Eigen::Infinity>();
+    predicted_end_ = state.displacement + step_ * state.velocity + 2.0 * solution->increment;
+    next_gyroscopic_force_.setZero(problem.dof_count());
+    for (const auto& body : problem.free_bodies)
+      body->add_gyroscopic_force(predicted_end_, state.velocity, step_, next_gyroscopic_force_);
+    const double size =
+        stage.right_hand_side.lpNorm<Eigen::Infinity>() + next_gyroscopic_force_.lpNorm<Eigen::Infinity>();
+    const double change = (next_gyroscopic_force_ - gyroscopic_force_).lpNorm<Eigen::Infinity>();
     if (change <= 4.0 * std::numeric_limits<double>::epsilon() * size) return *solution;
     if (change > 0.5 * last && change <= near * size) return *solution;
     last = change;
     if (round == most_rounds || !std::isfinite(change))
       throw Error(ErrorKind::not_converged, "the rotation of a rigid body was not found: it turns too far in a step");
-    stage.right_hand_side += nodal_ - row_force_;
-    row_force_ = nodal_;
+    stage.right_hand_side += next_gyroscopic_force_ - gyroscopic_force_;
+    gyroscopic_force_ = next_gyroscopic_force_;
     solution = &stages.solve(midpoint_stage(problem));
   }
 }
@@ -202,10 +204,10 @@ void MasslessContactStep::move(const SemidiscreteProblem& problem, const Vector&
   follow_without_inertia(problem, increment, step_, state);
 }
 
-void MasslessContactStep::take_forces(const SemidiscreteProblem& problem, const Stage& stage,
-                                      const StageSolution& solution, const Vector& increment, State& state) {
-  equations_.take_contact(stage, solution, step_, state);
-  if (problem.loads.varies()) state.forces.varying_load = next_varying_;
+void MasslessContactStep::store_forces(const SemidiscreteProblem& problem, const Stage& stage,
+                                       const StageSolution& solution, const Vector& increment, State& state) {
+  equations_.store_contact(stage, solution, step_, state);
+  if (problem.loads.varies()) state.forces.varying_load = mean_varying_;
   if (!problem.has_damping()) return;
   problem.damping.evaluate(increment, state.forces.damping_force);
   state.forces.damping_force *= 1.0 / step_;
@@ -216,19 +218,19 @@ MasslessContactStep::ContactNodeWork MasslessContactStep::contact_node_work(cons
                                                                             const StageSolution& solution,
                                                                             const Vector& increment,
                                                                             StageSolve& stages) {
-  (one_damping_ ? stiffness_ : damped_rows_).multiply(increment, row_force_);
-  const Vector& solved = solve_contact_nodes(problem, row_force_, stages);
+  (one_damping_ ? stiffness_ : damped_rows_).multiply(increment, contact_stiffness_force_);
+  const Vector& solved = solve_contact_nodes(problem, contact_stiffness_force_, stages);
   const double factor = one_damping_ ? 1.0 + eta_ / step_ : 1.0;
-  static_increment_.resize(row_force_.size());
-  nodal_.setZero(problem.dof_count());
+  static_increment_.resize(contact_stiffness_force_.size());
+  excess_reaction_force_.setZero(problem.dof_count());
   normal_ = solution.acting_normal() - 0.5 * solution.normal_reaction;
   tangential_ = solution.acting_tangential() - 0.5 * solution.tangential_reaction;
-  rows.add_force(normal_, tangential_, nodal_);
+  rows.add_force(normal_, tangential_, excess_reaction_force_);
   ContactNodeWork work{0.0, 0.0};
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
     const auto at = static_cast<Index>(i);
     static_increment_[at] = factor * solved[problem.contact_dofs[i]];
-    work.reactions += static_increment_[at] * (nodal_[problem.contact_dofs[i]] + 0.5 * residual_[at]);
+    work.reactions += static_increment_[at] * (excess_reaction_force_[problem.contact_dofs[i]] + 0.5 * residual_[at]);
     work.load += 0.5 * static_increment_[at] * load_change_[at];
   }
   return work;
@@ -244,7 +246,7 @@ double MasslessContactStep::load_work_of_mean(const SemidiscreteProblem& problem
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
     const auto at = static_cast<Index>(i);
     const Index dof = problem.contact_dofs[i];
-    of_reactions += place[dof] * (nodal_[dof] + 0.5 * residual_[at]);
+    of_reactions += place[dof] * (excess_reaction_force_[dof] + 0.5 * residual_[at]);
     of_change += 0.5 * place[dof] * load_change_[at];
   }
   return mu * at_end - of_reactions + mu * (at_end - of_change);
@@ -255,7 +257,8 @@ void MasslessContactStep::correct(const SemidiscreteProblem& problem, ReactionMe
                                   StageSolve& stages) {
   const ContactNodeWork work = contact_node_work(problem, *stage.rows, solution, increment, stages);
   if (mean == ReactionMean::end) {
-    corrections_ = {.load_work = work.load, .numerical_dissipation = 0.5 * static_increment_.dot(row_force_)};
+    corrections_ = {.load_work = work.load,
+                    .numerical_dissipation = 0.5 * static_increment_.dot(contact_stiffness_force_)};
     return;
   }
   const bool touches = problem.ranks->any(solution.mean_normal_reaction.size() > 0);

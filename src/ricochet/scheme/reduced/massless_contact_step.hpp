@@ -62,9 +62,9 @@ class MasslessContactStep {
   [[nodiscard]] const ContactStiffness& stiffness() const { return stiffness_; }
   /// Number of the stage of the midpoint.
   [[nodiscard]] static std::size_t midpoint_stage(const SemidiscreteProblem& problem) {
-    return !problem.has_contact_dofs() ? 0 : layer_stage + 1;
+    return !problem.has_contact_dofs() ? 0 : condensed_stage + 1;
   }
-  static constexpr std::size_t layer_stage = 0;
+  static constexpr std::size_t condensed_stage = 0;
   /// Sets the right-hand side of the stage of contact nodes: forces per contact dof, with supports at rest.
   static void set_contact_force(const SemidiscreteProblem& problem, const Vector& force, Stage& stage);
   /// Solves with the operator of contact nodes, without contact. Returns the increment, per dof; `right` is per contact
@@ -73,8 +73,8 @@ class MasslessContactStep {
   /// Sets u₁, v₁ from δ of the midpoint's stage and the increment of the step.
   void move(const SemidiscreteProblem& problem, const Vector& solution, const Vector& increment, State& state) const;
   /// Transfers the forces of the step to the state; loads are those of the balance.
-  void take_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
-                   const Vector& increment, State& state);
+  void store_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
+                    const Vector& increment, State& state);
   /// Works zᵀ(Hᵀ(ρ̄ − ½ρ) + ½r₀) and ½ zᵀ(L₁−L₀).
   struct ContactNodeWork {
     double reactions, load;
@@ -101,8 +101,13 @@ class MasslessContactStep {
   StepEquations equations_;
   StepCorrections corrections_;
   std::optional<FiniteStrainStep> finite_;  ///< for a nonlinear internal force
-  Vector load_, next_varying_, base_, residual_, load_change_, right_, contact_base_, middle_, before_;
-  Vector row_force_, static_increment_, nodal_, gap_change_, slip_change_, normal_, tangential_;
+  Vector load_, base_, residual_, load_change_, right_, contact_base_;
+  Vector previous_varying_, mean_varying_;             ///< varying load at the start; its mean over the step
+  Vector start_displacement_, predicted_end_;          ///< u₀; u₁ of rigid bodies, predicted
+  Vector gyroscopic_force_, next_gyroscopic_force_;    ///< contained in b; at the predicted end
+  Vector contact_stiffness_force_, static_increment_;  ///< (K Δu)_c per contact dof; K_cc⁻¹ times it
+  Vector excess_reaction_force_;                       ///< Hᵀ(ρ̄ − ½ρ)
+  Vector gap_change_, slip_change_, normal_, tangential_;
 };
 
 }  // namespace ricochet

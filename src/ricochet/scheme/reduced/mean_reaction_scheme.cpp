@@ -16,7 +16,7 @@ class MeanReactionScheme final : public EndContactScheme {
 
   void analyse(const SemidiscreteProblem& problem) override {
     EndContactScheme::analyse(problem);
-    layer().require_frictionless_planes(problem);
+    massless_step().require_frictionless_planes(problem);
   }
   [[nodiscard]] LongSteps long_steps(const SemidiscreteProblem&) const override {
     return {.trouble =

@@ -39,7 +39,8 @@ class ReducedKane final : public EndContactScheme {
   }
   /// True if a mean is possible: it requires linear gaps, and nodes without memory.
   [[nodiscard]] bool has_mean(const SemidiscreteProblem& problem) const {
-    return !problem.contact.follows_motion() && !layer().damps_contact_nodes() && !has_finite_strain_friction(problem);
+    return !problem.contact.follows_motion() && !massless_step().damps_contact_nodes() &&
+           !has_finite_strain_friction(problem);
   }
   [[nodiscard]] ReactionMean mean(const SemidiscreteProblem& problem) const override {
     // Sliding without damping flutters, less so under the end reactions.
@@ -62,7 +63,7 @@ SchemeRegistration reduced_kane_scheme() {
       make,
       {{.name = "reaction_weight",
         .type = KeyType::choice,
-        .standard = "automatic",
+        .default_value = "automatic",
         .choices = {"automatic", "adaptive", "end"},
         .doc = "Which reactions act over a step: \"adaptive\", a mean of those of the step, as near to the exact one "
                "as smooth reactions allow (on planes, without stiffness damping at contact nodes; else as "

@@ -16,22 +16,26 @@ namespace {
 /// (finite_layer.hpp).
 class ReducedMidpoint final : public Scheme {
  public:
-  explicit ReducedMidpoint(double step) : Scheme(step), layer_("reduced-midpoint", step) {}
+  explicit ReducedMidpoint(double step) : Scheme(step), massless_step_("reduced-midpoint", step) {}
 
   [[nodiscard]] bool supports_step_changes() const override { return true; }
   [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
   [[nodiscard]] bool supports_relaxation() const override { return true; }
   [[nodiscard]] bool conserves_moments_at_finite_strain() const override { return true; }
-  [[nodiscard]] const Vector* displacement_of_forces() const override { return layer_.displacement_of_forces(); }
-  [[nodiscard]] bool has_couples_between_bodies() const override { return layer_.displacement_of_forces() != nullptr; }
+  [[nodiscard]] const Vector* displacement_of_forces() const override {
+    return massless_step_.displacement_of_forces();
+  }
+  [[nodiscard]] bool has_couples_between_bodies() const override {
+    return massless_step_.displacement_of_forces() != nullptr;
+  }
   void analyse(const SemidiscreteProblem& problem) override {
-    layer_.analyse(problem);
-    layer_.require_frictionless_planes(problem);
+    massless_step_.analyse(problem);
+    massless_step_.require_frictionless_planes(problem);
   }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
-    if (!problem.internal_force->is_linear()) return layer_.operators(problem, mean(problem));
-    std::vector<OperatorCoefficients> result = layer_.operators(problem, ReactionMean::end);
-    result.back().layer = -1;
+    if (!problem.internal_force->is_linear()) return massless_step_.operators(problem, mean(problem));
+    std::vector<OperatorCoefficients> result = massless_step_.operators(problem, ReactionMean::end);
+    result.back().condensed_operator = -1;
     return result;
   }
   [[nodiscard]] double acting_instant() const override { return -0.5; }
@@ -39,62 +43,65 @@ class ReducedMidpoint final : public Scheme {
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     if (!problem.internal_force->is_linear()) {
-      layer_.advance(problem, mean(problem), state, stages, increment);
+      massless_step_.advance(problem, mean(problem), state, stages, increment);
       return;
     }
     const double h = step(), middle = state.time + 0.5 * h;
-    const bool has_layer = problem.has_contact_dofs();
+    const bool has_contact_nodes = problem.has_contact_dofs();
     const std::size_t number = MasslessContactStep::midpoint_stage(problem);
     Stage& stage = stages.stage(number);
-    layer_.balance(problem, state, stage);
-    require_no_penetration(problem, layer_.base(), middle, stage);
-    if (problem.has_moving_obstacles()) evaluate_obstacle_velocity(problem, layer_.base(), {middle, h, 1.0}, stage);
-    if (has_layer) layer_.find_residual(problem, state);
+    massless_step_.balance(problem, state, stage);
+    require_no_penetration(problem, massless_step_.base(), middle, stage);
+    if (problem.has_moving_obstacles())
+      evaluate_obstacle_velocity(problem, massless_step_.base(), {middle, h, 1.0}, stage);
+    if (has_contact_nodes) massless_step_.find_residual(problem, state);
     const StageSolution& solution = stages.solve(number);
     increment = h * state.velocity + 2.0 * solution.increment;
-    take(solution);
-    if (has_layer) settle(problem, state, stages, increment);
-    layer_.move(problem, solution.increment, increment, state);
-    layer_.take_forces(problem, stage, result_, increment, state);
+    copy_result(solution);
+    if (has_contact_nodes) solve_end_contact(problem, state, stages, increment);
+    massless_step_.move(problem, solution.increment, increment, state);
+    massless_step_.store_forces(problem, stage, result_, increment, state);
     corrections_ = {};
-    if (has_layer)
-      corrections_.contact_work = -layer_.contact_node_work(problem, *stage.rows, result_, increment, stages).reactions;
+    if (has_contact_nodes)
+      corrections_.contact_work =
+          -massless_step_.contact_node_work(problem, *stage.rows, result_, increment, stages).reactions;
   }
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return layer_.has_finite_strain() ? layer_.corrections() : corrections_;
+    return massless_step_.has_finite_strain() ? massless_step_.corrections() : corrections_;
   }
 
  protected:
-  void step_changed(const SemidiscreteProblem& problem) override { layer_.change_step(problem, step()); }
+  void step_changed(const SemidiscreteProblem& problem) override { massless_step_.change_step(problem, step()); }
 
  private:
   static ReactionMean mean(const SemidiscreteProblem& problem) {
     return !problem.has_contact_dofs() ? ReactionMean::end : ReactionMean::path;
   }
   /// Computes the contact nodes at the end: K_cc δ = L₁ + Gᵀr₁ − (K u)_c, from their predicted displacement.
-  void settle(const SemidiscreteProblem& problem, const State& state, StageSolve& stages, Vector& increment) {
+  void solve_end_contact(const SemidiscreteProblem& problem, const State& state, StageSolve& stages,
+                         Vector& increment) {
     for (const Index dof : problem.contact_dofs) increment[dof] = step() * state.velocity[dof];
-    layer_.stiffness().multiply(increment, row_force_);
-    Stage& stage = stages.stage(MasslessContactStep::layer_stage);
-    row_force_ = layer_.residual() + layer_.load_change() - row_force_;
+    massless_step_.stiffness().multiply(increment, row_force_);
+    Stage& stage = stages.stage(MasslessContactStep::condensed_stage);
+    row_force_ = massless_step_.residual() + massless_step_.load_change() - row_force_;
     MasslessContactStep::set_contact_force(problem, row_force_, stage);
     base_ = state.displacement + increment;
     require_no_penetration(problem, base_, state.time + step(), stage);
-    const StageSolution& end = stages.solve(MasslessContactStep::layer_stage);
+    const StageSolution& end = stages.solve(MasslessContactStep::condensed_stage);
     for (const Index dof : problem.contact_dofs) increment[dof] += end.increment[dof];
     result_.normal_reaction = end.normal_reaction;
     result_.contact_status = end.contact_status;
   }
 
   /// Copies the results of contact at the middle, member by member, so that storage is kept.
-  void take(const StageSolution& solution) {
+  void copy_result(const StageSolution& solution) {
     result_.normal_reaction = solution.normal_reaction;
     result_.mean_normal_reaction = solution.normal_reaction;
     result_.support_reaction = solution.support_reaction;
     result_.contact_status = solution.contact_status;
   }
 
-  MasslessContactStep layer_;
+  MasslessContactStep massless_step_;
   StepCorrections corrections_;
   StageSolution result_;
   Vector row_force_, base_;

@@ -25,14 +25,14 @@ void StepLoads::evaluate(const SemidiscreteProblem& problem, const Vector& middl
     pressure_.setZero(middle.size());
     problem.pressure->add_mean_force(middle, start_time_, end_time_, pressure_);
   }
-  if (!change() || !has_contact_nodes) return;
+  if (!acts_at_ends() || !has_contact_nodes) return;
   at_end_ = rise_;
   if (follows_) problem.pressure->add_force(end, end_time_, at_end_);
 }
 
 double StepLoads::work_of_change(const std::vector<Index>& dofs, const Vector& start, const Vector& end,
                                  const Vector& middle) const {
-  if (!change()) return 0.0;
+  if (!acts_at_ends()) return 0.0;
   double sum = 0.0;
   for (const Index dof : dofs) {
     const double half_change = at_end_[dof] - (follows_ ? pressure_[dof] : 0.0);

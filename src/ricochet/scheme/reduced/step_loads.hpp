@@ -16,7 +16,7 @@ class StepLoads {
 
   [[nodiscard]] const Vector& mean() const { return mean_; }
   /// True if anything acts at the ends of a step besides L̄.
-  [[nodiscard]] bool change() const { return varies_ || follows_; }
+  [[nodiscard]] bool acts_at_ends() const { return varies_ || follows_; }
   /// L₁ − L̄ + P(u₁).
   [[nodiscard]] const Vector& beside_at_end() const { return at_end_; }
   /// Adds L₀ − L̄ + P₀, with P₀ = 2 P(x) − P(u₁).

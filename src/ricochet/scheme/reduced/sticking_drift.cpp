@@ -22,7 +22,7 @@ void StickingDrift::require(const SemidiscreteProblem& problem, const State& sta
   stage.slip_offset += memory->second / step;
 }
 
-void StickingDrift::learn(const SemidiscreteProblem& problem, const Vector& before, State& state) {
+void StickingDrift::update_drift(const SemidiscreteProblem& problem, const Vector& before, State& state) {
   if (!keeps_places(problem)) return;
   motion_ = state.displacement - before;  // rounded, as in the displacement
   state.forces.rows->tangential_motion(motion_, slip_);

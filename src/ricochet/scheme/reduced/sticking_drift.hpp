@@ -12,7 +12,7 @@ class StickingDrift {
   /// Shifts the slip rate of a stage (over a step h) by the drift of sticking points so far.
   void require(const SemidiscreteProblem& problem, const State& state, double step, Stage& stage);
   /// Updates the drift after a step; `before` is the displacement at its start.
-  void learn(const SemidiscreteProblem& problem, const Vector& before, State& state);
+  void update_drift(const SemidiscreteProblem& problem, const Vector& before, State& state);
 
  private:
   Vector motion_, slip_;

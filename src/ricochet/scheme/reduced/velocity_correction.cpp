@@ -30,7 +30,7 @@ int VelocityCorrection::mode_count() const {
 void VelocityCorrection::set_mode(int mode, Vector& values) const {
   const int d = problem_.dimension;
   values.setZero(problem_.dof_count());
-  for (Index node = 0; node < places_.cols(); ++node) {
+  for (Index node = 0; node < positions_.cols(); ++node) {
     if (bodies_.body_of_node(node) < 0) continue;
     auto at = values.segment(node * d, d);
     if (problem_.axisymmetric) {
@@ -38,9 +38,9 @@ void VelocityCorrection::set_mode(int mode, Vector& values) const {
     } else if (mode < d) {
       at[mode] = 1.0;
     } else if (d == 2) {
-      at << -places_(1, node), places_(0, node);
+      at << -positions_(1, node), positions_(0, node);
     } else {
-      at = Eigen::Vector3d::Unit(mode - d).cross(Eigen::Vector3d(places_.col(node)));
+      at = Eigen::Vector3d::Unit(mode - d).cross(Eigen::Vector3d(positions_.col(node)));
     }
   }
 }
@@ -55,21 +55,21 @@ void VelocityCorrection::mask(Vector& values) const {
 void VelocityCorrection::find_relative(const Vector& velocity, const Vector& displacement) {
   const Index d = problem_.dimension;
   const int modes = mode_count();
-  places_ = problem_.nodes + displacement.reshaped(d, problem_.nodes.cols());
+  positions_ = problem_.nodes + displacement.reshaped(d, problem_.nodes.cols());
   Points centres = Points::Zero(d, static_cast<Index>(bodies_.count()));
   Vector sizes = Vector::Zero(centres.cols());
   const auto visit = [&](const auto& work) {
-    for (Index node = 0; node < places_.cols(); ++node) {
+    for (Index node = 0; node < positions_.cols(); ++node) {
       const int body = bodies_.body_of_node(node);
       if (body >= 0) work(node, static_cast<std::size_t>(body));
     }
   };
   visit([&](Index node, std::size_t body) {
-    centres.col(static_cast<Index>(body)) += places_.col(node);
+    centres.col(static_cast<Index>(body)) += positions_.col(node);
     sizes[static_cast<Index>(body)] += 1.0;
   });
   visit([&](Index node, std::size_t body) {
-    places_.col(node) -= centres.col(static_cast<Index>(body)) / sizes[static_cast<Index>(body)];
+    positions_.col(node) -= centres.col(static_cast<Index>(body)) / sizes[static_cast<Index>(body)];
   });
 
   value_ = velocity;

@@ -36,7 +36,7 @@ class VelocityCorrection {
 
   const SemidiscreteProblem& problem_;
   const BodyRotations& bodies_;
-  Points places_;  ///< positions relative to the centre of the node's body
+  Points positions_;  ///< positions relative to the centre of the node's body
   Vector value_, momentum_, mode_;
 };
 

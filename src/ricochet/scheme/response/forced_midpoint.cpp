@@ -29,9 +29,9 @@ void ForcedMidpoint::advance(const SemidiscreteProblem& problem, State& state, S
   if (problem.has_moving_obstacles())
     evaluate_obstacle_velocity(problem, base(), {state.time + 0.5 * step(), step()}, stage);
   const StageSolution* solution = &solve_with_forces(problem, normal_, 0, stages);
-  place_ = base() + solution->increment;
-  problem.gaps(place_, end, free_);
-  if (find_forces(problem, *stage.rows, {state, before_, place_, free_}, stages, normal_)) {
+  displacement_ = base() + solution->increment;
+  problem.gaps(displacement_, end, free_);
+  if (find_forces(problem, *stage.rows, {state, before_, displacement_, free_}, stages, normal_)) {
     balance(problem, state, stages);
     add_other_forces(stage.right_hand_side);
     solution = &solve_with_forces(problem, normal_, 0, stages);
@@ -43,7 +43,7 @@ void ForcedMidpoint::advance(const SemidiscreteProblem& problem, State& state, S
   for (Index i = 0; i < normal_.size(); ++i)
     solution_.contact_status[static_cast<std::size_t>(i)] =
         normal_[i] > 0.0 ? ContactStatus::slip : ContactStatus::open;
-  take(problem, stage, solution_, state, increment);
+  advance_state(problem, stage, solution_, state, increment);
   problem.gaps(state.displacement, end, gap_);
   corrections_ = {.numerical_dissipation = lost(state.displacement, gap_)};
   corrections_.contact_work = other_work(increment) + contact_energy(state.displacement, gap_) - energy_before +

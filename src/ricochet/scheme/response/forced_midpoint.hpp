@@ -43,7 +43,7 @@ class ForcedMidpoint : public Kane {
 
  private:
   StepCorrections corrections_;
-  Vector before_, free_, normal_, place_;
+  Vector before_, free_, normal_, displacement_;
   StageSolution solution_;
   mutable Vector gap_;  ///< work space
 };

@@ -29,7 +29,7 @@ class LaursenLove final : public Kane {
     require_contact(problem, state, stage);
     const StageSolution& solution = stages.solve(0);
     find_impulses(problem, stage, solution, state, stages);
-    take(problem, stage, solution, state, increment);
+    advance_state(problem, stage, solution, state, increment);
     if (acts_) state.velocity += kick_;
   }
 

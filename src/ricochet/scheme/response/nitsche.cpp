@@ -115,7 +115,7 @@ SchemeRegistration nitsche_scheme() {
           {{.name = "penalty",
             .type = KeyType::number,
             .unit = "1",
-            .standard = "4",
+            .default_value = "4",
             .range = {.above = 1.0, .at_most = 1e6},
             .doc = "Stiffness of the contact, in units of the least with which the energy has a sign."}}};
 }

@@ -82,7 +82,7 @@ SchemeRegistration penalty_midpoint_scheme() {
           {{.name = "penalty",
             .type = KeyType::number,
             .unit = "1",
-            .standard = "10",
+            .default_value = "10",
             .range = {.above = 0.0, .at_most = 1e6},
             .doc = "Stiffness of the contact, in units of the body's own stiffness at a contact point."}}};
 }

@@ -34,17 +34,17 @@ double largest_on_contact(const SemidiscreteProblem& problem, const Vector& valu
 }  // namespace
 
 void NonlinearContactEquilibrium::analyse(const SemidiscreteProblem& problem) {
-  layer_ = problem.internal_force_at_contact();
+  contact_cells_ = problem.internal_force_at_contact();
   reach_ = problem.nodes.cwiseAbs().maxCoeff();
 }
 
 void NonlinearContactEquilibrium::start(State& state) const {
-  if (layer_) state.memory[layer_renewal].setZero(State::memory_numbers);
+  if (contact_cells_) state.memory[layer_renewal].setZero(State::memory_numbers);
 }
 
 void NonlinearContactEquilibrium::renew_where_slow(const SemidiscreteProblem& problem, State& state,
                                                    StageSolve& stages) {
-  if (!problem.has_contact_dofs() || progress_.rounds() <= many_rounds) return;
+  if (!problem.has_contact_dofs() || progress_.iterations() <= many_rounds) return;
   double& from = state.memory.at(layer_renewal)[0];
   if (static_cast<double>(state.step) < from) return;
   from = static_cast<double>(state.step) + kept_steps;
@@ -65,7 +65,7 @@ void NonlinearContactEquilibrium::evaluate(const SemidiscreteProblem& problem, c
   double part = 1.0;
   for (int halving = 0;; ++halving) {
     try {
-      layer_->evaluate(end, force_);
+      contact_cells_->evaluate(end, force_);
       return;
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::not_converged || !moved_ || halving == most_halvings) throw;
@@ -101,7 +101,7 @@ const StageSolution* NonlinearContactEquilibrium::solve(const SemidiscreteProble
   moved_ = false;
   point_.resize(static_cast<Index>(problem.contact_dofs.size()));
   image_.resize(point_.size());
-  problem.take_contact(increment, point_);
+  problem.gather_contact(increment, point_);
   evaluate(problem, state, increment, end);
   acceleration_.restart();
   double last = std::numeric_limits<double>::infinity();
@@ -110,7 +110,7 @@ const StageSolution* NonlinearContactEquilibrium::solve(const SemidiscreteProble
     const StageSolution& solution = stages.solve(0);
     const double correction = largest_on_contact(problem, solution.increment);
     image_.setZero();
-    if (std::isfinite(correction)) problem.take_contact(solution.increment, image_);
+    if (std::isfinite(correction)) problem.gather_contact(solution.increment, image_);
     image_ += point_;
     const NewtonProgress::Advice advice = progress_.judge(correction, image_.lpNorm<Eigen::Infinity>());
     if (advice == NewtonProgress::Advice::done) {
@@ -121,11 +121,11 @@ const StageSolution* NonlinearContactEquilibrium::solve(const SemidiscreteProble
       throw Error(ErrorKind::not_converged,
                   fmt::format("Newton's method found no equilibrium of the contact nodes in {} iterations (the last "
                               "correction moves a node by {:.3g})",
-                              progress_.rounds(), correction));
+                              progress_.iterations(), correction));
     }
     if (correction > last) acceleration_.restart();
     last = correction;
-    const bool accelerates = progress_.rounds() > plain_layer_rounds && advice != NewtonProgress::Advice::renew;
+    const bool accelerates = progress_.iterations() > plain_layer_rounds && advice != NewtonProgress::Advice::renew;
     if (accelerates) acceleration_.advance(point_, image_, image_);
     move_ = image_ - point_;
     point_ = image_;

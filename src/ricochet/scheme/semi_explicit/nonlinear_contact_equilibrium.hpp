@@ -38,8 +38,8 @@ class NonlinearContactEquilibrium {
   void move_to(const SemidiscreteProblem& problem, const State& state, const Vector& place, Vector& increment,
                Vector& end);
 
-  std::shared_ptr<const InternalForce> layer_;  ///< of the cells at contact nodes
-  double reach_ = 0.0;                          ///< largest coordinate of the nodes
+  std::shared_ptr<const InternalForce> contact_cells_;  ///< of the cells at contact nodes
+  double reach_ = 0.0;                                  ///< largest coordinate of the nodes
   NewtonProgress progress_;
   AndersonAcceleration acceleration_{6};
   Vector force_, middle_, rate_;

@@ -55,7 +55,7 @@ class SemiExplicit final : public Scheme {
     return {{0.0, 1.0, 0.0, StageDofs::contact}};
   }
   [[nodiscard]] WorkRule work_rule() const override { return {0.5, 0.5}; }
-  [[nodiscard]] double critical_step() const override { return followed_ ? followed_->smallest() : critical_step_; }
+  [[nodiscard]] double critical_step() const override { return tracked_ ? tracked_->smallest() : critical_step_; }
   [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
   [[nodiscard]] bool conserves_moments_at_finite_strain() const override { return true; }
   [[nodiscard]] const Vector* displacement_of_forces() const override { return &end_; }
@@ -71,41 +71,41 @@ class SemiExplicit final : public Scheme {
     if (!at_any_step_) check_critical_step("semi-explicit", step(), critical_step_);
     motion_.analyse(problem, step());
     contact_.analyse(problem);
-    followed_.reset();
+    tracked_.reset();
     if (problem.internal_force->is_linear()) return;
-    layer_.analyse(problem);
-    followed_.emplace("semi-explicit");
-    followed_->analyse(problem, critical_step_);
+    nonlinear_contact_.analyse(problem);
+    tracked_.emplace("semi-explicit");
+    tracked_->analyse(problem, critical_step_);
   }
 
   void start(const SemidiscreteProblem& problem, State& state, StageSolve&) override {
     problem.internal_force->evaluate(state.displacement, state.memory[force_memory]);
     start_supports(problem, motion_.mass(), step(), state);
-    if (!followed_) return;
-    followed_->start(problem, step(), !at_any_step_, state);
-    layer_.start(state);
+    if (!tracked_) return;
+    tracked_->start(problem, step(), !at_any_step_, state);
+    nonlinear_contact_.start(state);
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step();
     evaluate_loads(problem, state.time + h);
-    if (followed_) {
+    if (tracked_) {
       advance_finite(problem, state, stages, increment);
     } else {
       const StageSolution* const solution = solve_contact(problem, state, stages);
       motion_.move(problem, solution != nullptr ? solution->increment : no_correction_, h, state, increment);
       problem.internal_force->evaluate(state.displacement, state.memory.at(force_memory));
       motion_.accelerate(state.memory.at(force_memory), load(problem), h, state);
-      if (solution != nullptr) StepEquations::take_contact(stages.stage(0), *solution, h, state);
+      if (solution != nullptr) StepEquations::store_contact(stages.stage(0), *solution, h, state);
     }
     supports_.advance(problem, motion_.mass(), motion_.damping(), state.memory.at(force_memory), load(problem),
                       increment, h, state);
     for (const Index dof : problem.massless_dofs) state.velocity[dof] = increment[dof] / h;
     if (problem.loads.varies()) state.forces.varying_load = varying_;
     if (problem.has_damping()) state.forces.damping_force = motion_.damping().cwiseProduct(state.velocity);
-    if (!followed_) return;
-    layer_.renew_where_slow(problem, state, stages);
-    if (!at_any_step_) followed_->follow(problem, h, state.memory.at(force_memory), energy_, state);
+    if (!tracked_) return;
+    nonlinear_contact_.renew_where_slow(problem, state, stages);
+    if (!at_any_step_) tracked_->track(problem, h, state.memory.at(force_memory), energy_, state);
   }
 
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
@@ -133,7 +133,7 @@ class SemiExplicit final : public Scheme {
   /// changes only when all of them are known.
   void advance_finite(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) {
     const double h = step();
-    if (!at_any_step_) followed_->require_stable(problem, h, state);
+    if (!at_any_step_) tracked_->require_stable(problem, h, state);
     Vector& force = state.memory.at(force_memory);
     if (energy_step_ != state.step) energy_ = problem.internal_force->energy(state.displacement);
     energy_step_ = -1;
@@ -141,11 +141,11 @@ class SemiExplicit final : public Scheme {
     try {
       motion_.predict(problem, h, state, increment);
       end_ = state.displacement + increment;
-      solution = layer_.solve(problem, state, load(problem), h, stages, increment, end_);
+      solution = nonlinear_contact_.solve(problem, state, load(problem), h, stages, increment, end_);
       problem.internal_force->evaluate(end_, force_);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::not_converged) throw;
-      throw Error(error.kind(), fmt::format("{}; {}", error.what(), followed_->explain(problem, h, state)));
+      throw Error(error.kind(), fmt::format("{}; {}", error.what(), tracked_->explain(problem, h, state)));
     }
     const double before = energy_;
     energy_ = problem.internal_force->energy(end_);
@@ -155,7 +155,7 @@ class SemiExplicit final : public Scheme {
     state.displacement = end_;
     force = force_;
     motion_.accelerate(force, load(problem), h, state);
-    if (solution != nullptr) StepEquations::take_contact(stages.stage(0), *solution, h, state);
+    if (solution != nullptr) StepEquations::store_contact(stages.stage(0), *solution, h, state);
   }
 
   void evaluate_loads(const SemidiscreteProblem& problem, double time) {
@@ -174,8 +174,8 @@ class SemiExplicit final : public Scheme {
   ExplicitMotion motion_;
   ContactEquilibrium contact_;
   // At finite strain:
-  std::optional<TrackedCriticalStep> followed_;
-  NonlinearContactEquilibrium layer_;
+  std::optional<TrackedCriticalStep> tracked_;
+  NonlinearContactEquilibrium nonlinear_contact_;
   Vector end_, force_;     ///< displacement at the end of the last step, and the internal force there
   long energy_step_ = -1;  ///< step whose end energy_ belongs to
   double energy_ = 0.0, integration_error_ = 0.0;

@@ -86,11 +86,11 @@ void TrackedCriticalStep::start(const SemidiscreteProblem& problem, double step,
   state.memory[critical_numbers][smallest_found] = critical;
   state.memory[critical_numbers][told_near] = check && step > near_fraction * critical ? 1.0 : 0.0;
   state.memory[critical_mode].setZero(problem.dof_count());
-  take(critical, state);
+  store(critical, state);
 }
 
 /// Stores a critical step with the displacement of the state.
-void TrackedCriticalStep::take(double critical, State& state) {
+void TrackedCriticalStep::store(double critical, State& state) {
   Vector& numbers = state.memory.at(critical_numbers);
   numbers[last_found] = critical;
   smallest_ = numbers[smallest_found] = std::min(numbers[smallest_found], critical);
@@ -98,7 +98,7 @@ void TrackedCriticalStep::take(double critical, State& state) {
   state.memory[critical_displacement] = state.displacement;
 }
 
-std::string TrackedCriticalStep::place(const SemidiscreteProblem& problem, const State& state) const {
+std::string TrackedCriticalStep::location_text(const SemidiscreteProblem& problem, const State& state) const {
   const Vector& mode = state.memory.at(critical_mode);
   Index at = 0;
   if (mode.size() == 0 || mode.cwiseProduct(inverse_root_).cwiseAbs().maxCoeff(&at) == 0.0) return "";
@@ -120,7 +120,7 @@ void TrackedCriticalStep::require_stable(const SemidiscreteProblem& problem, dou
                           "time.step = {:.6g} is {:.3g} times that, and the motion would grow without bound; set "
                           "time.step = {:.3g} or less, as it may fall further, or use scheme \"reduced-kane\", which "
                           "is stable for any step",
-                          scheme_, critical, place(problem, state), step, step / critical,
+                          scheme_, critical, location_text(problem, state), step, step / critical,
                           rounded_down(careful_fraction * critical, 3)));
 }
 
@@ -164,22 +164,22 @@ bool TrackedCriticalStep::is_due(const SemidiscreteProblem& problem, double step
   const double room = 1.0 - step / numbers[last_found];
   if (change_since(problem, state) > std::clamp(part_of_room * room, least_change, most_change)) return true;
   if (static_cast<double>(state.step) < numbers[found_at] + rest_between) return false;
-  const double high = 0.125 * step * step * problem.mass.form(state.acceleration);
-  return high > high_frequency_part * (0.5 * problem.mass.form(state.velocity) + std::abs(energy));
+  const double high = 0.125 * step * step * problem.mass.quadratic_form(state.acceleration);
+  return high > high_frequency_part * (0.5 * problem.mass.quadratic_form(state.velocity) + std::abs(energy));
 }
 
 /// Computes λ by some products from the last eigenvector.
 double TrackedCriticalStep::find(const SemidiscreteProblem& problem, const Vector& force, State& state) {
   const auto multiply = [&](const Vector& x, Vector& y) {
-    place_ = inverse_root_.cwiseProduct(x);
-    const double size = place_.lpNorm<Eigen::Infinity>();
+    displacement_ = inverse_root_.cwiseProduct(x);
+    const double size = displacement_.lpNorm<Eigen::Infinity>();
     if (size == 0.0) {
       y.setZero(x.size());
       return;
     }
     const double scale = difference * shortest_ / size;
-    place_ = state.displacement + scale * place_;
-    problem.internal_force->evaluate(place_, force_);
+    displacement_ = state.displacement + scale * displacement_;
+    problem.internal_force->evaluate(displacement_, force_);
     y = inverse_root_.cwiseProduct(force_ - force) / scale;
   };
   Vector& mode = state.memory.at(critical_mode);
@@ -192,18 +192,18 @@ double TrackedCriticalStep::find(const SemidiscreteProblem& problem, const Vecto
   return std::ldexp(eigenvalue, -exponent_) / (1.0 - frequency_spread);
 }
 
-void TrackedCriticalStep::follow(const SemidiscreteProblem& problem, double step, const Vector& force, double energy,
-                                 State& state) {
+void TrackedCriticalStep::track(const SemidiscreteProblem& problem, double step, const Vector& force, double energy,
+                                State& state) {
   if (!is_due(problem, step, energy, state)) return;
   const double critical = critical_of(find(problem, force, state));
-  take(critical, state);
+  store(critical, state);
   Vector& numbers = state.memory.at(critical_numbers);
   numbers[evaluations_made] += products;
   if (log::enabled(log::Level::debug)) {
     log::debug(
         fmt::format("critical step {:.6g}{}: the step is {:.3g} of it; {:.0f} evaluations of the internal force "
                     "so far for that",
-                    critical, place(problem, state), step / critical, numbers[evaluations_made]));
+                    critical, location_text(problem, state), step / critical, numbers[evaluations_made]));
   }
   if (step < near_fraction * critical || step >= critical || numbers[told_near] != 0.0) return;
   numbers[told_near] = 1.0;
@@ -211,7 +211,7 @@ void TrackedCriticalStep::follow(const SemidiscreteProblem& problem, double step
       fmt::format("scheme \"{}\": at t = {:.6g} the bodies are deformed so far that the critical step is {:.6g} "
                   "(made{}); time.step = {:.6g} is {:.3g} of it, and the run ends where it is more than all; take "
                   "{:.3g} or less",
-                  scheme_, state.time + step, critical, place(problem, state), step, step / critical,
+                  scheme_, state.time + step, critical, location_text(problem, state), step, step / critical,
                   rounded_down(careful_fraction * critical, 3)));
 }
 

@@ -38,7 +38,7 @@ class TrackedCriticalStep {
   void require_stable(const SemidiscreteProblem& problem, double step, const State& state);
   /// Updates the critical step after a step, whose number the state does not have yet, with the internal force and the
   /// elastic energy there. Warns once if the step is nearly as long.
-  void follow(const SemidiscreteProblem& problem, double step, const Vector& force, double energy, State& state);
+  void track(const SemidiscreteProblem& problem, double step, const Vector& force, double energy, State& state);
   /// Explains, at the end of a sentence, how the critical step relates to a step that inverted cells.
   [[nodiscard]] std::string explain(const SemidiscreteProblem& problem, double step, const State& state) const;
 
@@ -54,8 +54,8 @@ class TrackedCriticalStep {
   [[nodiscard]] bool is_due(const SemidiscreteProblem& problem, double step, double energy, const State& state) const;
   [[nodiscard]] double change_since(const SemidiscreteProblem& problem, const State& state) const;
   [[nodiscard]] double find(const SemidiscreteProblem& problem, const Vector& force, State& state);
-  void take(double critical, State& state);
-  [[nodiscard]] std::string place(const SemidiscreteProblem& problem, const State& state) const;
+  void store(double critical, State& state);
+  [[nodiscard]] std::string location_text(const SemidiscreteProblem& problem, const State& state) const;
 
   std::string scheme_;
   std::vector<Pair> pairs_;  ///< of nodes with a common cell
@@ -63,7 +63,7 @@ class TrackedCriticalStep {
   Vector inverse_root_;      ///< M^{-½} on unsupported dofs with mass, else 0, of masses brought near 1 …
   int exponent_ = 0;         ///< … by 2^exponent
   double smallest_ = 0.0;
-  Vector place_, force_;
+  Vector displacement_, force_;
 };
 
 }  // namespace ricochet

@@ -57,7 +57,7 @@ void EnergyAccount::find_motion(const ContactRows& rows, const Vector& increment
   if (problem_.contact.has_friction()) slip_on_obstacles(rows, increment, obstacle, slip_increment_);
 }
 
-void EnergyAccount::look_at_gaps(const State& state) {
+void EnergyAccount::evaluate_gaps(const State& state) {
   problem_.gaps(state.displacement, state.time, gap_now_);
   unsettled_gap_ = 0.0;
   for (Index i = 0; i < gap_now_.size(); ++i) {
@@ -95,7 +95,7 @@ void EnergyAccount::enter(const StepForces& forces, double weight, const Vector&
 
 void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   obstacle_ = state.obstacle_increment;
-  if (problem_.contact.has_sliding_pairs()) look_at_gaps(state);
+  if (problem_.contact.has_sliding_pairs()) evaluate_gaps(state);
   // Forces work along the rows through which they act: those of the two ends of a step differ if they follow the
   // motion, and the motion along the rows of one end would violate the energy balance of the other's forces.
   const ContactRows* rows = nullptr;
@@ -143,7 +143,7 @@ double EnergyAccount::algorithmic(const State& state) {
   return *algorithmic_;
 }
 
-double EnergyAccount::of_method(const State& state) {
+double EnergyAccount::method_energy(const State& state) {
   return works_.contact + works_.integration_error - works_.numerical_dissipation -
          (algorithmic(state) - initial_algorithmic_);
 }
@@ -154,7 +154,7 @@ Energies EnergyAccount::energies(const State& state) {
   const Vector& displacement = at_state ? state.displacement : displacement_;
   const Vector* const force = scheme_.internal_force(state);
   Energies result;
-  result.kinetic = 0.5 * problem_.mass.form(velocity(state));
+  result.kinetic = 0.5 * problem_.mass.quadratic_form(velocity(state));
   result.elastic = force != nullptr ? problem_.internal_force->energy(displacement, *force)
                                     : stored_energy(*problem_.internal_force, displacement, state.internal_strain);
   result.load_potential = -problem_.loads.constant().dot(displacement);

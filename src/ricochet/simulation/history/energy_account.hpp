@@ -60,7 +60,7 @@ class EnergyAccount {
   /// contact work, which is zero for exact motions, plus the integration error, less numerical dissipation and the
   /// change of the algorithmic energy. Valid for the state of the last step; the other works account for the remaining
   /// change of the total energy.
-  [[nodiscard]] double of_method(const State& state);
+  [[nodiscard]] double method_energy(const State& state);
   /// total + algorithmic − initial values − Σ works + numerical and viscous dissipation − integration error: zero to
   /// rounding.
   [[nodiscard]] double residual(const Energies& now) const;
@@ -78,7 +78,7 @@ class EnergyAccount {
   };
   [[nodiscard]] double algorithmic(const State& state);
   [[nodiscard]] StepWorks works_of(const StepForces& forces, const Vector& increment, const ObstacleMotion& obstacle);
-  void look_at_gaps(const State& state);
+  void evaluate_gaps(const State& state);
   void enter_re_pairing(const StepForces& forces, double weight);
   void enter(const StepForces& forces, double weight, const Vector& increment, const ContactRows*& rows);
   /// Computes the motion of the contact points over the step along these rows, and that of the obstacles.

@@ -32,7 +32,7 @@ class FreeBodySensor final : public Sensor {
     append(state.displacement.segment(first, d), row);
     append(state.velocity.segment(first, d), row);
     append(rotation(state.displacement), row);
-    append(body_.spin(state.displacement, state.velocity), row);
+    append(body_.angular_velocity(state.displacement, state.velocity), row);
     SpaceVector force = SpaceVector::Zero(d);
     for (Index i = 0; i < problem_.contact.size(); ++i) {
       if (carries_force(state.forces, i) && problem_.obstacle_of_point(i) == &obstacle_)

@@ -114,8 +114,9 @@ void HistoryRecorder::weigh_nodes() {
   node_weight_.setOnes(problem_.nodes.cols());
   position_ = problem_.nodes.reshaped();
   if (mass.is_scalar()) {
-    mass.multiply(Vector::Ones(problem_.dof_count()), momentum_);
-    for (Index node = 0; node < node_weight_.size(); ++node) node_weight_[node] = momentum_[node * problem_.dimension];
+    mass.multiply(Vector::Ones(problem_.dof_count()), product_with_mass_);
+    for (Index node = 0; node < node_weight_.size(); ++node)
+      node_weight_[node] = product_with_mass_[node * problem_.dimension];
   }
   // Rotations of rigid bodies do not contribute to the momentum of their nodes.
   for (const auto& body : problem_.free_bodies) node_weight_[body->rotation_node()] = 0.0;
@@ -131,8 +132,8 @@ void HistoryRecorder::place_free_bodies(const State& state) {
 
 void HistoryRecorder::weigh_positions() {
   if (problem_.mass.is_scalar()) {
-    problem_.mass.multiply(position_, momentum_);
-    node_arm_ = momentum_.reshaped(problem_.dimension, problem_.nodes.cols());
+    problem_.mass.multiply(position_, product_with_mass_);
+    node_arm_ = product_with_mass_.reshaped(problem_.dimension, problem_.nodes.cols());
   } else {
     node_arm_ = position_.reshaped(problem_.dimension, problem_.nodes.cols());
   }
@@ -152,7 +153,7 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
   row_.insert(row_.end(), body_momentum_.begin(), body_momentum_.end());
   if (finite_strain_) {
     row_.push_back(works.integration_error);
-    row_.push_back(state.newton_rounds);
+    row_.push_back(state.newton_iterations);
   }
   if (problem_.internal_force->viscous() != nullptr) row_.push_back(works.viscous_dissipation);
   if (problem_.contact.has_sliding_pairs()) row_.insert(row_.end(), {works.re_pairing, account.unsettled_gap()});
@@ -164,7 +165,7 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
 
 double HistoryRecorder::left_out_points() {
   takes_part_.assign(static_cast<std::size_t>(problem_.contact.size()), 1);
-  problem_.contact.geometry->leave_out(takes_part_);
+  problem_.contact.geometry->deactivate_points(takes_part_);
   return static_cast<double>(std::count(takes_part_.begin(), takes_part_.end(), 0));
 }
 
@@ -183,8 +184,8 @@ void HistoryRecorder::add_momentum(const State& state, const Vector& velocity) {
     place_free_bodies(state);
     weigh_positions();
   }
-  if (!problem_.mass.is_scalar()) problem_.mass.multiply(velocity, momentum_);
-  const Vector& values = problem_.mass.is_scalar() ? velocity : momentum_;
+  if (!problem_.mass.is_scalar()) problem_.mass.multiply(velocity, product_with_mass_);
+  const Vector& values = problem_.mass.is_scalar() ? velocity : product_with_mass_;
   Momenta sum = parallel_sum<Momenta>(node_weight_.size(), [&](Index first, Index last) {
     return problem_.dimension == 2 ? momenta_of<2>(node_weight_, node_arm_, values, first, last)
                                    : momenta_of<3>(node_weight_, node_arm_, values, first, last);

@@ -97,7 +97,8 @@ class HistoryRecorder {
   /// with M. Otherwise p is M V, and they are 1 and x. At finite strain x are the current positions.
   Vector node_weight_;
   Points node_arm_;
-  Vector momentum_, position_;  ///< M V, x
+  Vector product_with_mass_;  ///< M 1, M x or M V, where they are needed
+  Vector position_;           ///< x
 };
 
 /// Digests of all columns, row by row.

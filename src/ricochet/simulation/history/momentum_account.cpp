@@ -31,7 +31,7 @@ MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Schem
       rule_(scheme.work_rule()),
       finite_strain_(!problem.internal_force->is_linear()),
       positions_(problem.nodes) {
-  if (places_change()) before_ = state.displacement;
+  if (places_change()) displacement_before_ = state.displacement;
   take_positions(state.displacement);
   previous_ = resultant(state.forces);
   algorithmic_ = algorithmic(state);
@@ -131,9 +131,11 @@ Resultant MomentumAccount::between_bodies(const StepForces& forces) {
   force_.setZero(problem_.dof_count());
   forces.rows->add_force(normal_, tangential_, force_);
   // Before the first step no force has acted at any position.
-  const Vector* const place = scheme_.has_couples_between_bodies() ? scheme_.displacement_of_forces() : nullptr;
-  if (place != nullptr && place->size() == problem_.dof_count() && problem_.contact.follows_motion())
-    problem_.contact.geometry->add_couples(*place, *forces.rows, normal_, tangential_, force_);
+  const Vector* const position_of_forces =
+      scheme_.has_couples_between_bodies() ? scheme_.displacement_of_forces() : nullptr;
+  if (position_of_forces != nullptr && position_of_forces->size() == problem_.dof_count() &&
+      problem_.contact.follows_motion())
+    problem_.contact.geometry->add_couples(*position_of_forces, *forces.rows, normal_, tangential_, force_);
   return part_of_nodes(force_);
 }
 
@@ -234,16 +236,16 @@ void MomentumAccount::enter_step(const State& state) {
   const Resultant load_before = constant_load_;
   bool at_both_ends = false;
   if (places_change()) {
-    if (has_springs_) mean_ = 0.5 * (before_ + state.displacement);
-    const Vector* const place = scheme_.displacement_of_forces();
-    at_both_ends = place != nullptr && rule_.previous_weight != 0.0;
-    if (place != nullptr) {
-      before_ = *place;
+    if (has_springs_) mean_ = 0.5 * (displacement_before_ + state.displacement);
+    const Vector* const of_scheme = scheme_.displacement_of_forces();
+    at_both_ends = of_scheme != nullptr && rule_.previous_weight != 0.0;
+    if (of_scheme != nullptr) {
+      displacement_of_forces_ = *of_scheme;
     } else {
-      before_ = 0.5 * (before_ + state.displacement);
+      displacement_of_forces_ = 0.5 * (displacement_before_ + state.displacement);
     }
-    take_positions(before_);
-    before_ = state.displacement;
+    take_positions(displacement_of_forces_);
+    displacement_before_ = state.displacement;
   }
   if (at_both_ends) {
     enter({load_before, load_before.force.norm()}, rule_.previous_weight);

@@ -69,7 +69,8 @@ class MomentumAccount {
   double arm_ = 0.0;
   bool finite_strain_;
   Points positions_;  ///< of the nodes, about which moments are computed
-  Vector before_;     ///< displacement at the start of the step, at finite strain or with rigid bodies
+  Vector displacement_of_forces_;
+  Vector displacement_before_;  ///< displacement at the start of the step, at finite strain or with rigid bodies
   bool has_springs_ = false;
   Vector mean_;  ///< mean displacement over the step, with springs
   Resultant constant_load_;

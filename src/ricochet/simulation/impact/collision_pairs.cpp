@@ -78,11 +78,11 @@ void ImpactRecorder::add_collision_pairs_of_ranks(const std::vector<ContactPair>
       const long count = std::lround(problem_.ranks->sum(points));
       if (count == 0) continue;
       const std::string& obstacle = pairs[pair].obstacle_name;
-      const auto found = std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
-        return place.body == body && place.obstacle == obstacle;
-      });
-      if (found == places_.end()) {
-        places_.push_back({body, -1, obstacle, count, false});
+      const auto found = std::find_if(
+          collision_pairs_.begin(), collision_pairs_.end(),
+          [&](const CollisionPair& collision) { return collision.body == body && collision.obstacle == obstacle; });
+      if (found == collision_pairs_.end()) {
+        collision_pairs_.push_back({body, -1, obstacle, count, false});
       } else {
         found->points += count;
       }
@@ -102,12 +102,13 @@ int ImpactRecorder::free_body_of(Index point) const {
 }
 
 void ImpactRecorder::add_part(Index point, int body, int other, const std::string& obstacle, double part) {
-  const auto found = std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
-    return place.body == body && place.other == other && place.obstacle == obstacle;
-  });
-  parts_.push_back({point, static_cast<std::size_t>(found - places_.begin()), part});
-  if (found == places_.end()) {
-    places_.push_back({body, other, obstacle, 1, false});
+  const auto found =
+      std::find_if(collision_pairs_.begin(), collision_pairs_.end(), [&](const CollisionPair& collision) {
+        return collision.body == body && collision.other == other && collision.obstacle == obstacle;
+      });
+  parts_.push_back({point, static_cast<std::size_t>(found - collision_pairs_.begin()), part});
+  if (found == collision_pairs_.end()) {
+    collision_pairs_.push_back({body, other, obstacle, 1, false});
   } else if (!problem_.ranks->are_several()) {
     ++found->points;
   }
@@ -115,9 +116,11 @@ void ImpactRecorder::add_part(Index point, int body, int other, const std::strin
 
 void ImpactRecorder::begin_inside(const std::vector<Index>& points) {
   for (const PointPart& each : parts_) {
-    if (std::find(points.begin(), points.end(), each.point) != points.end()) places_[each.place].begins_inside = true;
+    if (std::find(points.begin(), points.end(), each.point) != points.end())
+      collision_pairs_[each.collision].begins_inside = true;
   }
-  for (Place& place : places_) place.begins_inside = problem_.ranks->any(place.begins_inside);
+  for (CollisionPair& collision : collision_pairs_)
+    collision.begins_inside = problem_.ranks->any(collision.begins_inside);
 }
 
 }  // namespace ricochet

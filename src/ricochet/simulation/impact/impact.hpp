@@ -36,19 +36,19 @@ struct Impact {
   double largest_force = 0.0, largest_force_time = 0.0;      ///< magnitude of the resultant
   long contact_points = 0;                                   ///< largest number with a force at once; 0 if unknown
   long all_contact_points = 0;                               ///< of this body with this obstacle or body
-  std::vector<double> first_place = {};                      ///< reference position of the first contact, if known
+  std::vector<double> first_position = {};                   ///< reference position of the first contact, if known
   double obstacle_velocity = 0.0;                            ///< along the normal, mean over the normal impulse
   /// Velocity of the obstacle's material across its normal, likewise.
   Eigen::Vector3d obstacle_sliding = Eigen::Vector3d::Zero();
   double mass = 0.0;               ///< of the body
   bool held = false;               ///< RigidBody::held
   RigidMotionState before, after;  ///< `after`: zero if the impact has not ended
-  /// Energy that the time discretization has put into all bodies meanwhile (EnergyAccount::of_method), negative if it
-  /// has removed energy; null if unknown, in older results.
+  /// Energy that the time discretization has put into all bodies meanwhile (EnergyAccount::method_energy), negative if
+  /// it has removed energy; null if unknown, in older results.
   std::optional<double> method_energy = {};
   /// Speed at which the linear law makes the bodies grow towards each other as they rotate, mean over the impulse
-  /// (turn_growth.hpp). 0 if the impact has not ended, and in older results.
-  double turn_growth = 0.0;
+  /// (rotation_growth.hpp). 0 if the impact has not ended, and in older results.
+  double rotation_growth = 0.0;
 
   /// Mean direction of the normal impulse, out of the obstacle or the other body; zero without an impulse.
   [[nodiscard]] Eigen::Vector3d normal() const;

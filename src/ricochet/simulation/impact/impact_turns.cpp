@@ -14,7 +14,7 @@ bool ImpactRecorder::grows_as_it_turns(int body) const {
 
 /// Uses the state at the start of the step. Overwrites the motion of rigid_, which is therefore computed anew.
 void ImpactRecorder::compute_rotations(Interval& interval) {
-  const Place& place = places_[static_cast<std::size_t>(interval.place)];
+  const CollisionPair& collision = collision_pairs_[static_cast<std::size_t>(interval.collision)];
   if (!problem_.internal_force->is_linear()) return;
   // The displacement is treated as a velocity, which yields its mean and its mean rotation.
   const std::vector<RigidMotionState>& moved = rigid_.motion(displacement_before_, displacement_before_);
@@ -22,31 +22,32 @@ void ImpactRecorder::compute_rotations(Interval& interval) {
   const auto centre = [&](int body) -> const Eigen::Vector3d& {
     return rigid_.bodies()[static_cast<std::size_t>(body)].centre;
   };
-  Eigen::Vector3d::Map(interval.turn.data()) = at(place.body).spin;
-  if (grows_as_it_turns(place.other)) {
-    const Eigen::Vector3d arm = Eigen::Vector3d::Map(interval.first_place.data()) - centre(place.body);
-    const Eigen::Vector3d contact = centre(place.body) + at(place.body).velocity + arm + at(place.body).spin.cross(arm);
-    Eigen::Vector3d::Map(interval.other_turn.data()) = at(place.other).spin;
-    Eigen::Vector3d::Map(interval.other_arm.data()) = contact - centre(place.other) - at(place.other).velocity;
+  Eigen::Vector3d::Map(interval.turn.data()) = at(collision.body).spin;
+  if (grows_as_it_turns(collision.other)) {
+    const Eigen::Vector3d arm = Eigen::Vector3d::Map(interval.first_position.data()) - centre(collision.body);
+    const Eigen::Vector3d contact =
+        centre(collision.body) + at(collision.body).velocity + arm + at(collision.body).spin.cross(arm);
+    Eigen::Vector3d::Map(interval.other_turn.data()) = at(collision.other).spin;
+    Eigen::Vector3d::Map(interval.other_arm.data()) = contact - centre(collision.other) - at(collision.other).velocity;
   }
   motion_ = &rigid_.motion(velocity_before_, displacement_before_);
 }
 
 /// Sums the growth of both bodies in an impact that has ended.
 double ImpactRecorder::growth_in(const Interval& interval, const Impact& impact) const {
-  const Place& place = places_[static_cast<std::size_t>(interval.place)];
+  const CollisionPair& collision = collision_pairs_[static_cast<std::size_t>(interval.collision)];
   const double duration = impact.end - impact.begin;
   double growth = 0.0;
-  if (grows_as_it_turns(place.body)) {
-    const Eigen::Vector3d& centre = rigid_.bodies()[static_cast<std::size_t>(place.body)].centre;
-    growth += turn_growth({Eigen::Vector3d::Map(interval.turn.data()), impact.before.spin, impact.after.spin,
-                           Eigen::Vector3d::Map(interval.first_place.data()) - centre},
-                          -impact.normal(), duration);
+  if (grows_as_it_turns(collision.body)) {
+    const Eigen::Vector3d& centre = rigid_.bodies()[static_cast<std::size_t>(collision.body)].centre;
+    growth += rotation_growth({Eigen::Vector3d::Map(interval.turn.data()), impact.before.spin, impact.after.spin,
+                               Eigen::Vector3d::Map(interval.first_position.data()) - centre},
+                              -impact.normal(), duration);
   }
-  if (impact.other && grows_as_it_turns(place.other)) {
-    growth += turn_growth({Eigen::Vector3d::Map(interval.other_turn.data()), impact.other->before.spin,
-                           impact.other->after.spin, Eigen::Vector3d::Map(interval.other_arm.data())},
-                          impact.normal(), duration);
+  if (impact.other && grows_as_it_turns(collision.other)) {
+    growth += rotation_growth({Eigen::Vector3d::Map(interval.other_turn.data()), impact.other->before.spin,
+                               impact.other->after.spin, Eigen::Vector3d::Map(interval.other_arm.data())},
+                              impact.normal(), duration);
   }
   return growth;
 }

@@ -32,10 +32,11 @@ ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme&
       separation_(std::move(separation)) {
   separation_.resize(rigid_.bodies().size(), 0.0);
   find_collision_pairs(pairs);
-  open_.assign(places_.size(), Interval{});
-  for (std::size_t place = 0; place < places_.size(); ++place) open_[place].place = static_cast<double>(place);
+  open_.assign(collision_pairs_.size(), Interval{});
+  for (std::size_t collision = 0; collision < collision_pairs_.size(); ++collision)
+    open_[collision].collision = static_cast<double>(collision);
   completed_.reserve(most_impacts);
-  current_.resize(places_.size());
+  current_.resize(collision_pairs_.size());
   find_forces(state.forces, state.obstacle_increment, previous_);
   take_velocity(state, velocity_before_);
   displacement_before_ = state.displacement;
@@ -52,11 +53,11 @@ void ImpactRecorder::take_velocity(const State& state, Vector& velocity) {
 
 void ImpactRecorder::find_forces(const StepForces& acting, const ObstacleMotion& travel,
                                  std::vector<Force>& forces) const {
-  forces.assign(places_.size(), Force{});
+  forces.assign(collision_pairs_.size(), Force{});
   const int d = problem_.dimension;
-  for (const auto& [point, place, part] : parts_) {
+  for (const auto& [point, collision, part] : parts_) {
     if (!carries_acting_force(acting, point)) continue;
-    Force& force = forces[place];
+    Force& force = forces[collision];
     const double pressing = std::abs(part) * acting.acting_normal()[point];
     const SpaceVector own = part * acting_contact_force(acting, point);
     ++force.points;
@@ -88,11 +89,11 @@ void ImpactRecorder::add_up_ranks(std::vector<Force>& forces) const {
     own.insert(own.end(), force.normal.data(), force.normal.data() + 3);
     own.insert(own.end(), force.sliding.data(), force.sliding.data() + 3);
     own.insert(own.end(), {force.pressing, force.travel, static_cast<double>(force.points), force.leading_size});
-    const Three place = force.leading >= 0 ? place_of(force.leading) : Three{};
-    own.insert(own.end(), place.begin(), place.end());
+    const Three collision = force.leading >= 0 ? reference_position(force.leading) : Three{};
+    own.insert(own.end(), collision.begin(), collision.end());
   }
   for (Force& force : forces) force = Force{};
-  for (const std::vector<double>& of_rank : problem_.ranks->of_all(own)) {
+  for (const std::vector<double>& of_rank : problem_.ranks->all_gather(own)) {
     const double* at = of_rank.data();
     for (Force& force : forces) {
       force.all += Eigen::Map<const Eigen::Vector3d>(at);
@@ -135,44 +136,45 @@ void ImpactRecorder::enter_impulse(const State& state) {
   take_velocity(state, velocity_before_);
 }
 
-ImpactRecorder::Acting ImpactRecorder::acting_in(std::size_t place) const {
+ImpactRecorder::Acting ImpactRecorder::acting_in(std::size_t collision) const {
   Acting acting;
-  const Force &previous = previous_[place], &current = current_[place];
+  const Force &previous = previous_[collision], &current = current_[collision];
   if (scheme_.work_rule().previous_weight != 0.0 && previous.any()) acting.previous = &previous;
   if (current.any()) acting.current = &current;
   for (const OtherForces& each : others_) {
-    const Force& force = each.forces[place];
+    const Force& force = each.forces[collision];
     if (force.any() && (acting.other == nullptr || force.size() > acting.other->size())) acting.other = &force;
   }
   return acting;
 }
 
 void ImpactRecorder::enter_step(const State& state, double method_energy) {
-  if (places_.empty()) return;
+  if (collision_pairs_.empty()) return;
   method_energy_ = method_energy;
   find_forces(state.forces, state.obstacle_increment, current_);
   find_other_forces();
   motion_ = nullptr;
   if (state.step <= 1 && first_step_ == 0.0) first_step_ = scheme_.step();
   const double instant = state.time + scheme_.acting_instant() * scheme_.step();
-  for (std::size_t place = 0; place < places_.size(); ++place) enter_collision_pair(place, instant);
+  for (std::size_t collision = 0; collision < collision_pairs_.size(); ++collision)
+    enter_collision_pair(collision, instant);
   std::swap(previous_, current_);
   method_before_ = method_energy_;
   take_velocity(state, velocity_before_);
   displacement_before_ = state.displacement;
 }
 
-void ImpactRecorder::enter_collision_pair(std::size_t place, double instant) {
-  Interval& interval = open_[place];
-  const Acting acting = acting_in(place);
+void ImpactRecorder::enter_collision_pair(std::size_t collision, double instant) {
+  Interval& interval = open_[collision];
+  const Acting acting = acting_in(collision);
   const bool touched = interval.phase == touching;
   if (acting.any() != touched && motion_ == nullptr) motion_ = &rigid_.motion(velocity_before_, displacement_before_);
   if (!acting.any()) {
-    if (touched) let_go(interval);
+    if (touched) release(interval);
     return;
   }
   if (!touched) touch(interval, acting, instant);
-  add_impulses(interval, place);
+  add_impulses(interval, collision);
   const double h = scheme_.step();
   if (acting.current == nullptr) {
     if (acting.other == nullptr) return;
@@ -198,14 +200,14 @@ ImpactRecorder::Motion ImpactRecorder::motion_of(int body) const {
 }
 
 double ImpactRecorder::separation_at(const Interval& interval) const {
-  const Place& place = places_[static_cast<std::size_t>(interval.place)];
-  return std::max(separation(place.body), place.other < 0 ? 0.0 : separation(place.other));
+  const CollisionPair& collision = collision_pairs_[static_cast<std::size_t>(interval.collision)];
+  return std::max(separation(collision.body), collision.other < 0 ? 0.0 : separation(collision.other));
 }
 
-void ImpactRecorder::let_go(Interval& interval) const {
-  const Place& place = places_[static_cast<std::size_t>(interval.place)];
-  interval.after = motion_of(place.body);
-  if (place.other >= 0) interval.other_after = motion_of(place.other);
+void ImpactRecorder::release(Interval& interval) const {
+  const CollisionPair& collision = collision_pairs_[static_cast<std::size_t>(interval.collision)];
+  interval.after = motion_of(collision.body);
+  if (collision.other >= 0) interval.other_after = motion_of(collision.other);
   interval.method_after = method_energy_;  // the release also changes the energy
   interval.phase = apart;
 }
@@ -229,16 +231,16 @@ void ImpactRecorder::touch(Interval& interval, const Acting& acting, double inst
   take_largest(interval, *acting.previous, instant - h);
 }
 
-void ImpactRecorder::add_impulses(Interval& interval, std::size_t place) const {
+void ImpactRecorder::add_impulses(Interval& interval, std::size_t collision) const {
   const WorkRule rule = scheme_.work_rule();
   const double h = scheme_.step();
   const auto add_impulse = [&](const Force& force, double weight) {
     add(interval.impulse, h * weight, force.all);
     add(interval.normal_impulse, h * weight, force.normal);
   };
-  add_impulse(previous_[place], rule.previous_weight);
-  add_impulse(current_[place], rule.current_weight);
-  for (const OtherForces& each : others_) add_impulse(each.forces[place], each.weight);
+  add_impulse(previous_[collision], rule.previous_weight);
+  add_impulse(current_[collision], rule.current_weight);
+  for (const OtherForces& each : others_) add_impulse(each.forces[collision], each.weight);
 }
 
 void ImpactRecorder::take_largest(Interval& interval, const Force& force, double instant) {
@@ -250,28 +252,29 @@ void ImpactRecorder::take_largest(Interval& interval, const Force& force, double
 }
 
 /// Returns the position in the reference configuration.
-ImpactRecorder::Three ImpactRecorder::place_of(Index point) const {
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+ImpactRecorder::Three ImpactRecorder::reference_position(Index point) const {
+  Eigen::Vector3d collision = Eigen::Vector3d::Zero();
   double sum = 0.0;
   problem_.contact.visit_own_nodes(point, [&](Index node, double weight) {
-    place.head(problem_.dimension) += weight * problem_.nodes.col(node);
+    collision.head(problem_.dimension) += weight * problem_.nodes.col(node);
     sum += weight;
   });
-  return numbers_of(place / sum);
+  return numbers_of(collision / sum);
 }
 
 void ImpactRecorder::begin(Interval& interval, double time, const Force& first) {
-  const double place = interval.place;
+  const double collision = interval.collision;
   interval = {};
-  interval.place = place;
+  interval.collision = collision;
   interval.begin = interval.end = time;
   interval.from_start = time > 0.0 ? 0.0 : 1.0;
   // The first instant with a force can be the end of the first step.
   const bool in_first_step = time < first_step_;
-  interval.from_inside = in_first_step && places_[static_cast<std::size_t>(place)].begins_inside ? 1.0 : 0.0;
+  interval.from_inside =
+      in_first_step && collision_pairs_[static_cast<std::size_t>(collision)].begins_inside ? 1.0 : 0.0;
   interval.intervals = 1.0;
-  interval.first_place = first.leading >= 0 ? place_of(first.leading) : first.leading_place;
-  const Place& at = places_[static_cast<std::size_t>(interval.place)];
+  interval.first_position = first.leading >= 0 ? reference_position(first.leading) : first.leading_place;
+  const CollisionPair& at = collision_pairs_[static_cast<std::size_t>(interval.collision)];
   interval.before = motion_of(at.body);
   if (at.other >= 0) interval.other_before = motion_of(at.other);
   interval.method_before = method_before_;
@@ -291,10 +294,10 @@ Impact ImpactRecorder::describe(const Interval& interval) const {
     return RigidMotionState{vector_of(numbers.velocity), vector_of(numbers.spin), numbers.kinetic,
                             numbers.rigid_kinetic};
   };
-  const Place& place = places_[static_cast<std::size_t>(interval.place)];
+  const CollisionPair& collision = collision_pairs_[static_cast<std::size_t>(interval.collision)];
   Impact result;
-  result.body = place.body;
-  result.obstacle = place.obstacle;
+  result.body = collision.body;
+  result.obstacle = collision.obstacle;
   result.begin = interval.begin;
   result.end = interval.end;
   result.ended = interval.phase != touching;
@@ -307,24 +310,24 @@ Impact ImpactRecorder::describe(const Interval& interval) const {
   result.largest_force = interval.largest;
   result.largest_force_time = interval.largest_time;
   result.contact_points = std::lround(interval.most_points);
-  result.all_contact_points = place.points;
-  result.first_place.assign(interval.first_place.begin(), interval.first_place.begin() + problem_.dimension);
+  result.all_contact_points = collision.points;
+  result.first_position.assign(interval.first_position.begin(), interval.first_position.begin() + problem_.dimension);
   if (interval.pressing > 0.0) {
     result.obstacle_velocity = interval.travel / interval.pressing;
     result.obstacle_sliding = vector_of(interval.sliding) / interval.pressing;
   }
-  const RigidBody& body = rigid_.bodies()[static_cast<std::size_t>(place.body)];
+  const RigidBody& body = rigid_.bodies()[static_cast<std::size_t>(collision.body)];
   result.mass = body.mass;
   result.held = body.held;
   result.before = motion(interval.before);
   if (result.ended) result.after = motion(interval.after);
-  if (place.other >= 0) {
-    const RigidBody& other = rigid_.bodies()[static_cast<std::size_t>(place.other)];
-    result.other = OtherBody{place.other, other.mass, motion(interval.other_before), {}, other.held};
+  if (collision.other >= 0) {
+    const RigidBody& other = rigid_.bodies()[static_cast<std::size_t>(collision.other)];
+    result.other = OtherBody{collision.other, other.mass, motion(interval.other_before), {}, other.held};
     if (result.ended) result.other->after = motion(interval.other_after);
   }
   result.method_energy = (result.ended ? interval.method_after : method_before_) - interval.method_before;
-  if (result.ended) result.turn_growth = growth_in(interval, result);
+  if (result.ended) result.rotation_growth = growth_in(interval, result);
   return result;
 }
 

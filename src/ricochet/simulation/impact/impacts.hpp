@@ -46,7 +46,7 @@ class ImpactRecorder {
   /// Marks contact points that are inside their obstacle, or the opposite body, when the run begins.
   void begin_inside(const std::vector<Index>& points);
   /// Enters a step with the forces at its end (in the state) and the energy that the time discretization has put into
-  /// the bodies since the start (EnergyAccount::of_method). Allocates nothing.
+  /// the bodies since the start (EnergyAccount::method_energy). Allocates nothing.
   void enter_step(const State& state, double method_energy);
   /// Accounts for an instantaneous change of the bodies' velocities. The restitution of an ongoing impact then includes
   /// it.
@@ -66,8 +66,8 @@ class ImpactRecorder {
   };
   /// Consists of double only, so that a snapshot stores it directly.
   struct Interval {
-    double place;  ///< index in places_
-    double phase;  ///< no_contact, touching or apart: lost, but it may be regained
+    double collision;  ///< index in collision_pairs_
+    double phase;      ///< no_contact, touching or apart: lost, but it may be regained
     double begin, end, from_start, from_inside, intervals, contact_time;
     Three impulse, normal_impulse;
     /// Σ h r_N over instants, and Σ r_N times the obstacle's motion along the normal and across it.
@@ -75,7 +75,7 @@ class ImpactRecorder {
     Three sliding;
     double largest, largest_time;
     double most_points;
-    Three first_place;
+    Three first_position;
     Motion before, after;
     Motion other_before, other_after;  ///< of the other body
     double method_before, method_after;
@@ -85,7 +85,7 @@ class ImpactRecorder {
   /// Phases of an interval, stored as numbers too.
   static constexpr double no_contact = 0.0, touching = 1.0, apart = 2.0;
   /// Collision pair: a body and an obstacle, or another body, that can touch.
-  struct Place {
+  struct CollisionPair {
     int body;
     int other;  ///< the other body; −1: an obstacle
     std::string obstacle;
@@ -117,7 +117,7 @@ class ImpactRecorder {
   /// Fraction of a point's force that acts on the body of a collision pair.
   struct PointPart {
     Index point;
-    std::size_t place;
+    std::size_t collision;
     double part;
   };
   class BodyOrder;
@@ -130,19 +130,19 @@ class ImpactRecorder {
   void find_other_forces();
   void add_along_axis(Index point, double part, const SpaceVector& own, const StepForces& acting,
                       const ObstacleMotion& travel, Force& force) const;
-  [[nodiscard]] Acting acting_in(std::size_t place) const;
+  [[nodiscard]] Acting acting_in(std::size_t collision) const;
   void take_velocity(const State& state, Vector& velocity);
-  void enter_collision_pair(std::size_t place, double instant);
+  void enter_collision_pair(std::size_t collision, double instant);
   [[nodiscard]] Motion motion_of(int body) const;
   [[nodiscard]] double separation_at(const Interval& interval) const;
-  void let_go(Interval& interval) const;
+  void release(Interval& interval) const;
   void touch(Interval& interval, const Acting& acting, double instant);
-  void add_impulses(Interval& interval, std::size_t place) const;
+  void add_impulses(Interval& interval, std::size_t collision) const;
   void begin(Interval& interval, double time, const Force& first);
   void compute_rotations(Interval& interval);
   [[nodiscard]] bool grows_as_it_turns(int body) const;
   [[nodiscard]] double growth_in(const Interval& interval, const Impact& impact) const;
-  [[nodiscard]] Three place_of(Index point) const;
+  [[nodiscard]] Three reference_position(Index point) const;
   static void take_largest(Interval& interval, const Force& force, double instant);
   void file(const Interval& interval);
   [[nodiscard]] Impact describe(const Interval& interval) const;
@@ -151,7 +151,7 @@ class ImpactRecorder {
   const Scheme& scheme_;
   RigidBodies rigid_;
   std::vector<double> separation_;
-  std::vector<Place> places_;
+  std::vector<CollisionPair> collision_pairs_;
   std::vector<PointPart> parts_;  ///< ordered by points
   std::vector<Force> previous_, current_;
   /// Forces of Scheme::other_parts.

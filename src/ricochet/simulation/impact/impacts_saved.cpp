@@ -41,7 +41,7 @@ void ImpactRecorder::load(const Snapshot& snapshot, const std::string& name) {
   const auto damaged = [&] {
     throw Error(ErrorKind::invalid_input, "the checkpoint's record of impacts is not one of this case");
   };
-  from_numbers(snapshot.reals(name + ".open", size * static_cast<Index>(places_.size())), open_);
+  from_numbers(snapshot.reals(name + ".open", size * static_cast<Index>(collision_pairs_.size())), open_);
   const Vector& filed = snapshot.reals(name + ".filed");
   if (filed.size() % size != 0 || filed.size() / size > static_cast<Index>(most_impacts)) damaged();
   from_numbers(filed, completed_);
@@ -50,16 +50,16 @@ void ImpactRecorder::load(const Snapshot& snapshot, const std::string& name) {
   for (const auto* list : {&open_, &completed_}) {
     for (const Interval& interval : *list) {
       // Also false for NaN.
-      if (!(interval.place >= 0.0 && interval.place < static_cast<double>(places_.size()))) damaged();
-      if (interval.place != std::floor(interval.place)) damaged();
+      if (!(interval.collision >= 0.0 && interval.collision < static_cast<double>(collision_pairs_.size()))) damaged();
+      if (interval.collision != std::floor(interval.collision)) damaged();
       if (interval.phase != no_contact && interval.phase != touching && interval.phase != apart) damaged();
       for (const double count : {interval.intervals, interval.most_points}) {
         if (!(count >= 0.0 && count < largest_count)) damaged();
       }
     }
   }
-  for (std::size_t place = 0; place < places_.size(); ++place) {
-    if (open_[place].place != static_cast<double>(place)) damaged();
+  for (std::size_t collision = 0; collision < collision_pairs_.size(); ++collision) {
+    if (open_[collision].collision != static_cast<double>(collision)) damaged();
   }
 }
 

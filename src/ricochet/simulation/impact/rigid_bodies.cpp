@@ -212,7 +212,7 @@ const std::vector<RigidMotionState>& RigidBodies::motion(const Vector& velocity,
     RigidMotionState& state = motion_[origin_.size() + k];
     const auto own = velocity.segment(body.centre_node() * d, 2 * d);
     state.velocity.head(d) = own.head(d);
-    state.spin.tail(body.gyration().size()) = body.spin(displacement, velocity);
+    state.spin.tail(body.gyration().size()) = body.angular_velocity(displacement, velocity);
     state.kinetic_energy = state.rigid_kinetic_energy = 0.5 * body.inertia().mass * own.squaredNorm();
   }
   return motion_;

@@ -4,7 +4,7 @@
 
 namespace ricochet {
 
-double turn_growth(const RotatingBody& body, const Eigen::Vector3d& outward, double duration) {
+double rotation_growth(const RotatingBody& body, const Eigen::Vector3d& outward, double duration) {
   // Rate of −½ φ × (φ × a) · n = ½ (φ² a·n − (φ·a) (φ·n)), for the rotation φ and the spin that changes it.
   const auto rate = [&](const Eigen::Vector3d& turn, const Eigen::Vector3d& spin) {
     return turn.dot(spin) * body.arm.dot(outward) -
@@ -19,8 +19,8 @@ double turn_growth(const RotatingBody& body, const Eigen::Vector3d& outward, dou
 }
 
 double restitution_excess(const Impact& impact) {
-  if (impact.turn_growth == 0.0 || !impact.restitution()) return 0.0;
-  return 2.0 * impact.turn_growth / -impact.normal_velocity_before();
+  if (impact.rotation_growth == 0.0 || !impact.restitution()) return 0.0;
+  return 2.0 * impact.rotation_growth / -impact.normal_velocity_before();
 }
 
 bool is_distorted_by_rotation(const Impact& impact) {

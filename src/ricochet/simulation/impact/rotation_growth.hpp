@@ -19,7 +19,7 @@ struct RotatingBody {
 
 /// Returns ⟨g⟩ along a direction out of the body, for a force ∝ sin(πt/T) over the duration T and the spin that it
 /// changes.
-[[nodiscard]] double turn_growth(const RotatingBody& body, const Eigen::Vector3d& outward, double duration);
+[[nodiscard]] double rotation_growth(const RotatingBody& body, const Eigen::Vector3d& outward, double duration);
 
 /// Returns the excess of a restitution due to this growth; 0 if there is no restitution.
 [[nodiscard]] double restitution_excess(const Impact& impact);

@@ -86,7 +86,7 @@ template <class Accept>
 BodySurface::Closest BodySurface::closest_of(const Eigen::Vector3d& point, const Accept& accept) const {
   Closest best{std::numeric_limits<double>::infinity(), Eigen::Vector3d::Zero(), -1, {-1, -1, -1}};
   const std::vector<BoxTree::Node>& nodes = tree_.nodes();
-  std::array<int, BoxTree::deepest> waiting{};
+  std::array<int, BoxTree::max_depth> waiting{};
   std::size_t count = 1;
   while (count > 0) {
     const int number = waiting[--count];

@@ -35,7 +35,7 @@ BodyWatch::BodyWatch(const Points& positions, const std::vector<CellBlock>& cell
     resolution_ = std::min(resolution_, motion_between_looks * surfaces_.back().edge_length());
     nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
   }
-  seen_.setZero(static_cast<Index>(nodes_.size()) * positions.rows());
+  last_displacement_.setZero(static_cast<Index>(nodes_.size()) * positions.rows());
   set_allowances(kept, bodies);
 }
 
@@ -45,38 +45,38 @@ void BodyWatch::set_allowances(const std::vector<ContactNodeAllowance>& kept, co
     const std::vector<Index>& nodes = surfaces_[static_cast<std::size_t>(of)].nodes();
     const auto at = std::lower_bound(nodes.begin(), nodes.end(), one.node);
     if (at == nodes.end() || *at != one.node) continue;
-    std::vector<Kept>& list = kept_[{of, one.other}];
+    std::vector<Allowance>& list = allowances_[{of, one.other}];
     list.resize(nodes.size());
-    Kept& entry = list[static_cast<std::size_t>(at - nodes.begin())];
+    Allowance& entry = list[static_cast<std::size_t>(at - nodes.begin())];
     if (one.allowance > entry.allowance) entry = {one.allowance, one.contact, one.entry};
   }
 }
 
 /// Gaps of nodes that face nothing are NaN.
-double BodyWatch::Kept::depth_allowed(const Vector& gap) const {
+double BodyWatch::Allowance::depth_allowed(const Vector& gap) const {
   return allowance + (entry >= 0 && gap[entry] < 0.0 ? -gap[entry] : 0.0);
 }
 
-void BodyWatch::look(const Vector& displacement, double time, bool now, const NodeGaps& gaps) {
+void BodyWatch::check(const Vector& displacement, double time, bool now, const NodeGaps& gaps) {
   if (surfaces_.empty()) return;
-  const bool due = looks_ == 0 || is_due(displacement);
+  const bool due = checks_ == 0 || is_due(displacement);
   if (!due && !now) return;
   for (BodySurface& surface : surfaces_) surface.move(positions_, displacement);
-  gap_ = kept_.empty() ? nullptr : &gaps();
+  gap_ = allowances_.empty() ? nullptr : &gaps();
   double apart = std::numeric_limits<double>::infinity();
   const int count = static_cast<int>(surfaces_.size());
   for (int first = 0; first < count; ++first) {
     for (int second = first + 1; second < count; ++second) {
-      const double between = look_at(first, second, time);
+      const double between = check_pair(first, second, time);
       apart =
           std::min(apart, has_found(first, second) ? std::max(between, resolution_of_found * resolution_) : between);
     }
   }
   if (!due) return;
-  ++looks_;
+  ++checks_;
   const Index d = positions_.rows();
   for (std::size_t i = 0; i < nodes_.size(); ++i)
-    seen_.segment(static_cast<Index>(i) * d, d) = displacement.segment(nodes_[i] * d, d);
+    last_displacement_.segment(static_cast<Index>(i) * d, d) = displacement.segment(nodes_[i] * d, d);
   free_way_ = 0.5 * std::max(apart, resolution_);  // both bodies may have moved
 }
 
@@ -86,7 +86,7 @@ bool BodyWatch::is_due(const Vector& displacement) const {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     double squared = 0.0;
     for (Index k = 0; k < d; ++k) {
-      const double moved = displacement[nodes_[i] * d + k] - seen_[static_cast<Index>(i) * d + k];
+      const double moved = displacement[nodes_[i] * d + k] - last_displacement_[static_cast<Index>(i) * d + k];
       squared += moved * moved;
     }
     if (squared >= limit) return true;
@@ -94,7 +94,7 @@ bool BodyWatch::is_due(const Vector& displacement) const {
   return false;
 }
 
-double BodyWatch::look_at(int first, int second, double time) {
+double BodyWatch::check_pair(int first, int second, double time) {
   const Eigen::AlignedBox3d& box = surfaces_[static_cast<std::size_t>(first)].box();
   const double apart = box.exteriorDistance(surfaces_[static_cast<std::size_t>(second)].box());
   if (apart > 0.0) return apart;
@@ -106,7 +106,7 @@ double BodyWatch::check_nodes(int of, int inside, double time) {
   const BodySurface& other = surfaces_[static_cast<std::size_t>(inside)];
   const double size = std::min(size_[static_cast<std::size_t>(of)], size_[static_cast<std::size_t>(inside)]);
   double apart = std::numeric_limits<double>::infinity();
-  const auto kept = kept_.find({of, inside});
+  const auto kept = allowances_.find({of, inside});
   for (std::size_t i = 0; i < own.nodes().size(); ++i) {
     const Eigen::Vector3d& position = own.positions()[i];
     double distance = other.box().exteriorDistance(position);
@@ -114,7 +114,7 @@ double BodyWatch::check_nodes(int of, int inside, double time) {
     apart = std::min(apart, std::abs(distance));
     const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * position.lpNorm<Eigen::Infinity>();
     if (-distance <= std::max(rounding_of_depth * size, rounding)) continue;
-    const Kept here = kept != kept_.end() ? kept->second[i] : Kept{};
+    const Allowance here = kept != allowances_.end() ? kept->second[i] : Allowance{};
     if (here.contact >= 0 && -distance <= here.depth_allowed(*gap_)) continue;
     BodyPair& pair = pair_of(std::min(of, inside), std::max(of, inside));
     if (here.contact < 0) {
@@ -147,9 +147,9 @@ void BodyWatch::save(Snapshot& snapshot, const std::string& name) const {
     pairs.segment<numbers>(numbers * static_cast<Index>(i)) << pairs_[i].first, pairs_[i].second, pairs_[i].contact,
         pairs_[i].deepest.to_numbers(), pairs_[i].at_contact.to_numbers();
   snapshot.save(name + ".pairs", pairs);
-  snapshot.save(name + ".seen", seen_);
+  snapshot.save(name + ".seen", last_displacement_);
   snapshot.save(name + ".free_way", free_way_);
-  snapshot.save(name + ".looks", std::int64_t{looks_});
+  snapshot.save(name + ".looks", std::int64_t{checks_});
 }
 
 void BodyWatch::load(const Snapshot& snapshot, const std::string& name) {
@@ -161,9 +161,9 @@ void BodyWatch::load(const Snapshot& snapshot, const std::string& name) {
                       DeepestPoint::from_numbers(pairs.segment<DeepestPoint::numbers>(i + 3)),
                       DeepestPoint::from_numbers(pairs.segment<DeepestPoint::numbers>(i + 3 + DeepestPoint::numbers)),
                       static_cast<int>(pairs[i + 2])});
-  seen_ = snapshot.reals(name + ".seen", seen_.size());
+  last_displacement_ = snapshot.reals(name + ".seen", last_displacement_.size());
   free_way_ = snapshot.real(name + ".free_way");
-  looks_ = snapshot.integer(name + ".looks");
+  checks_ = snapshot.integer(name + ".looks");
 }
 
 }  // namespace ricochet

@@ -42,15 +42,15 @@ class BodyWatch {
 
   /// Checks the bodies after a step if a check is due, or if `now` (which leaves the next due check unchanged). Calls
   /// `gaps` if it checks and there are nodes of contacts. Allocates nothing unless an overlap is found.
-  void look(const Vector& displacement, double time, bool now, const NodeGaps& gaps = {});
+  void check(const Vector& displacement, double time, bool now, const NodeGaps& gaps = {});
 
   [[nodiscard]] const std::vector<BodyPair>& pairs() const { return pairs_; }
-  [[nodiscard]] long looks() const { return looks_; }
+  [[nodiscard]] long checks() const { return checks_; }
 
  private:
   [[nodiscard]] bool is_due(const Vector& displacement) const;
   /// Returns a lower bound of the distance between two bodies; 0 if they are not separated.
-  double look_at(int first, int second, double time);
+  double check_pair(int first, int second, double time);
   double check_nodes(int of, int inside, double time);
   void set_allowances(const std::vector<ContactNodeAllowance>& kept, const ConnectedBodies& bodies);
   [[nodiscard]] bool has_found(int first, int second) const;
@@ -61,19 +61,20 @@ class BodyWatch {
   std::vector<double> size_;           ///< per body
   std::vector<BodyPair> pairs_;        ///< pairs of overlapping bodies
   /// Allowance of a contact for a surface node inside another body.
-  struct Kept {
+  struct Allowance {
     double allowance = 0.0;  ///< 0: no contact
     int contact = -1;
     Index entry = -1;
     [[nodiscard]] double depth_allowed(const Vector& gap) const;
   };
-  const Vector* gap_ = nullptr;                            ///< gaps of contact nodes during a check
-  std::map<std::pair<int, int>, std::vector<Kept>> kept_;  ///< (body of the node, other body) → per surface node
+  const Vector* gap_ = nullptr;  ///< gaps of contact nodes during a check
+  std::map<std::pair<int, int>, std::vector<Allowance>>
+      allowances_;            ///< (body of the node, other body) → per surface node
   double resolution_ = 0.0;   ///< relative motion of neighbouring bodies between two checks
   std::vector<Index> nodes_;  ///< of all surfaces
-  Vector seen_;               ///< displacement at the last check, d per node
+  Vector last_displacement_;  ///< displacement at the last check, d per node
   double free_way_ = 0.0;     ///< distance that a node may move before the next check
-  long looks_ = 0;
+  long checks_ = 0;
 };
 
 }  // namespace ricochet

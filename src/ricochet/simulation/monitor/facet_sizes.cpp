@@ -72,7 +72,7 @@ std::vector<ContactNodeAllowance> contact_node_allowances(const Body& body, cons
   for (std::size_t number = 0; number < pairs.size(); ++number) {
     const ContactPair& pair = pairs[number];
     if (!pair.has_two_sides()) continue;
-    if (pair.slides_far) {
+    if (pair.large_sliding) {
       add_sliding_nodes(body, contact, pair, static_cast<int>(number), body_of_node, result);
       continue;
     }
@@ -100,7 +100,7 @@ std::vector<ContactNodeAllowance> contact_node_allowances(const Body& body, cons
 Vector slip_limits(const Body& body, const ContactBoundary& contact, const std::vector<ContactPair>& pairs) {
   Vector result = Vector::Zero(contact.size());
   for (std::size_t number = 0; number < pairs.size(); ++number) {
-    if (!pairs[number].has_two_sides() || pairs[number].slides_far) continue;
+    if (!pairs[number].has_two_sides() || pairs[number].large_sliding) continue;
     const FacetSizes own = facet_sizes(body, pairs[number].facets),
                      opposite = facet_sizes(body, pairs[number].opposite_facets);
     for (Index point = 0; point < contact.size(); ++point) {

@@ -39,10 +39,10 @@ LateContactWatch::LateContactWatch(const Body& body, const SemidiscreteProblem& 
   }
 }
 
-void LateContactWatch::look(const State& state) {
+void LateContactWatch::check(const State& state) {
   bool known = false;
   for (Contact& contact : contacts_) {
-    if (contact.told) continue;
+    if (contact.is_warned) continue;
     const bool acts = std::any_of(contact.points.begin(), contact.points.end(),
                                   [&](Index point) { return state.forces.normal_reaction[point] > 0.0; });
     if (acts) continue;
@@ -51,12 +51,12 @@ void LateContactWatch::look(const State& state) {
     const auto inside = std::find_if(contact.nodes.begin(), contact.nodes.end(),
                                      [&](const Node& node) { return gap_[node.entry] < -node.allowance; });
     if (inside == contact.nodes.end()) continue;
-    contact.told = true;
-    tell(contact, inside->entry, state.time);
+    contact.is_warned = true;
+    warn(contact, inside->entry, state.time);
   }
 }
 
-void LateContactWatch::tell(const Contact& contact, Index entry, double time) const {
+void LateContactWatch::warn(const Contact& contact, Index entry, double time) const {
   const ContactPair& pair = pairs_[contact.number];
   const Vector place = problem_.nodes.col(problem_.contact.nodes[static_cast<std::size_t>(entry)]);
   log::warning(fmt::format(
@@ -69,13 +69,13 @@ void LateContactWatch::tell(const Contact& contact, Index entry, double time) co
 
 void LateContactWatch::save(Snapshot& snapshot, const std::string& name) const {
   Snapshot::Integers told;
-  for (const Contact& contact : contacts_) told.push_back(contact.told ? 1 : 0);
+  for (const Contact& contact : contacts_) told.push_back(contact.is_warned ? 1 : 0);
   snapshot.save(name + ".told", told);
 }
 
 void LateContactWatch::load(const Snapshot& snapshot, const std::string& name) {
   const Snapshot::Integers& told = snapshot.integers(name + ".told", 0, 1);
-  for (std::size_t i = 0; i < std::min(told.size(), contacts_.size()); ++i) contacts_[i].told = told[i] != 0;
+  for (std::size_t i = 0; i < std::min(told.size(), contacts_.size()); ++i) contacts_[i].is_warned = told[i] != 0;
 }
 
 }  // namespace ricochet

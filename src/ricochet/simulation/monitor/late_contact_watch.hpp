@@ -21,7 +21,7 @@ class LateContactWatch {
 
   /// Checks the starting state and the state after every step: warns, once, of each contact between bodies that carries
   /// no force while one of its nodes is inside the other body by more than a tenth of the largest facet there.
-  void look(const State& state);
+  void check(const State& state);
 
  private:
   struct Node {
@@ -32,9 +32,9 @@ class LateContactWatch {
     std::size_t number = 0;
     std::vector<Index> points;
     std::vector<Node> nodes;
-    bool told = false;
+    bool is_warned = false;
   };
-  void tell(const Contact& contact, Index entry, double time) const;
+  void warn(const Contact& contact, Index entry, double time) const;
 
   const SemidiscreteProblem& problem_;
   const std::vector<ContactPair>& pairs_;

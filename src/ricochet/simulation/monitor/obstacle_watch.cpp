@@ -64,7 +64,7 @@ bool ObstacleWatch::is_held_by_supports(std::size_t obstacle, Index node) const 
   return true;
 }
 
-void ObstacleWatch::look(const State& state) {
+void ObstacleWatch::check(const State& state) {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     if (obstacles_[k]->moves() || obstacles_[k]->free_motion() != nullptr)
       placed_[k] = obstacles_[k]->at(state.time, state.displacement);
@@ -79,7 +79,7 @@ double ObstacleWatch::gap(std::size_t obstacle, Index node, const Vector& displa
   return placed_[obstacle].gap(position_);
 }
 
-void ObstacleWatch::look_at_start(const State& state) {
+void ObstacleWatch::check_start(const State& state) {
   std::vector<char> on_boundary(static_cast<std::size_t>(problem_.nodes.cols()), 0);
   for (const Index node : problem_.contact.nodes) on_boundary[static_cast<std::size_t>(node)] = 1;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
@@ -137,7 +137,7 @@ void ObstacleWatch::save(Snapshot& snapshot, const std::string& name) const {
   Vector rims(6 * static_cast<Index>(rims_.size()));
   for (std::size_t i = 0; i < rims_.size(); ++i) {
     const RimContact& rim = rims_[i];
-    rims.segment<6>(6 * static_cast<Index>(i)) << rim.pair, static_cast<double>(rim.node), rim.time, rim.place;
+    rims.segment<6>(6 * static_cast<Index>(i)) << rim.pair, static_cast<double>(rim.node), rim.time, rim.position;
   }
   snapshot.save(name + ".rims", rims);
 }

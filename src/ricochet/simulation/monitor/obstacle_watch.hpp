@@ -15,7 +15,7 @@ struct RimContact {
   int pair = 0;     ///< index of the ContactPair
   Index node = -1;  ///< on the border of the group
   double time = 0.0;
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 
 /// Checks the nodes of the boundary against each obstacle, except for the contact nodes of that obstacle (whose gaps
@@ -33,10 +33,10 @@ class ObstacleWatch {
   void load(const Snapshot& snapshot, const std::string& name);
 
   /// Checks a state. Allocates nothing.
-  void look(const State& state);
+  void check(const State& state);
   /// Checks all nodes except those of contacts: even a body whose boundary coincides with that of its obstacle may be
   /// inside.
-  void look_at_start(const State& state);
+  void check_start(const State& state);
 
   /// Deepest point of the boundary in each obstacle.
   [[nodiscard]] const std::vector<DeepestPoint>& deepest() const { return deepest_; }

@@ -12,8 +12,8 @@ inline constexpr int stress_raisers = 5;
 struct PeakStressResult {
   double von_mises = 0.0, time = 0.0;
   long step = 0;
-  Index cell = -1;             ///< numbered through all blocks; −1: not evaluated yet
-  long looks = 0, states = 0;  ///< evaluated states, and all states
+  Index cell = -1;                   ///< numbered through all blocks; −1: not evaluated yet
+  long evaluations = 0, states = 0;  ///< evaluated states, and all states
   StressRaiser raised_by = StressRaiser::none;
 };
 

@@ -16,7 +16,7 @@ struct UnwatchedPenetration {
   double depth = 0.0;
   double relative_depth = 0.0;  ///< to the diameter of the smallest ball around the (smaller) body
   double time = 0.0;
-  std::vector<double> place;        ///< of the node, at that time
+  std::vector<double> position;     ///< of the node, at that time
   double first_time = 0.0;          ///< time of its detection
   std::vector<std::string> groups;  ///< boundary groups of the mesh that the node belongs to
   /// Both groups of the contact at the node, which is deeper than the contact allows; empty if there is no contact.
@@ -33,7 +33,7 @@ struct UnwatchedPenetration {
 struct ContactBeyondRim {
   std::string group, obstacle;
   double time = 0.0;
-  std::vector<double> place;
+  std::vector<double> position;
   std::vector<std::string> groups;  ///< boundary groups of the facets beyond the group
 };
 

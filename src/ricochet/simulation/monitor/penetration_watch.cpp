@@ -82,13 +82,13 @@ PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& 
   }
 }
 
-void PenetrationWatch::look(const State& state) {
-  if (looks_ == 0) obstacles_.look_at_start(state);
-  ++looks_;
-  obstacles_.look(state);
-  passages_.look(state);
+void PenetrationWatch::check(const State& state) {
+  if (checks_ == 0) obstacles_.check_start(state);
+  ++checks_;
+  obstacles_.check(state);
+  passages_.check(state);
   check_bodies(state, false);
-  tell();
+  warn();
 }
 
 void PenetrationWatch::check_bodies(const State& state, bool now) {
@@ -97,23 +97,23 @@ void PenetrationWatch::check_bodies(const State& state, bool now) {
     problem_.node_gaps(state.displacement, state.time, node_gap_);
     return node_gap_;
   };
-  body_watch_.look(state.displacement, state.time, now, gaps);
-  self_watch_.look(state.displacement, state.time, now, gaps);
+  body_watch_.check(state.displacement, state.time, now, gaps);
+  self_watch_.check(state.displacement, state.time, now, gaps);
 }
 
 void PenetrationWatch::check_end(const State& state) {
   check_bodies(state, true);
-  tell();
+  warn();
 }
 
-void PenetrationWatch::tell() {
+void PenetrationWatch::warn() {
   for (std::size_t k = 0; k < named_.size(); ++k) {
     if (obstacle_warned_[k] != 0 || !obstacles_.deepest()[k].found()) continue;
     obstacle_warned_[k] = 1;
     const UnwatchedPenetration p = in_obstacle(k);
     log::warning(fmt::format("{} {} is {} inside obstacle \"{}\" at {}, where no contact keeps it out: {}; {}",
                              words::when(p.time), p.bodies.front(), words::depth_text(p), p.obstacle,
-                             words::coordinates(p.place), advice(k), words::see_summary));
+                             words::coordinates(p.position), advice(k), words::see_summary));
   }
   for (std::size_t k = 0; k < named_.size(); ++k) {
     if (tunnelling_warned_[k] != 0 || !passages_.passages()[k].found()) continue;
@@ -122,14 +122,14 @@ void PenetrationWatch::tell() {
     log::warning(
         fmt::format("{} a node of {} at {} has gone through obstacle \"{}\" within one step, which no contact can "
                     "see; take a time.step in which bodies move by less than the obstacle is thick",
-                    words::when(p.time), p.bodies.front(), words::coordinates(p.place), p.obstacle));
+                    words::when(p.time), p.bodies.front(), words::coordinates(p.position), p.obstacle));
   }
   for (; rims_warned_ < obstacles_.rims().size(); ++rims_warned_) {
     const ContactBeyondRim rim = beyond(obstacles_.rims()[rims_warned_]);
     log::warning(
         fmt::format("{} the contact of group \"{}\" with \"{}\" has reached the rim of the group, at {}: what lies "
                     "beyond it goes into the obstacle unhindered; add the boundary beyond it to the group{}",
-                    words::when(rim.time), rim.group, rim.obstacle, words::coordinates(rim.place),
+                    words::when(rim.time), rim.group, rim.obstacle, words::coordinates(rim.position),
                     rim.groups.empty() ? "" : fmt::format(" ({})", join_names(rim.groups))));
   }
   warn_of_bodies();
@@ -143,7 +143,7 @@ void PenetrationWatch::warn_of_bodies() {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (pairs_warned_[i] == 0 && pairs[i].deepest.found()) {
       pairs_warned_[i] = 1;
-      tell_of(pairs[i]);
+      warn_of(pairs[i]);
     }
     if (contacts_warned_[i] == 0 && pairs[i].at_contact.found()) {
       contacts_warned_[i] = 1;
@@ -152,7 +152,7 @@ void PenetrationWatch::warn_of_bodies() {
   }
 }
 
-void PenetrationWatch::tell_of(const BodyPair& pair) const {
+void PenetrationWatch::warn_of(const BodyPair& pair) const {
   const UnwatchedPenetration p = of_pair(pair);
   const std::vector<const ContactPair*> contacts = contacts_between(pair.first, pair.second);
   std::string why = "no [[contact]] keeps these bodies apart, they go through each other";
@@ -160,14 +160,14 @@ void PenetrationWatch::tell_of(const BodyPair& pair) const {
     std::vector<std::string> names;
     for (const ContactPair* contact : contacts)
       names.push_back(fmt::format("\"{}\" and \"{}\"", contact->first_group(), contact->second_group()));
-    const bool follows = std::all_of(contacts.begin(), contacts.end(), [](const auto* c) { return c->slides_far; });
+    const bool follows = std::all_of(contacts.begin(), contacts.end(), [](const auto* c) { return c->large_sliding; });
     why = fmt::format("the contact of {} does not reach so far{}", fmt::join(names, ", "),
                       follows ? "; extend the groups"
                               : ", or its groups did not face each other there; extend the groups, or pair them with "
                                 "pair_at where they meet");
   }
   log::warning(fmt::format("{} {} and {} overlap by {} at {}: {}; {}", words::when(p.time), p.bodies[0], p.bodies[1],
-                           words::depth_text(p), words::coordinates(p.place), why, words::see_summary));
+                           words::depth_text(p), words::coordinates(p.position), why, words::see_summary));
 }
 
 /// With sliding = "large" pairs follow the motion, so that remedies for exceeded small sliding do not help.
@@ -175,7 +175,7 @@ void PenetrationWatch::warn_at_contact(const BodyPair& pair) const {
   const UnwatchedPenetration p = at_contact(pair);
   const ContactPair& contact = pairs_[static_cast<std::size_t>(pair.contact)];
   const std::string why =
-      contact.slides_far
+      contact.large_sliding
           ? fmt::format(
                 "gaps are means over facets of \"{}\", which carries the multipliers, and this place does not "
                 "show in them: the force of this contact is not to be trusted from here on",
@@ -185,7 +185,7 @@ void PenetrationWatch::warn_at_contact(const BodyPair& pair) const {
   log::warning(
       fmt::format("{} {} and {} overlap by {} at {}, more than half a facet, though the contact of \"{}\" and \"{}\" "
                   "keeps that node out: {}; {}",
-                  words::when(p.time), p.bodies[0], p.bodies[1], words::depth_text(p), words::coordinates(p.place),
+                  words::when(p.time), p.bodies[0], p.bodies[1], words::depth_text(p), words::coordinates(p.position),
                   p.contact[0], p.contact[1], why, words::see_summary));
 }
 
@@ -240,7 +240,7 @@ std::vector<std::string> PenetrationWatch::groups_of(Index node) const {
   return names;
 }
 
-std::vector<double> PenetrationWatch::place_of(const Eigen::Vector3d& place) const {
+std::vector<double> PenetrationWatch::coordinates_of(const Eigen::Vector3d& place) const {
   return {place.data(), place.data() + body_.mesh->dimension};
 }
 
@@ -254,7 +254,7 @@ UnwatchedPenetration PenetrationWatch::describe(const DeepestPoint& deepest, con
   result.depth = deepest.depth;
   result.relative_depth = deepest.depth / size;
   result.time = deepest.time;
-  result.place = place_of(deepest.place);
+  result.position = coordinates_of(deepest.position);
   result.first_time = deepest.first_time;
   result.groups = groups_of(deepest.node);
   return result;
@@ -290,11 +290,11 @@ ContactBeyondRim PenetrationWatch::beyond(const RimContact& rim) const {
   const ContactPair& pair = pairs_[static_cast<std::size_t>(rim.pair)];
   std::vector<std::string> groups = groups_of(rim.node);
   std::erase(groups, pair.group);
-  return {pair.group, pair.obstacle_name, rim.time, place_of(rim.place), groups};
+  return {pair.group, pair.obstacle_name, rim.time, coordinates_of(rim.position), groups};
 }
 
 PenetrationReport PenetrationWatch::report() const {
-  PenetrationReport result{true, looks_, body_watch_.looks()};
+  PenetrationReport result{true, checks_, body_watch_.checks()};
   for (std::size_t k = 0; k < named_.size(); ++k) {
     if (obstacles_.deepest()[k].found()) result.found.push_back(in_obstacle(k));
     if (passages_.passages()[k].found()) result.found.push_back(through_obstacle(k));
@@ -308,14 +308,14 @@ PenetrationReport PenetrationWatch::report() const {
     if (body.at_contact.found()) result.found.push_back(self_penetration_at_contact(body));
   }
   for (const RimContact& rim : obstacles_.rims()) result.rims.push_back(beyond(rim));
-  result.self_penetration_checks = self_watch_.looks();
+  result.self_penetration_checks = self_watch_.checks();
   const auto is_free = [](const NamedObstacle& one) { return one.obstacle->free_motion() != nullptr; };
   if (named_.size() > 1 && std::any_of(named_.begin(), named_.end(), is_free))
     result.not_watched.emplace_back("rigid bodies against each other and other obstacles");
   if (const double unseen = self_watch_.unseen_motion(); unseen > most_unseen) {
     result.not_watched.push_back(
         fmt::format("{} between looks ({} of them, and nodes moved by up to {:.2g} edges in between)",
-                    bodies_in_themselves, self_watch_.looks(), unseen));
+                    bodies_in_themselves, self_watch_.checks(), unseen));
   }
   if (!self_watch_.watches())
     result.not_watched.push_back(std::string(bodies_in_themselves) + " (several processes have parts of them)");
@@ -327,7 +327,7 @@ void PenetrationWatch::save(Snapshot& snapshot, const std::string& name) const {
   passages_.save(snapshot, name + ".passages");
   body_watch_.save(snapshot, name + ".bodies");
   self_watch_.save(snapshot, name + ".themselves");
-  snapshot.save(name + ".looks", std::int64_t{looks_});
+  snapshot.save(name + ".looks", std::int64_t{checks_});
 }
 
 void PenetrationWatch::load(const Snapshot& snapshot, const std::string& name) {
@@ -335,7 +335,7 @@ void PenetrationWatch::load(const Snapshot& snapshot, const std::string& name) {
   passages_.load(snapshot, name + ".passages");
   body_watch_.load(snapshot, name + ".bodies");
   self_watch_.load(snapshot, name + ".themselves");
-  looks_ = snapshot.integer(name + ".looks");
+  checks_ = snapshot.integer(name + ".looks");
   // Everything that was found has been reported at once.
   for (std::size_t k = 0; k < obstacle_warned_.size(); ++k)
     obstacle_warned_[k] = obstacles_.deepest()[k].found() ? 1 : 0;

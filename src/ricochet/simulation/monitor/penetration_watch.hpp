@@ -33,10 +33,10 @@ class PenetrationWatch {
 
   /// Checks the starting state and the state after every step. Warns, once, of each obstacle, contact and pair of
   /// bodies. Allocates nothing if there is nothing to report.
-  void look(const State& state);
+  void check(const State& state);
   /// Checks the state after each part of a divided step, before look(): within the whole step a node may move round an
   /// edge.
-  void check_part(const State& state) { passages_.look(state); }
+  void check_part(const State& state) { passages_.check(state); }
   /// Checks the last state in addition: bodies even if none has moved far.
   void check_end(const State& state);
 
@@ -51,7 +51,7 @@ class PenetrationWatch {
   };
   [[nodiscard]] bool is_on_boundary(Index node) const;
   [[nodiscard]] std::vector<std::string> groups_of(Index node) const;
-  [[nodiscard]] std::vector<double> place_of(const Eigen::Vector3d& place) const;
+  [[nodiscard]] std::vector<double> coordinates_of(const Eigen::Vector3d& place) const;
   [[nodiscard]] UnwatchedPenetration describe(const DeepestPoint& deepest, const std::vector<int>& bodies) const;
   [[nodiscard]] UnwatchedPenetration in_obstacle(std::size_t obstacle) const;
   [[nodiscard]] UnwatchedPenetration through_obstacle(std::size_t obstacle) const;
@@ -62,16 +62,16 @@ class PenetrationWatch {
   /// Boundary groups of the mesh to which all nodes of a facet belong; node −1 is absent.
   [[nodiscard]] std::vector<std::string> groups_of_facet(const std::array<Index, 3>& nodes) const;
   [[nodiscard]] std::vector<const ContactPair*> contacts_between(int first, int second) const;
-  void tell_of(const BodyPair& pair) const;
+  void warn_of(const BodyPair& pair) const;
   void warn_at_contact(const BodyPair& pair) const;
   [[nodiscard]] ContactBeyondRim beyond(const RimContact& rim) const;
   /// Advice on a node that enters an obstacle without a contact.
   [[nodiscard]] std::string advice(std::size_t obstacle) const;
   void check_bodies(const State& state, bool now);
-  void tell();
+  void warn();
   void warn_of_bodies();
   void warn_of_self_penetration();
-  void tell_of(const SelfPenetration& found) const;
+  void warn_of(const SelfPenetration& found) const;
   void warn_at_contact(const SelfPenetration& found) const;
   /// Lines of a case that define a contact which keeps a body out of itself.
   [[nodiscard]] std::string contact_with_itself(int body, const UnwatchedPenetration& found) const;
@@ -88,7 +88,7 @@ class PenetrationWatch {
   const SemidiscreteProblem& problem_;
   Vector node_gap_;
   std::vector<BoundaryGroup> boundary_groups_;
-  long looks_ = 0;
+  long checks_ = 0;
   // Warnings that have been logged.
   std::vector<char> obstacle_warned_, tunnelling_warned_;
   std::size_t rims_warned_ = 0;

@@ -19,7 +19,7 @@ void PenetrationWatch::warn_of_self_penetration() {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (self_penetration_warned_[i] == 0 && bodies[i].deepest.found()) {
       self_penetration_warned_[i] = 1;
-      tell_of(bodies[i]);
+      warn_of(bodies[i]);
     }
     if (self_contact_warned_[i] == 0 && bodies[i].at_contact.found()) {
       self_contact_warned_[i] = 1;
@@ -28,7 +28,7 @@ void PenetrationWatch::warn_of_self_penetration() {
   }
 }
 
-void PenetrationWatch::tell_of(const SelfPenetration& found) const {
+void PenetrationWatch::warn_of(const SelfPenetration& found) const {
   const UnwatchedPenetration p = self_penetration(found);
   const auto named = [](const std::vector<std::string>& groups) {
     return groups.empty() ? std::string("which is in no boundary group of the mesh")
@@ -37,7 +37,7 @@ void PenetrationWatch::tell_of(const SelfPenetration& found) const {
   log::warning(fmt::format(
       "{} {} has gone through itself by {} at {}: boundary {} is inside of what lies behind boundary {}, and no "
       "[[contact]] keeps them apart; {}. {}",
-      words::when(p.time), p.bodies[0], words::depth_text(p), words::coordinates(p.place), named(p.groups),
+      words::when(p.time), p.bodies[0], words::depth_text(p), words::coordinates(p.position), named(p.groups),
       named(p.through_groups), words::see_summary, contact_with_itself(found.body, p)));
 }
 
@@ -75,8 +75,9 @@ void PenetrationWatch::warn_at_contact(const SelfPenetration& found) const {
   log::warning(fmt::format(
       "{} {} is inside of itself by {} at {}, more than half a facet, though the contact of \"{}\" and \"{}\" keeps "
       "that node out: {}; {}",
-      words::when(p.time), p.bodies[0], words::depth_text(p), words::coordinates(p.place), p.contact[0], p.contact[1],
-      pairs_[static_cast<std::size_t>(found.contact)].slides_far
+      words::when(p.time), p.bodies[0], words::depth_text(p), words::coordinates(p.position), p.contact[0],
+      p.contact[1],
+      pairs_[static_cast<std::size_t>(found.contact)].large_sliding
           ? "its parts came nearer by more in a step than the contact sees into them, or were squeezed to less than "
             "half of their thickness"
           : "the facets that faced each other at the start no longer do",

@@ -64,7 +64,7 @@ SelfWatch::SelfWatch(const Body& body, const SemidiscreteProblem& problem, const
     parts_.push_back(make_part(body, facets[number], bodies.sizes[number]));
     take_contacts(body, problem.contact, pairs, parts_.back());
     found_.emplace_back().body = static_cast<int>(number);
-    saved_ += most_saved * parts_.back().work;
+    work_budget_ += most_saved * parts_.back().work;
   }
 }
 
@@ -83,7 +83,7 @@ SelfWatch::Part SelfWatch::make_part(const Body& body, const std::vector<CellFac
   for (int node = 0; node < static_cast<int>(count); ++node)
     part.is_left_out.push_back(start.opening(node) < least_opening ? 1 : 0);
   part.at_start.setZero(static_cast<Index>(count));
-  part.seen.setZero(static_cast<Index>(count) * positions_.rows());
+  part.last_displacement.setZero(static_cast<Index>(count) * positions_.rows());
   part.size = size;
   part.work = (positions_.rows() == 2 ? work_per_node_in_plane : work_per_node_in_space) * static_cast<double>(count);
   return part;
@@ -126,30 +126,30 @@ void SelfWatch::take_contacts(const Body& body, const ContactBoundary& contact, 
   }
 }
 
-void SelfWatch::look(const Vector& displacement, double time, bool now, const NodeGaps& gaps) {
+void SelfWatch::check(const Vector& displacement, double time, bool now, const NodeGaps& gaps) {
   if (parts_.empty()) return;
   double all = 0.0;
   for (const Part& part : parts_) all += part.work;
-  saved_ = std::min(saved_ + work_per_step_, most_saved * all);
+  work_budget_ = std::min(work_budget_ + work_per_step_, most_saved * all);
   bool any = false;
   for (std::size_t number = 0; number < parts_.size(); ++number) {
     Part& part = parts_[number];
     const SelfPenetration& found = found_[number];
     const bool is_known = found.deepest.found() || found.at_contact.found();
     const double limit = (is_known ? motion_once_found : motion_before_look) * part.surface.edge_length();
-    const bool due = looks_ == 0 || (saved_ >= part.work && is_due(part, limit, displacement));
+    const bool due = checks_ == 0 || (work_budget_ >= part.work && is_due(part, limit, displacement));
     if (!due && !now) continue;
-    if (looks_ > 0) enter_unseen(part, displacement);
-    look_at(number, displacement, time, gaps);
+    if (checks_ > 0) enter_unseen(part, displacement);
+    check_body(number, displacement, time, gaps);
     if (!due) continue;
     any = true;
-    if (looks_ > 0 && std::isfinite(saved_)) saved_ -= part.work;
+    if (checks_ > 0 && std::isfinite(work_budget_)) work_budget_ -= part.work;
     const Index d = positions_.rows();
     const std::vector<Index>& nodes = part.surface.nodes();
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      part.seen.segment(static_cast<Index>(i) * d, d) = displacement.segment(nodes[i] * d, d);
+      part.last_displacement.segment(static_cast<Index>(i) * d, d) = displacement.segment(nodes[i] * d, d);
   }
-  if (any) ++looks_;
+  if (any) ++checks_;
 }
 
 /// Considers the motion relative to the mean one, which brings no two parts of the surface together.
@@ -158,7 +158,7 @@ bool SelfWatch::is_due(const Part& part, double limit, const Vector& displacemen
   const std::vector<Index>& nodes = part.surface.nodes();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   const auto moved = [&](std::size_t i, Index k) {
-    return displacement[nodes[i] * d + k] - part.seen[static_cast<Index>(i) * d + k];
+    return displacement[nodes[i] * d + k] - part.last_displacement[static_cast<Index>(i) * d + k];
   };
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (Index k = 0; k < d; ++k) mean[k] += moved(i, k);
@@ -175,17 +175,17 @@ bool SelfWatch::is_due(const Part& part, double limit, const Vector& displacemen
 /// Largest displacement of a node since the last check relative to the rigid motion that is nearest to that of the
 /// surface: a body that flies and spins has not approached itself.
 double SelfWatch::strain_since(const Part& part, const Vector& displacement) const {
-  using Three = Eigen::Vector3d;
+  using Vector3 = Eigen::Vector3d;
   const Index d = positions_.rows();
   const std::vector<Index>& nodes = part.surface.nodes();
   const auto place = [&](std::size_t i, const Vector& of, Index first) {
-    Three result = Three::Zero();
+    Vector3 result = Vector3::Zero();
     result.head(d) = positions_.col(nodes[i]) + of.segment(first, d);
     return result;
   };
-  const auto before = [&](std::size_t i) { return place(i, part.seen, static_cast<Index>(i) * d); };
+  const auto before = [&](std::size_t i) { return place(i, part.last_displacement, static_cast<Index>(i) * d); };
   const auto after = [&](std::size_t i) { return place(i, displacement, nodes[i] * d); };
-  Three first = Three::Zero(), last = Three::Zero();
+  Vector3 first = Vector3::Zero(), last = Vector3::Zero();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     first += before(i) / static_cast<double>(nodes.size());
     last += after(i) / static_cast<double>(nodes.size());
@@ -212,12 +212,12 @@ double SelfWatch::unseen_motion() const {
   return most;
 }
 
-void SelfWatch::look_at(std::size_t number, const Vector& displacement, double time, const NodeGaps& gaps) {
+void SelfWatch::check_body(std::size_t number, const Vector& displacement, double time, const NodeGaps& gaps) {
   Part& part = parts_[number];
   SelfPenetration& known = found_[number];
   part.surface.move(positions_, displacement);
   const SelfOverlap overlap(part.surface, axisymmetric_);
-  const bool at_start = looks_ == 0;
+  const bool at_start = checks_ == 0;
   part.clearance = std::numeric_limits<double>::infinity();
   const Vector* gap = nullptr;
   const std::vector<Index>& nodes = part.surface.nodes();
@@ -311,13 +311,13 @@ void SelfWatch::save(Snapshot& snapshot, const std::string& name) const {
     numbers.segment<numbers_of_body>(numbers_of_body * static_cast<Index>(k)) = to_numbers(found_[k]);
     const std::string part = name + "." + std::to_string(k);
     snapshot.save(part + ".at_start", parts_[k].at_start);
-    snapshot.save(part + ".seen", parts_[k].seen);
+    snapshot.save(part + ".seen", parts_[k].last_displacement);
     snapshot.save(part + ".unseen", Vector(Eigen::Vector2d(parts_[k].unseen, parts_[k].clearance)));
   }
   snapshot.save(name + ".found", numbers);
-  snapshot.save(name + ".saved", saved_);
+  snapshot.save(name + ".saved", work_budget_);
   snapshot.save(name + ".work", work_per_step_);
-  snapshot.save(name + ".looks", std::int64_t{looks_});
+  snapshot.save(name + ".looks", std::int64_t{checks_});
 }
 
 void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
@@ -342,22 +342,22 @@ void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
     }
     const std::string part = name + "." + std::to_string(k);
     parts_[k].at_start = snapshot.reals(part + ".at_start", parts_[k].at_start.size());
-    parts_[k].seen = snapshot.reals(part + ".seen", parts_[k].seen.size());
+    parts_[k].last_displacement = snapshot.reals(part + ".seen", parts_[k].last_displacement.size());
     if (!parts_[k].at_start.allFinite() || !(parts_[k].at_start.array() >= 0.0).all())
       Snapshot::refuse(part + ".at_start", "has entries that are no depths");
-    if (!parts_[k].seen.allFinite()) Snapshot::refuse(part + ".seen", "is not finite");
+    if (!parts_[k].last_displacement.allFinite()) Snapshot::refuse(part + ".seen", "is not finite");
     const Vector& unseen = snapshot.reals(part + ".unseen", 2);
     if (!(unseen[0] >= 0.0 && unseen[1] >= 0.0)) Snapshot::refuse(part + ".unseen", "has entries below zero");
     parts_[k].unseen = unseen[0];
     parts_[k].clearance = unseen[1];
   }
-  saved_ = snapshot.real(name + ".saved");
-  if (!(saved_ >= 0.0) || !std::isfinite(saved_)) Snapshot::refuse(name + ".saved", "is no work");
+  work_budget_ = snapshot.real(name + ".saved");
+  if (!(work_budget_ >= 0.0) || !std::isfinite(work_budget_)) Snapshot::refuse(name + ".saved", "is no work");
   // Infinite if all checks that are due are performed.
   work_per_step_ = snapshot.real(name + ".work");
   if (!(work_per_step_ >= 0.0)) Snapshot::refuse(name + ".work", "is no work");
-  looks_ = snapshot.integer(name + ".looks");
-  if (looks_ < 0) Snapshot::refuse(name + ".looks", "is negative");
+  checks_ = snapshot.integer(name + ".looks");
+  if (checks_ < 0) Snapshot::refuse(name + ".looks", "is negative");
 }
 
 }  // namespace ricochet

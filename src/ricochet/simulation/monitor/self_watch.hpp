@@ -50,12 +50,12 @@ class SelfWatch {
 
   /// Checks the bodies after a step if a check is due, or if `now` (which leaves the next due check unchanged).
   /// Allocates nothing.
-  void look(const Vector& displacement, double time, bool now, const NodeGaps& gaps);
+  void check(const Vector& displacement, double time, bool now, const NodeGaps& gaps);
 
   /// One entry per body; bodies with self-penetration have deepest.found() or at_contact.found().
   [[nodiscard]] const std::vector<SelfPenetration>& bodies() const { return found_; }
   [[nodiscard]] bool watches() const { return !parts_.empty(); }
-  [[nodiscard]] long looks() const { return looks_; }
+  [[nodiscard]] long checks() const { return checks_; }
   /// Largest distance, in mean edges, that a node has moved between two checks relative to a rigid motion of its body,
   /// counted only if parts that faced each other were near enough to meet by it: parts that pass into each other and
   /// out again within this distance are not detected.
@@ -82,7 +82,7 @@ class SelfWatch {
     std::vector<std::vector<Side>> sides;  ///< per node of the surface
     std::vector<char> is_left_out;         ///< likewise
     Vector at_start;                       ///< likewise, initial depth
-    Vector seen;                           ///< displacement at the last check, d per node
+    Vector last_displacement;              ///< displacement at the last check, d per node
     double unseen = 0.0;                   ///< see unseen_motion()
     double clearance = 0.0;                ///< least distance of nodes from surfaces that they face, at the last check
     double size = 0.0, work = 0.0;         ///< `work`: of a check, relative to reading a number
@@ -93,7 +93,7 @@ class SelfWatch {
   [[nodiscard]] double strain_since(const Part& part, const Vector& displacement) const;
   void enter_unseen(Part& part, const Vector& displacement) const;
   [[nodiscard]] bool is_due(const Part& part, double limit, const Vector& displacement) const;
-  void look_at(std::size_t number, const Vector& displacement, double time, const NodeGaps& gaps);
+  void check_body(std::size_t number, const Vector& displacement, double time, const NodeGaps& gaps);
   /// Contact that keeps a node apart from a piece; null if none.
   [[nodiscard]] static const Side* contact_at(const Part& part, int node, int piece);
   /// Distance between the flat pieces and the curved facet that they approximate.
@@ -102,10 +102,10 @@ class SelfWatch {
 
   const Points& positions_;
   bool axisymmetric_;
-  std::vector<Part> parts_;                   ///< per body
-  std::vector<SelfPenetration> found_;        ///< likewise
-  double work_per_step_ = 0.0, saved_ = 0.0;  ///< admissible work of checks, and the unused part
-  long looks_ = 0;
+  std::vector<Part> parts_;                         ///< per body
+  std::vector<SelfPenetration> found_;              ///< likewise
+  double work_per_step_ = 0.0, work_budget_ = 0.0;  ///< admissible work of checks, and the unused part
+  long checks_ = 0;
   int contacts_;  ///< number of ContactPairs
 };
 

@@ -12,7 +12,7 @@ struct PairSliding {
   int contact = 0;  ///< index of [[contact]]
   double slip = 0.0, limit = 0.0;
   double time = 0.0;
-  std::vector<double> place = {};  ///< reference position of the point
+  std::vector<double> position = {};  ///< reference position of the point
   double time_beyond =
       std::numeric_limits<double>::infinity();  ///< of the first step above the limit; infinite if there is none
 
@@ -23,13 +23,13 @@ struct PairSliding {
 /// nothing closes while they are pressed. A force at a gap should not exist; an overlap should have been pushed out, by
 /// a force no larger than that which moves the nodes of the point alone.
 struct UnsettledContact {
-  int contact = 0;                 ///< index of [[contact]]
-  double share = 0.0;              ///< largest doubtful force, relative to it and the largest normal force
-  long steps = 0;                  ///< number of steps with such a point
-  double first_time = 0.0;         ///< of the first such step
-  double time = 0.0;               ///< of the largest doubtful force
-  double gap = 0.0;                ///< of largest magnitude at that time; negative: an overlap
-  std::vector<double> place = {};  ///< reference position of its point
+  int contact = 0;                    ///< index of [[contact]]
+  double share = 0.0;                 ///< largest doubtful force, relative to it and the largest normal force
+  long steps = 0;                     ///< number of steps with such a point
+  double first_time = 0.0;            ///< of the first such step
+  double time = 0.0;                  ///< of the largest doubtful force
+  double gap = 0.0;                   ///< of largest magnitude at that time; negative: an overlap
+  std::vector<double> position = {};  ///< reference position of its point
   /// Share above which a force is not to be trusted.
   static constexpr double doubtful = 0.01;
 };

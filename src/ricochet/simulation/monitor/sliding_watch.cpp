@@ -18,7 +18,7 @@ SlidingWatch::SlidingWatch(const Body& body, const SemidiscreteProblem& problem,
   size_ = extent(problem.nodes);
   for (std::size_t number = 0; number < pairs.size(); ++number) {
     if (!pairs[number].has_two_sides()) continue;
-    if (pairs[number].slides_far) {
+    if (pairs[number].large_sliding) {
       add_large_sliding_contact(static_cast<int>(number));
       continue;
     }
@@ -78,7 +78,7 @@ void SlidingWatch::check_large_sliding(const State& state) {
     enter(contact, state);
     if (contact.is_warned || contact.share() <= UnsettledContact::doubtful) continue;
     contact.is_warned = true;
-    tell(contact);
+    warn(contact);
   }
 }
 
@@ -107,7 +107,7 @@ void SlidingWatch::enter(LargeSlidingContact& contact, const State& state) const
   contact.point = widest;
 }
 
-void SlidingWatch::tell(const LargeSlidingContact& contact) const {
+void SlidingWatch::warn(const LargeSlidingContact& contact) const {
   const ContactPair& pair = pairs_[static_cast<std::size_t>(contact.contact)];
   log::warning(fmt::format(
       "at t = {:.6g} what faces what of \"{}\" and \"{}\" changed from one iteration of the step to the next, and was "
@@ -115,8 +115,8 @@ void SlidingWatch::tell(const LargeSlidingContact& contact) const {
       "they "
       "are pressed, and up to {:.3g} % of the force of this contact is at stake. No energy is made of that. The column "
       "unsettled_gap has the gap for every step, \"unsettled_contacts\" in summary.json the largest share of the force",
-      contact.time, pair.first_group(), pair.second_group(), contact.gap, fmt::join(place_of(contact.point), ", "),
-      100.0 * contact.share()));
+      contact.time, pair.first_group(), pair.second_group(), contact.gap,
+      fmt::join(reference_position(contact.point), ", "), 100.0 * contact.share()));
 }
 
 /// Warns of the first held step, whatever its effect.
@@ -130,7 +130,7 @@ void SlidingWatch::warn_of_held_step(const State& state) {
                   state.time));
 }
 
-void SlidingWatch::look(const State& state) {
+void SlidingWatch::check(const State& state) {
   if (!large_sliding_.empty()) check_large_sliding(state);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Index point = points_[i];
@@ -148,11 +148,11 @@ void SlidingWatch::look(const State& state) {
     if (largest.is_beyond || !(largest.ratio > 1.0)) continue;
     largest.is_beyond = true;
     largest.time_beyond = largest.time;
-    tell(largest);
+    warn(largest);
   }
 }
 
-std::vector<double> SlidingWatch::place_of(Index point) const {
+std::vector<double> SlidingWatch::reference_position(Index point) const {
   Vector place = Vector::Zero(problem_.dimension);
   if (point >= 0)
     problem_.contact.visit_own_nodes(point,
@@ -160,7 +160,7 @@ std::vector<double> SlidingWatch::place_of(Index point) const {
   return {place.data(), place.data() + place.size()};
 }
 
-void SlidingWatch::tell(const Largest& largest) const {
+void SlidingWatch::warn(const Largest& largest) const {
   const ContactPair& pair = pairs_[static_cast<std::size_t>(largest.contact)];
   log::warning(fmt::format(
       "at t = {:.6g} the bodies of \"{}\" and \"{}\" have slid along each other by {:.3g} at ({:.4g}) (reference "
@@ -168,8 +168,9 @@ void SlidingWatch::tell(const Largest& largest) const {
       "together that faced each other {}, and from here on its pressures act at other places than those that touch; "
       "set sliding = \"large\" in this [[contact]], limit the motion, or pair the bodies with pair_at where they are "
       "pressed",
-      largest.time, pair.first_group(), pair.second_group(), largest.slip, fmt::join(place_of(largest.point), ", "),
-      largest.limit, pair.pair_at.size() > 0 ? "at pair_at" : "at the start"));
+      largest.time, pair.first_group(), pair.second_group(), largest.slip,
+      fmt::join(reference_position(largest.point), ", "), largest.limit,
+      pair.pair_at.size() > 0 ? "at pair_at" : "at the start"));
 }
 
 std::vector<PairSliding> SlidingWatch::report() const {
@@ -180,7 +181,7 @@ std::vector<PairSliding> SlidingWatch::report() const {
     pair.slip = largest.slip;
     pair.limit = largest.limit;
     pair.time = largest.time;
-    if (largest.point >= 0) pair.place = place_of(largest.point);
+    if (largest.point >= 0) pair.position = reference_position(largest.point);
     if (largest.is_beyond) pair.time_beyond = largest.time_beyond;
     result.push_back(pair);
   }
@@ -191,7 +192,8 @@ std::vector<UnsettledContact> SlidingWatch::unsettled() const {
   std::vector<UnsettledContact> result;
   for (const LargeSlidingContact& far : large_sliding_) {
     if (far.steps == 0) continue;
-    result.push_back({far.contact, far.share(), far.steps, far.first_time, far.time, far.gap, place_of(far.point)});
+    result.push_back(
+        {far.contact, far.share(), far.steps, far.first_time, far.time, far.gap, reference_position(far.point)});
   }
   return result;
 }

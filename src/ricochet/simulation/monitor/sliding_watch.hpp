@@ -22,7 +22,7 @@ class SlidingWatch {
 
   /// Checks the pressed points between bodies in the starting state and after every step. Warns, once, of each contact
   /// whose slip exceeds its limit. Allocates nothing if there is nothing to report.
-  void look(const State& state);
+  void check(const State& state);
   /// Report on each contact between bodies.
   [[nodiscard]] std::vector<PairSliding> report() const;
   /// Report on each contact with large sliding that had such points.
@@ -53,11 +53,11 @@ class SlidingWatch {
   };
   void add_large_sliding_contact(int contact);
   [[nodiscard]] double slip_of(Index point, const State& state) const;
-  [[nodiscard]] std::vector<double> place_of(Index point) const;
-  void tell(const Largest& largest) const;
+  [[nodiscard]] std::vector<double> reference_position(Index point) const;
+  void warn(const Largest& largest) const;
   void check_large_sliding(const State& state);
   void enter(LargeSlidingContact& contact, const State& state) const;
-  void tell(const LargeSlidingContact& contact) const;
+  void warn(const LargeSlidingContact& contact) const;
   void warn_of_held_step(const State& state);
   void load_far(const Snapshot& snapshot, const std::string& name);
 

@@ -116,8 +116,8 @@ void StressRaisers::judge(const Ridge& ridge) {
   if (hold[0] == Hold::mirror && hold[1] == Hold::mirror) return;
   const bool is_mirrored = hold[0] == Hold::mirror || hold[1] == Hold::mirror;
   // The mirror image doubles the angle of the body.
-  const double turn = is_mirrored ? 2.0 * (ridge.turn - right_angle) : ridge.turn;
-  const bool sharp = is_sharp(turn, ridge.nearby);
+  const double turn = is_mirrored ? 2.0 * (ridge.angle - right_angle) : ridge.angle;
+  const bool sharp = is_sharp(turn, ridge.adjacent_angle);
   const bool is_clamp_end = !is_mirrored && hold[0] != hold[1];
   if (is_clamp_end && std::numbers::pi - turn > clamped_angle) {
     mark(ridge, StressRaiser::support_edge);

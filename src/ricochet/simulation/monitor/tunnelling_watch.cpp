@@ -34,33 +34,33 @@ TunnellingWatch::TunnellingWatch(const SemidiscreteProblem& problem, std::vector
       nodes_(std::move(nodes)),
       of_(of),
       obstacles_(obstacles),
-      seen_(obstacles.size()),
+      previous_(obstacles.size()),
       passages_(obstacles.size()) {}
 
-void TunnellingWatch::look(const State& state) {
+void TunnellingWatch::check(const State& state) {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     // A node on the other side of a plane is inside.
-    if (!obstacles_[k]->shape().is_flat()) look_at(k, state);
+    if (!obstacles_[k]->shape().is_flat()) check_obstacle(k, state);
   }
 }
 
-void TunnellingWatch::look_at(std::size_t obstacle, const State& state) {
+void TunnellingWatch::check_obstacle(std::size_t obstacle, const State& state) {
   const ObstacleShape& shape = obstacles_[obstacle]->shape();
   const PosedObstacle placed = obstacles_[obstacle]->at(state.time, state.displacement);
-  Seen& seen = seen_[obstacle];
+  Seen& seen = previous_[obstacle];
   const Index d = problem_.dimension;
   const bool is_first = seen.gaps.size() == 0;
   if (is_first) {
-    seen.places.resize(d, static_cast<Index>(nodes_.size()));
-    seen.gaps.resize(seen.places.cols());
+    seen.positions.resize(d, static_cast<Index>(nodes_.size()));
+    seen.gaps.resize(seen.positions.cols());
   }
-  for (Index i = 0; i < seen.places.cols(); ++i) {
+  for (Index i = 0; i < seen.positions.cols(); ++i) {
     const Index node = nodes_[static_cast<std::size_t>(i)];
-    const SpaceVector place = place_of(node, state);
-    const SpaceVector now = placed.pose().seen_from(place);
-    const SpaceVector before = is_first ? now : SpaceVector(seen.places.col(i));
+    const SpaceVector place = position_of(node, state);
+    const SpaceVector now = placed.pose().to_body_frame(place);
+    const SpaceVector before = is_first ? now : SpaceVector(seen.positions.col(i));
     const double way = (now - before).norm();
-    seen.places.col(i) = now;
+    seen.positions.col(i) = now;
     if (!is_first && seen.gaps[i] > way) {
       seen.gaps[i] -= way;
       continue;
@@ -76,7 +76,7 @@ void TunnellingWatch::look_at(std::size_t obstacle, const State& state) {
   }
 }
 
-SpaceVector TunnellingWatch::place_of(Index node, const State& state) const {
+SpaceVector TunnellingWatch::position_of(Index node, const State& state) const {
   const Index d = problem_.dimension;
   const auto at = [&](Index one) -> SpaceVector {
     return problem_.nodes.col(one) + state.displacement.segment(one * d, d);
@@ -89,13 +89,13 @@ SpaceVector TunnellingWatch::place_of(Index node, const State& state) const {
 
 bool TunnellingWatch::any_tunnels(const State& state, double time) const {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    const Seen& seen = seen_[k];
+    const Seen& seen = previous_[k];
     if (obstacles_[k]->shape().is_flat() || seen.gaps.size() == 0) continue;
     const ObstacleShape& shape = obstacles_[k]->shape();
     const PosedObstacle placed = obstacles_[k]->at(time, state.displacement);
-    for (Index i = 0; i < seen.places.cols(); ++i) {
-      const SpaceVector now = placed.pose().seen_from(place_of(nodes_[static_cast<std::size_t>(i)], state));
-      const SpaceVector before = seen.places.col(i);
+    for (Index i = 0; i < seen.positions.cols(); ++i) {
+      const SpaceVector now = placed.pose().to_body_frame(position_of(nodes_[static_cast<std::size_t>(i)], state));
+      const SpaceVector before = seen.positions.col(i);
       if (seen.gaps[i] > (now - before).norm()) continue;
       if (depth_of_passage(shape, before, seen.gaps[i], now, shape.gap(now)) > 0.0) return true;
     }
@@ -104,22 +104,22 @@ bool TunnellingWatch::any_tunnels(const State& state, double time) const {
 }
 
 void TunnellingWatch::save(Snapshot& snapshot, const std::string& name) const {
-  for (std::size_t k = 0; k < seen_.size(); ++k) {
+  for (std::size_t k = 0; k < previous_.size(); ++k) {
     const std::string own = name + "." + std::to_string(k);
-    snapshot.save(own + ".places", Vector(seen_[k].places.reshaped()));
-    snapshot.save(own + ".gaps", seen_[k].gaps);
+    snapshot.save(own + ".places", Vector(previous_[k].positions.reshaped()));
+    snapshot.save(own + ".gaps", previous_[k].gaps);
     snapshot.save(own + ".passage", Vector(passages_[k].to_numbers()));
   }
 }
 
 void TunnellingWatch::load(const Snapshot& snapshot, const std::string& name) {
-  for (std::size_t k = 0; k < seen_.size(); ++k) {
+  for (std::size_t k = 0; k < previous_.size(); ++k) {
     const std::string own = name + "." + std::to_string(k);
-    seen_[k].gaps = snapshot.reals(own + ".gaps");
-    if (seen_[k].gaps.size() != 0 && seen_[k].gaps.size() != static_cast<Index>(nodes_.size()))
+    previous_[k].gaps = snapshot.reals(own + ".gaps");
+    if (previous_[k].gaps.size() != 0 && previous_[k].gaps.size() != static_cast<Index>(nodes_.size()))
       Snapshot::refuse(own + ".gaps", "has a length that is none of this problem's");
-    const Vector& places = snapshot.reals(own + ".places", problem_.dimension * seen_[k].gaps.size());
-    seen_[k].places = places.reshaped(problem_.dimension, seen_[k].gaps.size());
+    const Vector& positions = snapshot.reals(own + ".places", problem_.dimension * previous_[k].gaps.size());
+    previous_[k].positions = positions.reshaped(problem_.dimension, previous_[k].gaps.size());
     passages_[k] = DeepestPoint::from_numbers(snapshot.reals(own + ".passage", DeepestPoint::numbers));
   }
 }

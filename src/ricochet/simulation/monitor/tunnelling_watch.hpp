@@ -24,7 +24,7 @@ class TunnellingWatch {
   void load(const Snapshot& snapshot, const std::string& name);
 
   /// Checks a state after the previous one. Allocates nothing after the first time.
-  void look(const State& state);
+  void check(const State& state);
   /// Returns whether a node passes through between the last checked state and this one at a time, without recording it.
   [[nodiscard]] bool any_tunnels(const State& state, double time) const;
   /// First passage through each obstacle, with its depth.
@@ -33,17 +33,17 @@ class TunnellingWatch {
  private:
   /// Previous state of the nodes: positions in the frame of the obstacle, and lower bounds of their gaps.
   struct Seen {
-    Points places;
+    Points positions;
     Vector gaps;
   };
-  void look_at(std::size_t obstacle, const State& state);
-  [[nodiscard]] SpaceVector place_of(Index node, const State& state) const;
+  void check_obstacle(std::size_t obstacle, const State& state);
+  [[nodiscard]] SpaceVector position_of(Index node, const State& state) const;
 
   const SemidiscreteProblem& problem_;
   std::vector<Index> nodes_;
   Of of_;
   std::vector<const Obstacle*> obstacles_;
-  std::vector<Seen> seen_;
+  std::vector<Seen> previous_;
   std::vector<DeepestPoint> passages_;
 };
 

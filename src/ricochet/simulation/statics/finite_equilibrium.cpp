@@ -15,7 +15,7 @@ namespace ricochet {
 namespace {
 
 constexpr double shortest_increment = 1e-5;
-constexpr int most_rounds = 100, most_renewals = 12;
+constexpr int max_iterations = 100, most_renewals = 12;
 /// ε relative to the smallest K_ii/M_ii. Bodies that supports hold do not need it. For bodies that contact helps to
 /// hold, ε is the only resistance of the operator to the motion that supports leave free, whose rounding is that of
 /// forces over ε: with too small a value Newton's method does not settle; a larger one requires more iterations at the
@@ -175,7 +175,7 @@ StaticEquilibrium finite_equilibrium(const SemidiscreteProblem& problem, const V
     reached = part;
     increment *= 2.0;
   }
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_iterations; ++round) {
     if (path.settle(at)) return at;
   }
   throw Error(ErrorKind::not_converged,

@@ -126,13 +126,13 @@ struct Cone {
 class NearestForce {
  public:
   NearestForce(const std::vector<Cone>& cones, Vector target, double unit)
-      : cones_(cones), left_(target), target_(std::move(target)), unit_(unit) {}
+      : cones_(cones), residual_(target), target_(std::move(target)), unit_(unit) {}
 
   /// Returns true if the residual is more than rounding and no reaction can balance more than a small fraction of it.
   bool is_out_of_reach() {
     bool is_proved = false;
     for (int k = 0; k < column_limit; ++k) {
-      const double length = left_.norm();
+      const double length = residual_.norm();
       if (length <= rounding * unit_) return false;
       double best = 0.0;
       Vector column;
@@ -140,8 +140,8 @@ class NearestForce {
       for (const Cone& cone : cones_) {
         const Vector candidate = best_column(cone);
         const double size = candidate.norm();
-        if (!(size > 0.0) || left_.dot(candidate) <= best * size) continue;
-        best = left_.dot(candidate) / size;
+        if (!(size > 0.0) || residual_.dot(candidate) <= best * size) continue;
+        best = residual_.dot(candidate) / size;
         column = candidate / size;
         point = cone.point;
       }
@@ -152,7 +152,7 @@ class NearestForce {
     return is_proved;
   }
 
-  [[nodiscard]] const Vector& left() const { return left_; }
+  [[nodiscard]] const Vector& residual() const { return residual_; }
   [[nodiscard]] double unit() const { return unit_; }
   /// Weights and contact points of the active forces.
   [[nodiscard]] const std::vector<double>& sizes() const { return sizes_; }
@@ -161,7 +161,7 @@ class NearestForce {
  private:
   /// Returns the reaction at a point that reduces the residual most.
   [[nodiscard]] Vector best_column(const Cone& cone) const {
-    const Vector along = cone.tangential.transpose() * left_;
+    const Vector along = cone.tangential.transpose() * residual_;
     const double length = along.norm();
     if (!(length > 0.0) || (!cone.is_rough && cone.coefficient == 0.0)) return cone.normal;
     const Vector friction = cone.tangential * (along / length);
@@ -170,7 +170,7 @@ class NearestForce {
 
   /// Adds a column. Returns false if the residual does not decrease.
   bool enter(const Vector& column, Index point) {
-    const double before = left_.norm();
+    const double before = residual_.norm();
     columns_.push_back(column);
     points_.push_back(point);
     sizes_.push_back(0.0);
@@ -194,14 +194,14 @@ class NearestForce {
         sizes_.erase(sizes_.begin() + at);
       }
       if (part < 1.0 && !columns_.empty()) continue;
-      left_ = target_;
-      for (std::size_t k = 0; k < columns_.size(); ++k) left_ -= sizes_[k] * columns_[k];
-      return left_.norm() < before;
+      residual_ = target_;
+      for (std::size_t k = 0; k < columns_.size(); ++k) residual_ -= sizes_[k] * columns_[k];
+      return residual_.norm() < before;
     }
   }
 
   const std::vector<Cone>& cones_;
-  Vector left_, target_;
+  Vector residual_, target_;
   double unit_;
   std::vector<Vector> columns_;
   std::vector<Index> points_;
@@ -240,8 +240,8 @@ std::vector<Cone> make_cones(const SemidiscreteProblem& problem, const FreeMotio
 /// Describes the motion as it would be observed. In the mechanism of Farkas' lemma a body lifts as it slides (its
 /// friction law is associated). The lift is an excess of the normal reaction; without it, friction is smaller as well.
 UnheldMotion describe(const SemidiscreteProblem& problem, const FreeMotions& motions, const NearestForce& nearest) {
-  const Vector unbalanced = motions.velocity(-nearest.left());
-  UnheldMotion result{motions.centre(), unbalanced, false, nearest.left().norm() / nearest.unit()};
+  const Vector unbalanced = motions.velocity(-nearest.residual());
+  UnheldMotion result{motions.centre(), unbalanced, false, nearest.residual().norm() / nearest.unit()};
   Vector normal = Vector::Zero(problem.dimension);
   double pressure = 0.0, friction = 0.0;
   for (std::size_t k = 0; k < nearest.points().size(); ++k) {
@@ -259,7 +259,7 @@ UnheldMotion describe(const SemidiscreteProblem& problem, const FreeMotions& mot
     const double along = result.force.norm();
     if (along > 0.0) result.force *= 1.0 + friction / pressure * std::max(lift, 0.0) / along;
   }
-  const double visible = 1e-6 * nearest.left().norm();
+  const double visible = 1e-6 * nearest.residual().norm();
   for (double& component : result.force) {
     if (!(std::abs(component) > visible)) component = 0.0;
   }

@@ -196,7 +196,7 @@ namespace {
 /// Warns of small overlaps; deeper ones are refused (model_bodies.cpp).
 void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
   const PenetratingPoints inside = initially_penetrating_points(problem, state.displacement);
-  const Index points = problem.all_contact_points();
+  const Index points = problem.global_contact_point_count();
   if (inside.count == 0) return;
   log::warning(
       fmt::format("at the start {} of {} {} inside of an obstacle, the deepest by {:.3g}, as where facets stand "
@@ -261,7 +261,7 @@ namespace {
                   "than a press fit takes, a part of a cell; a body that nothing presses on another one needs a "
                   "[[support]], or no static start. The search says: {}",
                   inside.count, counted(problem.contact.size(), "contact point"), inside.count == 1 ? "is" : "are",
-                  at_obstacle ? "their obstacle" : "the other body", inside.deepest, fmt::join(inside.place, ", "),
+                  at_obstacle ? "their obstacle" : "the other body", inside.deepest, fmt::join(inside.position, ", "),
                   inside.pair,
                   at_obstacle ? "Move the obstacle or the body (a plane's normal points out of it, a sphere has a side)"
                               : "Move the bodies apart",

@@ -137,14 +137,14 @@ class ProximalPoint {
     solver_->solve(0, stage, solution_);
     at.displacement += solution_.increment;
     at.normal_reaction = solution_.normal_reaction;
-    problem_.mass.multiply(solution_.increment, left_over_);
-    left_over_ *= epsilon_;
-    for (const Index dof : problem_.supports.dofs()) left_over_[dof] = 0.0;
+    problem_.mass.multiply(solution_.increment, residual_);
+    residual_ *= epsilon_;
+    for (const Index dof : problem_.supports.dofs()) residual_[dof] = 0.0;
   }
 
   /// Unbalanced force.
-  [[nodiscard]] const Vector& left_over() const { return left_over_; }
-  [[nodiscard]] double largest_left_over() const { return largest(problem_, left_over_); }
+  [[nodiscard]] const Vector& residual() const { return residual_; }
+  [[nodiscard]] double largest_residual() const { return largest(problem_, residual_); }
 
  private:
   const SemidiscreteProblem& problem_;
@@ -152,7 +152,7 @@ class ProximalPoint {
   double epsilon_;
   std::unique_ptr<StepSolver> solver_;
   StageSolution solution_;
-  Vector supported_, left_over_;
+  Vector supported_, residual_;
 };
 
 /// Returns a hint on friction, which is the first suspect if it is involved.
@@ -218,8 +218,8 @@ bool converges(ProximalPoint& point, const EquilibriumTest& test, bool give_up_e
   double before = std::numeric_limits<double>::infinity();
   for (int k = 0; k < rounds; ++k) {
     point.iterate(at);
-    if (test.passed(at.displacement, point.left_over())) return true;
-    const double now = point.largest_left_over();
+    if (test.passed(at.displacement, point.residual())) return true;
+    const double now = point.largest_residual();
     if (give_up_early && k >= 5 && now > 0.95 * before) return false;
     before = now;
   }
@@ -236,7 +236,7 @@ bool find_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& 
     if (fraction > 1e-8 && !problem.contact.has_friction()) continue;
     ProximalPoint point(problem, friction, fraction, options);
     if (converges(point, test, false, at)) return true;
-    left_over = point.left_over();
+    left_over = point.residual();
   }
   return false;
 }

@@ -237,7 +237,8 @@ bool AutomaticSolver::sweeps_and_newton(const ContactWork& work) {
   begin_ = work.current.reaction;
   const int before = work.solution.iterations;
   const bool solved = accelerated(work);
-  ContactCosts::learn(costs_.of_sweeps, static_cast<double>(work.solution.iterations - before) * sweep_work(work));
+  ContactCosts::update_mean(costs_.of_sweeps,
+                            static_cast<double>(work.solution.iterations - before) * sweep_work(work));
   if (solved) return true;
   if (is_nearly_closed(work.system, work.current) && stalled_) {
     // Newton's method does better from the start than from the result of a few sweeps.
@@ -275,7 +276,7 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
   if (cold) best_.merit = std::numeric_limits<double>::infinity();
   if (!cold && costs_.prefer_newton(work)) {
     const bool solved = newton_.run(work, true, best_);
-    ContactCosts::learn(costs_.of_newton, newton_.step().work());
+    ContactCosts::update_mean(costs_.of_newton, newton_.step().work());
     if (solved) return "";
     work.current = best_.iterate;
   }

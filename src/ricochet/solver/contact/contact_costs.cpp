@@ -40,7 +40,7 @@ double newton_cost(const ContactWork& work, bool settled) {
   return (settled ? 1.5 : 6.0) * (AlartCurnierStep::factor_work(unknowns) + product) / sweep_work(work);
 }
 
-void ContactCosts::learn(double& mean, double value) {
+void ContactCosts::update_mean(double& mean, double value) {
   mean = mean > 0.0 ? (1.0 - recent) * mean + recent * value : value;
 }
 

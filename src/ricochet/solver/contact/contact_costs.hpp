@@ -14,7 +14,7 @@ namespace ricochet {
 struct ContactCosts {
   double of_sweeps = 0.0, of_newton = 0.0;
 
-  static void learn(double& mean, double value);
+  static void update_mean(double& mean, double value);
   /// True if, from the last reactions, Newton's method with the factor of an earlier step has cost less than sweeps, or
   /// promises to.
   [[nodiscard]] bool prefer_newton(const ContactWork& work) const;

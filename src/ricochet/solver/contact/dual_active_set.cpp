@@ -19,7 +19,7 @@ constexpr int corrections = 3;
 }  // namespace
 
 /// Computes d_P and s of a row that enters. The rounding of L Lᵀ is that of √W_ii √W_jj, entry by entry.
-DualActiveSet::Entry DualActiveSet::look_at(Index entering) {
+DualActiveSet::Entry DualActiveSet::examine(Index entering) {
   const Matrix& w = *system_->dense();
   const auto count = static_cast<Index>(rows_.size());
   forward_.resize(count);
@@ -36,7 +36,7 @@ DualActiveSet::Entry DualActiveSet::look_at(Index entering) {
   return {w(entering, entering) - forward_.squaredNorm(), machine_epsilon * terms * terms};
 }
 
-/// Appends the point examined by look_at.
+/// Appends the point examined by examine.
 void DualActiveSet::append(Index point, double curvature) {
   const auto count = static_cast<Index>(rows_.size());
   if (factor_.rows() <= count) {
@@ -80,7 +80,7 @@ void DualActiveSet::start(const ContactIterate& current) {
     set_.clear();
     rows_.clear();
     for (const Index k : pressing) {
-      const Entry entry = look_at(row_of(k));
+      const Entry entry = examine(row_of(k));
       if (entry.curvature > contradicting * entry.rounding) append(k, entry.curvature);
     }
     solve_set(system_->offset());
@@ -168,7 +168,7 @@ bool DualActiveSet::enter(Index entering, ContactIterate& current, int& iteratio
   const Index at = row_of(entering);
   double motion = current.motion[at];
   for (; iterations < limit; ++iterations) {
-    const Entry entry = look_at(at);
+    const Entry entry = examine(at);
     const bool depends = !(entry.curvature > vanishing * entry.rounding);
     // Rounding in d must not let a point leave.
     const double smallest = -negligible * std::max(1.0, direction_.size() > 0 ? direction_.cwiseAbs().maxCoeff() : 0.0);

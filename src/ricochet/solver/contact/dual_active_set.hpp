@@ -36,7 +36,7 @@ class DualActiveSet {
   [[nodiscard]] Index row_of(Index point) const { return system_->points()[static_cast<std::size_t>(point)].row; }
   [[nodiscard]] double floor_of(Index point, const ContactIterate& current) const;
   void start(const ContactIterate& current);
-  Entry look_at(Index entering);
+  Entry examine(Index entering);
   void append(Index point, double curvature);
   void remove(std::size_t position);
   void solve_set(const Vector& motion);

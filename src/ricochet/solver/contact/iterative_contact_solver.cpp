@@ -162,8 +162,8 @@ void IterativeContactSolver::find_motion(const ContactProblem& problem, ContactS
 }
 
 /// Returns whether some point outside of the system penetrates, which is then added to it.
-bool IterativeContactSolver::take_in_penetrating(const ContactProblem& problem, const ContactOptions& options,
-                                                 const ContactSolution& solution) {
+bool IterativeContactSolver::add_penetrating(const ContactProblem& problem, const ContactOptions& options,
+                                             const ContactSolution& solution) {
   bool found = false;
   for (Index i = 0; i < problem.points(); ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -289,7 +289,7 @@ void IterativeContactSolver::solve_on_wanted(const ContactProblem& problem, cons
     find_motion(problem, solution);
     if (!works_on_candidates()) return;
     const bool exchanged = exchanges && twins_.exchange(problem, solution.motion, wanted_, solution.reaction);
-    if (!exchanged && !take_in_penetrating(problem, options, solution)) return;
+    if (!exchanged && !add_penetrating(problem, options, solution)) return;
     system_.select(problem, wanted_);
   }
 }

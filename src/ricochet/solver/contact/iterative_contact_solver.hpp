@@ -59,8 +59,7 @@ class IterativeContactSolver : public ContactSolver {
   void finish(const ContactOptions& options);
   void run(const ContactOptions& options, ContactSolution& solution);
   void find_motion(const ContactProblem& problem, ContactSolution& solution) const;
-  bool take_in_penetrating(const ContactProblem& problem, const ContactOptions& options,
-                           const ContactSolution& solution);
+  bool add_penetrating(const ContactProblem& problem, const ContactOptions& options, const ContactSolution& solution);
   void solve_on_wanted(const ContactProblem& problem, const ContactOptions& options, bool exchanges,
                        ContactSolution& solution);
   void solve_without_twins(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution);

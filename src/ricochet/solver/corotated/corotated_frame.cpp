@@ -65,7 +65,7 @@ void CorotatedFrame::rotate_back(const Vector& values, Vector& result) const {
                           : turn_nodes<3, true>(bodies_, rotation_, values, result);
 }
 
-void CorotatedFrame::turn(Vector& values) const {
+void CorotatedFrame::rotate(Vector& values) const {
   if (is_identity_ || values.size() == 0) return;
   problem_.dimension == 2 ? turn_nodes<2, false>(bodies_, rotation_, values, values)
                           : turn_nodes<3, false>(bodies_, rotation_, values, values);

@@ -29,7 +29,7 @@ class CorotatedFrame {
   [[nodiscard]] long number() const { return number_; }
   /// Compute Rᵀ v and R v, per dof.
   void rotate_back(const Vector& values, Vector& result) const;
-  void turn(Vector& values) const;
+  void rotate(Vector& values) const;
   /// Computes H R; `result` keeps its storage if the pattern is unchanged.
   void rotate_back(const SparseRowMatrix& rows, SparseRowMatrix& result) const;
 

@@ -11,23 +11,23 @@ class CorotatedStage final : public StageSolver {
 
   void solve(const Stage& stage, StageSolution& solution) override {
     take_rows(*stage.rows);
-    turned_.rows = rows_;
-    frame_.rotate_back(stage.right_hand_side, turned_.right_hand_side);
-    turned_.prescribed = stage.prescribed;
-    turned_.eligible = stage.eligible;
-    turned_.gap_offset = stage.gap_offset;
-    turned_.gap_offset_rounding = stage.gap_offset_rounding;
-    turned_.gap_factor = stage.gap_factor;
-    turned_.slip_factor = stage.slip_factor;
-    turned_.slip_offset = stage.slip_offset;
-    turned_.slip_offset_rounding = stage.slip_offset_rounding;
-    turned_.frictionless = stage.frictionless;
-    turned_.start_gap = stage.start_gap;
-    turned_.start_normal_reaction = stage.start_normal_reaction;
-    turned_.start_tangential_reaction = stage.start_tangential_reaction;
-    solver_->solve(turned_, solution);
-    frame_.turn(solution.increment);
-    frame_.turn(solution.contact_increment);
+    corotated_stage_.rows = rows_;
+    frame_.rotate_back(stage.right_hand_side, corotated_stage_.right_hand_side);
+    corotated_stage_.prescribed = stage.prescribed;
+    corotated_stage_.eligible = stage.eligible;
+    corotated_stage_.gap_offset = stage.gap_offset;
+    corotated_stage_.gap_offset_rounding = stage.gap_offset_rounding;
+    corotated_stage_.gap_factor = stage.gap_factor;
+    corotated_stage_.slip_factor = stage.slip_factor;
+    corotated_stage_.slip_offset = stage.slip_offset;
+    corotated_stage_.slip_offset_rounding = stage.slip_offset_rounding;
+    corotated_stage_.frictionless = stage.frictionless;
+    corotated_stage_.start_gap = stage.start_gap;
+    corotated_stage_.start_normal_reaction = stage.start_normal_reaction;
+    corotated_stage_.start_tangential_reaction = stage.start_tangential_reaction;
+    solver_->solve(corotated_stage_, solution);
+    frame_.rotate(solution.increment);
+    frame_.rotate(solution.contact_increment);
   }
   void show_contact() const override { solver_->show_contact(); }
   void refactorize(const Vector& displacement) override { solver_->refactorize(displacement); }
@@ -73,7 +73,7 @@ class CorotatedStage final : public StageSolver {
 
   std::unique_ptr<StageSolver> solver_;
   const CorotatedFrame& frame_;
-  Stage turned_;
+  Stage corotated_stage_;
   std::shared_ptr<ContactRows> rows_;
   const ContactRows* source_ = nullptr;
   std::vector<long> source_revision_;

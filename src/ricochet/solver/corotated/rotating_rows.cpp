@@ -23,7 +23,7 @@ void RotatingRows::clear() {
 
 /// Uses the entries at the node with the largest part in the trace: rows may be known by their values alone.
 void RotatingRows::take(const ContactRows& rows, Index point, std::size_t i) {
-  if (!turns(i)) return;
+  if (!rotates(i)) return;
   const Index d = rows.dimension();
   Index place = 0, largest = 0;
   double part = 0.0;
@@ -45,7 +45,7 @@ template <class From, class To>
 void RotatingRows::turn_point(std::size_t i, const From& v, To& result) const {
   const auto from = v.segment(first_[i], first_[i + 1] - first_[i]);
   auto to = result.segment(row_[i], row_[i + 1] - row_[i]);
-  if (turns(i)) {
+  if (rotates(i)) {
     to = directions_[i].lazyProduct(from);
   } else {
     to = from;
@@ -57,7 +57,7 @@ Matrix RotatingRows::product(const Matrix& k) const {
   for (std::size_t i = 0; i < directions_.size(); ++i) {
     const auto from = k.block(0, first_[i], first_[i + 1], first_[i + 1] - first_[i]);
     auto to = half.block(0, row_[i], first_[i + 1], row_[i + 1] - row_[i]);
-    if (turns(i)) {
+    if (rotates(i)) {
       to = from.lazyProduct(directions_[i].transpose());
     } else {
       to = from;
@@ -74,7 +74,7 @@ Matrix RotatingRows::product(const Matrix& k) const {
   return result;
 }
 
-void RotatingRows::turn(const Vector& v, Vector& result) const {
+void RotatingRows::rotate(const Vector& v, Vector& result) const {
   result.resize(row_.back());
   for (std::size_t i = 0; i < directions_.size(); ++i) turn_point(i, v, result);
 }
@@ -84,7 +84,7 @@ void RotatingRows::rotate_back(const Vector& r, Vector& result) const {
   for (std::size_t i = 0; i < directions_.size(); ++i) {
     const auto from = r.segment(row_[i], row_[i + 1] - row_[i]);
     auto to = result.segment(first_[i], first_[i + 1] - first_[i]);
-    if (turns(i)) {
+    if (rotates(i)) {
       to = directions_[i].transpose().lazyProduct(from);
     } else {
       to = from;

@@ -12,14 +12,14 @@ namespace ricochet {
 
 class RotatingRows {
  public:
-  /// Appends a point with so many rows of H. `turns`: it has a turning trace, and d rows of E.
+  /// Appends a point with so many rows of H. `rotates`: it has a turning trace, and d rows of E.
   void append(const ContactRows& rows, Index point, Index row_count, bool turns);
   void clear();
 
   /// True if some point turns; otherwise H = E.
   [[nodiscard]] bool any() const { return any_; }
   /// True if candidate i turns, in the order in which they were appended.
-  [[nodiscard]] bool turns(std::size_t i) const { return directions_[i].size() > 0; }
+  [[nodiscard]] bool rotates(std::size_t i) const { return directions_[i].size() > 0; }
   /// First row of E of candidate i; the total number after the last.
   [[nodiscard]] Index first(std::size_t i) const { return first_[i]; }
   [[nodiscard]] Index size() const { return first_.back(); }
@@ -29,7 +29,7 @@ class RotatingRows {
   /// Returns D K Dᵀ, symmetric to the bit.
   [[nodiscard]] Matrix product(const Matrix& k) const;
   /// Compute D v and Dᵀ r.
-  void turn(const Vector& v, Vector& result) const;
+  void rotate(const Vector& v, Vector& result) const;
   void rotate_back(const Vector& r, Vector& result) const;
 
  private:

@@ -55,7 +55,7 @@ void ContactCandidates::load_history(const Snapshot& snapshot, const std::string
 }
 
 /// Uses the motion of earlier stages, or that which this one requires if points are inside at δ = 0.
-void ContactCandidates::look_at(const Stage& stage) {
+void ContactCandidates::estimate_reach(const Stage& stage) {
   double deepest = 0.0;
   for (Index i = 0; i < stage.gap_offset.size(); ++i) {
     if (stage.eligible[static_cast<std::size_t>(i)] != 0) deepest = std::max(deepest, -stage.gap_offset[i]);
@@ -129,7 +129,7 @@ std::vector<Index> ContactCandidates::penetrating(const Stage& stage, const Vect
   return result;
 }
 
-void ContactCandidates::learn(const Stage& stage, const Vector& motion, std::size_t closed) {
+void ContactCandidates::update_history(const Stage& stage, const Vector& motion, std::size_t closed) {
   closed_ = closed;
   largest_motion_ = 0.0;
   for (Index i = 0; i < motion.size(); ++i) {

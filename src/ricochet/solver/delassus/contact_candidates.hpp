@@ -28,7 +28,7 @@ class ContactCandidates {
   void load_history(const Snapshot& snapshot, const std::string& name);
 
   /// Estimates, before a stage, how far it may move points. Collective over the ranks.
-  void look_at(const Stage& stage);
+  void estimate_reach(const Stage& stage);
   /// True if some eligible point may touch in this stage: its y at δ = 0 is within reach of the motion of earlier
   /// stages.
   [[nodiscard]] bool some_may_touch(const Stage& stage) const;
@@ -40,7 +40,7 @@ class ContactCandidates {
   /// deepest. Candidates are checked only if they were `left_out` of the stage. Empty: the stage is solved.
   [[nodiscard]] std::vector<Index> penetrating(const Stage& stage, const Vector& motion, bool left_out) const;
   /// Remembers how far a solved stage has moved points, and how many carry a force. Collective over the ranks.
-  void learn(const Stage& stage, const Vector& motion, std::size_t closed);
+  void update_history(const Stage& stage, const Vector& motion, std::size_t closed);
   /// Candidates to be kept, if they have long been many more than the points near the obstacle, or are very many;
   /// empty: no change.
   [[nodiscard]] std::vector<Index> worth_keeping(const Stage& stage);

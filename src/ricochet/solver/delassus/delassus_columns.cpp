@@ -53,7 +53,7 @@ void DelassusColumns::fill(Block& block, const SparseMatrix& transposed, Index b
   block.columns.setZero();
   for (Index column = 0; column < block.columns.cols(); ++column) {
     for (SparseMatrix::InnerIterator entry(transposed, begin + column); entry; ++entry)
-      block.columns(on_path(factor_.place(entry.row())), column) = entry.value();
+      block.columns(on_path(factor_.factor_index(entry.row())), column) = entry.value();
   }
   factor_.supernodal().forward_on_path(block.path, block.columns);
 }
@@ -63,7 +63,7 @@ void DelassusColumns::find_path(Block& block, const SparseMatrix& transposed, In
   std::vector<Index> reached;
   for (Index row = begin; row < begin + block.columns.cols(); ++row) {
     for (SparseMatrix::InnerIterator entry(transposed, row); entry; ++entry)
-      reached.push_back(factor_.place(entry.row()));
+      reached.push_back(factor_.factor_index(entry.row()));
   }
   block.path = factor_.supernodal().path(reached);
   block.columns.resize(block.path.rows(), block.columns.cols());

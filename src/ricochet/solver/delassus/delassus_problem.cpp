@@ -14,7 +14,7 @@ namespace ricochet {
 
 DelassusProblem::DelassusProblem(const SemidiscreteProblem& problem, std::vector<int> unknown,
                                  const SparseCholesky& factor, bool all_points,
-                                 std::unique_ptr<MasslessContactNodes> layer)
+                                 std::unique_ptr<MasslessContactNodes> massless_nodes)
     : problem_(problem),
       factor_(factor),
       unknown_(std::move(unknown)),
@@ -24,7 +24,7 @@ DelassusProblem::DelassusProblem(const SemidiscreteProblem& problem, std::vector
       rows_(problem.contact.rows.get()),
       candidates_(problem.contact.size(), *problem.ranks),
       columns_(factor),
-      layer_(std::move(layer)) {
+      massless_nodes_(std::move(massless_nodes)) {
   contact_.reaction_scale = scale_;
   std::vector<Index> points(all_points ? static_cast<std::size_t>(problem.contact.size()) : 0);
   std::iota(points.begin(), points.end(), Index{0});
@@ -39,7 +39,7 @@ Index DelassusProblem::rows_of(Index point) const {
 
 /// Columns of E, d for every point, cost a point without friction more than its one row does. They are worthwhile if
 /// the factor lasts.
-bool DelassusProblem::turns(Index point) const {
+bool DelassusProblem::rotates(Index point) const {
   if (rows_->rotating_trace == nullptr || !SparseRowMatrix::InnerIterator(*rows_->rotating_trace, point)) return false;
   return rows_of(point) == problem_.dimension || problem_.internal_force->is_linear();
 }
@@ -58,9 +58,9 @@ void DelassusProblem::start_again_with(const std::vector<Index>& points) {
   revision_.clear();
   candidate_counts_.clear();
   columns_.clear();
-  turned_.clear();
-  if (layer_) layer_->clear();
-  condensed_.resize(0, 0);
+  rotating_rows_.clear();
+  if (massless_nodes_) massless_nodes_->clear();
+  column_product_.resize(0, 0);
   contact_.contact_operator.reset();
   contact_.row_offset.assign(1, 0);
   solver_.reset();
@@ -70,7 +70,7 @@ void DelassusProblem::start_again_with(const std::vector<Index>& points) {
 /// Calls enter(row of the point, dof, value) for the entries of E.
 template <class Enter>
 void DelassusProblem::visit_columns(Index point, const Enter& enter) const {
-  if (!turns(point)) return visit_rows(point, enter);
+  if (!rotates(point)) return visit_rows(point, enter);
   const Index d = problem_.dimension;
   for (SparseRowMatrix::InnerIterator entry(*rows_->rotating_trace, point); entry; ++entry) {
     for (Index k = 0; k < d; ++k) enter(k, entry.col() * d + k, entry.value());
@@ -86,7 +86,7 @@ void DelassusProblem::sort_by_place(std::vector<Index>& points) const {
     order[i] = i;
     visit_rows(points[i], [&](Index, Index dof, double) {
       const int unknown = unknown_[static_cast<std::size_t>(dof)];
-      if (unknown >= 0) place[i] = std::max(place[i], factor_.place(unknown));
+      if (unknown >= 0) place[i] = std::max(place[i], factor_.factor_index(unknown));
     });
   }
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -172,7 +172,7 @@ SparseMatrix DelassusProblem::transposed_columns(const std::vector<Index>& point
       const int unknown = number[static_cast<std::size_t>(dof)];
       if (unknown >= 0) entries.emplace_back(unknown, static_cast<int>(row + k), value);
     });
-    row += turns(point) ? problem_.dimension : rows_of(point);
+    row += rotates(point) ? problem_.dimension : rows_of(point);
   }
   SparseMatrix transposed(unknowns, row);
   transposed.setFromTriplets(entries.begin(), entries.end());
@@ -182,11 +182,12 @@ SparseMatrix DelassusProblem::transposed_columns(const std::vector<Index>& point
 void DelassusProblem::append_columns(const std::vector<Index>& points, Matrix& w) {
   for (const Index point : points) {
     contact_.row_offset.push_back(contact_.row_offset.back() + rows_of(point));
-    turned_.append(*rows_, point, rows_of(point), turns(point));
+    rotating_rows_.append(*rows_, point, rows_of(point), rotates(point));
     revision_.push_back(rows_->revision.empty() ? -1 : rows_->revision[static_cast<std::size_t>(point)]);
   }
   columns_.append(transposed_columns(points, unknown_, factor_.size()), w);
-  if (layer_) layer_->append(transposed_columns(points, layer_->unknown(), layer_->size()));
+  if (massless_nodes_)
+    massless_nodes_->append(transposed_columns(points, massless_nodes_->unknown(), massless_nodes_->size()));
 }
 
 void DelassusProblem::append_supported() {
@@ -204,8 +205,8 @@ void DelassusProblem::append_supported() {
 }
 
 void DelassusProblem::find_offsets(const Stage& stage, const Vector& y) {
-  columns_.motion(y, turned_.any() ? of_columns_ : contact_.offset);
-  if (turned_.any()) turned_.turn(of_columns_, contact_.offset);
+  columns_.motion(y, rotating_rows_.any() ? of_columns_ : contact_.offset);
+  if (rotating_rows_.any()) rotating_rows_.rotate(of_columns_, contact_.offset);
   if (supported_.nonZeros() > 0) contact_.offset.noalias() += supported_ * stage.prescribed;
   const Index tangents = problem_.dimension - 1;
   for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
@@ -230,7 +231,7 @@ void DelassusProblem::solve(const Stage& stage, Vector& y, StageSolution& soluti
   solution.normal_reaction.setZero(points);
   if (friction_) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
   solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
-  asked_ = false;
+  candidates_active_ = false;
   iterations_ = 0;
   solution.clear_mean();
   take_rows(stage);
@@ -240,29 +241,29 @@ void DelassusProblem::solve(const Stage& stage, Vector& y, StageSolution& soluti
   take_starting_points(stage);  // candidates that were dropped
   find_offsets(stage, y);
   choose_friction(stage);
-  const bool has_mean = layer_ && layer_->mean() != ReactionMean::end;
+  const bool has_mean = massless_nodes_ && massless_nodes_->mean() != ReactionMean::end;
   if (has_mean) {
     solve_mean(stage);
   } else {
     solve_contact();
   }
-  asked_ = true;
+  candidates_active_ = true;
   const Vector& acting = has_mean ? mean_.mean() : contact_solution_.reaction;
-  if (turned_.any()) turned_.rotate_back(acting, of_columns_);
-  columns_.add_reaction(turned_.any() ? of_columns_ : acting, y);
-  give(stage, solution);
+  if (rotating_rows_.any()) rotating_rows_.rotate_back(acting, of_columns_);
+  columns_.add_reaction(rotating_rows_.any() ? of_columns_ : acting, y);
+  write_solution(stage, solution);
 }
 
 /// Returns false if nothing can touch.
 bool DelassusProblem::choose_candidates(const Stage& stage) {
-  candidates_.look_at(stage);
+  candidates_.estimate_reach(stage);
   if (!candidates_required_ && !candidates_.some_may_touch(stage)) return false;
   if (const std::vector<Index> kept = candidates_.worth_keeping(stage); !kept.empty()) start_again_with(kept);
   if (const std::vector<Index> near = candidates_.approaching(stage); !near.empty()) add_candidates(near);
   return !candidates_.points().empty();
 }
 
-void DelassusProblem::give(const Stage& stage, StageSolution& solution) const {
+void DelassusProblem::write_solution(const Stage& stage, StageSolution& solution) const {
   const Vector& reaction = contact_solution_.reaction;
   solution.iterations += iterations_;
   const Index tangents = problem_.dimension - 1;
@@ -274,16 +275,16 @@ void DelassusProblem::give(const Stage& stage, StageSolution& solution) const {
     for (Index k = 1; row + k < contact_.row_offset[i + 1]; ++k)
       solution.tangential_reaction[point * tangents + k - 1] = -reaction[row + k] / scale_;
   }
-  if (layer_ && layer_->mean() != ReactionMean::end) write_mean_reactions(stage, solution);
+  if (massless_nodes_ && massless_nodes_->mean() != ReactionMean::end) write_mean_reactions(stage, solution);
 }
 
 bool DelassusProblem::add_penetrating(const Stage& stage, const Vector& increment, StageSolution& solution) {
-  if (layer_) layer_->find_motion(*stage.rows, solution, increment, solution.contact_increment);
-  stage.rows->normal_motion(layer_ ? solution.contact_increment : increment, motion_);
-  std::vector<Index> found = candidates_.penetrating(stage, motion_, !asked_);
+  if (massless_nodes_) massless_nodes_->find_motion(*stage.rows, solution, increment, solution.contact_increment);
+  stage.rows->normal_motion(massless_nodes_ ? solution.contact_increment : increment, motion_);
+  std::vector<Index> found = candidates_.penetrating(stage, motion_, !candidates_active_);
   candidates_required_ = !found.empty();
   if (!candidates_required_) {
-    candidates_.learn(stage, motion_, asked_ ? closed_points() : 0);
+    candidates_.update_history(stage, motion_, candidates_active_ ? closed_points() : 0);
     return false;
   }
   std::erase_if(found, [&](Index point) { return candidates_.number(point) >= 0; });
@@ -346,7 +347,7 @@ void DelassusProblem::log_iterations() const {
 }
 
 void DelassusProblem::report() const {
-  if (asked_ && observer_) observer_(contact_, contact_solution_);
+  if (candidates_active_ && observer_) observer_(contact_, contact_solution_);
 }
 
 }  // namespace ricochet

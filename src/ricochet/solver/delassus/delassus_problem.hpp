@@ -27,7 +27,7 @@ class DelassusProblem {
   /// `unknown` is per dof: its number among the unknowns of the factor, or −1 if the stage does not solve for it.
   /// `all_points`: every contact point is a candidate from the start. Keeps references to the problem and the factor.
   DelassusProblem(const SemidiscreteProblem& problem, std::vector<int> unknown, const SparseCholesky& factor,
-                  bool all_points = false, std::unique_ptr<MasslessContactNodes> layer = nullptr);
+                  bool all_points = false, std::unique_ptr<MasslessContactNodes> massless_nodes = nullptr);
 
   /// Computes the reactions on the candidates, adds Yρ to y and the iterations to those of the solution. Throws
   /// Error(not_converged), and Error(invalid_input) if no motion of linear bodies meets the conditions of contact.
@@ -37,7 +37,7 @@ class DelassusProblem {
   bool add_penetrating(const Stage& stage, const Vector& increment, StageSolution& solution);
 
   /// Renews columns and W, with the rows of the next stage, after the factor has been made anew.
-  void take_factor();
+  void invalidate_columns();
 
   /// Save and load the candidates in the order in which they were added, which decides the bits of W, and the contact
   /// solver's warm start.
@@ -54,7 +54,7 @@ class DelassusProblem {
 
  private:
   [[nodiscard]] Index rows_of(Index point) const;
-  [[nodiscard]] bool turns(Index point) const;
+  [[nodiscard]] bool rotates(Index point) const;
   template <class Enter>
   void visit_rows(Index point, const Enter& enter) const;
   template <class Enter>
@@ -85,7 +85,7 @@ class DelassusProblem {
   void solve_contact();
   void log_iterations() const;
   [[nodiscard]] std::size_t closed_points() const;
-  void give(const Stage& stage, StageSolution& solution) const;
+  void write_solution(const Stage& stage, StageSolution& solution) const;
   void write_mean_reactions(const Stage& stage, StageSolution& solution) const;
   [[noreturn]] void throw_no_mean() const;
   [[noreturn]] void throw_not_solved() const;
@@ -98,18 +98,18 @@ class DelassusProblem {
   bool friction_;
   bool all_points_;
   bool candidates_required_ = false;  ///< points have penetrated where none was expected to touch
-  bool asked_ = false;                ///< the candidates took part in the last stage
+  bool candidates_active_ = false;    ///< the candidates took part in the last stage
   bool has_new_factor_ = false;
   const ContactRows* rows_;     ///< of the stage being solved
   std::vector<long> revision_;  ///< of each candidate's rows in W; −1 for rows that never change
   ContactCandidates candidates_;
   std::vector<Index> candidate_counts_;  ///< number of candidates after each call of add_candidates
   DelassusColumns columns_;
-  RotatingRows turned_;
-  Vector of_columns_;                            ///< per row of E
-  std::unique_ptr<MasslessContactNodes> layer_;  ///< null if the stage has no massless contact nodes
-  Matrix condensed_;  ///< of columns, with massless contact nodes or turning rows; else it is the contact operator
-                      ///< itself
+  RotatingRows rotating_rows_;
+  Vector of_columns_;                                     ///< per row of E
+  std::unique_ptr<MasslessContactNodes> massless_nodes_;  ///< null if the stage has no massless contact nodes
+  Matrix column_product_;  ///< of columns, with massless contact nodes or turning rows; else it is the contact operator
+                           ///< itself
   MeanReaction mean_;
   SparseRowMatrix supported_;   ///< H on supported dofs: rows × supports
   Vector coefficient_, bound_;  ///< of friction, per candidate; the bound in units of r

@@ -17,17 +17,17 @@ void DelassusProblem::take_rows(const Stage& stage) {
   has_new_factor_ = false;
   if (all_new) take_scale(factor_.scale());
   if (candidates_.points().empty() || (rows_->revision.empty() && !all_new)) return;
-  std::vector<char> is_new(static_cast<std::size_t>(turned_.size()), all_new ? 1 : 0);
+  std::vector<char> is_new(static_cast<std::size_t>(rotating_rows_.size()), all_new ? 1 : 0);
   bool any = all_new, have_columns = !all_new;
   for (std::size_t i = 0; i < revision_.size() && !rows_->revision.empty(); ++i) {
     const long revision = rows_->revision[static_cast<std::size_t>(candidates_.points()[i])];
     if (revision == revision_[i]) continue;
     revision_[i] = revision;
     any = true;
-    turned_.take(*rows_, candidates_.points()[i], i);
-    if (turned_.turns(i)) continue;
+    rotating_rows_.take(*rows_, candidates_.points()[i], i);
+    if (rotating_rows_.rotates(i)) continue;
     have_columns = false;
-    std::fill(is_new.begin() + turned_.first(i), is_new.begin() + turned_.first(i + 1), char{1});
+    std::fill(is_new.begin() + rotating_rows_.first(i), is_new.begin() + rotating_rows_.first(i + 1), char{1});
   }
   if (!any) return;
   if (have_columns) {
@@ -37,7 +37,7 @@ void DelassusProblem::take_rows(const Stage& stage) {
   }
 }
 
-void DelassusProblem::take_factor() {
+void DelassusProblem::invalidate_columns() {
   has_new_factor_ = true;
 }
 
@@ -59,7 +59,9 @@ void DelassusProblem::scale_warm_start(double ratio) {
 void DelassusProblem::renew_columns(const std::vector<char>& is_new) {
   Matrix w = release_column_product();
   columns_.renew(transposed_columns(candidates_.points(), unknown_, factor_.size()), is_new, w);
-  if (layer_) layer_->renew(transposed_columns(candidates_.points(), layer_->unknown(), layer_->size()), is_new);
+  if (massless_nodes_)
+    massless_nodes_->renew(
+        transposed_columns(candidates_.points(), massless_nodes_->unknown(), massless_nodes_->size()), is_new);
   use_condensed(std::move(w));
 }
 
@@ -86,25 +88,26 @@ void DelassusProblem::hold_directions_without_trace(Matrix& w) const {
 
 /// Returns YᵀY of the present candidates, on rows of E.
 Matrix DelassusProblem::release_column_product() {
-  if (layer_ || turned_.any()) return std::move(condensed_);
+  if (massless_nodes_ || rotating_rows_.any()) return std::move(column_product_);
   return contact_.contact_operator != nullptr ? *contact_.contact_operator->dense() : Matrix();
 }
 
 /// Sets the operator of the contact problem from YᵀY of all candidates.
 void DelassusProblem::set_contact_operator(Matrix w) {
-  if (turned_.any()) {
-    condensed_ = std::move(w);
-    w = turned_.product(condensed_);
+  if (rotating_rows_.any()) {
+    column_product_ = std::move(w);
+    w = rotating_rows_.product(column_product_);
   }
-  if (!layer_) {
+  if (!massless_nodes_) {
     hold_directions_without_trace(w);
     contact_.contact_operator = make_dense_operator(std::move(w));
     return;
   }
-  Matrix layer = layer_->compliance() / scale_;
-  if (turned_.any()) layer = turned_.product(layer);
-  mean_.prepare((1.0 - 0.5 * layer_->weight()) * layer, w - layer, contact_.row_offset, layer_->mean());
-  if (!turned_.any()) condensed_ = std::move(w);
+  Matrix massless_compliance = massless_nodes_->compliance() / scale_;
+  if (rotating_rows_.any()) massless_compliance = rotating_rows_.product(massless_compliance);
+  mean_.prepare((1.0 - 0.5 * massless_nodes_->weight()) * massless_compliance, w - massless_compliance,
+                contact_.row_offset, massless_nodes_->mean());
+  if (!rotating_rows_.any()) column_product_ = std::move(w);
   use_end_weight(mean_.theta());
 }
 
@@ -117,7 +120,7 @@ void DelassusProblem::use_end_weight(double theta) {
 
 void DelassusProblem::take_starting_points(const Stage& stage) {
   std::vector<Index> pressing;
-  if (layer_) pressing = pressing_at_start(layer_->mean(), stage);
+  if (massless_nodes_) pressing = pressing_at_start(massless_nodes_->mean(), stage);
   candidates_required_ = candidates_required_ || !pressing.empty();
   std::erase_if(pressing, [&](Index point) { return candidates_.number(point) >= 0; });
   if (!pressing.empty()) add_candidates(pressing);
@@ -139,7 +142,7 @@ void DelassusProblem::solve_mean(const Stage& stage) {
   // The problem that remains, and is exported, is the last one solved.
   if (mean_.solve(contact_, offset, start_gap, start, solve, contact_solution_)) return;
   contact_.offset = offset;
-  if (layer_->mean() == ReactionMean::path) throw_no_mean();
+  if (massless_nodes_->mean() == ReactionMean::path) throw_no_mean();
   if (!mean_.is_usable()) {  // the operator is that of the end reactions
     solve_contact();
     mean_.set_end_reaction(contact_solution_.reaction);

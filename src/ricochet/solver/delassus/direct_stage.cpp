@@ -25,7 +25,7 @@ SparseMatrix on_dofs(const SemidiscreteProblem& problem, const std::vector<int>&
 class DirectStage final : public StageSolver {
  public:
   DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, AnalysedOperator analysed,
-              const StepSolverOptions& options, FactoredStage* layer);
+              const StepSolverOptions& options, FactoredStage* condensed_stage);
 
   void solve(const Stage& stage, StageSolution& solution) override;
   void refactorize(const Vector& displacement) override;
@@ -48,11 +48,11 @@ class DirectStage final : public StageSolver {
 };
 
 DirectStage::DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                         AnalysedOperator analysed, const StepSolverOptions& options, FactoredStage* layer)
+                         AnalysedOperator analysed, const StepSolverOptions& options, FactoredStage* condensed_stage)
     : problem_(problem),
       coefficients_(coefficients),
       supported_(std::move(analysed.supported)),
-      stage_(problem, coefficients, analysed.dofs, std::move(analysed.factor), options.all_points, layer) {}
+      stage_(problem, coefficients, analysed.dofs, std::move(analysed.factor), options.all_points, condensed_stage) {}
 
 void DirectStage::refactorize(const Vector& displacement) {
   SparseMatrix matrix = combine_operator(problem_, coefficients_, displacement);
@@ -92,8 +92,8 @@ AnalysedOperator analyse_operator(const SemidiscreteProblem& problem, const Oper
 
 std::unique_ptr<StageSolver> make_direct_stage(const SemidiscreteProblem& problem,
                                                const OperatorCoefficients& coefficients, AnalysedOperator analysed,
-                                               const StepSolverOptions& options, FactoredStage* layer) {
-  return std::make_unique<DirectStage>(problem, coefficients, std::move(analysed), options, layer);
+                                               const StepSolverOptions& options, FactoredStage* condensed_stage) {
+  return std::make_unique<DirectStage>(problem, coefficients, std::move(analysed), options, condensed_stage);
 }
 
 }  // namespace ricochet

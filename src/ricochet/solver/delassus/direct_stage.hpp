@@ -18,12 +18,12 @@ struct AnalysedOperator {
 [[nodiscard]] AnalysedOperator analyse_operator(const SemidiscreteProblem& problem,
                                                 const OperatorCoefficients& coefficients);
 
-/// Forward solve, condensed contact problem, back solve. `layer` is the stage of A_c, if the coefficients name one;
-/// keeps a reference to it. Throws Error(invalid_input) if A is not positive definite.
+/// Forward solve, condensed contact problem, back solve. `condensed_stage` is the stage of A_c, if the coefficients
+/// name one; keeps a reference to it. Throws Error(invalid_input) if A is not positive definite.
 [[nodiscard]] std::unique_ptr<StageSolver> make_direct_stage(const SemidiscreteProblem& problem,
                                                              const OperatorCoefficients& coefficients,
                                                              AnalysedOperator analysed,
                                                              const StepSolverOptions& options,
-                                                             FactoredStage* layer = nullptr);
+                                                             FactoredStage* condensed_stage = nullptr);
 
 }  // namespace ricochet

@@ -20,10 +20,13 @@ SparseCholesky factorized(SparseCholesky factor, const SemidiscreteProblem& prob
 }  // namespace
 
 FactoredStage::FactoredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                             const std::vector<int>& dofs, SparseCholesky factor, bool all_points, FactoredStage* layer)
+                             const std::vector<int>& dofs, SparseCholesky factor, bool all_points,
+                             FactoredStage* condensed_stage)
     : factor_(factorized(std::move(factor), problem, coefficients, dofs)),
       contact_(problem, number_dofs(problem, dofs), factor_, all_points,
-               layer != nullptr ? std::make_unique<MasslessContactNodes>(problem, coefficients, *layer) : nullptr) {
+               condensed_stage != nullptr
+                   ? std::make_unique<MasslessContactNodes>(problem, coefficients, *condensed_stage)
+                   : nullptr) {
   dof_at_.reserve(dofs.size());
   for (const int unknown : factor_.permutation()) dof_at_.push_back(dofs[static_cast<std::size_t>(unknown)]);
   factor_vector_.setZero(factor_.work_size());
@@ -38,7 +41,7 @@ void FactoredStage::refactorize(const SemidiscreteProblem& problem, const Operat
       dofs[static_cast<std::size_t>(factor_.permutation()[i])] = dof_at_[i];
     refuse_operator(problem, coefficients, dofs[static_cast<std::size_t>(factor_.failed_unknown())]);
   }
-  contact_.take_factor();
+  contact_.invalidate_columns();
 }
 
 /// Computes y = L⁻¹P 2ᵏ b, y += Yρ, δ = Pᵀ L⁻ᵀ y; repeated with more contact points if others have penetrated.

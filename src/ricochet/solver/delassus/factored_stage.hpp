@@ -12,10 +12,12 @@ namespace ricochet {
 class FactoredStage {
  public:
   /// Factorizes. `dofs` are those of the unknowns of `factor`, which has been analysed; `coefficients` are those of A,
-  /// for the error. `layer` is the stage of the operator A_c, if these coefficients name one, whose factor is used.
-  /// Keeps references to the problem and to `layer`. Throws Error(invalid_input) if A is not positive definite.
+  /// for the error. `condensed_stage` is the stage of the operator A_c, if these coefficients name one, whose factor is
+  /// used. Keeps references to the problem and to `condensed_stage`. Throws Error(invalid_input) if A is not positive
+  /// definite.
   FactoredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                const std::vector<int>& dofs, SparseCholesky factor, bool all_points, FactoredStage* layer = nullptr);
+                const std::vector<int>& dofs, SparseCholesky factor, bool all_points,
+                FactoredStage* condensed_stage = nullptr);
   FactoredStage(const FactoredStage&) = delete;
   FactoredStage& operator=(const FactoredStage&) = delete;
 

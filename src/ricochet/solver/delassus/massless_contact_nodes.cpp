@@ -6,19 +6,19 @@
 namespace ricochet {
 
 MasslessContactNodes::MasslessContactNodes(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                                           FactoredStage& layer)
+                                           FactoredStage& condensed_stage)
     : weight_(coefficients.condensed_weight),
       mean_(coefficients.mean),
       problem_(problem),
-      factor_(layer.factor()),
-      dof_at_(layer.dofs()),
+      factor_(condensed_stage.factor()),
+      dof_at_(condensed_stage.dofs()),
       unknown_(number_dofs(problem, solved_dofs(problem, StageDofs::contact))),
       node_dofs_(contact_node_dofs(problem)),
-      columns_(layer.factor()) {
+      columns_(condensed_stage.factor()) {
   for (const auto& body : problem.free_bodies) {
     for (Index k = 0; k < 2 * problem.dimension; ++k) node_dofs_.push_back(body->centre_node() * problem.dimension + k);
   }
-  layer_.setZero(factor_.work_size());
+  factor_vector_.setZero(factor_.work_size());
 }
 
 Index MasslessContactNodes::size() const {
@@ -46,10 +46,10 @@ void MasslessContactNodes::find_motion(const ContactRows& rows, const StageSolut
   force_.setZero(problem_.dof_count());
   rows.add_force(normal_, tangential_, force_);
   const double scale = 0.5 * factor_.scale();
-  for (std::size_t i = 0; i < dof_at_.size(); ++i) layer_[static_cast<Index>(i)] = scale * force_[dof_at_[i]];
-  factor_.solve_lower(layer_);
-  factor_.solve_upper(layer_);
-  for (std::size_t i = 0; i < dof_at_.size(); ++i) motion[dof_at_[i]] -= layer_[static_cast<Index>(i)];
+  for (std::size_t i = 0; i < dof_at_.size(); ++i) factor_vector_[static_cast<Index>(i)] = scale * force_[dof_at_[i]];
+  factor_.solve_lower(factor_vector_);
+  factor_.solve_upper(factor_vector_);
+  for (std::size_t i = 0; i < dof_at_.size(); ++i) motion[dof_at_[i]] -= factor_vector_[static_cast<Index>(i)];
 }
 
 }  // namespace ricochet

@@ -14,10 +14,10 @@ class FactoredStage;
 
 class MasslessContactNodes {
  public:
-  /// `coefficients` are those of the stage with massless contact nodes, `layer` is the stage of A_c; if that is
-  /// refactorized, so is the former, after it. Keeps references to the problem and the stage of A_c.
+  /// `coefficients` are those of the stage with massless contact nodes, `condensed_stage` is the stage of A_c; if that
+  /// is refactorized, so is the former, after it. Keeps references to the problem and the stage of A_c.
   MasslessContactNodes(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                       FactoredStage& layer);
+                       FactoredStage& condensed_stage);
 
   /// Weight ℓ.
   [[nodiscard]] double weight() const { return weight_; }
@@ -49,7 +49,7 @@ class MasslessContactNodes {
   std::vector<Index> node_dofs_;  ///< of contact nodes, including supported ones
   DelassusColumns columns_;
   Matrix compliance_;  ///< of 2ᵏA_c
-  Vector normal_, tangential_, force_, layer_;
+  Vector normal_, tangential_, force_, factor_vector_;
 };
 
 /// Points that press at the start of a step: part of the path of a mean, wherever they move.

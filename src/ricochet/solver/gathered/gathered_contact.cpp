@@ -40,7 +40,7 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 void read_row(NumberReader& message, Index row, Index per_node, const GatheredNodes& nodes, Triplets& entries) {
   for (Index count = message.integer(); count > 0; --count) {
     const Index dof = message.integer();
-    const Index column = nodes.place_of(dof / per_node) * per_node + dof % per_node;
+    const Index column = nodes.index_of(dof / per_node) * per_node + dof % per_node;
     entries.emplace_back(static_cast<int>(row), static_cast<int>(column), message.next());
   }
 }
@@ -112,7 +112,7 @@ void GatheredContact::gather_boundary() {
   const Ranks& ranks = *problem_.ranks;
   const ContactBoundary& own = problem_.contact;
   Ranks::ForEach<double> told(static_cast<std::size_t>(ranks.size()));
-  std::vector<double>& message = told[static_cast<std::size_t>(nodes_.home())];
+  std::vector<double>& message = told[static_cast<std::size_t>(nodes_.root())];
   for (Index point = 0; point < own.size(); ++point) {
     message.insert(message.end(), {static_cast<double>(own.pair[static_cast<std::size_t>(point)]), own.weights[point],
                                    own.friction_coefficient[point], own.friction_bound[point], own.net[point]});
@@ -123,7 +123,7 @@ void GatheredContact::gather_boundary() {
   Vector solved = Vector::Zero(problem_.dof_count());
   for (const Index dof : problem_.contact_dofs) solved[dof] = 1.0;
   const Vector is_solved = nodes_.gather(solved, d_);
-  if (is_home()) {
+  if (is_root()) {
     read_boundary();
     for (Index dof = 0; dof < is_solved.size(); ++dof) {
       if (is_solved[dof] > 0.0) contact_dofs_.push_back(dof);
@@ -180,10 +180,10 @@ void GatheredContact::gather_rows(const ContactRows& rows) {
   revision_ = rows.revision;
   if (!ranks.any(!changed.empty())) return;
   Ranks::ForEach<double> told(static_cast<std::size_t>(ranks.size()));
-  std::vector<double>& message = told[static_cast<std::size_t>(nodes_.home())];
+  std::vector<double>& message = told[static_cast<std::size_t>(nodes_.root())];
   for (const Index point : changed) append_point(rows, point, d_, ranks, message);
   known_ = ranks.exchange(std::move(told));
-  if (is_home()) rows_ = read_rows();
+  if (is_root()) rows_ = read_rows();
 }
 
 /// Merges the received rows with the unchanged ones, in new storage: others may keep those of earlier stages.
@@ -228,7 +228,7 @@ std::shared_ptr<const ContactRows> GatheredContact::rows_on(const ContactRows& r
 std::unique_ptr<SemidiscreteProblem> GatheredContact::make_problem(const GatheredNodes& nodes) const {
   const Vector places = nodes.gather(problem_.nodes.reshaped(), d_);
   const Vector of_contact = nodes_.gather(problem_.nodes.reshaped(), d_);
-  if (!is_home()) return nullptr;
+  if (!is_root()) return nullptr;
   auto result = std::make_unique<SemidiscreteProblem>();
   result->dimension = d_;
   result->axisymmetric = problem_.axisymmetric;

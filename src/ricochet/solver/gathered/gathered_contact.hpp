@@ -13,11 +13,11 @@ namespace ricochet {
 
 class GatheredContact {
  public:
-  /// `home` selects the root: 0 is the rank with most contact points, 1 the next one, and so on. Keeps a reference to
+  /// `root` selects the root: 0 is the rank with most contact points, 1 the next one, and so on. Keeps a reference to
   /// the problem.
   explicit GatheredContact(const SemidiscreteProblem& problem, std::size_t home = 0);
 
-  [[nodiscard]] bool is_home() const { return nodes_.is_home(); }
+  [[nodiscard]] bool is_root() const { return nodes_.is_root(); }
   /// Gathered contact nodes.
   [[nodiscard]] const GatheredNodes& nodes() const { return nodes_; }
   /// Nodes that some rank names, extended to all ranks that have them; ascending.
@@ -31,9 +31,9 @@ class GatheredContact {
 
   /// Gathers a stage at the root, with these points of this rank (others are not eligible there), with the gaps and
   /// slips that it has at a motion x: the stage for a correction of x. `points` is the same as that of spread().
-  void gather(const Stage& stage, const Vector& x, const std::vector<Index>& points, Stage& at_home);
+  void gather(const Stage& stage, const Vector& x, const std::vector<Index>& points, Stage& at_root);
   /// Adds the solution at the root on these points: reactions, status and iterations.
-  void spread(const StageSolution& at_home, const std::vector<Index>& points, StageSolution& solution) const;
+  void scatter(const StageSolution& at_root, const std::vector<Index>& points, StageSolution& solution) const;
 
   /// Number, at the root, of a point of a rank.
   [[nodiscard]] Index number(int rank, Index point) const { return first_[static_cast<std::size_t>(rank)] + point; }
@@ -45,10 +45,10 @@ class GatheredContact {
   [[nodiscard]] std::shared_ptr<ContactRows> empty_rows() const;
   void gather_rows(const ContactRows& rows);
   [[nodiscard]] std::shared_ptr<ContactRows> read_rows() const;
-  void tell_points(const Stage& stage, const std::vector<Index>& points, std::vector<double>& message) const;
-  void read_points(Stage& at_home) const;
-  void tell_solution(const StageSolution& at_home, int rank, const std::vector<std::int64_t>& points,
-                     std::vector<double>& message) const;
+  void write_points(const Stage& stage, const std::vector<Index>& points, std::vector<double>& message) const;
+  void read_points(Stage& at_root) const;
+  void write_solution(const StageSolution& at_root, int rank, const std::vector<std::int64_t>& points,
+                      std::vector<double>& message) const;
   void read_solution(const std::vector<double>& message, const std::vector<Index>& points,
                      StageSolution& solution) const;
 

@@ -28,21 +28,21 @@ void add_value(Vector& values, Index i, double value) {
 
 }  // namespace
 
-void GatheredContact::gather(const Stage& stage, const Vector& x, const std::vector<Index>& points, Stage& at_home) {
+void GatheredContact::gather(const Stage& stage, const Vector& x, const std::vector<Index>& points, Stage& at_root) {
   const Ranks& ranks = *problem_.ranks;
   if (problem_.contact.follows_motion()) gather_rows(*stage.rows);
   stage.rows->normal_motion(x, motion_);
   if (stage.slip_offset.size() > 0) stage.rows->tangential_motion(x, slip_);
   Ranks::ForEach<double> told(static_cast<std::size_t>(ranks.size()));
-  if (!points.empty()) tell_points(stage, points, told[static_cast<std::size_t>(nodes_.home())]);
+  if (!points.empty()) write_points(stage, points, told[static_cast<std::size_t>(nodes_.root())]);
   known_ = ranks.exchange(std::move(told));
-  at_home.gap_factor = stage.gap_factor;
-  at_home.slip_factor = stage.slip_factor;
-  if (is_home()) read_points(at_home);
+  at_root.gap_factor = stage.gap_factor;
+  at_root.slip_factor = stage.slip_factor;
+  if (is_root()) read_points(at_root);
 }
 
-void GatheredContact::tell_points(const Stage& stage, const std::vector<Index>& points,
-                                  std::vector<double>& message) const {
+void GatheredContact::write_points(const Stage& stage, const std::vector<Index>& points,
+                                   std::vector<double>& message) const {
   const Index tangents = d_ - 1;
   const bool slips = stage.slip_offset.size() > 0;
   for (const bool has :
@@ -63,75 +63,75 @@ void GatheredContact::tell_points(const Stage& stage, const std::vector<Index>& 
   }
 }
 
-void GatheredContact::read_points(Stage& at_home) const {
+void GatheredContact::read_points(Stage& at_root) const {
   const Index count = point_count(), tangents = d_ - 1;
   std::array<bool, stage_parts> has{};
   for (const std::vector<double>& from : known_) {
     for (std::size_t k = 0; k < stage_parts && !from.empty(); ++k) has[k] = has[k] || from[k] != 0.0;
   }
-  at_home.rows = rows_;
-  at_home.prescribed.resize(0);
-  at_home.eligible.assign(static_cast<std::size_t>(count), 0);
-  at_home.gap_offset.setZero(count);
-  at_home.gap_offset_rounding.setZero(count);
-  at_home.slip_offset.setZero(has[with_slip] ? count * tangents : 0);
-  at_home.slip_offset_rounding.setZero(has[with_slip] ? count : 0);
-  at_home.frictionless.assign(has[with_frictionless] ? static_cast<std::size_t>(count) : 0, 0);
-  at_home.start_gap.setZero(has[with_start] ? count : 0);
-  at_home.start_normal_reaction.setZero(has[with_start] ? count : 0);
-  at_home.start_tangential_reaction.setZero(has[with_start_friction] ? count * tangents : 0);
+  at_root.rows = rows_;
+  at_root.prescribed.resize(0);
+  at_root.eligible.assign(static_cast<std::size_t>(count), 0);
+  at_root.gap_offset.setZero(count);
+  at_root.gap_offset_rounding.setZero(count);
+  at_root.slip_offset.setZero(has[with_slip] ? count * tangents : 0);
+  at_root.slip_offset_rounding.setZero(has[with_slip] ? count : 0);
+  at_root.frictionless.assign(has[with_frictionless] ? static_cast<std::size_t>(count) : 0, 0);
+  at_root.start_gap.setZero(has[with_start] ? count : 0);
+  at_root.start_normal_reaction.setZero(has[with_start] ? count : 0);
+  at_root.start_tangential_reaction.setZero(has[with_start_friction] ? count * tangents : 0);
   for (std::size_t rank = 0; rank < known_.size(); ++rank) {
     NumberReader numbers(known_[rank]);
     for (std::size_t k = 0; k < stage_parts && !numbers.is_at_end(); ++k) numbers.next();
     while (!numbers.is_at_end()) {
       const Index point = number(static_cast<int>(rank), numbers.integer());
       const auto at = static_cast<std::size_t>(point);
-      at_home.eligible[at] = numbers.next() != 0.0 ? 1 : 0;
-      at_home.gap_offset[point] = numbers.next();
-      at_home.gap_offset_rounding[point] = numbers.next();
+      at_root.eligible[at] = numbers.next() != 0.0 ? 1 : 0;
+      at_root.gap_offset[point] = numbers.next();
+      at_root.gap_offset_rounding[point] = numbers.next();
       const bool is_frictionless = numbers.next() != 0.0;
-      if (has[with_frictionless]) at_home.frictionless[at] = is_frictionless ? 1 : 0;
-      set_value(at_home.slip_offset_rounding, point, numbers.next());
-      set_value(at_home.start_gap, point, numbers.next());
-      set_value(at_home.start_normal_reaction, point, numbers.next());
+      if (has[with_frictionless]) at_root.frictionless[at] = is_frictionless ? 1 : 0;
+      set_value(at_root.slip_offset_rounding, point, numbers.next());
+      set_value(at_root.start_gap, point, numbers.next());
+      set_value(at_root.start_normal_reaction, point, numbers.next());
       for (Index row = point * tangents; row < (point + 1) * tangents; ++row) {
-        set_value(at_home.slip_offset, row, numbers.next());
-        set_value(at_home.start_tangential_reaction, row, numbers.next());
+        set_value(at_root.slip_offset, row, numbers.next());
+        set_value(at_root.start_tangential_reaction, row, numbers.next());
       }
     }
   }
 }
 
-void GatheredContact::spread(const StageSolution& at_home, const std::vector<Index>& points,
-                             StageSolution& solution) const {
+void GatheredContact::scatter(const StageSolution& at_root, const std::vector<Index>& points,
+                              StageSolution& solution) const {
   const Ranks& ranks = *problem_.ranks;
   const auto size = static_cast<std::size_t>(ranks.size());
   Ranks::ForEach<std::int64_t> asked(size);
-  asked[static_cast<std::size_t>(nodes_.home())].assign(points.begin(), points.end());
+  asked[static_cast<std::size_t>(nodes_.root())].assign(points.begin(), points.end());
   const Ranks::ForEach<std::int64_t> wanted = ranks.exchange(std::move(asked));
   Ranks::ForEach<double> told(size);
-  for (std::size_t rank = 0; is_home() && rank < size; ++rank)
-    tell_solution(at_home, static_cast<int>(rank), wanted[rank], told[rank]);
+  for (std::size_t rank = 0; is_root() && rank < size; ++rank)
+    write_solution(at_root, static_cast<int>(rank), wanted[rank], told[rank]);
   const Ranks::ForEach<double> known = ranks.exchange(std::move(told));
-  read_solution(known[static_cast<std::size_t>(nodes_.home())], points, solution);
+  read_solution(known[static_cast<std::size_t>(nodes_.root())], points, solution);
   // Works of the path are sums over points, as those of any rank.
-  if (!is_home()) return;
-  solution.path_contact_work = at_home.path_contact_work;
-  solution.path_friction_work = at_home.path_friction_work;
+  if (!is_root()) return;
+  solution.path_contact_work = at_root.path_contact_work;
+  solution.path_friction_work = at_root.path_friction_work;
 }
 
-void GatheredContact::tell_solution(const StageSolution& at_home, int rank, const std::vector<std::int64_t>& points,
-                                    std::vector<double>& message) const {
+void GatheredContact::write_solution(const StageSolution& at_root, int rank, const std::vector<std::int64_t>& points,
+                                     std::vector<double>& message) const {
   const Index tangents = d_ - 1;
-  message = {static_cast<double>(at_home.iterations), at_home.mean_normal_reaction.size() > 0 ? 1.0 : 0.0,
-             at_home.end_weight};
+  message = {static_cast<double>(at_root.iterations), at_root.mean_normal_reaction.size() > 0 ? 1.0 : 0.0,
+             at_root.end_weight};
   for (const std::int64_t own : points) {
     const Index point = number(rank, own);
-    message.insert(message.end(), {at_home.normal_reaction[point], value_of(at_home.mean_normal_reaction, point),
-                                   static_cast<double>(at_home.contact_status[static_cast<std::size_t>(point)])});
+    message.insert(message.end(), {at_root.normal_reaction[point], value_of(at_root.mean_normal_reaction, point),
+                                   static_cast<double>(at_root.contact_status[static_cast<std::size_t>(point)])});
     for (Index row = point * tangents; row < (point + 1) * tangents; ++row) {
-      message.push_back(value_of(at_home.tangential_reaction, row));
-      message.push_back(value_of(at_home.mean_tangential_reaction, row));
+      message.push_back(value_of(at_root.tangential_reaction, row));
+      message.push_back(value_of(at_root.mean_tangential_reaction, row));
     }
   }
 }

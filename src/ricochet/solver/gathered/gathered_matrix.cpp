@@ -10,7 +10,7 @@ SparseMatrix gather_matrix(const Ranks& ranks, const SparseMatrix& on_nodes, con
   const auto size = static_cast<std::size_t>(ranks.size());
   Ranks::ForEach<std::int64_t> places(size);
   Ranks::ForEach<double> values(size);
-  const auto home = static_cast<std::size_t>(gathered.home());
+  const auto home = static_cast<std::size_t>(gathered.root());
   for (Index column = 0; column < on_nodes.outerSize(); ++column) {
     for (SparseMatrix::InnerIterator entry(on_nodes, column); entry; ++entry) {
       places[home].push_back(dof_number(entry.row()));
@@ -20,12 +20,12 @@ SparseMatrix gather_matrix(const Ranks& ranks, const SparseMatrix& on_nodes, con
   }
   const Ranks::ForEach<std::int64_t> known_places = ranks.exchange(std::move(places));
   const Ranks::ForEach<double> known_values = ranks.exchange(std::move(values));
-  if (!gathered.is_home()) return {};
-  const auto place_of = [&](std::int64_t dof) { return static_cast<int>(gathered.place_of(dof / d) * d + dof % d); };
+  if (!gathered.is_root()) return {};
+  const auto index_of = [&](std::int64_t dof) { return static_cast<int>(gathered.index_of(dof / d) * d + dof % d); };
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t rank = 0; rank < size; ++rank) {
     for (std::size_t i = 0; i < known_values[rank].size(); ++i)
-      entries.emplace_back(place_of(known_places[rank][2 * i]), place_of(known_places[rank][2 * i + 1]),
+      entries.emplace_back(index_of(known_places[rank][2 * i]), index_of(known_places[rank][2 * i + 1]),
                            known_values[rank][i]);
   }
   SparseMatrix result(gathered.count() * d, gathered.count() * d);

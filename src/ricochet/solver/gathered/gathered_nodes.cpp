@@ -5,7 +5,7 @@
 namespace ricochet {
 
 GatheredNodes::GatheredNodes(const Ranks& ranks, int home, const std::vector<Index>& nodes, const GatheredNodes* first)
-    : ranks_(&ranks), home_(home), nodes_(nodes) {
+    : ranks_(&ranks), root_(home), nodes_(nodes) {
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
   const auto size = static_cast<std::size_t>(ranks.size());
@@ -16,7 +16,7 @@ GatheredNodes::GatheredNodes(const Ranks& ranks, int home, const std::vector<Ind
     if (ranks.is_owned(node)) owned_.push_back(node);
   }
   const Ranks::ForEach<std::int64_t> known = ranks.exchange(std::move(told)), owned = ranks.exchange(std::move(owns));
-  if (!is_home()) return;
+  if (!is_root()) return;
   if (first != nullptr) numbers_ = first->numbers_;
   std::vector<std::int64_t> before = numbers_, others;
   std::sort(before.begin(), before.end());
@@ -29,30 +29,30 @@ GatheredNodes::GatheredNodes(const Ranks& ranks, int home, const std::vector<Ind
   others.erase(std::unique(others.begin(), others.end()), others.end());
   numbers_.insert(numbers_.end(), others.begin(), others.end());
   for (std::size_t place = 0; place < numbers_.size(); ++place)
-    place_.emplace_back(numbers_[place], static_cast<Index>(place));
-  std::sort(place_.begin(), place_.end());
-  places_.resize(size);
+    index_.emplace_back(numbers_[place], static_cast<Index>(place));
+  std::sort(index_.begin(), index_.end());
+  indices_.resize(size);
   owned_places_.resize(size);
   for (std::size_t rank = 0; rank < size; ++rank) {
     for (std::size_t i = 0; i < known[rank].size(); ++i) {
-      places_[rank].push_back(place_of(known[rank][i]));
-      if (owned[rank][i] != 0) owned_places_[rank].push_back(places_[rank].back());
+      indices_[rank].push_back(index_of(known[rank][i]));
+      if (owned[rank][i] != 0) owned_places_[rank].push_back(indices_[rank].back());
     }
   }
 }
 
-Index GatheredNodes::place_of(std::int64_t number) const {
-  const auto found = std::lower_bound(place_.begin(), place_.end(), std::pair(number, Index{0}));
-  return found != place_.end() && found->first == number ? found->second : -1;
+Index GatheredNodes::index_of(std::int64_t number) const {
+  const auto found = std::lower_bound(index_.begin(), index_.end(), std::pair(number, Index{0}));
+  return found != index_.end() && found->first == number ? found->second : -1;
 }
 
 Vector GatheredNodes::gather(const Vector& values, int per_node) const {
   Ranks::ForEach<double> told(static_cast<std::size_t>(ranks_->size()));
-  std::vector<double>& own = told[static_cast<std::size_t>(home_)];
+  std::vector<double>& own = told[static_cast<std::size_t>(root_)];
   for (const Index node : owned_)
     own.insert(own.end(), values.data() + node * per_node, values.data() + (node + 1) * per_node);
   const Ranks::ForEach<double> known = ranks_->exchange(std::move(told));
-  if (!is_home()) return {};
+  if (!is_root()) return {};
   Vector result = Vector::Zero(count() * per_node);
   for (std::size_t rank = 0; rank < known.size(); ++rank) {
     const double* from = known[rank].data();
@@ -64,14 +64,14 @@ Vector GatheredNodes::gather(const Vector& values, int per_node) const {
   return result;
 }
 
-void GatheredNodes::spread(const Vector& at_home, int per_node, Vector& values) const {
+void GatheredNodes::scatter(const Vector& at_root, int per_node, Vector& values) const {
   Ranks::ForEach<double> told(static_cast<std::size_t>(ranks_->size()));
-  for (std::size_t rank = 0; rank < places_.size(); ++rank) {
-    for (const Index place : places_[rank])
-      told[rank].insert(told[rank].end(), at_home.data() + place * per_node, at_home.data() + (place + 1) * per_node);
+  for (std::size_t rank = 0; rank < indices_.size(); ++rank) {
+    for (const Index place : indices_[rank])
+      told[rank].insert(told[rank].end(), at_root.data() + place * per_node, at_root.data() + (place + 1) * per_node);
   }
   const Ranks::ForEach<double> known = ranks_->exchange(std::move(told));
-  const double* from = known[static_cast<std::size_t>(home_)].data();
+  const double* from = known[static_cast<std::size_t>(root_)].data();
   for (const Index node : nodes_) {
     std::copy_n(from, per_node, values.data() + node * per_node);
     from += per_node;

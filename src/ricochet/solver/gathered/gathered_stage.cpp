@@ -35,7 +35,7 @@ class GatheredStage final : public StageSolver {
     if (stage_) stage_->save(snapshot, name);
   }
   void load(const Snapshot& snapshot, const std::string& name) override {
-    problem_.ranks->together([&] {
+    problem_.ranks->run_collectively([&] {
       if (stage_) stage_->load(snapshot, name);
     });
   }
@@ -50,7 +50,7 @@ class GatheredStage final : public StageSolver {
   std::vector<Index> points_;  ///< that take part in the stage
   Vector right_hand_side_, held_, contact_force_;
   // At the root:
-  std::unique_ptr<SemidiscreteProblem> near_;
+  std::unique_ptr<SemidiscreteProblem> root_problem_;
   std::unique_ptr<StageSolver> stage_;
   Stage near_stage_;
   StageSolution near_solution_;
@@ -89,16 +89,16 @@ GatheredStage::GatheredStage(const SemidiscreteProblem& problem, const OperatorC
   supported_ = supported_part(problem, terms);
   const SparseMatrix on_contact = terms.principal(nodes);
   const SparseMatrix gathered = gather_matrix(*problem.ranks, on_contact, nodes, d, contact.nodes());
-  near_ = contact.make_problem(contact.nodes());
-  problem.ranks->together([&] {
-    if (!contact.is_home()) return;
+  root_problem_ = contact.make_problem(contact.nodes());
+  problem.ranks->run_collectively([&] {
+    if (!contact.is_root()) return;
     AnalysedOperator analysed;
-    analysed.dofs = solved_dofs(*near_, StageDofs::contact);
-    analysed.supported.resize(0, near_->dof_count());
-    const std::vector<int> number = number_dofs(*near_, analysed.dofs);
+    analysed.dofs = solved_dofs(*root_problem_, StageDofs::contact);
+    analysed.supported.resize(0, root_problem_->dof_count());
+    const std::vector<int> number = number_dofs(*root_problem_, analysed.dofs);
     const auto count = static_cast<Index>(analysed.dofs.size());
     analysed.factor.analyse(extract(gathered, number, count, number, count));
-    stage_ = make_direct_stage(*near_, coefficients, std::move(analysed), options);
+    stage_ = make_direct_stage(*root_problem_, coefficients, std::move(analysed), options);
   });
 }
 
@@ -116,15 +116,15 @@ void GatheredStage::solve(const Stage& stage, StageSolution& solution) {
   }
   contact_.gather(stage, held_, points_, near_stage_);
   near_stage_.right_hand_side = contact_.nodes().gather(right_hand_side_, d);
-  ranks.together([&] {
+  ranks.run_collectively([&] {
     if (stage_) stage_->solve(near_stage_, near_solution_);
   });
   solution.open_all(problem_.contact.size(), problem_.contact.has_friction() ? d - 1 : 0);
   solution.increment = held_;
-  contact_.nodes().spread(near_solution_.increment, d, solution.increment);
+  contact_.nodes().scatter(near_solution_.increment, d, solution.increment);
   // Supported dofs of contact nodes are not solved for.
   prescribe(problem_, stage, solution.increment);
-  contact_.spread(near_solution_, points_, solution);
+  contact_.scatter(near_solution_, points_, solution);
   find_support_reaction(problem_, stage, supported_, contact_force_, solution);
 }
 

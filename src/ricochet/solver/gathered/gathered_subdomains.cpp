@@ -14,9 +14,10 @@ constexpr std::size_t most_homes = 16;
 
 class GatheredSubdomains final : public ContactRegion {
  public:
-  GatheredSubdomains(const DistributedRegion& body, bool all_points, GatheredContact& contact, FactoredStage* layer)
+  GatheredSubdomains(const DistributedRegion& body, bool all_points, GatheredContact& contact,
+                     FactoredStage* condensed_stage)
       : body_(body), all_points_(all_points) {
-    homes_.push_back({nullptr, std::make_unique<RootSubdomains>(body, all_points, contact, layer)});
+    homes_.push_back({nullptr, std::make_unique<RootSubdomains>(body, all_points, contact, condensed_stage)});
   }
 
   void make(const std::vector<Index>& points) override;
@@ -35,7 +36,7 @@ class GatheredSubdomains final : public ContactRegion {
   }
   void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) override {
     make(points);
-    body_.problem.ranks->together([&] { visit([&](Subdomains& zones) { zones.load_made(snapshot, name); }); });
+    body_.problem.ranks->run_collectively([&] { visit([&](Subdomains& zones) { zones.load_made(snapshot, name); }); });
   }
   void report() const override {
     visit([](const Subdomains& zones) { zones.report(); });
@@ -85,8 +86,8 @@ void GatheredSubdomains::find_homes(std::size_t zones) {
   active_ = std::min({zones, ranks, most_homes});
   while (homes_.size() < active_) {
     auto contact = std::make_unique<GatheredContact>(body_.problem, homes_.size());
-    auto at_home = std::make_unique<RootSubdomains>(body_, all_points_, *contact, nullptr);
-    homes_.push_back({std::move(contact), std::move(at_home)});
+    auto at_root = std::make_unique<RootSubdomains>(body_, all_points_, *contact, nullptr);
+    homes_.push_back({std::move(contact), std::move(at_root)});
   }
 }
 
@@ -94,16 +95,16 @@ void GatheredSubdomains::make(const std::vector<Index>& points) {
   clear();
   points_ = points;
   RegionNodes near;
-  near.layers = body_.nearby.layers_to_solve(points, body_.coefficients, body_.product);
-  near.nodes = body_.nearby.nodes_around(points, near.layers);
+  near.layers = body_.neighbourhood.layers_to_solve(points, body_.coefficients, body_.product);
+  near.nodes = body_.neighbourhood.nodes_around(points, near.layers);
   near.matrix = body_.product.principal(near.nodes);
   const Ranks& ranks = *body_.problem.ranks;
   homes_.front().zones->gather_body(points, near);
   std::size_t zones = 0;
-  ranks.together([&] { zones = homes_.front().zones->partition_on_root(); });
+  ranks.run_collectively([&] { zones = homes_.front().zones->partition_on_root(); });
   find_homes(static_cast<std::size_t>(ranks.maximum(static_cast<double>(zones))));
   for (std::size_t i = 1; i < active_; ++i) homes_[i].zones->gather_body(points, near);
-  ranks.together([&] {
+  ranks.run_collectively([&] {
     for (std::size_t i = 0; i < active_; ++i) {
       if (i > 0) homes_[i].zones->partition_on_root();
       homes_[i].zones->make_on_root(i, active_);
@@ -115,12 +116,12 @@ void GatheredSubdomains::make(const std::vector<Index>& points) {
 
 void GatheredSubdomains::solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) {
   for (std::size_t i = 0; i < active_; ++i) homes_[i].zones->gather(stage, x, points_, residual);
-  body_.problem.ranks->together([&] {
+  body_.problem.ranks->run_collectively([&] {
     for (std::size_t i = 0; i < active_; ++i) homes_[i].zones->solve_on_root();
   });
   solution.open_all(body_.problem.contact.size(),
                     body_.problem.contact.has_friction() ? body_.problem.dimension - 1 : 0);
-  for (std::size_t i = 0; i < active_; ++i) homes_[i].zones->spread(points_, x, solution);
+  for (std::size_t i = 0; i < active_; ++i) homes_[i].zones->scatter(points_, x, solution);
 }
 
 void GatheredSubdomains::find_motion(const ContactRows&, const StageSolution& solution, const Vector& increment,
@@ -140,10 +141,10 @@ void GatheredSubdomains::find_motion(const ContactRows&, const StageSolution& so
 std::unique_ptr<ContactRegion> make_gathered_subdomains(const SemidiscreteProblem& problem,
                                                         const OperatorCoefficients& coefficients,
                                                         const std::vector<char>& solved, const StageProduct& product,
-                                                        ContactNeighbourhood& nearby, bool all_points,
-                                                        GatheredContact& contact, FactoredStage* layer) {
-  return std::make_unique<GatheredSubdomains>(DistributedRegion{problem, coefficients, solved, product, nearby},
-                                              all_points, contact, layer);
+                                                        ContactNeighbourhood& neighbourhood, bool all_points,
+                                                        GatheredContact& contact, FactoredStage* condensed_stage) {
+  return std::make_unique<GatheredSubdomains>(DistributedRegion{problem, coefficients, solved, product, neighbourhood},
+                                              all_points, contact, condensed_stage);
 }
 
 }  // namespace ricochet

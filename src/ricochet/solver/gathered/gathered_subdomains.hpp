@@ -15,13 +15,11 @@ class FactoredStage;
 /// Subdomains have roots, the ranks that solve them: the first one has `contact`; with several subdomains others take
 /// their share, those with most contact points first. The ranks send A near the contact, once for each set of
 /// subdomains, and in every iteration the residual there and the gaps of their points; they receive the motion and the
-/// reactions. `layer` is at the first root, on `contact.nodes()`; there is a single subdomain then. Keeps references to
-/// everything except the coefficients.
-[[nodiscard]] std::unique_ptr<ContactRegion> make_gathered_subdomains(const SemidiscreteProblem& problem,
-                                                                      const OperatorCoefficients& coefficients,
-                                                                      const std::vector<char>& solved,
-                                                                      const StageProduct& product,
-                                                                      ContactNeighbourhood& nearby, bool all_points,
-                                                                      GatheredContact& contact, FactoredStage* layer);
+/// reactions. `condensed_stage` is at the first root, on `contact.nodes()`; there is a single subdomain then. Keeps
+/// references to everything except the coefficients.
+[[nodiscard]] std::unique_ptr<ContactRegion> make_gathered_subdomains(
+    const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, const std::vector<char>& solved,
+    const StageProduct& product, ContactNeighbourhood& neighbourhood, bool all_points, GatheredContact& contact,
+    FactoredStage* condensed_stage);
 
 }  // namespace ricochet

@@ -7,14 +7,14 @@
 namespace ricochet {
 
 void RootSubdomains::clear() {
-  if (zones_) earlier_seconds_ += zones_->contact_seconds();
-  zones_.reset();
+  if (subdomains_) earlier_seconds_ += subdomains_->contact_seconds();
+  subdomains_.reset();
 }
 
 std::vector<Index> RootSubdomains::gather_points(const std::vector<Index>& points) const {
   const Ranks& ranks = *body_.problem.ranks;
   Ranks::ForEach<std::int64_t> told(static_cast<std::size_t>(ranks.size()));
-  told[static_cast<std::size_t>(nodes_.home())].assign(points.begin(), points.end());
+  told[static_cast<std::size_t>(nodes_.root())].assign(points.begin(), points.end());
   const Ranks::ForEach<std::int64_t> known = ranks.exchange(std::move(told));
   std::vector<Index> result;
   for (std::size_t rank = 0; rank < known.size(); ++rank) {
@@ -27,20 +27,20 @@ std::vector<Index> RootSubdomains::gather_points(const std::vector<Index>& point
 MatrixGraph RootSubdomains::gather_graph(const std::vector<Index>& nodes) {
   const Ranks& ranks = *body_.problem.ranks;
   Ranks::ForEach<std::int64_t> told(static_cast<std::size_t>(ranks.size()));
-  std::vector<std::int64_t>& message = told[static_cast<std::size_t>(nodes_.home())];
+  std::vector<std::int64_t>& message = told[static_cast<std::size_t>(nodes_.root())];
   for (const Index node : nodes) {
-    for (const int other : body_.nearby.graph().neighbours(node)) {
+    for (const int other : body_.neighbourhood.graph().neighbours(node)) {
       if (!std::binary_search(nodes.begin(), nodes.end(), Index{other})) continue;
       message.push_back(ranks.number_of(node));
       message.push_back(ranks.number_of(other));
     }
   }
   const Ranks::ForEach<std::int64_t> known = ranks.exchange(std::move(told));
-  if (!contact_.is_home()) return {};
+  if (!contact_.is_root()) return {};
   std::vector<Eigen::Triplet<double>> entries;
   for (const std::vector<std::int64_t>& pairs : known) {
     for (std::size_t i = 0; i < pairs.size(); i += 2)
-      entries.emplace_back(static_cast<int>(nodes_.place_of(pairs[i])), static_cast<int>(nodes_.place_of(pairs[i + 1])),
+      entries.emplace_back(static_cast<int>(nodes_.index_of(pairs[i])), static_cast<int>(nodes_.index_of(pairs[i + 1])),
                            1.0);
   }
   SparseMatrix pattern(nodes_.count(), nodes_.count());
@@ -53,9 +53,9 @@ void RootSubdomains::gather_body(const std::vector<Index>& points, const RegionN
   rows_.reset();
   const Ranks& ranks = *body_.problem.ranks;
   const int d = body_.problem.dimension;
-  nodes_ = GatheredNodes(ranks, contact_.nodes().home(), near.nodes, &contact_.nodes());
+  nodes_ = GatheredNodes(ranks, contact_.nodes().root(), near.nodes, &contact_.nodes());
   points_ = gather_points(points);
-  near_ = contact_.make_problem(nodes_);
+  root_problem_ = contact_.make_problem(nodes_);
   const std::vector<char>& is_solved = body_.solved;
   const Vector solved = nodes_.gather(
       Eigen::Map<const Eigen::Matrix<char, Eigen::Dynamic, 1>>(is_solved.data(), static_cast<Index>(is_solved.size()))
@@ -63,22 +63,22 @@ void RootSubdomains::gather_body(const std::vector<Index>& points, const RegionN
       d);
   const SparseMatrix matrix = gather_matrix(ranks, near.matrix, near.nodes, d, nodes_);
   MatrixGraph graph = gather_graph(near.nodes);
-  if (!contact_.is_home()) return;
+  if (!contact_.is_root()) return;
   near_solved_.assign(static_cast<std::size_t>(solved.size()), 0);
   for (Index dof = 0; dof < solved.size(); ++dof) near_solved_[static_cast<std::size_t>(dof)] = solved[dof] > 0.0;
   near_product_ = StageProduct(matrix, d);
-  near_nearby_ = std::make_unique<ContactNeighbourhood>(*near_, std::move(graph));
-  zones_ = std::make_unique<Subdomains>(*near_, body_.coefficients, near_solved_, near_product_, *near_nearby_,
-                                        all_points_, layer_);
-  zones_->set_layers(near.layers);
+  near_nearby_ = std::make_unique<ContactNeighbourhood>(*root_problem_, std::move(graph));
+  subdomains_ = std::make_unique<Subdomains>(*root_problem_, body_.coefficients, near_solved_, near_product_,
+                                             *near_nearby_, all_points_, condensed_stage_);
+  subdomains_->set_layers(near.layers);
 }
 
 std::size_t RootSubdomains::partition_on_root() {
-  return zones_ ? zones_->divide(points_) : 0;
+  return subdomains_ ? subdomains_->partition(points_) : 0;
 }
 
 void RootSubdomains::make_on_root(std::size_t number, std::size_t count) {
-  if (zones_) zones_->make_share(number, count);
+  if (subdomains_) subdomains_->make_share(number, count);
 }
 
 /// Extends the rows of the stage, received on the contact nodes, to all nodes; once for many stages if the obstacle is
@@ -86,7 +86,7 @@ void RootSubdomains::make_on_root(std::size_t number, std::size_t count) {
 void RootSubdomains::widen_rows() {
   if (rows_ != stage_.rows) {
     rows_ = stage_.rows;
-    near_rows_ = GatheredContact::rows_on(*rows_, near_->dof_count());
+    near_rows_ = GatheredContact::rows_on(*rows_, root_problem_->dof_count());
   }
   stage_.rows = near_rows_;
 }
@@ -94,36 +94,37 @@ void RootSubdomains::widen_rows() {
 void RootSubdomains::gather(const Stage& stage, const Vector& x, const std::vector<Index>& points,
                             const Vector& residual) {
   contact_.gather(stage, x, points, stage_);
-  if (contact_.is_home()) widen_rows();
+  if (contact_.is_root()) widen_rows();
   near_residual_ = nodes_.gather(residual, body_.problem.dimension);
 }
 
 void RootSubdomains::solve_on_root() {
-  if (!contact_.is_home()) return;
-  solution_.open_all(contact_.point_count(), near_->contact.has_friction() ? body_.problem.dimension - 1 : 0);
-  near_x_.setZero(near_->dof_count());
-  zones_->solve(stage_, near_residual_, near_x_, solution_);
+  if (!contact_.is_root()) return;
+  solution_.open_all(contact_.point_count(), root_problem_->contact.has_friction() ? body_.problem.dimension - 1 : 0);
+  near_x_.setZero(root_problem_->dof_count());
+  subdomains_->solve(stage_, near_residual_, near_x_, solution_);
 }
 
-void RootSubdomains::spread(const std::vector<Index>& points, Vector& x, StageSolution& solution) {
+void RootSubdomains::scatter(const std::vector<Index>& points, Vector& x, StageSolution& solution) {
   const int d = body_.problem.dimension;
   if (correction_.size() != x.size()) correction_.setZero(x.size());
-  nodes_.spread(near_x_, d, correction_);
+  nodes_.scatter(near_x_, d, correction_);
   for (const Index node : nodes_.nodes()) {
     x.segment(node * d, d) += correction_.segment(node * d, d);
     correction_.segment(node * d, d).setZero();
   }
-  contact_.spread(solution_, points, solution);
+  contact_.scatter(solution_, points, solution);
 }
 
 void RootSubdomains::add_motion(Vector& motion) {
   const int d = body_.problem.dimension;
   const GatheredNodes& contact_nodes = contact_.nodes();
-  body_.problem.ranks->together([&] {
-    if (zones_) zones_->find_motion(*stage_.rows, solution_, Vector::Zero(near_->dof_count()), near_motion_);
+  body_.problem.ranks->run_collectively([&] {
+    if (subdomains_)
+      subdomains_->find_motion(*stage_.rows, solution_, Vector::Zero(root_problem_->dof_count()), near_motion_);
   });
   if (layer_motion_.size() != motion.size()) layer_motion_.setZero(motion.size());
-  contact_nodes.spread(near_motion_, d, layer_motion_);
+  contact_nodes.scatter(near_motion_, d, layer_motion_);
   for (const Index node : contact_nodes.nodes()) motion.segment(node * d, d) += layer_motion_.segment(node * d, d);
 }
 

@@ -19,7 +19,7 @@ struct DistributedRegion {
   OperatorCoefficients coefficients;
   const std::vector<char>& solved;  ///< per dof: solved for
   const StageProduct& product;      ///< with A
-  ContactNeighbourhood& nearby;
+  ContactNeighbourhood& neighbourhood;
 };
 /// Nodes of a rank near the contact of all ranks, and A on them.
 struct RegionNodes {
@@ -33,9 +33,10 @@ struct RegionNodes {
 /// at once.
 class RootSubdomains {
  public:
-  /// `layer` is at the root, on `contact.nodes()`. Keeps references to all arguments.
-  RootSubdomains(const DistributedRegion& body, bool all_points, GatheredContact& contact, FactoredStage* layer)
-      : body_(body), all_points_(all_points), contact_(contact), layer_(layer) {}
+  /// `condensed_stage` is at the root, on `contact.nodes()`. Keeps references to all arguments.
+  RootSubdomains(const DistributedRegion& body, bool all_points, GatheredContact& contact,
+                 FactoredStage* condensed_stage)
+      : body_(body), all_points_(all_points), contact_(contact), condensed_stage_(condensed_stage) {}
 
   /// Gathers these points of each rank, and the body near them, at the root.
   void gather_body(const std::vector<Index>& points, const RegionNodes& near);
@@ -49,13 +50,13 @@ class RootSubdomains {
   /// ranks.
   void gather(const Stage& stage, const Vector& x, const std::vector<Index>& points, const Vector& residual);
   void solve_on_root();
-  void spread(const std::vector<Index>& points, Vector& x, StageSolution& solution);
+  void scatter(const std::vector<Index>& points, Vector& x, StageSolution& solution);
   /// Adds the contribution of the last solution to the motion of massless contact nodes.
   void add_motion(Vector& motion);
 
   [[nodiscard]] const GatheredContact& contact() const { return contact_; }
   /// Subdomains; null elsewhere.
-  [[nodiscard]] Subdomains* zones() const { return zones_.get(); }
+  [[nodiscard]] Subdomains* zones() const { return subdomains_.get(); }
   /// Time spent in contact solvers of earlier subdomains.
   [[nodiscard]] double earlier_seconds() const { return earlier_seconds_; }
 
@@ -67,17 +68,17 @@ class RootSubdomains {
   DistributedRegion body_;
   bool all_points_;
   GatheredContact& contact_;
-  FactoredStage* layer_;
+  FactoredStage* condensed_stage_;
   double earlier_seconds_ = 0.0;
   GatheredNodes nodes_;
   Vector correction_, layer_motion_;  ///< per dof; zero between calls
   // At the root:
   std::vector<Index> points_;
-  std::unique_ptr<SemidiscreteProblem> near_;
+  std::unique_ptr<SemidiscreteProblem> root_problem_;
   std::vector<char> near_solved_;
   StageProduct near_product_;
   std::unique_ptr<ContactNeighbourhood> near_nearby_;
-  std::unique_ptr<Subdomains> zones_;
+  std::unique_ptr<Subdomains> subdomains_;
   Stage stage_;
   std::shared_ptr<const ContactRows> rows_, near_rows_;  ///< as received, and on all nearby nodes
   StageSolution solution_;

@@ -130,8 +130,8 @@ bool MeanReaction::solve_with(ContactProblem& contact, const Vector& offset, con
 }
 
 /// Iterates on the difference. Without changes of status along the path the first iteration is exact.
-bool MeanReaction::rounds(ContactProblem& contact, const Vector& offset, const std::function<bool()>& solve_contact,
-                          ContactSolution& solution) {
+bool MeanReaction::iterate(ContactProblem& contact, const Vector& offset, const std::function<bool()>& solve_contact,
+                           ContactSolution& solution) {
   acceleration_.restart();
   double least = std::numeric_limits<double>::infinity();
   int last_progress = 0;
@@ -149,7 +149,7 @@ bool MeanReaction::rounds(ContactProblem& contact, const Vector& offset, const s
     } else if (round - last_progress > patience) {
       break;
     }
-    if (round == rounds_before_settling) path_.settle();
+    if (round == rounds_before_settling) path_.freeze_shares();
     acceleration_.advance(asked, difference_, difference_);
   }
   reason_ = fmt::format("rounds stopped at {:.2g} of the reactions", least);
@@ -239,7 +239,7 @@ bool MeanReaction::solve(ContactProblem& contact, const Vector& offset, const Ve
   has_path_ = true;
   path_.begin_step();
   difference_ = (1.0 - theta()) * start_;
-  if (rounds(contact, offset, solve_contact, solution)) return true;
+  if (iterate(contact, offset, solve_contact, solution)) return true;
   if (has_friction_) return false;
   path_.normal().keep_derivatives(true);
   const bool found = newton(contact, offset, solve_contact, solution);

@@ -47,8 +47,8 @@ class MeanReaction {
   [[nodiscard]] double end_weight() const { return acting_weight_; }
 
  private:
-  [[nodiscard]] bool rounds(ContactProblem& contact, const Vector& offset, const std::function<bool()>& solve_contact,
-                            ContactSolution& solution);
+  [[nodiscard]] bool iterate(ContactProblem& contact, const Vector& offset, const std::function<bool()>& solve_contact,
+                             ContactSolution& solution);
   [[nodiscard]] bool newton(ContactProblem& contact, const Vector& offset, const std::function<bool()>& solve_contact,
                             ContactSolution& solution);
   [[nodiscard]] bool solve_with(ContactProblem& contact, const Vector& offset,

@@ -38,7 +38,7 @@ bool NormalPath::exchange_all(const Vector& q, std::vector<char>& active) {
   const auto count = static_cast<std::size_t>(q.size());
   std::size_t least = count + 1;
   for (int left = patience_of_exchange; left >= 0;) {
-    if (!set_.take(active) || !evaluate(q)) return false;
+    if (!set_.set_points(active) || !evaluate(q)) return false;
     const double force = path_rounding * r_.lpNorm<Eigen::Infinity>();
     wrong_.clear();
     for (std::size_t i = 0; i < count; ++i) {
@@ -66,7 +66,7 @@ bool NormalPath::find_set(const Vector& q, std::vector<char>& active) {
     if (kind_ == PathMatrix::general) return false;
     active = guess_;
   }
-  return one_by_one_.find(*u_, q, eligible_, gap_rounding_, active) && set_.take(active) && evaluate(q);
+  return one_by_one_.find(*u_, q, eligible_, gap_rounding_, active) && set_.set_points(active) && evaluate(q);
 }
 
 /// Returns the position on the path at which the next point begins or ceases to press.

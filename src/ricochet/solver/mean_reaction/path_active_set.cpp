@@ -38,13 +38,13 @@ bool PathActiveSet::append(const Matrix& u, Index point, double least) {
 /// Factorizes as many of the requested points as are independent.
 void PathActiveSet::factorize(const Matrix& u) {
   set_.clear();
-  for (const Index point : asked_) (void)append(u, point, dependent);
+  for (const Index point : requested_) (void)append(u, point, dependent);
 }
 
 void PathActiveSet::remove(const Matrix& u, std::size_t place) {
-  asked_ = set_;
-  asked_.erase(asked_.begin() + static_cast<std::ptrdiff_t>(place));
-  const auto last = static_cast<Index>(asked_.size());
+  requested_ = set_;
+  requested_.erase(requested_.begin() + static_cast<std::ptrdiff_t>(place));
+  const auto last = static_cast<Index>(requested_.size());
   for (auto i = static_cast<Index>(place); i < last; ++i) reaction_[i] = reaction_[i + 1];
   reaction_.conservativeResize(last);
   factorize(u);
@@ -56,17 +56,17 @@ void PathActiveSet::start(const Matrix& u, const Vector& q) {
   for (;;) {
     reaction_ = -q(set_);
     solve(reaction_);
-    asked_.clear();
+    requested_.clear();
     for (std::size_t i = 0; i < set_.size(); ++i) {
-      if (reaction_[static_cast<Index>(i)] >= 0.0) asked_.push_back(set_[i]);
+      if (reaction_[static_cast<Index>(i)] >= 0.0) requested_.push_back(set_[i]);
     }
-    if (asked_.size() == set_.size()) return;
+    if (requested_.size() == set_.size()) return;
     factorize(u);
   }
 }
 
 /// Raises the reaction of a point until its gap closes; points that would pull leave the set on the way.
-bool PathActiveSet::take_in(const Matrix& u, Index point, double gap) {
+bool PathActiveSet::add_point(const Matrix& u, Index point, double gap) {
   double own = 0.0;
   for (;;) {
     direction_ = u(set_, point);
@@ -100,9 +100,9 @@ bool PathActiveSet::take_in(const Matrix& u, Index point, double gap) {
 
 bool PathActiveSet::find(const Matrix& u, const Vector& q, const std::vector<char>& eligible, double gap_rounding,
                          std::vector<char>& pressing) {
-  asked_.clear();
+  requested_.clear();
   for (std::size_t i = 0; i < pressing.size(); ++i) {
-    if (pressing[i] != 0 && eligible[i] != 0) asked_.push_back(static_cast<Index>(i));
+    if (pressing[i] != 0 && eligible[i] != 0) requested_.push_back(static_cast<Index>(i));
   }
   start(u, q);
   const std::size_t most = 20 * pressing.size() + 100;
@@ -120,7 +120,7 @@ bool PathActiveSet::find(const Matrix& u, const Vector& q, const std::vector<cha
       for (const Index point : set_) pressing[static_cast<std::size_t>(point)] = 1;
       return true;
     }
-    if (!take_in(u, deepest, gap_[deepest])) return false;
+    if (!add_point(u, deepest, gap_[deepest])) return false;
     // Discards the rounding accumulated in the reactions on the way.
     row_ = -q(set_);
     solve(row_);

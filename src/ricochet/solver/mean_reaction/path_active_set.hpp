@@ -24,9 +24,9 @@ class PathActiveSet {
   void remove(const Matrix& u, std::size_t place);
   void solve(Vector& x) const;
   void start(const Matrix& u, const Vector& q);
-  bool take_in(const Matrix& u, Index point, double gap);
+  bool add_point(const Matrix& u, Index point, double gap);
 
-  std::vector<Index> set_, asked_;
+  std::vector<Index> set_, requested_;
   Matrix factor_;  ///< L of U on the set, L Lᵀ
   Vector row_, reaction_, direction_, gap_;
 };

@@ -17,7 +17,7 @@ constexpr double singular = 1e-13;
 void PressingSet::prepare(const Matrix& u) {
   u_ = &u;
   points_.clear();
-  places_.assign(static_cast<std::size_t>(u.rows()), -1);
+  indices_.assign(static_cast<std::size_t>(u.rows()), -1);
   if (inverse_.rows() < u.rows()) inverse_.resize(u.rows(), u.rows());
 }
 
@@ -27,11 +27,11 @@ bool PressingSet::renew() {
   return inverse().allFinite();
 }
 
-bool PressingSet::take(const std::vector<char>& marks) {
+bool PressingSet::set_points(const std::vector<char>& marks) {
   added_.clear();
   removed_.clear();
   for (std::size_t i = 0; i < marks.size(); ++i) {
-    const bool is_in = places_[i] >= 0, wanted = marks[i] != 0;
+    const bool is_in = indices_[i] >= 0, wanted = marks[i] != 0;
     if (wanted && !is_in) added_.push_back(static_cast<Index>(i));
     if (!wanted && is_in) removed_.push_back(static_cast<Index>(i));
   }
@@ -44,7 +44,7 @@ bool PressingSet::take(const std::vector<char>& marks) {
   }
   points_.clear();
   for (std::size_t i = 0; i < marks.size(); ++i) {
-    places_[i] = marks[i] != 0 ? count() : -1;
+    indices_[i] = marks[i] != 0 ? count() : -1;
     if (marks[i] != 0) points_.push_back(static_cast<Index>(i));
   }
   return renew();
@@ -60,22 +60,22 @@ bool PressingSet::add(Index point) {
   inverse_.col(n).head(n) = -column_ / own;
   inverse_.row(n).head(n) = -row_.transpose() / own;
   inverse_(n, n) = 1.0 / own;
-  places_[static_cast<std::size_t>(point)] = n;
+  indices_[static_cast<std::size_t>(point)] = n;
   points_.push_back(point);
   return true;
 }
 
 /// Moves the last point to the position of the removed one.
 bool PressingSet::remove(Index point) {
-  const Index last = count() - 1, place = places_[static_cast<std::size_t>(point)];
+  const Index last = count() - 1, place = indices_[static_cast<std::size_t>(point)];
   if (place != last) {
     inverse().row(place).swap(inverse().row(last));
     inverse().col(place).swap(inverse().col(last));
     points_[static_cast<std::size_t>(place)] = points_[static_cast<std::size_t>(last)];
-    places_[static_cast<std::size_t>(points_[static_cast<std::size_t>(place)])] = place;
+    indices_[static_cast<std::size_t>(points_[static_cast<std::size_t>(place)])] = place;
   }
   points_.pop_back();
-  places_[static_cast<std::size_t>(point)] = -1;
+  indices_[static_cast<std::size_t>(point)] = -1;
   const double own = inverse_(last, last);
   if (own == 0.0 || !std::isfinite(own)) return false;
   column_ = inverse_.col(last).head(last) / own;

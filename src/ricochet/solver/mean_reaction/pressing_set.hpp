@@ -13,7 +13,7 @@ class PressingSet {
   /// Sets U, to which a reference is kept. Discards the data of another one.
   void prepare(const Matrix& u);
   /// Changes the set to the marked points. Returns false if U is singular on it.
-  [[nodiscard]] bool take(const std::vector<char>& marks);
+  [[nodiscard]] bool set_points(const std::vector<char>& marks);
   [[nodiscard]] const std::vector<Index>& points() const { return points_; }
   /// Computes r_A = −U_AA⁻¹ q_A, zero elsewhere.
   void solve(const Vector& q, Vector& r);
@@ -31,7 +31,7 @@ class PressingSet {
   [[nodiscard]] bool remove(Index point);
 
   const Matrix* u_ = nullptr;
-  std::vector<Index> points_, places_;  ///< in the order of the inverse; index of each point, or −1
+  std::vector<Index> points_, indices_;  ///< in the order of the inverse; index of each point, or −1
   std::vector<Index> added_, removed_;
   Matrix inverse_;  ///< of U_AA, in its leading rows and columns
   Vector column_, row_, on_set_, result_, motion_;

@@ -33,7 +33,7 @@ void ReactionPath::prepare(const Matrix& u, const std::vector<Index>& row_offset
 void ReactionPath::begin_step() {
   normal_.prepare(normal_u_, definite_ ? PathMatrix::definite : PathMatrix::semidefinite);
   most_.assign(normal_rows_.size(), on_cone);
-  settles_ = false;
+  shares_frozen_ = false;
 }
 
 /// Puts a point on the cone if it slips at the end, or did at the start and is open at the end.
@@ -170,7 +170,7 @@ bool ReactionPath::follow(const Step& step) {
     find_works(step);
     if (dissipates(step, round >= most_share_rounds)) break;
   }
-  if (settles_) most_ = share_;
+  if (shares_frozen_) most_ = share_;
   return true;
 }
 

@@ -30,7 +30,7 @@ class ReactionPath {
   void begin_step();
   /// From now on, until the next step, shares do not grow, and points that have left the cone stay off it: the mean is
   /// then the same function of ρ₁ in every iteration, except for finitely many changes.
-  void settle() { settles_ = true; }
+  void freeze_shares() { shares_frozen_ = true; }
 
   struct Step {
     const Vector &q0, &q1, &start, &end;  ///< q₀, q₁, ρ₀, ρ₁, all rows
@@ -67,7 +67,7 @@ class ReactionPath {
   NormalPath* taken_ = &normal_;
   std::vector<double> share_;  ///< κ per point; on_cone: ρ_T = D r
   std::vector<double> most_;   ///< upper bounds of the shares
-  bool settles_ = false;
+  bool shares_frozen_ = false;
   Vector ratio_;  ///< D per tangential row
   Vector friction_start_, friction_end_, normal_q0_, normal_q1_, work_, mean_;
   Vector reaction_, motion_, reaction_before_, motion_before_, all_;

@@ -47,10 +47,10 @@ struct ChosenMethod {
 
 /// Iterations of the iterative method so far.
 struct IterationCounts {
-  long rounds = 0;     ///< alternations of subdomains and conjugate gradients
-  long gradients = 0;  ///< iterations of conjugate gradients
+  long schwarz_iterations = 0;  ///< alternations of subdomains and conjugate gradients
+  long gradients = 0;           ///< iterations of conjugate gradients
   IterationCounts& operator+=(const IterationCounts& other) {
-    rounds += other.rounds;
+    schwarz_iterations += other.schwarz_iterations;
     gradients += other.gradients;
     return *this;
   }

@@ -31,7 +31,7 @@ SparseMatrix combine_operator(const SemidiscreteProblem& problem, const Operator
     result.swap(term);
   };
   add(coefficients.stiffness, [&] { return stage_stiffness(problem, coefficients, displacement); });
-  add(coefficients.mass, [&] { return problem.mass.whole(); });
+  add(coefficients.mass, [&] { return problem.mass.to_sparse(); });
   if (problem.has_damping()) add(coefficients.damping, [&] { return problem.damping.matrix(); });
   return result;
 }

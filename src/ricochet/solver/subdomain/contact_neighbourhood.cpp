@@ -55,8 +55,8 @@ std::vector<Index> ContactNeighbourhood::nodes_around(const std::vector<Index>& 
   std::vector<Index> nodes = nodes_of(points);
   if (!problem_.ranks->are_several()) return nodes_within(graph(), nodes, layers).ascending();
   Vector reached = Vector::Zero(problem_.nodes.cols());
-  for (int layer = 0; layer <= layers; ++layer) {
-    for (const Index node : layer == 0 ? nodes : nodes_within(graph(), nodes, 1).nodes) reached[node] = 1.0;
+  for (int condensed_stage = 0; condensed_stage <= layers; ++condensed_stage) {
+    for (const Index node : condensed_stage == 0 ? nodes : nodes_within(graph(), nodes, 1).nodes) reached[node] = 1.0;
     problem_.ranks->accumulate(reached);
     nodes.clear();
     for (Index node = 0; node < reached.size(); ++node) {

@@ -35,23 +35,23 @@ SparseCholesky analyse_subdomain(const std::vector<Index>& nodes, const std::vec
 
 Subdomain::Subdomain(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                      const std::vector<char>& solved, const Extent& extent, const StageProduct& product,
-                     bool all_candidates, FactoredStage* layer)
+                     bool all_candidates, FactoredStage* condensed_stage)
     : has_(static_cast<std::size_t>(problem.contact.size()), 0), own_points_(extent.own_points) {
   for (const Index point : extent.points) has_[static_cast<std::size_t>(point)] = 1;
   own_dofs_ = solved_dofs_of(extent.own_nodes, solved, problem.dimension);
   // A principal block of a positive definite matrix is positive definite; if A is not, conjugate gradients report it,
   // too.
-  zone_ = std::make_unique<FactoredStage>(
+  stage_ = std::make_unique<FactoredStage>(
       problem, coefficients, solved_dofs_of(extent.nodes, solved, problem.dimension),
-      analyse_subdomain(extent.nodes, solved, problem.dimension, product), all_candidates, layer);
+      analyse_subdomain(extent.nodes, solved, problem.dimension, product), all_candidates, condensed_stage);
 }
 
 void Subdomain::solve(Stage& stage, const std::vector<char>& eligible, const Vector& residual, Vector& correction,
                       Vector& x, StageSolution& solution) {
   for (std::size_t i = 0; i < has_.size(); ++i) stage.eligible[i] = has_[i] != 0 ? eligible[i] : char{0};
-  zone_->solve(stage, residual, solution, correction);
+  stage_->solve(stage, residual, solution, correction);
   for (const int dof : own_dofs_) x[dof] += correction[dof];
-  for (const int dof : zone_->dofs()) correction[dof] = 0.0;
+  for (const int dof : stage_->dofs()) correction[dof] = 0.0;
 }
 
 void Subdomain::restrict_to_own(const StageSolution& local, StageSolution& solution) const {

@@ -25,7 +25,7 @@ class Subdomain {
   /// `solved`, per dof: the stage solves for it. Keeps a reference to the problem only.
   Subdomain(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
             const std::vector<char>& solved, const Extent& extent, const StageProduct& product, bool all_candidates,
-            FactoredStage* layer);
+            FactoredStage* condensed_stage);
 
   /// Solves for the correction c. `stage` is one on c; its eligible points are chosen here. `correction`, per dof of
   /// the problem, is work space, zero before and after. x changes on the subdomain's own nodes; `solution` is that of
@@ -36,18 +36,18 @@ class Subdomain {
   void restrict_to_own(const StageSolution& local, StageSolution& solution) const;
 
   /// Save and load the data that the contact conditions leave for later stages.
-  void save(Snapshot& snapshot, const std::string& name) const { zone_->save(snapshot, name); }
-  void load(const Snapshot& snapshot, const std::string& name) { zone_->load(snapshot, name); }
-  void report() const { zone_->report(); }
-  void observe(const ContactObserver& observer) { zone_->observe(observer); }
-  [[nodiscard]] double contact_seconds() const { return zone_->contact_seconds(); }
-  [[nodiscard]] std::size_t factor_entries() const { return zone_->factor_entries(); }
+  void save(Snapshot& snapshot, const std::string& name) const { stage_->save(snapshot, name); }
+  void load(const Snapshot& snapshot, const std::string& name) { stage_->load(snapshot, name); }
+  void report() const { stage_->report(); }
+  void observe(const ContactObserver& observer) { stage_->observe(observer); }
+  [[nodiscard]] double contact_seconds() const { return stage_->contact_seconds(); }
+  [[nodiscard]] std::size_t factor_entries() const { return stage_->factor_entries(); }
 
  private:
   std::vector<char> has_;  ///< per contact point: it is in the subdomain
   std::vector<Index> own_points_;
   std::vector<int> own_dofs_;
-  std::unique_ptr<FactoredStage> zone_;
+  std::unique_ptr<FactoredStage> stage_;
 };
 
 }  // namespace ricochet

@@ -28,22 +28,23 @@ double dense_work(const std::vector<Subdomain::Extent>& zones) {
 }  // namespace
 
 Subdomains::Subdomains(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                       const std::vector<char>& solved, const StageProduct& product, ContactNeighbourhood& nearby,
-                       bool all_points, FactoredStage* layer)
+                       const std::vector<char>& solved, const StageProduct& product,
+                       ContactNeighbourhood& neighbourhood, bool all_points, FactoredStage* condensed_stage)
     : problem_(problem),
       coefficients_(coefficients),
       solved_(solved),
       product_(product),
-      nearby_(nearby),
+      neighbourhood_(neighbourhood),
       all_points_(all_points),
-      layer_(layer) {
+      condensed_stage_(condensed_stage) {
   correction_.setZero(problem.dof_count());
-  if (layer != nullptr) motion_layer_ = std::make_unique<MasslessContactNodes>(problem, coefficients, *layer);
+  if (condensed_stage != nullptr)
+    massless_nodes_ = std::make_unique<MasslessContactNodes>(problem, coefficients, *condensed_stage);
 }
 
 void Subdomains::clear() {
   earlier_contact_seconds_ = contact_seconds();
-  zones_.clear();
+  subdomains_.clear();
 }
 
 /// Returns clusters of at most so many points with the layers around them, as subdomains.
@@ -51,14 +52,14 @@ std::vector<Subdomain::Extent> Subdomains::subdomains_of(const std::vector<Index
   std::vector<Subdomain::Extent> zones;
   struct Owner {
     std::size_t zone;
-    int layer;
+    int distance;
   };
   std::unordered_map<Index, Owner> owners;
   for (std::vector<Index>& cluster : cluster_points(problem_, points, most)) {
-    const NodeDistances reached = nodes_within(nearby_.graph(), nearby_.nodes_of(cluster), layers_);
+    const NodeDistances reached = nodes_within(neighbourhood_.graph(), neighbourhood_.nodes_of(cluster), layers_);
     for (std::size_t i = 0; i < reached.nodes.size(); ++i) {
-      Owner& owner = owners.try_emplace(reached.nodes[i], Owner{zones.size(), reached.layer[i]}).first->second;
-      if (reached.layer[i] < owner.layer) owner = {zones.size(), reached.layer[i]};
+      Owner& owner = owners.try_emplace(reached.nodes[i], Owner{zones.size(), reached.distance[i]}).first->second;
+      if (reached.distance[i] < owner.distance) owner = {zones.size(), reached.distance[i]};
     }
     zones.push_back({.nodes = reached.ascending(), .own_nodes = {}, .points = {}, .own_points = std::move(cluster)});
   }
@@ -78,13 +79,13 @@ std::vector<Subdomain::Extent> Subdomains::subdomains_of(const std::vector<Index
   return zones;
 }
 
-std::size_t Subdomains::divide(const std::vector<Index>& points) {
+std::size_t Subdomains::partition(const std::vector<Index>& points) {
   clear();
-  if (layers_ == 0) layers_ = nearby_.layers_to_solve(points, coefficients_, product_);
-  nodes_ = nearby_.nodes_around(points, layers_);
+  if (layers_ == 0) layers_ = neighbourhood_.layers_to_solve(points, coefficients_, product_);
+  nodes_ = neighbourhood_.nodes_around(points, layers_);
   // With massless contact nodes the motion of a contact node depends on all reactions near it.
   extents_ = subdomains_of(points, points.size());
-  if (layer_ == nullptr) {
+  if (condensed_stage_ == nullptr) {
     for (std::size_t most = least_cluster; most < points.size(); most *= 2) {
       std::vector<Subdomain::Extent> others = subdomains_of(points, most);
       if (dense_work(others) < dense_work(extents_)) extents_ = std::move(others);
@@ -96,9 +97,9 @@ std::size_t Subdomains::divide(const std::vector<Index>& points) {
 
 void Subdomains::make_share(std::size_t number, std::size_t count) {
   for (std::size_t i = number; i < extents_.size(); i += count) {
-    zones_.push_back(
-        std::make_unique<Subdomain>(problem_, coefficients_, solved_, extents_[i], product_, all_points_, layer_));
-    zones_.back()->observe(observer_);
+    subdomains_.push_back(std::make_unique<Subdomain>(problem_, coefficients_, solved_, extents_[i], product_,
+                                                      all_points_, condensed_stage_));
+    subdomains_.back()->observe(observer_);
   }
   extents_.clear();
 }
@@ -115,10 +116,10 @@ void Subdomains::solve(const Stage& stage, const Vector& residual, Vector& x, St
     stage_.slip_offset += stage.slip_factor * slip_;
   }
   if (is_one_) {
-    zones_.front()->solve(stage_, stage.eligible, residual, correction_, x, solution);
+    subdomains_.front()->solve(stage_, stage.eligible, residual, correction_, x, solution);
     return;
   }
-  for (const auto& zone : zones_) {
+  for (const auto& zone : subdomains_) {
     solution_.iterations = 0;
     zone->solve(stage_, stage.eligible, residual, correction_, x, solution_);
     zone->restrict_to_own(solution_, solution);
@@ -128,7 +129,7 @@ void Subdomains::solve(const Stage& stage, const Vector& residual, Vector& x, St
 
 void Subdomains::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".layers", layers_);
-  for (std::size_t i = 0; i < zones_.size(); ++i) zones_[i]->save(snapshot, fmt::format("{}.{}", name, i));
+  for (std::size_t i = 0; i < subdomains_.size(); ++i) subdomains_[i]->save(snapshot, fmt::format("{}.{}", name, i));
 }
 
 void Subdomains::load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) {
@@ -138,27 +139,27 @@ void Subdomains::load(const Snapshot& snapshot, const std::string& name, const s
 }
 
 void Subdomains::load_made(const Snapshot& snapshot, const std::string& name) {
-  for (std::size_t i = 0; i < zones_.size(); ++i) zones_[i]->load(snapshot, fmt::format("{}.{}", name, i));
+  for (std::size_t i = 0; i < subdomains_.size(); ++i) subdomains_[i]->load(snapshot, fmt::format("{}.{}", name, i));
 }
 
 void Subdomains::report() const {
-  for (const auto& zone : zones_) zone->report();
+  for (const auto& zone : subdomains_) zone->report();
 }
 
 void Subdomains::observe(const ContactObserver& observer) {
   observer_ = observer;
-  for (const auto& zone : zones_) zone->observe(observer);
+  for (const auto& zone : subdomains_) zone->observe(observer);
 }
 
 double Subdomains::contact_seconds() const {
   double sum = earlier_contact_seconds_;
-  for (const auto& zone : zones_) sum += zone->contact_seconds();
+  for (const auto& zone : subdomains_) sum += zone->contact_seconds();
   return sum;
 }
 
 std::size_t Subdomains::factor_entries() const {
   std::size_t sum = 0;
-  for (const auto& zone : zones_) sum += zone->factor_entries();
+  for (const auto& zone : subdomains_) sum += zone->factor_entries();
   return sum;
 }
 

@@ -20,31 +20,31 @@ class Subdomains final : public ContactRegion {
  public:
   /// Keeps references to the problem, the product and the graph; `solved`, per dof: the stage solves for it.
   Subdomains(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-             const std::vector<char>& solved, const StageProduct& product, ContactNeighbourhood& nearby,
-             bool all_points, FactoredStage* layer);
+             const std::vector<char>& solved, const StageProduct& product, ContactNeighbourhood& neighbourhood,
+             bool all_points, FactoredStage* condensed_stage);
 
   void make(const std::vector<Index>& points) override {
-    divide(points);
+    partition(points);
     make_share(0, 1);
   }
   /// Performs make() in two parts, if others make subdomains, too: returns their number, and makes every `count`-th one
   /// from `number` on.
-  std::size_t divide(const std::vector<Index>& points);
+  std::size_t partition(const std::vector<Index>& points);
   void make_share(std::size_t number, std::size_t count);
   void clear() override;
-  [[nodiscard]] bool are_made() const override { return !zones_.empty(); }
+  [[nodiscard]] bool are_made() const override { return !subdomains_.empty(); }
   [[nodiscard]] const std::vector<Index>& nodes() const override { return nodes_; }
   void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
   void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
                    Vector& motion) override {
-    motion_layer_->find_motion(rows, solution, increment, motion);
+    massless_nodes_->find_motion(rows, solution, increment, motion);
   }
 
   /// Sets the number of layers of nodes around the points of a subdomain; 0: the number of cells that a wave crosses,
   /// computed with the next subdomains.
   void set_layers(int layers) { layers_ = layers; }
   [[nodiscard]] int layers() const { return layers_; }
-  [[nodiscard]] std::size_t count() const { return zones_.size(); }
+  [[nodiscard]] std::size_t count() const { return subdomains_.size(); }
 
   void save(Snapshot& snapshot, const std::string& name) const override;
   void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) override;
@@ -62,15 +62,15 @@ class Subdomains final : public ContactRegion {
   OperatorCoefficients coefficients_;
   const std::vector<char>& solved_;
   const StageProduct& product_;
-  ContactNeighbourhood& nearby_;
+  ContactNeighbourhood& neighbourhood_;
   bool all_points_;
-  FactoredStage* layer_;
-  std::unique_ptr<MasslessContactNodes> motion_layer_;  ///< null if the stage has no massless contact nodes
-  int layers_ = 0;                                      ///< 0 if not known yet
-  std::vector<Index> nodes_;                            ///< of all subdomains
-  std::vector<Subdomain::Extent> extents_;              ///< of all subdomains, until they are made
-  bool is_one_ = false;                                 ///< there is no other subdomain, here or elsewhere
-  std::vector<std::unique_ptr<Subdomain>> zones_;
+  FactoredStage* condensed_stage_;
+  std::unique_ptr<MasslessContactNodes> massless_nodes_;  ///< null if the stage has no massless contact nodes
+  int layers_ = 0;                                        ///< 0 if not known yet
+  std::vector<Index> nodes_;                              ///< of all subdomains
+  std::vector<Subdomain::Extent> extents_;                ///< of all subdomains, until they are made
+  bool is_one_ = false;                                   ///< there is no other subdomain, here or elsewhere
+  std::vector<std::unique_ptr<Subdomain>> subdomains_;
   ContactObserver observer_;
   double earlier_contact_seconds_ = 0.0;
   Stage stage_;                        ///< on the correction

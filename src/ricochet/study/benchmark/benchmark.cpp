@@ -68,7 +68,7 @@ void add_consistent_rows(std::vector<MethodRow>& rows, std::vector<std::unique_p
   }
 }
 
-void refuse_what_is_there(const std::string& directory, const BenchmarkOptions& options) {
+void refuse_existing_results(const std::string& directory, const BenchmarkOptions& options) {
   if (holds_run(directory) || holds_study(directory)) {
     throw Error(ErrorKind::file_access,
                 fmt::format("{}: holds a {}; choose another directory for the benchmarks with -o", directory,
@@ -163,7 +163,7 @@ BenchmarkPlan plan_scorecard(const std::vector<Benchmark>& benchmarks, const std
 }
 
 BenchmarkResults conduct_benchmarks(const BenchmarkPlan& plan, const BenchmarkOptions& options, int& signal) {
-  refuse_what_is_there(plan.directory, options);
+  refuse_existing_results(plan.directory, options);
   const RunDirectory lock(plan.directory);
   remove_old_runs(plan, options);
   write_benchmark_plan(plan);

@@ -26,7 +26,7 @@ std::vector<ExpectationResult> expectations_of(const BenchmarkRun& run, const st
   std::vector<ExpectationResult> all;
   try {
     const Case input = read_case(run.benchmark.case_path, run.settings);
-    all = outcome.state.word() == "done"
+    all = outcome.state.status_text() == "done"
               ? check_expectations(input, directory, outcome.state.summary_json, ExpectationScope::any_settings)
               : unmet_expectations(input, outcome.message, ExpectationScope::any_settings);
   } catch (const Error&) {
@@ -37,7 +37,7 @@ std::vector<ExpectationResult> expectations_of(const BenchmarkRun& run, const st
 }
 
 int status_of(const BenchmarkRun& run, const BenchmarkRunResult& outcome) {
-  if (outcome.state.word() == "done") return outcome.holds() == outcome.applies() ? 0 : not_held;
+  if (outcome.state.status_text() == "done") return outcome.holds() == outcome.applies() ? 0 : not_held;
   const int status = outcome.state.exit_status.value_or(0);
   return status == refused && !run.is_own_method ? 0 : status;
 }
@@ -86,8 +86,8 @@ std::size_t BenchmarkRunResult::holds() const {
       std::count_if(expectations.begin(), expectations.end(), [](const ExpectationResult& e) { return e.holds; }));
 }
 
-std::string BenchmarkRunResult::word() const {
-  const std::string word = state.word();
+std::string BenchmarkRunResult::status_text() const {
+  const std::string word = state.status_text();
   if (word != "failed" || !state.summary) return word;
   const RunSummary& s = *state.summary;
   return fmt::format("failed at t = {:.3g}", s.adaptive ? s.adaptive->time : static_cast<double>(s.steps) * s.step);
@@ -96,15 +96,15 @@ std::string BenchmarkRunResult::word() const {
 BenchmarkResults read_benchmark_results(const BenchmarkPlan& plan) {
   BenchmarkResults results;
   for (const BenchmarkRun& run : plan.runs) {
-    BenchmarkRunResult& outcome = results.outcomes.emplace_back();
+    BenchmarkRunResult& outcome = results.run_results.emplace_back();
     if (run.refusal.empty()) {
       outcome.state = read_run_state(plan.path(run));
-      outcome.message = outcome.state.word() == "done" ? "" : short_reason(outcome.state.message);
+      outcome.message = outcome.state.status_text() == "done" ? "" : short_reason(outcome.state.message);
     } else {
       outcome.state.exit_status = refused;
       outcome.message = run.refusal;
     }
-    if (!outcome.message.empty() || outcome.state.word() == "done")
+    if (!outcome.message.empty() || outcome.state.status_text() == "done")
       outcome.expectations = expectations_of(run, plan.path(run), outcome);
     results.worst_status = worse_status(results.worst_status, status_of(run, outcome));
   }
@@ -126,8 +126,9 @@ ResultTable benchmark_table(const BenchmarkPlan& plan, const BenchmarkResults& r
                     2};
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
     // A refusal does not count against a method.
-    if (results.outcomes[i].state.word() == "refused" && !plan.runs[i].is_own_method) continue;
-    for (const ExpectationResult& e : results.outcomes[i].expectations) table.rows.push_back(cells_of(plan.runs[i], e));
+    if (results.run_results[i].state.status_text() == "refused" && !plan.runs[i].is_own_method) continue;
+    for (const ExpectationResult& e : results.run_results[i].expectations)
+      table.rows.push_back(cells_of(plan.runs[i], e));
   }
   return table;
 }
@@ -147,14 +148,14 @@ std::vector<std::string> benchmark_notes(const BenchmarkPlan& plan, const Benchm
   std::size_t holds = 0, applies = 0;
   std::vector<std::string> notes;
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
-    const BenchmarkRunResult& outcome = results.outcomes[i];
-    const bool is_refused = outcome.state.word() == "refused";
+    const BenchmarkRunResult& outcome = results.run_results[i];
+    const bool is_refused = outcome.state.status_text() == "refused";
     if (is_refused && !plan.runs[i].is_own_method) continue;
     holds += outcome.holds();
     applies += outcome.applies();
-    if (outcome.state.word() == "done") continue;
+    if (outcome.state.status_text() == "done") continue;
     const std::string why = outcome.message.empty() ? "" : ": " + outcome.message;
-    notes.push_back(fmt::format("{}: {}{}", title_of(plan, plan.runs[i]), outcome.word(), why));
+    notes.push_back(fmt::format("{}: {}{}", title_of(plan, plan.runs[i]), outcome.status_text(), why));
   }
   notes.push_back(fmt::format("{} of {} hold.", holds, counted(applies, "expected value")));
   return notes;

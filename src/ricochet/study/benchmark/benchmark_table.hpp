@@ -20,11 +20,11 @@ struct BenchmarkRunResult {
   [[nodiscard]] std::size_t applies() const { return expectations.size(); }
   [[nodiscard]] std::size_t holds() const;
   /// Returns "done", "refused", "failed at t = 0.5", "interrupted" or "not run".
-  [[nodiscard]] std::string word() const;
+  [[nodiscard]] std::string status_text() const;
 };
 
 struct BenchmarkResults {
-  std::vector<BenchmarkRunResult> outcomes;  ///< in the order of the plan's runs
+  std::vector<BenchmarkRunResult> run_results;  ///< in the order of the plan's runs
   int worst_status = 0;  ///< 0: all hold; 5: some do not; else the worst of the runs. Refusals by a scheme other
                          ///< than that of the case do not count.
 };

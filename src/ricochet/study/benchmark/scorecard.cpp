@@ -20,7 +20,7 @@ std::string percent_text(double percent) {
 }
 
 bool is_done(const BenchmarkRunResult& outcome) {
-  return outcome.state.word() == "done";
+  return outcome.state.status_text() == "done";
 }
 
 /// Returns a text such as "14/15 +0.1 −3 %", with the energy created and lost if large enough to show.
@@ -80,9 +80,9 @@ std::string MatrixMaker::masses_of(const std::string& method) const {
 }
 
 std::string MatrixMaker::cell_of(std::size_t run) {
-  const BenchmarkRunResult& outcome = results_.outcomes[run];
+  const BenchmarkRunResult& outcome = results_.run_results[run];
   if (is_done(outcome)) return done_text(outcome);
-  if (outcome.state.word() != "refused") return outcome.word();
+  if (outcome.state.status_text() != "refused") return outcome.status_text();
   auto found = std::find(matrix_.reasons.begin(), matrix_.reasons.end(), outcome.message);
   if (found == matrix_.reasons.end()) found = matrix_.reasons.insert(found, outcome.message);
   return fmt::format("refused ({})", found - matrix_.reasons.begin() + 1);
@@ -93,13 +93,13 @@ void MatrixMaker::add_totals(const std::string& method) {
   std::size_t holds = 0, applies = 0;
   double created = 0.0, lost = 0.0;
   for (const std::size_t i : runs_of(method)) {
-    const BenchmarkRunResult& outcome = results_.outcomes[i];
-    if (outcome.state.word() == "refused") {
+    const BenchmarkRunResult& outcome = results_.run_results[i];
+    if (outcome.state.status_text() == "refused") {
       ++refused;
       continue;
     }
     ++run;
-    failed += outcome.state.word() == "failed";
+    failed += outcome.state.status_text() == "failed";
     holds += outcome.holds();
     applies += outcome.applies();
     all_right += is_done(outcome) && outcome.holds() == outcome.applies();
@@ -161,19 +161,19 @@ ResultTable scorecard_table(const BenchmarkPlan& plan, const BenchmarkResults& r
     table.columns.push_back({name});
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
     const BenchmarkRun& run = plan.runs[i];
-    const BenchmarkRunResult& outcome = results.outcomes[i];
+    const BenchmarkRunResult& outcome = results.run_results[i];
     std::vector<TableCell>& row = table.rows.emplace_back();
     row = {run.scheme, run.mass, run.benchmark.name};
-    if (outcome.state.word() == "refused") {
+    if (outcome.state.status_text() == "refused") {
       row.resize(5);
     } else {
       row.insert(row.end(), {static_cast<long>(outcome.holds()), static_cast<long>(outcome.applies())});
     }
     if (const auto& s = outcome.state.summary; s) {
-      row.insert(row.end(), {100.0 * s->creation_by_method(), 100.0 * s->loss_by_method(), outcome.word(),
+      row.insert(row.end(), {100.0 * s->creation_by_method(), 100.0 * s->loss_by_method(), outcome.status_text(),
                              s->processor_seconds, s->steps, s->step});
     } else {
-      row.insert(row.end(), {TableCell(), TableCell(), outcome.word(), TableCell(), TableCell(), TableCell()});
+      row.insert(row.end(), {TableCell(), TableCell(), outcome.status_text(), TableCell(), TableCell(), TableCell()});
     }
     row.emplace_back(outcome.message);
   }

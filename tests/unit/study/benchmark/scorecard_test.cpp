@@ -60,8 +60,8 @@ struct Example {
     BenchmarkRunResult failed = outcome_of("failed", 0.0, 0.0, {unknown});
     failed.state.exit_status = 3;
     failed.message = "step 31 did not converge";
-    results.outcomes = {outcome_of("done", 0.12, 0.034, {right, wrong}), refused("takes no friction"),
-                        outcome_of("done", 1e-5, 0.0, {right}), failed};
+    results.run_results = {outcome_of("done", 0.12, 0.034, {right, wrong}), refused("takes no friction"),
+                           outcome_of("done", 1e-5, 0.0, {right}), failed};
   }
 };
 
