@@ -1,0 +1,12 @@
+# Tests with the label "long": `./dev test` leaves them to `./dev test --all`. They repeat at length what shorter tests
+# check once, or compare with the world outside. Every case, benchmark, tutorial and random case is one, and these:
+set(RICOCHET_LONG_TESTS
+  # as long as a user's work
+  end_to_end.hertz end_to_end.throws end_to_end.scenes end_to_end.random_cases python.examples
+  # kill -9 at random moments, signals at any moment, and the same bits everywhere
+  end_to_end.vtkhdf_interrupted end_to_end.signals python.same_bits
+  # other forms of what is tested: sizes of pictures, packages
+  end_to_end.plot end_to_end.animation end_to_end.installation python.wheel
+  # orders of convergence on many meshes, and schemes that are not defaults, for long
+  verification.follower_pressure verification.published_schemes verification.elements.manufactured_solution
+  verification.locking verification.contact.inf_sup end_to_end.adaptive_steps)
