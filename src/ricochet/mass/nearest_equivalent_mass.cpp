@@ -26,7 +26,7 @@ class NearestEquivalentMass final : public MassConstruction {
     // Separately for each body: no mass passes between bodies.
     for (const MassBody& body : frames.bodies) correct(result, frames, body, *input.consistent);
     check_conditions(input, frames, result);
-    if (!is_positive_definite(result, input.contact_nodes)) {
+    if (!is_positive_definite(result, massless_nodes(input))) {
       throw Error(
           ErrorKind::invalid_input,
           "mass type \"equivalent-nearest\": on this mesh the nearest mass without inertia on contact nodes is "
@@ -37,6 +37,15 @@ class NearestEquivalentMass final : public MassConstruction {
   }
 
  private:
+  /// Returns the contact nodes and, if the matrix is one of damping, the nodes of bodies without damping.
+  static std::vector<Index> massless_nodes(const MassInput& input) {
+    std::vector<Index> nodes = input.contact_nodes;
+    const Vector diagonal = input.consistent->diagonal();
+    for (Index node = 0; node < diagonal.size(); ++node)
+      if (diagonal[node] == 0.0) nodes.push_back(node);
+    return nodes;
+  }
+
   static SparseMatrix free_pattern(const MassInput& input) {
     const std::vector<char> is_contact = input.marked_contact_nodes();
     SparseMatrix result = *input.consistent;

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -5,8 +6,10 @@
 #include <map>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/run/session.hpp"
 #include "support/mass_bodies.hpp"
 #include "support/mass_moments.hpp"
+#include "support/paths.hpp"
 
 // The equivalent masses on meshes of every kind.
 
@@ -31,7 +34,7 @@ double top_eigenvalue(const SparseMatrix& mass, const Vector& scale) {
   return value;
 }
 
-/// The conditions of section 5 of the source: no inertia on contact nodes; mass, centre of gravity and inertia kept.
+/// Checks section 5 of the source: no inertia on contact nodes; mass, centre of gravity and inertia are kept.
 void expect_equivalent(const SparseMatrix& mass, const Assembled& body, const std::string& name) {
   for (const Index node : body.input.contact_nodes) {
     EXPECT_EQ(mass.col(node).nonZeros(), 0) << name;
@@ -43,7 +46,7 @@ void expect_equivalent(const SparseMatrix& mass, const Assembled& body, const st
   EXPECT_TRUE(is_positive_definite(mass, body.input.contact_nodes)) << name;
 }
 
-/// Every entry is one of the consistent mass.
+/// Expects every entry in the pattern of the consistent mass.
 void expect_pattern(const SparseMatrix& mass, const SparseMatrix& consistent, const std::string& name) {
   for (Index column = 0; column < mass.cols(); ++column) {
     const int* const inner = consistent.innerIndexPtr();
@@ -89,8 +92,8 @@ TEST(EquivalentMass, KeepsMassCentreAndInertiaAndIsSemidefiniteOnMeshesOfEveryKi
     }
     std::printf("  %s\n", mass_to_build("equivalent", {}, body.input).name.c_str());
   }
-  // Those on which the nearest matrix is indefinite are among the meshes, or the others would not be needed; in one
-  // body no cell is without contact nodes (ball, h 0.6).
+  // Meshes on which the nearest matrix is indefinite are included, as the others are needed for them; one body has no
+  // cell without contact nodes (ball, h 0.6).
   EXPECT_GE(refused["equivalent-nearest"], 15);
   EXPECT_EQ(refused["equivalent-cellwise"], 1);
   EXPECT_EQ(refused["equivalent-nodewise"] + refused["equivalent-compact"], 0);
@@ -101,7 +104,7 @@ TEST(EquivalentMass, IsChosenByDimensionAndByWhatHeapsUp) {
     const Assembled body(test_support::body_of_kind(name));
     const MassChoice choice = mass_to_build("equivalent", {}, body.input);
     EXPECT_EQ(choice.reason.empty(), body.space.nodes.rows() == 2) << name;
-    // Whoever chooses also builds: the same bits.
+    // The type that makes the choice also builds it: the same bits.
     const SparseMatrix mass = make_mass("equivalent")->build(body.input);
     EXPECT_EQ((mass - make_mass(choice.name)->build(body.input)).norm(), 0.0) << name;
     if (choice.mass) {
@@ -136,7 +139,7 @@ TEST(EquivalentMass, DegreeOneSpaceOnSecondOrderCells) {
 }
 
 TEST(EquivalentMass, OfDampingThatVanishesAroundContactNodes) {
-  // Rayleigh damping of one of two materials: its matrix has zeros where the weights of contact nodes are looked for.
+  // Rayleigh damping of one of two materials: its matrix is zero where the weights of contact nodes are sought.
   const Assembled body(test_support::body_of_kind("disc, h 0.1"));
   Vector inside(body.space.nodes.cols());
   for (Index i = 0; i < inside.size(); ++i) inside[i] = body.space.nodes.col(i).norm() < 0.3 ? 1.0 : 0.0;
@@ -144,6 +147,21 @@ TEST(EquivalentMass, OfDampingThatVanishesAroundContactNodes) {
   const SparseMatrix found =
       make_mass("equivalent")->build({&damping, &body.space.nodes, body.input.contact_nodes, &body.consistent});
   EXPECT_NEAR(found.sum(), damping.sum(), 1e-13 * damping.sum());
+}
+
+TEST(EquivalentMass, OfDampingOfOneOfTwoBodies) {
+  const std::string path = test_support::source_path("cases/stack/stack.toml");
+  for (const std::string& name : mass_names()) {
+    if (!name.starts_with("equivalent")) continue;
+    for (const char* damped : {"material.0", "material.1"}) {
+      const double rate = 0.7;
+      Session session(path, {"mass.type=" + name, fmt::format("{}.damping.mass={}", damped, rate)});
+      const SparseMatrix damping = session.problem().damping.mass_part()->to_sparse();
+      // Twice the mass of a column: 2 coordinates, density 1 or 3, 0.5 wide, 1 high.
+      const double mass = 2.0 * 0.5 * (damped == std::string("material.0") ? 1.0 : 3.0);
+      EXPECT_NEAR(damping.sum(), rate * mass, 1e-12 * mass) << name << ", " << damped;
+    }
+  }
 }
 
 TEST(EquivalentMass, SaysWhereTheInertiaHasNowhereToGo) {
