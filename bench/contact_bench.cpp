@@ -31,7 +31,7 @@ Arguments parse(int count, char** values) {
   for (int i = 1; i < count; ++i) {
     const std::string argument = values[i];
     const auto value = [&]() -> std::string {
-      if (i + 1 >= count) std::exit((std::fprintf(stderr, "%s needs a value\n", argument.c_str()), 1));
+      if (i + 1 >= count) std::exit((std::fprintf(stderr, "%s requires a value\n", argument.c_str()), 1));
       return values[++i];
     };
     if (argument == "--solver") {

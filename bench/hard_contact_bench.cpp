@@ -175,8 +175,8 @@ Tally solve(const std::string& name, const Generator& generate, unsigned seeds) 
       const bool good = judgement.beyond_rounding <= tolerances[k] * (1.0 + 1e-6) + 0.5 * solution.rounding_floor;
       if (good && judgement.outside_cone <= 1e-15) continue;
       ++tally.wrong;
-      std::fprintf(stderr, "%s, seed %u, tolerance %g: called solved, residual %g\n", name.c_str(), seed, tolerances[k],
-                   judgement.residual);
+      std::fprintf(stderr, "%s, seed %u, tolerance %g: reported as solved, residual %g\n", name.c_str(), seed,
+                   tolerances[k], judgement.residual);
     }
   }
   return tally;
@@ -222,6 +222,6 @@ int main(int count, char** values) {
     }
     print_row(prefix + "all", problems, all);
   }
-  std::printf("\nCalled solved and not so: %ld.\n", wrong);
+  std::printf("\nReported as solved, but not solved: %ld.\n", wrong);
   return wrong == 0 ? 0 : 1;
 }

@@ -11,7 +11,7 @@ def write_parts(page, parts):
     for name, content in parts.items():
         pattern = re.compile(f"(<!-- {name} -->\n).*?(<!-- end -->)", re.S)
         if not pattern.search(text):
-            raise SystemExit(f"{page}: has no place for \"{name}\"")
+            raise SystemExit(f"{page}: the mark <!-- {name} --> is missing")
         text = pattern.sub(lambda match: match[1] + content + "\n" + match[2], text)
     page.write_text(text, encoding="utf-8")
 

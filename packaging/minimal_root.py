@@ -25,7 +25,7 @@ def fail(text):
 
 def require_root():
     if os.geteuid() != 0:
-        fail("a root of its own is entered by chroot, which only root may do: run this as root (sudo)")
+        fail("a separate root directory is entered by chroot, which only root can do: run this as root (sudo)")
 
 
 def codename():
@@ -40,7 +40,7 @@ def apt_sources():
     found = [path for path in [etc / "sources.list", *parts] if path.is_file()]
     debian = [path for path in found if "bookworm" in path.read_text(encoding="utf-8")]
     if not debian:
-        fail("no file in /etc/apt says where Debian 12's packages (bookworm) come from")
+        fail("no file in /etc/apt names a source of Debian 12's packages (bookworm)")
     return debian
 
 
@@ -74,7 +74,7 @@ class MinimalRoot:
     def __enter__(self):
         require_root()
         if codename() != "bookworm":
-            fail("packages are made for Debian 12, and this is another system")
+            fail("packages are made for Debian 12, and this is a different system")
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="ricochet-root-"))
         self.path = self.folder / "root"
         try:

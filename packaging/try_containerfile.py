@@ -1,4 +1,4 @@
-"""Does in a minimal Debian 12 what packaging/Containerfile says, and uses what comes out: a case, a report, a figure, a mesh.
+"""Executes packaging/Containerfile in a minimal Debian 12, and uses the result: a case, a report, a figure, a mesh.
 
 usage: try_containerfile.py FOLDER    FOLDER: with the .deb files
 """
@@ -20,7 +20,7 @@ def instructions():
     found = [tuple(line.split(None, 1)) for line in lines]
     unknown = [word for word, _ in found if word not in KNOWN]
     if unknown or found[0] != ("FROM", "debian:bookworm-slim"):
-        fail(f"packaging/Containerfile has what this program does not know: {unknown or found[0]}")
+        fail(f"packaging/Containerfile has an instruction that this program does not support: {unknown or found[0]}")
     return found
 
 
@@ -31,7 +31,7 @@ def copy(root, context, rest):
     for pattern in patterns:
         files = sorted(context.glob(pattern))
         if not files:
-            fail(f"{context} has no {pattern}: ./dev package makes them")
+            fail(f"{context} has no {pattern}: run ./dev package to make them")
         for file in files:
             shutil.copy(file, folder)
 

@@ -1,7 +1,7 @@
-"""Does what a newcomer does: clones HEAD into a minimal Debian 12 of its own, and runs the commands of `./dev` there.
+"""Does what a newcomer does: clones HEAD into a separate minimal Debian 12, and runs the commands of `./dev` there.
 
-One line for each part, with its time and what came of it. A part that fails does not stop the others; the status is then 1.
-What each part said goes into FOLDER; without --logs the end of it is shown where the part fails. Nothing else is left.
+Prints one line for each part, with its time and result. A part that fails does not stop the others; the status is then 1.
+The output of each part goes into FOLDER; without --logs, its end is printed if the part fails. Nothing else is left behind.
 """
 
 import argparse
@@ -39,7 +39,7 @@ def clone(root):
     bundle.write_bytes(git("bundle", "create", "--quiet", "-", "HEAD"))
     subprocess.run(["git", "-c", "advice.detachedHead=false", "clone", "--quiet", bundle, target], check=True)
     changed = git("status", "--porcelain").splitlines()
-    note = f"; {len(changed)} files here have changes that are not committed, and are not tried" if changed else ""
+    note = f"; {len(changed)} files here have uncommitted changes, which are not tested" if changed else ""
     return git("log", "-1", "--format=%h %s").decode(errors="replace").strip() + note
 
 
@@ -61,11 +61,11 @@ def attempt(root, name, logs):
 def main():
     parser = argparse.ArgumentParser(prog="./dev fresh", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("parts", nargs="*", metavar="PART", help="demo, test, mpi or package (default: all)")
-    parser.add_argument("--logs", type=pathlib.Path, metavar="FOLDER", help="where to put what each part said")
+    parser.add_argument("--logs", type=pathlib.Path, metavar="FOLDER", help="folder for the output of each part")
     parser.add_argument("--check", action="store_true", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if unknown := [part for part in arguments.parts if part not in PARTS]:
-        parser.error(f"there is no part {unknown[0]}; there are {', '.join(PARTS)}")
+        parser.error(f"there is no part {unknown[0]}; available: {', '.join(PARTS)}")
     if arguments.check:
         return 0
     require_root()

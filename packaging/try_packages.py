@@ -1,4 +1,4 @@
-"""Installs the packages of a build into a minimal Debian 12, uses each, and removes them: nothing may be left.
+"""Installs the packages of a build into a minimal Debian 12, uses each, and removes them: nothing must be left.
 
 usage: try_packages.py FOLDER [--recommends]    FOLDER: with the .deb files; --recommends: with all that they recommend
 """
@@ -31,7 +31,7 @@ def look_at_files(packages):
                 if not file.is_file() or file.is_symlink():
                     continue
                 data = file.read_bytes()
-                must(str(SOURCE).encode() not in data, f"{name}: {file.relative_to(folder)} names the folder it was built in")
+                must(str(SOURCE).encode() not in data, f"{name}: {file.relative_to(folder)} names the folder in which it was built")
                 if data[:4] != b"\x7fELF":
                     continue
                 said = subprocess.run(["readelf", "--dynamic", file], text=True, capture_output=True, check=True).stdout
@@ -155,10 +155,10 @@ def main():
     require_root()
     packages = {path.name.split("_")[0]: path for path in sorted(pathlib.Path(arguments[0]).glob("*.deb"))}
     must({"ricochet", "libricochet0", "libricochet-dev", "ricochet-doc"} <= packages.keys(),
-         f"{arguments[0]} has no packages: ./dev package makes them")
+         f"{arguments[0]} has no packages: run ./dev package to make them")
     # The shared libraries have no use of their own: all others need them.
     unused = packages.keys() - {package for package, *_ in CHECKS} - {"libricochet0"}
-    must(not unused, f"nothing uses what these packages install: {', '.join(sorted(unused))}; CHECKS says what is done with each")
+    must(not unused, f"no check uses these packages: {', '.join(sorted(unused))}; add them to CHECKS")
     steps = Steps()
     steps("what is in the files", lambda: look_at_files(packages))
     root = MinimalRoot()

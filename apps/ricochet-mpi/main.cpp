@@ -40,12 +40,12 @@ int dispatch(int argc, char** argv, const WorldRanks& ranks, const Communicator&
   app.set_version_flag("--version", [] { return fmt::format("ricochet-mpi {}\n{}", version, library_versions()); });
   app.require_subcommand(1);
   app.footer(
-      "Exit status as of `ricochet`. All else is done by `ricochet`: info, report, plot, validate. What cannot be run\n"
-      "by several processes yet is refused by name; docs/distributed.md says how many processes to take.");
+      "Exit status as of `ricochet`. Use `ricochet` for everything else: info, report, plot, validate. Features that\n"
+      "several processes do not support yet are refused by name; docs/distributed.md says how many processes to use.");
   Arguments arguments;
   CLI::App* run = app.add_subcommand("run", "Run a case, each process with its part of the body");
   run->add_option("case", arguments.run.case_file,
-                  "case file; with --resume also the directory of a run, which knows its case")
+                  "case file; with --resume also the directory of a run, which records its case")
       ->type_name("CASE.toml");
   run->add_option("-o,--output", arguments.run.output_directory,
                   "output directory, the same for all processes (default: out/NAME of the case file)")
@@ -56,10 +56,10 @@ int dispatch(int argc, char** argv, const WorldRanks& ranks, const Communicator&
   run->add_option("--threads", arguments.threads, "threads of each process (default: 1)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
-  run->add_flag("--quiet", arguments.run.quiet, "no progress and no messages but warnings and errors");
+  run->add_flag("--quiet", arguments.run.quiet, "show no progress, and of the messages only warnings and errors");
   run->add_flag("--force", arguments.run.force, "overwrite a run that is in the output directory");
   run->add_flag("--resume", arguments.run.resume,
-                "go on with the run that is in the output directory, by as many processes as it has")
+                "continue the run in the output directory, with its number of processes")
       ->excludes("--force");
   run->add_option("--log-level", arguments.log_level, "trace, debug, info, warning, error or off")->type_name("LEVEL");
   program::refuse_empty_values(app);
@@ -120,8 +120,8 @@ int main(int argc, char** argv) {
     return end(ranks, problem.exit_status(), problem.what());
   } catch (const std::bad_alloc&) {
     return end(ranks, static_cast<int>(ErrorKind::invalid_input),
-               "out of memory: take more processes on more machines, or a coarser mesh");
+               "out of memory: use more processes on more machines, or a coarser mesh");
   } catch (const std::exception& problem) {
-    return end(ranks, defect_status, fmt::format("a defect of Ricochet: {}", problem.what()));
+    return end(ranks, defect_status, fmt::format("internal error: {}", problem.what()));
   }
 }

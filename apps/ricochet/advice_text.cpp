@@ -49,7 +49,7 @@ void print_materials(const Body& body) {
     volume[static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(cell)])] += volumes[cell];
   for (std::size_t i = 0; i < body.materials.size(); ++i) {
     const Material& material = body.materials[i];
-    fmt::print("  material \"{}\": {} {:.6g}, mass {:.6g}, compression waves {:.5g}, shear waves {:.5g}\n",
+    fmt::print("  material \"{}\": {} {:.6g}, mass {:.6g}, speed of compression waves {:.5g}, of shear waves {:.5g}\n",
                material.name, body.mesh->dimension == 2 && !is_axisymmetric(body) ? "area" : "volume", volume[i],
                volume[i] * material.density, compression_wave_speed(material, is_plane_stress(body)),
                shear_wave_speed(material));
@@ -84,20 +84,20 @@ void print_steps(const Case& input, const Model& model, const ConnectedBodies& c
   if (const std::optional<double> critical = make_scheme(input.time)->stability_limit(model.problem)) {
     fmt::print("  critical step {:.6g}; the step is {:.3g} of it\n", *critical, step / *critical);
     if (model.problem.internal_force->is_linear()) {
-      fmt::print("  suggested step {:.2g}: nine tenths of the critical one, above which {} is unstable\n",
+      fmt::print("  suggested step {:.2g}: nine tenths of the critical step, above which {} is unstable\n",
                  rounded_down(0.9 * *critical, 2), input.time.scheme);
     } else {
       fmt::print(
-          "  suggested step {:.2g}: seven tenths of the critical one of the undeformed mesh, above which {} is "
-          "unstable; it falls where cells are squeezed, and the run follows it\n",
+          "  suggested step {:.2g}: seven tenths of the critical step of the undeformed mesh, above which {} is "
+          "unstable; the critical step decreases where cells are compressed, and the run tracks it\n",
           rounded_down(0.7 * *critical, 2), input.time.scheme);
     }
     return;
   }
   const double median = times[times.size() / 2];
   fmt::print(
-      "  suggested step {:.2g}: a compression wave crosses a median cell in it, so the mesh resolves the waves of an "
-      "impact; the case's step {:g} is {:.3g} of that\n",
+      "  suggested step {:.2g}: the time in which a compression wave crosses a median cell, so that the mesh resolves "
+      "the waves of an impact; the step of the case, {:g}, is {:.3g} of that\n",
       rounded_down(median, 2), step, step / median);
 }
 
@@ -168,7 +168,7 @@ void print_bodies_contact(const Case& input, const Model& model, std::size_t pai
   if (facing.points > 0 && facing.smallest_gap > 0.0 && flies_freely(input) &&
       is_free_along_normals(input, model, static_cast<int>(pair))) {
     if (const std::optional<double> meets = time_of_meeting(model, pair))
-      text += "; the bodies" + meeting_text(*meets, input, "would meet", "do not come nearer in free flight");
+      text += "; the bodies" + meeting_text(*meets, input, "would meet", "do not approach each other in free flight");
   }
   const ContactSection& section = model.contacts[pair];
   fmt::print("  \"{}\" against \"{}\": {}\n", section.group, section.against, text);
@@ -230,7 +230,7 @@ std::string obstacle_meeting_text(const Case& input, const Model& model, std::si
         std::min(meets, time_of_contact(flights.back(), contact.node_initial_gap[row], contact.node_normals.col(row)));
   }
   if (!obstacle.moves())
-    return meeting_text(meets, input, "and would reach it", "and does not come nearer in free flight");
+    return meeting_text(meets, input, "and would reach it", "and does not approach it in free flight");
   meets = time_of_contact(flights, obstacle, input.time.end);
   return meeting_text(meets, input, "and would reach it", "and does not reach it by the end of the run");
 }

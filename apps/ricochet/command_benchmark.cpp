@@ -24,13 +24,13 @@ std::string manifest_file(const std::string& folder) {
     const std::string path = (fs::path(folder) / "benchmarks.toml").string();
     if (fs::is_regular_file(path)) return path;
     throw Error(ErrorKind::file_access,
-                fmt::format("--folder {}: there is no benchmarks.toml in it, which lists benchmarks", folder));
+                fmt::format("--folder {}: this folder has no benchmarks.toml, the list of benchmarks", folder));
   }
   const std::string path = installed_file("benchmarks/benchmarks.toml");
   if (!path.empty()) return path;
   throw Error(ErrorKind::file_access,
-              "share/ricochet/benchmarks, the cases that benchmarks are, is missing beside this program: build or "
-              "install Ricochet again, or name a folder with --folder");
+              "share/ricochet/benchmarks, the folder with the cases of the benchmarks, is missing beside this program: "
+              "build or install Ricochet again, or name a folder with --folder");
 }
 
 void list_benchmarks(const std::vector<Benchmark>& benchmarks) {
@@ -78,7 +78,7 @@ int benchmark(const BenchmarkArguments& arguments) {
   const BenchmarkResults results = conduct_benchmarks(plan, options, signal);
   print_benchmarks(plan, results);
   if (signal == 0) return results.worst_status;
-  fmt::print("  stopped; with --resume the same command goes on\n");
+  fmt::print("  stopped; the same command with --resume continues\n");
   return 128 + signal;
 }
 

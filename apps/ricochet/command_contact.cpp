@@ -48,9 +48,9 @@ std::string outcome_text(const ContactSolution& solution) {
     case ContactOutcome::not_converged:
       return "NOT SOLVED: " + solution.reason;
     case ContactOutcome::not_applicable:
-      return "NOT SOLVED, the solver does not treat such problems: " + solution.reason;
+      return "NOT SOLVED, the solver does not support such problems: " + solution.reason;
     case ContactOutcome::invalid_data:
-      return "NOT SOLVED, the data are not those of a contact problem: " + solution.reason;
+      return "NOT SOLVED, the data do not describe a contact problem: " + solution.reason;
   }
   return "";
 }
@@ -137,7 +137,7 @@ int contact(const ContactArguments& arguments) {
   }
   const std::vector<std::string> known = contact_solver_registry().names();
   if (std::find(known.begin(), known.end(), arguments.solver) == known.end()) {
-    throw Error(ErrorKind::usage, fmt::format("--solver {}: there is no such solver; there are {}", arguments.solver,
+    throw Error(ErrorKind::usage, fmt::format("--solver {}: there is no such solver; available: {}", arguments.solver,
                                               join_names(known, ", ", false)));
   }
   check_output(arguments.output);
@@ -162,10 +162,11 @@ int contact(const ContactArguments& arguments) {
     print_row("written to", arguments.output);
   }
   if (solution.solved()) return 0;
-  throw Error(ErrorKind::not_converged,
-              fmt::format("{}: the contact problem is not solved: {} (residual {:.3g}); try another solver (--list){}",
-                          arguments.problem, solution.reason, solution.residual,
-                          arguments.output.empty() ? "" : "; the best found is in the output file, as a guess"));
+  throw Error(
+      ErrorKind::not_converged,
+      fmt::format("{}: the contact problem is not solved: {} (residual {:.3g}); try another solver (--list){}",
+                  arguments.problem, solution.reason, solution.residual,
+                  arguments.output.empty() ? "" : "; the best solution found is in the output file, as a guess"));
 }
 
 }  // namespace ricochet::program

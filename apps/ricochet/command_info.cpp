@@ -54,8 +54,8 @@ void describe_mesh(const std::string& path) {
   file.bodies_may_touch = true;  // a case states which bodies touch
   if (must_be_meshed_first(file)) {
     fmt::print(
-        "{}: a geometry that was not meshed yet: its groups and sizes are not known. The gmsh program meshes it when a "
-        "case that names it is run, or by `ricochet validate CASE.toml --mesh`; `ricochet info CASE.toml` then "
+        "{}: a geometry that has not been meshed yet: its groups and sizes are unknown. The gmsh program meshes it "
+        "when a case that uses it is run, or with `ricochet validate CASE.toml --mesh`; `ricochet info CASE.toml` then "
         "describes the mesh\n",
         path);
     return;
@@ -78,7 +78,7 @@ void print_critical_step(double step, double critical) {
 
 std::string refinement_text(int refinements) {
   if (refinements == 0) return "";
-  return fmt::format(", its cells cut {}", refinements == 1 ? "once" : fmt::format("{} times", refinements));
+  return fmt::format(", its cells refined {}", refinements == 1 ? "once" : fmt::format("{} times", refinements));
 }
 
 void print_files(const Case& input) {
@@ -127,8 +127,8 @@ void describe_case(const std::string& path, const std::vector<std::string>& over
   require_mesh_files(input);
   if (const std::string unmeshed = unmeshed_files(input); !unmeshed.empty()) {
     fmt::print(
-        "  groups, sizes and a suggested step are only known once {} is meshed: `ricochet validate {} --mesh` does "
-        "that\n",
+        "  groups, sizes and a suggested step are known only after {} has been meshed: use `ricochet validate {} "
+        "--mesh`\n",
         unmeshed, path);
     return;
   }
@@ -164,8 +164,8 @@ void describe_result(const std::string& directory) {
   const std::optional<RunSummary> found = summary_of(directory);
   if (!found) {
     fmt::print(
-        "{}: an interrupted run whose summary.json is missing or damaged; `ricochet run` with --resume goes on "
-        "where its other files are whole\n",
+        "{}: an interrupted run whose summary.json is missing or damaged; `ricochet run` with --resume continues it if "
+        "its other files are intact\n",
         directory);
     return describe_checkpoint(checkpoints_of(directory).back().path);
   }
@@ -186,7 +186,7 @@ void describe_result(const std::string& directory) {
   print_method(s);
   for (const CheckResult& check : s.checks) {
     if (check.limit > 0.0 && check.largest > check.limit)
-      fmt::print("  CHECK FAILED: {} reaches {:.2g}, more than {:g}\n", check.name, check.largest, check.limit);
+      fmt::print("  CHECK FAILED: {} reaches {:.2g}, above its limit {:g}\n", check.name, check.largest, check.limit);
   }
   print_friction(s);
   print_impacts(s, 0);
@@ -213,7 +213,7 @@ int info(const InfoArguments& arguments) {
   const std::vector<std::string>& paths = arguments.paths;
   for (const std::string& path : paths) {
     if (!arguments.overrides.empty() && !is_case(path))
-      throw Error(ErrorKind::usage, fmt::format("info: --set changes a case file, and {} is none", path));
+      throw Error(ErrorKind::usage, fmt::format("info: --set changes a case file, and {} is not one", path));
   }
   const bool any_study =
       std::any_of(paths.begin(), paths.end(), holds_study) || std::any_of(paths.begin(), paths.end(), holds_benchmarks);

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 double number(std::string_view text, const std::string& option, const char* wanted) {
   const std::optional<double> value = number_in(text);
-  if (!value) throw Error(ErrorKind::usage, fmt::format("{}: is no number in \"{}\"; {}", text, option, wanted));
+  if (!value) throw Error(ErrorKind::usage, fmt::format("{}: not a number in \"{}\"; {}", text, option, wanted));
   return *value;
 }
 
@@ -48,17 +48,18 @@ std::string format_of(const std::string& output, std::initializer_list<const cha
 }
 
 std::pair<double, double> interval_of(const std::string& text) {
-  const char* const wanted = "--time takes the first and the last time to be shown, like 0.02:0.05";
+  const char* const wanted = "--time requires the first and the last time to show, for example 0.02:0.05";
   const std::pair<double, double> interval = two_numbers(text, ':', wanted);
   if (!(interval.first < interval.second)) throw Error(ErrorKind::usage, wanted);
   return interval;
 }
 
 std::pair<double, double> size_of(const std::string& text) {
-  const char* const wanted = "--size takes width and height in cm, like 17x6";
+  const char* const wanted = "--size requires width and height in cm, for example 17x6";
   const std::pair<double, double> size = two_numbers(text, 'x', wanted);
   for (const double side : {size.first, size.second}) {
-    if (!(side >= 2.0 && side <= 200.0)) throw Error(ErrorKind::usage, fmt::format("{}, from 2 to 200", wanted));
+    if (!(side >= 2.0 && side <= 200.0))
+      throw Error(ErrorKind::usage, fmt::format("{}; each must be from 2 to 200", wanted));
   }
   return size;
 }
@@ -72,22 +73,24 @@ FigureOptions options_of(const PlotArguments& arguments) {
   if (!arguments.time.empty()) options.time = interval_of(arguments.time);
   if (!arguments.size.empty()) std::tie(options.width, options.height) = size_of(arguments.size);
   if (arguments.at || arguments.half || arguments.zoom || !arguments.field.empty())
-    throw Error(ErrorKind::usage, "plot: --field, --at, --zoom and --half are for --what animation");
+    throw Error(ErrorKind::usage, "plot: --field, --at, --zoom and --half require --what animation");
   return options;
 }
 
 /// Draws the moving body of one run or, with --at, its state at one time.
 int plot_animation(const PlotArguments& arguments) {
   if (arguments.what.size() > 1 || arguments.directories.size() > 1)
-    throw Error(ErrorKind::usage, "plot: an animation shows one run, and nothing else: name one directory, one --what");
+    throw Error(ErrorKind::usage,
+                "plot: an animation shows one run and nothing else: name one directory and one --what");
   if (arguments.logarithmic || !arguments.labels.empty())
-    throw Error(ErrorKind::usage, "plot: --log and --label are for curves, not for --what animation");
+    throw Error(ErrorKind::usage, "plot: --log and --label apply to curves, not to --what animation");
   if (arguments.at && !arguments.time.empty())
-    throw Error(ErrorKind::usage, "plot: --at takes one time, and --time a part of the run: give one of them");
+    throw Error(ErrorKind::usage, "plot: --at selects one time, and --time a part of the run: use one of them");
   const std::string format =
-      arguments.at ? format_of(arguments.output, {"png", "svg", "pdf"}, "a picture is a .png, .svg or .pdf file")
-                   : format_of(arguments.output, {"gif", "mp4"},
-                               "an animation is a .gif or .mp4 file; with --at T a .png, .svg or .pdf of one frame");
+      arguments.at
+          ? format_of(arguments.output, {"png", "svg", "pdf"}, "a picture must be a .png, .svg or .pdf file")
+          : format_of(arguments.output, {"gif", "mp4"},
+                      "an animation must be a .gif or .mp4 file; with --at T a .png, .svg or .pdf file of one frame");
   AnimationOptions options;
   if (!arguments.field.empty()) options.field = arguments.field;
   options.time = arguments.at;
@@ -98,7 +101,8 @@ int plot_animation(const PlotArguments& arguments) {
     // The axes, their labels and the colour bar need this much space.
     constexpr double least = 6.0;
     if (options.width < least || options.height < least)
-      throw Error(ErrorKind::usage, fmt::format("--size of an animation is {} cm or more in both directions", least));
+      throw Error(ErrorKind::usage,
+                  fmt::format("--size of an animation must be {} cm or more in both directions", least));
   }
   options.half = arguments.half;
   options.zoom = arguments.zoom;
@@ -116,7 +120,7 @@ std::string describe_study(const PlotArguments& arguments, const FigureOptions& 
   if (arguments.directories.size() > 1)
     throw Error(ErrorKind::usage, "plot: a figure of a study shows this study alone: name no other directory");
   if (options.time || !options.labels.empty())
-    throw Error(ErrorKind::usage, "plot: --time and --label are for figures of runs, and this is a study");
+    throw Error(ErrorKind::usage, "plot: --time and --label apply to figures of runs, and this is a study");
   const Study study = read_study(arguments.directories.front());
   return describe_study_figure(study, make_study_table(study).table,
                                {options.what, options.title, options.logarithmic, options.width, options.height});
@@ -127,7 +131,7 @@ std::string describe_study(const PlotArguments& arguments, const FigureOptions& 
 int plot(const PlotArguments& arguments) {
   if (std::count(arguments.what.begin(), arguments.what.end(), "animation") > 0) return plot_animation(arguments);
   const std::string format =
-      format_of(arguments.output, {"svg", "pdf", "png"}, "a figure is an .svg, .pdf or .png file");
+      format_of(arguments.output, {"svg", "pdf", "png"}, "a figure must be an .svg, .pdf or .png file");
   const FigureOptions options = options_of(arguments);
   if (std::any_of(arguments.directories.begin(), arguments.directories.end(), holds_study)) {
     draw_figure(describe_study(arguments, options), format, arguments.output);

@@ -28,10 +28,9 @@ namespace fs = std::filesystem;
 std::string viewer_file() {
   const std::string path = installed_file("viewer.html");
   if (path.empty()) {
-    throw Error(
-        ErrorKind::file_access,
-        "share/ricochet/viewer.html, which reports are made of, is missing beside this program: build or install "
-        "Ricochet again");
+    throw Error(ErrorKind::file_access,
+                "share/ricochet/viewer.html, the template of reports, is missing beside this program: build or install "
+                "Ricochet again");
   }
   return path;
 }
@@ -55,7 +54,7 @@ std::string write_page_of_runs(const Study& study, double most_megabytes) {
   }
   if (directories.empty()) return "";
   if (directories.size() > most_runs_on_a_page) {
-    log::info(fmt::format("runs.html shows the first {} of {} runs; `ricochet report` of others makes pages of these",
+    log::info(fmt::format("runs.html shows the first {} of {} runs; use `ricochet report` for pages of the others",
                           most_runs_on_a_page, directories.size()));
     directories.resize(most_runs_on_a_page);
   }
@@ -74,7 +73,8 @@ int report_study(const ReportArguments& arguments) {
   if (fs::exists(output) && !is_study_page(output)) {
     throw Error(
         ErrorKind::file_access,
-        fmt::format("{}: is there and is no page of a study: name another file with -o, or move it away", output));
+        fmt::format("{}: exists and is not the page of a study: name another file with -o, or move this one away",
+                    output));
   }
   const StudyResults results = make_study_table(study);
   StudyFigureOptions figures;
@@ -94,7 +94,8 @@ int report_benchmarks(const ReportArguments& arguments) {
   if (fs::exists(output) && !is_benchmark_page(output)) {
     throw Error(
         ErrorKind::file_access,
-        fmt::format("{}: is there and is no page of benchmarks: name another file with -o, or move it away", output));
+        fmt::format("{}: exists and is not a page of benchmarks: name another file with -o, or move this one away",
+                    output));
   }
   const std::string folder = fs::absolute(output).parent_path().string();
   write_durably(output, make_benchmark_page(plan, read_benchmark_results(plan), folder));
@@ -116,12 +117,13 @@ int report(const ReportArguments& arguments) {
                                  ? (fs::path(common_folder(arguments.directories)) / "report.html").string()
                                  : arguments.output;
   if (fs::exists(output) && !is_report(output)) {
-    throw Error(ErrorKind::file_access,
-                fmt::format("{}: is there and is no report: name another file with -o, or move it away", output));
+    throw Error(
+        ErrorKind::file_access,
+        fmt::format("{}: exists and is not a report: name another file with -o, or move this one away", output));
   }
   if (arguments.output.empty() && fs::exists(output) && !is_report_of(output, arguments.directories)) {
     throw Error(ErrorKind::file_access,
-                fmt::format("{}: is there and shows other runs: name another file with -o, or this one", output));
+                fmt::format("{}: exists and shows other runs: name another file with -o, or this one", output));
   }
   Report page;
   read_with_retries(arguments.directories, [&] { page = make_report(arguments.directories, options); });

@@ -59,11 +59,9 @@ namespace {
 RunArguments with_origin(RunArguments arguments) {
   if (!arguments.resume) {
     if (holds_run(arguments.case_file)) {
-      throw Error(
-          ErrorKind::usage,
-          fmt::format("run: {0} is a directory of results, not a case file; `ricochet run --resume {0}` goes on "
-                      "with the run in it",
-                      arguments.case_file));
+      throw Error(ErrorKind::usage, fmt::format("run: {0} is a directory of results, not a case file; `ricochet run "
+                                                "--resume {0}` continues the run in it",
+                                                arguments.case_file));
     }
     if (!arguments.case_file.empty()) return arguments;
     throw Error(ErrorKind::usage, "run: a case file is required (or --resume and the directory of a run)");
@@ -104,10 +102,11 @@ void require_same_case_file(const Ranks& ranks, const std::string& path) {
     const bool is_missing = all[i][0] == unreadable || all[0][0] == unreadable;
     throw Error(
         ErrorKind::file_access,
-        fmt::format("{}: {}: put the case where all machines have it under this name, as in a shared folder", path,
-                    is_missing
-                        ? fmt::format("process {} of {} cannot read it", all[0][0] == unreadable ? 0 : i, all.size())
-                        : fmt::format("process {} of {} reads another text than process 0", i, all.size())));
+        fmt::format(
+            "{}: {}: make the case available under this name on all machines, for example in a shared folder", path,
+            is_missing
+                ? fmt::format("process {} of {} cannot read it", all[0][0] == unreadable ? 0 : i, all.size())
+                : fmt::format("process {} of {} reads a text that differs from that of process 0", i, all.size())));
   }
 }
 
@@ -118,8 +117,8 @@ void warn_of_launcher(const Ranks& ranks) {
   if (ranks.are_several() || size == nullptr || rank == nullptr) return;
   if (number_in(size).value_or(1.0) <= 1.0 || number_in(rank).value_or(1.0) != 0.0) return;
   log::warning(
-      fmt::format("mpirun has begun {0} processes, each of which runs the whole case: what divides a body among "
-                  "them is mpirun -n {0} ricochet-mpi run (docs/distributed.md)",
+      fmt::format("mpirun has started {0} processes, each of which runs the whole case: to divide a body among them, "
+                  "use mpirun -n {0} ricochet-mpi run (docs/distributed.md)",
                   size));
 }
 

@@ -30,7 +30,7 @@ StudyArguments with_directory(StudyArguments arguments) {
     arguments.case_file.clear();
   }
   if (arguments.output_directory.empty())
-    throw Error(ErrorKind::usage, "study: where the runs and the table go is required: -o DIR");
+    throw Error(ErrorKind::usage, "study: a directory for the runs and the table is required: -o DIR");
   if (arguments.case_file.empty() && !arguments.resume)
     throw Error(ErrorKind::usage, "study: a case file is required (or --resume and the directory of a study)");
   if (arguments.case_file.empty() && (!arguments.vary.empty() || !arguments.overrides.empty()))
@@ -64,8 +64,7 @@ void print_results(const std::string& directory, const StudyResults& results) {
   fmt::print("{}", to_aligned_text(results.table));
   for (const std::string& note : results.notes) fmt::print("  {}\n", note);
   if (!results.warnings.empty())
-    fmt::print("  {}: study.md has them\n",
-               counted(results.warnings.size(), "warning of the runs", "warnings of the runs"));
+    fmt::print("  {}: see study.md\n", counted(results.warnings.size(), "warning of the runs", "warnings of the runs"));
   fmt::print("{} of {} done; {}/study.csv, study.md\n", results.done, counted(results.table.rows.size(), "run"),
              directory);
 }
@@ -95,7 +94,7 @@ int study(const StudyArguments& given) {
       conduct_study(arguments.output_directory, plan, questions_of(arguments, before.questions), options, signal);
   print_results(arguments.output_directory, results);
   if (signal == 0) return results.worst_status;
-  fmt::print("  stopped; `ricochet study --resume {}` goes on\n", arguments.output_directory);
+  fmt::print("  stopped; `ricochet study --resume {}` continues it\n", arguments.output_directory);
   return 128 + signal;
 }
 

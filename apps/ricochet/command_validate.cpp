@@ -33,37 +33,37 @@ void print_estimate(const StageEstimate& stage, std::size_t number) {
   const std::string of =
       fmt::format("estimate, stage {} of a step, {}", number + 1, counted(stage.unknowns, "unknown"));
   if (stage.chosen.method == SolverMethod::iterative) {
-    fmt::print("{}: method iterative, some {:.0f} iterations, {}; chosen as {}{}\n", of, stage.iterations,
+    fmt::print("{}: method iterative, about {:.0f} iterations, {}; reason: {}{}\n", of, stage.iterations,
                short_duration_text(stage.step_seconds), stage.chosen.reason,
                stage.chosen.predicted_entries > 0.0
-                   ? fmt::format(" (a factor would have {:.3g} entries and take {:.2g} operations)",
+                   ? fmt::format(" (a factor would have {:.3g} entries and require {:.2g} operations)",
                                  stage.chosen.predicted_entries, stage.chosen.predicted_operations)
                    : "");
     return;
   }
   fmt::print(
-      "{}: method direct; a factor of {:.3g} entries, {:.2g} GB, {:.2g} GB while it is made, in {}; {} for a solve; "
-      "{:.2g} GB for every 100 contact points that may touch at a time; chosen as {}\n",
+      "{}: method direct; a factor of {:.3g} entries, {:.2g} GB, {:.2g} GB during the factorization, which takes {}; "
+      "{} per solve; {:.2g} GB per 100 contact points that may touch at the same time; reason: {}\n",
       of, stage.chosen.predicted_entries, 1e-9 * stage.factor_bytes, 1e-9 * stage.peak_bytes,
       short_duration_text(stage.factorization_seconds), short_duration_text(stage.step_seconds),
       100e-9 * stage.bytes_per_point, stage.chosen.reason);
 }
 
-/// Returns a text such as "0.2 s while nothing touches, 12 s while a quarter of the 40 contact points press, 2 min 30 s
-/// while all do".
+/// Returns a text such as "0.2 s without contact, 12 s with a quarter of the 40 contact points closed, 2 min 30 s with
+/// all closed".
 template <class Text>
 std::string range_text(const CostRange& range, Index points, const Text& text) {
   if (points == 0) return text(range.most);
-  return fmt::format("{} while nothing touches, {} while a quarter of the {} press, {} while all do", text(range.least),
+  return fmt::format("{} without contact, {} with a quarter of the {} closed, {} with all closed", text(range.least),
                      text(range.some), counted(points, "contact point"), text(range.most));
 }
 
 std::string iterations_note(const CostEstimate& cost) {
   if (cost.force_seconds > 0.0)
-    return fmt::format(" ({} to {} iterations of Newton's method; hundreds where rubber is pressed hard)",
+    return fmt::format(" ({} to {} iterations of Newton's method; hundreds where rubber is strongly compressed)",
                        cost.least_iterations, cost.most_iterations);
   if (cost.most_iterations > 1)
-    return fmt::format(" ({} to {} iterations, as normals turn)", cost.least_iterations, cost.most_iterations);
+    return fmt::format(" ({} to {} iterations, because normals rotate)", cost.least_iterations, cost.most_iterations);
   return "";
 }
 
@@ -76,20 +76,20 @@ double print_estimates(const Case& input, const Model& model, const Scheme& sche
   const auto of_run = [&](double step) { return cost.factorization_seconds + steps * step; };
   fmt::print("estimate, a step{}: {}\n", iterations_note(cost),
              range_text(cost.step_seconds, points, short_duration_text));
-  fmt::print("estimate, all: {} for factorizations{}; the run {}{}{}\n",
-             short_duration_text(cost.factorization_seconds), input.time.adaptive ? " for each length of a step" : "",
+  fmt::print("estimate, whole run: {} for factorizations{}; the run takes {}{}{}\n",
+             short_duration_text(cost.factorization_seconds), input.time.adaptive ? " for each step length" : "",
              input.time.adaptive ? "at least " : "", short_duration_text(of_run(cost.step_seconds.least)),
              points == 0 ? ""
-                         : fmt::format(" to {}, with no more than a quarter of the contact points pressed at a time",
+                         : fmt::format(" to {}, with at most a quarter of the contact points closed at the same time",
                                        short_duration_text(of_run(cost.step_seconds.some))));
   fmt::print("estimate, memory: {}\n", range_text(cost.memory, points, size_text));
   fmt::print("estimate, files: {}\n", output_text(estimate_output(input, model)));
   fmt::print(
-      "(estimates: entries and operations from the symbolic analysis of the operators; times at {:.2g} operations "
-      "and {:.2g} bytes per second of one core{}, without assembly, ordering and output; `run` says after some "
-      "seconds of steps what is left at their pace)\n",
+      "(estimates: entries and operations from the symbolic analysis of the operators; times at {:.2g} operations and "
+      "{:.2g} bytes per second of one core{}, without assembly, ordering and output; after some seconds of steps, "
+      "`run` reports the remaining time at their pace)\n",
       estimated_operations_per_second, estimated_bytes_per_second,
-      cost.force_seconds > 0.0 ? fmt::format(", with {} for an evaluation of the internal force as measured here",
+      cost.force_seconds > 0.0 ? fmt::format(", with {} per evaluation of the internal force, measured here",
                                              short_duration_text(cost.force_seconds))
                                : "");
   return cost.factorization_seconds;
@@ -120,14 +120,15 @@ std::vector<std::string> files_without_mesh(const Case& input, const ValidateArg
 
 void print_valid_without(const std::vector<std::string>& files, const ValidateArguments& arguments) {
   const std::string& case_file = arguments.case_file;
-  fmt::print("{}: valid, as far as can be told without a mesh of {}\n", case_file, join_names(files, " and ", false));
+  fmt::print("{}: valid, as far as can be checked without a mesh of {}\n", case_file,
+             join_names(files, " and ", false));
   fmt::print(
-      "{}: not checked: what needs the mesh: names of groups, numbers of components, materials, supports, contacts, "
-      "probes, columns of [[expect]], memory and time, and the start of the run; `ricochet validate {}{} --mesh` "
-      "meshes the {} and checks them{}\n",
+      "{}: not checked, because it requires the mesh: names of groups, numbers of components, materials, supports, "
+      "contacts, probes, columns of [[expect]], memory and time, and the start of the run; `ricochet validate {}{} "
+      "--mesh` meshes the {} and checks them{}\n",
       case_file, case_file, arguments.overrides.empty() ? "" : " --set …", files.size() == 1 ? "file" : "files",
       std::any_of(files.begin(), files.end(), may_run_commands)
-          ? " (gmsh runs shell commands that a .geo or .opt file contains: mesh files that you trust)"
+          ? " (gmsh runs shell commands that a .geo or .opt file contains: mesh only files that you trust)"
           : "");
 }
 
@@ -159,8 +160,8 @@ int validate(const ValidateArguments& arguments) {
   print_facings(input, model);
   if (!starts) {
     fmt::print(
-        "{}: not checked: the start of the run (whether its operators can be factorized, and its initial state), "
-        "which would take {} by estimate\n",
+        "{}: not checked: the start of the run (whether its operators can be factorized, and its initial state), which "
+        "would take an estimated {}\n",
         case_file, duration_text(start_seconds));
   }
   return 0;

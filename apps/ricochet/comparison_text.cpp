@@ -56,8 +56,8 @@ void print_methods(const std::vector<Run>& runs, int width) {
   }
   if (any_skips)
     fmt::print(
-        "  ≥ of the rows of the history, which are not of every step: a force that alternates from step to step "
-        "varies more (output.history_every)\n");
+        "  ≥ the history has no row for some steps: a force that alternates from step to step varies more "
+        "(output.history_every)\n");
   for (const auto& [directory, s] : runs) {
     std::vector<std::string> notes;
     if (!s.mass_built.empty() && s.mass_built != s.mass) notes.push_back("mass " + s.mass_text());
@@ -68,18 +68,18 @@ void print_methods(const std::vector<Run>& runs, int width) {
 
 /// Marks and their meanings, in the order of their explanation.
 constexpr std::array<std::pair<const char*, const char*>, 6> meanings{{
-    {"≥", "not every step was looked at: the stress may have been higher between two looks (output.fields_every)"},
-    {"~", "the contact zone is too coarse to trust the force: refine the mesh there"},
+    {"≥", "not every step was evaluated: the stress may have been higher in between (output.fields_every)"},
+    {"~", "the contact zone is too coarse for a reliable force: refine the mesh there"},
     {"?",
-     "cells turn by more than 0.1 rad, which small strain takes for a strain that is not there, or the body turns by "
-     "more than the impact bears, as `ricochet info` says for one run"},
+     "cells rotate by more than 0.1 rad, which causes a spurious strain under small strain, or the body rotates by "
+     "more than the impact tolerates; `ricochet info` of the run alone says which"},
     {"^",
-     "linear elasticity has an infinite stress there, as at a re-entrant edge, and the value grows with refinement: "
-     "`ricochet info` says for one run what it sits on"},
+     "the stress of linear elasticity is infinite there, as at a re-entrant edge, and the value grows with refinement: "
+     "`ricochet info` of the run alone says what it sits on"},
     {"!",
-     "the method itself lost or created more than a tenth of the energy that this restitution says was lost: take a "
-     "smaller time.step, and smaller cells"},
-    {"*", "of the first impact with a restitution; there are more, which `ricochet info` lists for one run"},
+     "the method itself lost or created more than a tenth of the energy loss that this restitution implies: use a "
+     "smaller time.step and smaller cells"},
+    {"*", "of the first impact with a restitution; there are more, which `ricochet info` of the run alone lists"},
 }};
 
 /// Numbers of a run for the table. Marks are added to `marks`.

@@ -9,7 +9,7 @@ namespace {
 
 // bash also splits words at "=" and ":". For the program, text without blanks is a single word, and of each of its
 // answers bash needs only the part after the last of these characters.
-constexpr const char* bash_script = R"~sh~(# Completion of ricochet for bash: the program itself says what may come.
+constexpr const char* bash_script = R"~sh~(# Completion of ricochet for bash: the program itself lists the candidates.
 _ricochet() {
   local words=() word line=$COMP_LINE i typed candidate IFS=$'\n'
   for ((i = 0; i <= COMP_CWORD; i++)); do
@@ -32,7 +32,7 @@ complete -F _ricochet ricochet
 )~sh~";
 
 constexpr const char* zsh_script = R"~sh~(#compdef ricochet
-# Completion of ricochet for zsh: the program itself says what may come.
+# Completion of ricochet for zsh: the program itself lists the candidates.
 _ricochet() {
   local line word
   local -a whole whole_docs open open_docs
@@ -51,7 +51,7 @@ _ricochet() {
 if [[ $funcstack[1] == _ricochet ]]; then _ricochet "$@"; else compdef _ricochet ricochet; fi
 )~sh~";
 
-constexpr const char* fish_script = R"~sh~(# Completion of ricochet for fish: the program itself says what may come.
+constexpr const char* fish_script = R"~sh~(# Completion of ricochet for fish: the program itself lists the candidates.
 function __ricochet_complete
     set -l words (commandline -opc) (commandline -ct)
     $words[1] complete -- $words[2..-1] 2>/dev/null
@@ -65,7 +65,8 @@ std::string completion_script(const std::string& shell) {
   if (shell == "bash") return bash_script;
   if (shell == "zsh") return zsh_script;
   if (shell == "fish") return fish_script;
-  throw Error(ErrorKind::usage, fmt::format("completion: there is none for \"{}\"; known: bash, zsh and fish", shell));
+  throw Error(ErrorKind::usage,
+              fmt::format("completion: there is no script for \"{}\"; available: bash, zsh and fish", shell));
 }
 
 }  // namespace ricochet::program

@@ -22,8 +22,8 @@ std::string law_text(const ContactDescription& c) {
 
 std::string motion_text(const ContactDescription& c) {
   std::string text;
-  if (!c.obstacle_velocity.empty()) text += fmt::format(", moving with ({:g})", fmt::join(c.obstacle_velocity, ", "));
-  if (c.obstacle_rotation_rate != 0.0) text += fmt::format(", turning at {:g}", c.obstacle_rotation_rate);
+  if (!c.obstacle_velocity.empty()) text += fmt::format(", moving at ({:g})", fmt::join(c.obstacle_velocity, ", "));
+  if (c.obstacle_rotation_rate != 0.0) text += fmt::format(", rotating at {:g}", c.obstacle_rotation_rate);
   return text;
 }
 
@@ -36,7 +36,7 @@ std::string facing_text(const PairingDescription& facing) {
   } else if (facing.smallest_gap != 0.0 || facing.largest_gap != 0.0)
     gaps = fmt::format("gaps from {:.4g} to {:.4g}", facing.smallest_gap, facing.largest_gap);
   return fmt::format("\"{}\" carries the multipliers{}; {} on {} of its area, {}", facing.multipliers_on,
-                     facing.reason.empty() ? ", as the case says" : ": " + facing.reason,
+                     facing.reason.empty() ? ", as the case specifies" : ": " + facing.reason,
                      counted(facing.points, "contact point"), percent(facing.covered), gaps);
 }
 

@@ -33,16 +33,17 @@ void draw_figure(const std::string& description, const std::string& format, cons
   const ChildResult outcome = run_child(child);
   if (outcome.is_absent())
     throw Error(ErrorKind::file_access,
-                "figures are drawn by Python, which is not here: apt-get install python3-matplotlib");
+                "figures require Python, which is not installed: apt-get install python3-matplotlib");
   if (outcome.exit_status() == 3) {
-    throw Error(ErrorKind::file_access,
-                fmt::format("figures are drawn by Python's matplotlib, which is not here ({}): apt-get install "
-                            "python3-matplotlib",
-                            python_program()));
+    throw Error(
+        ErrorKind::file_access,
+        fmt::format(
+            "figures require Python's matplotlib, which is not installed ({}): apt-get install python3-matplotlib",
+            python_program()));
   }
   if (outcome.exit_status() == 5) {
     throw Error(ErrorKind::file_access,
-                "an .mp4 file is made by ffmpeg, which is not here: apt-get install ffmpeg, or write a .gif");
+                "an .mp4 file requires ffmpeg, which is not installed: apt-get install ffmpeg, or write a .gif");
   }
   if (!outcome.succeeded()) {
     throw Error(ErrorKind::file_access, fmt::format("the figure could not be drawn: {} {}:\n{}", python_program(),

@@ -10,7 +10,7 @@ namespace ricochet::program {
 
 std::string found_text(const ExpectationResult& expectation) {
   return expectation.note.empty() ? fmt::format("found {:.9g}", expectation.value)
-                                  : fmt::format("found nothing: {}", expectation.note);
+                                  : fmt::format("found no value: {}", expectation.note);
 }
 
 void print_expectations(const std::vector<ExpectationResult>& expectations) {
@@ -20,7 +20,7 @@ void print_expectations(const std::vector<ExpectationResult>& expectations) {
   const auto left_out =
       std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return !e.checked; });
   const auto checked = static_cast<long>(expectations.size()) - left_out;
-  const std::string others = fmt::format("{} not apply to this run (summary.json says why)",
+  const std::string others = fmt::format("{} not apply to this run (see summary.json for the reason)",
                                          left_out == 1 ? "1 does" : fmt::format("{} do", left_out));
   if (checked == 0) {
     fmt::print("  expectations: {}\n", others);
@@ -30,7 +30,7 @@ void print_expectations(const std::vector<ExpectationResult>& expectations) {
   }
   for (const ExpectationResult& e : expectations) {
     if (!e.checked || e.holds) continue;
-    fmt::print("  DOES NOT HOLD: {} (wanted {}, {})\n", e.label(), e.wanted, found_text(e));
+    fmt::print("  DOES NOT HOLD: {} (expected {}, {})\n", e.label(), e.wanted, found_text(e));
     if (!e.published.empty()) fmt::print("    published: {}\n", e.published);
   }
 }

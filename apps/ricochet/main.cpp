@@ -54,85 +54,84 @@ void add_common(CLI::App& command, std::string& log_level) {
 void add_study_questions(CLI::App& study, program::StudyArguments& arguments) {
   study
       .add_option("--quantity", arguments.quantities,
-                  "a column of the table, in the language of [[expect]]: history.COLUMN[-1], max(history.COLUMN), "
+                  "a column of the table, written as in [[expect]]: history.COLUMN[-1], max(history.COLUMN), "
                   "summary.PATH; may be repeated")
       ->type_name("QUANTITY")
       ->allow_extra_args(false);
-  study.add_option("--exact", arguments.exact, "the value that a quantity should have: a column of its error")
+  study.add_option("--exact", arguments.exact, "the exact value of a quantity; adds a column with its error")
       ->type_name("QUANTITY=VALUE")
       ->allow_extra_args(false);
   study
       .add_option("--reference", arguments.reference,
-                  "the run that histories are compared with: a directory of a run, last:KEY or finest:KEY")
+                  "the run with which histories are compared: the directory of a run, last:KEY or finest:KEY")
       ->type_name("RUN");
   study
       .add_option("--compare", arguments.compare,
-                  "a column of history.csv, or a vector without its _x, to be compared with that of the reference")
+                  "a column of history.csv, or a vector without its _x, to compare with that of the reference")
       ->type_name("COLUMN")
       ->allow_extra_args(false);
-  study.add_option("--order", arguments.order, "the key whose values observed orders are of")->type_name("KEY");
+  study.add_option("--order", arguments.order, "the key by whose values observed orders are computed")
+      ->type_name("KEY");
 }
 
 void add_study(CLI::App& app, program::StudyArguments& arguments, std::string& log_level) {
-  CLI::App* study = app.add_subcommand("study", "Run a case with many values of its keys, and tabulate what comes out");
+  CLI::App* study = app.add_subcommand("study", "Run a case with many values of its keys, and tabulate the results");
   study->add_option("case", arguments.case_file, "case file; with --resume also the directory of a study")
       ->type_name("CASE.toml");
   study
       ->add_option("--vary", arguments.vary,
-                   "a key of the case and its values; keys that change together: KEY1,KEY2=V1/W1,V2/W2; repeated, all "
-                   "combinations")
+                   "a key of the case and its values; keys that change together: KEY1,KEY2=V1/W1,V2/W2; if repeated, "
+                   "all combinations are run")
       ->type_name("KEY=V1,V2,...")
       ->allow_extra_args(false);
   study->add_option("--set", arguments.overrides, "override an entry of the case in all runs")
       ->type_name("key.path=value")
       ->allow_extra_args(false);
   study->add_option("-o,--output", arguments.output_directory, "directory of the study")->type_name("DIR");
-  study->add_option("--jobs", arguments.jobs, "runs at a time (default: the cores that there are for them)")
+  study->add_option("--jobs", arguments.jobs, "runs at a time (default: as many as the available cores allow)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
   study->add_option("--threads", arguments.threads, "threads of each run (default: 1)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
   add_study_questions(*study, arguments);
-  study->add_flag("--quiet", arguments.quiet, "no progress");
-  study->add_flag("--force", arguments.force, "start anew over a study that is in the directory");
+  study->add_flag("--quiet", arguments.quiet, "show no progress");
+  study->add_flag("--force", arguments.force, "overwrite a study that is in the directory");
   study
-      ->add_flag("--resume", arguments.resume,
-                 "go on with the study that is in the directory, also with more values than it had")
+      ->add_flag("--resume", arguments.resume, "continue the study in the directory, also with more values than before")
       ->excludes("--force");
   study->footer(
-      "Exit status: 0 all runs are done; 128 + N stopped by signal N, --resume goes on; else that of the run "
-      "that went worst, as of `ricochet run`; 1 where that is 0 and no run has what --quantity, --exact or --compare "
-      "ask "
-      "for.");
+      "Exit status: 0 all runs are done; 128 + N stopped by signal N, --resume continues; otherwise the worst status "
+      "of the runs, as of `ricochet run`; 1 if that is 0 and no run has a quantity that --quantity, --exact or "
+      "--compare requests.");
   add_common(*study, log_level);
 }
 
 void add_benchmark(CLI::App& app, program::BenchmarkArguments& arguments, std::string& log_level) {
   CLI::App* benchmark =
-      app.add_subcommand("benchmark", "Run cases with reference values, and tabulate what is found against them");
+      app.add_subcommand("benchmark", "Run cases with reference values, and tabulate the results against them");
   benchmark->add_option("names", arguments.names, "benchmarks (default: all)")->type_name("BENCHMARK");
   benchmark->add_option("-o,--output", arguments.output_directory, "directory of the tables and runs")
       ->type_name("DIR")
       ->capture_default_str();
   benchmark
       ->add_option("--scheme", arguments.scheme,
-                   "a scorecard of these schemes, or of all: SCHEME or SCHEME/MASS, separated by commas (default: what "
-                   "each case has)")
+                   "a scorecard of these schemes, or of all: SCHEME or SCHEME/MASS, separated by commas (default: the "
+                   "method of each case)")
       ->type_name("SCHEME,...|all");
-  benchmark->add_option("--jobs", arguments.jobs, "runs at a time (default: the cores that there are for them)")
+  benchmark->add_option("--jobs", arguments.jobs, "runs at a time (default: as many as the available cores allow)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
-  benchmark->add_option("--folder", arguments.folder, "a folder with a benchmarks.toml (default: that of the program)")
+  benchmark
+      ->add_option("--folder", arguments.folder, "a folder with a benchmarks.toml (default: the one of the program)")
       ->type_name("DIR");
   benchmark->add_flag("--list", arguments.list, "list the benchmarks and do nothing else");
-  benchmark->add_flag("--quiet", arguments.quiet, "no progress");
-  benchmark->add_flag("--force", arguments.force, "start anew over benchmarks that are in the directory");
-  benchmark->add_flag("--resume", arguments.resume, "keep the runs in the directory that are done")
-      ->excludes("--force");
+  benchmark->add_flag("--quiet", arguments.quiet, "show no progress");
+  benchmark->add_flag("--force", arguments.force, "overwrite benchmarks that are in the directory");
+  benchmark->add_flag("--resume", arguments.resume, "keep the completed runs in the directory")->excludes("--force");
   benchmark->footer(
-      "Exit status: 0 all expected values hold; 5 some do not; 128 + N stopped by signal N; else that of the run that "
-      "went worst, as of `ricochet run`. What another scheme than that of the case refuses does not count.");
+      "Exit status: 0 all expected values hold; 5 some do not; 128 + N stopped by signal N; otherwise the worst status "
+      "of the runs, as of `ricochet run`. Refusals by a scheme other than that of the case do not count.");
   add_common(*benchmark, log_level);
 }
 
@@ -187,13 +186,13 @@ int dispatch(int argc, char** argv) {
   app.footer(
       "Exit status: 0 done; 1 wrong use of the command line; 2 invalid case or mesh; 3 a step did not converge;\n"
       "4 cannot read or write a file; 5 done, but an [[expect]] entry of the case does not hold;\n"
-      "129, 130 and 143 stopped by SIGHUP, SIGINT or SIGTERM; run --resume goes on with a run that was stopped;\n"
+      "129, 130 and 143 stopped by SIGHUP, SIGINT or SIGTERM; run --resume continues a run that was stopped;\n"
       "70 a defect of Ricochet itself.");
   Arguments arguments;
 
   CLI::App* run = app.add_subcommand("run", "Run a case");
   run->add_option("case", arguments.run.case_file,
-                  "case file; with --resume also the directory of a run, which knows its case")
+                  "case file; with --resume also the directory of a run, which records its case")
       ->type_name("CASE.toml");
   run->add_option("-o,--output", arguments.run.output_directory,
                   "output directory (default: out/NAME of the case file)")
@@ -202,10 +201,9 @@ int dispatch(int argc, char** argv) {
       ->type_name("key.path=value")
       ->allow_extra_args(false);
   run->add_option("--threads", arguments.threads, "number of threads; results do not depend on it")->type_name("N");
-  run->add_flag("--quiet", arguments.run.quiet, "no progress and no messages but warnings and errors");
+  run->add_flag("--quiet", arguments.run.quiet, "show no progress, and of the messages only warnings and errors");
   run->add_flag("--force", arguments.run.force, "overwrite a run that is in the output directory");
-  run->add_flag("--resume", arguments.run.resume,
-                "go on with the run that is in the output directory, also to a later time.end")
+  run->add_flag("--resume", arguments.run.resume, "continue the run in the output directory, also to a later time.end")
       ->excludes("--force");
   run->add_option("--export-contact", arguments.run.export_contact,
                   "write the contact problems of these steps as FCLib files, for example 10,20,50:60")
@@ -222,14 +220,13 @@ int dispatch(int argc, char** argv) {
       ->type_name("key.path=value")
       ->allow_extra_args(false);
   validate->add_flag("--mesh", arguments.validate.mesh,
-                     "mesh a .geo or CAD file by the gmsh program, as a run does (which runs shell commands that a "
+                     "mesh a .geo or CAD file with the gmsh program, as a run does (this runs shell commands that a "
                      ".geo or .opt file contains)");
   add_common(*validate, arguments.log_level);
 
-  CLI::App* info = app.add_subcommand(
-      "info",
-      "Describe a mesh, a case, a contact problem, a checkpoint, or a run that goes on or has ended, in a few lines; "
-      "several runs are compared in a table");
+  CLI::App* info = app.add_subcommand("info",
+                                      "Describe a mesh, a case, a contact problem, a checkpoint, or a run that is "
+                                      "running or has ended, in a few lines; several runs are compared in a table");
   info->add_option("path", arguments.info.paths, "mesh, case file, FCLib file, checkpoint or output directory")
       ->required()
       ->type_name("FILE_OR_DIR");
@@ -244,59 +241,60 @@ int dispatch(int argc, char** argv) {
       ->type_name("SOLVER");
   contact
       ->add_option("--tolerance", arguments.contact.tolerance,
-                   "relative residual to reach, or rounding where that is more (default: 0, down to rounding)")
+                   "relative residual to reach, or the rounding error if that is larger (default: 0, down to rounding)")
       ->type_name("T");
   contact->add_option("-o,--output", arguments.contact.output, "FCLib file for the problem and its solution")
       ->type_name("SOLUTION.hdf5");
   contact->add_flag("--record", arguments.contact.record, "print every iteration");
   contact->add_flag("--list", arguments.contact.list, "list the solvers and do nothing else");
   contact->footer(
-      "Exit status: 0 solved; 1 wrong use of the command line; 2 the file is malformed; 3 not solved: the best that\n"
-      "was found is reported with its residual; 4 cannot read or write a file.");
+      "Exit status: 0 solved; 1 wrong use of the command line; 2 the file is malformed; 3 not solved: the best\n"
+      "solution found is reported with its residual; 4 cannot read or write a file.");
   add_common(*contact, arguments.log_level);
 
-  CLI::App* report = app.add_subcommand("report", "Show one run or several in a page for the browser, one HTML file");
+  CLI::App* report =
+      app.add_subcommand("report", "Write one or several runs into a page for the browser, one HTML file");
   report->add_option("directories", arguments.report.directories, "output directories of runs")
       ->required()
       ->type_name("DIR");
   report
       ->add_option("-o,--output", arguments.report.output,
-                   "HTML file (default: report.html in the directory, or in the folder that all are in)")
+                   "HTML file (default: report.html in the directory, or in the folder that contains all of them)")
       ->type_name("FILE.html");
   report
       ->add_option("--size-limit", arguments.report.most_megabytes,
-                   "megabytes that the file has at most; runs that take more are thinned (default: 20)")
+                   "largest size of the file in megabytes; larger runs are thinned (default: 20)")
       ->type_name("MB")
       ->check(CLI::Range(1.0, 2000.0));
   add_common(*report, arguments.log_level);
 
-  CLI::App* plot = app.add_subcommand("plot", "Draw a figure for a paper (by Python's matplotlib)");
+  CLI::App* plot = app.add_subcommand("plot", "Draw a figure for a paper (with Python's matplotlib)");
   plot->add_option("directories", arguments.plot.directories, "output directories of runs")
       ->required()
       ->type_name("DIR");
   plot->add_option("--what", arguments.plot.what,
-                   "energy, force, momentum, pressure, pressure-map, probe:NAME.COLUMN or a column of history.csv; "
-                   "repeated, a panel for each; or animation: the body as it moves")
+                   "energy, force, momentum, pressure, pressure-map, probe:NAME.COLUMN or a column of history.csv; if "
+                   "repeated, each has a panel; or animation: the moving body")
       ->required()
       ->type_name("WHAT")
       ->allow_extra_args(false);
   plot->add_option("-o,--output", arguments.plot.output,
-                   "the figure: an .svg, .pdf or .png file; of an animation .gif or .mp4")
+                   "file of the figure: .svg, .pdf or .png; for an animation .gif or .mp4")
       ->required()
       ->type_name("FILE");
-  plot->add_option("--label", arguments.plot.labels, "what a run is called, in the order of the runs")
+  plot->add_option("--label", arguments.plot.labels, "label of a run, in the order of the runs")
       ->type_name("TEXT")
       ->allow_extra_args(false);
-  plot->add_option("--title", arguments.plot.title, "a line above the figure")->type_name("TEXT");
-  plot->add_option("--time", arguments.plot.time, "the part of the time to be shown")->type_name("A:B");
+  plot->add_option("--title", arguments.plot.title, "title, a line above the figure")->type_name("TEXT");
+  plot->add_option("--time", arguments.plot.time, "the interval of time to show")->type_name("A:B");
   plot->add_option("--size", arguments.plot.size, "width and height in cm")->type_name("WxH");
-  plot->add_flag("--log", arguments.plot.logarithmic, "a logarithmic scale");
+  plot->add_flag("--log", arguments.plot.logarithmic, "use a logarithmic scale");
   plot->add_option("--field", arguments.plot.field, "the field that colours an animation (default: von_mises)")
       ->type_name("FIELD");
-  plot->add_option("--at", arguments.plot.at, "of an animation, the frame at this time alone, as .png, .svg or .pdf")
+  plot->add_option("--at", arguments.plot.at, "draw only the frame of an animation at this time, as .png, .svg or .pdf")
       ->type_name("T");
-  plot->add_flag("--zoom", arguments.plot.zoom, "an animation looks at the contact from near");
-  plot->add_flag("--half", arguments.plot.half, "of an axisymmetric body, the section alone");
+  plot->add_flag("--zoom", arguments.plot.zoom, "show the contact of an animation in close-up");
+  plot->add_flag("--half", arguments.plot.half, "draw only the section of an axisymmetric body");
   add_common(*plot, arguments.log_level);
 
   add_study(app, arguments.study, arguments.log_level);
@@ -306,7 +304,7 @@ int dispatch(int argc, char** argv) {
   schema->add_flag("--markdown", arguments.markdown, "print the reference page of the case file instead");
 
   CLI::App* completion =
-      app.add_subcommand("completion", "Print the script by which a shell completes ricochet's words");
+      app.add_subcommand("completion", "Print the script with which a shell completes the words of a ricochet command");
   completion->add_option("shell", arguments.shell, "bash, zsh or fish")->required()->type_name("SHELL");
 
   if (answers_about(app, argc, argv)) return 0;

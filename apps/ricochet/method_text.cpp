@@ -20,7 +20,8 @@ constexpr double beside = 0.01;
 std::string energy_text(const RunSummary& summary) {
   const double lost = summary.loss_by_method(), created = summary.creation_by_method();
   const double most = std::max(lost, created);
-  if (!(most > rounding_of_energies)) return fmt::format("the method kept the energy to {:.1e} of the largest", most);
+  if (!(most > rounding_of_energies))
+    return fmt::format("the method conserved the energy to within {:.1e} of the largest", most);
   const bool both = std::min(lost, created) > beside * most;
   // Omitted if it equals the number just reported.
   const bool gave_back =
@@ -48,8 +49,8 @@ std::string method_energy_mark(const RunSummary& summary) {
 std::string reactions_text(const RunSummary& summary) {
   if (!summary.reactions) return "";
   const ActingReactions& acting = *summary.reactions;
-  if (acting.kind == "end") return "those of the end of a step";
-  if (acting.mean_steps + acting.end_steps == 0) return "mean, but none acted";
+  if (acting.kind == "end") return "those at the end of the step";
+  if (acting.mean_steps + acting.end_steps == 0) return "mean (no contact occurred)";
   std::string text = "mean";
   if (acting.mean_steps > 0) {
     const std::string least = fmt::format("{:.2g}", acting.least_weight);
@@ -57,8 +58,8 @@ std::string reactions_text(const RunSummary& summary) {
     text += ", end weight " + (least == largest ? least : least + " to " + largest);
   }
   if (acting.end_steps > 0)
-    text += fmt::format(", those of the end in {} of {} with contact, where no mean was found", acting.end_steps,
-                        counted(acting.mean_steps + acting.end_steps, "step"));
+    text += fmt::format("; those at the end of the step in {} of {} with contact, for which no mean was found",
+                        acting.end_steps, counted(acting.mean_steps + acting.end_steps, "step"));
   return text;
 }
 
@@ -68,9 +69,9 @@ void print_method(const RunSummary& summary) {
   fmt::print("  {}{}\n", energy_text(summary), reactions.empty() ? "" : "; reactions: " + reactions);
   const double heat = summary.digest("viscous_dissipation").last, energy = summary.energy_scale();
   if (heat > 0.0 && energy > 0.0)
-    fmt::print("  relaxation turned {} of the largest energy into heat\n", percent(heat / energy));
+    fmt::print("  relaxation dissipated {} of the largest energy as heat\n", percent(heat / energy));
   const double rounds = summary.digest("newton_rounds").maximum;
-  if (rounds > 0.0) fmt::print("  Newton's method took up to {:.0f} iterations in a step\n", rounds);
+  if (rounds > 0.0) fmt::print("  Newton's method required up to {:.0f} iterations in a step\n", rounds);
 }
 
 std::string steps_text(const RunSummary& summary) {

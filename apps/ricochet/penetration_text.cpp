@@ -29,7 +29,7 @@ std::string sliding_text(const PairSliding& pair, const RunSummary& s) {
   if (!(pair.slip > rounding_of_slip * pair.limit)) return "";
   if (pair.contact < 0 || pair.contact >= static_cast<int>(s.contacts.size())) return "";
   const ContactDescription& contact = s.contacts[static_cast<std::size_t>(pair.contact)];
-  std::string text = fmt::format("\n  \"{}\" and \"{}\" slid along each other by up to {:.3g} while pressed",
+  std::string text = fmt::format("\n  \"{}\" and \"{}\" slid along each other by up to {:.3g} while in contact",
                                  contact.group, contact.opponent, pair.slip);
   if (pair.is_beyond()) {
     text += fmt::format(" (BEYOND SMALL SLIDING from t = {:.6g}: more than half of the smaller facet, {:.3g})",
@@ -42,8 +42,8 @@ std::string unsettled_text(const UnsettledContact& unsettled, const RunSummary& 
   if (unsettled.contact < 0 || unsettled.contact >= static_cast<int>(s.contacts.size())) return "";
   const ContactDescription& contact = s.contacts[static_cast<std::size_t>(unsettled.contact)];
   return fmt::format(
-      "\n  {}: up to {:.3g} % of the force of \"{}\" and \"{}\" at stake, at points that held steps have "
-      "left at a gap (up to {:.3g}, from t = {:.6g} on)",
+      "\n  {}: up to {:.3g} % of the force of \"{}\" and \"{}\" is at stake at points where held steps have left a gap "
+      "(up to {:.3g}, from t = {:.6g} on)",
       unsettled.share > UnsettledContact::doubtful ? "FORCE IN DOUBT" : "held steps", 100.0 * unsettled.share,
       contact.group, contact.opponent, unsettled.gap, unsettled.first_time);
 }
@@ -66,13 +66,13 @@ std::string deformation_text(const RunSummary& s) {
   std::string text =
       fmt::format("  deepest interpenetration {:.3g}{}, largest rotation of a cell {:.3g} rad{}",
                   s.digest("max_penetration").maximum,
-                  s.penetration.checked ? " of contact nodes" : " of contact nodes (no others were looked at)",
+                  s.penetration.checked ? " of contact nodes" : " of contact nodes (no other nodes were checked)",
                   rotation, rotation > s.largest_rotation() ? beyond_text(s) : "");
   for (const UnwatchedPenetration& found : s.penetration.found) text += found_text(found);
   for (const std::string& what : s.penetration.not_watched)
-    if (s.penetration.checked) text += fmt::format("\n  not watched for interpenetration: {}", what);
+    if (s.penetration.checked) text += fmt::format("\n  not checked for interpenetration: {}", what);
   for (const ContactBeyondRim& rim : s.penetration.rims)
-    text += fmt::format("\n  the contact of \"{}\" with \"{}\" goes on beyond its group", rim.group, rim.obstacle);
+    text += fmt::format("\n  the contact of \"{}\" with \"{}\" extends beyond its group", rim.group, rim.obstacle);
   for (const PairSliding& pair : s.sliding) text += sliding_text(pair, s);
   for (const UnsettledContact& contact : s.unsettled) text += unsettled_text(contact, s);
   return text;

@@ -25,7 +25,7 @@ std::string placement_text(const BodyFile& mesh) {
   std::string text;
   if (mesh.scale != 1.0) text += fmt::format(", scaled by {:g}", mesh.scale);
   for (const Turn& turn : mesh.placement.turns) {
-    if (turn.angle != 0.0) text += fmt::format(", turned by {:g}°", turn.angle);
+    if (turn.angle != 0.0) text += fmt::format(", rotated by {:g}°", turn.angle);
   }
   if (!mesh.placement.move.empty()) text += fmt::format(", moved");
   if (!mesh.rest_on.empty()) {
@@ -38,14 +38,14 @@ std::string placement_text(const BodyFile& mesh) {
 
 std::string gap_text(double gap, double rounding) {
   if (std::abs(gap) <= rounding) return "touches";
-  return gap > 0.0 ? fmt::format("is {:.4g} away from", gap) : fmt::format("is {:.4g} inside of", -gap);
+  return gap > 0.0 ? fmt::format("is {:.4g} away from", gap) : fmt::format("is {:.4g} inside", -gap);
 }
 
 void print_position(const Case& input, const Model& model) {
   const Points& nodes = model.mesh.nodes;
   const Vector lowest = nodes.rowwise().minCoeff(), highest = nodes.rowwise().maxCoeff();
   const double size = std::max(lowest.norm(), highest.norm());
-  fmt::print("  the mesh lies from {} to {}{}\n", vector_text(lowest, size, 6), vector_text(highest, size, 6),
+  fmt::print("  the mesh extends from {} to {}{}\n", vector_text(lowest, size, 6), vector_text(highest, size, 6),
              placement_text(input.mesh));
   const Points positions = starting_positions(model);
   for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
@@ -63,7 +63,7 @@ void print_position(const Case& input, const Model& model) {
                vector_text(positions.col(at), size));
     if (const FreeMotion* const body = model.obstacles[k]->free_motion(); body != nullptr) {
       const FreeMotion::Inertia& inertia = body->inertia();
-      fmt::print("    it moves freely, with the mass {:.6g} about {} and the {} {:.6g}\n", inertia.mass,
+      fmt::print("    the obstacle moves freely: mass {:.6g}, centre {}, {} {:.6g}\n", inertia.mass,
                  vector_text(inertia.centre, size, 6),
                  inertia.moments.size() > 1 ? "principal moments of inertia" : "moment of inertia",
                  fmt::join(inertia.moments, ", "));

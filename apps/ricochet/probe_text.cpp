@@ -54,7 +54,7 @@ void print_probes(const RunSummary& summary) {
       fmt::print("  probe \"{}\": {} from {} to {}", probe.name, counted(probe.last - probe.first, "node"),
                  place_text(summary, probe.first), place_text(summary, probe.last - 1));
     } else {
-      fmt::print("  probe \"{}\": its node is {:.3g} from the point asked for", probe.name,
+      fmt::print("  probe \"{}\": its node is {:.3g} from the requested position", probe.name,
                  summary.probes[probe.first].distance);
     }
     ColumnDigest hardest;
@@ -70,7 +70,7 @@ void print_probes(const RunSummary& summary) {
       if (!probe.is_segment) {
         const bool skips = summary.history_every > 1;
         fmt::print(", total variation {}{:.4g}", skips ? "≥ " : "", hardest.total_variation);
-        if (skips) fmt::print(" (of a row every {} steps)", summary.history_every);
+        if (skips) fmt::print(" (from one row every {} steps)", summary.history_every);
       }
     }
     fmt::print("\n");

@@ -57,10 +57,11 @@ void print_checkpoints(const std::string& directory, const RunSummary& summary) 
   }
   if (!is_running(directory, summary)) {
     const std::string command = run_command(summary.processes ? summary.processes->count : 1);
-    fmt::print("  {} {}\n", summary.steered ? "the program that steers it" : fmt::format("`{}` with --resume", command),
-               last ? "goes on with it" : "starts it anew");
+    fmt::print("  {} {}\n",
+               summary.steered ? "the program that steers the run" : fmt::format("`{}` with --resume", command),
+               last ? "continues it" : "restarts it");
   }
-  for (const std::string& file : failure_files(directory)) fmt::print("  of the step that failed: {}\n", file);
+  for (const std::string& file : failure_files(directory)) fmt::print("  file of the failed step: {}\n", file);
 }
 
 }  // namespace
@@ -92,7 +93,7 @@ void describe_checkpoint(const std::string& path) {
   const Snapshot snapshot = read_checkpoint(path);
   const bool failed = snapshot.has("failure.message");
   fmt::print("{}: {} step {}, t = {:.9g}, of a run with Ricochet {}\n", path,
-             failed ? "left by a run that failed; the state of" : "checkpoint of", snapshot.integer("state.step"),
+             failed ? "left by a failed run: the state of" : "checkpoint of", snapshot.integer("state.step"),
              snapshot.real("state.time"), snapshot.text("identity.version"));
   if (failed) fmt::print("  {}\n", snapshot.text("failure.message"));
   const Vector& displacement = snapshot.reals("state.displacement");
@@ -124,14 +125,14 @@ void print_cost(const RunSummary& s) {
 
 void print_solver(const RunSummary& s) {
   if (s.iterations) {
-    fmt::print("  solved by iterations: {:.3g} rounds of contact and {:.3g} conjugate gradients in a step\n",
+    fmt::print("  solved iteratively: {:.3g} contact iterations and {:.3g} conjugate gradient iterations per step\n",
                s.iterations->schwarz_iterations_per_step, s.iterations->gradients_per_step);
   }
   if (!s.processes) return;
   const ProcessReport& p = *s.processes;
   fmt::print(
-      "  {} processes of {} to {} dofs; each has at most {:.3g} GB, and sends at most {:.3g} messages and "
-      "{:.3g} MB in a step\n",
+      "  {} processes with {} to {} dofs; each uses at most {:.3g} GB and sends at most {:.3g} messages and {:.3g} MB "
+      "per step\n",
       p.count, p.least_dofs, p.most_dofs, 1e-9 * s.peak_memory, p.messages_per_step, 1e-6 * p.bytes_per_step);
 }
 

@@ -98,14 +98,14 @@ std::string resolution_text(const Impact& impact) {
   const std::string points = fmt::format(", at most {} of {} at once", impact.contact_points,
                                          counted(impact.all_contact_points, "contact point"));
   if (!impact.is_coarse()) return points;
-  return points + ": the contact zone is too coarse to trust the largest force and the duration; refine the mesh there";
+  return points + ": the contact zone is too coarse for a reliable largest force and duration; refine the mesh there";
 }
 
 /// Returns, for a run in which cells rotate too far, whether they had done so when this impact ended.
 std::string rotation_text(std::size_t impact, const RunSummary& summary) {
   if (!summary.rotation || !std::isfinite(summary.rotation->time_beyond)) return "";
   if (impact >= summary.rotation->until_impact_end.size()) return "";
-  return fmt::format(", cells turned by up to {:.3g} rad until {}{}", summary.rotation->until_impact_end[impact],
+  return fmt::format(", cells rotated by up to {:.3g} rad until {}{}", summary.rotation->until_impact_end[impact],
                      summary.impacts[impact].ended ? "its end" : "now",
                      summary.cells_turn_little_in(impact) ? "" : " (BEYOND SMALL STRAIN)");
 }
@@ -114,7 +114,7 @@ std::string rotation_text(std::size_t impact, const RunSummary& summary) {
 std::string restitution_error_text(const Impact& impact) {
   const RestitutionError error = restitution_error(impact);
   if (!error.is_large) return "";
-  return fmt::format(" (inexact: of the energy of the approach the method {} {}, where {} {} {})",
+  return fmt::format(" (inexact: of the energy of the approach, the method {} {}, and {} {} {})",
                      error.by_method < 0.0 ? "lost" : "created", percent(std::abs(error.by_method)),
                      impact.other ? "the bodies" : "the body", error.by_impact < 0.0 ? "gained" : "lost",
                      percent(std::abs(error.by_impact)));
@@ -124,8 +124,9 @@ std::string restitution_error_text(const Impact& impact) {
 std::string turning_text(const Impact& impact) {
   if (!is_distorted_by_rotation(impact)) return "";
   const double error = restitution_excess(impact);
-  return fmt::format(" (BEYOND SMALL STRAIN: too {} by about {:.2g}, as the linear law makes a body that turns grow)",
-                     error > 0.0 ? "large" : "small", std::abs(error));
+  return fmt::format(
+      " (BEYOND SMALL STRAIN: too {} by about {:.2g}, because a rotating body grows under the linear law)",
+      error > 0.0 ? "large" : "small", std::abs(error));
 }
 
 std::string impact_text(std::size_t number, const RunSummary& summary) {
@@ -141,8 +142,8 @@ std::string impact_text(std::size_t number, const RunSummary& summary) {
     text += ", not ended";
   }
   if (const auto restitution = impact.restitution()) {
-    const char* const inward = impact.other ? " (their centres still come nearer after the last force)"
-                                            : " (its centre still goes towards the obstacle after the last force)";
+    const char* const inward = impact.other ? " (their centres still approach each other after the last force)"
+                                            : " (its centre still approaches the obstacle after the last force)";
     text += fmt::format(", restitution {:.4g}{}{}{}", *restitution, *restitution < 0.0 ? inward : "",
                         restitution_error_text(impact), turning_text(impact));
   } else if (impact.ended) {
@@ -159,7 +160,7 @@ void print_no_contact(const RunSummary& summary) {
   if (!summary.impacts.empty() || summary.impacts_left_out > 0) return;
   // As if a body touches itself.
   if (summary.digest("active_contacts").maximum > 0.0) {
-    fmt::print("  contact forces have acted, but within one body: that is no impact\n");
+    fmt::print("  contact forces acted only within one body, which is not an impact\n");
     return;
   }
   fmt::print("  no contact: no contact force {}\n",
@@ -184,7 +185,7 @@ void print_peak_stress(const RunSummary& summary) {
   fmt::print(
       "  largest von Mises stress {}{:.6g} at t = {:.6g}, in \"{}\" at {} (mean of a cell; {})\n", all ? "" : "≥ ",
       d.peak.von_mises, d.peak.time, d.material, position_text(d.position, summary),
-      all ? "looked at in every step" : fmt::format("looked at in {} of {} steps", d.peak.evaluations, d.peak.states));
+      all ? "evaluated in every step" : fmt::format("evaluated in {} of {} steps", d.peak.evaluations, d.peak.states));
   if (d.peak.raised_by != StressRaiser::none)
     fmt::print("    it grows with refinement: it sits on {}\n", name_of(d.peak.raised_by));
 }

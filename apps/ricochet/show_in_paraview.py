@@ -29,7 +29,7 @@ def find_files(directory):
         if os.path.exists(path):
             beside = os.path.join(directory, obstacles)
             return path, beside if os.path.exists(beside) else None
-    raise Problem(f"{directory}: there is neither results.xdmf nor results.vtkhdf: name the output directory of a run "
+    raise Problem(f"{directory}: contains neither results.xdmf nor results.vtkhdf: name the output directory of a run "
                   "that has written fields")
 
 
@@ -45,7 +45,7 @@ def directory_of_run(simple, arguments):
         return os.path.dirname(files[0])
     if "RICOCHET_RUN" in os.environ:
         return os.environ["RICOCHET_RUN"]
-    raise Problem("which run? Open its results.xdmf or results.vtkhdf and select it, name its directory, or set "
+    raise Problem("no run is selected: open its results.xdmf or results.vtkhdf and select it, name its directory, or set "
                   "RICOCHET_RUN to it")
 
 
@@ -232,7 +232,7 @@ def main(arguments):
     from paraview import simple  # here: tests import this file without ParaView
     try:
         if len(arguments) > 3:
-            raise Problem("at most DIR PICTURE.png TIME are understood")
+            raise Problem("too many arguments: at most DIR PICTURE.png TIME are accepted")
         time = float(arguments[2]) if len(arguments) == 3 else None
         view, told = show_run(simple, directory_of_run(simple, arguments), time)
     except (Problem, ValueError) as problem:

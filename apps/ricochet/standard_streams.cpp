@@ -31,7 +31,7 @@ void require_standard_output() {
   if (output_was_closed) {
     throw Error(
         ErrorKind::file_access,
-        "standard output is closed, and the answer of this command goes there; send it to a file or a terminal");
+        "standard output is closed, and this command writes its result there; redirect it to a file or a terminal");
   }
 }
 
@@ -41,10 +41,9 @@ void flush_standard_output() {
   std::fflush(stdout);
   const int problem = errno != 0 ? errno : before;
   if (!standard_output_failed()) return;
-  throw Error(ErrorKind::file_access,
-              fmt::format("standard output: cannot write: {}; what is printed there is incomplete (files that the "
-                          "command writes are not)",
-                          std::strerror(problem)));
+  throw Error(ErrorKind::file_access, fmt::format("standard output: cannot write: {}; the printed text is incomplete "
+                                                  "(the files that the command writes are complete)",
+                                                  std::strerror(problem)));
 }
 
 bool standard_output_failed() {

@@ -88,7 +88,7 @@ void wait(const sigset_t& awaited) {
   if (const int second = next_request(awaited, first, instant, 0); second != 0) _exit(128 + second);
   received = first;
   if (interruption::has_stopping_points()) {
-    say("stopping at the end of this step; once more stops at once");
+    say("stopping at the end of this step; another signal stops at once");
     if (const int second = next_request(awaited, first, instant, steps_end ? -1 : patience); second != 0)
       _exit(128 + second);
   } else {

@@ -76,7 +76,7 @@ def number(value, form="{:.1e}"):
 
 def solver_table(results, dimension, tolerance):
     names = results.names(dimension)
-    lines = ["| solver | failures | median time, ms | over ours, median | fastest in | largest residual | largest distance |",
+    lines = ["| solver | failures | median time, ms | time / ours, median | fastest in | largest residual | largest distance |",
              "|---|---|---|---|---|---|---|"]
     fastest = {}
     for name in names:
@@ -105,8 +105,8 @@ def solver_table(results, dimension, tolerance):
 
 
 def ratio_table(results):
-    lines = ["| | problems | tolerance | failures of the default solver | best of Siconos' for each problem / ours: quartiles | "
-             "Siconos' best single solver / ours, medians |", "|---|---|---|---|---|---|"]
+    lines = ["| | problems | tolerance | failures of the default solver | Siconos' best solver for each problem / ours: quartiles "
+             "| Siconos' best single solver / ours, medians |", "|---|---|---|---|---|---|"]
     for dimension in (2, 3):
         names = results.names(dimension)
         for tolerance in results.tolerances:
@@ -134,7 +134,8 @@ def group_of(entry):
 
 
 def group_table(results, tolerance=1e-8):
-    lines = ["| | cond W | problems | points | best of Siconos' / ours, median | Siconos' fastest, how often |", "|---|---|---|---|---|---|"]
+    lines = ["| | cond W | problems | points | Siconos' best / ours, median | Siconos' fastest solvers, number of problems |",
+             "|---|---|---|---|---|---|"]
     for dimension in (2, 3):
         groups = {}
         for name in results.names(dimension):
@@ -158,7 +159,8 @@ def group_table(results, tolerance=1e-8):
 
 def claims_table(results):
     """Table of the claims of solvers without scaling, which use the tolerance unchanged."""
-    lines = ["| solver, W and q as they come | tolerance | claims it solved | of these not so | largest true residual | largest distance |",
+    lines = ["| solver, W and q unscaled | tolerance | reported as solved | of these not solved | largest true residual "
+             "| largest distance |",
              "|---|---|---|---|---|---|"]
     for dimension in (2, 3):
         names = results.names(dimension) + results.names(dimension, rescaled=True)
@@ -236,7 +238,7 @@ def profile(results, path):
             for side in ("top", "right"):
                 axis.spines[side].set_visible(False)
             if row == 1:
-                axis.set_xlabel("time over that of the fastest solver")
+                axis.set_xlabel("time relative to the fastest solver")
             if column == 0:
                 axis.set_ylabel("share of problems solved")
         handles, labels = axes[row][0].get_legend_handles_labels()
@@ -272,12 +274,12 @@ def machine(libraries):
     """Describes the last run: programs, machine and date."""
     commit = subprocess.run(["git", "-C", str(ROOT), "log", "-1", "--format=%h"], capture_output=True, text=True).stdout.strip()
     text = (f"Measured {datetime.date.today()} with Ricochet at commit {commit or 'unknown'} on one core of a shared machine ({processor()}), "
-            f"with {libraries or 'libraries that were not noted'}.")
-    return text + (f"\nSiconos' OpenBLAS has the kernels for {blas_kernels(libraries)}, too." if libraries else "")
+            f"with {libraries or 'unknown libraries'}.")
+    return text + (f"\nSiconos' OpenBLAS uses the kernels for {blas_kernels(libraries)}, too." if libraries else "")
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description="tables and plots of the contact benchmark, from what run.py has left")
+    parser = argparse.ArgumentParser(description="tables and plots of the contact benchmark, from the results of run.py")
     parser.add_argument("--directory", type=pathlib.Path, default=ROOT / "build/bench-contact")
     parser.add_argument("--print", action="store_true", help="only print the tables")
     options = parser.parse_args()

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Runs Ricochet's and Siconos' solvers over the set and judges what they return.
+"""Runs Ricochet's and Siconos' solvers on the set of problems and judges their results.
 
     run.py --help
 
-Writes DIRECTORY/results.json, one record for each problem, solver and tolerance, and sequences.json; report.py makes the
-tables and the plots of them. What Siconos did is kept from run to run (theirs.json) until a problem's file changes.
+Writes DIRECTORY/results.json, one record for each problem, solver and tolerance, and sequences.json; report.py makes
+tables and plots of them. Siconos' results are kept from run to run (theirs.json) until the file of a problem changes.
 """
 
 import argparse
@@ -317,24 +317,28 @@ def parse():
     parser = argparse.ArgumentParser(
         prog="./dev bench contact",
         description="Ricochet's contact solvers against Siconos': makes the set of problems, runs everything, and writes the tables "
-                    "and the plot of docs/contact-solvers.md. With any of the options that leave something out, tables are only printed.")
-    parser.add_argument("--only", default="", metavar="NAME", help="only the cases with this in their name (case_table.py)")
-    parser.add_argument("--default-only", action="store_true", help="of ours only the default solver")
-    parser.add_argument("--ours-only", action="store_true", help="nothing of Siconos'")
+                    "and the plot of docs/contact-solvers.md. With any option that omits a part, the tables are only printed.")
+    parser.add_argument("--only", default="", metavar="NAME", help="only the cases whose name contains this text (case_table.py)")
+    parser.add_argument("--default-only", action="store_true", help="of Ricochet's solvers only the default one")
+    parser.add_argument("--ours-only", action="store_true", help="without Siconos' solvers")
     parser.add_argument("--no-problems", action="store_true", help="only the time sequences")
     parser.add_argument("--no-sequences", action="store_true", help="only the single problems")
     parser.add_argument("--no-hard", action="store_true", help="without the random hard problems")
     parser.add_argument("--tolerances", type=float, nargs="+", default=TOLERANCES, metavar="T", help="instead of 1e-4 1e-8 1e-12")
     parser.add_argument("--again", type=int, default=0, metavar="N",
-                        help="time the N fastest of Siconos' answers to each problem anew (after a run on a busy machine)")
-    parser.add_argument("--again-solvers", nargs="*", default=[], metavar="SOLVER", help="and all answers of these")
-    parser.add_argument("--write", action="store_true", help="write the page whatever was left out: from what is cached")
-    parser.add_argument("--directory", type=pathlib.Path, default=root / "build/bench-contact", help="of problems and results")
-    parser.add_argument("--build", type=pathlib.Path, default=root / "build", help="where ricochet and its benchmarks are")
-    parser.add_argument("--check", action="store_true", help="look at the options, and do nothing")
+                        help="time the N fastest of Siconos' results for each problem again (after a run on a busy machine)")
+    parser.add_argument("--again-solvers", nargs="*", default=[], metavar="SOLVER",
+                        help="also time all results of these solvers again")
+    parser.add_argument("--write", action="store_true", help="write the page even if parts are omitted, with the cached results")
+    parser.add_argument("--directory", type=pathlib.Path, default=root / "build/bench-contact",
+                        help="directory of problems and results")
+    parser.add_argument("--build", type=pathlib.Path, default=root / "build",
+                        help="folder of ricochet and of its benchmark programs")
+    parser.add_argument("--check", action="store_true", help="only check the arguments")
     arguments = parser.parse_args()
     if not any(arguments.only in case.name for case in CASES):
-        parser.error(f"--only {arguments.only}: no case has this in its name; there are {', '.join(case.name for case in CASES)}")
+        parser.error(f"--only {arguments.only}: no case has a name that contains this; available: "
+                     f"{', '.join(case.name for case in CASES)}")
     arguments.bench, arguments.program = str(arguments.build / "ricochet_contact_bench"), str(arguments.build / "ricochet")
     # A partial run must not overwrite the complete results.
     arguments.results, arguments.sequences = (("part.json", "part-sequences.json") if arguments.only

@@ -201,7 +201,7 @@ def serve():
 def main():
     parser = argparse.ArgumentParser(description="Siconos' solvers on one problem in FCLib's format")
     parser.add_argument("problem", nargs="?")
-    parser.add_argument("--solver", help="one of them (default: all)")
+    parser.add_argument("--solver", help="only this solver (default: all)")
     parser.add_argument("--tolerance", type=float, default=1e-8)
     parser.add_argument("--raw", action="store_true", help="without the scaling to unit size")
     parser.add_argument("--serve", action="store_true")
@@ -213,7 +213,7 @@ def main():
         serve()
         return
     if not arguments.problem:
-        parser.error("a problem is missing")
+        parser.error("a problem file is required")
     loaded = Loaded(arguments.problem)
     for name in [arguments.solver] if arguments.solver else SOLVERS[loaded.problem.dimension]:
         tolerance = loaded.own_tolerance(arguments.tolerance, arguments.raw)

@@ -56,7 +56,7 @@ class Step:
 def table(steps, memory_per_dof):
     """`steps`: name and Step. Seconds of gradients + of contact."""
     cores = (10, 100, 1000, 10000)
-    lines = ["| dofs | memory | of a step where a wave crosses | " + " | ".join(f"{c:,} cores" for c in cores) + " |",
+    lines = ["| dofs | memory | a wave crosses in a step | " + " | ".join(f"{c:,} cores" for c in cores) + " |",
              "|---|---|---|" + "---|" * len(cores)]
     for dofs in (1e7, 1e8, 1e9):
         for name, step in steps:

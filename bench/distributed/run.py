@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""What several processes cost and gain: `./dev bench distributed`. Writes tables of docs/distributed.md.
+"""Cost and gain of several processes: `./dev bench distributed`. Writes tables of docs/distributed.md.
 
-One core for each process of those that are timed; medians of --repeat runs, one after another of each kind. Counts on more processes than cores
-are of shared cores, and not timed. The peer is dolfinx (dolfinx_steps.py): the same mesh, rule, material, load and tolerance.
+Timed processes have one core each; times are medians of --repeat runs, in which the kinds of run take turns. Runs with more
+processes than cores share cores; only their messages are counted. The peer is dolfinx (dolfinx_steps.py): the same mesh, rule,
+material, load and tolerance.
 """
 
 import argparse
@@ -87,7 +88,7 @@ class Bench:
 def scaling(bench, sizes, small):
     """Strong scaling of the larger of two bodies, and weak scaling from the smaller one, of half as many dofs, to
     it."""
-    lines = ["| scheme | cells crossed | dofs | processes | ms per step | of one process | memory of a process | of one | rounds | iterations |",
+    lines = ["| scheme | cells crossed | dofs | processes | ms per step | relative to one process | memory per process | relative to one | contact iterations | CG iterations |",
              "|---|---|---|---|---|---|---|---|---|---|"]
     measured, shared = {}, []
     for scheme, cells in (("newmark", 1), ("newmark", 5), ("reduced-kane", 1)):
@@ -104,14 +105,14 @@ def scaling(bench, sizes, small):
                          f"{count['rounds_per_step']:.1f} | {count['gradients_per_step']:.0f} |")
         measured[scheme, cells] = {"half": of_half, "one": one, "two": two}
     weak = ", ".join(f"{m['two']['ms'] / m['half']['ms']:.2f}" for m in measured.values())
-    lines.append(f"\nWeak scaling, two processes on the larger body over one on the smaller, in this order: {weak}. "
-                 f"Two separate runs of the smaller body at the same time, over one alone: {', '.join(shared)}.")
+    lines.append(f"\nWeak scaling, two processes on the larger body relative to one on the smaller, in this order: {weak}. "
+                 f"Two separate runs of the smaller body at the same time, relative to one alone: {', '.join(shared)}.")
     return "\n".join(lines), measured
 
 
 def traffic(bench, size):
     """Messages on 2 to 8 processes, compared with the formula of 3 n^(2/3) nodes on the boundary of a part."""
-    lines = ["| processes | dofs of each | rounds | iterations | messages in a step, at most | sums | MB in a step, at most | by the formula |",
+    lines = ["| processes | dofs per process | contact iterations | CG iterations | messages per step, at most | sums | MB per step, at most | by the formula |",
              "|---|---|---|---|---|---|---|---|"]
     case = bench.case(size, 1, True)[0]
     for processes in (1, 2, 4, 8):
@@ -144,7 +145,7 @@ def peers(bench, size):
         found = json.loads(done.stdout.splitlines()[-1])
         return found | {"ms": found["ms_per_step"]}
 
-    lines = ["| | processes | ms per step | over ours | iterations | until the first step | memory of a process | energy at the end |",
+    lines = ["| | processes | ms per step | time / ours | CG iterations | until the first step | memory per process | energy at the end |",
              "|---|---|---|---|---|---|---|---|"]
     for processes in (1, 2):
         ours, gamg, jacobi = bench.timed([lambda: bench.run(case, processes), lambda: peer(processes, "gamg"), lambda: peer(processes, "jacobi")])
@@ -176,10 +177,10 @@ def beyond(measured):
 def main():
     parser = argparse.ArgumentParser(prog="./dev bench distributed", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--repeat", type=int, default=3, help="runs of each kind that is timed (default: 3)")
-    parser.add_argument("--directory", type=pathlib.Path, default=BUILD / "bench-distributed", help="of meshes and runs")
-    parser.add_argument("--quick", action="store_true", help="small bodies, and no table is written")
-    parser.add_argument("--check", action="store_true", help="only look whether these arguments are right")
+    parser.add_argument("--repeat", type=int, default=3, help="number of timed runs of each kind (default: 3)")
+    parser.add_argument("--directory", type=pathlib.Path, default=BUILD / "bench-distributed", help="directory of meshes and runs")
+    parser.add_argument("--quick", action="store_true", help="use small bodies, and write no tables")
+    parser.add_argument("--check", action="store_true", help="only check the arguments")
     arguments = parser.parse_args()
     if arguments.check:
         return

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""In the limit of small loads laws of finite strain give what the linear law gives.
+"""In the limit of small loads, laws of finite strain agree with the linear law.
 
     /usr/bin/python3 bench/finite/linear_limit.py [CASE.toml …] [--factors 1e-7 1e-8 1e-4] [--seconds 120] [--output out/linear-limit]
 
@@ -9,10 +9,10 @@ history.csv, each relative to the largest in the linear run. Coefficients of fri
 the same one, times the factor. Exceptions, which the table names:
 
 - Gaps are scaled by moving planes along their normals, and parts towards each other. Where the boundary is curved, so is the gap,
-  and the curvature stays: fewer nodes touch than in the case. A bowl stays where it is.
-- Stiffness damping, which finite strain refuses, is left out.
+  and the curvature stays: fewer nodes touch than in the case. A bowl is not moved.
+- Stiffness damping, which finite strain refuses, is omitted.
 - Displacements are found to the rounding of positions, so a stiff body whose displacements are small already needs a larger factor.
-- With friction, and between bodies, reduced-kane has the reactions of the end at finite strain, and so has the linear run here.
+- With friction, and between bodies, reduced-kane uses the end reactions at finite strain, and so does the linear run here.
 - A run that takes longer than --seconds is stopped: the steps until then are compared.
 """
 
@@ -85,7 +85,7 @@ def overrides(path, case, factor):
             if key in obstacle:
                 settings[f"obstacle.{name}.{key}"] = scaled(obstacle[key], factor)
         if obstacle["type"] != "plane":
-            notes.append("curved obstacle, where it is")
+            notes.append("curved obstacle, not moved")
             continue
         gaps = [closest(path, case, contact, obstacle) for contact in case["contact"] if contact.get("obstacle") == name]
         gap = min(entry[0] for entry in gaps)
@@ -99,7 +99,7 @@ def overrides(path, case, factor):
     time = case["time"]
     if time.get("scheme", "reduced-kane") == "reduced-kane" and "reaction_weight" not in time and any("friction" in contact or "against" in contact for contact in case["contact"]):
         settings["time.reaction_weight"] = "end"
-        notes.append("reactions of the end")
+        notes.append("end reactions")
     key = f"{path.parent.name}/{path.stem}"
     if key in GAPS_OF_PARTS:
         part, axis, gap = GAPS_OF_PARTS[key]
@@ -180,8 +180,8 @@ def best(path, factors, *arguments):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="*", type=pathlib.Path, help="case files (default: all of cases/)")
-    parser.add_argument("--factors", type=float, nargs="+", default=[1e-7, 1e-8, 1e-4], help="of loads, motions and gaps: the first that will do (default: %(default)s)")
-    parser.add_argument("--seconds", type=float, default=120, help="after which a run is stopped (default: %(default)s)")
+    parser.add_argument("--factors", type=float, nargs="+", default=[1e-7, 1e-8, 1e-4], help="factors of loads, motions and gaps; the first suitable one is used (default: %(default)s)")
+    parser.add_argument("--seconds", type=float, default=120, help="time after which a run is stopped (default: %(default)s)")
     parser.add_argument("--output", type=pathlib.Path, default=ROOT / "out" / "linear-limit", help="directory of the runs (default: %(default)s)")
     parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build" / "ricochet", help="(default: %(default)s)")
     arguments = parser.parse_args()

@@ -57,7 +57,7 @@ def getfem(action, mesh, dimension, friction, file, kernels, **options):
         return {"failed": result.stderr.strip().splitlines()[-1] if result.stderr else f"exit status {result.returncode}"}
     record = json.loads(result.stdout[result.stdout.index("{"):])
     if record["kernels"] != kernels:
-        return {"failed": f"OpenBLAS' kernels are those for {record['kernels']}, ours are those for {kernels}"}
+        return {"failed": f"OpenBLAS uses the kernels for {record['kernels']}, ours those for {kernels}"}
     return record
 
 

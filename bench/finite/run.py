@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Finite strain beside GetFEM, and what a step costs: forces on the same mesh with the same law, times, triangular solves.
+"""Finite strain compared with GetFEM, and the cost of a step: forces on the same mesh with the same law, times, triangular solves.
 
     ./dev bench finite [--only statics dynamics times costs where] [--program PATH] [--report]
 
 Makes the meshes (gmsh), runs Ricochet and getfem_finite.py, writes DIRECTORY/results.json and the tables of docs/peers.md and
-docs/performance.md. Programs take turns, so that both see the same machine.
+docs/performance.md. The programs take turns, so that the load of the machine affects both.
 """
 
 import argparse
@@ -113,7 +113,7 @@ def step_bench(arguments, case, steps):
     try:
         result = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT)
     except subprocess.TimeoutExpired:
-        return {"failed": f"no end after {LIMIT} s"}
+        return {"failed": f"not finished after {LIMIT} s"}
     return json.loads(result.stdout) if result.returncode == 0 else {"failed": result.stderr.strip()}
 
 
@@ -157,13 +157,13 @@ PARTS = {"statics": measure_statics, "dynamics": measure_dynamics, "times": meas
 
 def main():
     parser = argparse.ArgumentParser(prog="./dev bench finite", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", choices=PARTS, nargs="+", default=list(PARTS), help="these parts; the others stay as they were")
-    parser.add_argument("--report", action="store_true", help="only write the pages anew from what was measured")
-    parser.add_argument("--repeat", type=int, default=3, help="times are medians of so many runs that take turns (default: %(default)s)")
-    parser.add_argument("--directory", type=pathlib.Path, default=ROOT / "build/bench-finite", help="of meshes and results")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="where ricochet and ricochet_step_bench are")
-    parser.add_argument("--program", type=pathlib.Path, help="ricochet, if elsewhere")
-    parser.add_argument("--check", action="store_true", help="look at the options, and do nothing")
+    parser.add_argument("--only", choices=PARTS, nargs="+", default=list(PARTS), help="only these parts; the others are kept")
+    parser.add_argument("--report", action="store_true", help="only rewrite the pages from the stored measurements")
+    parser.add_argument("--repeat", type=int, default=3, help="number of runs, which take turns; times are their medians (default: %(default)s)")
+    parser.add_argument("--directory", type=pathlib.Path, default=ROOT / "build/bench-finite", help="directory of meshes and results")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="folder of ricochet and ricochet_step_bench")
+    parser.add_argument("--program", type=pathlib.Path, help="path of ricochet, if it is elsewhere")
+    parser.add_argument("--check", action="store_true", help="only check the arguments")
     arguments = parser.parse_args()
     if arguments.check:
         return

@@ -31,7 +31,7 @@ def static_table(records):
             continue
         rows.append(row + [str(record["dofs"]), percent(record["strain"]), f"{record['pressed']:.0f}", f"{record['at_bound']:.0f}" if "at_bound" in record else "",
                            f"{record['largest_force']:.8g}", small(record, "displacement"), small(record, "force"), small(record, "friction_force")])
-    return table(["body", "pressed by", "F", "dofs", "largest strain", "nodes pressed", "of them at the bound of friction", "force", "displacement", "nodal force",
+    return table(["body", "pressed by", "F", "dofs", "largest strain", "nodes pressed", "of these at the friction bound", "force", "displacement", "nodal force",
                   "nodal friction"], rows)
 
 
@@ -62,7 +62,7 @@ def time_table(records):
         row += [str(record["steps"]), f"{statistics.mean(record['iterations']):.1f}", f"{1e3 * theirs:.4g}"]
         for scheme in ("newmark", "reduced-kane"):
             if scheme in record["stopped"]:
-                row += ["no end", "–", "–"]
+                row += ["not finished", "–", "–"]
                 continue
             mine = statistics.median(record["ours"][scheme])
             row += [f"{statistics.mean(record['rounds'][scheme]):.1f}", f"{1e3 * mine:.3g}", f"**{theirs / mine:.1f}**"]
@@ -90,7 +90,7 @@ def cost_table(records):
         strain = percent(record["strain"]) if "strain" in record else "law `linear`" if record["law"] == "linear" else ""
         scheme = f"`{record['scheme']}`"
         if not runs:
-            rows.append([record["body"][0], scheme, f"{record['speed']:g}", strain, "no end"] + ["–"] * 6)
+            rows.append([record["body"][0], scheme, f"{record['speed']:g}", strain, "not finished"] + ["–"] * 6)
             continue
         for key, name in PHASES:
             step, library, own = (middle(runs, key, value) for value in ("step_ms", "library_solve_ms", "own_solve_ms"))
@@ -99,7 +99,7 @@ def cost_table(records):
             rounds = phase_rounds(record, key)
             rows.append([f"{record['body'][0]}, {runs[0]['dofs']} dofs", scheme, f"{record['speed']:g}", strain, name, str(runs[0][key]["active"]), rounds, f"{step:.3g}", f"{library:.3g}",
                          f"**{step / library:.1f}**", f"{step / library / float(rounds):.2f}", f"{float(rounds) * own / step:.0%}".replace("%", " %")])
-    return table(["", "scheme", "speed", "largest strain", "contact", "pressed", "iterations", "step, ms", "CHOLMOD's solve, ms", "step / solve", "the same per iteration",
+    return table(["", "scheme", "speed", "largest strain", "contact", "pressed", "iterations", "step, ms", "CHOLMOD's solve, ms", "step / solve", "step / solve per iteration",
                   "our solves in the step"], rows)
 
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What results cost: a whole run that writes them against the same run that writes no fields.
+"""Cost of output: whole runs that write results, compared with the same run without fields.
 
     ./dev bench output [--repeat 15]
 
-Each time the runs are made one after the other, in changing order; the ratio is that of their whole times, start of the
-program included, and the table shows its median and quartiles with the size of results.h5. Writes the table of
+In each repetition the runs follow one another, in changing order. The ratio is that of their total times, which include the
+start of the program; the table shows its median and quartiles, and the size of results.h5. Writes the table of
 docs/reliability.md.
 """
 
@@ -27,7 +27,7 @@ VARIANTS = {
     "default": [],
     "single precision, compression 1": ["output.fields_precision=single", "output.compression=1"],
     "all fields": ['output.fields=["all"]'],
-    "a checkpoint each 100 steps": ["output.checkpoint_every=100"],
+    "a checkpoint every 100 steps": ["output.checkpoint_every=100"],
 }
 
 
@@ -66,12 +66,12 @@ def cell(ratios, size):
 def main():
     parser = argparse.ArgumentParser(prog="./dev bench output", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--repeat", type=int, default=15, help="times that each run is made (default: %(default)s)")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="where the program is")
-    parser.add_argument("--check", action="store_true", help="only look whether these arguments are right")
+    parser.add_argument("--repeat", type=int, default=15, help="number of repetitions (default: %(default)s)")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="folder of the program")
+    parser.add_argument("--check", action="store_true", help="only check the arguments")
     arguments = parser.parse_args()
     if arguments.repeat < 2:
-        parser.error("each run is made twice at least")
+        parser.error("--repeat must be at least 2")
     if arguments.check:
         return 0
     lines = [f"| body | without fields | {' | '.join(list(VARIANTS)[1:])} |", f"|{'---|' * (len(VARIANTS) + 1)}"]

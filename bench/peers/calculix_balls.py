@@ -195,9 +195,9 @@ def draw(path, runs, closed_form):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--only", default="", help="rows of CalculiX whose name contains this text")
-    parser.add_argument("--figure", help="writes forces and energies to this file")
-    parser.add_argument("--keep", help="leaves CalculiX' files there, and takes those of runs that are there")
+    parser.add_argument("--only", default="", help="only the rows of CalculiX whose name contains this text")
+    parser.add_argument("--figure", help="draw forces and energies into this file")
+    parser.add_argument("--keep", help="directory in which CalculiX's files are kept, and those of earlier runs are reused")
     arguments = parser.parse_args()
     (force, duration, end), ball, runs, agree = hertz(), Ball(), {}, True
     print(f"Hertz: largest force {force:.2f} N, duration {1e6 * duration:.3f} µs, less than {LOW:g} N from {1e6 * end:.3f} µs on\n\n"

@@ -4,7 +4,7 @@
   getfem_disc.py [--only TEXT] [--tolerance 1e-8] [--end 0.15]
 
 The steps are those of GetFEM's tests/dynamic_friction.cc (until 2015), which is the program of the source, and of its
-demo_dynamic_contact_1D.py. Prints two tables; returns 0 when every row agrees as far as it says it does. docs/peers.md
+demo_dynamic_contact_1D.py. Prints two tables; returns 0 if every row agrees as far as it should. docs/peers.md
 explains it. RICOCHET=PROGRAM names a program elsewhere.
 """
 
@@ -304,7 +304,7 @@ def energies(directory):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--only", default="", help="rows whose name contains this text")
+    parser.add_argument("--only", default="", help="only the rows whose name contains this text")
     parser.add_argument("--tolerance", type=float, default=1e-8)
     parser.add_argument("--end", type=float, default=0.15)
     arguments = parser.parse_args()
@@ -314,14 +314,14 @@ def main():
         body = Body(CASE, "consistent")
         disc = Disc(body, scratch)
         for name, a, b in (("M", disc.mass, body.mass), ("K", disc.stiffness, body.stiffness)):
-            print(f"{name}: GetFEM's and the one assembled here differ by {abs(a - b).max() / abs(b).max():.1e} of the largest entry")
+            print(f"{name}: GetFEM's matrix and the one assembled here differ by {abs(a - b).max() / abs(b).max():.1e} of the largest entry")
         masses = {"consistent": disc.mass, "lumped": disc.lumped, "nearest": disc.singular_mass(True),
                   "theirs": disc.singular_mass(False)}
         moments = disc.moments(disc.mass)
         for name in ("nearest", "theirs"):
             change = abs(disc.moments(masses[name]) - moments) / np.sqrt(np.outer(moments.diagonal(), moments.diagonal()))
             values = np.linalg.eigvalsh(masses[name][::2, ::2].toarray())
-            print(f"mass {name}: its total, centre and moments of inertia are off by {change.max():.1e}, "
+            print(f"mass {name}: its total, centre and moments of inertia deviate by {change.max():.1e}, "
                   f"its eigenvalues are between {values.min() / values.max():.1e} and 1")
         lowest = int(np.argmin(disc.gap))
         print("\nlargest difference / largest value; the first step beyond the tolerance\n"

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""GetFEM's demo_dynamic_contact_1D.py (Y. Renard, F. Chouly), as it is, beside Ricochet on the rod of cases/rod.
+"""GetFEM's demo_dynamic_contact_1D.py (Y. Renard, F. Chouly), unchanged, compared with Ricochet on the rod of cases/rod.
 
   getfem_rod.py DEMO [--tolerance 1e-8]
 
 DEMO is interface/tests/python/demo_dynamic_contact_1D.py of GetFEM's sources; Debian's package does not have it. Prints a
-table; returns 0 when the rows that are the same scheme agree. docs/peers.md explains it.
+table; returns 0 if the rows of the same scheme agree. docs/peers.md explains it.
 """
 
 import argparse

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""A small elastic disc strikes a larger one that rests: GetFEM's contact of two bodies as its users run it, and Ricochet.
+"""A small elastic disc strikes a larger one at rest: GetFEM's contact of two bodies as its users run it, and Ricochet.
 
   getfem_two_bodies.py [--only TEXT] [--runs 3] [--steps 75] [--figure FILE]
 
 Both have the same meshes (linear triangles that do not match where they touch), material, mass, step and scheme (textbook Newmark
 with beta = gamma = 1/2). GetFEM has its own bricks for mass, elasticity, contact and time, and Model.solve with Newton's method
-and MUMPS in every step. Prints a table; returns 0 when forces agree as far as it says. docs/peers.md explains it.
+and MUMPS in every step. Prints a table; returns 0 if the forces agree as far as they should. docs/peers.md explains it.
 RICOCHET=PROGRAM names a program elsewhere.
 """
 
@@ -205,7 +205,7 @@ def draw(path, forces, peak):
             below.plot(times, 100 * (force - reference) / peak, style, linewidth=1)
     above.set_ylabel("contact force, N/mm")
     above.legend(fontsize=8, frameon=False)
-    below.set_ylabel("less Ricochet's,\n% of the largest")
+    below.set_ylabel("difference from Ricochet,\n% of the largest")
     below.set_xlabel("time, µs")
     for axes in (above, below):
         axes.grid(alpha=0.3)
@@ -215,10 +215,10 @@ def draw(path, forces, peak):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--only", default="", help="bricks whose name contains this text")
-    parser.add_argument("--runs", type=int, default=3, help="times are medians of so many runs")
+    parser.add_argument("--only", default="", help="only the bricks whose name contains this text")
+    parser.add_argument("--runs", type=int, default=3, help="number of runs; times are their medians")
     parser.add_argument("--steps", type=int, default=75)
-    parser.add_argument("--figure", help="writes the forces to this file")
+    parser.add_argument("--figure", help="draw the forces into this file")
     arguments = parser.parse_args()
     getfem.util_trace_level(0)
     steps, agree = arguments.steps, True

@@ -24,7 +24,7 @@ def run(case, directory, settings, fields=True, limit=None):
     try:
         result = subprocess.run(command, capture_output=True, text=True, timeout=limit)
     except subprocess.TimeoutExpired:
-        sys.exit(f"{' '.join(command)}: no end after {limit} s")
+        sys.exit(f"{' '.join(command)}: not finished after {limit} s")
     if result.returncode not in (0, 5):  # 5: expectations of the case refer to its own scheme
         sys.exit(f"{' '.join(command)}: {result.stderr.strip()}")
 
@@ -36,7 +36,7 @@ class Steps:
         nodes, lengths = body.nodes(group), body.lengths(group)
         with h5py.File(pathlib.Path(directory) / "results.h5") as file:
             if not np.array_equal(file["mesh/nodes"][:, :2], body.points):
-                sys.exit(f"{directory}: its nodes are not those of the mesh file")
+                sys.exit(f"{directory}: its nodes differ from those of the mesh file")
             frames = [file["frames"][name] for name in sorted(file["frames"])]
             self.displacement = np.array([frame["displacement"][:][nodes, :2] for frame in frames])
             self.velocity = np.array([frame["velocity"][:][nodes, :2] for frame in frames])

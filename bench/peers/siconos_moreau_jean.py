@@ -3,7 +3,7 @@
 
   siconos_moreau_jean.py [--only TEXT] [--steps N] [--tolerance 1e-8] [--keep DIRECTORY]
 
-Prints a table (in half an hour: Siconos takes 0.1 s a step); returns 0 when all rows agree. docs/peers.md explains it. RICOCHET=PROGRAM names a program elsewhere.
+Prints a table (in half an hour: Siconos takes 0.1 s per step); returns 0 if all rows agree. docs/peers.md explains it. RICOCHET=PROGRAM names a program elsewhere.
 """
 
 import argparse
@@ -134,10 +134,10 @@ def events(impulse, velocity, friction):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--only", default="", help="rows whose name contains this text")
-    parser.add_argument("--steps", type=int, help="not more than these")
+    parser.add_argument("--only", default="", help="only the rows whose name contains this text")
+    parser.add_argument("--steps", type=int, help="largest number of steps")
     parser.add_argument("--tolerance", type=float, default=1e-8)
-    parser.add_argument("--keep", type=pathlib.Path, help="where runs and arrays are left")
+    parser.add_argument("--keep", type=pathlib.Path, help="directory in which runs and arrays are kept")
     arguments = parser.parse_args()
     rows = [(name, problem, mass, theta, restitution, "end") for name, problem in (("bar", BAR), ("disc", DISC))
             for mass in ("consistent", "lumped") for restitution in (0.0, 0.5) for theta in (0.5, 0.75)]

@@ -64,18 +64,18 @@ def findings(scene, run):
     check("account", max(parts), 1e-12 * len(zero), "total energy less its parts")
     by_method = [w - d + i for w, d, i in zip(c["contact_work"], c["numerical_dissipation"], error)]
     check("created by the method", largest_step(by_method), tolerance, "contact work less numerical dissipation in a step")
-    check("contact work", rises(c["contact_work"]), tolerance, "normal forces have given energy")
-    check("friction work", rises(c["friction_work"]), tolerance, "friction has given energy")
-    check("damping work", rises(c["damping_work"]), tolerance, "damping has given energy")
-    check("relaxation", rises([-v for v in relaxed]), tolerance, "stress that relaxes has given energy")
+    check("contact work", rises(c["contact_work"]), tolerance, "normal forces have added energy")
+    check("friction work", rises(c["friction_work"]), tolerance, "friction has added energy")
+    check("damping work", rises(c["damping_work"]), tolerance, "damping has added energy")
+    check("relaxation", rises([-v for v in relaxed]), tolerance, "viscoelastic branches have added energy")
     # In a step that is divided, points may slip in one part and stick in the last.
     rows = min(len(zero), run.first_makeshift)
     stuck = [abs(c["friction_work"][k] - c["friction_work"][k - 1]) for k in range(1, rows) if all_stick(run, k)]
-    check("sticking", sum(stuck), max(STICKING, tolerance), "friction has worked while all points stuck")
+    check("sticking", sum(stuck), max(STICKING, tolerance), "friction has done work while all points stuck")
     if scene.facts.get("pointwise"):
         depth = max(c["max_penetration"]) / scene.size()
         if depth > DEPTH:
-            found.append(("penetration", depth, "a contact node is inside"))
+            found.append(("penetration", depth, "a contact node is inside an obstacle"))
     return found + momentum_findings(scene, run)
 
 

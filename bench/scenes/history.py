@@ -34,7 +34,7 @@ class Run:
                                      check=False, env=os.environ | {"OPENBLAS_NUM_THREADS": "1"})
             self.status, self.messages = process.returncode, process.stderr
         except subprocess.TimeoutExpired:
-            self.status, self.messages = "none", f"not done after {TIME_LIMIT} s"
+            self.status, self.messages = "none", f"not finished after {TIME_LIMIT} s"
         self.output, self.columns, self.summary = output, {}, {}
         if (output / "history.csv").exists():
             self.read()
@@ -68,8 +68,8 @@ class Run:
     @property
     def first_makeshift(self):
         """Returns the first row of a step that was divided or held; infinite if none was."""
-        rows = [int(number) for number in re.findall(r"step (\d+) is taken in parts", self.messages)]
-        times = [float(time) for time in re.findall(r"at t = (\S+) what faces what", self.messages)]
+        rows = [int(number) for number in re.findall(r"step (\d+) is computed in parts", self.messages)]
+        times = [float(time) for time in re.findall(r"at t = (\S+) the pairing of", self.messages)]
         rows += [next((k for k, t in enumerate(self.columns["time"]) if t >= 0.999 * time), 0) for time in times]
         return min(rows, default=math.inf)
 

@@ -99,7 +99,7 @@ class Twins:
                 return []
         if first is None:
             return [(name, math.inf, f"status {base.status}, twin {twin.status}: {(twin if base.status == 0 else base).error()[:200]}")]
-        return [(name, worst[0], f"{worst[1]}; first in row {first}, {rows[first]:.1e} where rounding makes {max(spread[:first + 2]):.1e}")]
+        return [(name, worst[0], f"{worst[1]}; first in row {first}, {rows[first]:.1e} where rounding causes {max(spread[:first + 2]):.1e}")]
 
     def differ_by_method(self, one, other):
         return one.status == other.status == 0 and one.alike_until(other) < len(one.columns["time"])

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Random scenes: what every observer, every description and every account of energy must agree on.
+"""Random scenes: properties on which all observers, all descriptions and the energy account must agree.
 
     ./dev bench scenes [--count 1000] [--first 1] [--only FAMILY…] [--seed N] [--keep FOLDER]
 
 A scene is drawn from its seed: bodies in the plane, axisymmetric and in space, at small and finite strain, against obstacles of
-every kind at rest, moving and turning, against free rigid bodies, against each other and themselves. Each is run with some twins.
-Prints a line for each finding, with the seed, the property, its size and the folder that has the cases, then tables, which the
-first 1,000 scenes write into docs/energy.md. Status 1: there are findings.
+every kind at rest, moving and rotating, against free rigid bodies, against each other and themselves. Each is run with some twins.
+Prints a line for each finding, with the seed, the property, its size and the folder that has the cases, then tables; those of
+the first 1,000 scenes are written into docs/energy.md. Status 1: there are findings.
 """
 
 import argparse
@@ -105,17 +105,17 @@ def seeds_of(options):
 
 def parse():
     parser = argparse.ArgumentParser(prog="./dev bench scenes", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--count", type=int, default=1000, help="how many scenes (default: %(default)s)")
-    parser.add_argument("--first", type=int, default=1, help="seed of the first (default: %(default)s)")
-    parser.add_argument("--seed", type=int, help="this scene alone")
-    parser.add_argument("--only", nargs="+", choices=sorted(set(FAMILIES)), help="families of scenes")
-    parser.add_argument("--properties", nargs="+", metavar="NAME", help="these properties alone, wherever they apply")
-    parser.add_argument("--keep", type=pathlib.Path, help="a folder for the cases and results of all scenes")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="scenes at a time (default: %(default)s)")
-    parser.add_argument("--check", action="store_true", help="only look whether these arguments are right")
+    parser.add_argument("--count", type=int, default=1000, help="number of scenes (default: %(default)s)")
+    parser.add_argument("--first", type=int, default=1, help="seed of the first scene (default: %(default)s)")
+    parser.add_argument("--seed", type=int, help="only this scene")
+    parser.add_argument("--only", nargs="+", choices=sorted(set(FAMILIES)), help="only these families of scenes")
+    parser.add_argument("--properties", nargs="+", metavar="NAME", help="only these properties, wherever they apply")
+    parser.add_argument("--keep", type=pathlib.Path, help="folder in which the cases and results of all scenes are kept")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="number of scenes at a time (default: %(default)s)")
+    parser.add_argument("--check", action="store_true", help="only check the arguments")
     options = parser.parse_args()
     if options.count < 1:
-        parser.error("there must be a scene")
+        parser.error("--count must be at least 1")
     return options
 
 
@@ -141,7 +141,7 @@ def main():
                 print(line, flush=True)
     tables = family_table(families), property_table(compared, broken)
     print("\n\n".join(tables))
-    print(f"\n{total:.0f} s of processors, {time.monotonic() - begin:.0f} s")
+    print(f"\n{total:.0f} s of processor time, {time.monotonic() - begin:.0f} s")
     if not bad and not options.keep:
         shutil.rmtree(folder, ignore_errors=True)
     # Tables of other scenes would not match the text of the page.
@@ -151,7 +151,7 @@ def main():
 
 
 def family_table(families):
-    lines = ["| family | scenes | that touch | refused | stopped | with findings |", "|---|---|---|---|---|---|"]
+    lines = ["| family | scenes | with contact | refused | stopped | with findings |", "|---|---|---|---|---|---|"]
     for name in sorted(families):
         c = families[name]
         lines.append(f"| {name} | {c['scenes']} | {c['touch']} | {c['status 2']} | {c['status 3']} | {c['findings']} |")

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Random cases of every kind under every scheme: what becomes of their energy.
+"""Random cases of every kind under every scheme: how well they conserve energy.
 
     ./dev bench schemes [--cases 2400] [--first 1]
 
-Runs ricochet_random_cases on all processors, on planes and, a quarter as many each, on spheres and on obstacles that
-turn, and writes the tables of docs/energy.md. The cases are those of their numbers, on every machine.
+Runs ricochet_random_cases on all processors, on planes and, a quarter as many each, on spheres and on rotating
+obstacles, and writes the tables of docs/energy.md. A case is determined by its number, on every machine.
 """
 
 import argparse
@@ -63,7 +63,7 @@ def summary(rows):
     for row in rows:
         by_method[row["method"]].append(row)
     reference = {row["case"]: float(row["variation"]) for row in by_method[REFERENCE] if not row["failure"]}
-    lines = ["| scheme, mass | cases | refused | failed | created > 1e-8 | most created | median lost | deepest, cells | variation, median | 90 % |",
+    lines = ["| scheme, mass | cases | refused | failed | created > 1e-8 | max. created | median lost | deepest, cells | variation, median | 90 % |",
              "|---|---|---|---|---|---|---|---|---|---|"]
     created_by_step = ["| scheme, mass | " + " | ".join(f"{low:g}–{high:g}" for low, high in BINS) + " |", "|---" * (len(BINS) + 1) + "|"]
     for method, all_rows in by_method.items():
@@ -85,13 +85,13 @@ def summary(rows):
 
 def main():
     parser = argparse.ArgumentParser(prog="./dev bench schemes", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cases", type=int, default=2400, help="how many on planes (default: %(default)s)")
-    parser.add_argument("--first", type=int, default=1, help="number of the first (default: %(default)s)")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="where the programs are")
-    parser.add_argument("--check", action="store_true", help="only look whether these arguments are right")
+    parser.add_argument("--cases", type=int, default=2400, help="number of cases on planes (default: %(default)s)")
+    parser.add_argument("--first", type=int, default=1, help="number of the first case (default: %(default)s)")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="folder of the programs")
+    parser.add_argument("--check", action="store_true", help="only check the arguments")
     arguments = parser.parse_args()
     if arguments.cases < 1:
-        parser.error("there must be a case")
+        parser.error("--cases must be at least 1")
     if arguments.check:
         return 0
     program = str(arguments.build / "ricochet_random_cases")

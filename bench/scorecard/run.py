@@ -23,12 +23,12 @@ STATUSES = (0, 3, 5)
 def main():
     parser = argparse.ArgumentParser(prog="./dev bench scorecard", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--output", type=pathlib.Path, default=ROOT / "out" / "scorecard", help="directory of the runs (default: %(default)s)")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="runs at a time (default: %(default)s)")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="where the program is")
-    parser.add_argument("--check", action="store_true", help="only look whether these arguments are right")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="number of runs at a time (default: %(default)s)")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="folder of the program")
+    parser.add_argument("--check", action="store_true", help="only check the arguments")
     arguments = parser.parse_args()
     if arguments.jobs < 1:
-        parser.error("there must be a run at a time")
+        parser.error("--jobs must be at least 1")
     if arguments.check:
         return 0
     command = [arguments.build / "ricochet", "benchmark", "--scheme", "all", "-o", arguments.output, "--jobs", str(arguments.jobs), "--force"]

@@ -70,7 +70,8 @@ def explicit_table(records):
                 continue
             rows.append([body_text(record), name, f"{phase['step_ms']:.3g}", f"{record['limit_mb']:.1f}", f"{phase['memory_limit_ms']:.3g}",
                          f"**{phase['memory_limit_ms'] / phase['step_ms']:.2f}**", f"{phase['row_ms']:.3g}"])
-    return table(["", "contact", "step, ms", "to be read or written, MB", "reading as much, ms", "limit / step", "row of history, ms"], rows)
+    return table(["", "contact", "step, ms", "memory traffic, MB", "reading as many bytes, ms", "limit / step",
+                  "row of history, ms"], rows)
 
 
 def in_contact(force):
@@ -166,8 +167,8 @@ def iterative_table(records):
         rows.append([str(record["dofs"]), f"{141 * 1e-3 / record['body'][2]:.1f}", str(record["threads"]), f"{step:.0f}",
                      f"{statistics.median(step for _, step in deep):.0f}", f"{max(step for _, step in contact):.0f}",
                      str(last_phase(record)["active"]), f"{record['peak_mb']:.0f}", f"{set_up:.0f}", f"{before / step:.2f}"])
-    return table(["dofs", "cells crossed", "threads", "step in contact, ms (median)", "deep", "the slowest (zones are made)", "points that press",
-                  "peak, MB", "set-up, s", "gain"], rows)
+    return table(["dofs", "cells crossed", "threads", "step in contact, ms (median)", "deep", "slowest (subdomains are built)",
+                  "closed points", "peak, MB", "set-up, s", "gain"], rows)
 
 
 def factorization_table(records):
@@ -218,11 +219,12 @@ def libraries(everything):
 
 
 def machine(everything):
-    texts = [f"Measured {datetime.date.today()} on a shared machine ({processor()}), one core unless said, with {text}."
-             for text in libraries(everything) or ["libraries that were not noted"]]
+    texts = [f"Measured {datetime.date.today()} on a shared machine ({processor()}), on one core unless stated otherwise, "
+             f"with {text}."
+             for text in libraries(everything) or ["unknown libraries"]]
     kernels = {blas_kernels(text) for text in libraries(everything)}
     if "peer" in everything and len(kernels) == 1:
-        texts.append(f"GetFEM's OpenBLAS has the kernels for {kernels.pop()}, too.")
+        texts.append(f"GetFEM's OpenBLAS uses the kernels for {kernels.pop()}, too.")
     return "\n".join(texts)
 
 

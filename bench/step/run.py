@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What a time step costs: against the plain triangular solve and the memory's speed, against GetFEM, by size and by threads.
+"""Cost of a time step: relative to the plain triangular solve, the memory bandwidth and GetFEM, by size and by number of threads.
 
     run.py --help
 
@@ -58,7 +58,7 @@ def theirs(kernels, directory, body, steps, friction, *options):
         return {"failed": result.stderr.strip().splitlines()[-1] if result.stderr else f"exit status {result.returncode}"}
     record = json.loads(result.stdout)
     if record["kernels"] != kernels:
-        return {"failed": f"OpenBLAS' kernels are those for {record['kernels']}, ours are those for {kernels}"}
+        return {"failed": f"OpenBLAS uses the kernels for {record['kernels']}, ours those for {kernels}"}
     return record
 
 
@@ -161,11 +161,11 @@ PARTS = {"ratios": measure_ratios, "pairs": measure_pairs, "pairing": measure_pa
 def main():
     root = HERE.parents[1]
     parser = argparse.ArgumentParser(prog="./dev bench", description=__doc__.split("\n\n")[0])
-    parser.add_argument("--only", choices=PARTS, nargs="+", default=list(PARTS), help="these parts; the others stay as they were")
-    parser.add_argument("--report", action="store_true", help="only write the page anew from what was measured")
-    parser.add_argument("--directory", type=pathlib.Path, default=root / "build/bench-step", help="of meshes and results")
-    parser.add_argument("--build", type=pathlib.Path, default=root / "build", help="where ricochet_step_bench is")
-    parser.add_argument("--check", action="store_true", help="look at the options, and do nothing")
+    parser.add_argument("--only", choices=PARTS, nargs="+", default=list(PARTS), help="only these parts; the others are kept")
+    parser.add_argument("--report", action="store_true", help="only rewrite the page from the stored measurements")
+    parser.add_argument("--directory", type=pathlib.Path, default=root / "build/bench-step", help="directory of meshes and results")
+    parser.add_argument("--build", type=pathlib.Path, default=root / "build", help="folder of ricochet_step_bench")
+    parser.add_argument("--check", action="store_true", help="only check the arguments")
     arguments = parser.parse_args()
     if arguments.check:
         return

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Random throws of elastic bodies into random obstacles under the default scheme: none may fail, go through or gain energy.
+"""Random throws of elastic bodies into random obstacles under the default scheme: no throw may fail, gain energy, or
+pass through an obstacle.
 
     ./dev bench throws [--cases 1000] [--first 1] [--keep FOLDER]
 
-Runs on all processors (20 minutes for 1,000) and prints a line for every throw that is not as it should be, then a table.
-Throws are those of their numbers, on every machine. Status 1: some are not as they should be.
+Runs on all processors (20 minutes for 1,000) and prints a line for every throw with a fault, then a table. A throw is
+determined by its number, on every machine. Status 1: some throws have faults.
 """
 
 import argparse
@@ -45,14 +46,14 @@ def judge(output, law):
         wrong.append(f"created {created:.1e} of the energy")
     residual = max(map(abs, columns["energy_residual"])) / largest
     if residual > ACCOUNT[law]:
-        wrong.append(f"the account closes to {residual:.1e} only")
+        wrong.append(f"the energy account closes only to {residual:.1e}")
     depth = max(columns["max_penetration"])
     if depth > DEPTH:
-        wrong.append(f"a node is {depth:.1e} inside")
+        wrong.append(f"a node penetrates by {depth:.1e}")
     # All of the boundary is contact boundary; only a node inside the body that an edge reaches between its nodes is
     # exempt.
     if any("gone through" in warning for warning in summary["warnings"]):
-        wrong.append("a node has gone through in one step")
+        wrong.append("a node has passed through an obstacle in one step")
     return wrong, max(columns["active_contacts"]) > 0
 
 
@@ -69,7 +70,7 @@ def throw(seed, folder, keep):
             lines = [line for line in process.stderr.splitlines() if line.startswith("ricochet: ")]
             wrong, touches = [f"status {process.returncode}: {lines[0] if lines else process.stderr[-300:]}"], False
     except subprocess.TimeoutExpired:
-        wrong, touches = [f"not done after {TIME_LIMIT} s"], False
+        wrong, touches = [f"not finished after {TIME_LIMIT} s"], False
     if not keep or not wrong:
         shutil.rmtree(output, ignore_errors=True)
     return made, wrong, touches
@@ -80,8 +81,8 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", type=int, default=1000)
     parser.add_argument("--first", type=int, default=1)
-    parser.add_argument("--keep", type=pathlib.Path, help="a folder for the files of the throws")
-    parser.add_argument("--check", action="store_true", help="only look whether these arguments are right")
+    parser.add_argument("--keep", type=pathlib.Path, help="folder in which the files of the throws are kept")
+    parser.add_argument("--check", action="store_true", help="only check the arguments")
     options = parser.parse_args()
     if options.check:
         return 0
@@ -101,7 +102,7 @@ def main():
                     bad += 1
                     print(f"{made.seed}: {made.dimension}D {made.body}, {made.law}, friction {made.friction}, {' and '.join(made.kinds)}: "
                           f"{'; '.join(wrong)}", flush=True)
-    print("| obstacle, law | throws | that touch | wrong |\n|---|---|---|---|")
+    print("| obstacle, law | throws | with contact | with faults |\n|---|---|---|---|")
     for kind in sorted(counts, key=lambda name: (name == "all", name)):
         print("| {} | {} | {} | {} |".format(kind, *counts[kind]))
     return 1 if bad else 0

@@ -138,7 +138,7 @@ Vector dofs_of(OpenSession& open, const Numbers& numbers, Vector others, const c
     others.head(nodes * d) = vector_of(numbers);
   } else {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("session: a {} must be an array of {} nodes x {} numbers, or {} numbers for every node",
+                fmt::format("session: a {} must be an array of {} nodes x {} numbers, or {} numbers for all nodes",
                             what, nodes, d, d));
   }
   return others;
@@ -262,7 +262,7 @@ void bind_looks(Class& session) {
           "Gaps of the contact points, positive if open.")
       .def_property_readonly(
           "contact_force", &contact_force,
-          "Force on each node that acted over the last step, nodes x dimension: multiplied by the step it is\n"
+          "Force on each node that acted over the last step, nodes x dimension: multiplied by the step, it is\n"
           "the change of the momentum. `reactions` are those at the end of the step.")
       .def_property_readonly("energies", &energies,
                              "Parts of the energy account, with the names of the columns of the history.")

@@ -14,7 +14,7 @@ def dictionary(path):
 
 
 def test_dictionaries_are_what_files_are(puck, monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path / "puck")  # where the mesh is
+    monkeypatch.chdir(tmp_path / "puck")  # the mesh is here
     from_file, made = rc.Case(puck), rc.Case(dictionary(puck))
     same = {key: value for key, value in made.values.items() if key != "mesh.file"}
     assert same == {key: value for key, value in from_file.values.items() if key != "mesh.file"}

@@ -140,7 +140,7 @@ def test_a_run_that_was_written_over_is_not_mixed_with_the_old_one(tmp_path, fil
     path, short = ROOT / "cases/puck/puck.toml", {"time.end": 1e-5, "output.fields_every": 5, "output.format": file_format}
     old = rc.run(path, tmp_path / "out", short)
     rc.run(path, tmp_path / "out", {**short, "contact.0.friction": 0.0}, force=True)
-    with pytest.raises(rc.InputError, match="read it again"):
+    with pytest.raises(rc.InputError, match="read them again"):
         old.frame(number=-1)["displacement"]
     assert old.reload().frame(number=-1)["displacement"].shape == (len(old.points), 3)
 
@@ -182,7 +182,7 @@ def test_a_loop_that_ends_early_leaves_its_last_state(puck, tmp_path):
     run = rc.open(tmp_path / "out")
     assert run.status == "interrupted" and run.time[-1] == run.frames.times[-1] == pytest.approx(53e-6, rel=1e-12)
     assert (run.frames[-1]["displacement"][:, :2] == displacement).all()
-    assert "--resume goes on" in run.summary["message"]
+    assert "--resume continues" in run.summary["message"]
     rc.run(puck, tmp_path / "out", changes, resume=True)
     rc.run(puck, tmp_path / "whole", changes)
     for name in ("history.csv", "results.h5", "results.xdmf"):
@@ -195,7 +195,7 @@ def test_a_steered_run_says_who_goes_on(puck, tmp_path):
     session.write_to(tmp_path / "out")
     session.run(lambda s: s.step_number < 5)
     session.finish()
-    assert "the program that steers it goes on" in rc.open(tmp_path / "out").summary["message"]
+    assert "the program that steers the run continues" in rc.open(tmp_path / "out").summary["message"]
 
 
 def test_messages_speak_of_arguments(run, puck):

@@ -36,7 +36,7 @@ def test_a_study_is_that_of_the_program(puck, tmp_path, program):
     assert again.columns == study.columns and again.done == 2
     more = rc.study(puck, {"contact.0.friction": [0.0, 0.3, 0.5]}, tmp_path / "python", SHORT, resume=True)
     assert more.done == 3
-    with pytest.raises(rc.FileAccessError, match="holds a study already"):
+    with pytest.raises(rc.FileAccessError, match="already contains a study"):
         rc.study(puck, {"contact.0.friction": [0.0]}, tmp_path / "python", SHORT)
     with pytest.raises(KeyError):
         study["nothing"]

@@ -1,10 +1,9 @@
 #pragma once
 
-/// @file Counting what is allocated. The program that this is linked into has its own malloc, which counts and hands
-/// on.
+/// @file Counts allocations. A program linked with this has its own malloc, which counts the calls and forwards them.
 namespace ricochet::test_support {
 
-/// Calls of malloc and its relatives, operator new included, by all threads since the start.
+/// Number of calls of malloc and its relatives, operator new included, by all threads so far.
 [[nodiscard]] long allocation_count();
 
 }  // namespace ricochet::test_support

@@ -47,7 +47,7 @@ struct Variant {
   std::string name, time, mass, contact;
   std::vector<std::string> overrides;
   bool is_steady = true;  ///< the contact stays as it is for many steps
-  bool moving = false;    ///< the obstacle drifts and, in 3D, turns
+  bool moving = false;    ///< the obstacle drifts and, in 3D, rotates
 };
 
 void PrintTo(const Variant& variant, std::ostream* stream) {
@@ -235,7 +235,7 @@ TEST(PenetrationReports, CostTheSameInAFinerMesh) {
     const std::string disc = "Disk(1)={0,1.02,0,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};";
     const ThrownBody body{"disc", 2, 1, mesh_geometry("disc", disc, size, 1)};
     CaseRun run(thrown_case(body, "equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"));
-    // The disc is at the middle of the wall, which no contact names.
+    // The disc is at the middle of the wall, to which no contact refers.
     const std::unique_ptr<Obstacle> obstacle = make_plane(Eigen::Vector2d(0.0, 1.0), Eigen::Vector2d(1.0, 0.0));
     PenetrationWatch watch(run.model().body, run.problem(), run.model().contact_pairs, {{"wall", obstacle.get()}});
     watch.check(run.state());

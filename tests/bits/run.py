@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Runs the cases of two revisions and compares the bits of what they compute.
+"""Runs the cases of two revisions and compares the bits of their results.
 
     ./dev bits [REVISION] [--quick] [--only TEXT...]
 
 Compares the working tree with REVISION (by default HEAD, or HEAD~ if nothing has changed since HEAD): every case under
-every scheme that takes it, with one and two threads, resumed and, where PETSc is installed, on two ranks: checksums of
+every scheme that accepts it, with one and two threads, resumed and, where PETSc is installed, on two ranks: checksums of
 history.csv and of the last frame after 200 steps that cover the time of the case. A run that fails must fail with the same
 status. Prints one line for each difference; the exit status is 1 if there is one. --quick: one thread alone, 50 steps.
---only: runs whose names have one of these texts. What an earlier comparison has found of a commit is kept in build-bits/.
+--only: runs whose names have one of these texts. Results of a commit are kept in build-bits/ for later comparisons.
 """
 
 import argparse

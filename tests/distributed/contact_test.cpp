@@ -7,7 +7,7 @@
 #include "ricochet/run/session.hpp"
 #include "support/case_run.hpp"
 
-// Bodies in pieces that meet obstacles: contact points anywhere, and obstacles across the boundaries of ranks.
+// Distributed bodies that meet obstacles: contact points anywhere, and obstacles across the boundaries of ranks.
 
 namespace ricochet {
 namespace {
@@ -17,7 +17,7 @@ struct ContactCase {
   int dimension;
   const char* contact;   ///< more keys of [[contact]]
   const char* obstacle;  ///< type, position and motion
-  const char* rest;      ///< [mass], [time] and what else there is
+  const char* rest;      ///< [mass], [time] and other sections
   double allowed;        ///< relative to the largest value of a column
   const char* preconditioner = "auto";
   bool is_static = false;  ///< lies on the floor in equilibrium, and is pushed
@@ -71,7 +71,7 @@ TEST_P(Contact, IsThatOfOneRank) {
   const Communicator world = Communicator::world();
   const auto wait = [&] { (void)world.gather(std::vector<double>{0.0}); };
   std::string path;
-  // One makes the files that all read.
+  // One rank writes the files that all of them read.
   for (int rank = 0; rank < world.size(); ++rank) {
     if (rank == world.rank()) path = test_support::write_temporary("case.toml", toml_of(test, mesh_of(test)));
     wait();
@@ -109,12 +109,12 @@ TEST_P(Contact, IsThatOfOneRank) {
     for (const auto& row : expected_rows) result = std::max(result, std::abs(row[column]));
     return result;
   };
-  // What is zero but for rounding has that of what it is a part of.
+  // The rounding of quantities that vanish is that of their largest terms.
   const double energy = largest("kinetic_energy"), force = largest("corner.reaction_normal");
   for (std::size_t column = 0; column < expected.columns().size(); ++column) {
     const std::string& name = expected.columns()[column];
     if (name == "iterations") continue;
-    // Of a body at rest some points are on the edge of slipping; those that touch are the same.
+    // In a body at rest some points are at the limit of slipping; the touching points are the same.
     if (test.is_static && (name == "sticking" || name == "slipping")) continue;
     double scale = largest(name), error = 0.0;
     for (std::size_t i = 0; i < rows.size(); ++i)
@@ -159,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(
              std::string(std::get<1>(info.param) == PartitionMethod::random ? "random" : "graph");
     });
 
-/// Frictionless, on a plane.
+/// Schemes without friction, on a plane.
 constexpr const char* other_schemes[][2] = {
     {"contact-stabilized", "consistent"},
     {"kane", "consistent"},

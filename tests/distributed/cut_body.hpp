@@ -11,7 +11,7 @@
 #include "ricochet/fem/assembly.hpp"
 #include "support/box_mesh.hpp"
 
-/// @file A body that is cut in pieces. Every rank has the whole here, too, to tell what it should find.
+/// @file A body cut in pieces. Here every rank also has the whole body, for the expected results.
 namespace ricochet::distributed_test {
 
 using test_support::BoxMesh;
@@ -47,7 +47,7 @@ class CutBody {
   }
 
  protected:
-  /// Returns the part of a vector on the whole body that this rank has.
+  /// Returns this rank's part of a vector on the whole body.
   [[nodiscard]] Vector part_of(const Vector& whole) const { return cut_values(whole, piece_, d_); }
 
   Communicator world_;

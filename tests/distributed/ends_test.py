@@ -76,7 +76,7 @@ class Ends(Distributed):
         self.assertIn("mpirun -n 2 ricochet-mpi run --resume", self.summary("stopped")["message"])
         described = run("info", self.folder / "stopped").stdout
         self.assertIn(f"checkpoint of step {self.summary('stopped')['checkpoint_step']}: ", described)
-        self.assertIn("`mpirun -n 2 ricochet-mpi run` with --resume goes on with it", described)
+        self.assertIn("`mpirun -n 2 ricochet-mpi run` with --resume continues it", described)
         (self.folder / "stopped" / "summary.json").unlink()  # checkpoints state the case as well
         self.assertIn("summary.json is missing", run("info", self.folder / "stopped").stdout)
         finished = several(2, "run", "--resume", self.folder / "stopped", "--quiet")
@@ -104,7 +104,7 @@ class Ends(Distributed):
         newest.write_bytes(newest.read_bytes()[:-100])
         finished = several(2, "run", "--resume", self.folder / "damaged", "--quiet")
         self.assertEqual(finished.returncode, 0, finished.stderr)
-        self.assertEqual(finished.stderr.count(f"{newest.name}: it is not the file of the manifest"), 1, finished.stderr)
+        self.assertEqual(finished.stderr.count(f"{newest.name}: its checksum differs from that in the manifest"), 1, finished.stderr)
         self.expect_same_files("whole", "damaged")
         # If no checkpoint can be read, the run is not started anew.
         for damaged in (self.folder / "damaged" / "ranks" / "0001").glob("*.ckpt"):
@@ -139,7 +139,7 @@ class Refusals(Distributed):
         self.expect(self.bounce(3, "bad", values={"material.0.density": -1.0}), 2, "density")
         self.expect(several(2, "run", self.folder / "none.toml"), 4, "none.toml")
         (self.folder / "taken").write_text("a file")
-        self.expect(self.bounce(3, "taken"), 4, "taken", "cannot make this directory")
+        self.expect(self.bounce(3, "taken"), 4, "taken", "cannot create this directory")
         few = self.write("few.toml", block_case())
         self.expect(several(30, "run", few, "-o", self.folder / "few"), 2, "few.toml:", "too few for 30 processes")
 
@@ -156,7 +156,7 @@ class Refusals(Distributed):
         self.expect(start_at(0.05, 3, "deep"), 2, alone.stderr.split("deep: ", 1)[-1].strip().removeprefix("ricochet: "))
         for ranks, name in ((1, "one"), (3, "three")):
             self.assertEqual(start_at(5e-4, ranks, name).returncode, 0)
-        self.assertTrue(any("inside of an obstacle" in warning for warning in self.summary("one")["warnings"]))
+        self.assertTrue(any("inside an obstacle" in warning for warning in self.summary("one")["warnings"]))
         self.assertEqual(self.summary("three")["warnings"], self.summary("one")["warnings"])
 
     def test_of_cases_that_processes_do_not_share(self):
@@ -174,7 +174,7 @@ class Refusals(Distributed):
             return subprocess.run(apart[:-1], text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                   stderr=subprocess.PIPE, timeout=TIME_LIMIT)
         (self.folder / "b" / "case.toml").write_text(case + "# another\n")
-        self.expect(run_two(), 4, "case.toml", "process 1 of 2 reads another text")
+        self.expect(run_two(), 4, "case.toml", "process 1 of 2 reads a text that differs")
         (self.folder / "b" / "case.toml").unlink()
         self.expect(run_two(), 4, "case.toml", "process 1 of 2 cannot read it")
         bad = several(2, "walk")
@@ -194,7 +194,7 @@ class Refusals(Distributed):
         self.expect(several(2, "run", "--resume", self.folder / "one", *longer), 2, "one process", "ricochet run --resume")
         finished = several(2, "run", "--resume", self.folder / "two", "--quiet", *longer)
         self.assertEqual(finished.returncode, 0, finished.stderr)
-        self.expect(self.bounce(2, "two"), 4, "holds a run already")
+        self.expect(self.bounce(2, "two"), 4, "already holds a run")
         self.assertEqual(self.bounce(2, "two", "--force", values=values).returncode, 0)
 
 

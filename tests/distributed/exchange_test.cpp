@@ -12,7 +12,7 @@
 #include "ricochet/distributed/partition.hpp"
 #include "support/box_mesh.hpp"
 
-// What every rank knows of all others here, so that each can tell what it should have got.
+// Every rank computes the data of all others here, and from these the result it expects.
 
 namespace ricochet {
 namespace {
@@ -131,7 +131,7 @@ TEST(MpiRanks, ReduceInOneExchange) {
   EXPECT_EQ(values, (std::vector<double>{(last + 1.0) * (last + 2.0) / 2.0, -5.0, last, 7.0}));
   EXPECT_EQ(ranks.any(world().rank() == world().size() - 1), true);
   EXPECT_EQ(ranks.any(false), false);
-  // A NaN somewhere is not lost.
+  // A NaN on one rank is not lost.
   const double odd = world().rank() == 0 ? std::numeric_limits<double>::quiet_NaN() : 1.0;
   EXPECT_TRUE(std::isnan(ranks.maximum(odd)));
   EXPECT_TRUE(std::isnan(ranks.minimum(odd)));

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <petscsys.h>
 
-/// @file All ranks run the same tests, and all fail where one does.
+/// @file All ranks run the same tests, and all fail if one does.
 
 int main(int count, char** arguments) {
   ::testing::InitGoogleTest(&count, arguments);
@@ -9,7 +9,7 @@ int main(int count, char** arguments) {
   int rank = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   if (rank > 0) {
-    // What went well is said once.
+    // Only one rank reports passed tests.
     auto& listeners = ::testing::UnitTest::GetInstance()->listeners();
     delete listeners.Release(listeners.default_result_printer());
   }

@@ -9,7 +9,7 @@
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/simulation/simulation.hpp"
 
-// Bodies in pieces move as they do in one: schemes and accounts know nothing of ranks but that they exist.
+// Bodies in pieces move like undivided ones: schemes and accounts depend on no property of ranks.
 
 namespace ricochet {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 using distributed_test::CutBody;
 using distributed_test::Variant;
 
-/// A body that is held at x = 0, by a support that moves, under a weight and a load that varies.
+/// A body held at x = 0 by a moving support, under its weight and a varying load.
 SemidiscreteProblem moving_problem(const Body& body, const Ranks& ranks) {
   const int d = body.mesh->dimension;
   const NodeGraph graph = node_graph(*body.space);

@@ -8,7 +8,7 @@
 #include "ricochet/linear_algebra/block_jacobi.hpp"
 #include "ricochet/linear_algebra/single_precision_cg.hpp"
 
-// Matrices of pieces add up to those of the whole, and are solved as it is.
+// Matrices of pieces add up to those of the whole body, and their solutions agree.
 
 namespace ricochet {
 namespace {
@@ -80,7 +80,7 @@ TEST_P(Pieces, HaveMatricesThatAddUp) {
               1e-12 * x.norm() * expected.norm());
 }
 
-/// A factor by MUMPS is exact; multigrid is symmetric and positive, and takes few iterations.
+/// A factor by MUMPS is exact; multigrid is symmetric and positive, and needs few iterations.
 TEST_P(Pieces, HavePreconditionersOfTheWhole) {
   const SparseMatrix whole = operator_of(whole_->body), part = operator_of(own_);
   std::vector<char> solved;
@@ -154,7 +154,7 @@ TEST_P(Pieces, HaveNoPreconditionersOfUnknownNames) {
   EXPECT_THROW((void)make_petsc_preconditioners()->make("ggma", part, solved, piece_.space.nodes, ranks_), Error);
 }
 
-/// Conjugate gradients in both precisions take the iterations that one rank takes, and find what it finds.
+/// Conjugate gradients in both precisions need as many iterations as on one rank, with the same result.
 TEST_P(Pieces, AreSolvedAsTheWhole) {
   const SparseMatrix whole = operator_of(whole_->body), part = operator_of(own_);
   const NodeMatrix whole_blocks(whole, d_), own(part, d_);

@@ -128,7 +128,7 @@ class Results(Distributed):
 
 class PeakStress(Distributed):
     def test_is_looked_for_in_the_same_states(self):
-        """Apart from frames, of which there are none here."""
+        """States of frames are an exception; there are none here."""
         values = BOUNCE | {"output.fields_every": 0}
         for ranks, name in ((0, "one"), (2, "two"), (4, "four")):
             self.assertEqual(self.bounce(ranks, name, values=values).returncode, 0)

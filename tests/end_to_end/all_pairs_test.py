@@ -115,12 +115,12 @@ class AllPairs(TestCase):
         def message(contacts, parts=ROW):
             return self.expect_status(2, run("validate", self.case("refused", contacts, parts))).stderr
 
-        self.assertIn('needs either "obstacle" or "against"; found none of them; without them `group` is "all"',
+        self.assertIn('needs either "obstacle" or "against"; found none of them; without them `group` must be "all"',
                       message('[[contact]]\ngroup = "disc-1.skin"\n'))
         self.assertIn('"pad-*"', message('[[contact]]\ngroup = "pad-*"\n'))
         self.assertIn("is on 1 body, and there is no other",
                       message('[[contact]]\ngroup = "all"\n', part("alone", 0.0, 0.0, [0.0, 0.0])))
-        self.assertIn("is of contact between two groups", message('[[contact]]\ngroup = "all"\ntied = true\n'))
+        self.assertIn("is only for contact between two groups", message('[[contact]]\ngroup = "all"\ntied = true\n'))
 
 
 if __name__ == "__main__":

@@ -109,19 +109,19 @@ class Animation(TestCase):
     def test_wrong_use(self):
         results = self.disc()
         for arguments, message in (
-                (("-o", "a.png"), "an animation is a .gif or .mp4 file; with --at T a .png, .svg or .pdf of one frame"),
-                (("-o", "a.gif", "--at", "0.01"), "a picture is a .png, .svg or .pdf file"),
+                (("-o", "a.png"), "an animation must be a .gif or .mp4 file; with --at T a .png, .svg or .pdf file of one frame"),
+                (("-o", "a.gif", "--at", "0.01"), "a picture must be a .png, .svg or .pdf file"),
                 (("-o", "a.png", "--at", "7"), "--at 7: the frames of"),
-                (("-o", "a.gif", "--field", "von_miss"), 'is "von_mises" meant?'),
+                (("-o", "a.gif", "--field", "von_miss"), 'did you mean "von_mises"?'),
                 (("-o", "a.gif", "--field", "stress"), "has no such field"),
-                (("-o", "a.gif", "--what", "energy"), "an animation shows one run, and nothing else"),
-                (("-o", "a.gif", "--time", "0.001:0.002"), "there are fewer than two frames in this part of the time"),
+                (("-o", "a.gif", "--what", "energy"), "an animation shows one run and nothing else"),
+                (("-o", "a.gif", "--time", "0.001:0.002"), "there are fewer than two frames in this time interval"),
                 ((results, "-o", "a.gif"), "name one directory")):
             process = run("plot", results, "--what", "animation", *arguments, directory=self.folder)
             self.assertNotEqual(process.returncode, 0)
             self.assertIn(message, process.stderr)
         process = self.plot(results, "--what", "energy", "-o", "a.svg", "--zoom", status=1)
-        self.assertIn("are for --what animation", process.stderr)
+        self.assertIn("--half require --what animation", process.stderr)
         blind = self.disc("blind", **{"output.fields_every": 0})
         process = run("plot", blind, "--what", "animation", "-o", "a.gif", directory=self.folder)
         self.assertIn("wrote no fields", process.stderr)

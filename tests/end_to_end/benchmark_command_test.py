@@ -98,10 +98,10 @@ class Benchmark(TestCase):
         for name in SHORT:
             self.assertRegex(listed, rf"(?m)^{name} ")
         process = self.benchmark("sdnv10", "-o", self.folder / "out", status=1)
-        self.assertIn('there is no "sdnv10" (is "sdnv100" meant?); there are sdnv100, vm265', process.stderr)
+        self.assertIn('there is no "sdnv10" (did you mean "sdnv100"?); available: sdnv100, vm265', process.stderr)
         self.assertFalse((self.folder / "out").exists())
         self.assertIn("no benchmarks.toml", self.benchmark("--folder", self.folder, status=4).stderr)
-        self.assertIn('(is "newmark" meant?)', self.benchmark("--scheme", "newmrk", status=1).stderr)
+        self.assertIn('(did you mean "newmark"?)', self.benchmark("--scheme", "newmrk", status=1).stderr)
 
     def test_every_published_case_is_listed(self):
         manifest = (SOURCE / "benchmarks" / "benchmarks.toml").read_text(encoding="utf-8")
@@ -119,7 +119,7 @@ class Benchmark(TestCase):
         for (scheme, name), row in rows.items():
             if row["status"] == "refused":
                 self.assertEqual((scheme, name, row["holds"]), ("mean-reaction", "incline-held", ""))
-                self.assertIn("takes no friction", row["message"])
+                self.assertIn("does not support friction", row["message"])
                 continue
             folder = next((output / "runs").glob(f"{name}-{scheme}*"))
             summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
@@ -139,7 +139,7 @@ class Benchmark(TestCase):
         self.assertGreater(float(rows["newmark", "rod"]["created_percent"]), 10)
         card = (output / "scorecard.md").read_text(encoding="utf-8")
         self.assertIn("| mean-reaction | equivalent | refused (1) |", card)
-        self.assertIn('1. scheme "mean-reaction" takes no friction', process.stdout)
+        self.assertIn('1. scheme "mean-reaction" does not support friction', process.stdout)
         # Refusals do not count.
         self.benchmark("incline-held", "-o", self.folder / "refused", "--scheme", "mean-reaction")
 

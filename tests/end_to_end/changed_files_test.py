@@ -51,16 +51,16 @@ class ChangedFiles(TestCase):
 
     def test_text(self):
         output, said = self.changed("history.csv", cut)
-        self.assertRegex(said, r"has 500 bytes where this run has written \d+")
+        self.assertRegex(said, r"has 500 bytes, but this run has written \d+")
         # The remaining results are those written before, without gaps.
         self.assertEqual((output / "history.csv").stat().st_size, 500)
         refused = self.expect_status(4, run("run", "--resume", output, "--quiet"))
         self.assertIn("history.csv: has 500 bytes", refused.stderr)
         self.changed("history.csv", lengthen)
         _, said = self.changed("history.csv", replace)
-        self.assertIn("is another file than this run has been writing", said)
+        self.assertIn("is not the file that this run has been writing", said)
         _, said = self.changed("probes-1.csv", lambda path: path.unlink())
-        self.assertIn("is not there any more", said)
+        self.assertIn("no longer exists", said)
 
     def test_fields(self):
         for file_format, names in (("xdmf", ("results.h5", "results.xdmf", "obstacles.xdmf")),

@@ -120,7 +120,7 @@ class CommandLine(TestCase):
         self.assertEqual(History(output / "history.csv")["step"], list(range(11)))
 
     def test_an_empty_value_is_not_the_default(self):
-        """As from an unset variable of the shell."""
+        """An unset variable of the shell gives one."""
         for arguments in (("run", self.case, "-o", ""), ("run", self.case, "-o", "", "--force"), ("run", ""),
                           ("run", self.case, "--export-contact", "1", "--export-contact-to", ""), ("study", self.case, "-o", ""),
                           ("benchmark", "-o", ""), ("report", "out", "-o", ""), ("report", ""), ("info", ""), ("contact", "")):
@@ -129,7 +129,7 @@ class CommandLine(TestCase):
         self.assertEqual(list(self.folder.glob("out*")), [])
 
     def test_a_run_does_not_write_over_what_it_is_read_from(self):
-        """Also with --force, and also through another name."""
+        """With --force, or through another name, it does not either."""
         folder = self.folder / "own"
         folder.mkdir()
         mesh = folder / "probes-7.csv"
@@ -152,7 +152,7 @@ class CommandLine(TestCase):
     def test_a_list_without_quotes(self):
         for value, what in (("[bottom,body]", "list"), ("[bottom]", "list")):
             process = self.expect_status(2, run("validate", self.case, "--set", f"contact.0.group={value}"))
-            self.assertIn(f"{value} is no {what}: texts within it need double quotes", process.stderr)
+            self.assertIn(f"{value} is not a {what}: texts within it need double quotes", process.stderr)
             self.assertIn("""--set 'contact.0.group=["a", "b"]'""", process.stderr)
         self.expect_status(0, run("validate", self.case, "--set", 'contact.0.group=["bottom"]'))
         self.expect_status(0, run("validate", self.case, "--set", "title=[draft] a block"))
@@ -167,7 +167,7 @@ class CommandLine(TestCase):
         output = self.folder / "out"
         self.expect_status(0, run("run", self.case, "-o", output, "--quiet"))
         process = self.expect_status(1, run("run", output))
-        self.assertIn(f"`ricochet run --resume {output}` goes on", process.stderr)
+        self.assertIn(f"`ricochet run --resume {output}` continues", process.stderr)
 
     def test_the_default_output_directory(self):
         self.expect_status(0, run("run", "block.toml", directory=self.folder))
@@ -207,7 +207,7 @@ class CommandLine(TestCase):
         process = self.expect_status(5, run("run", case, "-o", self.folder / "out", "--quiet"))
         self.assertIn(": expected the energy to be 7 within 0.01 relative, found ", process.stderr)
         for listed in (process.stdout, self.expect_status(0, run("info", self.folder / "out")).stdout):
-            self.assertIn("DOES NOT HOLD: the energy (wanted 7 within 0.01 relative, found ", listed)
+            self.assertIn("DOES NOT HOLD: the energy (expected 7 within 0.01 relative, found ", listed)
             self.assertIn("published: elsewhere: 6.9", listed)
         found = json.loads((self.folder / "out" / "summary.json").read_text(encoding="utf-8"))["expectations"][0]
         self.assertEqual((found["name"], found["published"]), ("the energy", "elsewhere: 6.9"))
@@ -221,7 +221,7 @@ class CommandLine(TestCase):
         self.assertIn("1 does not apply to this run", process.stdout)
         case.write_text(text.replace("t=0)", "t=1e9)"), encoding="utf-8")
         process = self.expect_status(2, run("validate", case))
-        self.assertRegex(process.stderr, r"named\.toml:\d+:\d+: the time 1e\+09 lies outside the run, which goes from 0 to ")
+        self.assertRegex(process.stderr, r"named\.toml:\d+:\d+: the time 1e\+09 is outside the run, which extends from 0 to ")
 
     def test_streams(self):
         output = self.folder / "out"
@@ -369,7 +369,7 @@ class CommandLine(TestCase):
         summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
         self.assertEqual(summary["status"], "failed")
         self.assertIn("no longer finite", summary["message"])
-        history = History(output / "history.csv")  # whose numbers are all finite
+        history = History(output / "history.csv")  # all numbers are finite
         self.assertGreater(len(history.rows), 100)
         self.assertIn("(FAILED)", self.expect_status(0, run("info", output)).stdout)
 

@@ -81,7 +81,7 @@ class Completion(TestCase):
         for section, key in (("time", "scheme"), ("mass", "type"), ("mesh", "plane")):
             values = set(schema[section]["properties"][key]["enum"])
             self.assertGreater(len(values), 2)
-            # bash has split at "=", so that the answer is the part after it.
+            # bash has split at "=", so that the completion is the part after it.
             self.assertEqual(self.complete(f"ricochet run {CASE} --set {section}.{key}="), values)
         self.assertEqual(self.complete("ricochet study --vary time.scheme=midpoint,reduced-k"), {"midpoint,reduced-kane"})
         self.assertEqual(self.complete("ricochet validate --set time.no-such-key="), set())

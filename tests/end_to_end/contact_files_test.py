@@ -1,5 +1,5 @@
 """Contact problems written by others: FCLib files that h5py writes with every storage of a matrix, solved by `ricochet
-contact`; its answers and refusals."""
+contact`; its results and refusals."""
 
 import subprocess
 import unittest
@@ -114,7 +114,7 @@ class Files(ContactTestCase):
 
     def test_data_sets_that_were_never_written_and_cannot_be_read(self):
         for rows, said in ((12, "was never written and has no fill value"),
-                           (196608, "was never written, and its 196608 entries would take more room than the whole")):
+                           (196608, "was never written, and its 196608 entries would need more space than the whole")):
             path = self.write_file(self.example(3, 4), "csc")
             with h5py.File(path, "a") as file:
                 local = file["fclib_local"]
@@ -190,7 +190,7 @@ class Files(ContactTestCase):
             self.assertIn(word, said)
         output = self.simulate(self.write("block.toml", block_case()))
         process = self.expect_status(2, run("info", output / "results.h5"))
-        self.assertIn("no file of FCLib", process.stderr)
+        self.assertIn("not an FCLib file", process.stderr)
 
     def test_wrong_use(self):
         path = self.write_file(self.example(2, 2), "csc")

@@ -195,8 +195,8 @@ class Exports(ContactTestCase):
         case = self.write("block.toml", block_case())
         for steps, said in (("10,", '"" is empty'), ("", "the value is empty"), ("5:3", '"5:3" ends before it begins'),
                             ("x", '"x" is neither'), ("1;2", '"1;2" is neither'), ("0", "step 0, the initial state"),
-                            ("-4", "negative"), ("2:", '"2:" is neither'), ("99999999999999999999", "beyond all steps"),
-                            ("31", "the run has 30 steps only")):
+                            ("-4", "negative"), ("2:", '"2:" is neither'), ("99999999999999999999", "too large for a step number"),
+                            ("31", "the run has only 30 steps")):
             with self.subTest(steps):
                 process = self.expect_status(1, run("run", case, "-o", self.folder / "bad", "--export-contact", steps))
                 self.assertIn(said, process.stderr)

@@ -1,4 +1,4 @@
-"""`./dev`: its help and docs/developers/commands.md list the commands that there are, its benchmarks refuse wrong options before
+"""`./dev`: its help and docs/developers/commands.md list all commands, its benchmarks refuse wrong options before
 anything is compiled, and its gate for bits finds a change of one rounding."""
 
 import math
@@ -43,7 +43,7 @@ class Commands(TestCase):
 
 
 class Bits(TestCase):
-    """Two trees of sources with the same program, one of whose cases is another by one rounding."""
+    """Two trees of sources with the same program, and one case that differs by one rounding."""
 
     def tree(self, name, change=lambda text: text):
         root = self.folder / name

@@ -17,21 +17,21 @@ from harness import SOURCE, TestCase, block_case, run, settings
 ELSEWHERE = {
     'needs a linear material law: set material.law = "linear"':
         ("verification/finite_midpoint_test.cpp", "SchemesOfTheLinearLawAreRefused"),
-    'the contact zone is too coarse to trust the force: refine the mesh there':
+    'the contact zone is too coarse for a reliable force: refine the mesh there':
         ("end_to_end/followed_advice_test.py", "test_of_contact_zones_that_are_coarse"),
-    'to trust the largest force and the duration; refine the mesh there':
+    'for a reliable largest force and duration; refine the mesh there':
         ("end_to_end/followed_advice_test.py", "test_of_contact_zones_that_are_coarse"),
-    'the energy that this restitution says was lost: take a smaller time.step, and smaller cells':
+    'the energy loss that this restitution implies: use a smaller time.step and smaller cells':
         ("end_to_end/followed_advice_test.py", "test_of_restitution_that_the_method_has_made"),
     'leave multipliers_on out: with the multipliers on':
         ("end_to_end/multiplier_side_test.py", "leave multipliers_on out: with the multipliers on"),
-    'below which no step is refused, or a larger time.tolerance': ("verification/adaptive_onset_test.cpp", "EndWhereTheyDoNotGetOn"),
-    'Give the mesh a group of these facets of this body': ("end_to_end/self_penetration_test.py", "test_facets_without_a_group_of_their_own"),
-    "}}, the time in which a wave crosses a cell":
+    'a length at which no step is rejected, or a larger time.tolerance': ("verification/adaptive_onset_test.cpp", "EndWhereTheyDoNotGetOn"),
+    'Add a group of these facets of this body to the mesh': ("end_to_end/self_penetration_test.py", "test_facets_without_a_group_of_their_own"),
+    "in its [[material]]: the time in which a wave crosses a cell":
         ("end_to_end/warnings_test.py", "test_bodies_that_slide_without_damping"),
     "scheme \"{}\" {}; use scheme \"reduced-kane\"":
-        ("end_to_end/followed_advice_tables.py", "takes no friction: its balance of energy"),
-    "take a time.step in which bodies move by less than the obstacle is thick":
+        ("end_to_end/followed_advice_tables.py", "does not support friction: its energy balance"),
+    "use a time.step in which bodies move by less than the thickness of the obstacle":
         ("end_to_end/shaped_obstacles_test.py", "test_short_ones_do_not"),
 }
 # By the words of the sources: advice that no test follows. The list is to become shorter, not longer. A factor too
@@ -77,14 +77,14 @@ class FollowedAdvice(TestCase):
     def test_of_contact_zones_that_are_coarse(self):
         for refine, coarse in ((0, True), (2, False)):
             one, beside = self.info(block_case(), {"mesh.refine": refine}, f"refined-{refine}")
-            self.assertEqual("too coarse to trust the largest force and the duration; refine the mesh there" in one, coarse)
-            self.assertEqual("the contact zone is too coarse to trust the force: refine the mesh there" in beside, coarse)
+            self.assertEqual("too coarse for a reliable largest force and duration; refine the mesh there" in one, coarse)
+            self.assertEqual("the contact zone is too coarse for a reliable force: refine the mesh there" in beside, coarse)
 
     def test_of_restitution_that_the_method_has_made(self):
         for step, refine in ((0.01, 0), (0.002, 2)):
             values = {**KANE, "time.end": 1.0, "time.reaction_weight": "end", "time.step": step, "mesh.refine": refine}
             _, beside = self.info(STRUCK, values, f"refined-{refine}")
-            self.assertEqual("was lost: take a smaller time.step, and smaller cells" in beside, refine == 0)
+            self.assertEqual("implies: use a smaller time.step and smaller cells" in beside, refine == 0)
 
     def test_edges_are_no_curves_that_facets_stand_for(self):
         """Two parallelograms overlap: a mesh of second order, which would be the same, is not advised."""

@@ -180,7 +180,7 @@ class ForeignMeshes(TestCase):
         file = self.write("job.inp", text)
         for _ in range(2):
             errors = self.expect_status(0, run("info", file)).stderr
-            self.assertIn("left aside: *DYNAMIC, *ELASTIC, *END STEP, *MATERIAL, *SOLID SECTION, *STEP", errors)
+            self.assertIn("ignored: *DYNAMIC, *ELASTIC, *END STEP, *MATERIAL, *SOLID SECTION, *STEP", errors)
             self.assertIn("1 of type MASS", errors)
         self.assertEqual(len(list((self.folder / "cache").glob("job-*.msh"))), 1)
 
@@ -242,28 +242,28 @@ class ForeignMeshes(TestCase):
         nodes, elements = f"*NODE\n{node_lines(twin)}", f"*ELEMENT, TYPE=C3D4, ELSET=body\n{element_lines(twin)}"
         part = f"*PART, NAME=a\n{nodes}{elements}*END PART\n"
         refused = {
-            "second part": (f"{part}*PART, NAME=b\n", ('a second part, "b"', "join them to one part")),
+            "second part": (f"{part}*PART, NAME=b\n", ('a second part, "b"', "merge them into one part")),
             "placement": (f"{part}*ASSEMBLY\n*INSTANCE, NAME=i, PART=a\n 1.0, 0., 0.\n*END INSTANCE\n",
-                          ("an instance that is moved or turned", "`move` and `turn` in [mesh]")),
-            "generation": (f"{nodes}*NGEN\n1, 5, 1\n{elements}", ("*NGEN is not read", "Write Input")),
+                          ("an instance that is moved or rotated", "`move` and `turn` in [mesh]")),
+            "generation": (f"{nodes}*NGEN\n1, 5, 1\n{elements}", ("*NGEN is not supported", "Write Input")),
             "cylinder": (f"*NODE, SYSTEM=C\n1, 1., 90., 0.\n{elements}", ("Cartesian",)),
             "axisymmetry": (f"{nodes}*ELEMENT, TYPE=CAX4R\n1, 1, 2, 3, 4\n", ("CAX4R", "axisymmetric")),
             "serendipity": (f"{nodes}*ELEMENT, TYPE=C3D20R\n1, " + ", ".join(map(str, range(1, 16))) + ",\n"
-                            + "1, 2, 3, 4, 5\n", ("1 of the kind C3D20R", "C3D10")),
-            "plane serendipity": (f"{nodes}*ELEMENT, TYPE=CPS8\n1, 1, 2, 3, 4, 5, 6, 7, 8\n", ("kind CPS8", "CPS6")),
-            "wedge": (f"{nodes}{elements}*ELEMENT, TYPE=C3D6\n99, 1, 2, 3, 4, 5, 6\n", ("kind C3D6",)),
+                            + "1, 2, 3, 4, 5\n", ("1 of type C3D20R", "C3D10")),
+            "plane serendipity": (f"{nodes}*ELEMENT, TYPE=CPS8\n1, 1, 2, 3, 4, 5, 6, 7, 8\n", ("type CPS8", "CPS6")),
+            "wedge": (f"{nodes}{elements}*ELEMENT, TYPE=C3D6\n99, 1, 2, 3, 4, 5, 6\n", ("type C3D6",)),
             "unknown set": (f"{nodes}{elements}*SURFACE, NAME=s\nnothing, S1\n", ('"nothing"',)),
-            "no such face": (f"{nodes}{elements}*SURFACE, NAME=s\nbody, S5\n", ("S5 is no face",)),
+            "no such face": (f"{nodes}{elements}*SURFACE, NAME=s\nbody, S5\n", ("S5 is not a face",)),
             "no such node": (f"{nodes}*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 7777\n", ("element 1 refers to node 7777",)),
             "set of strangers": (f"{nodes}{elements}*NSET, NSET=s\n7777\n", ("names node 7777",)),
             "bad number": (f"*NODE\n1, 0.0, zero, 0.0\n", ("bad_number.inp:2: the coordinates of a node",)),
             "not a number": ("*NODE\n1, 0.0, nan, 0.0\n", ("not_a_number.inp:2: the coordinates of a node",)),
             "digits parted": ("*NODE\n1_0, 0.0, 0.0, 0.0\n", ("digits_parted.inp:2: the number of a node",)),
             "no keyword": (f"NODE\n{nodes[6:]}", ("no_keyword.inp:1: data before any keyword: NODE",)),
-            "twice": (f"{nodes}{elements}{elements}", ("element 1 is there twice",)),
+            "twice": (f"{nodes}{elements}{elements}", ("element 1 is defined twice",)),
             "short element": (f"{nodes}*ELEMENT, TYPE=C3D4\n1, 1, 2, 3\n", ("has 4 nodes, this one has 3",)),
             "lost include": ("*INCLUDE, INPUT=gone.inp\n", ("gone.inp", "No such file")),
-            "device": ("*INCLUDE, INPUT=/dev/zero\n", ("device.inp:1", "/dev/zero", "no regular file")),
+            "device": ("*INCLUDE, INPUT=/dev/zero\n", ("device.inp:1", "/dev/zero", "not a regular file")),
             "long number": (f"{nodes}12345678901234567890123, 0., 0., 0.\n{elements}",
                             (f"long_number.inp:{len(twin.points) + 2}: ", "more than 18 digits")),
             "long member": (f"{nodes}{elements}*NSET, NSET=s\n12345678901234567890123\n", ("more than 18 digits",)),
@@ -352,7 +352,7 @@ class ForeignMeshes(TestCase):
         self.refusal(file, "no cells of dimension 2 or 3")
         file = self.folder / "prism.vtu"
         meshio.Mesh(numpy.random.default_rng(1).random((6, 3)), [("wedge", numpy.arange(6).reshape(1, 6))]).write(file)
-        self.refusal(file, "1 of the kind wedge")
+        self.refusal(file, "1 of type wedge")
         self.refusal(self.folder / "absent.inp", "absent.inp", status=4)
 
     def test_missing_packages_are_named(self):

@@ -110,13 +110,13 @@ class Impacts(Bodies):
         text = self.case('type = "sphere"\ncentre = [0.5, 0.82]\nradius = 0.3\ndensity = 2.0')
         said = self.expect_status(0, run("validate", self.write("case.toml", text))).stdout
         self.assertIn('the mesh is 0.02479 away from obstacle "floor"', said)
-        self.assertIn("it moves freely, with the mass 0.565487 about (0.5, 0.82)", said)
+        self.assertIn("the obstacle moves freely: mass 0.565487, centre (0.5, 0.82)", said)
 
     def test_a_static_start_needs_what_holds_it(self):
         text = self.case('type = "sphere"\ncentre = [0.5, 0.82]\nradius = 0.3\ndensity = 2.0',
                          more='[initial]\ndisplacement = "static"\n')
         said = self.expect_status(2, run("run", self.write("case.toml", text), "-o", self.folder / "out")).stderr
-        self.assertIn('needs what holds "floor" against motion along x', said)
+        self.assertIn('requires a restraint of "floor" against motion along x', said)
 
 
 class Runs(Bodies):
@@ -136,8 +136,8 @@ class Runs(Bodies):
     def test_what_makes_no_sense_is_refused(self):
         for obstacle, fragment in (
                 (PLANE + "\nmass = 1.0", "encloses nothing that has a centre of mass"),
-                ('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 1.0\nrotation = "t"', "moves by the forces on it"),
-                ('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 1.0\ndensity = 1.0', 'has "mass" already'),
+                ('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 1.0\nrotation = "t"', "moves under the forces on it"),
+                ('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 1.0\ndensity = 1.0', 'already has "mass"'),
                 ('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 1.0\nspring = [-1.0, 0.0]', "must not be negative"),
                 ('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 1.0\nhold = ["z"]', "no direction \"z\"")):
             process = run("run", self.write("case.toml", self.case(obstacle)), "-o", self.folder / "out", "--force")
@@ -147,7 +147,7 @@ class Runs(Bodies):
         process = run("run", self.write("case.toml", text), "-o", self.folder / "out", "--force", "--set",
                       "time.scheme=midpoint", "--set", "mass.type=consistent")
         self.assertEqual(process.returncode, 2, process.stderr)
-        self.assertIn("takes no rigid bodies that move freely", process.stderr)
+        self.assertIn("does not support rigid bodies that move freely", process.stderr)
 
 
 if __name__ == "__main__":

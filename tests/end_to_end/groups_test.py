@@ -1,4 +1,4 @@
-"""Groups that no file has, lists of them, bodies that are placed, and cells that are reversed."""
+"""Built-in groups, lists of groups, positions of bodies, and reversed cells."""
 
 import json
 
@@ -94,9 +94,9 @@ when = {{ "contact.0.group" = ["bottom", "sides"] }}
             return self.expect_status(2, run("validate", self.write("case.toml", text), *arguments)).stderr
 
         contact = message(block_case().replace('"bottom"', '"all"'))
-        self.assertIn('"boundary" is every boundary facet', contact)
+        self.assertIn('"boundary" means all boundary facets', contact)
         self.assertIn('there is no group "botom"', message(block_case().replace('"bottom"', '["sides", "botom"]')))
-        self.assertIn('is "sides", which is there already', message(block_case().replace('"bottom"', '["sides", "sides"]')))
+        self.assertIn('repeats "sides"', message(block_case().replace('"bottom"', '["sides", "sides"]')))
         self.assertIn("must be the name of a group; found the integer 3",
                       message(block_case().replace('"bottom"', '["sides", 3]')))
         self.assertIn('"group" must be the name of a group, or a list of them; found an empty list',
@@ -143,12 +143,12 @@ when = {{ "contact.0.group" = ["bottom", "sides"] }}
             return self.expect_status(2, run("validate", self.write("case.toml", text))).stderr
 
         self.assertIn('has no "angle"', message("turn = { about = [0.0, 0.0] }"))
-        self.assertIn("leave out the axis", message("turn = { angle = 3.0, axis = [0.0, 1.0] }"))
+        self.assertIn("remove the axis", message("turn = { angle = 3.0, axis = [0.0, 1.0] }"))
         self.assertIn("all vectors must have as many", message("move = [0.0, 0.0, 1.0]"))
         solid = block_case("tetrahedron_o1_msh41_ascii.msh").replace("0.0, 0.0]", "0.0, 0.0, 0.0]").replace(
             "[0.0, 1.0]", "[0.0, 0.0, 1.0]").replace("[0.0, -10.0]", "[0.0, 0.0, -10.0]").replace(
             "[1.3, 0.1]", "[1.3, 0.1, 0.0]")
-        self.assertIn("give \"turn\" an axis", message("turn = { angle = 3.0 }", text=solid))
+        self.assertIn("add an axis to \"turn\"", message("turn = { angle = 3.0 }", text=solid))
         self.assertIn("must not be zero", message("turn = { angle = 3.0, axis = [0.0, 0.0, 0.0] }", text=solid))
 
     # --- reversed cells

@@ -1,4 +1,4 @@
-"""The rules of the house that can be counted: how comments begin, how long lines, files and pages are."""
+"""House rules that can be counted: beginnings of comments, lengths of lines, files and pages."""
 
 import re
 import unittest
@@ -6,7 +6,7 @@ import unittest
 from harness import SOURCE
 
 CODE = ("src", "apps", "tests", "bench", "python/bindings")
-# A documentation comment names what it stands over, or says what that does.
+# A documentation comment begins with a noun phrase, or with a verb in the third person.
 BEGINNING = re.compile(r"^\s*(?:[^/\"]*?\s)?///<? +(?:@file +)?(Of|What|Where|The same|Those|That)\b")
 # Files that were longer before there was a limit: to be divided, none to be added.
 LONG_FILES = {"benchmarks/closed_forms.py", "tests/verification/published_schemes_test.cpp"}
@@ -38,6 +38,16 @@ class Comments(unittest.TestCase):
         for line in ("  /// What is here.", "int x;  ///< of which", "double y;  ///< Of the body.", "/// @file The same"):
             found = BEGINNING.match(line) is not None
             self.assertEqual(found, "of which" not in line, line)
+
+    def test_files_named_in_comments_exist(self):
+        """A file that was renamed must not live on in a comment."""
+        sources = files((*CODE, "cmake"), ".hpp", ".cpp", ".py", ".cmake")
+        names = {path.name for path in sources}
+        comment = re.compile(r"(?://|#(?! *include)).*")
+        named_file = re.compile(r"(?<![\w.{*-])([a-z_0-9]+\.[hc]pp)\b")
+        wrong = [f"{named(path, number)}: {name}" for path in sources for number, line in enumerate(lines(path), 1)
+                 for text in comment.findall(line) for name in named_file.findall(text) if name not in names]
+        self.assertEqual(wrong, [])
 
 
 class Sizes(unittest.TestCase):

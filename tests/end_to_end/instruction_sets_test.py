@@ -48,7 +48,7 @@ class InstructionSets(TestCase):
         for command in (("run", DISC, "-o", self.folder / "out"), ("schema",), ("info", DISC), ("validate", DISC)):
             process = self.expect_status(1, run(*command, environment=masked("avx2")))
             self.assertEqual(process.stdout, "")
-            self.assertIn("RICOCHET_INSTRUCTION_SET=avx2: there is no such instruction set; x86-64, x86-64-v3 and x86-64-v4",
+            self.assertIn("RICOCHET_INSTRUCTION_SET=avx2: unknown instruction set; use x86-64, x86-64-v3 or x86-64-v4",
                           process.stderr)
         self.assertEqual(list(self.folder.iterdir()), [])
 
@@ -58,7 +58,7 @@ class InstructionSets(TestCase):
         self.assertGreater(len(names), 0)
         for name in NAMES[len(names):]:
             process = self.expect_status(1, run("schema", environment=masked(name)))
-            self.assertIn(f"can do no more than {names[-1]}", process.stderr)
+            self.assertIn(f"supports at most {names[-1]}", process.stderr)
 
     def test_an_empty_value_is_none(self):
         self.assertEqual(self.simulate_with("", DISC, {"time.end": 0.001})[1]["libraries"],
@@ -119,7 +119,7 @@ class InstructionSets(TestCase):
             if again == names[0]:
                 self.assertNotIn("resumed with", process.stderr)
             else:
-                self.assertRegex(process.stderr, rf"resumed with other libraries, another processor or RICOCHET_INSTRUCTION_SET \(OpenBLAS.*"
+                self.assertRegex(process.stderr, rf"resumed with other libraries, another processor or another RICOCHET_INSTRUCTION_SET \(OpenBLAS.*"
                                                  rf"{CORES[again]}.* for {again}; before: OpenBLAS.*{CORES[names[0]]}.*\)")
 
     def test_results_agree_to_rounding(self):

@@ -45,7 +45,7 @@ class ManualPage(TestCase):
                         self.assertIn(line.split(";")[0].strip(), words)
 
     def test_names_what_the_program_looks_at(self):
-        """The variables of the environment in the sources are those of the page."""
+        """The environment variables in the sources are those of the page."""
         source = "".join(path.read_text(encoding="utf-8") for folder in ("src", "apps") for path in (SOURCE / folder).rglob("*.cpp"))
         read = set(re.findall(r'"((?:RICOCHET|OPENBLAS)_[A-Z_]+)"', source))
         self.assertGreater(len(read), 3)

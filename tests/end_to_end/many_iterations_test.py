@@ -47,7 +47,7 @@ end = 0.024
 [output]
 fields_every = 0
 """
-TOLD = r"Newton's method has taken more than 200 iterations in 3 steps"
+TOLD = r"Newton's method has needed more than 200 iterations in 3 steps"
 EXPLICIT = {"time.scheme": "semi-explicit", "mass.type": "equivalent-lumped"}
 
 
@@ -66,18 +66,18 @@ class ManyIterations(TestCase):
         self.assertIsNotNone(found, said)
         step = float(found[1])
         after, history = self.squeeze(**EXPLICIT, **{"time.step": step, "time.end": 200 * step})
-        self.assertNotRegex(after, "Newton's method has taken")
+        self.assertNotRegex(after, "Newton's method has needed")
         self.assertLess(max(history["newton_rounds"]), 100)
 
     def test_a_case_that_it_does_not_take(self):
         relaxing = RING.replace("bulk_modulus = 100.0", "bulk_modulus = 100.0\nrelaxation = { modulus = [0.2], time = [1.0] }")
         said, _ = self.squeeze(relaxing)
-        self.assertRegex(said, TOLD + r".* does not take this case: .*relax")
+        self.assertRegex(said, TOLD + r".* does not support this case: .*relax")
 
     def test_few_iterations_are_no_matter(self):
         said, history = self.squeeze(**{"time.step": 5e-4, "time.end": 3e-3})
         self.assertLess(max(history["newton_rounds"]), 200)
-        self.assertNotRegex(said, "Newton's method has taken")
+        self.assertNotRegex(said, "Newton's method has needed")
 
 
 if __name__ == "__main__":

@@ -31,7 +31,7 @@ class MethodEnergy(TestCase):
         return line
 
     def test_it_is_what_is_missing_in_the_total_energy(self):
-        """Only contact acts on the disc: the method has taken the energy that it has lost since the start."""
+        """Only contact acts on the disc: the energy lost since the start is that of the method."""
         for name, values in (("end", {"time.reaction_weight": "end"}), ("newmark", {"time.scheme": "newmark", "time.preset": "textbook-half", "time.step": 2e-3}),
                              ("midpoint", {"time.scheme": "midpoint", "mass.type": "consistent"})):
             with self.subTest(name):
@@ -62,7 +62,7 @@ class MethodEnergy(TestCase):
         # "automatic" selects the end reactions with friction.
         self.assertEqual(found["reactions"], {"acting": "end", "least_end_weight": None, "largest_end_weight": None, "steps_of_means": 0,
                                               "steps_without_mean": 0})
-        self.assertTrue(self.said(folder).endswith("; reactions: those of the end of a step"), self.said(folder))
+        self.assertTrue(self.said(folder).endswith("; reactions: those at the end of the step"), self.said(folder))
         adaptive = self.simulate(DISC, "friction-adaptive", LONG | {
             "contact.0.friction": 0.3, "initial.velocity": "[0.1,-0.1]", "time.reaction_weight": "adaptive"})
         acting = summary(adaptive)["reactions"]
@@ -91,7 +91,7 @@ class MethodEnergy(TestCase):
         # A mean also acts in the step in which a point separates.
         self.assertGreaterEqual(reactions["steps_of_means"], touching)
         self.assertLessEqual(reactions["steps_of_means"], 1.2 * touching)
-        self.assertRegex(self.said(folder), r"^  the method kept the energy to \S+ of the largest; reactions: mean, end weight 0$")
+        self.assertRegex(self.said(folder), r"^  the method conserved the energy to within \S+ of the largest; reactions: mean, end weight 0$")
         folder = self.simulate(DISC, "coarse", LONG | {"time.step": 1e-2, "time.end": 0.1})
         reactions = summary(folder)["reactions"]
         self.assertGreater(reactions["largest_end_weight"], 0.05)
@@ -135,8 +135,8 @@ class MethodEnergy(TestCase):
             self.assertEqual(large, weight == "end")
             self.assertEqual(impact["restitution_inexact"], large)
             text = self.expect_status(0, run("info", folder)).stdout
-            told = (f"restitution {impact['restitution']:.4g} (inexact: of the energy of the approach the method lost "
-                    f"{percent(abs(impact['method_energy']) / approach)}, where the body lost {percent(1 - impact['restitution']**2)})")
+            told = (f"restitution {impact['restitution']:.4g} (inexact: of the energy of the approach, the method lost "
+                    f"{percent(abs(impact['method_energy']) / approach)}, and the body lost {percent(1 - impact['restitution']**2)})")
             self.assertEqual(told in text, large, text)
         text = self.expect_status(0, run("info", *folders.values())).stdout
         rows = {weight: [line for line in text.splitlines() if line.startswith(f"{folder} ")] for weight, folder in folders.items()}
@@ -145,7 +145,7 @@ class MethodEnergy(TestCase):
         self.assertNotIn("!", rows["adaptive"][1])
         self.assertIn("  ! the method itself lost or created more than a tenth", text)
         self.assertIn(f"{folders['end']}: mass equivalent, built as ", text)
-        self.assertRegex(text, r"built as \S+; reactions: those of the end of a step\n")
+        self.assertRegex(text, r"built as \S+; reactions: those at the end of the step\n")
 
     def test_results_of_older_versions_are_read(self):
         folder = self.simulate(DISC, "old", LONG | {"time.reaction_weight": "end"})

@@ -77,32 +77,32 @@ class Sides(TestCase):
 
     def test_the_round_side_carries_the_multipliers(self):
         text, force, along = self.slide(0.16, 0.2)
-        self.assertIn('group "stamp.tip" carries the multipliers: normals turn less within its facets', text)
-        self.assertNotIn("normals turn by", text)
+        self.assertIn('group "stamp.tip" carries the multipliers: normals vary less within its facets', text)
+        self.assertNotIn("normals vary by", text)
         self.assertLess(along, 0.01)
         # The other side has forces along the mean normals of the round one, and the run warns of it. Its advice is to
         # leave the choice to the program, as in the run above.
         text, _, along_of_other = self.slide(0.16, 0.2, 'multipliers_on = "against"')
         self.assertGreater(along_of_other, 3.0 * along)
         self.assertGreater(along_of_other, 0.03)
-        self.assertRegex(text, 'may be off by up to as large a part; leave multipliers_on out: with the multipliers on "stamp.tip" they turn by')
+        self.assertRegex(text, 'may have a relative error of up to this size; leave multipliers_on out: with the multipliers on "stamp.tip" they vary by')
 
     def test_a_side_that_is_much_finer_carries_them(self):
         text, _, _ = self.slide(0.05, 0.2, degree=2)
-        self.assertIn('group "block.top" carries the multipliers: normals turn less within its facets', text)
+        self.assertIn('group "block.top" carries the multipliers: normals vary less within its facets', text)
 
     def test_facets_as_fine_as_advised_are_fine_enough(self):
-        """Compared with the force on a mesh of size 0.03."""
+        """The force is compared with that on a mesh of size 0.03."""
         refined = 10.4
         text, coarse, _ = self.slide(0.2, 0.4)
         self.assertGreater(abs(coarse / refined - 1.0), 0.2)
-        advised = re.search(r'normals turn by (\S+) rad .*; take facets of "stamp.tip" (\S+) times as large', text)
+        advised = re.search(r'normals vary by (\S+) rad .*; use facets of "stamp.tip" (\S+) times as large', text)
         self.assertIsNotNone(advised, text)
         self.assertAlmostEqual(float(advised[1]), 0.4, delta=0.04)
         self.assertIn('a run with multipliers_on = "against" shows by how much forces differ', text)
         size = 0.4 * float(advised[2])
         text, force, along = self.slide(0.2, size)
-        self.assertNotIn("normals turn by", text)
+        self.assertNotIn("normals vary by", text)
         self.assertLess(abs(force / refined - 1.0), 0.06)
         self.assertLess(along, 0.01)
         # Both sides agree within the accuracy that the advice states.

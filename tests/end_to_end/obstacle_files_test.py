@@ -21,7 +21,7 @@ def surfaces(results, corners):
 
 class ObstacleFiles(TestCase):
     def test_a_plane(self):
-        """As far as the body reaches."""
+        """Its surface reaches as far as the body."""
         text = block_case().replace("normal = [0.0, 1.0]", "normal = [0.0, 1.0]\nvelocity = [0.3, -0.05]")
         results = self.simulate(self.write("case.toml", text))
         side = (results / "results.xdmf").read_text()

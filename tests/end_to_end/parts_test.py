@@ -165,7 +165,7 @@ class Parts(TestCase):
 
     def test_bodies_are_called_by_their_parts(self):
         text = self.expect_status(0, run("info", self.write("case.toml", self.parts_case()))).stdout
-        self.assertIn('part "two": ' + str(self.folder / "rectangle.msh") + ", scaled by 2, turned by 90°, moved", text)
+        self.assertIn('part "two": ' + str(self.folder / "rectangle.msh") + ", scaled by 2, rotated by 90°, moved", text)
         self.assertIn('body "one": mass 6 per unit of thickness', text)
         self.assertIn('body "two": mass 72 per unit of thickness', text)
         self.assertIn('group "two.all": 4 cells', text)
@@ -195,8 +195,8 @@ class Parts(TestCase):
         case = self.write("case.toml", text)
         environment = os.environ | {"RICOCHET_CACHE": str(self.folder / "cache")}
         process = self.expect_status(0, run("validate", case, environment=environment))
-        self.assertIn(f"valid, as far as can be told without a mesh of {MESHES / 'disc.geo'}\n", process.stdout)
-        self.assertIn(f"only known once {MESHES / 'disc.geo'} is meshed",
+        self.assertIn(f"valid, as far as can be checked without a mesh of {MESHES / 'disc.geo'}\n", process.stdout)
+        self.assertIn(f"known only after {MESHES / 'disc.geo'} has been meshed",
                       self.expect_status(0, run("info", case, environment=environment)).stdout)
         self.expect_status(0, run("validate", case, "--mesh", environment=environment))
         self.assertIn('body "two"', self.expect_status(0, run("info", case, environment=environment)).stdout)
@@ -219,7 +219,7 @@ class Parts(TestCase):
         self.write("broken.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n")
         self.assertIn('--set part.two.file=broken.msh: part "two": ' + str(self.folder / "broken.msh"),
                       self.message(case, "--set", "part.two.file=broken.msh"))
-        self.assertIn("can only have letters, digits, _ and -", self.message(case.replace("[part.one]", '[part."o.ne"]')))
+        self.assertIn("can only contain letters, digits, _ and -", self.message(case.replace("[part.one]", '[part."o.ne"]')))
         self.assertIn('there is no group "body" of cells', self.message(case.replace('"one.body"', '"body"')))
         self.assertIn('did you mean "one.body" or "two.body"?', self.message(case.replace('"one.body"', '"body"')))
         shared = self.message(case + '[[motion]]\ngroup = "one.body"\nspin = 1.0\n')

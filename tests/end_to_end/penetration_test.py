@@ -85,7 +85,7 @@ class Penetration(TestCase):
         rows = self.expect_status(0, run("info", output, other)).stdout.split("\n")[2:4]
         self.assertIn(f" {found['depth']:.3g} ", rows[0])
         self.assertIn(" ≥ ", rows[1])
-        self.assertIn("no others were looked at", self.expect_status(0, run("info", other)).stdout)
+        self.assertIn("no other nodes were checked", self.expect_status(0, run("info", other)).stdout)
         # The report judges the same.
         for directory, checked in ((output, True), (other, False)):
             self.expect_status(0, run("report", directory))

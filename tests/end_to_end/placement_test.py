@@ -1,4 +1,4 @@
-"""Initial positions of bodies: turns in order, on an obstacle, dropped from a height. Positions and velocities are
+"""Initial positions of bodies: ordered rotations, on an obstacle, dropped from a height. Positions and velocities are
 closed forms."""
 
 import math
@@ -84,7 +84,7 @@ class Placement(TestCase):
     def test_what_passes_by_is_refused(self):
         ball = '[obstacle.ball]\ntype = "sphere"\ncentre = [0, 0, 0]\nradius = 1\n[load]\ngravity = [0, 0, -2]\n'
         message = self.place('move = [10, 0, 10]\nrest_on = "ball"', ball, status=2)
-        self.assertRegex(message, r'case.toml:4:11: .*does not come to rest on obstacle "ball".*say with "move"')
+        self.assertRegex(message, r'case.toml:4:11: .*does not come to rest on obstacle "ball".*use "move"')
 
     def test_dropped_from_a_height(self):
         """Kinetic energy m g H, and momentum m sqrt(2 g H) along gravity."""

@@ -133,7 +133,7 @@ class Plot(TestCase):
         self.assertLess(texts(figure)["All of them"] + 5, texts(figure)["midpoint"])
 
     def test_keys_that_are_vectors(self):
-        """By the component in which the runs differ, else by their length: 5, 10 and 13 of Pythagorean triangles."""
+        """The axis is the component that differs, else the length: 5, 10 and 13 of Pythagorean triangles."""
         def study(name, values):
             process = run("study", DISC, "--vary", f"initial.velocity={values}", "-o", self.folder / name, "--quiet", "--jobs", "1",
                           "--log-level", "error", *settings({"time.end": 0.0005, "output.fields_every": 0}))
@@ -216,15 +216,15 @@ class Plot(TestCase):
         for arguments, status, message in (
                 (["--what", "energy", "-o", "figure.eps"], 1, "an .svg, .pdf or .png file"),
                 (["--what", "enrgy", "-o", "f.svg"], 1, 'has no column "enrgy"'),
-                (["--what", "total_enrgy", "-o", "f.svg"], 1, 'is "total_energy" meant?'),
+                (["--what", "total_enrgy", "-o", "f.svg"], 1, 'did you mean "total_energy"?'),
                 (["--what", "probe:lowest.speed", "-o", "f.svg"], 1, "probe:NAME.COLUMN"),
-                (["--what", "energy", "-o", "f.svg", "--time", "1:2"], 1, "nothing to be drawn in this part of the time"),
-                (["--what", "energy", "-o", "f.svg", "--time", "2:1"], 1, "like 0.02:0.05"),
-                (["--what", "energy", "-o", "f.svg", "--time", "now"], 1, "like 0.02:0.05"),
-                (["--what", "energy", "-o", "f.svg", "--size", "17xbig"], 1, "like 17x6"),
+                (["--what", "energy", "-o", "f.svg", "--time", "1:2"], 1, "nothing to draw in this time interval"),
+                (["--what", "energy", "-o", "f.svg", "--time", "2:1"], 1, "for example 0.02:0.05"),
+                (["--what", "energy", "-o", "f.svg", "--time", "now"], 1, "for example 0.02:0.05"),
+                (["--what", "energy", "-o", "f.svg", "--size", "17xbig"], 1, "for example 17x6"),
                 (["--what", "energy", "-o", "f.svg", "--size", "1x900"], 1, "from 2 to 200"),
                 (["--what", "energy", "-o", "f.svg", "--label", "a", "--label", "b"], 1, "2 times for 1 runs"),
-                (["--what", "friction_work", "-o", "f.svg", "--log"], 1, "shows what is positive"),
+                (["--what", "friction_work", "-o", "f.svg", "--log"], 1, "shows only positive values"),
                 (["-o", "f.svg"], 1, "--what"),
                 (["--what", "energy", "-o", "missing/f.svg"], 4, "missing/f.svg: cannot be written")):
             with self.subTest(arguments):
@@ -277,7 +277,7 @@ class Plot(TestCase):
         self.assertTrue((self.folder / "used").is_file())
         process = self.plot(results, "--what", "energy", "-o", "f.svg", status=4,
                             environment=os.environ | {"RICOCHET_PYTHON": str(self.folder / "none")})
-        self.assertIn("which is not here", process.stderr)
+        self.assertIn("which is not installed", process.stderr)
 
 
 if __name__ == "__main__":

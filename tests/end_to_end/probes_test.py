@@ -262,7 +262,7 @@ contact = 0
                 '[[contact]]\ngroup = "bottom"\nobstacle = "roof"\n')
         text = block_case().replace("[obstacle.floor]", roof + "[obstacle.floor]")
         process = self.expect_status(0, run("run", self.write("two.toml", text), "-o", self.folder / "two"))
-        self.assertIn('are those with obstacle "floor", which is the nearest one at the start', process.stderr)
+        self.assertIn('refer to obstacle "floor", the nearest one at the start', process.stderr)
         self.assertAlmostEqual(History(self.folder / "two" / "history.csv")["foot.gap"][0], 0.1)
 
     def test_what_is_refused(self):
@@ -273,7 +273,7 @@ contact = 0
                 ('group = "bodies"', "bodies"),
                 ('boundary = "body"', "body"),
                 ('boundary = ""', '"boundary" must be the name of a group'),
-                ('from = [5.0, 5.0]\nto = [6.0, 6.0]', 'give "within"'),
+                ('from = [5.0, 5.0]\nto = [6.0, 6.0]', 'set "within"'),
                 ('from = [5.0, 5.0]\nto = [5.0, 5.0]', "same point"),
                 ('from = [5.0, 5.0]', '"to"'),
                 ('group = "body"\nabout = [0.0, 0.0]', 'for probes with "boundary" only'),
@@ -293,7 +293,7 @@ contact = 0
                           '[[expect]]\nquantity = "max(history.f.displacement_x)"\nmaximum = 1\n')
         errors = self.expect_status(2, run("run", case, "-o", self.folder / "sampled")).stderr
         self.assertRegex(errors, r'sampled\.toml:\d+:\d+: history\.csv has no column "f\.displacement_x": probe "f" has '
-                                 r'"every", so that its columns are in probes-3\.csv; leave "every" out')
+                                 r'"every", so its columns are in probes-3\.csv; remove "every"')
         self.assertNotIn("did you mean", errors)
 
 

@@ -81,7 +81,7 @@ class Streams(TestCase):
             figure = self.folder / "figure.svg"
             self.expect_status(0, redirected(marks, "plot", output, "--what", "energy", "-o", figure))
             self.assertIn("<svg", figure.read_text())
-            # An answer that nobody can read is an error.
+            # Output that nobody can read is an error.
             for command in (("info", output), ("info", self.case), ("validate", self.case), ("schema",), ("--help",),
                             ("--version",), ("contact", "--list"), ("contact", exported)):
                 answer = self.expect_status(4 if closed[1] else 0, redirected(marks, *command))
@@ -121,7 +121,7 @@ class Files(TestCase):
         summary = output / "summary.json"
         summary.write_text(summary.read_text().replace('"status": "done"', '"status": "running"'))
         answer = self.expect_status(0, run("run", case, "-o", output, "--resume", "--set", "output.checkpoint_every=10"))
-        self.assertIn("it is no regular file", answer.stderr)
+        self.assertIn("it is not a regular file", answer.stderr)
 
     def test_pipes(self):
         """They are refused without waiting, as nobody might ever write into them."""
@@ -171,7 +171,7 @@ class Files(TestCase):
                                     capture_output=True, text=True, timeout=60)
             self.assertIn(answer.returncode, (0, 3), f"{megabytes} MB: {answer.stderr}")
             if answer.returncode == 3:
-                self.assertRegex(answer.stderr, "limit on memory|out of memory")
+                self.assertRegex(answer.stderr, "memory limit|out of memory")
         self.assertEqual(answer.returncode, 0, answer.stderr)
 
 
@@ -179,7 +179,7 @@ class Messages(TestCase):
     def test_an_end_between_two_steps(self):
         case = self.write("block.toml", block_case())
         values = {"time.step": 0.01, "time.end": 0.025}
-        wanted = "time.end = 0.025 is no whole number of steps of 0.01: the run ends at t = 0.03, after step 3"
+        wanted = "time.end = 0.025 is not a whole number of steps of 0.01: the run ends at t = 0.03, after step 3"
         answer = self.expect_status(0, run("run", case, "-o", self.folder / "out", *settings(values)))
         self.assertIn(wanted, answer.stderr)
         self.assertEqual(json.loads((self.folder / "out" / "summary.json").read_text())["warnings"], [wanted])
@@ -243,8 +243,8 @@ class Signals(TestCase):
         _, errors = self.end(process, signal.SIGTERM, 143)
         summary = json.loads((output / "summary.json").read_text())
         self.assertEqual(summary["status"], "interrupted")
-        self.assertIn("in the middle of a step", summary["message"])
-        self.assertIn("goes on from the last checkpoint, if there is one", errors)
+        self.assertIn("stopped during a step", summary["message"])
+        self.assertIn("continues from the last checkpoint, if there is one", errors)
         self.assertIn("(interrupted)", run("info", output).stdout)
 
     def test_the_state_before_a_long_step_is_kept(self):
@@ -260,7 +260,7 @@ class Signals(TestCase):
         self.end(process, signal.SIGTERM, 143)
         summary = json.loads((output / "summary.json").read_text())
         self.assertEqual(summary["status"], "interrupted")
-        # Of the end of the step if it came in time, else of its start.
+        # The end of the step if it was reached in time, else its start.
         step = int(sorted(output.glob("checkpoint-*.ckpt"))[-1].stem.split("-")[1])
         self.assertEqual(summary["checkpoint_step"], step)
         self.assertGreater(step, 0)

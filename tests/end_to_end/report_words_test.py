@@ -14,7 +14,7 @@ from report_page import SHORT, VIEWER, Page, ReportTestCase
 
 class ReportWords(ReportTestCase):
     def test_a_run_that_goes_on(self):
-        """Repeated while frames are written."""
+        """The report is repeated while frames are written."""
         command = [str(PROGRAM), "run", str(DISC), "-o", str(self.folder / "disc"), "--quiet", "--log-level", "error",
                    "--set", "time.end=4", "--set", "output.fields_every=10"]
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -57,7 +57,7 @@ class ReportWords(ReportTestCase):
         self.report("a/")  # the same run again
         shutil.copy(self.folder / "a" / "report.html", self.folder / "a" / "b")
         process = self.report("a/b", status=4)
-        self.assertIn("a/b/report.html: is there and shows other runs", process.stderr)
+        self.assertIn("a/b/report.html: exists and shows other runs", process.stderr)
         self.report("a/b", "-o", "a/b/report.html")
         self.report("a/b")
 
@@ -79,7 +79,7 @@ class ReportWords(ReportTestCase):
         self.report(status=1)
         self.assertIn("--size-limit", self.report(results, "--size-limit", "0.5", status=1).stderr)
         other = self.write("notes.html", "<p>my notes</p>")
-        self.assertIn("no report", self.report(results, "-o", other, status=4).stderr)
+        self.assertIn("is not a report", self.report(results, "-o", other, status=4).stderr)
         self.assertEqual(other.read_text(), "<p>my notes</p>")
         self.report(results, "-o", self.folder / "page.html")
         self.report(results, "-o", self.folder / "page.html")  # an own page is overwritten
@@ -88,7 +88,7 @@ class ReportWords(ReportTestCase):
         self.assertIn(f"{missing}/page.html: cannot write: {missing} does not exist", process.stderr)
         self.assertNotIn(".new", process.stderr)
         process = self.report(results, "-o", other / "page.html", status=4)
-        self.assertIn(f"{other}/page.html: cannot write: {other} is no directory", process.stderr)
+        self.assertIn(f"{other}/page.html: cannot write: {other} is not a directory", process.stderr)
         os.truncate(results / "results.h5", 3000)
         self.assertIn("results.h5", self.report(results, status=2).stderr)
         self.viewer.unlink()

@@ -18,7 +18,7 @@ class Refusals(ResumeTestCase):
         before = {path.name: path.read_bytes() for path in output.iterdir()}
         for key, value, names in (("time.step", 2e-4, "time.step was 0.0001, now it is 0.0002"),
                                   ("contact.0.friction", 0.2, "contact.0.friction was 0.3, now it is 0.2"),
-                                  ("time.end", 0.07, "time.end = 0.07 comes before t = 0.08"),
+                                  ("time.end", 0.07, "time.end = 0.07 is before t = 0.08"),
                                   ("output.fields_every", 8, "output.fields_every was 7, now it is 8")):
             process = self.expect_status(2, run("run", self.disc, "-o", output, "--resume", *settings({**values, key: value})))
             self.assertIn(names, process.stderr)
@@ -80,13 +80,13 @@ class Refusals(ResumeTestCase):
             at = file["/frames/000050/displacement"].id.get_offset()
         digit = lines[100][:-1] + bytes([lines[100][-1] ^ 1])
         for k, (name, content, says) in enumerate((
-                ("history.csv", b"\n".join([*lines[:100], digit, *lines[101:]]), "lines 101 to 102 is|line 101 is"),
-                ("history.csv", history.replace(b"total_energy", b"total_Energy", 1), "line 1 is|lines 1 to 2 is"),
+                ("history.csv", b"\n".join([*lines[:100], digit, *lines[101:]]), "lines 101 to 102 differs|line 101 differs"),
+                ("history.csv", history.replace(b"total_energy", b"total_Energy", 1), "line 1 differs|lines 1 to 2 differs"),
                 ("history.csv", history.replace(b"\n", b"\r\n"), "CR LF"),
                 ("probes-3.csv", probes[:2000] + bytes([probes[2000] ^ 1]) + probes[2001:], "probes-3.csv: "),
                 ("results.xdmf", side.replace(b"von_mises", b"von_Mises", 1), "results.xdmf: "),
                 ("obstacles.xdmf", obstacles.replace(b"Float", b"float", 1), "obstacles.xdmf: "),
-                ("results.h5", fields[:at] + bytes([fields[at] ^ 1]) + fields[at + 1:], "/frames/000050 is not what"),
+                ("results.h5", fields[:at] + bytes([fields[at] ^ 1]) + fields[at + 1:], "/frames/000050 differs from"),
                 ("results.h5", other, "/frames/0000"))):
             output = self.interrupted(values, f"changed-{k}")
             self.assertNotEqual(content, (output / name).read_bytes(), f"{name} {k}")
@@ -155,7 +155,7 @@ class Refusals(ResumeTestCase):
             content[8:12] = struct.pack("<I", 1)
             path.write_bytes(content)
         process = self.expect_status(2, run("run", self.disc, "-o", output, "--resume", *settings(values)))
-        self.assertIn("another version of the program wrote it (format 1, and this one reads format 11)", process.stderr)
+        self.assertIn("another version of the program wrote it (format 1; this version reads format 11)", process.stderr)
         self.assertIn("--force", process.stderr)
 
     def test_a_directory_knows_its_case(self):
@@ -177,11 +177,11 @@ class Refusals(ResumeTestCase):
         self.assertIn("the case has changed since this run began", process.stderr)
         self.disc.rename(self.folder / "elsewhere.toml")
         process = self.expect_status(4, run("run", "--resume", output))
-        self.assertIn(f"its case file {self.disc} is not there any more", process.stderr)
+        self.assertIn(f"its case file {self.disc} no longer exists", process.stderr)
         self.assertIn("ricochet run CASE.toml", process.stderr)
         empty = self.folder / "empty"
         empty.mkdir()
-        self.assertIn("no run is in this directory", self.expect_status(4, run("run", "--resume", empty)).stderr)
+        self.assertIn("no run in this directory", self.expect_status(4, run("run", "--resume", empty)).stderr)
         self.expect_status(1, run("run", "--resume"))
         self.expect_status(1, run("run"))
         self.expect_status(1, run("run", "--resume", output, "-o", empty))

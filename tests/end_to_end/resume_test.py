@@ -64,7 +64,7 @@ class Resume(ResumeTestCase):
             process.send_signal(number)  # as `timeout` does
             text, errors = process.communicate()
             self.assertEqual(process.returncode, status, errors)
-            self.assertIn("run --resume goes on", text)
+            self.assertIn("run --resume continues", text)
             summary = json.loads((output / "summary.json").read_text())
             self.assertEqual(summary["status"], "interrupted")
             # At the end of a step, with a checkpoint of it.
@@ -80,7 +80,7 @@ class Resume(ResumeTestCase):
             self.assertEqual(json.loads((output / "summary.json").read_text())["resumed_at"], [summary["steps"]])
 
     def test_stopped_while_it_starts(self):
-        """Also while METIS orders a matrix, which catches SIGTERM on its own."""
+        """This includes METIS, which catches SIGTERM while it orders a matrix."""
         mesh = self.folder / "fine.msh"
         subprocess.run(["gmsh", DISC.with_name("disc.geo"), "-2", "-clscale", "0.2", "-o", mesh, "-v", "0"], check=True)
         values = {"mesh.file": f'"{mesh}"', "time.end": 2, "output.fields_every": 0}
@@ -126,7 +126,7 @@ class Resume(ResumeTestCase):
             output = self.interrupted(values, f"damaged-{k}")
             checkpoints(output)[1].write_bytes(bytes_left)
             process = self.expect_status(0, run("run", self.disc, "-o", output, "--resume", *settings(values)))
-            self.assertIn("cannot be used, the one before is taken", process.stderr)
+            self.assertIn("cannot be used, the previous one is used", process.stderr)
             self.assertIn("checkpoint-000000800.ckpt", process.stderr)
             self.assertIn("resumed after step 760", process.stderr)
             self.expect_same(expected, output)
@@ -146,7 +146,7 @@ class Resume(ResumeTestCase):
             self.expect_same(self.reference(values), output)
 
     def test_goes_on_to_a_later_end(self):
-        """The bytes of one run to that end, whatever is written only at an end."""
+        """The bytes are those of one run to that end, whatever an end writes."""
         for k, (scheme, more, ends) in enumerate((
                 ("newmark", {}, (0.0413, 0.08)), ("midpoint", {"output.history_every": 3}, (0.02, 0.0405, 0.08)),
                 ("klr-conserving", {"output.compression": 3}, (0.0401, 0.08)),
@@ -172,11 +172,11 @@ class Resume(ResumeTestCase):
             self.assertAlmostEqual(len(file["frames"]), 2 * before, delta=2)
         # Backwards, and without the checkpoint.
         process = self.expect_status(2, run("run", "--resume", output, "--set", "time.end=0.03"))
-        self.assertIn("time.end = 0.03 comes before t = 0.04", process.stderr)
+        self.assertIn("time.end = 0.03 is before t = 0.04", process.stderr)
         for path in checkpoints(output):
             path.unlink()
         process = self.expect_status(2, run("run", "--resume", output, "--set", "time.end=0.05"))
-        self.assertIn("cannot go on to a later time.end", process.stderr)
+        self.assertIn("cannot continue to a later time.end", process.stderr)
 
     def test_goes_on_with_what_the_contact_solver_has_learnt(self):
         """If the factorization was repeated at another scale: the costs of a rubber block on a turning wedge, by sweeps

@@ -134,7 +134,7 @@ class SelfContact(TestCase):
     def test_it_needs_sliding_without_limit(self):
         text = self.clamp()
         result = self.expect_status(2, run("validate", self.write("small.toml", text.replace('sliding = "large"\n', ""))))
-        self.assertIn('a surface touches itself with sliding = "large" alone', result.stderr)
+        self.assertIn('a surface can touch itself only with sliding = "large"', result.stderr)
         text = text.replace('sliding = "large"', 'sliding = "large"\nmultipliers_on = "group"')
         result = self.expect_status(2, run("validate", self.write("sides.toml", text)))
         self.assertIn("a surface that touches itself has no sides", result.stderr)

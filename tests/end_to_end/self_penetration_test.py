@@ -135,7 +135,7 @@ class SelfPenetration(TestCase):
         groups = beside.index('Physical Curve("lower")')
         (self.folder / "clamp.geo").write_text(beside[:groups])
         [warning] = told(self.simulate(self.write("beside.toml", CLAMP), "beside"))
-        self.assertIn("Give the mesh a group of these facets of this body", warning)
+        self.assertIn("Add a group of these facets of this body to the mesh", warning)
         (self.folder / "clamp.geo").write_text(beside)
         lines = '[[contact]]\ngroup = "inside"\nagainst = "inside"\nsliding = "large"\n'
         output = self.simulate(self.write("grouped.toml", CLAMP + lines), "grouped")
@@ -177,7 +177,7 @@ class SelfPenetration(TestCase):
             self.assertIn('against = "', warning)
 
     def test_what_was_not_watched_is_not_called_fine(self):
-        """For results of a version without the check, and of several processes."""
+        """Results of a version without the check, and of several processes."""
         output = self.clamp("old", "[output]\nfields_every = 10\n")
         summary = summary_of(output)
         for left_out in ("version", "processes"):
@@ -185,9 +185,9 @@ class SelfPenetration(TestCase):
             if left_out == "version":
                 del entry["not_watched"], entry["looks_at_themselves"]
             else:
-                entry["not_watched"] = ["bodies against themselves (several processes have parts of them)"]
+                entry["not_watched"] = ["bodies against themselves (they are divided among several processes)"]
             (output / "summary.json").write_text(json.dumps(dict(summary, unwatched_penetration=entry)), encoding="utf-8")
-            self.assertIn("not watched for interpenetration: bodies against themselves",
+            self.assertIn("not checked for interpenetration: bodies against themselves",
                           self.expect_status(0, run("info", output)).stdout)
             self.expect_status(0, run("report", output))
             judgement = Page(output / "report.html").runs[0]["judgement"]

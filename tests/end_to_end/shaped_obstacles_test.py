@@ -106,7 +106,7 @@ class SameSurface(Blocks):
             self.assertLess(abs(a - b).max(), relative * abs(a).max(), name)
 
     def test_a_plane(self):
-        """As a plane, an expression and a triangulated block: to nine digits."""
+        """A plane, an expression and a triangulated block agree to nine digits."""
         (self.folder / "floor.stl").write_text(box_stl([-5, -5, -2], [5, 5, -0.05]))
         plane, implicit, surface = self.histories(
             self.in_space('type = "plane"\npoint = [0.0, 0.0, -0.05]\nnormal = [0.0, 0.0, 1.0]'),
@@ -131,7 +131,7 @@ class SameSurface(Blocks):
         self.assertGreater(off[0] / off[1], 2.5)
 
     def test_a_bowl(self):
-        """As a circle, an expression and polygons, which approach it with their number of sides."""
+        """A circle and an expression agree; polygons approach them with their number of sides."""
         text = with_more(BOWL, "").replace("end = 3.1", "end = 0.2")
         circle = 'type = "sphere"                     # a circle in two dimensions\ncentre = [0.0, 1.0]\nradius = 1.0\nside = "inside"'
         self.assertIn(circle, text)
@@ -224,7 +224,7 @@ class Passages(Blocks):
 
     def test_a_long_step_is_taken_in_parts(self):
         process, found = self.outcome(0.07, -0.39)
-        self.assertIn("is taken in parts, as a node went through an obstacle", process.stderr)
+        self.assertIn("is computed in parts, since a node went through an obstacle", process.stderr)
         self.assertNotIn("in parts as short as", process.stderr)
         self.assertNotIn("gone through", process.stderr)
         self.assertEqual(found["found"], [])
@@ -254,7 +254,7 @@ class Refusals(Blocks):
     def test_surfaces(self):
         surface = 'type = "surface"\nfile = "a.stl"'
         (self.folder / "a.stl").write_text(box_stl([0, 0, 0], [1, 1, 1], turned={7}))
-        self.refuse(self.in_space(surface), "a.stl: triangle", "turned against each other", "case.toml:")
+        self.refuse(self.in_space(surface), "a.stl: triangle", "opposite orientations", "case.toml:")
         opened = box_stl([0, 0, 0], [1, 1, 1]).split("facet normal")
         (self.folder / "a.stl").write_text("facet normal".join(opened[:4] + opened[5:]))
         self.refuse(self.in_space(surface + '\nside = "inside"'), "it is not closed: 3 of its edges")
@@ -262,7 +262,7 @@ class Refusals(Blocks):
         self.assertEqual(process.returncode, 4, process.stderr)
         self.assertIn("cannot read the surface", process.stderr)
         (self.folder / "a.txt").write_text("0 0\n1 0\n")
-        self.refuse(self.in_space(surface.replace("a.stl", "a.txt")), "is in 2 dimensions, but the mesh has 3")
+        self.refuse(self.in_space(surface.replace("a.stl", "a.txt")), "has dimension 2, but the mesh has dimension 3")
 
     def test_expressions(self):
         self.refuse(self.in_space('type = "implicit"\nexpression = "z + q"'), 'unknown name "q"', "case.toml:10:")
@@ -271,17 +271,17 @@ class Refusals(Blocks):
 
     def test_motions(self):
         with_motion = self.in_plane
-        self.refuse(with_motion('velocity = [1, 0]\nmotion = ["t", "0"]'), 'the obstacle has "velocity" already')
+        self.refuse(with_motion('velocity = [1, 0]\nmotion = ["t", "0"]'), 'the obstacle already has "velocity"')
         self.refuse(with_motion('rotation = ["0", "0", "t"]'), "case.toml:")
-        self.refuse(with_motion("about = [0, 0]"), "give \"rotation\"")
+        self.refuse(with_motion("about = [0, 0]"), "set \"rotation\"")
         (self.folder / "m.csv").write_text("0 0 0\n0 1 1\n")
-        self.refuse(with_motion('table = "m.csv"'), "m.csv:2: the time 0 does not come after 0")
+        self.refuse(with_motion('table = "m.csv"'), "m.csv:2: the time 0 is not after 0")
         for first in ("0.0 0.0m 0.0", "0 nan 0"):  # no header: letters would make one
             (self.folder / "m.csv").write_text(f"{first}\n1 1 1\n")
-            self.refuse(with_motion('table = "m.csv"'), "m.csv:1:", f'"{first.split()[1]}" is no finite number')
+            self.refuse(with_motion('table = "m.csv"'), "m.csv:1:", f'"{first.split()[1]}" is not a finite number')
         (self.folder / "m.csv").write_text("t, ux, uy, uz\n0 0 0 0\n1 1 1 0.5\n")
         self.refuse(with_motion('table = "m.csv"'), 'm.csv:1: the fourth column is called "uz"')
-        self.refuse(with_motion("spin = 1.0"), "give its mass or density, too")
+        self.refuse(with_motion("spin = 1.0"), 'set its "mass" or "density", too')
 
 
 if __name__ == "__main__":

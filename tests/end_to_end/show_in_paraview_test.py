@@ -44,7 +44,7 @@ class ShowInParaView(TestCase):
         self.assertEqual(script.directory_of_run(selected(FileName=["/c/results.vtkhdf"]), []), "/c")
         os.environ.pop("RICOCHET_RUN", None)
         for wrong in (selected(), selected(FileName="/c/other.vtkhdf"), selected(Input=3)):
-            with self.assertRaisesRegex(script.Problem, "which run"):
+            with self.assertRaisesRegex(script.Problem, "no run is selected"):
                 script.directory_of_run(wrong, [])
         os.environ["RICOCHET_RUN"] = "/d"
         self.addCleanup(os.environ.pop, "RICOCHET_RUN")

@@ -299,7 +299,7 @@ class Refusals(Sliding):
     def test_what_does_not_go_with_it(self):
         self.refuses(self.case('multipliers = "dual"\n', '"slab.top"'), "dual", "p1")
         self.refuses(self.case("pair_at = [0.0, -0.01]\n", '"slab.top"'), "pair_at")
-        self.refuses(self.case(against='["slab.top", "other.top"]'), "2 bodies", "a contact of its own")
+        self.refuses(self.case(against='["slab.top", "other.top"]'), "2 bodies", "a separate contact for each")
         tied = self.case(against='"slab.top"') + '[[contact]]\ngroup = "slab.top"\nagainst = "other.top"\ntied = true\n'
         self.assertNotEqual(run("run", self.write("tied.toml", tied), "-o", self.folder / "tied", "--quiet").returncode, 0)
 
@@ -318,7 +318,7 @@ class Refusals(Sliding):
         self.assertEqual(found["unsettled_contacts"], [])
         self.assertFalse([text for text in found["warnings"] if "held" in text or "rebounds" in text], found["warnings"])
         wrong = 0
-        for step in (1e-5, 8e-6, 7e-6, 6e-6):  # which of them go wrong is a matter of rounding
+        for step in (1e-5, 8e-6, 7e-6, 6e-6):  # rounding decides which of them fail
             force, found = force_and_summary(step)
             contacts = found["unsettled_contacts"]
             share = contacts[0]["share_of_force"] if contacts else 0.0

@@ -1,4 +1,4 @@
-"""A step costs about as much as a triangular solve: the seconds of bench/step that watch it."""
+"""A step costs about as much as a triangular solve: checked by timings of bench/step."""
 
 import os
 import pathlib

@@ -50,7 +50,7 @@ class StudyMisuse(TestCase):
             shutil.rmtree(self.output)
 
     def test_only_runs_are_removed(self):
-        """In place of a run there is a link, or something of the user's."""
+        """In place of a run there is a link, or a file of the user."""
         vary = ("--vary", "time.step=0.004,0.002")
         self.study("out", *vary)
         second = self.output / "runs" / "002-step=0.002"
@@ -58,11 +58,11 @@ class StudyMisuse(TestCase):
         second.rename(elsewhere)
         again = ("study", BAR, *vary, *settings(SHORT), "-o", self.output, "--force", "--quiet")
         second.symlink_to(elsewhere)
-        self.refused(4, ("002-step=0.002: is a link", "is not removed"), *again)
+        self.refused(4, ("002-step=0.002: is a symbolic link", "is not removed"), *again)
         second.unlink()
         second.mkdir()
         (second / "thesis.tex").write_text("words")
-        self.refused(4, "holds nothing that a run leaves", *again)
+        self.refused(4, "holds no files of a run", *again)
         self.assertTrue((second / "thesis.tex").exists())
         self.assertTrue((self.output / "runs" / "001-step=0.004" / "history.csv").exists(), "nothing is half done")
         shutil.rmtree(second)
@@ -72,7 +72,7 @@ class StudyMisuse(TestCase):
         runs = self.output / "runs"
         runs.rename(self.folder / "moved")
         runs.symlink_to(self.folder / "moved")
-        self.refused(4, "runs: is a link", *again)
+        self.refused(4, "runs: is a symbolic link", *again)
         self.assertTrue((self.folder / "moved" / "001-step=0.004" / "history.csv").exists())
 
     def test_benchmarks_remove_nothing_else_either(self):
@@ -91,12 +91,12 @@ class StudyMisuse(TestCase):
         original = (self.output / "study.json").read_text()
         changes = {
             'there is no entry "axes"': lambda study: study.pop("axes"),
-            '"runs" has 1 folder, but the values of "axes" make 2 runs': lambda study: study["runs"].pop(),
+            '"runs" has 1 folder, but the values of "axes" result in 2 runs': lambda study: study["runs"].pop(),
             "0 values for 1 key": lambda study: study["axes"][0]["values"].__setitem__(0, []),
             "2 values for 1 key": lambda study: study["axes"][0]["values"].__setitem__(0, ["1", "2"]),
-            "one has no keys or no values": lambda study: study["axes"][0].__setitem__("values", []),
+            "an axis has no keys or no values": lambda study: study["axes"][0].__setitem__("values", []),
             "nothing varies": lambda study: study.__setitem__("axes", []),
-            "a text is wanted": lambda study: study["axes"][0]["keys"].__setitem__(0, {}),
+            "expected a text": lambda study: study["axes"][0]["keys"].__setitem__(0, {}),
             '"time.end" does not vary': lambda study: study["questions"].__setitem__("order", "time.end"),
             "is not a quantity": lambda study: study["questions"].__setitem__("quantities", ["steps"]),
             "has format 77": lambda study: study.__setitem__("ricochet_study", 77)}
@@ -117,12 +117,12 @@ class StudyMisuse(TestCase):
         (self.folder / "empty").mkdir()
         self.refused(4, "empty: holds no study: study.json is missing", "study", "--resume", self.folder / "empty")
         output = self.simulate(BAR, "run", SHORT)
-        self.refused(4, "run: holds a run and no study; `ricochet run --resume`", "study", "--resume", output)
+        self.refused(4, "run: holds a run, not a study; `ricochet run --resume`", "study", "--resume", output)
         self.assertFalse(nowhere.exists())
 
     def test_values_that_are_one(self):
-        for vary, said in (("time.step=0.20,0.2", '"0.20" and "0.2" are one value'),
-                           ("time.scheme=newmark, newmark", '"newmark" is there twice'),
+        for vary, said in (("time.step=0.20,0.2", '"0.20" and "0.2" are the same value'),
+                           ("time.scheme=newmark, newmark", '"newmark" appears twice'),
                            ("contact.00.friction=0,1", "write 0, as in contact.0.friction")):
             self.refused(1, said, "study", BAR, "--vary", vary, "-o", self.folder / "no")
         # With another spelling it is the same run.
@@ -142,7 +142,7 @@ class StudyMisuse(TestCase):
                 (("--quantity", "history.kinetic_enrgy[-1]"), 'did you mean "kinetic_energy"?'),
                 (("--exact", "history.top.displacement_z[-1]=1"), "no column"),
                 (("--quantity", "summary.stepss"), 'summary.json has no entry "stepss"; did you mean "steps"?'),
-                (("--reference", "finest", "--compare", "top.displacment"), 'is "top.displacement')):
+                (("--reference", "finest", "--compare", "top.displacment"), 'did you mean "top.displacement')):
             errors = self.refused(1, said, "study", BAR, *vary, *question, *settings(SHORT), "-o", self.folder / "no")
             self.assertIn(question[-2], errors)
             self.assertFalse((self.folder / "no").exists())

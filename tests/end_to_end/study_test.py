@@ -102,14 +102,14 @@ class Study(TestCase):
                 else:
                     self.assertAlmostEqual(float(order), 2.0, delta=0.02)
         self.assertIn("order:tip.displacement", (self.output / "study.md").read_text())
-        for absent in ("mean nothing", "too large"):
+        for absent in ("are meaningless", "too large"):
             self.assertNotIn(absent, process.stdout)
         for what in ("order", "work-precision", "order:tip.displacement", "peak_von_mises-against-time.step",
                      "processor_seconds-against-time.scheme"):
             self.expect_status(0, run("plot", self.output, "--what", what, "-o", self.folder / "figure.svg"))
             self.assertIn("newmark", (self.folder / "figure.svg").read_text())
         process = self.expect_status(1, run("plot", self.output, "--what", "restitutoin-against-time.step", "-o", "a.svg"))
-        self.assertIn('is "restitution" meant?', process.stderr)
+        self.assertIn('did you mean "restitution"?', process.stderr)
         self.expect_status(0, run("report", self.output))
         page = (self.output / "report.html").read_text()
         self.assertIn("<svg", page)
@@ -139,7 +139,7 @@ class Study(TestCase):
         process = self.study("floor", "--vary", "time.step=0.1,0.05,0.025", "--exact", "history.time[-1]=3", "--reference", "finest",
                              case=ROD, values={**FREE, "time.scheme": "midpoint"})
         for text in (process.stdout, (self.output / "study.md").read_text()):
-            self.assertIn("mean nothing (2 of 2 of history.time", text)
+            self.assertIn("are meaningless (2 of 2 for history.time", text)
             self.assertIn("The last orders are too large", text)
         self.expect_status(0, run("plot", self.output, "--what", "order:history.time[-1]", "-o", self.folder / "figure.svg"))
         text = (self.folder / "figure.svg").read_text()
@@ -188,7 +188,7 @@ class Study(TestCase):
         before = (self.output / "study.csv").read_bytes()
         process = self.expect_status(3, run("study", "--resume", self.output))
         self.assertEqual((self.output / "study.csv").read_bytes(), before)
-        self.assertIn("2 runs refused or failed", process.stderr)
+        self.assertIn("2 runs skipped (refused or failed earlier)", process.stderr)
         process = self.study("nothing", "--vary", "time.step=-1,-2", status=2)
         self.assertFalse((self.output / "study.json").exists())
 
@@ -203,7 +203,7 @@ class Study(TestCase):
         self.assertEqual((first["summary.steps"], second["summary.steps"]), ("500", "1000"))
 
     def test_interrupted_and_resumed(self):
-        """By kill -9 and by a signal that it can handle; the tables are those of an uninterrupted study."""
+        """kill -9 or a signal that it can handle ends it; the tables are those of an uninterrupted study."""
         vary = ("--vary", "time.step=0.002,0.0005,0.00025")
         self.study("whole", *vary, values=SLOW)
         expected = table(self.output)
@@ -217,7 +217,7 @@ class Study(TestCase):
             self.assertTrue(interrupted, "the study was too fast for this test")
             if number == signal.SIGTERM:
                 self.assertEqual(process.returncode, 143, errors)
-                self.assertIn(f"`ricochet study --resume {self.output}` goes on", text)
+                self.assertIn(f"`ricochet study --resume {self.output}` continues", text)
                 self.assertIn("interrupted", [row["status"] for row in table(self.output)])
             else:
                 self.assertFalse((self.output / "study.csv").exists())
@@ -272,10 +272,10 @@ class Study(TestCase):
     def test_wrong_use(self):
         for arguments, said in (
                 ((), "nothing varies"), (("--vary", "time.stp=1"), 'did you mean "step"?'),
-                (("--vary", "time.step=1e-3", "--set", "time.step=1"), "is in --vary and in --set"),
+                (("--vary", "time.step=1e-3", "--set", "time.step=1"), "is in both --vary and --set"),
                 (("--vary", "time.step=1e-3", "--exact", "summary.steps"), "QUANTITY=VALUE"),
                 (("--vary", "time.step=1e-3", "--reference", "nowhere"), "neither the directory of a run"),
-                (("--vary", "time.scheme=newmark,midpoint", "--reference", "finest"), "are not numbers"),
+                (("--vary", "time.scheme=newmark,midpoint", "--reference", "finest"), "at least two values, all of them numbers"),
                 (("--vary", "time.step=1e-3", "--order", "time.end"), '"time.end" does not vary'),
                 (("--vary", "time.step=1e-3", "--compare", "a"), "name it with --reference")):
             process = self.study("wrong", *arguments, status=1)

@@ -67,7 +67,7 @@ class TwoBodies(TestCase):
         return self.write("blocks.toml", BLOCKS)
 
     def test_a_probe_in_a_place_of_two_nodes_is_at_the_one_with_multipliers(self):
-        """That of the finer side, whichever body comes first: the force there is the pressure over its own part of the
+        """It is at that of the finer side, whichever body comes first: the force there is the pressure over its own part of the
         height."""
         height, rows = 0.1, {"one": 2, "two": 4}
         for name, own in rows.items():
@@ -81,7 +81,7 @@ class TwoBodies(TestCase):
                                   '[[probe]]\nname = "between"\nat = [1.0, 0.05]\n')
                 process = self.expect_status(0, run("run", case, "-o", self.folder / "touching", "--force"))
                 if first == "one":  # else its node is the first of the two anyway
-                    self.assertIn('it is at that of body "two", which carries the multipliers', process.stderr)
+                    self.assertIn('it is at the node of body "two", which carries the multipliers', process.stderr)
                 history = History(self.folder / "touching" / "history.csv")
                 pressure, reaction = history["between.pressure"][-1], history["between.reaction_normal"][-1]
                 self.assertGreater(pressure, 0.0)
@@ -168,7 +168,7 @@ class TwoBodies(TestCase):
             self.assertIn("4 contact points on 100 % of its area, gaps from 0.1 to 0.1", line)
             self.assertIn("the bodies would meet at t = 0.1 (the run ends at 3)", line)
         apart = self.expect_status(0, run("validate", case, *settings({"part.one.velocity": "[-1.0, 0.0]"}))).stdout
-        self.assertIn("the bodies do not come nearer", apart)
+        self.assertIn("the bodies do not approach each other", apart)
 
     def test_sliding_beyond_half_a_facet_is_told_once(self):
         out = self.simulate(self.blocks())

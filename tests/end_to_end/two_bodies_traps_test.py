@@ -93,7 +93,7 @@ class TwoBodiesTraps(TestCase):
         case = self.bodies(wedge(4), strip(3, 2, 0.5), "[time]\nstep = 0.02\nend = 2.2\n", above)
         values = {"part.two.move": "[0.0, 1.51]", "part.one.velocity": "[0.0, 0.1]", "material.0.law": "neo-hookean", "material.1.law": "neo-hookean"}
         [told] = self.warnings(self.simulate(case, values=values), "more than half a facet")
-        self.assertIn('gaps are means over facets of "two.bottom", which carries the multipliers, and this place does not show in them', told)
+        self.assertIn('gaps are means over facets of "two.bottom", which carries the multipliers, and this overlap does not show in them', told)
         self.assertEqual(self.warnings(self.simulate(case, name="fine", values={**values, "part.two.refine": 2}), "more than half a facet"), [])
 
     def test_ties_between_bodies_that_move_apart(self):

@@ -125,7 +125,7 @@ class VtkHdf(TestCase):
                 self.check_shape(shape, order, degree)
 
     def test_single_precision_and_compression(self):
-        """On the disc, whose fields are large enough to be compressed."""
+        """The fields of the disc are large enough to be compressed."""
         text = with_more(DISC, "")
         for k, values in enumerate(({"output.fields_precision": "single"}, {"output.compression": 4},
                                     {"output.fields_precision": "single", "output.compression": 1})):
@@ -190,7 +190,7 @@ class VtkHdf(TestCase):
             self.expect_status(0, run("plot", output, "--what", "pressure-map", "--label", "disc", "-o", self.folder / f"{output.name}.svg"))
         figures = [(self.folder / f"{name}.svg").read_text() for name in ("xdmf", "vtkhdf")]
         self.assertTrue(figures[0] == figures[1])
-        self.assertIn("only results.vtkhdf has: stress", " ".join(pages[1].runs[0]["thinned"]))
+        self.assertIn("fields that are only in results.vtkhdf: stress", " ".join(pages[1].runs[0]["thinned"]))
         one, other = ({key: value for key, value in page.runs[0]["body"].items()} for page in pages)
         self.assertEqual(one, other)
         self.assertEqual(pages[0].runs[0]["obstacles"]["times"], pages[1].runs[0]["obstacles"]["times"])
@@ -295,7 +295,7 @@ class InterruptedVtkHdf(ResumeTestCase):
             at = chunk.byte_offset + chunk.size // 2
         for k, (name, change, message) in enumerate((
                 ("results.vtkhdf", lambda data: data[:at] + bytes([data[at] ^ 1]) + data[at + 1:],
-                 "step 5 of /VTKHDF is not what"),
+                 "step 5 of /VTKHDF differs from"),
                 ("results.vtkhdf", lambda data: data[:len(data) // 2], "results.vtkhdf: "),
                 ("obstacles.vtkhdf", lambda data: data[:len(data) // 2], "obstacles.vtkhdf: "))):
             output = self.interrupted(values, f"changed-{k}")

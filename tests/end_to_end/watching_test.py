@@ -62,10 +62,10 @@ class Watching(TestCase):
         self.assertIn("summary.json is missing or damaged", text)
         self.assertIn(f"checkpoint of step {int(newest.stem.split('-')[1])}, t = ", text)
         newest.write_bytes(newest.read_bytes()[:-3])
-        self.assertIn("cut off", self.expect_status(2, run("info", newest)).stderr)
+        self.assertIn("truncated", self.expect_status(2, run("info", newest)).stderr)
 
     def test_a_directory_without_a_run(self):
-        self.assertIn("no run is in this directory", self.expect_status(4, run("info", self.folder)).stderr)
+        self.assertIn("this directory holds no run", self.expect_status(4, run("info", self.folder)).stderr)
 
     def test_debug_tells_every_contact_iteration(self):
         for friction in (0.0, 0.3):
@@ -114,7 +114,7 @@ class Watching(TestCase):
             self.assertLess(len(History(stopped / "history.csv").rows), 201)
 
     def test_accounts_close_by_default(self):
-        """In every scheme, far below the limits."""
+        """Errors are far below the limits in every scheme."""
         for scheme in SCHEMES:
             values = method(scheme) | {"contact.0.friction": 0.3, "time.end": 0.05}
             output = self.simulate(DISC, f"closes-{scheme}", values)
@@ -146,7 +146,7 @@ class Watching(TestCase):
         case = self.write("case.toml", block_case().replace('scheme = "newmark"\npreset = "trapezoidal"', 'scheme = "reduced-kane"'))
         process = self.expect_status(3, run("run", case, "-o", self.folder / "out", "--quiet", *settings(
             {"mass.type": "equivalent", "material.0.law": "neo-hookean", "initial.velocity": "[0.0, -100.0]", "time.end": 0.1})))
-        told = "step 1 is taken in parts as short as 1/32 of it, and perhaps shorter ones, as Newton's method found no solution"
+        told = "step 1 is computed in parts as short as 1/32 of it, and possibly shorter ones, since Newton's method found no solution"
         self.assertEqual(process.stderr.count(told), 1, process.stderr)
         warnings = json.loads((self.folder / "out" / "summary.json").read_text())["warnings"]
         self.assertEqual(len([warning for warning in warnings if "as short as" in warning]), 1, warnings)

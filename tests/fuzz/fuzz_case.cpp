@@ -6,7 +6,7 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/case/read_case.hpp"
 
-/// @file Any bytes as a case file: a case, or an error that is ours.
+/// @file Any bytes as a case file yield a case, or an error of the library.
 
 namespace {
 

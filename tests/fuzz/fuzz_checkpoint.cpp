@@ -6,8 +6,8 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/io/checkpoint.hpp"
 
-/// @file Any bytes as a checkpoint: values that can be written and read again, or an error that is ours. No fuzzer
-/// guesses a checksum: the bytes are also tried as the values of a file whose length and checksum are right.
+/// @file Any bytes as a checkpoint yield values that can be written and read again, or an error of the library. No
+/// fuzzer guesses a checksum: the bytes are also used as the values of a file with correct length and checksum.
 
 namespace {
 
@@ -16,7 +16,7 @@ using ricochet::Snapshot;
 void try_file(const std::string& text) {
   try {
     const std::string again = ricochet::encode_snapshot(ricochet::decode_snapshot(text));
-    // Names that were there twice or out of order are not any more.
+    // Duplicate or unordered names are corrected.
     if (ricochet::encode_snapshot(ricochet::decode_snapshot(again)) != again) __builtin_trap();
     if (again.size() > text.size()) __builtin_trap();
   } catch (const ricochet::Error& error) {
@@ -25,7 +25,7 @@ void try_file(const std::string& text) {
 }
 
 std::string file_of_values(const std::string& values) {
-  // Of no values: the head (magic, format, length), and the checksum.
+  // A file without values: the head (magic, format, length), and the checksum.
   std::string file = ricochet::encode_snapshot(Snapshot());
   file.resize(file.size() - sizeof(std::uint32_t));
   const std::uint64_t length = values.size();
@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data), size);
   try_file(text);
   try_file(file_of_values(text));
-  // The seeds are whole files: their values, and what becomes of them.
+  // The seeds are whole files: their values are mutated as well.
   constexpr std::size_t head = 20, tail = sizeof(std::uint32_t);
   if (size >= head + tail) try_file(file_of_values(text.substr(head, size - head - tail)));
   return 0;

@@ -4,8 +4,8 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/mesh/build_mesh.hpp"
 
-/// @file Any bytes as a .msh file (which dialect, the corpus decides): a mesh without a wrong number, or an error that
-/// is ours.
+/// @file Any bytes as a .msh file (in a dialect set by the corpus) yield a mesh without invalid numbers, or an error of
+/// the library.
 
 namespace {
 

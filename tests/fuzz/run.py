@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""Runs the fuzzers for some seconds each, as many at a time as there are processors, and says what came out.
+"""Runs the fuzzers for some seconds each, as many at a time as there are processors, and reports the results.
 
     ./dev fuzz [--seconds 60] [NAME...]
 
-Seeds are what the repository has: tests/fuzz/corpus/NAME, the meshes of the tests, the cases of the collection. What a
-fuzzer finds on its way stays in build-fuzz/corpus/NAME and is where it starts next time; an input that crashes it,
-hangs it (10 s) or makes it ask for absurd memory (256 MB at once, 1 GB in all) is left in build-fuzz/found/NAME-*.
-Status 1 if there is one.
+Seeds come from the repository: tests/fuzz/corpus/NAME, the meshes of the tests, the cases of the collection. Inputs that
+a fuzzer adds stay in build-fuzz/corpus/NAME as seeds of its next run; an input that crashes it, hangs it (10 s) or makes
+it request absurd memory (256 MB at once, 1 GB in all) is left in build-fuzz/found/NAME-*. Status 1 if there is one.
 """
 
 import argparse
@@ -81,16 +80,16 @@ def main():
     known = targets()
     parser = argparse.ArgumentParser(prog="./dev fuzz", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seconds", type=int, default=60, help="for each fuzzer (default: %(default)s)")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build-fuzz", help="where the fuzzers are")
-    parser.add_argument("--check", action="store_true", help="only look whether these arguments are right")
+    parser.add_argument("--seconds", type=int, default=60, help="seconds per fuzzer (default: %(default)s)")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build-fuzz", help="folder of the fuzzers")
+    parser.add_argument("--check", action="store_true", help="only check the arguments")
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(known))
     arguments = parser.parse_args()
     unknown = [name for name in arguments.names if name not in known]
     if unknown:
-        parser.error(f"there is no fuzzer {unknown[0]}; there are {', '.join(known)}")
+        parser.error(f"there is no fuzzer {unknown[0]}; available: {', '.join(known)}")
     if arguments.seconds < 1:
-        parser.error("a fuzzer runs for at least a second")
+        parser.error("--seconds must be at least 1")
     if arguments.check:
         return 0
     names = arguments.names or list(known)

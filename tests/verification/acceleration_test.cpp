@@ -3,7 +3,7 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-// What each scheme calls the acceleration, through impacts, and that nodes without mass have none.
+// The acceleration reported by each scheme through impacts, which is zero at nodes without mass.
 
 namespace ricochet {
 namespace acceleration_test {
@@ -13,7 +13,7 @@ using test_support::dragged_case;
 using test_support::StepEnd;
 using test_support::thrown_bodies;
 
-/// Expected V₁ − V₀ of a step, from the states at its two ends.
+/// Expected V₁ − V₀ of a step, computed from the states at its two ends.
 using VelocityChange = std::function<Vector(const StepEnd& before, const StepEnd& after)>;
 
 /// Largest difference over all steps on dofs with mass, relative to the largest change.
@@ -35,7 +35,7 @@ double largest_difference(const std::string& mass, const std::string& time, cons
         before = after;
       },
       false);
-  EXPECT_GT(size, 0.1);  // more than gravity does in a step
+  EXPECT_GT(size, 0.1);  // more than gravity causes in a step
   return difference / size;
 }
 

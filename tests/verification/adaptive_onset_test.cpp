@@ -12,7 +12,7 @@
 #include "support/paths.hpp"
 #include "support/thrown_body.hpp"
 
-// Adaptive steps of bodies that are set off from rest by supports, loads and obstacles.
+// Adaptive steps of bodies set in motion from rest by supports, loads and obstacles.
 
 namespace ricochet {
 namespace adaptive_onset_test {
@@ -20,7 +20,7 @@ namespace adaptive_onset_test {
 using test_support::CaseRun;
 using test_support::time_of;
 
-/// A block of 35 nodes that is at rest until something sets it off; units of length, mass and time are powers of two.
+/// A block of 35 nodes, at rest until it is set in motion; units of length, mass and time are powers of two.
 std::string onset(const std::string& kind, double length = 1.0, double mass = 1.0, double time = 1.0) {
   const double stress = mass / length / time / time;
   const auto expression = [&](double factor, const std::string& in_t) {
@@ -69,7 +69,7 @@ Course course(const std::string& text, const std::vector<std::string>& changes) 
     const Energies now = run.simulation().account().energies(run.state());
     result.time.push_back(run.state().time);
     result.energy.push_back(now.kinetic + now.elastic);
-    // Of a node that no support holds.
+    // A dof of an unsupported node.
     Index free = run.problem().dof_count() - 1;
     while (run.problem().supports.contains(free)) --free;
     result.corner.push_back(run.state().displacement[free]);
@@ -99,7 +99,7 @@ double distance(const Course& one, const Course& reference) {
   return worst / size;
 }
 
-/// Beside the energy of the first instants no step is short enough; beside what is about to come a few are.
+/// Relative to the energy of the first instants no step is short enough; relative to the coming motion a few are.
 TEST(AdaptiveOnset, SetOffFromRest) {
   for (const std::string& kind : onsets) {
     const std::string text = onset(kind);
@@ -129,7 +129,7 @@ TEST(AdaptiveOnset, SetOffFromRestInAnyUnits) {
   }
 }
 
-/// A run that is stopped and goes on within the look ahead.
+/// A run that is stopped within the prospect, and resumed.
 TEST(AdaptiveOnset, SetOffFromRestWithTheSameBits) {
   for (const std::string& kind : onsets) {
     CaseRun whole(onset(kind));
@@ -186,7 +186,7 @@ TEST(AdaptiveOnset, EndWhereTheyDoNotGetOn) {
     other.watch(1.0, 0.0);
   }
   EXPECT_LE(steps, 160);
-  // So does a tolerance that the jumps meet; and with a shorter longest step none are so many in one of them.
+  // So does a tolerance that the jumps satisfy; with a shorter longest step, none has so many short steps.
   const auto steps_to = [&](const StepControlOptions& options) {
     StepControl control(run.problem(), options);
     control.start(still);

@@ -13,7 +13,7 @@
 #include "support/paths.hpp"
 #include "support/thrown_body.hpp"
 
-// Steps whose length follows the motion.
+// Steps with a length that follows the motion.
 
 namespace ricochet {
 namespace adaptive_steps_test {
@@ -46,7 +46,7 @@ TEST(AdaptiveSteps, TimeHasNoDriftInAMillionSteps) {
     sum += length;
     longest = std::max(longest, length);
     shortest = std::min(shortest, length);
-    // A whole number of the smallest lengths, to the last bit.
+    // The lengths are whole multiples of the smallest one, to the last bit.
     const double smallest = std::ldexp(largest, -10);
     ASSERT_EQ(control.time(), std::round(control.time() / smallest) * smallest);
   }
@@ -104,8 +104,8 @@ TEST(AdaptiveSteps, AttemptsThatFailLeaveNothingBehind) {
   EXPECT_LT(control.time(), 0.33 + control.counts().shortest);
 }
 
-/// The accounts of energy and momentum go on over changes of the step and steps that are taken again, with friction, a
-/// moving obstacle, loads that vary and damping.
+/// The accounts of energy and momentum continue over changed and repeated steps, with friction, a moving obstacle,
+/// varying loads and damping.
 TEST(AdaptiveSteps, AccountsCloseUnderEveryScheme) {
   int schemes = 0;
   for (const std::string& scheme : scheme_names()) {
@@ -114,7 +114,7 @@ TEST(AdaptiveSteps, AccountsCloseUnderEveryScheme) {
         dragged_case(thrown_bodies()[0], mass, time_of(scheme), takes_friction(scheme) ? "friction = 0.3\n" : "");
     try {
       std::vector<std::string> changes = adaptive;
-      // Short steps at contact multiply its energy without bound: that is the scheme.
+      // Short steps in contact multiply its energy without bound, a property of the scheme.
       if (scheme == "midpoint") changes.insert(changes.end(), {"time.end=0.04", "time.tolerance=0.01"});
       CaseRun run(text, changes);
       ++schemes;
@@ -144,7 +144,7 @@ TEST(AdaptiveSteps, AccountsCloseUnderEveryScheme) {
       EXPECT_GT(counts.longest, counts.shortest) << scheme;
       EXPECT_EQ(counts.unsolved, 0) << scheme;
     } catch (const Error& refusal) {
-      EXPECT_NE(std::string(refusal.what()).find("remembers the step before"), std::string::npos) << refusal.what();
+      EXPECT_NE(std::string(refusal.what()).find("uses the previous step"), std::string::npos) << refusal.what();
       EXPECT_NE(std::string(refusal.what()).find("time.step"), std::string::npos) << refusal.what();
     }
   }
@@ -201,14 +201,14 @@ double error(const Bounces& run, const Bounces& reference) {
   return std::sqrt(sum / size);
 }
 
-/// The error of fixed steps falls with their length; those that reach the adaptive run's error would be more than
-/// twice as many as its steps, refused ones included.
+/// The error of fixed steps decreases with their length; reaching the adaptive run's error would take more than twice
+/// as many fixed steps as its steps, refused ones included.
 TEST(AdaptiveSteps, ReachAGivenErrorWithHalfTheWorkOfFixedSteps) {
   const Bounces reference = bounces(ball({"time.step=2e-5"}));
   const Bounces adapted = bounces(ball({"time.step=adaptive", "time.largest=0.01", "time.tolerance=1e-3"}));
   const double reached = error(adapted, reference);
   EXPECT_LT(reached, 0.08);
-  double least = 1e300;  // steps that fixed ones need for this error, between two runs
+  double least = 1e300;  // fixed steps needed for this error, between two runs
   double error_before = 0.0, steps_before = 0.0;
   for (const char* const step : {"time.step=8e-4", "time.step=4e-4", "time.step=2e-4", "time.step=1e-4"}) {
     const Bounces fixed = bounces(ball({step}));

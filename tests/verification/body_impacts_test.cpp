@@ -12,7 +12,7 @@
 #include "support/case_run.hpp"
 #include "support/strip.hpp"
 
-// Impacts of two bodies: bars with an exact solution, balances of momentum, a body that meets several at a time.
+// Impacts of two bodies: bars with an exact solution, balances of momentum, a body in several contacts at a time.
 
 namespace ricochet {
 namespace body_impacts_test {
@@ -167,7 +167,7 @@ TEST(BodyImpacts, AreOneForEachBodyAndObstacle) {
                            "[[contact]]\ngroup = \"right.left\"\nagainst = \"middle.right\"\nmultipliers = \"nodal\"\n"
                            "[[contact]]\ngroup = \"middle.sides\"\nobstacle = \"floor\"\n" +
                            time_section(10, 4.0);
-  CaseRun run(text, {"mass.type=consistent"});  // hardly a node of the middle bar is off its contacts
+  CaseRun run(text, {"mass.type=consistent"});  // almost all nodes of the middle bar are contact nodes
   const std::vector<RigidMotionState> before = motion_of(run);
   const std::vector<Impact> found = impacts_of(run);
   const std::vector<RigidMotionState> after = motion_of(run);
@@ -197,9 +197,9 @@ TEST(BodyImpacts, AreOneForEachBodyAndObstacle) {
   EXPECT_GT(sum.norm(), 0.01 * mass);
 }
 
-/// A bar of length 1 and speed 1 that hits an equal bar whose far end is held: together they are a bar of length 2 that
-/// has hit a wall, half of it at rest, and after 4L/c the first one returns at its full speed. The forces of the wall
-/// give the second bar as large an impulse as the first one, which is not part of the approach.
+/// A bar of length 1 and speed 1 hits an equal bar whose far end is held: together they are a bar of length 2 that has
+/// hit a wall, half of it at rest, and after 4L/c the first one returns at its full speed. The forces of the wall give
+/// the second bar as large an impulse as the first one, which is not part of the approach.
 TEST(BodyImpacts, OfABarAgainstAHeldOneGiveItsSpeedBack) {
   const auto text = [](int cells, const std::string& contact, const std::string& place) {
     const std::string mesh = strip_mesh(0.0, 1.0, cells);

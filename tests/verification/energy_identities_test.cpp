@@ -95,7 +95,7 @@ TEST(EnergyIdentity, KlrConservesTheHalfStepEnergy) {
   }
 }
 
-/// Lengths of a step below the critical one, which is that of the smallest cells.
+/// Lengths of a step below the critical one of the smallest cells.
 const char* explicit_step(const ThrownBody& body) {
   return body.dimension == 3 ? "time.step=0.0025" : "time.step=0.005";
 }
@@ -141,14 +141,14 @@ TEST(EnergyIdentity, SemiExplicitAtHalfSteps) {
 }
 
 TEST(EnergyIdentity, ContactStabilizedLosesEnergyOnly) {
-  // −r_N·g₀ of the forces at the end, and what the projection of the free flight takes, each of them a loss.
+  // −r_N·g₀ of the forces at the end, and the energy taken by projecting the free flight, each of them a loss.
   for (const ThrownBody& body : thrown_bodies()) {
     for (const std::string& mass : masses_of("contact-stabilized")) {
       CaseRun run(thrown_case(body, mass, "scheme = \"contact-stabilized\"\n"));
       const double h = run.scheme().step();
       double created = 0.0, by_projection = 0.0, deepest = 0.0;
       expect_identity(run, body.name + ", " + mass, [&](const StepEnd& a, const StepEnd& b) {
-        // U₁ − Û = (h/2)(V₁ − V₀), and Û − U₀ − hV₀ is what projected the free flight.
+        // U₁ − Û = (h/2)(V₁ − V₀), and Û − U₀ − hV₀ is the projection of the free flight.
         const Vector last = 0.5 * h * (b.velocity - a.velocity);
         const Vector shift = b.displacement - last - a.displacement - h * a.velocity;
         Vector momentum;
@@ -182,7 +182,7 @@ TEST(EnergyIdentity, SchemesRefuseTheMassesThatTheyDoNotTake) {
   }
 }
 
-/// Every scheme there is has an identity in this file or in published_schemes_test.cpp.
+/// Every registered scheme has an identity in this file or in published_schemes_test.cpp.
 TEST(EnergyIdentity, IsKnownOfEveryScheme) {
   EXPECT_EQ(scheme_names(), (std::vector<std::string>{"midpoint",
                                                       "klr-conserving",

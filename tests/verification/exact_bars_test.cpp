@@ -326,7 +326,7 @@ TEST(ExactBars, ReducedSchemes) {
       const std::string name = problem.name + scheme;
       EXPECT_GT(mean_order(all, &Errors::displacement), 0.6) << name;
       EXPECT_GT(mean_order(all, &Errors::pressure), 0.2) << name;
-      // As near to the closed form as the trapezoidal rule, or nearer.
+      // At most slightly farther from the closed form than the trapezoidal rule.
       EXPECT_LT(all.back().displacement, 1.5 * newmark.back().displacement) << name;
       EXPECT_LT(all.back().pressure, 1.3 * newmark.back().pressure) << name;
       expect_contact_times(problem, all, cells);

@@ -8,15 +8,15 @@
 #include "ricochet/base/error.hpp"
 #include "support/case_run.hpp"
 
-/// @file The critical step of semi-explicit at finite strain, which changes with the deformation: it is followed, and a
-/// step that is longer is not taken.
+/// @file The critical step of semi-explicit at finite strain changes with the deformation: it is followed, and longer
+/// steps are not taken.
 namespace ricochet {
 namespace finite_critical_step_test {
 
 using test_support::CaseRun;
 using test_support::mesh_geometry;
 
-/// 2/√λ with the largest eigenvalue λ of M⁻¹K on the dofs with mass, of the tangent at this displacement.
+/// 2/√λ with the largest eigenvalue λ of M⁻¹K on the dofs with mass, for the tangent at this displacement.
 double dense_critical_step(const SemidiscreteProblem& problem, const Vector& displacement) {
   std::vector<Index> inside;
   for (Index dof = 0; dof < problem.dof_count(); ++dof) {
@@ -35,7 +35,7 @@ double energy_of(const CaseRun& run) {
          run.problem().internal_force->energy(run.state().displacement);
 }
 
-/// A block that a press squeezes from above: an obstacle that comes down, `speed` along y, on a block held below.
+/// A block squeezed from above by a press: an obstacle that moves with `speed` along y, on a block held below.
 std::string press(double speed, double step, double end, const std::string& more = "") {
   const std::string mesh = mesh_geometry("finite-pressed-2d",
                                          "Rectangle(1) = {0, 0, 0, 1, 0.5};\nPhysical Surface(\"body\") = {1};\n"
@@ -72,7 +72,7 @@ TEST(FiniteCriticalStep, FollowsTheCriticalStepOfASqueezedBlock) {
   EXPECT_NEAR(smallest / least, 1.0, 0.1);
 }
 
-/// Near to the limit every check matters: what has been found is within some per cent of the truth, in time.
+/// Near the limit every check matters: the estimate is within some per cent of the exact value, in time.
 TEST(FiniteCriticalStep, AStepThatBecomesTooLongEndsTheRunBeforeItBlowsUp) {
   const double rest = critical_of_rest(press(1.0, 1e-4, 1e-3));
   for (const double part : {0.7, 0.85, 0.95}) {
@@ -100,13 +100,13 @@ TEST(FiniteCriticalStep, AStepThatBecomesTooLongEndsTheRunBeforeItBlowsUp) {
     EXPECT_LT(most, 0.5) << "nothing has blown up";
     bool warned = false;
     for (const std::string& warning : run.session().warnings())
-      warned = warned || warning.find("are deformed so far that the critical step is") != std::string::npos;
+      warned = warned || warning.find("are deformed so much that the critical step is") != std::string::npos;
     EXPECT_EQ(warned, part < 0.9);
   }
 }
 
-/// Blocks that strike the floor with a corner, at up to a half of the wave speed: no step is taken that is longer than
-/// the critical one of its start, but for the few per cent that are not found.
+/// Blocks that strike the floor with a corner, at up to half the wave speed: no step is longer than the critical one of
+/// its start, except for a few undetected per cent.
 TEST(FiniteCriticalStep, NoStepOfAHardImpactIsBeyondTheCriticalOne) {
   const std::string mesh =
       mesh_geometry("finite-corner-2d",
@@ -147,7 +147,7 @@ TEST(FiniteCriticalStep, NoStepOfAHardImpactIsBeyondTheCriticalOne) {
   EXPECT_LT(ended, 12);
 }
 
-/// Cells that a step turns inside out are named, with the critical step and what to do.
+/// Cells that a step inverts are named, with the critical step and advice.
 TEST(FiniteCriticalStep, InvertedCellsAreNamed) {
   const double rest = critical_of_rest(press(1.0, 1e-4, 1e-3));
   CaseRun run(press(25.0, 0.3 * rest, 0.1));

@@ -111,7 +111,7 @@ TEST(FiniteExplicit, TheEnergyOfALongFlightIsBounded) {
     std::printf("step %.4f: energy off by %.3e of it in the first 1000 steps, %.3e in the last\n", step,
                 of_first / start, of_last / start);
     EXPECT_LT(of_last, 1.5 * of_first);
-    // Of a vibration (h²/8) AᵀMA is at most (h/h_c)² of the elastic energy.
+    // For a vibration (h²/8) AᵀMA is at most (h/h_c)² of the elastic energy.
     EXPECT_LT(of_first, std::pow(step / run.scheme().critical_step(), 2) * start);
     if (before > 0.0) {
       EXPECT_NEAR(before / of_first, 4.0, 1.0);
@@ -204,7 +204,7 @@ TEST(FiniteExplicit, BouncingBalances) {
   }
 }
 
-/// With gravity, friction and damping the impulses are those of all forces.
+/// With gravity, friction and damping the impulses include all forces.
 TEST(FiniteExplicit, MomentaChangeByTheImpulsesOfAllForces) {
   std::string text = case_of({.height = 0.02, .steps = 300.0, .more = "friction = 0.3\n"}, stretched(2), falling(2));
   text.insert(text.find("[obstacle"), "damping = { mass = 0.3 }\n");
@@ -247,8 +247,8 @@ TEST(FiniteExplicit, RingsAndBallsBalance) {
   }
 }
 
-/// With fine steps, the motion of reduced-kane with the same mass: differences are of second order without friction,
-/// and of first order with friction, where the reactions of the end act there.
+/// With fine steps, the motion approaches that of reduced-kane with the same mass: differences are of second order
+/// without friction, and of first order with it, as the reactions of the end act there.
 TEST(FiniteExplicit, ConvergesToReducedKane) {
   for (const std::string friction : {"", "friction = 0.4\n"}) {
     double before = INFINITY;
@@ -275,7 +275,7 @@ TEST(FiniteExplicit, ConvergesToReducedKane) {
   }
 }
 
-/// Also if the critical step decreases and is recomputed repeatedly, and the factor of the contact nodes is renewed.
+/// The critical step decreases and is recomputed repeatedly, and the factor of the contact nodes is renewed.
 TEST(FiniteExplicit, ResumesToTheSameBits) {
   const std::string bounce =
       case_of({.step = 0.004, .height = 0.02, .steps = 300.0, .more = "friction = 0.3\n"},

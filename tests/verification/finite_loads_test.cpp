@@ -3,14 +3,14 @@
 #include "ricochet/base/error.hpp"
 #include "support/case_run.hpp"
 
-/// @file Loads that vary in time, on contact nodes without inertia, at finite strain.
+/// @file Loads that vary in time, on massless contact nodes, at finite strain.
 namespace ricochet {
 namespace finite_loads_test {
 
 using test_support::CaseRun;
 using test_support::mesh_geometry;
 
-/// A block just above the floor, whose strains are 10⁻⁷.
+/// A block just above the floor, with strains of 10⁻⁷.
 std::string case_of(const std::string& law, const std::string& loads, const std::string& time) {
   const std::string mesh = mesh_geometry("finite-loads",
                                          "Rectangle(1) = {0, 0, 0, 1, 0.6};\nPhysical Surface(\"all\") = {1};\n"
@@ -24,9 +24,9 @@ std::string case_of(const std::string& law, const std::string& loads, const std:
          loads + "[initial]\nvelocity = [0, -3e-8]\n[time]\n" + time + "end = 1.2\n";
 }
 
-/// Contact opens and closes while loads change: in the limit of small loads a step is that of the linear law, whatever
-/// part of the reactions is the end's. A load that is taken at another instant on contact nodes alone, or whose work
-/// over a kinked path is that of a straight one, is off by per cents, however small strains are.
+/// Contact opens and closes while loads change: in the limit of small loads a step equals that of the linear law,
+/// whatever the weight of the end's reactions. A load evaluated at another instant on contact nodes alone, or the work
+/// of a straight path on a kinked one, is off by per cents, however small strains are.
 TEST(FiniteLoads, AreThoseOfTheLinearLawInTheLimit) {
   const std::string traction =
       "[[traction]]\ngroup = \"boundary\"\nvalue = [\"4e-8*cos(7.3*t)\", \"-1.4e-7*(0.3+sin(7.2*t))\"]\n";
@@ -56,7 +56,7 @@ TEST(FiniteLoads, AreThoseOfTheLinearLawInTheLimit) {
   }
 }
 
-/// No shorter step and no other factor gives it one.
+/// Neither a shorter step nor another factor gives the load a value.
 TEST(FiniteLoads, WithoutAValueAreInvalidInput) {
   CaseRun run(case_of("neo-hookean", "[[traction]]\ngroup = \"boundary\"\nvalue = [\"0\", \"1e-8*sqrt(0.5-t)\"]\n",
                       "scheme = \"reduced-kane\"\nstep = 0.1\n"));

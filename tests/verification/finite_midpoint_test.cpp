@@ -10,8 +10,8 @@
 #include "ricochet/base/error.hpp"
 #include "support/case_run.hpp"
 
-/// @file Schemes that take the internal force half way through a step, at finite strain: what it misses of the change
-/// of the elastic energy is in the account.
+/// @file Schemes with the internal force at the middle of a step, at finite strain: its difference from the change of
+/// the elastic energy is in the account.
 namespace ricochet {
 namespace finite_midpoint_test {
 
@@ -34,7 +34,7 @@ std::string block(const std::string& scheme, double step, double end, double hei
          scheme + "\"\n" + fmt::format("step = {}\nend = {}\n", step, end);
 }
 
-/// The largest residual of the account relative to the largest energy, and the largest error of a step.
+/// Largest residual of the account relative to the largest energy, and largest error of a step.
 struct Measured {
   double residual = 0.0, first_error = 0.0, largest_error = 0.0, largest_force = 0.0;
 };
@@ -60,7 +60,7 @@ Measured measure(const std::string& text) {
   return result;
 }
 
-/// The sum of the account is zero by the equations of the step and needs no bound on its length.
+/// The sum of the account is zero by the equations of the step, for steps of any length.
 TEST(FiniteMidpoint, TheAccountClosesInFlightAndInContact) {
   for (const std::string scheme : {"midpoint", "kane"}) {
     const Measured flight = measure(block(scheme, 0.01, 2.0, 10.0));
@@ -74,7 +74,7 @@ TEST(FiniteMidpoint, TheAccountClosesInFlightAndInContact) {
 }
 
 /// ΔW − ΔU·f(U₀+½ΔU) is (1/24) W‴ΔU³ and higher odd terms: from the same state half the step has an eighth of it. (The
-/// block stretches: of a rotation alone W‴ has next to nothing.)
+/// block stretches: for a rotation alone W‴ is nearly zero.)
 TEST(FiniteMidpoint, TheErrorOfAStepIsOfThirdOrder) {
   for (const std::string scheme : {"midpoint", "kane"}) {
     std::vector<double> errors;
@@ -90,7 +90,7 @@ TEST(FiniteMidpoint, TheErrorOfAStepIsOfThirdOrder) {
   }
 }
 
-/// A case is refused before, by the line of its law; this is told to programs that put a problem and a scheme together.
+/// A case is refused earlier, at the line of its law; this message is for programs that combine a problem and a scheme.
 TEST(FiniteMidpoint, SchemesOfTheLinearLawAreRefused) {
   std::string text = block("midpoint", 1e-3, 1e-2, 10.0);
   const CaseRun run(text);

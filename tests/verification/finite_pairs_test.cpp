@@ -27,8 +27,8 @@ struct Blocks {
   std::string contact = "friction = 0.3\n";
   double gap = 0.02, step = 0.005;
   int steps = 120;
-  double turn = 0.0;                                            ///< of both about the origin, in degrees
-  std::string move = {};                                        ///< of the upper one
+  double turn = 0.0;                                            ///< rotation of both about the origin, in degrees
+  std::string move = {};                                        ///< translation of the upper one
   std::string upper_motion = {}, lower_motion = {}, more = {};  ///< keys of [[motion]]; more sections
 };
 
@@ -116,7 +116,7 @@ TEST(FinitePairs, CollisionsKeepMomentaAndCreateNoEnergy) {
   }
 }
 
-/// Blocks that are glued together fly as one body does.
+/// Blocks that are tied together move like one body.
 TEST(FinitePairs, TiedBodiesKeepEnergyAndMomenta) {
   for (const int dimension : {2, 3}) {
     Blocks blocks = colliding(dimension);
@@ -145,7 +145,7 @@ TEST(FinitePairs, AMotionThatIsTurnedIsTheSameMotion) {
   blocks.steps = 60;
   CaseRun one(case_of(blocks));
   const double angle = 0.7, c = std::cos(angle), s = std::sin(angle);
-  // The parts are turned about the origin before they are moved.
+  // The parts are rotated about the origin before they are moved.
   Blocks turned = blocks;
   turned.turn = angle * 45.0 / std::atan(1.0);
   const auto rotated = [&](double x, double y) {

@@ -83,7 +83,7 @@ std::vector<ElementKind> straight_kinds() {
   return result;
 }
 
-/// The largest error of a displacement that is H x.
+/// Largest deviation of a displacement from H x.
 double field_error(const CaseRun& run, const Matrix& gradient) {
   const int d = run.problem().dimension;
   const Matrix u = run.state().displacement.reshaped(d, run.problem().nodes.cols());
@@ -278,7 +278,7 @@ TEST(PrincipalStretches, AreRefusedWithTheLinearLaw) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::invalid_input);
-    EXPECT_NE(std::string(error.what()).find("is of laws of finite strain"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("requires a law of finite strain"), std::string::npos) << error.what();
   }
 }
 

@@ -5,7 +5,7 @@
 #include "support/case_run.hpp"
 #include "support/motion_totals.hpp"
 
-/// @file Steps whose operators are far from what they should be: rubber that is squeezed and cannot slide.
+/// @file Steps whose operators are far from the tangent: rubber that is squeezed and cannot slide.
 namespace ricochet {
 namespace finite_rubber_test {
 
@@ -19,7 +19,7 @@ std::string grid(const std::string& sizes, const std::string& lines) {
          "Physical Curve(\"bottom\") = {1};\nPhysical Curve(\"top\") = {3};\n";
 }
 
-/// A ring of rubber, 10 mm thick and 20 mm high, on the floor, that a block of steel strikes at 3 m/s.
+/// A ring of rubber, 10 mm thick and 20 mm high, on the floor, struck by a block of steel at 3 m/s.
 std::string bumper(const std::string& contact, const std::string& relaxation) {
   const std::string rubber = mesh_geometry(
       "bumper-rubber", grid("0.005, 0, 0, 0.01, 0.02", "Transfinite Curve{1, 3} = 6;\nTransfinite Curve{2, 4} = 11;\n"),
@@ -39,9 +39,9 @@ std::string bumper(const std::string& contact, const std::string& relaxation) {
          contact + "[time]\nscheme = \"reduced-kane\"\nstep = 1e-4\nend = 4e-3\n";
 }
 
-/// Cells that are sheared turn the direction in which they are a hundred times stiffer, and forces of contact that turn
-/// are as large as the stiffness of the nodes that they act on: corrections with the operator of the undeformed body,
-/// and with that of the place, grow, however short a step is.
+/// Sheared cells rotate the direction in which they are a hundred times stiffer, and rotating contact forces are as
+/// large as the stiffness of their nodes: corrections with the operator of the undeformed body, and with that at the
+/// current positions, grow, however short a step is.
 TEST(FiniteRubber, IsSqueezedByASixthUnderFriction) {
   const std::string relaxing = "relaxation = { modulus = [0.8, 0.4], time = [1.0e-3, 1.0e-2] }\n";
   for (const std::string contact : {"", "friction = 0.4\n"}) {
@@ -64,8 +64,8 @@ TEST(FiniteRubber, IsSqueezedByASixthUnderFriction) {
   }
 }
 
-/// A block whose corner strikes the floor in steps that are long for its cells: where it begins to touch these are in
-/// equilibrium through a step, and the places take back what any stress of its middle adds.
+/// A block whose corner strikes the floor in steps that are long for its cells: at first contact these are in
+/// equilibrium during a step, and the positions undo any stress added in its middle.
 TEST(FiniteRubber, KeepsItsEnergyWhereNoStressBalancesAStep) {
   const std::string block = mesh_geometry(
       "corner-block",

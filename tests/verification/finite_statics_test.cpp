@@ -7,7 +7,7 @@
 #include "ricochet/fem/stress.hpp"
 #include "support/case_run.hpp"
 
-/// @file Static equilibria at finite strain, against closed forms.
+/// @file Static equilibria at finite strain, compared with closed forms.
 namespace ricochet {
 namespace finite_statics_test {
 
@@ -58,7 +58,7 @@ double principal_stress(double stretch, double volume) {
   return (mu * (stretch * stretch - 1.0) + 0.5 * lambda * (volume * volume - 1.0)) / volume;
 }
 
-/// The lateral stretch of a bar under no lateral stress, by bisection.
+/// Lateral stretch of a bar without lateral stress, by bisection.
 double free_stretch(double given, int free) {
   double low = 0.1, high = 3.0;
   for (int k = 0; k < 200; ++k) {
@@ -98,7 +98,7 @@ TEST(FiniteStatics, BiaxialStretch) {
   }
 }
 
-/// Plane stress in a plane mesh agrees with the stretch of a sheet.
+/// Plane stress in a plane mesh gives the stretch of a sheet.
 TEST(FiniteStatics, PlaneStressIsTheStretchOfASheet) {
   CaseRun run(
       body(square(), neo_hookean,
@@ -113,7 +113,7 @@ TEST(FiniteStatics, PlaneStressIsTheStretchOfASheet) {
   }
 }
 
-/// Sheared between rigid plates the stress is not uniform, and the block is a little softer than in simple shear, whose
+/// Sheared between rigid plates the stress is not uniform, and the block is slightly softer than in simple shear, whose
 /// shear stress is μγ; the forces on the plates are in equilibrium.
 TEST(FiniteStatics, ShearBetweenRigidPlates) {
   const std::string supports = "[[support]]\ngroup = \"y0\"\ncomponents = [\"x\", \"y\", \"z\"]\n" +
@@ -191,13 +191,13 @@ TEST(FiniteStatics, CantileverIsTheElastica) {
     found.y += run.state().displacement[2 * node + 1];
     count += 1.0;
   }
-  // Shear and stretch of a beam of this thickness are of the size of (h/L)².
+  // Shear and stretch of a beam of this thickness are of order (h/L)².
   EXPECT_NEAR(found.x / count, tip.x, 2e-3);
   EXPECT_NEAR(found.y / count, tip.y, 2e-3);
   EXPECT_GT(tip.y, 0.6);
 }
 
-/// A block that friction on the floor alone holds: where loads are small that is the equilibrium of the linear law.
+/// A block held by friction on the floor alone: for small loads its equilibrium is that of the linear law.
 TEST(FiniteStatics, FrictionHoldsABlockAsWithTheLinearLaw) {
   const auto displacement = [](const std::string& law) {
     const CaseRun run(
@@ -214,7 +214,7 @@ TEST(FiniteStatics, FrictionHoldsABlockAsWithTheLinearLaw) {
 }
 
 TEST(FiniteStatics, SaysHowFarItCame) {
-  // Pressed to nothing.
+  // Compressed to zero height.
   try {
     CaseRun run(body(cube(), "law = \"saint-venant-kirchhoff\"\nlambda = 1.3\nmu = 0.8\n",
                      "[[support]]\ngroup = \"x0\"\ncomponents = [\"x\", \"y\", \"z\"]\n" + support("x1", "x", -1.2) +
@@ -222,7 +222,7 @@ TEST(FiniteStatics, SaysHowFarItCame) {
     FAIL();
   } catch (const Error& problem) {
     EXPECT_EQ(problem.kind(), ErrorKind::not_converged);
-    EXPECT_NE(std::string(problem.what()).find("of the loads"), std::string::npos) << problem.what();
+    EXPECT_NE(std::string(problem.what()).find("times the loads"), std::string::npos) << problem.what();
   }
 }
 

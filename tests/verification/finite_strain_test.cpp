@@ -86,8 +86,8 @@ TEST(FiniteStrain, FreeFlightKeepsEnergyAndMomenta) {
   }
 }
 
-/// Also for strains of 10⁻⁷, at which corrections shrink so fast that positions have converged before σ is known.
-/// (Displacements of 10⁻⁵ have a rounding of 10⁻¹⁴ of those.)
+/// Strains of 10⁻⁷, at which corrections shrink so fast that positions have converged before σ is known. (Displacements
+/// of 10⁻⁵ have a rounding of 10⁻¹⁴ of those.)
 TEST(FiniteStrain, SmallVibrationsKeepEnergyAsExactly) {
   for (const std::string& scheme : exact_schemes()) {
     for (const double step : {0.01, 0.2}) {
@@ -98,8 +98,8 @@ TEST(FiniteStrain, SmallVibrationsKeepEnergyAsExactly) {
   }
 }
 
-/// Bouncing: energy is exact without friction under the mean of the reactions, and never rises under those of the end;
-/// the account closes, and both momenta change by the impulses.
+/// Bouncing: energy is exact without friction under the mean of the reactions, and never increases under reactions at
+/// the end; the account closes, and both momenta change by the impulses.
 TEST(FiniteStrain, BouncingBalances) {
   for (const int dimension : {2, 3}) {
     for (const std::string& scheme : exact_schemes()) {
@@ -182,7 +182,7 @@ TEST(FiniteStrain, ARigidSpinDoesNotSwell) {
       for (Index node = 0; node < now.cols(); ++node) EXPECT_NEAR(now.col(node).norm(), at_rest.col(node).norm(), 1e-9);
       turned = std::max(turned, (now - at_rest).cwiseAbs().maxCoeff());
     });
-    EXPECT_GT(turned, 1.0);  // it has been upside down
+    EXPECT_GT(turned, 1.0);  // it was upside down
   }
 }
 
@@ -210,7 +210,7 @@ TEST(FiniteStrain, AMotionThatIsTurnedIsTheSameMotion) {
   }
 }
 
-/// In the limit of small loads the results are those of the linear law.
+/// In the limit of small loads the linear law gives the same results.
 TEST(FiniteStrain, SmallMotionsAreLinear) {
   for (const std::string scheme : {"reduced-kane", "mean-reaction", "newmark", "generalized-alpha"}) {
     for (const std::string law : {"neo-hookean", "saint-venant-kirchhoff"}) {

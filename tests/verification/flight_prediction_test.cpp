@@ -17,7 +17,7 @@ using test_support::thrown_bodies;
 using test_support::thrown_case;
 using test_support::ThrownBody;
 
-/// v̄ + ω × (x − X̄).
+/// Nodal values v̄ + ω × (x − X̄).
 Vector values_at_nodes(const SemidiscreteProblem& problem, const Eigen::Vector3d& velocity, const Eigen::Vector3d& spin,
                        const Eigen::Vector3d& centre) {
   Vector result(problem.dof_count());

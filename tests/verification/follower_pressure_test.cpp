@@ -39,7 +39,7 @@ class InflatedShell {
     }
     shoot(low);
   }
-  /// r − R.
+  /// The displacement r − R.
   [[nodiscard]] double displacement(double radius) const {
     const double at = std::clamp((radius - inner) / step(), 0.0, steps - 1e-9);
     const auto k = static_cast<std::size_t>(at);
@@ -156,7 +156,7 @@ double inflation_error(const Shell& shell) {
   double error = 0.0;
   for (Index node = 0; node < nodes.cols(); ++node) {
     const Vector at = nodes.col(node), u = run.state().displacement.segment(node * at.size(), at.size());
-    // The nodes that degree 2 adds to straight cells do not lie on the circle.
+    // The nodes added by degree 2 to straight cells do not lie on the circle.
     error = std::max(error, (u - exact.displacement(at.norm()) * at.normalized()).norm());
   }
   return error / exact.displacement(inner);
@@ -172,7 +172,7 @@ TEST(FollowerPressure, InflatesThickSpheresByTheirSection) {
         error = inflation_error({.mesh = ring(n, degree, simplices), .degree = degree, .plane = "axisymmetric"});
         errors.add(error);
       }
-      // Of degree 1 orders rise to 2.
+      // For degree 1 the orders rise to 2.
       EXPECT_GT(errors.last_order(), degree == 1 ? 1.75 : 2.6);
       EXPECT_LT(error, degree == 1 ? 1.5e-2 : 5e-4);
     }
@@ -190,7 +190,7 @@ TEST(FollowerPressure, InflatesThickCylinders) {
             {.mesh = ring(n, degree, simplices), .degree = degree, .supports = {"x", "y"}, .pressure = 0.45});
         errors.add(error);
       }
-      // Of degree 1 orders rise to 2.
+      // For degree 1 the orders rise to 2.
       EXPECT_GT(errors.last_order(), degree == 1 ? 1.75 : 2.6);
       EXPECT_LT(error, degree == 1 ? 1.5e-2 : 5e-4);
     }

@@ -210,7 +210,7 @@ TEST(Incline, StaticEquilibriumExistsBelowTheThresholdOnly) {
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::invalid_input) << error.what();
       EXPECT_NE(std::string(error.what()).find("no equilibrium"), std::string::npos) << error.what();
-      // The force that friction cannot supply.
+      // The force that exceeds friction.
       const double missing = weight * std::sin(slope) * (1.0 - factor);
       EXPECT_NE(std::string(error.what()).find(fmt::format("({:.3g}, ", missing)), std::string::npos) << error.what();
     }

@@ -52,7 +52,7 @@ Vector force(const CaseRun& run) {
   return result;
 }
 
-/// Scheme with its weight γ of the Newmark forces; midpoint and klr-conserving use the force of the step itself.
+/// A scheme with its weight γ of the Newmark forces; midpoint and klr-conserving use the force of the step itself.
 struct Method {
   std::string time, mass;
   double current_weight;
@@ -106,7 +106,7 @@ std::string cases() {
 /// Results of throwing the disc of cases/oblique.
 struct Throw {
   Eigen::Vector2d start, end;         ///< momentum
-  Eigen::Vector2d impulse{0.0, 0.0};  ///< of contact, as the scheme weights it
+  Eigen::Vector2d impulse{0.0, 0.0};  ///< of contact, weighted by the scheme
   double energy_change = 0.0, friction_work = 0.0, kinetic = 0.0;
   double most_per_point = -1.0;  ///< largest (|r_T| − F r_N), relative to the largest r_N
   std::string phases;            ///< all slip: s, some: m, all stick: S; each once while it lasts
@@ -251,7 +251,7 @@ TEST(SpinningBall, RaisesTheWarningOfSmallStrain) {
   const double rotation = summary.digest("max_rotation").maximum;
   EXPECT_GT(rotation, 0.3);
   // The warning at the end states the size of the error.
-  const std::string strain = fmt::format("a strain of {:.2g} %", 100.0 * (1.0 - std::cos(rotation)));
+  const std::string strain = fmt::format("a spurious strain of {:.2g} %", 100.0 * (1.0 - std::cos(rotation)));
   EXPECT_NE(summary.warnings.back().find(strain), std::string::npos) << summary.warnings.back();
 }
 

@@ -246,7 +246,7 @@ TEST(FrictionEnergy, MidpointAndNewmarkIdentitiesWithFriction) {
           false);
       EXPECT_LT(worst, 20.0 * epsilon) << name;
       EXPECT_LT(largest_gain, epsilon) << name << ": friction gave energy in a step";
-      // Newmark's weights can give energy where contact nodes have inertia and rattle.
+      // Newmark's weights can create energy if contact nodes with inertia rattle.
       const bool loses = midpoint || method.mass.starts_with("equivalent");
       if (loses) {
         EXPECT_LT(friction_total, 0.0) << name;
@@ -358,8 +358,7 @@ TEST(FrictionEnergy, AccountClosesWithMovingObstacles) {
         worst = std::max(worst, std::abs(run.simulation().account().residual(now)));
       });
       EXPECT_LT(worst, 1e-12 * largest) << name;
-      // Newmark's weights can give energy where contact nodes have inertia and rattle.
-      // Newmark's weights can give energy where contact nodes have inertia and rattle.
+      // Newmark's weights can create energy if contact nodes with inertia rattle.
       const bool loses = method.gamma == 1.0 || method.mass == "equivalent";
       if (loses) {
         EXPECT_LT(run.simulation().account().works().friction, 0.0) << name;

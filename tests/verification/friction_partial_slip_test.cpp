@@ -8,8 +8,8 @@
 
 // C. Cattaneo (1938), R. D. Mindlin (1949): a cylinder pressed on a rigid plane by P and then pushed along it by Q < F
 // P slips at the edges of the contact and sticks in the middle, |x| < c with c/a = √(1 − Q/FP). There q/Fp = 1 − √((c²
-// − x²)/(a² − x²)), beyond it q = F p. Exact for a half-space with ν = ½, where pressure and friction do not see each
-// other (K. L. Johnson, Contact Mechanics, 1985, section 7.2).
+// − x²)/(a² − x²)), beyond it q = F p. Exact for a half-space with ν = ½, where pressure and friction are uncoupled (K.
+// L. Johnson, Contact Mechanics, 1985, section 7.2).
 
 namespace ricochet {
 namespace friction_partial_slip_test {
@@ -37,8 +37,8 @@ std::string half_disc(double fine) {
 
 constexpr double coefficient = 0.3, young = 3.0, poisson = 0.49;
 
-/// Pressed until t = 40 and pushed from 60 on, slowly beside the waves (10 time units through the body and back), which
-/// damping and γ > ½ take away.
+/// Pressed until t = 40 and pushed from 60 on, slowly relative to the waves (10 time units through the body and back),
+/// which damping and γ > ½ remove.
 std::string pressed_case(double fine) {
   return fmt::format(
       "[mesh]\nfile = \"{}\"\ndegree = 2\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = {}\npoisson = {}\n"
@@ -73,7 +73,7 @@ std::vector<ContactNode> contact_nodes(const CaseRun& run) {
   return nodes;
 }
 
-/// Half the length on which nodes stick, up to the middle between the last that sticks and the first that slips.
+/// Half the length on which nodes stick, up to the middle between the last sticking and the first slipping node.
 double stick_half_width(const std::vector<ContactNode>& nodes) {
   double first = 0.0, last = 0.0;
   for (std::size_t i = 1; i < nodes.size(); ++i) {
@@ -84,8 +84,8 @@ double stick_half_width(const std::vector<ContactNode>& nodes) {
   return 0.5 * (last - first);
 }
 
-/// Relative L² error of the even part of the traction over the contact. Pressing has left an odd part: a disc is no
-/// half-space, and its ν not quite ½, so the surface wants to slip outwards or inwards, and friction holds it. The
+/// Relative L² error of the even part of the traction over the contact. Pressing leaves an odd part: a disc is no
+/// half-space, and its ν not quite ½, so the surface tends to slip outwards or inwards, and friction holds it. The
 /// nodes lie symmetrically.
 double traction_error(const std::vector<ContactNode>& nodes, double a, double c, double peak) {
   double error = 0.0, size = 0.0;
@@ -100,8 +100,8 @@ double traction_error(const std::vector<ContactNode>& nodes, double a, double c,
   return std::sqrt(error / size);
 }
 
-// The half-space of the theory is a half disc with a/R = 0.07 here, with ν = 0.49: c/a to 2 % where the nodes that tell
-// stick from slip lie 2 % of a apart.
+// The half-space of the theory is a half disc with a/R = 0.07 here, with ν = 0.49: c/a is accurate to 2 %, where the
+// nodes that separate stick from slip are 2 % of a apart.
 TEST(PartialSlip, CylinderPushedAlongThePlane) {
   std::vector<std::pair<double, double>> coarse_errors;
   for (const double fine : {0.006, 0.003}) {

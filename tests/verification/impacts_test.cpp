@@ -69,14 +69,14 @@ TEST(Impacts, OfABarAgainstAWall) {
     EXPECT_NEAR(impact.mass, mass, 1e-12 * mass);
     EXPECT_NEAR(impact.normal_velocity_before(), -10.0, 1e-10);
     EXPECT_NEAR(impact.normal()[0], 1.0, 1e-14);
-    // All of the end of the strip, which has two nodes.
+    // The whole end of the strip, which has two nodes.
     EXPECT_EQ(impact.contact_points, 2);
     EXPECT_EQ(impact.all_contact_points, 2);
     EXPECT_FALSE(impact.is_coarse());
     ASSERT_EQ(impact.first_position.size(), 2u);
     EXPECT_EQ(impact.first_position[0], 5.0);
     ASSERT_TRUE(impact.restitution().has_value());
-    // The energy that is lost remains in the mesh as oscillations.
+    // The lost energy remains in the mesh as oscillations.
     const double error = std::abs(*impact.restitution() - 1.0);
     EXPECT_LT(error, last_error) << cells;
     last_error = error;
@@ -119,7 +119,7 @@ TEST(Impacts, DoNotDependOnWhoMoves) {
 
 struct SchemeOfImpacts {
   std::string time, mass;
-  double steps_more;  ///< number of steps in which the force at one instant acts, less one
+  double steps_more;  ///< number of steps in which the force at one instant acts, minus one
 };
 
 std::vector<SchemeOfImpacts> schemes() {
@@ -131,7 +131,7 @@ std::vector<SchemeOfImpacts> schemes() {
 }
 
 /// Bodies thrown with a spin against an oblique plane with friction: before the impact the motion has the initial
-/// velocity; the impulse is the change of momentum less that by gravity, and its moment the change of angular momentum.
+/// velocity; the impulse is the change of momentum without gravity, and its moment the change of angular momentum.
 TEST(Impacts, BalanceMomentumInEveryScheme) {
   const std::vector<ThrownBody> bodies = thrown_bodies();
   for (const std::size_t which : {0u, 3u}) {
@@ -175,7 +175,7 @@ TEST(Impacts, BalanceMomentumInEveryScheme) {
   }
 }
 
-/// The impulse of other forces is that of gravity: m g times the duration of the steps of the impact.
+/// The impulse of other forces is due to gravity: m g times the duration of the steps of the impact.
 TEST(Impacts, TellGravitysPart) {
   const std::vector<ThrownBody> bodies = thrown_bodies();
   for (const SchemeOfImpacts& scheme : schemes()) {

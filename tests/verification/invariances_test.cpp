@@ -9,14 +9,14 @@
 
 #include "support/case_run.hpp"
 
-// A result must not depend on the units, the orientation, the numbering or the observer.
+// Results must not depend on the units, the orientation, the numbering or the observer.
 
 namespace ricochet {
 namespace invariances_test {
 
 using test_support::CaseRun;
 
-/// A case of a body above an oblique plane, whose every number can be transformed.
+/// A case of a body above an oblique plane with transformable numbers.
 struct Setting {
   int dimension = 2;
   std::string mesh;

@@ -11,8 +11,8 @@ namespace inverted_cells_test {
 using test_support::CaseRun;
 using test_support::mesh_geometry;
 
-/// Contact nodes go so far into the body that cells there are inverted; then a stage of the whole body cannot be solved
-/// and says what it sees of that.
+/// Contact nodes move so far into the body that they invert cells; a stage of the whole body then cannot be solved and
+/// reports why.
 class LostStages final : public StageSolve {
  public:
   LostStages(const SemidiscreteProblem& problem, double shift) : stages_(2), solution_(2) {
@@ -24,7 +24,7 @@ class LostStages final : public StageSolve {
   }
   Stage& stage(std::size_t number) override { return stages_.at(number); }
   const StageSolution& solve(std::size_t number) override {
-    if (number == 1) throw Error(ErrorKind::not_converged, "W has an entry that is no finite number");
+    if (number == 1) throw Error(ErrorKind::not_converged, "W has non-finite entries");
     return solution_[0];
   }
   void follow(const Vector&) override {}
@@ -61,8 +61,8 @@ TEST(InvertedCells, AreNamedWhereTheContactProblemFailsForThem) {
   // Cells at the bottom are about 0.11 high.
   const std::string inverted = message_of_step(run, 0.2);
   EXPECT_NE(inverted.find("cell "), std::string::npos) << inverted;
-  EXPECT_NE(inverted.find("is turned inside out"), std::string::npos) << inverted;
-  EXPECT_EQ(message_of_step(run, 0.01), "W has an entry that is no finite number");
+  EXPECT_NE(inverted.find("is inverted"), std::string::npos) << inverted;
+  EXPECT_EQ(message_of_step(run, 0.01), "W has non-finite entries");
 }
 
 }  // namespace inverted_cells_test

@@ -7,13 +7,13 @@
 #include "ricochet/solver/step_estimate.hpp"
 #include "support/case_run.hpp"
 
-// A whole skin that may touch must not cost more than a small part of it: what is counted here does not depend on the
-// machine.
+// A whole skin as contact boundary must not cost more than a small part of it: the counted quantities do not depend on
+// the machine.
 
 namespace ricochet {
 namespace large_contact_test {
 
-/// A ball of degree 2: "skin" is all of its surface, "cap" what is near its lowest point.
+/// A ball of degree 2: "skin" is its whole surface, "cap" the part near its lowest point.
 std::string ball_case(const std::string& group) {
   const std::string geometry =
       "cap = Pi/6; Sphere(1)={0,0,1.01,1,-Pi/2,-Pi/2+cap}; Sphere(2)={0,0,1.01,1,-Pi/2+cap,Pi/2}; Coherence; "
@@ -48,7 +48,7 @@ TEST(LargeContact, TheFactorOfAWholeSkinIsThatOfTheConsistentMass) {
             1.1 * static_cast<double>(consistent.simulation().factor_entries()));
 }
 
-/// The estimate from the symbolic analysis against the factor and the columns that are made.
+/// The estimate from the symbolic analysis, compared with the computed factor and columns.
 TEST(LargeContact, EstimatesAreWhatIsMade) {
   test_support::CaseRun run(ball_case("skin"));
   const std::vector<OperatorCoefficients> operators = run.scheme().operators(run.problem());
@@ -80,7 +80,7 @@ TEST(LargeContact, EstimatesAreWhatIsMade) {
   Matrix w;
   columns.append(transposed, w);
   const double made = 8.0 * static_cast<double>(columns.entries()) / static_cast<double>(points);
-  EXPECT_GE(estimates[0].bytes_per_point, 0.4 * made);  // columns that lie together share the union of their paths
+  EXPECT_GE(estimates[0].bytes_per_point, 0.4 * made);  // adjacent columns share the union of their paths
   EXPECT_LE(estimates[0].bytes_per_point, 1.1 * made);
 }
 

@@ -7,7 +7,7 @@
 #include "support/case_run.hpp"
 #include "support/two_bodies.hpp"
 
-/// @file Nearly incompressible bodies do not lock with mean dilatation, and do without it: Cook's membrane at finite
+/// @file Nearly incompressible bodies do not lock with mean dilatation, but lock without it: Cook's membrane at finite
 /// strain, Poisson's ratio 0.4999.
 namespace ricochet::test_support {
 namespace locking_test {
@@ -27,7 +27,7 @@ Vector cook(const Vector& x) {
   return result;
 }
 
-/// How far the upper corner of the free side rises.
+/// Rise of the upper corner of the free side.
 double rise(const Membrane& membrane) {
   const int d = dimension(membrane.shape);
   BoxMesh box = box_of(membrane.shape, d == 2 ? std::vector{membrane.cells, membrane.cells}
@@ -62,14 +62,14 @@ TEST(Locking, CooksMembrane) {
     return result;
   };
   using enum CellShape;
-  // Of degree 1 the error of the mesh, which goes down as it is refined: pure bending is not exact on these cells.
+  // For degree 1 the mesh error, which decreases with refinement: pure bending is not exact on these cells.
   const double coarse = missing({.cells = 8});
   EXPECT_LT(coarse, 0.06);
   EXPECT_LT(missing({.cells = 16}), 0.5 * coarse);
   EXPECT_NEAR(missing({.shape = hexahedron, .cells = 8}), coarse, 1e-3);
   for (const CellShape shape : {quadrilateral, triangle, hexahedron})
     EXPECT_NEAR(missing({.shape = shape, .cells = 4, .degree = 2}), 0.0, 0.02);
-  // Pointwise these are three times too stiff, and refinement hardly helps.
+  // Pointwise evaluation is three times too stiff, and refinement hardly helps.
   EXPECT_GT(missing({.cells = 8, .dilatation = "pointwise"}), 0.6);
   EXPECT_GT(missing({.cells = 16, .dilatation = "pointwise"}), 0.5);
   EXPECT_GT(missing({.shape = hexahedron, .cells = 4, .dilatation = "pointwise"}), 0.6);

@@ -12,7 +12,7 @@
 #include "support/two_bodies.hpp"
 
 /// @file A body that meets its mirror image moves as if it met the plane between them without friction: the relative
-/// motion is twice that of the body, W is twice as large, the forces are the same.
+/// motion and W are doubled, the forces are the same.
 namespace ricochet {
 namespace mirror_test {
 
@@ -25,7 +25,7 @@ struct MirroredBody {
   int degree;
 };
 
-/// Blocks with a curved side towards the plane, 0.01 away from it.
+/// Blocks with a curved side towards the plane, at a distance of 0.01.
 PointMap block_above(int up) {
   return [up](const Vector& x) {
     Vector y = x;
@@ -34,11 +34,11 @@ PointMap block_above(int up) {
   };
 }
 
-/// The mesh alone, or with its mirror image. Boxes of one shape are distorted alike, so images match node by node.
+/// The mesh alone, or with its mirror image. Boxes of one shape have equal distortions, so images match node by node.
 std::string write_blocks(const MirroredBody& body, bool with_image) {
   const int up = dimension(body.shape) - 1;
   test_support::StackedBoxes stack{body.shape, body.shape, body.counts, body.counts};
-  // On facets that are no parallelograms the quadrature is exact only to nine digits, and some schemes amplify the
+  // On facets that are not parallelograms the quadrature is exact only to nine digits, and some schemes amplify the
   // error.
   if (body.shape == CellShape::hexahedron) stack.distortion = 0.0;
   stack.upper_map = block_above(up);
@@ -59,7 +59,7 @@ std::string case_text(const MirroredBody& body, const std::string& mesh, bool wi
                       const Discretization& discretization) {
   const bool flat = dimension(body.shape) == 2;
   const std::string face = flat ? "y0" : "z0";
-  // Bodies do not slip on each other, however rough they are. What reduced-kane takes by itself hangs on friction.
+  // Bodies do not slip on each other, however rough they are. The default of reduced-kane depends on friction.
   const std::string rough = with_image && test_support::takes_friction(discretization.scheme) ? "friction = 0.4\n" : "";
   const std::string plane = "[obstacle.plane]\ntype = \"plane\"\n" +
                             std::string(flat ? "point = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
@@ -139,7 +139,7 @@ TEST(MirroredBodies, MoveAsOneAgainstThePlaneBetweenThem) {
       // Under Nitsche's method points penetrate in proportion to the stress error of one side; here both sides share
       // it.
       if (!discretization.is_possible() || discretization.scheme == "nitsche") continue;
-      // These masses cannot be made of blocks of so few cells.
+      // Blocks of so few cells do not admit these masses.
       if (discretization.mass == "equivalent-nearest") continue;
       if (discretization.mass == "equivalent-lumped" && dimension(body.shape) == 3) continue;
       const std::string label =

@@ -7,8 +7,8 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-// P(t) − P(0) is the impulse of the forces, to rounding, and so it is with moments: every scheme, mass and multiplier
-// space, with friction on a moving plane, loads that vary, damping and supports.
+// P(t) − P(0) is the impulse of the forces, to rounding, and likewise for moments: every scheme, mass and multiplier
+// space, with friction on a moving plane, varying loads, damping and supports.
 
 namespace ricochet {
 namespace momentum_account_test {
@@ -34,8 +34,8 @@ Resultant momentum(const CaseRun& run, const HistoryRecorder& recorder, const st
   return result;
 }
 
-/// Largest difference, relative to all impulses and momenta; −1: the program refuses the case. That of the energy,
-/// relative to the largest parts of it.
+/// Largest difference relative to all impulses and momenta, or −1 if the program refuses the case; that of the energy
+/// is relative to its largest parts.
 struct Difference {
   double momentum = -1.0, angular = -1.0, energy = 0.0;
 };
@@ -87,7 +87,7 @@ TEST(MomentumAccount, BalancesInEverySchemeMassAndMultiplierSpace) {
   }
 }
 
-/// Contact presses at the start: what a scheme makes of it there, its accounts begin with.
+/// Contact presses at the start: the accounts begin with the scheme's state there.
 TEST(MomentumAccount, BalancesWithTheEnergyFromAStaticStart) {
   const ThrownBody block = test_support::one_sided_block();
   for (const std::string& scheme : scheme_names()) {
@@ -113,8 +113,7 @@ TEST(MomentumAccount, BalancesWithTheEnergyFromAStaticStart) {
   }
 }
 
-/// Under Tresca's law points without pressure may carry friction: it counts, in the account and in a contact's
-/// resultant.
+/// Under Tresca's law points without pressure may carry friction: the account and a contact's resultant include it.
 TEST(MomentumAccount, BalancesUnderTrescasLaw) {
   int without_pressure = 0;
   for (const auto& [scheme, mass] : {std::pair{"newmark\"\npreset = \"trapezoidal", "equivalent"},

@@ -11,8 +11,8 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-// Schemes whose contact nodes have no inertia and are in equilibrium at the end of each step: their balances of energy,
-// derived in docs/energy.md, from states alone. K_cc z = (K ΔU)_c, W_c = H K_cc⁻¹ Hᵀ.
+// Schemes with massless contact nodes in equilibrium at the end of each step: their balances of energy, derived in
+// docs/energy.md, from states alone. K_cc z = (K ΔU)_c, W_c = H K_cc⁻¹ Hᵀ.
 
 namespace ricochet {
 namespace reduced_schemes_test {
@@ -208,7 +208,7 @@ TEST(MeanReaction, KeepsEnergyAndMomentaForEveryStep) {
   }
 }
 
-/// Loads that vary on contact nodes work along the path, too: they are no loss of the scheme.
+/// Varying loads on contact nodes also work along the path: this is no loss of the scheme.
 TEST(MeanReaction, BooksTheWorkOfLoadsOnContactNodes) {
   for (const ThrownBody& body : bodies()) {
     for (const auto& [scheme, friction, step] :
@@ -272,7 +272,7 @@ TEST(ReducedMidpoint, EnergyChangesWithTheStatusOnly) {
   }
 }
 
-/// A block of few cells on a plane that is tilted so that friction is at `part` of its limit.
+/// A block of few cells on a plane tilted so that friction is at `part` of its limit.
 std::string block_on_slope(double part, double step, long count, const std::string& motion) {
   const std::string mesh = test_support::mesh_geometry(
       "little-block",

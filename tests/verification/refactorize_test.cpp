@@ -7,14 +7,14 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file Operators that depend on the displacement: stages are solved with the tangent that was asked for, and whoever
-/// relies on a constant one refuses.
+/// @file Operators that depend on the displacement: stages are solved with the requested tangent, and solvers that rely
+/// on a constant one refuse.
 namespace ricochet {
 namespace refactorize_test {
 
 using test_support::CaseRun;
 
-/// (1 + |U|_∞) K U in form only: what solvers look at is the tangent.
+/// A force of the form (1 + |U|_∞) K U: solvers use its tangent only.
 class Stiffening final : public InternalForce {
  public:
   explicit Stiffening(const InternalForce& linear) : linear_(linear) {}
@@ -47,7 +47,7 @@ std::string block_case(const std::string& more = "") {
          more;
 }
 
-/// A stage in which the block is pressed and dragged.
+/// A stage that presses and drags the block.
 Stage pressed_stage(const SemidiscreteProblem& problem) {
   Stage stage;
   stage.right_hand_side.setZero(problem.dof_count());
@@ -77,7 +77,7 @@ TEST_P(Refactorize, SolvesWithTheTangentAtTheDisplacement) {
     displacement[1] = size;
     solver->refactorize(0, displacement);
     solver->solve(0, stage, found);
-    // The same operator, made from the start.
+    // The same operator in a new solver.
     const auto other = make_step_solver(run.problem(), {{50.0, 1.0 + size, 0.0}}, options);
     other->solve(0, stage, wanted);
     const double scale = wanted.increment.lpNorm<Eigen::Infinity>();

@@ -9,15 +9,15 @@
 #include "support/case_run.hpp"
 #include "support/viscous_block.hpp"
 
-/// @file Stress that relaxes, against closed forms of the Prony series.
+/// @file Viscoelastic branches, compared with closed forms of the Prony series.
 namespace ricochet {
 namespace relaxation_closed_forms_test {
 
 using namespace test_support::viscous;
 using test_support::CaseRun;
 
-/// A block that is stretched along x between two walls that hold its sides: one strain in all of it, E = e + e²/2 of
-/// the engineering strain e(t), and no inertia worth the name.
+/// A block that is stretched along x between two walls that hold its sides: uniform strain E = e + e²/2 of the
+/// engineering strain e(t), and negligible inertia.
 std::string held_case(const std::string& law, const std::string& end_motion, double step, double end,
                       const std::vector<RelaxationBranch>& branches, const std::string& scheme = "reduced-kane") {
   const auto support = [](const std::string& group, const std::string& component, const std::string& value) {
@@ -28,7 +28,7 @@ std::string held_case(const std::string& law, const std::string& end_motion, dou
          fmt::format("[time]\nscheme = \"{}\"\nstep = {}\nend = {}\n", scheme, step, end);
 }
 
-/// σ_xx of that block: F S_xx.
+/// Stress σ_xx of that block: F S_xx.
 double stress_along(const CaseRun& run) {
   std::vector<double> stress, energy;
   CellStress(run.model().body).evaluate(run.state().displacement, stress, energy, run.state().internal_strain);
@@ -52,7 +52,7 @@ class Relaxation {
   }
 
  private:
-  /// q' + q/τ = E' for E = a t + b t² up to T, then E' = 0.
+  /// Solution of q' + q/τ = E' for E = a t + b t² up to T, then E' = 0.
   [[nodiscard]] double spring(const RelaxationBranch& branch, double t) const {
     const double a = strain_ / time_, b = 0.5 * a * a, tau = branch.time, upto = std::min(t, time_);
     const double at = tau * (a + 2.0 * b * (upto - tau)) - tau * (a - 2.0 * b * tau) * std::exp(-upto / tau);
@@ -62,7 +62,7 @@ class Relaxation {
   std::vector<RelaxationBranch> branches_;
 };
 
-/// After the strain has come to rest steps of any length relax it exactly; while it grows the rule is of second order.
+/// Once the strain is constant, steps of any length relax it exactly; while it grows the rule is of second order.
 TEST(RelaxationClosedForms, AStretchedBlockRelaxesAsThePronySeries) {
   const std::vector<RelaxationBranch> branches{{0.5, 0.05}, {2.0, 0.6}};
   const double strain = 0.2, ramp = 0.4;
@@ -83,7 +83,7 @@ TEST(RelaxationClosedForms, AStretchedBlockRelaxesAsThePronySeries) {
   EXPECT_NEAR(errors[1] / errors[2], 4.0, 0.5);
 }
 
-/// From E = e sin ωt: a cycle dissipates π E″ e² per volume, E″ = (4/3) Σ gμ ωτ/(1+ω²τ²) of a strain along one axis.
+/// For E = e sin ωt a cycle dissipates π E″ e² per volume, E″ = (4/3) Σ gμ ωτ/(1+ω²τ²) for a strain along one axis.
 TEST(RelaxationClosedForms, CyclesDissipateTheLossModulus) {
   const std::vector<RelaxationBranch> branches{{0.5, 0.05}, {2.0, 0.6}};
   const double omega = 2.0 * std::numbers::pi, amplitude = 1e-5, volume = 0.5;

@@ -10,10 +10,10 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-// A simulation that goes on from a snapshot gives the same bits as one that was never interrupted: for every scheme,
-// mass and multiplier space that is registered, for every way to solve a step, with friction, moving obstacles, loads
-// that vary, damping and supports. The whole snapshot at the end is compared, so that nothing on which a later step
-// could depend is omitted.
+// A simulation resumed from a snapshot gives the same bits as an uninterrupted one: for every registered scheme, mass
+// and multiplier space, for every way to solve a step, with friction, moving obstacles, varying loads, damping and
+// supports. The whole snapshot at the end is compared, so that it includes everything on which a later step could
+// depend.
 
 namespace ricochet {
 namespace resume_test {
@@ -82,7 +82,7 @@ bool resumes_to_the_same_bits(const std::string& text, const std::set<long>& at)
 }
 
 TEST(Resume, EverySchemeMassAndMultiplierSpace) {
-  // With contact on one side, so that every mass can be made.
+  // With contact on one side, which admits every mass.
   const ThrownBody block = test_support::one_sided_block();
   std::map<std::string, int> runs;
   for (const test_support::Discretization& each : test_support::all_discretizations()) {
@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Variant{"ExplicitBall", "scheme = \"semi-explicit\"\n", "equivalent-lumped", friction, "", 3}),
     [](const auto& info) { return info.param.name; });
 
-/// Rows that follow the motion: a disc that slides and rolls in a hollow that moves.
+/// Rows that follow the motion: a disc that slides and rolls in a moving hollow.
 TEST(Resume, CurvedObstacle) {
   for (const char* const scheme : {"newmark", "klr-conserving", "contact-stabilized"}) {
     const std::string mass = scheme == std::string("newmark") ? "equivalent" : "consistent";
@@ -144,7 +144,7 @@ TEST(Resume, CurvedObstacle) {
   }
 }
 
-/// Lengths of steps, their operators and what was refused.
+/// Lengths of steps, their operators and refused attempts.
 TEST(Resume, AdaptiveSteps) {
   for (const char* const scheme : {"reduced-kane", "generalized-alpha", "bathe", "laursen-love"}) {
     const std::string mass = test_support::masses_of(scheme).back();
@@ -155,7 +155,7 @@ TEST(Resume, AdaptiveSteps) {
   }
 }
 
-/// Cases in which schemes keep more than the vectors of the state.
+/// Cases in which schemes keep more than the state vectors.
 TEST(Resume, MovingSupports) {
   for (const auto& [scheme, text] : test_support::moving_support_cases())
     EXPECT_TRUE(resumes_to_the_same_bits(text, {0, 3, 60, 61, 150, 199})) << scheme;

@@ -13,8 +13,8 @@
 #include "support/strip.hpp"
 #include "support/thrown_body.hpp"
 
-// The semi-explicit scheme: its critical step against dense eigenvalues, closed forms and runs on both sides of it,
-// what it refuses, and its motion against that of newmark with the equivalent mass.
+// The semi-explicit scheme: its critical step compared with dense eigenvalues, closed forms and runs on both sides of
+// it, its refusals, and its motion compared with newmark with the equivalent mass.
 
 namespace ricochet {
 namespace semi_explicit_test {
@@ -46,11 +46,11 @@ double dense_eigenvalue(const SemidiscreteProblem& problem, bool condensed) {
   return Eigen::SelfAdjointEigenSolver<Matrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
 }
 
-/// A simulation with this step, whatever the critical one is, from random velocities.
+/// A simulation with this step, regardless of the critical one, from random velocities.
 struct UncheckedRun {
   std::unique_ptr<Scheme> scheme;
   std::unique_ptr<Simulation> simulation;
-  double first = 0.0, largest = 0.0;  ///< total energy, which nothing adds to
+  double first = 0.0, largest = 0.0;  ///< total energy, without any supply
 
   UncheckedRun(const CaseRun& run, double step, int steps) {
     scheme = make_semi_explicit_at_any_step(step);
@@ -113,7 +113,7 @@ TEST(SemiExplicit, BouncingBodiesAreBoundedBelowTheirCriticalStep) {
       CaseRun run(thrown_case(body, "equivalent-lumped", semi_explicit, contact), {"time.step=0.001"});
       const UncheckedRun below(run, 0.98 * run.scheme().critical_step(), 1000);
       EXPECT_LT(below.largest, 3.0 * below.first) << body.name;
-      // Above the limit with open contact, which is the higher one.
+      // Above the limit for open contact, the higher one.
       const UncheckedRun above(run, 2.1 / std::sqrt(dense_eigenvalue(run.problem(), true)), 1000);
       EXPECT_GT(above.largest, 1e6 * above.first) << body.name;
     }
@@ -157,7 +157,8 @@ TEST(SemiExplicit, RefusesOtherMassesAndStiffnessDamping) {
     expect_refusal(toml, {std::string("mass.type=") + mass}, "is not diagonal; set mass.type = \"equivalent-lumped\"");
   }
   expect_refusal(toml, {"mass.type=lumped"}, "without inertia on the contact nodes: ");
-  expect_refusal(toml, {"material.0.damping.stiffness=0.001"}, "no damping proportional to the stiffness");
+  expect_refusal(toml, {"material.0.damping.stiffness=0.001"},
+                 "does not support damping proportional to the stiffness");
 }
 
 TEST(SemiExplicit, StartsWithoutAFactorOfTheMass) {
@@ -207,7 +208,7 @@ TEST(SemiExplicit, ConvergesToNewmarkWithTheSameMass) {
 }
 
 TEST(SemiExplicit, MovesAsNewmarkWithTheEquivalentMass) {
-  // The two masses differ by O(h²), as both do from the consistent one. (The balls and the blocks have too few free
+  // The two masses differ by O(h²), as each does from the consistent one. (The balls and the blocks have too few free
   // nodes to compare.)
   for (const char* contact : {"", "friction = 0.4\n"}) {
     for (const ThrownBody& body : thrown_bodies()) {

@@ -10,7 +10,7 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file Velocities and motions of obstacles that a program sets as a run goes on.
+/// @file Velocities and motions of obstacles set by a program during a run.
 namespace ricochet::test_support {
 namespace session_steering_test {
 
@@ -24,7 +24,7 @@ class SessionSteeringTest : public ::testing::Test {
   static std::string text(const std::string& time) {
     return thrown_case(one_sided_block(), "equivalent", time, "friction = 0.3\n");
   }
-  /// Runs the case under every scheme and mass that take it, and steers each run. Its accounts must close.
+  /// Runs the case under every scheme and mass that support it, and steers each run. Its accounts must close.
   template <class Steer, class Look>
   void expect_closed_accounts(const std::vector<std::string>& more_changes, const Steer& steer, const Look& look) {
     int schemes = 0;
@@ -42,7 +42,7 @@ class SessionSteeringTest : public ::testing::Test {
           for (const CheckResult& check : summary.checks) EXPECT_LT(check.largest, 1e-9) << check.name;
           look(summary);
         } catch (const Error& problem) {
-          // Refused: the scheme does not take this mass or this step.
+          // The scheme does not support this mass or this step.
           ASSERT_EQ(problem.kind(), ErrorKind::invalid_input) << problem.what();
         }
       }
@@ -52,7 +52,7 @@ class SessionSteeringTest : public ::testing::Test {
   std::string path_, directory_;
 };
 
-/// The accounts close over a change of the velocity.
+/// The accounts close across a change of the velocity.
 TEST_F(SessionSteeringTest, AccountsContainAnImpulse) {
   expect_closed_accounts(
       {"output.history_every=1"},
@@ -67,7 +67,7 @@ TEST_F(SessionSteeringTest, AccountsContainAnImpulse) {
       [](const RunSummary& summary) { EXPECT_NE(summary.digest("load_work").last, 0.0); });
 }
 
-/// A load that is set between two steps acts from there on: the forces of the step before are those of the old one.
+/// A load set between two steps acts from there on: the forces of the previous step belong to the old load.
 TEST_F(SessionSteeringTest, AccountsContainALoadThatIsSet) {
   expect_closed_accounts(
       {},
@@ -89,7 +89,7 @@ TEST_F(SessionSteeringTest, AVelocityWithoutAFiniteEnergyIsRefused) {
   EXPECT_EQ(session.state().velocity, before);
 }
 
-/// A body in free flight goes on with the velocity that was set.
+/// A body in free flight continues with the new velocity.
 TEST_F(SessionSteeringTest, BodiesFlyWithTheVelocityThatWasSet) {
   Session session(path_, {"load.gravity=[0, 0]"});
   Vector velocity = Vector::Zero(session.problem().dof_count());
@@ -101,7 +101,7 @@ TEST_F(SessionSteeringTest, BodiesFlyWithTheVelocityThatWasSet) {
   EXPECT_NEAR(change.maxCoeff(), 2.0 * session.time(), 1e-9);
 }
 
-/// An obstacle that is given its velocity by the program moves as one that has it from the case.
+/// An obstacle with a velocity from the program moves like one with the same velocity from the case.
 TEST_F(SessionSteeringTest, ObstaclesMoveAsWithTheVelocityOfTheCase) {
   Session of_case(path_, {"obstacle.plane.velocity=[0.1, 0.5]", "time.end=0.5"});
   Session steered(path_, {"time.end=0.5"});

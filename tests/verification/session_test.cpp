@@ -10,7 +10,7 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file Sessions: the run of a case in the hands of the program that opens it.
+/// @file Sessions: runs of a case controlled by the program that opens it.
 namespace ricochet::test_support {
 namespace session_test {
 
@@ -54,7 +54,7 @@ TEST_F(SessionTest, GoesOnFromASnapshotWithTheSameBits) {
   EXPECT_THROW(second.resume(middle), Error);
 }
 
-/// A session that is stepped writes the files that a run writes.
+/// A stepped session writes the same files as a run.
 TEST_F(SessionTest, WritesWhatARunWrites) {
   (void)run_case(read_case(path_), {.output_directory = directory_, .force = true, .quiet = true});
   Session session(path_);
@@ -69,7 +69,7 @@ TEST_F(SessionTest, WritesWhatARunWrites) {
   EXPECT_EQ(one.columns, other.columns);
 }
 
-/// A spring that the program makes: its work is in the account, which closes.
+/// A spring implemented by the program: its work is in the account, which closes.
 TEST_F(SessionTest, FeedsALoadBack) {
   Session free(path_, {"time.end=1"}), held(path_, {"time.end=1"});
   const Index dofs = held.problem().dof_count();
@@ -90,7 +90,7 @@ TEST_F(SessionTest, FeedsALoadBack) {
   EXPECT_THROW(held.set_load(Vector::Zero(dofs - 1)), Error);
 }
 
-/// The load that was set is part of the checkpoint; a session that does not set it again is refused.
+/// A checkpoint contains the load that was set; a session that does not set it again is refused.
 TEST_F(SessionTest, ResumesWithTheLoadThatWasSet) {
   const auto spring = [](Session& session) { session.set_load(-4.0 * session.state().displacement); };
   const RunOptions options{.output_directory = directory_ + "-loaded", .force = true, .quiet = true};
@@ -106,7 +106,7 @@ TEST_F(SessionTest, ResumesWithTheLoadThatWasSet) {
       spring(first);
       ASSERT_TRUE(first.step());
     }
-  }  // gone in the middle
+  }  // destroyed in the middle
   RunOptions resume = options;
   resume.force = false;
   resume.resume = true;
@@ -123,7 +123,7 @@ TEST_F(SessionTest, ResumesWithTheLoadThatWasSet) {
   EXPECT_EQ(second.state().displacement, whole.state().displacement);
 }
 
-/// A program that has seen enough leaves a run that is interrupted, not one that is done, and that can go on.
+/// A program that stops early leaves an interrupted run, which can be resumed, instead of a complete one.
 TEST_F(SessionTest, LeavesAnInterruptedRunWhereItEndsEarly) {
   const std::vector<std::string> changes{"time.end=0.5"};
   Session first(path_, changes);
@@ -159,14 +159,14 @@ TEST_F(SessionTest, RefusesWhatDoesNotFitTogether) {
   EXPECT_THROW(session.set_load(Vector::Constant(session.problem().dof_count(), std::nan(""))), Error);
   Session other_step(path_, {"time.step=0.005"});
   EXPECT_THROW(other_step.resume(snapshot), Error) << "a state of another case";
-  // A directory that holds a run: refused, and the session is as it was.
+  // A directory that holds a run is refused, and the session is unchanged.
   Session first(path_, {"time.end=0.2"});
   (void)run_case(first, {.output_directory = directory_, .force = true, .quiet = true});
   EXPECT_THROW((void)first.step(), Error) << "it has finished";
   Session again(path_, {"time.end=0.2"});
   EXPECT_THROW(again.write_to({.output_directory = directory_, .quiet = true}), Error);
   EXPECT_TRUE(again.step());
-  // A run that is complete has no state.
+  // A complete run has no state.
   Session complete(path_, {"time.end=0.2"});
   complete.write_to({.output_directory = directory_, .quiet = true, .resume = true});
   EXPECT_FALSE(complete.step());
@@ -174,7 +174,7 @@ TEST_F(SessionTest, RefusesWhatDoesNotFitTogether) {
   EXPECT_EQ(complete.finish().status, "done");
 }
 
-/// Warnings are the session's own, those of reading its case among them.
+/// Warnings belong to the session, including those from reading its case.
 TEST_F(SessionTest, OwnsItsWarnings) {
   Session quiet(path_);
   Session warned(path_, {"initial.parameters.unused=1"});

@@ -14,7 +14,7 @@ namespace sphere_test {
 constexpr double gravity = 9.81;
 constexpr double start_angle = 0.3;
 
-/// A block of width 2b and height b, two corners on a circle of radius 1 about (0, 1), turned by the start angle.
+/// A block of width 2b and height b, two corners on a circle of radius 1 about (0, 1), rotated by the start angle.
 std::string bowl_case(double b, double step, double friction, const std::string& time) {
   const double sagitta = 1.0 - std::sqrt(1.0 - b * b);
   std::string geometry = "Rectangle(1) = {-" + std::to_string(b) + ", 0, 0, " + std::to_string(2 * b) + ", " +
@@ -137,7 +137,7 @@ TEST(Sphere, ABlockSwingsInABowlWithThePeriodOfItsPointMass) {
     EXPECT_LE(found.penetration, 0.0);
     EXPECT_NEAR(std::abs(found.angles[1]), start_angle, 5e-3);
   }
-  // Small strain makes a body that turns larger: an error of the size of the block.
+  // Small strain enlarges a rotating body: an error of the size of the block.
   EXPECT_LE(errors[1], 1e-3);
   EXPECT_NEAR(errors[0] / errors[1], 2.0, 0.3);
 }
@@ -170,8 +170,8 @@ end = )" +
          std::to_string(end) + "\n";
 }
 
-/// A disc in a hollow that is hardly larger, thrown so hard that its contact forces are stiffer than the step and
-/// iterations of tangent planes diverge: they are accelerated, and the conditions hold nevertheless.
+/// A disc in a slightly larger hollow, thrown so hard that its contact forces are stiffer than the step and iterations
+/// of tangent planes diverge: they are accelerated, and the conditions hold nevertheless.
 TEST(Sphere, ADiscThrownIntoATightHollowStaysInside) {
   CaseRun run(disc_case("0.0105", "inside", 0.05));
   EnergyWatch energy;
@@ -187,18 +187,18 @@ TEST(Sphere, ADiscThrownIntoATightHollowStaysInside) {
   EXPECT_LE(penetration, 1e-15);
 }
 
-/// All nodes of the boundary touch and none is inside, although the body is.
+/// All boundary nodes touch and none is inside, although the body is.
 TEST(Sphere, ADiscThatFillsABallIsToldToBeInside) {
   Session session(write_temporary("filled.toml", disc_case("0.01", "outside", 2e-4)));
   const std::string output = testing::TempDir() + "filled";
   (void)run_case(session, {.output_directory = output, .force = true, .quiet = true});
   const auto& told = session.warnings();
   EXPECT_TRUE(std::any_of(told.begin(), told.end(), [](const std::string& warning) {
-    return warning.find("the body is in the obstacle, not beside it") != std::string::npos;
+    return warning.find("the body is inside the obstacle, not next to it") != std::string::npos;
   }));
 }
 
-/// θ'' = −(g/l) sin θ − F sgn(θ') ((g/l) cos θ + θ'²): turning points, by Runge and Kutta's rule.
+/// Turning points of θ'' = −(g/l) sin θ − F sgn(θ') ((g/l) cos θ + θ'²), by the Runge–Kutta method.
 std::vector<double> turning_points(double l, double friction) {
   double angle = start_angle, rate = -1e-12;
   std::vector<double> result;
@@ -240,7 +240,7 @@ TEST_P(BowlScheme, ABlockLosesItsAmplitudeToFrictionAsItsPointMassDoes) {
 INSTANTIATE_TEST_SUITE_P(All, BowlScheme,
                          ::testing::Values(dissipative, "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
                                            "scheme = \"klr-conserving\"\n[mass]\ntype = \"consistent\"\n",
-                                           // Its projections are of the size of rounding while the block is slow.
+                                           // While the block is slow, its projections are of the size of rounding.
                                            "scheme = \"contact-stabilized\"\n[mass]\ntype = \"consistent\"\n"));
 
 }  // namespace sphere_test

@@ -41,7 +41,7 @@ TEST(StartingState, StaticEquilibriumStaysAtRestWithEveryMassAndScheme) {
       const std::string name = std::string(scheme).substr(10, std::string(scheme).find('"', 10) - 10);
       const std::vector<std::string> taken = test_support::masses_of(name);
       if (std::find(taken.begin(), taken.end(), mass) == taken.end()) continue;
-      // The body starts above the floor, held by nothing: equilibrium is found on the floor.
+      // An unsupported body starts above the floor: its equilibrium is found on the floor.
       CaseRun run(block_case(
           0.01, mass,
           "[initial]\ndisplacement = \"static\"\n[time]\n" + std::string(scheme) + "step = 1e-3\nend = 0.1\n"));
@@ -102,7 +102,7 @@ TEST(StartingState, SaysWhenThereIsNoEquilibrium) {
   }
 }
 
-/// Residual of M A + C V + K U − L − Gᵀr on the dofs that no support holds, relative to the forces.
+/// Residual of M A + C V + K U − L − Gᵀr on unsupported dofs, relative to the forces.
 double momentum_residual(CaseRun& run) {
   const SemidiscreteProblem& problem = run.problem();
   const State& state = run.state();
@@ -186,7 +186,7 @@ TEST(StartingState, StaticEquilibriumOfSlenderAndOfUnevenBodies) {
   const double thickness = 0.02, young = 1e6;
   const double beam = 1.5 / (young * thickness * thickness);
   EXPECT_NEAR(static_tip(1.0, thickness, young, young), -beam, 2e-3 * beam);
-  // The outer half a million times stiffer: it only turns. Inner half with moment M(x) = q(L−x)²/2 up to L/2, then
+  // The outer half is a million times stiffer: it only rotates. Inner half with moment M(x) = q(L−x)²/2 up to L/2, then
   // straight.
   const double half = 0.5, q = thickness, inertia = young * thickness * thickness * thickness / 12.0;
   const auto power = [](double x, int n) { return std::pow(x, n); };
@@ -205,8 +205,8 @@ TEST(StartingState, StaticEquilibriumWithoutAnyForceIsFound) {
 }
 
 TEST(StiffBody, EnergyAccountClosesThoughTheBodyMovesFar) {
-  // A steel block in SI units falls five times its size: its strain energy is next to nothing, and must not be the
-  // rounding of K times the fall.
+  // A steel block in SI units falls five times its size: its strain energy is nearly zero, and must not be the rounding
+  // of K times the fall.
   for (const char* scheme : {"scheme = \"midpoint\"\n", "scheme = \"klr-conserving\"\n",
                              "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"}) {
     CaseRun run("[mesh]\nfile = \"" + block_mesh(10.0) +

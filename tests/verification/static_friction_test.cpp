@@ -61,9 +61,9 @@ TEST(StaticFriction, FreelySlidingBlockStaysWhereItIs) {
   for (const char* mass : {"equivalent", "consistent"}) {
     for (const char* velocity : {"[0.5, 0.0]", "[-1e-6, 0.0]"}) {
       CaseRun run(block_case(mass, "[0.0, 0.0]", velocity));
-      // Compressed by its own weight, ρ g / 2E, and no more: not displaced by the size of the body.
+      // Compressed by its own weight, ρ g / 2E, only: not displaced by the size of the body.
       EXPECT_LT(run.state().displacement.lpNorm<Eigen::Infinity>(), 3e-3) << mass << velocity;
-      // Massless contact nodes move to equilibrium with the friction that sets in.
+      // Massless contact nodes move to equilibrium with the new friction.
       EXPECT_NEAR(contact_force(run, 1), weight, (mass[0] == 'e' ? 0.02 : 1e-9) * weight) << mass << velocity;
       if (velocity[1] == '-') continue;  // it stops within a step
       EXPECT_NEAR(contact_force(run, 0), -largest_friction(run), 1e-9 * weight) << mass;
@@ -98,7 +98,7 @@ TEST(StaticFriction, BlockThatSlidesDownASlopeIsRefused) {
   }
 }
 
-/// A block on a floor of two or three dimensions, in gravity that is inclined by an angle to it.
+/// A block on a floor in two or three dimensions, with gravity inclined by an angle to it.
 struct InclinedBlock {
   int dimension;
   double angle, heading;  ///< of gravity: to the normal of the floor, and along the floor
@@ -145,7 +145,7 @@ std::vector<double> vector_after(const std::string& text, const std::string& wor
   return result;
 }
 
-/// A block slides down any incline that is steeper than its friction allows, however slightly, and the error states the
+/// A block slides down any incline steeper than its friction allows, however slightly, and the error states the
 /// direction. RICOCHET_RANDOM_CASES=10 tries ten times as many inclines.
 TEST(StaticFriction, OfABlockThatSlidesIsRefusedWithItsDirection) {
   const char* const factor = std::getenv("RICOCHET_RANDOM_CASES");
@@ -176,7 +176,7 @@ TEST(StaticFriction, OfABlockThatSlidesIsRefusedWithItsDirection) {
       const double volume = block.dimension == 2 ? 3.0 : 9.0;
       for (std::size_t k = 0; k < direction.size(); ++k) {
         const bool along = k + 1 < direction.size();
-        // To the three digits that are printed.
+        // Up to the three printed digits.
         EXPECT_NEAR(direction[k], along ? down[k] / std::sin(block.angle) : 0.0, 6e-4) << message;
         const double lacking = along ? volume * nearness * down[k] : 0.0;
         EXPECT_NEAR(force[k], lacking, 6e-3 * volume * nearness) << message;
@@ -190,7 +190,7 @@ TEST(StaticFriction, OfABlockThatSlidesIsRefusedWithItsDirection) {
   }
 }
 
-/// The error also gives the direction if there is nothing to slide on.
+/// The error also gives the direction of a falling body.
 TEST(StaticFriction, ABodyThatFallsIsRefusedWithItsDirection) {
   try {
     CaseRun run(block_case("consistent", "[0.0, 0.0]", "[0.0, 0.0]", "", "[0.0, 10.0]"));
@@ -205,7 +205,7 @@ TEST(StaticFriction, ABodyThatFallsIsRefusedWithItsDirection) {
 /// A block pulled at its upper edge by more than its weight can balance.
 TEST(StaticFriction, ABodyThatTipsIsRefused) {
   for (const double pull : {0.99, 1.01}) {
-    // Friction holds it; it tips about a corner where pull × height > weight × half its width.
+    // Friction holds it; it tips about a corner if pull × height > weight × half its width.
     std::string text =
         block_case("consistent", "[0.0, 0.0]", "[0.0, 0.0]",
                    fmt::format("[[traction]]\ngroup = \"top\"\nvalue = [{}, 0.0]\n", pull * weight / 2.0));

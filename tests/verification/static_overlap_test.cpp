@@ -7,14 +7,13 @@
 #include "ricochet/base/error.hpp"
 #include "support/case_run.hpp"
 
-/// @file Static starts of bodies that are inside of an obstacle: a press fit is found, and of all else the error says
-/// so.
+/// @file Static starts of bodies inside an obstacle: a press fit is found, and the error reports any other overlap.
 namespace ricochet {
 namespace static_overlap_test {
 
 using test_support::CaseRun;
 
-/// A unit square of E = 100 whose lower side is `depth` inside of the floor.
+/// A unit square of E = 100 whose lower side is `depth` inside the floor.
 std::string square(const std::string& law, double depth, const std::string& held) {
   const std::string mesh = test_support::mesh_geometry(
       "static-overlap",
@@ -50,9 +49,8 @@ TEST(StaticOverlap, IsWhatTheErrorIsAbout) {
       FAIL() << what;
     } catch (const Error& error) {
       const std::string message = error.what();
-      for (const std::string part :
-           {"initial.displacement = \"static\": without it 5 of 5 contact points are inside of",
-            "the deepest by 0.5 at (", ", 0) (contact.0)", "Move the obstacle or the body"})
+      for (const std::string part : {"initial.displacement = \"static\": without it 5 of 5 contact points are inside ",
+                                     "the deepest by 0.5 at (", ", 0) (contact.0)", "Move the obstacle or the body"})
         EXPECT_NE(message.find(part), std::string::npos) << what << ": " << message;
     }
   }

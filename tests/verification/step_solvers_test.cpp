@@ -5,8 +5,8 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-// The ways to solve a step on the same cases: a factor of the whole body with the contact points that may touch, the
-// same with all contact points, and conjugate gradients around a patch. They must agree.
+// The ways to solve a step, compared on the same cases: a factor of the whole body with the possible contact points,
+// the same with all contact points, and conjugate gradients around a patch. They must agree.
 
 namespace ricochet {
 namespace step_solvers_test {
@@ -50,7 +50,7 @@ std::vector<Frame> frames(const std::string& text, const std::vector<std::string
   return result;
 }
 
-/// Frames before the first in which a contact opens again; all of them for smooth schemes.
+/// Frames before the first reopening of a contact; all of them for smooth schemes.
 std::size_t comparable(const std::vector<Frame>& all, bool smooth) {
   for (std::size_t k = 1; k < all.size() && !smooth; ++k) {
     if (((all[k - 1].normal.array() > 0.0) && !(all[k].normal.array() > 0.0)).any()) return k;
@@ -88,13 +88,13 @@ TEST_P(StepSolvers, Agree) {
     const auto direct = frames(text, {"solver.method=direct"}, SolverMethod::direct);
     const auto all = frames(text, {"solver.method=direct", "solver.contact_points=all"}, SolverMethod::direct);
     expect_agreement(direct, all, variant.smooth, 1e-9);
-    // Errors of single steps add up over the run.
+    // Errors of single steps accumulate over the run.
     const auto iterative = frames(text, {"solver.method=iterative", "solver.tolerance=1e-12"}, SolverMethod::iterative);
     expect_agreement(direct, iterative, variant.smooth, 1e-8);
   }
 }
 
-/// At rest, without any load but what a support's motion brings.
+/// At rest, loaded only by the motion of a support.
 TEST(StepSolversBySupports, Agree) {
   const std::string square =
       "Rectangle(1)={0,0,0,1,1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1}; "
@@ -114,7 +114,7 @@ TEST(StepSolversBySupports, Agree) {
   }
 }
 
-/// A static start has no inertia that would help an iteration: held by contact alone, it takes a factor where it fits.
+/// A static start has no inertia to help an iteration: held by contact alone, it uses a factor if that fits.
 TEST(StepSolversAtRest, Agree) {
   const std::string square =
       "Rectangle(1)={0,0,0,1,1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1};";

@@ -11,7 +11,7 @@
 #include "support/case_run.hpp"
 #include "support/two_bodies.hpp"
 
-/// @file Location of the largest stress: corners, supports, contact, and similar places where the stress is finite.
+/// @file Location of the largest stress: corners, supports, contact, and similar positions with finite stress.
 namespace ricochet::test_support {
 namespace stress_raisers_test {
 
@@ -37,7 +37,7 @@ class Raisers {
       : run_(run), raisers_(run.model().body, run.problem(), run.model().contact_pairs, run.model().bodies) {}
 
   [[nodiscard]] std::string at(Index cell) { return name_of(raisers_.at(run_.state(), cell)); }
-  /// Looks at the cell with the largest stress.
+  /// Description of the cell with the largest stress.
   [[nodiscard]] std::string at_peak() {
     return at(CellStress(run_.model().body).largest_von_mises(run_.state().displacement).cell);
   }
@@ -69,7 +69,7 @@ TEST(StressRaisers, ClampedBeam) {
   }
 }
 
-/// Supports along the normal alone are mirrors: the box goes on beyond them, and its free corners carry nothing.
+/// Supports along the normal alone are mirrors: the box continues beyond them, and its free corners are unloaded.
 TEST(StressRaisers, PlanesOfSymmetryAreNone) {
   for (const CellShape shape : all_cell_shapes) {
     const bool flat = dimension(shape) == 2;
@@ -99,7 +99,7 @@ TEST(StressRaisers, Crack) {
   EXPECT_EQ(Raisers(run).at_peak(), "the edge of a support");
 }
 
-/// Facets of 15° and of 30° stand for a circular hole: its largest stress, on a plane of symmetry, is finite.
+/// Facets of 15° and of 30° represent a circular hole: its largest stress, on a plane of symmetry, is finite.
 TEST(StressRaisers, FacetsOfAHoleAreNone) {
   for (const int count : {3, 6}) {
     const PointMap quarter = [](const Vector& x) -> Vector {
@@ -112,7 +112,7 @@ TEST(StressRaisers, FacetsOfAHoleAreNone) {
   }
 }
 
-/// A hole with four corners, as a square has them, makes the body re-entrant there.
+/// A hole with four corners, as of a square, makes the body re-entrant there.
 TEST(StressRaisers, CornersOfASquareHole) {
   const PointMap quarter = [](const Vector& x) -> Vector {
     const double angle = 0.5 * std::numbers::pi * x[1];
@@ -146,7 +146,7 @@ TEST(StressRaisers, ABlockOnAPlane) {
   });
 }
 
-/// If the cell in the corner is stiff, the next one has the larger mean and nears the corner with each refinement.
+/// If the cell in the corner is stiff, the next one has the larger mean and approaches the corner with each refinement.
 TEST(StressRaisers, ReachTheNextCell) {
   const CaseRun run(static_case(box_mesh("next-cell.msh", CellShape::triangle, 8),
                                 hold("x0", R"("x", "y")") + pull("x1", R"("0", "-0.1")")));
@@ -171,7 +171,7 @@ TEST(StressRaisers, ARoundObstacle) {
   }
 }
 
-/// Equal blocks that lie on each other are one block; a narrow one is a punch.
+/// Equal blocks that lie on each other form one block; a narrow one is a punch.
 TEST(StressRaisers, BlocksOnEachOther) {
   for (const bool is_punch : {false, true}) {
     StackedBoxes stack{CellShape::quadrilateral, CellShape::quadrilateral, {8, 8}, {4, 4}};

@@ -10,14 +10,14 @@
 #include "ricochet/solver/subdomain/contact_clusters.hpp"
 #include "support/case_run.hpp"
 
-// Contact of many points: zones that are solved one apart from the other, in the iterative path.
+// Contact of many points: subdomains that are solved separately, in the iterative path.
 
 namespace ricochet {
 namespace contact_zones_test {
 
 using test_support::CaseRun;
 
-/// A plate that comes down on a face of some 800 nodes, turned a little so that it touches from one edge on, and
+/// A plate that comes down on a face of some 800 nodes, rotated slightly so that it first touches at one edge, and
 /// slides. A wave crosses about one cell in a step.
 std::string plate(const std::string& multipliers = "", double size = 0.042) {
   return "[mesh]\nfile = \"" +
@@ -52,7 +52,7 @@ std::vector<Index> all_points(const SemidiscreteProblem& problem) {
   return points;
 }
 
-/// Number of cells that a P wave crosses in a step: √((λ+2μ)/ρ) h over the size of the cells.
+/// Number of cells that a P wave crosses in a step: √((λ+2μ)/ρ) h over the cell size.
 TEST(Subdomains, HaveLayersForWhatAWaveCrosses) {
   const CaseRun run(plate());
   const std::vector<char> solved(static_cast<std::size_t>(run.problem().dof_count()), 1);
@@ -61,7 +61,7 @@ TEST(Subdomains, HaveLayersForWhatAWaveCrosses) {
   std::iota(nodes.begin(), nodes.end(), Index{0});
   for (const double longer : {1.0, 3.0, 30.0}) {
     Zones zones(run, solved, longer);
-    // α is 4/h² here as β = ½, γ = 1 has 2/h²: as of a step √2 times as long.
+    // α is 4/h² here, while β = ½, γ = 1 gives 2/h²: it belongs to a step √2 times as long.
     const double alpha_h2 = zones.coefficients.mass * 9e-8 * longer * longer;
     const double expected = crossed * longer * std::sqrt(4.0 / alpha_h2);
     EXPECT_NEAR(cells_crossed(run.problem(), zones.coefficients, zones.product, nodes), expected, 0.25 * expected);
@@ -79,7 +79,7 @@ TEST(Subdomains, AreSeveralWhereThatIsLessWork) {
   Zones near(run, solved);
   near.zones->make(points);
   EXPECT_GE(near.zones->count(), 3U);
-  // Where a wave crosses much of the plate, all zones would have all points.
+  // If a wave crosses much of the plate, every subdomain would contain all points.
   Zones far(run, solved, 30.0);
   far.zones->make(points);
   EXPECT_EQ(far.zones->count(), 1U);
@@ -105,7 +105,7 @@ TEST(ContactClusters, DivideThePoints) {
   }
 }
 
-/// Points that share nodes: the conditions of both hold only where one zone moves them.
+/// Points that share nodes: the conditions of both hold only if one subdomain moves them.
 TEST(ContactClusters, KeepPointsThatShareNodesTogether) {
   const CaseRun run(plate("multipliers = \"p1\"\n", 0.1));
   const auto clusters = cluster_points(run.problem(), all_points(run.problem()), 10);
@@ -146,7 +146,7 @@ TEST(Subdomains, FindWhatOneFactorFinds) {
     EXPECT_LT((direct[k].displacement - zones[k].displacement).lpNorm<Eigen::Infinity>(), 1e-10 * length) << k;
     EXPECT_LT((direct[k].normal - zones[k].normal).lpNorm<Eigen::Infinity>(), 1e-10 * force) << k;
     EXPECT_LT((direct[k].tangential - zones[k].tangential).lpNorm<Eigen::Infinity>(), 1e-10 * force) << k;
-    // Signorini and Coulomb hold to rounding, whatever the tolerance.
+    // Signorini's and Coulomb's laws hold to rounding, for any tolerance.
     EXPECT_GT(zones[k].gap.minCoeff(), -1e-14);
     EXPECT_GE(zones[k].normal.minCoeff(), 0.0);
     for (Index i = 0; i < zones[k].normal.size(); ++i) {

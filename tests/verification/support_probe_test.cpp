@@ -9,7 +9,7 @@
 #include "support/thrown_body.hpp"
 #include "support/two_bodies.hpp"
 
-/// @file The reaction of a support on a face that shares nodes with a contact, against statics.
+/// @file The reaction of a support on a face that shares nodes with a contact, compared with statics.
 namespace ricochet::test_support {
 namespace support_probe_test {
 
@@ -27,8 +27,8 @@ std::string sheared_mesh(CellShape shape, int count) {
   return write_mesh(fmt::format("sheared-{}-{}.msh", name(shape), count), make_box_mesh(box));
 }
 
-/// A body of unit volume on a slope without friction, held by its upright side alone: N n + R e_x + W = 0 with
-/// n = (0.6, …, 0.8) gives R = −0.75 W. Its lowest nodes are both held and pressed.
+/// A body of unit volume on a slope without friction, held by its upright side alone: N n + R e_x + W = 0 with n =
+/// (0.6, …, 0.8) gives R = −0.75 W. Its lowest nodes are both held and pressed.
 std::string on_a_slope(CellShape shape, int count, const std::string& law, const std::string& mass,
                        const std::string& time) {
   const int d = dimension(shape);
@@ -46,7 +46,7 @@ std::string on_a_slope(CellShape shape, int count, const std::string& law, const
                     mass, time);
 }
 
-/// The row of a probe of a boundary, by columns.
+/// Row of the probe of a boundary, by columns.
 class Probe {
  public:
   Probe(const CaseRun& run, const std::string& group)
@@ -83,13 +83,13 @@ TEST(SupportProbe, OfABodyOnASlope) {
           on_a_slope(shape, count, linear, "consistent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"));
       Probe probe(run, "x0");
       EXPECT_NEAR(probe("support_x"), -0.75 * weight, 1e-9) << name(shape) << count;
-      EXPECT_GT(std::abs(probe("force_x") + 0.75 * weight), 0.01) << name(shape) << count;  // the corner's contact
+      EXPECT_GT(std::abs(probe("force_x") + 0.75 * weight), 0.01) << name(shape) << count;  // contact at the corner
     }
   }
 }
 
-/// At rest, whatever the scheme makes of the step: its stages, instants and means. Where contact forces come of gaps, a
-/// body whose static start has closed them moves.
+/// At rest, whatever the stages, instants and means of the scheme are. If contact forces follow from gaps, a body whose
+/// static start has closed them moves.
 TEST(SupportProbe, IsTheSameUnderAllSchemes) {
   for (const std::string& scheme : scheme_names()) {
     if (scheme == "penalty-midpoint" || scheme == "nitsche") continue;
@@ -99,7 +99,7 @@ TEST(SupportProbe, IsTheSameUnderAllSchemes) {
   }
 }
 
-/// With the geometry after the deformation the slope's normal is the same, and so is the reaction.
+/// On the deformed geometry the slope's normal is the same, and so is the reaction.
 TEST(SupportProbe, AtFiniteStrain) {
   const CaseRun run(on_a_slope(CellShape::triangle, 3, "law = \"neo-hookean\"\nyoung = 30.0\npoisson = 0.3\n",
                                "consistent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"));

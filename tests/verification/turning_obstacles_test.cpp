@@ -10,9 +10,9 @@
 #include "support/thrown_body.hpp"
 #include "support/two_bodies.hpp"
 
-// Friction on obstacles that turn acts relative to their material where the points are, not where they would be without
-// reactions. Points are pressed in by a hundredth of the radius: velocities at the predicted position differ by as much
-// for every length of the step.
+// Friction on rotating obstacles acts relative to their material at the positions of the points, not at the positions
+// without reactions. Points are pressed in by a hundredth of the radius: velocities at the predicted position differ by
+// as much for every step length.
 
 namespace ricochet {
 namespace turning_obstacles_test {
@@ -41,7 +41,7 @@ std::vector<Turning> turning_obstacles() {
           {"plane that turns", 3, floor + "rotation = [\"0.02*t\", \"0\", \"0.1*t\"]\nabout = [0.2, 0.1, -0.1]\n"}};
 }
 
-/// A block on the obstacle, pressed down by its upper side, which does not turn.
+/// A block on the obstacle, pressed down by its upper side, which does not rotate.
 std::string pressed_block(const Turning& turning, const std::string& law, const std::string& scheme,
                           const std::string& mass) {
   const bool flat = turning.dimension == 2;
@@ -89,7 +89,7 @@ struct Slips {
   ObstacleMotion motion_;
 };
 
-/// Their friction acts over a whole step, on the slip of that step.
+/// Schemes whose friction acts over a whole step, on the slip of that step.
 const std::vector<std::string> schemes_of_steps = {"reduced-kane",       "newmark",       "kane",
                                                    "contact-stabilized", "semi-explicit", "generalized-alpha"};
 
@@ -98,7 +98,7 @@ std::string mass_of(const std::string& scheme) {
   return scheme == "reduced-kane" || scheme == "newmark" ? "equivalent" : "consistent";
 }
 
-/// Points that stick move as the obstacle's material does where they are.
+/// Expects that sticking points move with the obstacle's material at their positions.
 void expect_no_slip(const Turning& turning, const std::string& law, const std::string& scheme) {
   CaseRun run(pressed_block(turning, law, scheme, mass_of(scheme)));
   const std::string name = turning.name + ", " + law + ", " + scheme;

@@ -4,7 +4,7 @@
 
 #include "support/case_run.hpp"
 
-/// @file The velocity correction, which balances the energy of a step if no stress does.
+/// @file The velocity correction balances the energy of a step if no stress does.
 namespace ricochet {
 namespace velocity_correction_test {
 
@@ -34,7 +34,7 @@ CaseRun run_of(const Kind& kind, const std::string& mass) {
                  mass + "\"\n[time]\nscheme = \"newmark\"\npreset = \"trapezoidal\"\nstep = 0.01\nend = 0.1\n");
 }
 
-/// Momentum and moment about the origin of M v at places.
+/// Momentum and moment about the origin of M v at these positions.
 Eigen::Matrix<double, 6, 1> momenta(const SemidiscreteProblem& problem, const Vector& place, const Vector& velocity) {
   Vector momentum;
   problem.mass.multiply(velocity, momentum);
@@ -81,7 +81,7 @@ TEST(VelocityCorrection, ChangesTheEnergyAndNeitherMomentaNorSupports) {
   }
 }
 
-/// Rigid motion has no energy that a correction without momenta could take.
+/// Rigid motion has no energy that a correction without momentum could remove.
 TEST(VelocityCorrection, TakesNothingOfRigidMotion) {
   const CaseRun run = run_of({"plane", "strain", ""}, "equivalent");
   const BodyRotations bodies(run.problem());

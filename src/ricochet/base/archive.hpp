@@ -115,7 +115,7 @@ class Archive {
     if (length == 0) return;
     if (reads_) {
       if (bytes_.size() - position_ < length)
-        throw Error(ErrorKind::invalid_input, "what another process has sent is not what was expected");
+        throw Error(ErrorKind::invalid_input, "a message from another process has unexpected content");
       std::memcpy(values, bytes_.data() + position_, length);
       position_ += length;
     } else {

@@ -51,10 +51,9 @@ void reserve_blas_memory(int threads) {
   const std::size_t size = count * buffer_size + beginning;
   void* const probe = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (probe == MAP_FAILED) {
-    throw Error(ErrorKind::not_converged,
-                fmt::format("the limit on memory (ulimit -v, ulimit -d) is too low: the linear algebra needs {} MB to "
-                            "begin with; raise the limit{}",
-                            size >> 20, count > 1 ? ", or use fewer threads" : ""));
+    throw Error(ErrorKind::not_converged, fmt::format("the memory limit (ulimit -v, ulimit -d) is too low: the linear "
+                                                      "algebra library needs {} MB to start; raise the limit{}",
+                                                      size >> 20, count > 1 ? ", or use fewer threads" : ""));
   }
   munmap(probe, size);
   std::vector<void*> buffers;

@@ -147,22 +147,22 @@ void choose_blas_kernels() {
   if (core.empty() || std::getenv(core_variable) != nullptr) return;
   const auto stays = [&](std::string_view reason) {
     log::warning(fmt::format(
-        "OpenBLAS keeps its kernels for {}, though those for {} {}: {}", before, core,
-        instruction_set_is_given() ? "go with RICOCHET_INSTRUCTION_SET" : "suit this processor better", reason));
+        "OpenBLAS keeps its kernels for {}, although those for {} {}: {}", before, core,
+        instruction_set_is_given() ? "match RICOCHET_INSTRUCTION_SET" : "suit this processor better", reason));
   };
   if (gotoblas_dynamic_init == nullptr || gotoblas_dynamic_quit == nullptr)
     return stays("this OpenBLAS cannot change them");
   if (other_threads_run()) {
     return stays(
-        fmt::format("other threads ran when Ricochet first needed it, and one might have been in OpenBLAS; call "
-                    "ricochet::prepare_blas() before they begin, or set {}={}",
+        fmt::format("other threads were running when Ricochet first needed it, and one of them might have been using "
+                    "OpenBLAS; call ricochet::prepare_blas() before they start, or set {}={}",
                     core_variable, core));
   }
-  if (!has_memory()) return stays("the limit on memory (ulimit -v) leaves none to check others");
+  if (!has_memory()) return stays("the memory limit (ulimit -v) leaves no memory to check other kernels");
   take_core(core.c_str());
   if (same_name(openblas_get_corename(), core) && computes_rightly_alone()) return;
   take_core(nullptr);
-  stays("this OpenBLAS does not have them, or they compute wrongly here");
+  stays("this OpenBLAS does not have them, or they compute wrong results here");
 }
 
 }  // namespace ricochet

@@ -22,7 +22,7 @@ void refuse_assignment(const std::string& text) {
       ++i;
     } else if (i == 0 || (text[i - 1] != '<' && text[i - 1] != '>' && text[i - 1] != '!')) {
       throw Error(ErrorKind::invalid_input,
-                  fmt::format("in the expression \"{}\": \"=\" is no comparison; write \"==\"", text));
+                  fmt::format("in the expression \"{}\": \"=\" is not a comparison; write \"==\"", text));
     }
   }
 }
@@ -66,7 +66,7 @@ void Expression::Implementation::compile() {
         for (const auto& [parameter, value] : parameters) known.push_back(parameter);
         const std::string near = nearest_name(name, known);
         throw Error(ErrorKind::invalid_input,
-                    fmt::format("in the expression \"{}\": unknown name \"{}\"{}; known are {}", text, name,
+                    fmt::format("in the expression \"{}\": unknown name \"{}\"{}; known names are {}", text, name,
                                 near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near), join_names(known)));
       }
     }
@@ -74,9 +74,9 @@ void Expression::Implementation::compile() {
     int results = 0;
     parser.Eval(results);  // muParser checks the syntax on the first evaluation
     if (results != 1) {
-      throw Error(
-          ErrorKind::invalid_input,
-          fmt::format("the expression \"{}\" gives {} values; write one, with a point as decimal sign", text, results));
+      throw Error(ErrorKind::invalid_input,
+                  fmt::format("the expression \"{}\" has {} values; write one, with a point as the decimal separator",
+                              text, results));
     }
     if (number) {
       constant = parser.Eval();

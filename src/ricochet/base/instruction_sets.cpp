@@ -25,19 +25,20 @@ InstructionSet choose() {
   for (const InstructionSet set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
     if (name(set) != given) continue;
     if (set <= best) return set;
-    throw Error(ErrorKind::usage,
-                fmt::format("{}={}: this processor, or its system, can do no more than {}; give that, "
-                            "or unset the variable",
-                            variable, given, name(best)));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format(
+            "{}={}: this processor, or its operating system, supports at most {}; use that, or unset the variable",
+            variable, given, name(best)));
   }
 #if defined(__x86_64__)
-  throw Error(ErrorKind::usage, fmt::format("{}={}: there is no such instruction set; x86-64, x86-64-v3 and x86-64-v4 "
-                                            "are known. Give one of them, or unset the variable",
-                                            variable, given));
+  throw Error(ErrorKind::usage,
+              fmt::format("{}={}: unknown instruction set; use x86-64, x86-64-v3 or x86-64-v4, or unset the variable",
+                          variable, given));
 #else
-  throw Error(ErrorKind::usage, fmt::format("{}={}: on this kind of processor there is nothing to choose from; unset "
-                                            "the variable",
-                                            variable, given));
+  throw Error(ErrorKind::usage,
+              fmt::format("{}={}: this kind of processor has no instruction sets to choose from; unset the variable",
+                          variable, given));
 #endif
 }
 

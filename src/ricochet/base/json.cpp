@@ -122,14 +122,14 @@ const Json& Json::at(std::string_view name) const {
 }
 
 const Json& Json::at(std::size_t index) const {
-  if (index >= elements().size()) throw Exception("an array has " + std::to_string(size()) + " elements only");
+  if (index >= elements().size()) throw Exception("an array has only " + std::to_string(size()) + " elements");
   return elements()[index];
 }
 
 Json& Json::operator[](std::string_view name) {
   if (std::holds_alternative<std::nullptr_t>(value_)) value_ = Object();
   auto* const object = std::get_if<Object>(&value_);
-  if (object == nullptr) throw Exception("an object is wanted where \"" + std::string(name) + "\" is to be set");
+  if (object == nullptr) throw Exception("an object is needed to set \"" + std::string(name) + "\"");
   for (auto& [key, entry] : *object) {
     if (key == name) return entry;
   }
@@ -144,7 +144,7 @@ Json& Json::operator[](std::size_t index) {
 void Json::push_back(Json element) {
   if (std::holds_alternative<std::nullptr_t>(value_)) value_ = Array();
   auto* const array = std::get_if<Array>(&value_);
-  if (array == nullptr) throw Exception("an array is wanted where an element is added");
+  if (array == nullptr) throw Exception("an array is needed to add an element");
   array->push_back(std::move(element));
 }
 
@@ -154,12 +154,12 @@ void Json::update(const Json& other) {
 
 const Json::Array& Json::elements() const {
   if (const auto* array = std::get_if<Array>(&value_)) return *array;
-  throw Exception("an array is wanted in the place of " + dump());
+  throw Exception("expected an array instead of " + dump());
 }
 
 const Json::Object& Json::items() const {
   if (const auto* object = std::get_if<Object>(&value_)) return *object;
-  throw Exception("an object is wanted in the place of " + dump());
+  throw Exception("expected an object instead of " + dump());
 }
 
 void Json::get(bool& result) const {
@@ -167,7 +167,7 @@ void Json::get(bool& result) const {
     result = *value;
     return;
   }
-  throw Exception("true or false is wanted in the place of " + dump());
+  throw Exception("expected true or false instead of " + dump());
 }
 
 void Json::get(long& result) const {
@@ -177,14 +177,14 @@ void Json::get(long& result) const {
              number != nullptr && std::abs(*number) < 0x1p62 && *number == std::trunc(*number)) {
     result = static_cast<long>(*number);
   } else {
-    throw Exception("a whole number is wanted in the place of " + dump());
+    throw Exception("expected an integer instead of " + dump());
   }
 }
 
 void Json::get(int& result) const {
   const long value = get<long>();
   result = static_cast<int>(value);
-  if (result != value) throw Exception("a smaller number is wanted in the place of " + dump());
+  if (result != value) throw Exception("expected a smaller number instead of " + dump());
 }
 
 void Json::get(double& result) const {
@@ -193,7 +193,7 @@ void Json::get(double& result) const {
   } else if (const auto* whole = std::get_if<std::int64_t>(&value_)) {
     result = static_cast<double>(*whole);
   } else {
-    throw Exception("a number is wanted in the place of " + dump());
+    throw Exception("expected a number instead of " + dump());
   }
 }
 
@@ -202,7 +202,7 @@ void Json::get(std::string& result) const {
     result = *value;
     return;
   }
-  throw Exception("a text is wanted in the place of " + dump());
+  throw Exception("expected a text instead of " + dump());
 }
 
 void Json::get(std::map<std::string, std::string>& result) const {

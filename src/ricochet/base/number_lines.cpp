@@ -60,7 +60,7 @@ void TextWords::skip_line() {
 double TextWords::number() {
   const std::string_view word = next();
   const std::optional<double> value = number_in(word);
-  if (!value) fail(fmt::format("\"{}\" is no finite number", shown_word(word)));
+  if (!value) fail(fmt::format("\"{}\" is not a finite number", shown_word(word)));
   return *value;
 }
 
@@ -102,7 +102,7 @@ void NumberLines::split(std::string_view line) {
   words_.clear();
   line = line.substr(0, line.find('#'));
   if (line.find(',') != std::string_view::npos && line.find(';') != std::string_view::npos)
-    fail_at(line.find(',') + 1, "commas and semicolons in one line: write decimal points, and one kind of separator");
+    fail_at(line.find(',') + 1, "commas and semicolons in one line: use decimal points and one kind of separator");
   bool wants_word = true;  // a separator here would have nothing before it
   for (std::size_t at = 0; at < line.size();) {
     if (is_one_of(line[at], blanks)) {
@@ -134,8 +134,8 @@ bool NumberLines::is_header() const {
 }
 
 void NumberLines::refuse(const Word& word) const {
-  fail_at(word.column, fmt::format("\"{}\" is no finite number; a line has numbers alone, such as 1.5e-3, separated by "
-                                   "blanks, commas or semicolons, and '#' begins a comment",
+  fail_at(word.column, fmt::format("\"{}\" is not a finite number; a line contains only numbers, such as 1.5e-3, "
+                                   "separated by blanks, commas or semicolons, and '#' begins a comment",
                                    shown_word(word.text)));
 }
 

@@ -21,7 +21,7 @@ const Wanted& value_of(const std::map<std::string, Parameters::Value>& values, c
   const Wanted* const value = std::get_if<Wanted>(&found->second);
   if (value == nullptr) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("the parameter \"{}\" has a value of another kind: {}", name, as_text(found->second)));
+                fmt::format("the parameter \"{}\" has a value of the wrong type: {}", name, as_text(found->second)));
   }
   return *value;
 }

@@ -29,10 +29,10 @@ void check_parameter_keys(const std::vector<Key>& keys, const std::string& owner
     const bool is_scalar = key.type == KeyType::number || key.type == KeyType::integer || key.type == KeyType::text ||
                            key.type == KeyType::choice;
     if (!is_scalar && key.type != KeyType::vector)
-      refuse(key, "is none that a type can have: it must be a number, an integer, a vector, a text or a choice");
-    if (!is_scalar && key.default_value) refuse(key, "is a vector, which has no default");
+      refuse(key, "has an unsupported type: it must be a number, an integer, a vector, a text or a choice");
+    if (!is_scalar && key.default_value) refuse(key, "is a vector, which cannot have a default");
     if (std::count_if(keys.begin(), keys.end(), [&](const Key& other) { return other.name == key.name; }) > 1)
-      refuse(key, "is there twice");
+      refuse(key, "is defined twice");
   }
 }
 

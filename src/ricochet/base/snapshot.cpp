@@ -40,7 +40,7 @@ const Vector& Snapshot::reals(const std::string& name, Index size, Index other_s
 }
 
 const Snapshot::Integers& Snapshot::integers(const std::string& name) const {
-  return find<Integers>(name, "whole numbers");
+  return find<Integers>(name, "integers");
 }
 
 const Snapshot::Integers& Snapshot::integers(const std::string& name, std::int64_t least, std::int64_t most) const {

@@ -41,16 +41,15 @@ void prepare_child(pid_t parent, double processor_seconds) {
 }  // namespace
 
 std::string TrialResult::description() const {
-  if (endless) return "does not come to an end";
-  return signal != 0 ? fmt::format("ended a process with signal {}", signal) : "failed";
+  if (endless) return "does not end";
+  return signal != 0 ? fmt::format("crashed with signal {}", signal) : "failed";
 }
 
 TrialResult try_in_child(const std::function<bool()>& work, double processor_seconds) {
   const DefaultSigchldGuard kept;
   const pid_t parent = getpid();
   const pid_t child = fork();
-  if (child < 0)
-    throw Error(ErrorKind::file_access, fmt::format("no process can be started: {}", std::strerror(errno)));
+  if (child < 0) throw Error(ErrorKind::file_access, fmt::format("cannot start a process: {}", std::strerror(errno)));
   if (child == 0) {
     prepare_child(parent, processor_seconds);
     bool good = false;
@@ -62,7 +61,8 @@ TrialResult try_in_child(const std::function<bool()>& work, double processor_sec
   }
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) throw Error(ErrorKind::file_access, fmt::format("a process is lost: {}", std::strerror(errno)));
+    if (errno != EINTR)
+      throw Error(ErrorKind::file_access, fmt::format("cannot wait for a process: {}", std::strerror(errno)));
   }
   TrialResult outcome;
   outcome.succeeded = WIFEXITED(status) && WEXITSTATUS(status) == 0;

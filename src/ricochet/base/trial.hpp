@@ -12,7 +12,7 @@ struct TrialResult {
   int signal = 0;          ///< the signal that killed the copy; 0 if it ended by itself
   bool endless = false;    ///< it was killed because it took too long
 
-  /// Returns "ended a process with signal 11", "does not come to an end", "failed".
+  /// Returns "crashed with signal 11", "does not end", "failed".
   [[nodiscard]] std::string description() const;
 };
 

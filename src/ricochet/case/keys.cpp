@@ -38,20 +38,20 @@ std::string entry_of(const Section& section, const std::vector<std::string>& par
   if (section.kind == SectionKind::list) {
     const bool is_number = parts.size() > 1 && is_digits(parts[1], 1, 9);
     if (!is_number) {
-      refuse(fmt::format("{} is a list: say which entry, counted from 0, as in {}.0.{}", section_title(section),
+      refuse(fmt::format("{} is a list: specify the entry, counted from 0, as in {}.0.{}", section_title(section),
                          section.name, section.keys.front().name));
     }
     // One entry has one name: otherwise two keys of a study, or of `when`, could be the same unnoticed.
     const std::string number = std::to_string(std::stol(parts[1]));
     if (number != parts[1]) {
-      refuse(fmt::format("\"{}\" is no number of an entry of {}: write {}, as in {}.{}.{}", parts[1],
+      refuse(fmt::format("\"{}\" is not a valid number of an entry of {}: write {}, as in {}.{}.{}", parts[1],
                          section_title(section), number, section.name, number,
                          parts.size() > 2 ? join_rest(parts, 2) : section.keys.front().name));
     }
     return number;
   }
   if (parts.size() < 2 || !is_plain_name(parts[1])) {
-    refuse(fmt::format("the sections {} are named: say which one, as in {}.floor.{}", section_title(section),
+    refuse(fmt::format("the sections {} have names: specify one, as in {}.floor.{}", section_title(section),
                        section.name, section.keys.front().name));
   }
   return parts[1];
@@ -75,8 +75,7 @@ void enter_key(const std::vector<std::string>& parts, std::size_t at, KeyPath& p
     path.member = join_rest(parts, at + 1);
     return;
   }
-  refuse(
-      fmt::format("\"{}\" is {}: it has no part \"{}\"", path.key->name, admissible_values(*path.key), parts.back()));
+  refuse(fmt::format("\"{}\" is {}: it has no key \"{}\"", path.key->name, admissible_values(*path.key), parts.back()));
 }
 
 }  // namespace
@@ -166,7 +165,7 @@ KeyPath parse_key_path(const std::string& text) {
     }
   }
   if (at >= parts.size()) {
-    refuse(fmt::format("\"{}\" is a section: say which of its keys, as in {}.{}", text, text,
+    refuse(fmt::format("\"{}\" is a section: specify one of its keys, as in {}.{}", text, text,
                        path.section->keys.front().name));
   }
   path.key = find_key(path.section->keys, parts[at]);

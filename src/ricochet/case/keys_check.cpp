@@ -125,7 +125,7 @@ void TreeChecker::check_top_member(const TomlNode& member) {
   // A key above the first section header was probably meant for a section.
   for (const Section& section : case_sections()) {
     if (!is_key_of(section.keys, member)) continue;
-    problems_.add(member.key_location, fmt::format("the key \"{}\" stands outside of any section; it belongs to {}",
+    problems_.add(member.key_location, fmt::format("the key \"{}\" is outside of any section; it belongs to {}",
                                                    member.key, section_title(section)));
     return;
   }
@@ -185,18 +185,18 @@ void TreeChecker::check_named(const Section& section, TomlNode& sections) {
     const std::string title = fmt::format("[{}.{}]", section.name, entry.key);
     if (!entry.is_table()) {
       sections.is_refused = true;
-      problems_.add(entry.key_location, fmt::format("\"{}\" stands in [{}], which needs a name: write [{}.NAME]",
-                                                    entry.key, section.name, section.name));
+      problems_.add(entry.key_location, fmt::format("\"{}\" is in [{}], which needs a name: write [{}.NAME]", entry.key,
+                                                    section.name, section.name));
       return;  // the following keys have the same problem
 
     } else if (!is_plain_name(entry.key)) {
       entry.is_refused = true;
-      problems_.add(entry.key_location, fmt::format("the name of {} can only have letters, digits, _ and -", title));
+      problems_.add(entry.key_location, fmt::format("the name of {} can only contain letters, digits, _ and -", title));
     } else if (const TomlNode* const inner = find_dotted(section, entry)) {
       entry.is_refused = true;
       problems_.add(inner->key_location,
-                    fmt::format("[{0}.{1}.{2}]: a name has no dot; write [{0}.{1}-{2}] or the like", section.name,
-                                entry.key, inner->key));
+                    fmt::format("[{0}.{1}.{2}]: a name must not contain a dot; write [{0}.{1}-{2}], for instance",
+                                section.name, entry.key, inner->key));
     } else {
       check_entry(section, title, entry);
     }
@@ -306,8 +306,7 @@ void TreeChecker::check_keys(const std::vector<Key>& keys, const std::string& ti
       value->is_refused = true;
       problems_.add(
           value->location,
-          fmt::format("\"{0}\" of {1} and {2} exclude each other: each {2} has a \"{0}\" of its own; leave it "
-                      "out here",
+          fmt::format("\"{0}\" of {1} and {2} exclude each other: each {2} has its own \"{0}\"; remove it here",
                       key.name, title, section_title(*find_section(key.replaced_by))));
     } else if (value != nullptr) {
       check_key(key, title, *value);

@@ -27,7 +27,7 @@ void check_condition(const TomlNode& root, TomlNode& condition, Problems& proble
     std::string missing;
     if (path.key->type == KeyType::conditions ||
         ((path.key->type == KeyType::table || path.key->type == KeyType::tables) && path.member.empty())) {
-      missing = "it holds several values: say which";
+      missing = "it holds several values: specify one";
     } else {
       static_cast<void>(find_entry(root, path, missing));
     }
@@ -69,7 +69,7 @@ const TomlNode* find_entry(const TomlNode& root, const KeyPath& path, std::strin
       problem = fmt::format("there is no entry {} of {}: {}", number, section_title(*path.section),
                             count == 0   ? "the case has none"
                             : count == 1 ? "there is only entry 0"
-                                         : fmt::format("they go from 0 to {}", count - 1));
+                                         : fmt::format("the entries are 0 to {}", count - 1));
       return nullptr;
     }
     return &node->children[number];

@@ -38,9 +38,9 @@ void DimensionCheck::run(Problems& problems) {
   for (const Found& vector : vectors_) {
     if (vector.dimension == first.dimension) continue;
     const std::string of_first = first.what.starts_with("has ") ? fmt::format("has {}", first.dimension) : first.what;
-    problems.add(vector.location, fmt::format("{} {}, but {} at {} {}: all vectors must have as many as the mesh has "
-                                              "dimensions",
-                                              vector.name, vector.what, first.name, first.location.text(), of_first));
+    problems.add(vector.location,
+                 fmt::format("{} {}, but {} at {} {}: all vectors must have as many entries as the mesh has dimensions",
+                             vector.name, vector.what, first.name, first.location.text(), of_first));
   }
   for (const SourceLocation& location : third_components_) {
     if (first.dimension == 2)

@@ -112,9 +112,9 @@ void check_directions(const Key& key, TomlNode& value, Problems& problems) {
   for (const TomlNode& name : value.children) {
     std::string reason;
     if (name.kind != Kind::text || !is_choice(name.text, key.choices)) {
-      reason = fmt::format("can only be {}; found {}", join_names(key.choices, " or "), describe(name));
+      reason = fmt::format("must be {}; found {}", join_names(key.choices, " or "), describe(name));
     } else if (is_choice(name.text, seen)) {
-      reason = fmt::format("has \"{}\" twice", name.text);
+      reason = fmt::format("repeats \"{}\"", name.text);
     }
     seen.push_back(name.text);
     if (reason.empty()) continue;
@@ -132,7 +132,7 @@ void check_groups(const Key& key, TomlNode& value, Problems& problems) {
     if (name.kind != Kind::text || name.text.empty()) {
       reason = fmt::format("must be the name of a group; found {}", describe(name));
     } else if (is_choice(name.text, seen)) {
-      reason = fmt::format("is \"{}\", which is there already", name.text);
+      reason = fmt::format("repeats \"{}\"", name.text);
     }
     seen.push_back(name.text);
     if (reason.empty()) continue;
@@ -151,8 +151,8 @@ void check_parameters(const Key& key, TomlNode& value, Problems& problems) {
       value.is_refused = true;
       problems.add(parameter.key_location,
                    fmt::format("\"{}\" cannot be the name of a parameter: {}", name,
-                               is_identifier ? "x, y, z, t and pi have a meaning of their own"
-                                             : "it must be made of letters, digits and _, not beginning with a digit"));
+                               is_identifier ? "x, y, z, t and pi are reserved"
+                                             : "it must consist of letters, digits and _, and not begin with a digit"));
     } else if (!make_finite_number(parameter)) {
       value.is_refused = true;
       problems.add(parameter.location,

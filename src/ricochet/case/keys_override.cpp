@@ -20,8 +20,8 @@ std::string trimmed(const std::string& text) {
 void refuse_unquoted(const std::string& text) {
   if (text.empty() || (text.front() != '[' && text.front() != '{') || parse_toml_value(text, {})) return;
   throw Error(ErrorKind::invalid_input,
-              fmt::format("{} is no {}: texts within it need double quotes, and the whole single ones, as in --set "
-                          "'contact.0.group=[\"a\", \"b\"]'",
+              fmt::format("{} is not a {}: texts within it need double quotes, and the whole argument single quotes, "
+                          "as in --set 'contact.0.group=[\"a\", \"b\"]'",
                           text, text.front() == '[' ? "list" : "table"));
 }
 
@@ -50,8 +50,8 @@ TomlNode* enter_sub_table(TomlNode& node, const KeyPath& path) {
   const auto number = path.sub_entry.empty() ? count : static_cast<std::size_t>(std::stol(path.sub_entry));
   if (number < count) return &node.children[number];
   throw Error(ErrorKind::invalid_input,
-              count == 0 ? fmt::format("\"{0}\" is no list of tables: write {0}.{1}", path.sub_table, path.key->name)
-                         : fmt::format("\"{0}\" is a list: say which entry, from {0}.0.{1} to {0}.{2}.{1}",
+              count == 0 ? fmt::format("\"{0}\" is not a list of tables: write {0}.{1}", path.sub_table, path.key->name)
+                         : fmt::format("\"{0}\" is a list: specify the entry, from {0}.0.{1} to {0}.{2}.{1}",
                                        path.sub_table, path.key->name, count - 1));
 }
 

@@ -16,8 +16,8 @@ namespace {
 Section top_section() {
   return {.name = "",
           .kind = SectionKind::top,
-          .doc = "Before the first section.",
-          .keys = {{.name = "title", .default_value = "", .doc = "A line about the case, repeated in its results."}}};
+          .doc = "Keys before the first section.",
+          .keys = {{.name = "title", .default_value = "", .doc = "One line about the case, repeated in its results."}}};
 }
 
 std::vector<Section> make_sections() {
@@ -44,7 +44,7 @@ void add_type_keys(Section& section, const std::string& type_key, std::vector<Ty
       const Key* const other = find_key(added, key.name);
       if (find_key(section.keys, key.name) != nullptr || (other != nullptr && other->type != key.type)) {
         throw Error(ErrorKind::invalid_input,
-                    fmt::format("the {} \"{}\" has a key \"{}\", which {} has already with another meaning", type_key,
+                    fmt::format("the {} \"{}\" has a key \"{}\", which {} already has with another meaning", type_key,
                                 type.name, key.name, section_title(section)));
       }
       if (other != nullptr) continue;

@@ -18,19 +18,19 @@ Key turn_key() {
                 .type = KeyType::number,
                 .unit = "degrees",
                 .required = true,
-                .doc = "Right-handed about the axis; in two dimensions counter-clockwise."},
+                .doc = "Angle of the rotation, right-handed about the axis; counter-clockwise in two dimensions."},
                {.name = "axis",
                 .type = KeyType::vector,
                 .unit = "1",
-                .doc = "Direction of the axis, of any length but zero; in three dimensions only, and required there."},
+                .doc = "Direction of the axis, of any nonzero length; only in three dimensions, where it is required."},
                {.name = "about",
                 .type = KeyType::vector,
                 .unit = "length",
-                .doc = "A point of the axis, in the coordinates after `scale` and the turns before; absent: the "
-                       "origin."}},
+                .doc = "A point on the axis, in the coordinates after `scale` and the preceding rotations. Default: "
+                       "the origin."}},
       .doc =
-          "Turns the mesh, after `scale` and before `move`; those of a list one after the other. Obstacles, probes and "
-          "expressions see where it is then."};
+          "Rotates the mesh, after `scale` and before `move`; the rotations of a list are applied in order. Obstacles, "
+          "probes and expressions refer to the mesh in its final position."};
 }
 
 /// Mesh file and its placement: for [mesh] and every part.
@@ -44,7 +44,7 @@ std::vector<Key> file_keys() {
        .type = KeyType::number,
        .unit = "length",
        .range = positive,
-       .doc = "Target size of the cells; only for geometry that is still to be meshed, in the unit of that file."},
+       .doc = "Target size of the cells, in the unit of the file; only for geometry that the gmsh program meshes."},
       {.name = "scale",
        .type = KeyType::number,
        .unit = "1",
@@ -56,32 +56,29 @@ std::vector<Key> file_keys() {
        .unit = "1",
        .default_value = "0",
        .range = {.at_least = 0, .at_most = 8},
-       .doc = "So many times every cell is cut in four, in three dimensions in eight, once the mesh is read. New nodes "
-              "lie "
-              "on the edges of straight cells, also where these stand for a curve, and on the geometry of a mesh of "
-              "second "
-              "order."},
+       .doc = "Number of uniform refinements of the mesh after it is read; each divides every cell into four cells, in "
+              "three dimensions into eight. New nodes lie on the edges of straight cells, even where these approximate "
+              "a curve, and on the curved geometry of a second-order mesh."},
       turn_key(),
       {.name = "move",
        .type = KeyType::vector,
        .unit = "length",
-       .doc = "Added to all coordinates, after `scale` and `turn`."},
+       .doc = "Translation that is added to all coordinates, after `scale` and `turn`."},
       {.name = "rest_on",
-       .doc =
-           "Name of an obstacle, a section [obstacle.NAME]: after `move` the mesh is brought to where its lowest node "
-           "is at `rest_gap` above it at t = 0, along the normal of a plane; to others along gravity, or without "
-           "gravity along the obstacle's normal at the nearest node."},
+       .doc = "Name of an obstacle, a section [obstacle.NAME]. After `move` the mesh is shifted until its lowest node "
+              "is at the distance `rest_gap` above this obstacle at t = 0: along the normal of a plane; with other "
+              "obstacles along gravity or, without gravity, along the obstacle's normal at the nearest node."},
       {.name = "rest_gap",
        .type = KeyType::number,
        .unit = "length",
        .range = nonnegative,
-       .doc = "Distance of the lowest node from the obstacle of `rest_on`. Absent: they touch."},
+       .doc = "Distance of the lowest node from the obstacle of `rest_on`. Default: 0, so that they touch."},
       {.name = "drop_height",
        .type = KeyType::number,
        .unit = "length",
        .range = positive,
        .doc = "Height through which the body has fallen from rest when the run starts: adds the velocity √(2gH) along "
-              "`load.gravity`, which must be given."},
+              "`load.gravity`, which is then required."},
   };
 }
 
@@ -89,7 +86,7 @@ Key velocity_key(const char* what) {
   return {.name = "velocity",
           .type = KeyType::vector,
           .unit = "length/time",
-          .doc = std::string("Velocity at t = 0 of ") + what + ", added to that of [initial]. Zero if absent."};
+          .doc = std::string("Velocity at t = 0 of ") + what + ", added to the velocity of [initial]. Zero if absent."};
 }
 
 Key spin_key(const char* about) {
@@ -97,7 +94,7 @@ Key spin_key(const char* about) {
           .type = KeyType::axial,
           .unit = "1/time",
           .doc = std::string("Angular velocity at t = 0, in rad per time, about ") + about +
-                 "; in two dimensions counter-clockwise. Zero if absent."};
+                 "; counter-clockwise in two dimensions. Zero if absent."};
 }
 
 }  // namespace
@@ -115,8 +112,8 @@ Section mesh_section() {
                   .required = true,
                   .replaced_by = "part",
                   .doc =
-                      "The body and how it is discretized. With sections [part.NAME] only `degree` and `plane` are "
-                      "given here, and hold for all parts.",
+                      "The body and its discretization. With sections [part.NAME], this section contains only `degree` "
+                      "and `plane`, which apply to all parts.",
                   .keys = file_keys()};
   for (Key& key : section.keys) key.replaced_by = "part";
   section.keys.push_back({.name = "degree",
@@ -129,18 +126,19 @@ Section mesh_section() {
                           .type = KeyType::choice,
                           .default_value = "strain",
                           .choices = {"strain", "stress", "axisymmetric"},
-                          .doc = "In two dimensions: plane strain, plane stress, or the section through bodies that "
-                                 "are the same all round the axis x = 0, x ≥ 0 (docs/axisymmetric.md)."});
+                          .doc = "In two dimensions: plane strain, plane stress, or the half x ≥ 0 of a section "
+                                 "through bodies that are symmetric about the axis x = 0 (docs/axisymmetric.md)."});
   return section;
 }
 
 Section part_section() {
-  Section section{.name = "part",
-                  .kind = SectionKind::named,
-                  .doc =
-                      "A body, or several, from a file of its own. Its groups are called \"NAME.group\"; \"NAME.all\" "
-                      "are all of its cells, \"NAME.boundary\" all of its boundary facets. Parts share no nodes.",
-                  .keys = file_keys()};
+  Section section{
+      .name = "part",
+      .kind = SectionKind::named,
+      .doc =
+          "One or more bodies from a separate file. The groups of a part are called \"NAME.group\"; \"NAME.all\" "
+          "contains all of its cells, \"NAME.boundary\" all of its boundary facets. Parts share no nodes.",
+      .keys = file_keys()};
   section.keys.push_back(velocity_key("the part as a rigid body"));
   section.keys.push_back(spin_key("the part's centre of mass"));
   return section;
@@ -150,8 +148,8 @@ Section motion_section() {
   return {.name = "motion",
           .kind = SectionKind::list,
           .doc =
-              "Cells that move like a rigid body at t = 0; what a part's `velocity` and `spin` are for bodies of one "
-              "file.",
+              "Cells that move like a rigid body at t = 0. Corresponds to a part's `velocity` and `spin`, for bodies "
+              "in one file.",
           .keys = {
               group_key("cells", "all"),
               velocity_key("the nodes of these cells"),
@@ -159,7 +157,7 @@ Section motion_section() {
               {.name = "about",
                .type = KeyType::vector,
                .unit = "length",
-               .doc = "A point of the axis of `spin`; absent: the centre of mass of these cells."},
+               .doc = "A point on the axis of `spin`. Default: the centre of mass of these cells."},
           }};
 }
 

@@ -32,25 +32,26 @@ const std::array<std::pair<std::string, Quantity::Kind>, 8> functions{
 
 const std::array<QuantityForm, 12> forms{
     {{"history.COLUMN[i]",
-      "the value in row i of history.csv, the initial state being row 0; −1 is the last row, −2 the one before. Other "
-      "rows are better named by their time: another step gives other rows"},
-     {"history.COLUMN(t=T)", "the value at the time T of the run, linear between the rows"},
+      "the value in row i of history.csv; row 0 is the initial state, −1 the last row, −2 the one before. Refer to "
+      "other rows by their time, as their numbers depend on the step"},
+     {"history.COLUMN(t=T)", "the value at the time T of the run, interpolated linearly between the rows"},
      {"max(history.COLUMN)", "the largest value of all rows"},
      {"min(history.COLUMN)", "the smallest value of all rows"},
      {"max_abs(history.COLUMN)", "the largest absolute value of all rows"},
      {"total_variation(history.COLUMN)", "the sum of the absolute differences of consecutive rows"},
-     {"mean(history.COLUMN)", "the mean over time, the value being linear between the rows (trapezoidal rule)"},
-     {"integral(history.COLUMN)", "the integral over time, likewise"},
+     {"mean(history.COLUMN)",
+      "the mean over time, with values interpolated linearly between the rows (trapezoidal rule)"},
+     {"integral(history.COLUMN)", "the integral over time, computed in the same way"},
      {"first_time(history.COLUMN > X)",
-      "the first time at which the value is above X, with `<` below it: of a row, or where the line between two rows "
-      "crosses X. Where that never is, the expectation does not hold"},
-     {"last_time(history.COLUMN > X)", "the last such time; that of the last row, if it is so then"},
+      "the first time at which the value is above X, or with `<` below X: that of a row, or where the line between two "
+      "rows crosses X. If there is no such time, the expectation does not hold"},
+     {"last_time(history.COLUMN > X)", "the last such time; that of the last row if the condition still holds there"},
      {"FUNCTION(history.COLUMN, T0, T1)",
-      "each of these functions of the interval of time from T0 to T1 alone, `max(history.COLUMN, T0, T1)` or "
-      "`first_time(history.COLUMN > X, T0, T1)`: of the rows in it and of the values at its ends, which are linear "
-      "between rows"},
+      "each of these functions restricted to the time interval from T0 to T1, such as `max(history.COLUMN, T0, T1)` or "
+      "`first_time(history.COLUMN > X, T0, T1)`: evaluated from the rows in it and the values at its ends, which are "
+      "interpolated linearly between rows"},
      {"summary.PATH",
-      "a number of summary.json by its dotted path; entries of lists have numbers from 0: "
+      "a number in summary.json by its dotted path; entries of lists are counted from 0: "
       "`summary.impacts.0.velocity_after.2` is the third component of the velocity after the first impact"}}};
 
 [[noreturn]] void refuse(const std::string& text, const std::string& reason) {
@@ -91,8 +92,9 @@ std::string dotted_name(const std::string& text, std::string_view prefix, std::s
   if (!body.starts_with(prefix)) refuse(text, fmt::format("\"{}\" does not begin with {}", body, prefix));
   const std::string_view name = body.substr(prefix.size());
   if (!is_dotted_name(name)) {
-    refuse(text, name.empty() ? fmt::format("nothing stands after {}", prefix)
-                              : fmt::format("\"{}\" is not made of letters, digits, _ and - joined by dots", name));
+    refuse(text, name.empty()
+                     ? fmt::format("nothing follows {}", prefix)
+                     : fmt::format("\"{}\" does not consist of letters, digits, _ and - joined by dots", name));
   }
   return std::string(name);
 }
@@ -115,7 +117,7 @@ Quantity::Kind function_kind(const std::string& text, const std::string& name) {
 }
 
 TimeInterval read_interval(const std::string& text, const std::vector<std::string_view>& arguments) {
-  if (arguments.size() != 3) refuse(text, "an interval of time has two ends, T0 and T1, which stand after the column");
+  if (arguments.size() != 3) refuse(text, "a time interval has two ends, T0 and T1, which follow the column");
   const TimeInterval interval{read_number(text, "time", arguments[1]), read_number(text, "time", arguments[2])};
   if (interval.begin >= interval.end)
     refuse(text, fmt::format("the interval from {} to {} does not end after it begins", arguments[1], arguments[2]));
@@ -126,10 +128,12 @@ TimeInterval read_interval(const std::string& text, const std::vector<std::strin
 Threshold read_threshold(const std::string& text, const std::string& function, std::string_view& condition) {
   const std::size_t sign = condition.find_first_of("<>");
   if (sign == std::string_view::npos)
-    refuse(text, fmt::format("{} compares the column with a number: {}(history.COLUMN > X)", function, function));
+    refuse(text, fmt::format("{} requires a comparison of the column with a number: {}(history.COLUMN > X)", function,
+                             function));
   const bool above = condition[sign] == '>';
   const std::string_view level = without_blanks(condition.substr(sign + 1));
-  if (level.starts_with('=')) refuse(text, fmt::format("{}= is written {}", condition[sign], condition[sign]));
+  if (level.starts_with('='))
+    refuse(text, fmt::format("{}= is not supported: write {}", condition[sign], condition[sign]));
   condition = without_blanks(condition.substr(0, sign));
   return {read_number(text, "level", level), above};
 }
@@ -139,15 +143,15 @@ Quantity parse_function(const std::string& text, std::size_t opening) {
   Quantity quantity{.kind = function_kind(text, function)};
   if (text.back() != ')') refuse(text, "the closing parenthesis is missing");
   const std::string body = text.substr(opening + 1, text.size() - opening - 2);
-  if (body.find('[') != std::string::npos) refuse(text, "a function takes the whole column, without [i]");
+  if (body.find('[') != std::string::npos) refuse(text, "a function applies to the whole column, without [i]");
   if (body.find('(') != std::string::npos)
-    refuse(text, "a function takes a column, and no value at a time or function");
+    refuse(text, "a function applies to a column, not to a value at a time or another function");
   const std::vector<std::string_view> arguments = between_commas(body);
   std::string_view column = arguments[0];
   if (quantity.kind == Quantity::Kind::first_time || quantity.kind == Quantity::Kind::last_time) {
     quantity.threshold = read_threshold(text, function, column);
   } else if (column.find_first_of("<>") != std::string_view::npos) {
-    refuse(text, fmt::format("only first_time and last_time compare, {} does not", function));
+    refuse(text, fmt::format("only first_time and last_time accept a comparison, {} does not", function));
   }
   quantity.name = dotted_name(text, history_prefix, column);
   if (arguments.size() > 1) quantity.interval = read_interval(text, arguments);
@@ -159,7 +163,7 @@ Quantity parse_value_at_time(const std::string& text, std::size_t opening) {
   const std::string body = text.substr(opening + 1, text.size() - opening - 2);
   const std::size_t equals = body.find('=');
   if (equals == std::string::npos || without_blanks(std::string_view(body).substr(0, equals)) != "t")
-    refuse(text, "in the parentheses stands no time, as in (t=0.5)");
+    refuse(text, "the parentheses must contain a time, as in (t=0.5)");
   return {.kind = Quantity::Kind::value_at_time,
           .name = dotted_name(text, history_prefix, text.substr(0, opening)),
           .time = read_number(text, "time", without_blanks(std::string_view(body).substr(equals + 1)))};
@@ -168,7 +172,7 @@ Quantity parse_value_at_time(const std::string& text, std::size_t opening) {
 Quantity parse_history_value(const std::string& text) {
   const std::size_t opening = text.find_first_of("[(");
   if (opening == std::string::npos)
-    refuse(text, "which row is not said: add [i], as in [-1] for the last one, or the time, as in (t=0.5)");
+    refuse(text, "the row is missing: add [i], as in [-1] for the last row, or a time, as in (t=0.5)");
   if (text[opening] == '(') return parse_value_at_time(text, opening);
   if (text.back() != ']') refuse(text, "it does not end with ]");
   const std::string column = dotted_name(text, history_prefix, text.substr(0, opening));
@@ -192,7 +196,7 @@ Quantity parse_quantity(const std::string& text) {
   if (text.starts_with(summary_prefix))
     return {.kind = Quantity::Kind::summary_value, .name = dotted_name(text, summary_prefix, text)};
   if (const std::size_t opening = text.find('('); opening != std::string::npos) return parse_function(text, opening);
-  refuse(text, "it begins neither with history. nor with summary. nor with a function");
+  refuse(text, "it begins with neither history. nor summary. nor a function");
 }
 
 }  // namespace ricochet

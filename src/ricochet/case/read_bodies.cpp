@@ -13,7 +13,7 @@ namespace {
 Turn read_turn(const SectionReader& reader) {
   const Turn turn{reader.number("angle"), reader.vector("axis"), reader.vector("about")};
   if (reader.is_usable("axis") && std::all_of(turn.axis.begin(), turn.axis.end(), [](double a) { return a == 0.0; }))
-    reader.add_problem("axis", "\"axis\" must not be zero: it is the direction that the mesh turns about");
+    reader.add_problem("axis", "\"axis\" must not be zero: it is the direction of the axis of rotation");
   return turn;
 }
 
@@ -30,7 +30,8 @@ void read_rest(const SectionReader& reader, BodyFile& body) {
   body.rest_gap = reader.number("rest_gap");
   body.drop_height = reader.number("drop_height");
   if (reader.is_given("rest_gap") && !reader.is_given("rest_on"))
-    reader.add_problem("rest_gap", "\"rest_gap\" is the distance from the obstacle of \"rest_on\": give that, too");
+    reader.add_problem("rest_gap",
+                       "\"rest_gap\" is the distance from the obstacle of \"rest_on\": set \"rest_on\", too");
 }
 
 void read_file(const SectionReader& reader, const std::string& case_path, BodyFile& body) {
@@ -47,8 +48,8 @@ void read_file(const SectionReader& reader, const std::string& case_path, BodyFi
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   if (body.size && extension == ".msh") {
     reader.add_problem(
-        "size",
-        fmt::format("\"size\" is for geometry that is still to be meshed; \"{}\" is a mesh already", file.string()));
+        "size", fmt::format("\"size\" is only for geometry that the gmsh program meshes; \"{}\" is already a mesh",
+                            file.string()));
   }
 }
 
@@ -64,8 +65,8 @@ std::vector<double> with_drop(std::vector<double> velocity, const SectionReader&
   for (const double component : gravity) size = std::hypot(size, component);
   if (size == 0.0) {
     reader.add_problem("drop_height",
-                       "\"drop_height\" is fallen through under gravity, and the case has none: give [load] gravity, "
-                       "or the \"velocity\" in place of the height");
+                       "\"drop_height\" requires gravity, and the case has none: set \"gravity\" of [load], or "
+                       "\"velocity\" instead of the height");
     return velocity;
   }
   velocity.resize(gravity.size(), 0.0);
@@ -110,9 +111,9 @@ void read_motions(const SectionReader& mesh, const std::vector<SectionReader>& p
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const SectionReader& reader = motions[i];
     if (!moves(reader)) {
-      reader.add_problem("", "[[motion]] moves nothing: give \"velocity\", \"spin\" or both");
+      reader.add_problem("", "[[motion]] moves nothing: set \"velocity\", \"spin\" or both");
     } else if (reader.is_given("about") && !reader.is_given("spin")) {
-      reader.add_problem("about", "\"about\" is a point of the axis of \"spin\": give \"spin\", or leave it out");
+      reader.add_problem("about", "\"about\" is a point on the axis of \"spin\": set \"spin\", or remove \"about\"");
     }
     result.motions.push_back({fmt::format("motion.{}", i), reader.groups("group", result.group_lists), "",
                               reader.vector("velocity"), reader.axial("spin"), reader.vector("about")});

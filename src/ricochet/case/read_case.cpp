@@ -29,7 +29,7 @@ std::string read_text(const std::string& path) {
   constexpr std::uintmax_t longest = 64u << 20;
   std::error_code unknown;
   if (const std::uintmax_t size = std::filesystem::file_size(path, unknown); !unknown && size > longest)
-    fail(fmt::format("it has {} MB: case files are texts of a few kB", size >> 20));
+    fail(fmt::format("its size is {} MB: case files are texts of a few kB", size >> 20));
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) fail(std::strerror(errno));

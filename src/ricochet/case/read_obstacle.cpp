@@ -15,7 +15,7 @@ std::string beside(const std::string& case_path, const std::string& file) {
 /// Refuses two keys with the same meaning.
 void refuse_both(const SectionReader& reader, const char* key, const char* other) {
   if (reader.is_given(key) && reader.is_given(other))
-    reader.add_problem(key, fmt::format("the obstacle has \"{}\" already: leave \"{}\" out", other, key));
+    reader.add_problem(key, fmt::format("the obstacle already has \"{}\": remove \"{}\"", other, key));
 }
 
 void read_motion(const SectionReader& reader, const std::string& case_path, ObstacleSection& obstacle) {
@@ -28,8 +28,7 @@ void read_motion(const SectionReader& reader, const std::string& case_path, Obst
   refuse_both(reader, "motion", "velocity");
   for (const char* const key : {"velocity", "motion", "rotation"}) refuse_both(reader, "table", key);
   if (reader.is_given("about") && !reader.is_given("rotation") && !reader.is_given("table"))
-    reader.add_problem("about",
-                       "\"about\" is a point that the obstacle turns about: give \"rotation\", or leave it out");
+    reader.add_problem("about", "\"about\" is the centre of a rotation: set \"rotation\", or remove \"about\"");
 }
 
 void read_free_body(const SectionReader& reader, ObstacleSection& obstacle) {
@@ -52,12 +51,12 @@ void read_free_body(const SectionReader& reader, ObstacleSection& obstacle) {
   };
   for (const char* const key : {"inertia", "centre_of_mass", "spin", "force", "torque", "spring", "damper",
                                 "rotation_spring", "rotation_damper", "hold"})
-    only(is_free, key, "is of a rigid body that moves by the forces on it: give its mass or density, too");
+    only(is_free, key, "requires a rigid body that moves under the forces on it: set its \"mass\" or \"density\", too");
   for (const char* const key : {"motion", "rotation", "table"})
-    only(!is_free, key, "is a motion that is given; an obstacle with a mass or density moves by the forces on it");
+    only(!is_free, key, "prescribes a motion; an obstacle with a mass or density moves under the forces on it");
   only(!is_free, "rotation_rate",
-       "is a motion that is given; an obstacle with a mass or density moves by the forces on it; "
-       "for a driven roller that a force presses, give it \"spin\", a large \"inertia\" (a flywheel) and \"force\"");
+       "prescribes a motion; an obstacle with a mass or density moves under the forces on it; for a driven roller that "
+       "a force presses, set \"spin\", a large \"inertia\" (a flywheel) and \"force\"");
 }
 
 }  // namespace

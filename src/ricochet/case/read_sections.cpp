@@ -62,9 +62,9 @@ MaterialSection read_material(const SectionReader& reader, Case& result) {
   if (!relaxation.is_usable("modulus") || !relaxation.is_usable("time")) return material;
   const std::size_t moduli = material.relaxation.modulus.size(), times = material.relaxation.time.size();
   if (moduli != times) {
-    relaxation.add_problem("time", fmt::format("\"modulus\" and \"time\" have one entry for each branch, and there "
-                                               "are {} and {} of them",
-                                               moduli, times));
+    relaxation.add_problem(
+        "time", fmt::format("\"modulus\" and \"time\" must have one entry for each branch, but have {} and {} entries",
+                            moduli, times));
   }
   return material;
 }
@@ -86,35 +86,36 @@ ContactSection read_contact(const SectionReader& reader, Case& result) {
   contact.tied = reader.flag("tied");
   for (const char* const key : {"friction", "friction_bound", "multipliers", "initial_gap", "pair_at", "sliding"}) {
     if (!contact.tied || !reader.is_given(key)) continue;
-    reader.add_problem(key,
-                       fmt::format("\"{}\" is of surfaces that may part or slide; these are tied: leave it out", key));
+    reader.add_problem(
+        key,
+        fmt::format("\"{}\" is only for surfaces that may separate or slide; these are tied: remove this key", key));
   }
   for (const char* const key : {"multipliers_on", "initial_gap", "pair_at", "sliding", "tied"}) {
     const bool is_of_two = key == "multipliers_on"sv || key == "pair_at"sv || key == "tied"sv;
     if (!reader.is_given(key) || reader.is_given("against") || (contact.is_of_all_pairs() && !is_of_two)) continue;
-    reader.add_problem(key, fmt::format("\"{}\" is of contact between {}; give \"against\", or leave it out", key,
-                                        contact.is_of_all_pairs() ? "two groups" : "bodies"));
+    reader.add_problem(key, fmt::format("\"{}\" is only for contact between {}; set \"against\", or remove this key",
+                                        key, contact.is_of_all_pairs() ? "two groups" : "bodies"));
   }
   if (contact.large_sliding && reader.is_given("pair_at"))
     reader.add_problem("pair_at",
-                       "\"pair_at\" is of small sliding, whose pairs stay; with sliding = \"large\" they follow "
-                       "the motion: leave it out");
+                       "\"pair_at\" is only for small sliding, which keeps its pairs; with sliding = \"large\" they "
+                       "follow the motion: remove \"pair_at\"");
   if (contact.large_sliding && contact.multipliers != "p1" && contact.multipliers != "p0")
-    reader.add_problem("multipliers",
-                       fmt::format("multipliers \"{}\" do not go with sliding = \"large\", where facets are "
-                                   "covered in part and by others in every step; take \"p1\", or \"p0\" "
-                                   "with a displacement of degree 2",
-                                   contact.multipliers));
+    reader.add_problem(
+        "multipliers",
+        fmt::format("multipliers \"{}\" are not possible with sliding = \"large\", where facets are covered in part "
+                    "and by different facets in every step; use \"p1\", or \"p0\" with a displacement of degree 2",
+                    contact.multipliers));
   if (reader.is_usable("against") && contact.against == contact.group && !contact.large_sliding) {
     reader.add_problem("against",
-                       fmt::format("\"against\" is \"{}\", the group itself: a surface touches itself with sliding = "
-                                   "\"large\" alone; set that, or name a group of another body",
+                       fmt::format("\"against\" is \"{}\", the group itself: a surface can touch itself only with "
+                                   "sliding = \"large\"; set this, or name a group of another body",
                                    contact.against));
   }
   if (contact.large_sliding && contact.against == contact.group && reader.is_given("multipliers_on"))
     reader.add_problem("multipliers_on",
-                       "a surface that touches itself has no sides: which of its points carry the conditions is chosen "
-                       "where it does; leave \"multipliers_on\" out");
+                       "a surface that touches itself has no sides: the points that carry the multipliers are selected "
+                       "where it touches; remove \"multipliers_on\"");
   contact.allow_unstable_multipliers = reader.text("unstable_multipliers") == "allow";
   return contact;
 }
@@ -142,7 +143,7 @@ void check_distinct(const std::vector<SectionReader>& readers, const std::string
           readers[i].value(together) != readers[j].value(together)) {
         continue;
       }
-      readers[i].add_problem(name, fmt::format("the {} \"{}\" is in another [[{}]] already, at {}", name,
+      readers[i].add_problem(name, fmt::format("the {} \"{}\" is already in another [[{}]], at {}", name,
                                                readers[i].value(name), section, readers[j].where(name).text()));
       break;
     }
@@ -156,9 +157,9 @@ void read_adaptive_steps(const SectionReader& reader, TimeSection& time) {
     for (const char* const key : {"tolerance", "largest", "smallest"}) {
       if (!reader.is_given(key) || !reader.is_usable("step")) continue;
       if (reader.is_override("step") && !reader.is_override(key)) {
-        reader.add_info(key, fmt::format("\"{}\" is ignored: it is of adaptive steps", key));
+        reader.add_info(key, fmt::format("\"{}\" is ignored: it is only for adaptive steps", key));
       } else {
-        reader.add_problem(key, fmt::format("\"{}\" is of adaptive steps; write step = \"adaptive\"", key));
+        reader.add_problem(key, fmt::format("\"{}\" is only for adaptive steps; write step = \"adaptive\"", key));
       }
     }
     return;
@@ -166,8 +167,8 @@ void read_adaptive_steps(const SectionReader& reader, TimeSection& time) {
   time.tolerance = reader.optional_number("tolerance").value_or(1e-3);
   if (!reader.is_given("largest")) {
     reader.add_problem("step",
-                       "adaptive steps need \"largest\", the longest of them: at most the time between two "
-                       "rows that you want to see");
+                       "adaptive steps require \"largest\", the largest length: at most the time between two rows that "
+                       "you want to see");
     return;
   }
   time.step = reader.number("largest");
@@ -189,11 +190,10 @@ void check_smallest(const SectionReader& reader, const TimeSection& time) {
       std::min(std::floor(std::log2(StepControl::most_ticks * (time.step / time.end))), 1.0 * StepControl::most_levels);
   const double least = std::ldexp(time.step, -static_cast<int>(levels));
   if (time.smallest >= least * (1.0 - 1e-9)) return;
-  reader.add_problem(
-      "smallest", fmt::format("\"smallest\" is {}, too short beside \"largest\", {}, and \"end\", {}: times are whole "
-                              "numbers of it and would not have all of their digits; give at least {:.2g}, or leave "
-                              "it out",
-                              time.smallest, time.step, time.end, rounded_up(least, 2)));
+  reader.add_problem("smallest",
+                     fmt::format("\"smallest\" is {}, too short compared with \"largest\", {}, and \"end\", {}: times "
+                                 "are whole multiples of it and would lose digits; set at least {:.2g}, or remove it",
+                                 time.smallest, time.step, time.end, rounded_up(least, 2)));
 }
 
 TimeSection read_time(const SectionReader& reader) {
@@ -207,16 +207,16 @@ TimeSection read_time(const SectionReader& reader) {
   const char* const step = time.adaptive ? "largest" : "step";
   if (!reader.is_usable(step) || !reader.is_usable("end") || time.step == 0.0) return time;
   if (!has_square(time.step)) {
-    reader.add_problem(step, fmt::format("\"{}\" is {}: the numbers that a computer has do not reach to its square; "
-                                         "choose a unit of time in which steps are nearer to 1",
+    reader.add_problem(step, fmt::format("\"{}\" is {}: its square is outside the range of floating-point numbers; "
+                                         "choose a unit of time in which steps are closer to 1",
                                          step, time.step));
   } else if (!time.adaptive && time.end < time.step) {
     reader.add_problem("end",
                        fmt::format("\"end\" is {}, before the end of the first step of {}", time.end, time.step));
   } else if (time.end / time.step > most_steps) {
-    reader.add_problem(
-        step, fmt::format("a step of {} up to the end {} makes {:.3g} steps; at most {:.0e} are possible", time.step,
-                          time.end, time.end / time.step, most_steps));
+    reader.add_problem(step,
+                       fmt::format("a step of {} up to the end {} results in {:.3g} steps; at most {:.0e} are possible",
+                                   time.step, time.end, time.end / time.step, most_steps));
   } else if (time.adaptive) {
     check_smallest(reader, time);
   }
@@ -260,9 +260,10 @@ ProbeSection read_probe(const SectionReader& reader, Case& result) {
   std::vector<std::string> columns = history_column_names();
   for (const char* name : {"momentum", "pair_force"}) columns.emplace_back(name);  // of bodies and pairs, before a dot
   if (reader.is_usable("name") && !is_plain_name(probe.name)) {
-    reader.add_problem("name", fmt::format("the name \"{}\" can only have letters, digits, _ and -", probe.name));
+    reader.add_problem("name", fmt::format("the name \"{}\" can only contain letters, digits, _ and -", probe.name));
   } else if (std::find(columns.begin(), columns.end(), probe.name) != columns.end()) {
-    reader.add_problem("name", fmt::format("the name \"{}\" is that of a standard column of history.csv", probe.name));
+    reader.add_problem("name",
+                       fmt::format("the name \"{}\" is already that of a standard column of history.csv", probe.name));
   }
   return probe;
 }
@@ -280,7 +281,7 @@ void check_expectation(const SectionReader& reader) {
     reader.add_problem(name, fmt::format("\"{}\" is a tolerance of \"value\", which is missing", name));
   } else if (!has_value && !has_bounds) {
     reader.add_problem("",
-                       "[[expect]] expects nothing: give \"value\" with \"relative\" or \"absolute\", or bounds "
+                       "[[expect]] expects nothing: set \"value\" with \"relative\" or \"absolute\", or bounds "
                        "(\"minimum\", \"maximum\")");
   }
   if (reader.is_usable("minimum") && reader.is_usable("maximum") &&
@@ -385,7 +386,7 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems) {
                   check.text("on_failure") == "stop"};
   if (result.output.fields_every && result.output.fields_interval) {
     output.add_problem("fields_interval",
-                       "\"fields_every\" and \"fields_interval\" exclude each other: give one of them");
+                       "\"fields_every\" and \"fields_interval\" exclude each other: use one of them");
   }
   for (const SectionReader& reader : sections.all("expect")) result.expectations.push_back(read_expectation(reader));
 }

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <stdexcept>
 
 #include "ricochet/case/keys.hpp"
 #include "ricochet/case/quantity.hpp"
@@ -15,8 +18,44 @@ constexpr const char* introduction = R"page(# The case file
 <!-- Generated from the table of keys in src/ricochet/case/keys_table*.cpp, and from those that schemes, obstacles and laws
 declare where they are defined. Change it there; a test compares. -->
 
-A case file is a [TOML](https://toml.io) document that says everything about a run. `ricochet validate CASE.toml` checks it,
-`ricochet schema` prints its JSON Schema, for editors that complete and check while one types.
+A case file is a [TOML](https://toml.io) document that describes a run completely. `ricochet validate CASE.toml` checks it,
+`ricochet schema` prints its JSON Schema, for editors that complete and check case files as you type.
+
+## The keys that most cases need
+
+A thrown ball, complete but for its mesh: everything else has a default.
+
+```toml
+[mesh]
+file = "ball.msh"
+
+[[material]]
+group = "all"
+density = 1150.0
+young = 50.0e6
+poisson = 0.45
+
+[obstacle.floor]
+type = "plane"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 0.0, 1.0]
+
+[[contact]]
+group = "boundary"
+obstacle = "floor"
+friction = 0.3
+
+[initial]
+velocity = [1.0, 0.0, -5.0]
+
+[time]
+step = 2.0e-5
+end = 4.0e-3
+```
+
+)page";
+
+constexpr const char* example = R"page(## A case with most of the sections
 
 ```toml
 title = "Elastic disc on a rigid foundation"
@@ -77,50 +116,52 @@ relative = 1.0e-2
 when = { "time.scheme" = "newmark" }
 ```
 
-## Rules
+)page";
 
-- **Units** are your own and must be consistent: m, kg, s or mm, t, s or anything else. The column *unit* below says what
-  kind of quantity a number is; 1 is a pure number.
-- **Vectors** have 2 or 3 entries, all of them in a file the same number: that of the mesh's dimensions. A `spin` is a number
-  in two dimensions, a vector of 3 entries in three.
-- **Numbers** are finite; integers will do where numbers are wanted, but not the other way round.
+constexpr const char* rules = R"page(## Rules
+
+- **Units**: use any consistent set, such as m, kg, s or mm, t, s. The column *unit* below shows the kind of quantity that a
+  number is; 1 is a pure number.
+- **Vectors** have as many entries as the mesh has dimensions, 2 or 3, everywhere in a file. A `spin` is a number in two
+  dimensions, a vector of 3 entries in three.
+- **Numbers** are finite; an integer is accepted where a number is required, but not the other way round.
 - **Expressions** are texts in [muParser's syntax](https://beltoforion.de/en/muparser/features.php): `+ - * / ^`,
   comparisons, `a ? b : c`, `sin`, `cos`, `exp`, `sqrt`, `min`, `max` and so on, the constant `pi`, the names in the table
-  `parameters` of the same section, and those of x, y, z and t that the key allows. x, y, z are reference coordinates,
+  `parameters` of the same section, and the variables among x, y, z and t that the key allows. x, y, z are reference coordinates,
   after `scale`, `turn` and `move` of the mesh or the part.
 - **Groups** are those of the mesh; "all" (every cell) and "boundary" (every boundary facet) are built in, and a list is the
-  union of its groups: `group = ["rim", "skin"]`. Those of a [part](#partname) are called "NAME.group", "NAME.all" and
-  "NAME.boundary". [meshes.md](meshes.md) says which groups a file gives.
-- **All problems** are reported together, with file, line and column; an unknown key is one of them. The exit status is
+  union of its groups: `group = ["rim", "skin"]`. The groups of a [part](#partname) are called "NAME.group", "NAME.all" and
+  "NAME.boundary". [meshes.md](meshes.md) describes which groups a mesh file provides.
+- **All problems** are reported together, with file, line and column; an unknown key is a problem, too. The exit status is
   then 2, or 4 if the file cannot be read.
 - **On the command line**, `--set key.path=value` replaces or adds a value before anything is checked:
   `--set time.step=1e-4`, `--set contact.0.friction=0` (entries of `[[…]]` are counted from 0),
   `--set obstacle.floor.normal=[0,1]`, `--set material.0.damping.mass=0.1`, `--set traction.0.parameters.p=50`. The value
-  is TOML, or else a text that needs no quotes: `--set time.scheme=midpoint`. Keys that belong to one type alone
-  (beta, gamma and preset of `newmark`) are ignored when `--set` replaces the type by one that has none of them; and of preset
-  and beta or gamma, what `--set` gives counts.
+  is TOML; otherwise it is a text, which needs no quotes: `--set time.scheme=midpoint`. Keys that belong to one type only
+  (beta, gamma and preset of `newmark`) are ignored if `--set` replaces the type by one without them; between preset and beta
+  or gamma, `--set` takes precedence over the file.
 
 )page";
 
 constexpr const char* before_quantities = R"page(## Quantities
 
-What `quantity` of `[[expect]]` can be:
+The `quantity` of an `[[expect]]` has one of these forms:
 
 | form | meaning |
 |---|---|
 )page";
 
 constexpr const char* after_quantities = R"page(
-`COLUMN` is a column of history.csv, such as `total_energy` or `lowest.displacement_y` for a probe named lowest. Times are those
-of the column `time`; one that lies outside the rows is an error, and one within a millionth of the distance of two rows of a row
-is that row. In a run whose history has a row every few steps only, values between them are those of the line between the rows.
+`COLUMN` is a column of history.csv, such as `total_energy` or `lowest.displacement_y` for a probe named lowest. Times refer to
+the column `time`. A time outside the rows is an error; a time that differs from that of a row by less than a millionth of the
+distance of two rows means that row. If the history has a row only every few steps, values between rows are interpolated linearly.
 
-`over` and `times` make other numbers of it, such as a coefficient of friction or the load on a whole body of which a quarter is
-simulated: what is compared is the quantity times `times`, divided by the quantity `over`.
+`over` and `times` derive other numbers from it, such as a coefficient of friction or the load on a whole body of which a quarter
+is simulated: the expectation compares the quantity times `times`, divided by the quantity `over`.
 
 ```toml
 [[expect]]
-name = "force of friction over normal force, at 0.3 s"
+name = "friction force over normal force, at 0.3 s"
 quantity = "history.contact_force_x(t=0.3)"
 over = "history.contact_force_y(t=0.3)"
 times = -1.0
@@ -129,14 +170,40 @@ relative = 1.0e-6
 published = "Coulomb: 0.2"
 ```
 
-`name` and `published` change nothing in a run: they stand in `summary.json`, and the name where expectations are listed.
+`name` and `published` do not affect a run: both are written to `summary.json`, and lists of expectations show the name.
 
 `when` restricts an expectation to the runs for which it was made: `when = { "time.scheme" = "midpoint", "mass.type" =
-"lumped" }` holds when every key path has that value, given in the file, by `--set` or by default. A key that has
+"lumped" }` holds if every key path has that value, from the file, from `--set` or by default. A condition on a key that has
 neither a value nor a default never holds. A run changed by `--set` is only checked against expectations whose `when`
-names every changed key, but for `output.fields_every`. An expectation that does not hold ends the run with exit
-status 5, after all results are written.
+names every changed key, except `output.fields_every`. If an expectation does not hold, the run ends with exit status 5,
+after all results are written.
 )page";
+
+struct FrequentKey {
+  const char *section, *key, *use;
+};
+constexpr std::array<FrequentKey, 20> frequent_keys{{
+    {"mesh", "file", "the mesh: Gmsh, Abaqus, CalculiX, VTK, MED and others"},
+    {"mesh", "scale", "0.001 for a mesh in millimetres in a case in metres"},
+    {"material", "group", "cells of this material, \"all\" for every cell"},
+    {"material", "density", "mass per volume"},
+    {"material", "young", "stiffness, with `poisson`"},
+    {"material", "poisson", "lateral contraction"},
+    {"material", "law", "\"neo-hookean\" for large rotations and strains"},
+    {"obstacle", "type", "a rigid plane, sphere, cylinder, torus, triangulated surface or expression"},
+    {"contact", "group", "the boundary that can touch"},
+    {"contact", "obstacle", "… this obstacle"},
+    {"contact", "against", "… or this boundary of another body"},
+    {"contact", "friction", "Coulomb's coefficient"},
+    {"support", "group", "a boundary that is held, or moved by `value`, in the `components`"},
+    {"traction", "group", "a boundary on which a force per area acts"},
+    {"load", "gravity", "weight"},
+    {"initial", "velocity", "the throw"},
+    {"initial", "displacement", "\"static\" starts in equilibrium"},
+    {"time", "step", "a hundredth of the duration of an impact is a good start, \"adaptive\" chooses by itself"},
+    {"time", "end", "duration"},
+    {"probe", "at", "a point whose motion becomes columns of history.csv"},
+}};
 
 std::string cell(std::string text) {
   for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2))
@@ -164,6 +231,26 @@ std::string rows(const std::vector<Key>& keys, const std::string& prefix) {
   return text;
 }
 
+/// Returns the name of a heading's anchor on the page.
+std::string anchor(const Section& section) {
+  std::string name;
+  for (const char c : section_title(section))
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) name += static_cast<char>(std::tolower(c));
+  return name;
+}
+
+std::string frequent_rows() {
+  std::string text = "| section | key | use | default |\n|---|---|---|---|\n";
+  for (const FrequentKey& each : frequent_keys) {
+    const Section* const section = find_section(each.section);
+    const Key* const key = section != nullptr ? find_key(section->keys, each.key) : nullptr;
+    if (key == nullptr) throw std::logic_error(fmt::format("there is no key {}.{}", each.section, each.key));
+    text += fmt::format("| [`{}`](#{}) | `{}` | {} | {} |\n", section_title(*section), anchor(*section), each.key,
+                        each.use, default_text(*key));
+  }
+  return text + "\n";
+}
+
 std::string occurrence(const Section& section) {
   switch (section.kind) {
     case SectionKind::top:
@@ -173,9 +260,9 @@ std::string occurrence(const Section& section) {
         return fmt::format(" Required without `{}`.", section_title(*find_section(section.replaced_by)));
       return section.required ? " Required." : " Optional.";
     case SectionKind::list:
-      return section.required ? " One or more of them." : " Any number of them.";
+      return section.required ? " One or more entries." : " Any number of entries.";
     case SectionKind::named:
-      return " Any number of them, with names of letters, digits, _ and -.";
+      return " Any number of such sections, with names of letters, digits, _ and -.";
   }
   return "";
 }
@@ -188,7 +275,7 @@ std::string alternatives_text(const KeySets& alternatives, const std::string& wh
     for (const std::string& name : names) set += (set.empty() ? "" : " and ") + fmt::format("`{}`", name);
     text += (text.empty() ? "" : ", or ") + set;
   }
-  return fmt::format("\n\nGive {}{}.", text, where);
+  return fmt::format("\n\nSet {}{}.", text, where);
 }
 
 std::string alternatives_text(const Section& section) {
@@ -205,7 +292,7 @@ std::string alternatives_text(const Section& section) {
 }  // namespace
 
 std::string case_reference() {
-  std::string page = introduction;
+  std::string page = introduction + frequent_rows() + example + rules;
   for (const Section& section : case_sections()) {
     const bool is_top = section.kind == SectionKind::top;
     page +=

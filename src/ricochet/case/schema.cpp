@@ -214,7 +214,7 @@ std::string case_schema() {
   Json root = keys_schema(sections.front().keys);
   Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
               {"title", "Ricochet case file"},
-              {"description", "All units are the user's own and must be consistent."}};
+              {"description", "Use any consistent units."}};
   for (const auto& [name, value] : root.items()) schema[name] = value;
   Json required = Json::array();
   for (const Section& section : sections) {

@@ -110,7 +110,7 @@ TomlNode parse_toml(const std::string& document, const std::string& file) {
     return convert(toml::parse(document), file);
   } catch (const toml::parse_error& problem) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("{}: not TOML: {}", location_of(problem.source(), file).text(), problem.description()));
+                fmt::format("{}: invalid TOML: {}", location_of(problem.source(), file).text(), problem.description()));
   }
 }
 

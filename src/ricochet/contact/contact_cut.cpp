@@ -106,7 +106,7 @@ ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part
   if (whole.follows_motion()) {
     own.geometry = whole.geometry->cut(part);
     if (own.geometry == nullptr)
-      throw Error(ErrorKind::invalid_input, "contact whose directions turn with bodies cannot be divided");
+      throw Error(ErrorKind::invalid_input, "contact whose directions rotate with bodies cannot be divided");
   }
   return own;
 }

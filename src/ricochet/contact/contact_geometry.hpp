@@ -33,16 +33,16 @@ class ContactGeometry {
   /// compared with the changes of the gaps since the last update keep their rows. `start`: rows are those of the step
   /// from there; null: those of the instant.
   virtual void update(const Vector& displacement, double time, const StepStart* start, ContactRows& rows) const = 0;
-  /// Begins a step, or begins it again, with no rows held.
+  /// Begins a step, or begins it again, without frozen rows.
   virtual void begin_step() const {}
-  /// Holds the rows for the remainder of the step, so that gaps are linear: for iterations of a step that do
+  /// Freezes the rows for the remainder of the step, so that gaps are linear: for iterations of a step that do
   /// not converge because the pairing changes from one to the next. Returns false if there is nothing to
-  /// hold, or rows are already held.
+  /// freeze, or rows are already frozen.
   virtual bool freeze() const { return false; }
   virtual void end_step() const {}
-  /// Whether rows were held in some step of the run so far.
+  /// Whether rows were frozen in some step of the run so far.
   [[nodiscard]] virtual bool has_frozen() const { return false; }
-  /// Adds to the gaps at the end of a step the penetration of points at its start. Steps with held rows leave it
+  /// Adds to the gaps at the end of a step the penetration of points at its start. Steps with frozen rows leave it
   /// behind, and removing it would create energy; it may only not grow.
   virtual void allow_overlap(Vector& /*gap*/) const {}
   /// Deactivates points whose conditions other points enforce since the last update (sets them to 0).

@@ -8,7 +8,8 @@
 #include "ricochet/contact/rotating_normal.hpp"
 
 /// @file Contact between bodies with large rotations. The initial pairing is kept (body_contact.hpp), and directions
-/// rotate with both surfaces: with y = Σ_j t_ij (X + U)_j, the mean vector across the gap, and N of turning_normal.hpp,
+/// rotate with both surfaces: with y = Σ_j t_ij (X + U)_j, the mean vector across the gap, and N of
+/// rotating_normal.hpp,
 ///   n(U) = N/|N|,   g(U) = n·y + (g₀ − n₀·y₀),
 /// where the constant is zero unless the input modifies gaps. No rigid motion of both bodies changes g, so that rows G
 /// = ∂g/∂U have no resultant and no moment about the current positions, whether or not facets have slid: in addition to

@@ -150,8 +150,8 @@ void report_small_parts(const Model& whole, int processes) {
   const Index each = whole.space.dof_count() / processes;
   if (each >= few) return;
   log::info(
-      fmt::format("each process has some {} dofs: with fewer than 50,000 they gain little, and with so few one "
-                  "process is mostly faster",
+      fmt::format("each process has about {} dofs: with fewer than 50,000 several processes gain little, and with so "
+                  "few one process is usually faster",
                   each));
 }
 

@@ -74,7 +74,7 @@ NodeExchange::NodeExchange(const Communicator& ranks, const std::vector<std::int
 /// Fills the messages with the values at shared nodes, and exchanges them with the neighbours.
 template <class Values>
 void NodeExchange::send_all(const Values& values, Index per_node) const {
-  if (values.size() != per_node * nodes_) throw std::logic_error("values are not those of the nodes");
+  if (values.size() != per_node * nodes_) throw std::logic_error("the number of values does not match the nodes");
   for (std::size_t i = 0; i < neighbours_.size(); ++i) {
     Message& message = messages_[i];
     const std::size_t count = neighbours_[i].nodes.size() * static_cast<std::size_t>(per_node);

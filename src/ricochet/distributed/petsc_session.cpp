@@ -21,7 +21,7 @@ PetscSession::~PetscSession() {
 std::string petsc_message(int code) {
   const char* text = nullptr;
   PetscErrorMessage(code, &text, nullptr);
-  return text != nullptr ? text : "an error without a name";
+  return text != nullptr ? text : "an unnamed error";
 }
 
 }  // namespace ricochet

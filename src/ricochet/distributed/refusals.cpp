@@ -10,7 +10,7 @@ namespace ricochet {
 namespace {
 
 [[noreturn]] void refuse_several(const Case& input, const std::string& key, const std::string& what) {
-  refuse(input, key, what + " cannot be run by several processes yet: take `ricochet run`, on one machine");
+  refuse(input, key, what + " cannot be run by several processes yet: use `ricochet run`, on one machine");
 }
 
 }  // namespace
@@ -19,7 +19,7 @@ void refuse_undividable_case(const Case& input) {
   if (input.solver.method == "direct") {
     refuse(input, "solver.method",
            "several processes solve steps by iterations, without a factor of the whole body: set solver.method = "
-           "\"iterative\" or leave it out, or take `ricochet run`");
+           "\"iterative\" or remove it, or use `ricochet run`");
   }
   for (std::size_t i = 0; i < input.contacts.size(); ++i) {
     const ContactSection& contact = input.contacts[i];
@@ -29,7 +29,7 @@ void refuse_undividable_case(const Case& input) {
   }
   for (const ObstacleSection& obstacle : input.obstacles) {
     if (obstacle.is_free())
-      refuse_several(input, "obstacle." + obstacle.name, "an obstacle that moves by the forces on it");
+      refuse_several(input, "obstacle." + obstacle.name, "an obstacle that moves under the forces on it");
   }
   // These fields need cells of other processes.
   for (const std::string& name : input.output.fields) {
@@ -42,15 +42,15 @@ void refuse_undividable_case(const Case& input) {
 }
 
 void refuse_undividable_model(const Case& input, const Model& whole, int processes) {
-  if (has_finite_strain(whole.body)) refuse_several(input, "material", "a body of finite strain");
+  if (has_finite_strain(whole.body)) refuse_several(input, "material", "a body at finite strain");
   if (whole.bodies.connected.count > 1) {
-    refuse_several(
-        input, input.parts.empty() ? "mesh.file" : "part",
-        fmt::format("{} bodies, which nobody would keep from going through each other,", whole.bodies.connected.count));
+    refuse_several(input, input.parts.empty() ? "mesh.file" : "part",
+                   fmt::format("{} bodies, which nothing would keep from passing through each other,",
+                               whole.bodies.connected.count));
   }
   if (const Index cells = whole.mesh.cell_count(); cells < processes)
     refuse(input, "mesh.file",
-           fmt::format("the mesh has {}, too few for {}: take fewer", counted(cells, "cell"),
+           fmt::format("the mesh has {}, too few for {}: use fewer", counted(cells, "cell"),
                        counted(processes, "process", "processes")));
 }
 

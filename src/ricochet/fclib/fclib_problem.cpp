@@ -34,10 +34,10 @@ Matrix solve_constraints(const FclibProblem& problem) {
     const Index dependent = factor.permutationQ().indices()[factor.rank()];
     throw Error(
         ErrorKind::invalid_input,
-        fmt::format("{}: /fclib_local/R: is singular, of rank {} with {} constraints, so that the multipliers of the "
-                    "equality constraints are not unique; take out constraints that others imply, for example "
-                    "number {} (counted from 0)",
-                    problem.path, factor.rank(), r.rows(), dependent));
+        fmt::format(
+            "{}: /fclib_local/R: is singular, of rank {} with {} constraints, so that the multipliers of the equality "
+            "constraints are not unique; remove constraints that others imply, for example number {} (counted from 0)",
+            problem.path, factor.rank(), r.rows(), dependent));
   }
   Matrix right(r.rows(), problem.v.rows() + 1);
   right.leftCols(problem.v.rows()) = Matrix(problem.v).transpose();
@@ -66,14 +66,14 @@ Selection select_eligible(const ContactProblem& problem, Index dimension) {
     const Index first = problem.row_offset[static_cast<std::size_t>(i)];
     const Index size = problem.row_offset[static_cast<std::size_t>(i + 1)] - first;
     if (problem.bound(i) > 0.0) {
-      throw Error(ErrorKind::invalid_input,
-                  fmt::format("point {} has a friction bound ({:g}): FCLib's files state Coulomb's law only, so this "
-                              "problem cannot be written as one",
-                              i, problem.bound(i)));
+      throw Error(ErrorKind::invalid_input, fmt::format("point {} has a friction bound ({:g}): FCLib files support "
+                                                        "Coulomb's law only, so this problem cannot be written to one",
+                                                        i, problem.bound(i)));
     }
     if (size != 1 && size != dimension) {
-      throw Error(ErrorKind::invalid_input,
-                  fmt::format("point {} has {} rows, which is not a point of {} dimensions", i, size, dimension));
+      throw Error(
+          ErrorKind::invalid_input,
+          fmt::format("point {} has {} rows, which does not match a problem in {} dimensions", i, size, dimension));
     }
     result.points.push_back(i);
     for (Index k = 0; k < dimension; ++k) {
@@ -176,7 +176,7 @@ FclibSolution FclibReduction::solution(const ContactSolution& found) const {
 
 void put_solution(FclibProblem& problem, FclibSolution found, const ContactSolution& how) {
   const std::string figures = fmt::format(
-      "residual {:.3g}, of which {:.3g} may be rounding (largest natural map of a point over that of r = 0)",
+      "residual {:.3g}, of which {:.3g} may be rounding (largest natural map of a point relative to that of r = 0)",
       how.residual, how.rounding_floor);
   problem.math_info = without_verdict(problem.math_info);
   problem.solution.reset();
@@ -194,7 +194,7 @@ FclibProblem make_fclib(const ContactProblem& problem, Index dimension, const Co
   problem.validate();
   if (dimension != 2 && dimension != 3) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("contact problem: dimension {}; FCLib's files have 2 or 3", dimension));
+                fmt::format("contact problem: the dimension is {}; FCLib files support 2 and 3", dimension));
   }
   const Selection selection = select_eligible(problem, dimension);
   FclibProblem result;
@@ -215,8 +215,8 @@ FclibProblem make_fclib(const ContactProblem& problem, Index dimension, const Co
   }
   if (padded > 0) {
     result.description = fmt::format(
-        "{} of {} points have no friction and no tangents of their own: they are given tangents with W_TT = W_NN, not "
-        "coupled with anything, q_T = 0 and mu = 0, so that r_T = u_T = 0 there.",
+        "{} of {} points have no friction and no tangents in the original problem: their tangents here have W_TT = "
+        "W_NN, no coupling, q_T = 0 and mu = 0, so that r_T = u_T = 0 there.",
         padded, result.mu.size());
   }
   if (solution != nullptr) {

@@ -20,7 +20,7 @@ constexpr double asymmetry_limit = 1e-8;
 /// Reads a size or count: not negative, and small enough for the index of a sparse matrix.
 std::int64_t read_count(const Hdf5Reader& file, const std::string& name) {
   const std::int64_t value = file.integer(name);
-  if (value < 0) file.fail(name, fmt::format("is {}, but counts something", value));
+  if (value < 0) file.fail(name, fmt::format("is {}, but a count cannot be negative", value));
   if (value >= std::numeric_limits<int>::max()) file.fail(name, fmt::format("is {}, which is too large", value));
   return value;
 }
@@ -30,7 +30,7 @@ void check_indices(const Hdf5Reader& file, const std::string& name, const Intege
   for (std::int64_t k = 0; k < used; ++k) {
     const std::int64_t index = indices[static_cast<std::size_t>(k)];
     if (index < 0 || index >= end)
-      file.fail(name, fmt::format("entry {} is {}, outside of 0 to {}", k, index, end - 1));
+      file.fail(name, fmt::format("entry {} is {}, outside the range 0 to {}", k, index, end - 1));
   }
 }
 
@@ -39,7 +39,7 @@ void check_starts(const Hdf5Reader& file, const std::string& name, const Integer
   if (starts.front() != 0) file.fail(name, fmt::format("starts with {} where 0 is expected", starts.front()));
   for (std::size_t k = 1; k < starts.size(); ++k) {
     if (starts[k] < starts[k - 1])
-      file.fail(name, fmt::format("falls from {} to {} at entry {}", starts[k - 1], starts[k], k));
+      file.fail(name, fmt::format("decreases from {} to {} at entry {}", starts[k - 1], starts[k], k));
     if (starts[k] > limit) file.fail(name, fmt::format("entry {} is {}, more than nzmax = {}", k, starts[k], limit));
   }
 }
@@ -172,7 +172,7 @@ SparseMatrix symmetric_part(const Hdf5Reader& file, const std::string& group, co
 void read_constraints(const Hdf5Reader& file, FclibProblem& problem) {
   const bool has_v = file.has_group("/fclib_local/V"), has_r = file.has_group("/fclib_local/R");
   if (has_v != has_r)
-    file.fail(has_v ? "/fclib_local/R" : "/fclib_local/V", "there is no such group; V and R come together");
+    file.fail(has_v ? "/fclib_local/R" : "/fclib_local/V", "there is no such group; V and R must both be present");
   problem.v.resize(problem.w.rows(), 0);
   problem.r.resize(0, 0);
   problem.s.resize(0);
@@ -226,7 +226,8 @@ void read_solutions(const Hdf5Reader& file, FclibProblem& problem) {
   const std::int64_t count = read_count(file, "/guesses/number_of_guesses");
   for (std::int64_t k = 1; k <= count; ++k) {
     const std::string group = fmt::format("/guesses/{}", k);
-    if (!file.has_group(group)) file.fail(group, fmt::format("there is no such group, of {} guesses", count));
+    if (!file.has_group(group))
+      file.fail(group, fmt::format("there is no such group, but number_of_guesses is {}", count));
     problem.guesses.push_back(read_solution(file, group, problem));
   }
 }
@@ -239,7 +240,7 @@ void read_local(const Hdf5Reader& file, FclibProblem& problem) {
   if (w.rows() != w.cols()) file.fail("/fclib_local/W", fmt::format("has {} rows and {} columns", w.rows(), w.cols()));
   if (w.rows() % problem.dimension != 0) {
     file.fail("/fclib_local/W",
-              fmt::format("has {} rows, not {} (spacedim) for each point", w.rows(), problem.dimension));
+              fmt::format("has {} rows, which is not a multiple of {} (spacedim)", w.rows(), problem.dimension));
   }
   problem.w = symmetric_part(file, "/fclib_local/W", w);
   Index negative = 0;
@@ -253,7 +254,7 @@ void read_local(const Hdf5Reader& file, FclibProblem& problem) {
   for (Index i = 0; i < problem.mu.size(); ++i) {
     if (problem.mu[i] < 0.0)
       file.fail("/fclib_local/vectors/mu",
-                fmt::format("entry {} is {}: a coefficient of friction is not negative", i, problem.mu[i]));
+                fmt::format("entry {} is {}: a coefficient of friction cannot be negative", i, problem.mu[i]));
   }
   read_constraints(file, problem);
   read_info(file, problem);
@@ -267,10 +268,10 @@ FclibProblem read_fclib(const std::string& path) {
   if (!file.has_group("/fclib_local")) {
     if (file.has_group("/fclib_global")) {
       file.fail("/fclib_global",
-                "a global problem; only local problems (group /fclib_local) are read: eliminate v by "
-                "W = H^T M^-1 H, q = w + H^T M^-1 f first");
+                "is a global problem, but only local problems (group /fclib_local) are supported: eliminate v by W = "
+                "H^T M^-1 H, q = w + H^T M^-1 f first");
     }
-    file.fail("/fclib_local", "there is no such group: this is no file of FCLib, or it is damaged");
+    file.fail("/fclib_local", "there is no such group: this is not an FCLib file, or it is damaged");
   }
   FclibProblem problem;
   problem.path = path;

@@ -78,8 +78,7 @@ bool has_finite_strain(const Body& body) {
 IsotropicElasticity linear_law(const Body& body, const Material& material) {
   if (const auto law = material.law->constant_tangent(is_plane_stress(body))) return *law;
   throw Error(ErrorKind::invalid_input,
-              fmt::format("material \"{}\": its law is not linear: what was asked for needs a constant stiffness",
-                          material.name));
+              fmt::format("material \"{}\": its law is not linear, but a constant stiffness is needed", material.name));
 }
 
 SparseMatrix assemble_scalar_mass(const Body& body, const NodeGraph& graph, const std::vector<double>& weight) {

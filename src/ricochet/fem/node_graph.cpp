@@ -24,7 +24,7 @@ void list_cells_of_parts(const DisplacementSpace& space, NodeGraph& graph) {
     std::fill(part_of_node.begin() + graph.part_begins[part], part_of_node.begin() + graph.part_begins[part + 1],
               static_cast<std::uint8_t>(part));
   }
-  static_assert(most_node_parts <= 64, "a set of parts is the bits of one number");
+  static_assert(most_node_parts <= 64, "a set of parts must fit into the bits of one number");
   std::vector<std::uint64_t> parts_of_cell;
   graph.cell_begins.assign(parts + 1, 0);
   for (const CellBlock& block : space.cells) {

@@ -20,9 +20,9 @@
 /// and for any h and J = 2Ē − E₀ − E₁,
 ///   2gμ q̄ : (E₁−E₀) = gμ (|q₁|² − |q₀|²) + 𝒟 + 2(1−θ) gμ J : (q₁−q₀),   𝒟 = gμ ((2θ−1)|q₁−q₀|² + 2x|q̄|²) ≥ 0.
 /// If J = 0, 𝒟 is the exact dissipation ∫ (2gμ/τ)|q|² dt. (J is not zero if contact nodes without inertia jump at the
-/// start of a step: finite_layer.hpp.) Long steps cause no oscillations; a branch then is relaxed at the end of the
-/// step. (R. L. Taylor, K. S. Pister, G. L. Goudreau, Int. J. Numer. Methods Engrg. 2 (1970) 45–59, integrate linear
-/// changes of the strain in this way.)
+/// start of a step: finite_strain_step.hpp.) Long steps cause no oscillations; a branch then is relaxed at the end of
+/// the step. (R. L. Taylor, K. S. Pister, G. L. Goudreau, Int. J. Numer. Methods Engrg. 2 (1970) 45–59, integrate
+/// linear changes of the strain in this way.)
 namespace ricochet {
 
 template <class A, class B>

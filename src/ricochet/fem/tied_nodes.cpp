@@ -25,10 +25,9 @@ TiedNodes::TiedNodes(std::vector<Tie> ties, Index node_count)
     }
     if (!changed) return;
     if (round == longest_chain) {
-      throw Error(
-          ErrorKind::invalid_input,
-          "tied surfaces follow each other in a circle: exchange \"group\" and \"against\" of one of them, with "
-          "multipliers_on = \"group\" in all");
+      throw Error(ErrorKind::invalid_input,
+                  "tied surfaces follow each other in a cycle: exchange \"group\" and \"against\" of one of them, and "
+                  "set multipliers_on = \"group\" in all");
     }
   }
 }

@@ -34,7 +34,7 @@ const char* kind_name(H5T_class_t kind) {
     case H5T_STRING:
       return "text";
     default:
-      return "data of another kind";
+      return "data of another type";
   }
 }
 
@@ -72,7 +72,7 @@ struct Hdf5Reader::Dataset {
         set(reader.has_dataset(which) ? H5Dopen2(reader.file_, which.c_str(), H5P_DEFAULT) : -1, H5Dclose),
         type(set >= 0 ? H5Dget_type(set) : -1, H5Tclose),
         space(set >= 0 ? H5Dget_space(set) : -1, H5Sclose) {
-    if (!reader.has_dataset(which)) reader.fail(which, "there is no such data set");
+    if (!reader.has_dataset(which)) reader.fail(which, "there is no such dataset");
     check(reader);
   }
   /// Opens a data set in a group that is open.
@@ -82,13 +82,13 @@ struct Hdf5Reader::Dataset {
             H5Dclose),
         type(set >= 0 ? H5Dget_type(set) : -1, H5Tclose),
         space(set >= 0 ? H5Dget_space(set) : -1, H5Sclose) {
-    if (H5Lexists(group, which.c_str(), H5P_DEFAULT) == 0) reader.fail(name, "there is no such data set");
+    if (H5Lexists(group, which.c_str(), H5P_DEFAULT) == 0) reader.fail(name, "there is no such dataset");
     check(reader);
   }
 
  private:
   void check(const Hdf5Reader& reader) const {
-    if (set < 0 || type < 0 || space < 0) reader.fail(name, "this data set cannot be opened: the file is damaged");
+    if (set < 0 || type < 0 || space < 0) reader.fail(name, "this dataset cannot be opened: the file is damaged");
   }
 };
 
@@ -108,7 +108,7 @@ Hdf5Reader::Hdf5Reader(std::string path) : path_(std::move(path)) {
   file_ = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file_ < 0) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("{}: cannot be opened as an HDF5 file: it is cut off or damaged", path_));
+                fmt::format("{}: cannot be opened as an HDF5 file: it is truncated or damaged", path_));
   }
 }
 
@@ -126,7 +126,7 @@ bool Hdf5Reader::has(const std::string& name, bool group) const {
     const std::string part = name.substr(0, end);
     const htri_t exists = H5Lexists(file_, part.c_str(), H5P_DEFAULT);
     if (exists == 0) return false;
-    if (exists < 0) fail(part, "cannot be looked for: the file is damaged");
+    if (exists < 0) fail(part, "cannot be looked up: the file is damaged");
     if (end == std::string::npos) break;
   }
   const Hdf5Handle object(H5Oopen(file_, name.c_str(), H5P_DEFAULT), H5Oclose);
@@ -146,7 +146,7 @@ std::int64_t Hdf5Reader::size(const std::string& name) const {
   const Dataset set(*this, name);
   const int rank = H5Sget_simple_extent_ndims(set.space);
   const hssize_t count = H5Sget_simple_extent_npoints(set.space);
-  if (rank < 0 || count < 0) fail(name, "the size of this data set cannot be read: the file is damaged");
+  if (rank < 0 || count < 0) fail(name, "the size of this dataset cannot be read: the file is damaged");
   // Vectors are also written as matrices of one column or one row.
   std::vector<hsize_t> extents(static_cast<std::size_t>(rank));
   H5Sget_simple_extent_dims(set.space, extents.data(), nullptr);
@@ -174,8 +174,8 @@ void Hdf5Reader::accept_fill_value(const Dataset& set, std::int64_t entries, std
   // Nothing in the file shows that it is really meant to be so large.
   if (static_cast<std::uint64_t>(entries) * bytes_per_entry > file_size())
     fail(set.name,
-         fmt::format("was never written, and its {} entries would take more room than the whole file", entries));
-  log::warning(fmt::format("{}: {}: was never written; what is read is its fill value", path_, set.name));
+         fmt::format("was never written, and its {} entries would need more space than the whole file", entries));
+  log::warning(fmt::format("{}: {}: was never written; its fill value is read instead", path_, set.name));
 }
 
 std::uint64_t Hdf5Reader::file_size() const {
@@ -191,7 +191,7 @@ void Hdf5Reader::check_stored(const Dataset& set, std::int64_t entries, std::siz
   const auto stored = static_cast<std::uint64_t>(H5Dget_storage_size(set.set));
   const auto needed = static_cast<std::uint64_t>(entries) * bytes_per_entry;
   if (entries > 0 && (stored == 0 || (!filtered && (stored < needed || needed > file_size()))))
-    fail(set.name, fmt::format("the file does not hold its {} entries: it is cut off or damaged", entries));
+    fail(set.name, fmt::format("the file does not hold its {} entries: it is truncated or damaged", entries));
 }
 
 void Hdf5Reader::check_numbers(const Dataset& set) const {
@@ -220,7 +220,7 @@ std::int64_t Hdf5Reader::attribute(const std::string& group, const std::string& 
   const Hdf5Handle space(found >= 0 ? H5Aget_space(found) : -1, H5Sclose);
   std::int64_t value = 0;
   if (space < 0 || H5Sget_simple_extent_npoints(space) != 1 || H5Aread(found, H5T_NATIVE_INT64, &value) < 0)
-    fail(group, fmt::format("there is no number \"{}\" among its attributes", name));
+    fail(group, fmt::format("has no numeric attribute \"{}\"", name));
   return value;
 }
 
@@ -312,7 +312,7 @@ std::vector<Hdf5Member> Hdf5Reader::members(const std::string& group) const {
     return 0;
   };
   if (object < 0 || H5Literate(object, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &found) < 0)
-    fail(group, "what it holds cannot be read: the file is damaged");
+    fail(group, "its members cannot be read: the file is damaged");
   return std::move(found.members);
 }
 
@@ -329,7 +329,7 @@ Matrix Hdf5Reader::real_table(const std::string& name, Index rows, Index columns
 std::vector<std::int64_t> Hdf5Reader::whole_table(const std::string& name, Index rows, Index columns) const {
   const Dataset set(*this, name);
   check_table(set, rows, columns);
-  if (H5Tget_class(set.type) != H5T_INTEGER) fail(name, "holds no whole numbers");
+  if (H5Tget_class(set.type) != H5T_INTEGER) fail(name, "does not hold whole numbers");
   std::vector<std::int64_t> values(static_cast<std::size_t>(rows * std::max<Index>(columns, 1)));
   if (!values.empty() && H5Dread(set.set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     fail(name, "cannot be read: the file is damaged");
@@ -341,7 +341,7 @@ std::string Hdf5Reader::text(const std::string& name) const {
   const H5T_class_t kind = H5Tget_class(set.type);
   if (kind != H5T_STRING) fail(name, fmt::format("holds {} where text is expected", kind_name(kind)));
   const hssize_t count = H5Sget_simple_extent_npoints(set.space);
-  if (count < 0) fail(name, "the size of this data set cannot be read: the file is damaged");
+  if (count < 0) fail(name, "the size of this dataset cannot be read: the file is damaged");
   std::string result;
   for (const std::string& entry : texts(set, static_cast<std::size_t>(count)))
     result += result.empty() || entry.empty() ? entry : "\n" + entry;

@@ -14,14 +14,14 @@ Hdf5Rows::Hdf5Rows(const Hdf5Reader& file, const std::string& name)
       set_(H5Dopen2(file.file_, name.c_str(), H5P_DEFAULT), H5Dclose) {
   const Hdf5Handle type(set_ >= 0 ? H5Dget_type(set_) : -1, H5Tclose);
   const Hdf5Handle properties(set_ >= 0 ? H5Dget_create_plist(set_) : -1, H5Pclose);
-  if (type < 0 || properties < 0) file_.fail(name_, "this data set cannot be opened: the file is damaged");
+  if (type < 0 || properties < 0) file_.fail(name_, "this dataset cannot be opened: the file is damaged");
   const H5T_class_t kind = H5Tget_class(type);
-  if (kind != H5T_INTEGER && kind != H5T_FLOAT) file_.fail(name_, "holds no numbers");
+  if (kind != H5T_INTEGER && kind != H5T_FLOAT) file_.fail(name_, "does not hold numbers");
   // Counting the chunks loads their whole index into memory.
   const Hdf5Handle space(H5Dget_space(set_), H5Sclose);
   hsize_t chunks = 0;
   if (H5Pget_layout(properties) == H5D_CHUNKED && H5Dget_num_chunks(set_, space, &chunks) < 0)
-    file_.fail(name_, "the index of this data set cannot be read: the file is damaged");
+    file_.fail(name_, "the index of this dataset cannot be read: the file is damaged");
 }
 
 std::size_t Hdf5Rows::entries(Index first, Index count) const {

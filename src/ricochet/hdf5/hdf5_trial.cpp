@@ -116,7 +116,7 @@ void try_hdf5_file(const std::string& path) {
   const TrialResult outcome = try_in_child([&path] { return open_all(path); }, least_seconds + seconds_per_byte * size);
   if (!outcome.succeeded) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("{}: cannot be read as an HDF5 file: reading it {}: it is cut off or damaged", path,
+                fmt::format("{}: cannot be read as an HDF5 file: reading it {}: it is truncated or damaged", path,
                             outcome.description()));
   }
   if (stamp && stamp->is_settled()) tried[path] = *stamp;

@@ -99,7 +99,7 @@ Snapshot::Value read_value(Cursor& cursor) {
       return values;
     }
     default:
-      throw Error(ErrorKind::invalid_input, "a value is of an unknown kind");
+      throw Error(ErrorKind::invalid_input, "a value has an unknown type");
   }
 }
 
@@ -133,16 +133,16 @@ std::string encode_snapshot(const Snapshot& snapshot) {
 }
 
 Snapshot decode_snapshot(const std::string& text) {
-  if (!text.starts_with(magic)) throw Error(ErrorKind::invalid_input, "it is no checkpoint");
-  if (text.size() < head_size + sizeof(std::uint32_t)) throw Error(ErrorKind::invalid_input, "it is cut off");
+  if (!text.starts_with(magic)) throw Error(ErrorKind::invalid_input, "it is not a checkpoint");
+  if (text.size() < head_size + sizeof(std::uint32_t)) throw Error(ErrorKind::invalid_input, "it is truncated");
   Cursor head(std::string_view(text).substr(magic.size()));
   if (const auto found = head.number<std::uint32_t>(); found != format) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("another version of the program wrote it (format {}, and this one reads format {})", found,
+                fmt::format("another version of the program wrote it (format {}; this version reads format {})", found,
                             format));
   }
   if (head.number<std::uint64_t>() != text.size() - head_size - sizeof(std::uint32_t))
-    throw Error(ErrorKind::invalid_input, "it has not the length it should have: it is cut off");
+    throw Error(ErrorKind::invalid_input, "its length is wrong: it is truncated");
   const std::string_view content = std::string_view(text).substr(0, text.size() - sizeof(std::uint32_t));
   if (Cursor(std::string_view(text).substr(content.size())).number<std::uint32_t>() != checksum(content))
     throw Error(ErrorKind::invalid_input, "its checksum is wrong");
@@ -183,13 +183,13 @@ Snapshot read_checkpoint(const std::string& path) {
     std::error_code problem;
     const fs::file_status status = fs::status(path, problem);
     if (fs::exists(status) && !fs::is_regular_file(status))
-      throw Error(ErrorKind::invalid_input, fmt::format("{}: it is no regular file", path));
+      throw Error(ErrorKind::invalid_input, fmt::format("{}: it is not a regular file", path));
     char head[magic.size()] = {};
     std::ifstream file(path, std::ios::binary);
     // Files that are not checkpoints are not read completely.
     if (unreadable_reason(path).empty() && file.read(head, sizeof(head)) &&
         std::string_view(head, sizeof(head)) != magic)
-      throw Error(ErrorKind::invalid_input, fmt::format("{}: it is no checkpoint", path));
+      throw Error(ErrorKind::invalid_input, fmt::format("{}: it is not a checkpoint", path));
   }
   const std::string text = read_file(path);
   try {
@@ -207,7 +207,7 @@ std::optional<Snapshot> newest_checkpoint(const std::string& directory) {
       return read_checkpoint(file.path);
     } catch (const Error& problem) {
       log::warning(fmt::format("this checkpoint cannot be used{}: {}",
-                               &file != &files.back() ? ", the one before is taken" : "", problem.what()));
+                               &file != &files.back() ? ", the previous one is used" : "", problem.what()));
     }
   }
   return std::nullopt;

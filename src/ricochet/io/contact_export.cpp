@@ -20,14 +20,14 @@ namespace fs = std::filesystem;
 [[noreturn]] void refuse(const std::string& text, const std::string& part, const std::string& why) {
   throw Error(
       ErrorKind::usage,
-      fmt::format("--export-contact {}: \"{}\" {}; steps are given like 10,20,50:60, from 1 on", text, part, why));
+      fmt::format("--export-contact {}: \"{}\" {}; write steps as in 10,20,50:60, counted from 1", text, part, why));
 }
 
 long parse_step(const std::string& text, const std::string& part, const std::string& number) {
   long value = 0;
   if (part.empty()) refuse(text, part, "is empty");
   const auto [end, problem] = std::from_chars(number.data(), number.data() + number.size(), value);
-  if (problem == std::errc::result_out_of_range) refuse(text, part, "is beyond all steps");
+  if (problem == std::errc::result_out_of_range) refuse(text, part, "is too large for a step number");
   if (problem != std::errc() || end != number.data() + number.size())
     refuse(text, part, "is neither a step nor a range of steps");
   if (value == 0) refuse(text, part, "names step 0, the initial state, which has no contact problem");
@@ -47,12 +47,11 @@ std::string describe_problem(const ContactProblem& problem, const ContactProvena
   Index eligible = 0;
   for (Index i = 0; i < problem.points(); ++i) eligible += problem.is_eligible(i) ? 1 : 0;
   return fmt::format(
-      "Contact problem of step {} (t = {:.9g}).\n{}\n"
-      "u: gap and slip as lengths, (y/s, w/sigma) with y = q + s G delta and w = p + sigma B_T delta of the scheme's "
-      "stage, delta the displacement increment. r = (r_N, -r_T): contact forces on the body, r_N >= 0 pressing, r_T "
-      "opposed to the slip. W = H A^-1 H^T with H = [G; B_T], A the scheme's operator. Units are those of the case.\n"
-      "Points: the {} contact points that may touch in this step; /fclib_local/info/points has their numbers among "
-      "all, counted from 0. The others stay open.",
+      "Contact problem of step {} (t = {:.9g}).\n{}\nu: gap and slip as lengths, (y/s, w/sigma) with y = q + s G delta "
+      "and w = p + sigma B_T delta of the scheme's stage, delta the displacement increment. r = (r_N, -r_T): contact "
+      "forces on the body, r_N >= 0 in compression, r_T opposed to the slip. W = H A^-1 H^T with H = [G; B_T], A the "
+      "scheme's operator. Units are those of the case.\nPoints: the {} contact points that may touch in this step; "
+      "/fclib_local/info/points has their indices among all contact points, counted from 0. The others stay open.",
       step, time, provenance.origin, eligible);
 }
 
@@ -112,8 +111,8 @@ ContactExport::ContactExport(std::vector<StepRange> steps, std::string directory
   std::error_code problem;
   fs::create_directories(directory_, problem);
   if (problem || !fs::is_directory(directory_)) {
-    throw Error(ErrorKind::file_access, fmt::format("{}: cannot make this directory: {}", directory_,
-                                                    problem ? problem.message() : "a file of that name is there"));
+    throw Error(ErrorKind::file_access, fmt::format("{}: cannot create this directory: {}", directory_,
+                                                    problem ? problem.message() : "a file of that name exists"));
   }
 }
 

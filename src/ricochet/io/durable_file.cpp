@@ -63,9 +63,10 @@ void require_parent_directory(const std::string& path) {
   using Type = std::filesystem::file_type;
   const Type type = std::filesystem::status(parent, ignored).type();
   if (type == Type::directory || type == Type::none || type == Type::unknown) return;
-  throw Error(ErrorKind::file_access,
-              fmt::format("{}: cannot write: {} {}", path, parent,
-                          type == Type::not_found ? "does not exist; make this directory first" : "is no directory"));
+  throw Error(
+      ErrorKind::file_access,
+      fmt::format("{}: cannot write: {} {}", path, parent,
+                  type == Type::not_found ? "does not exist; create this directory first" : "is not a directory"));
 }
 
 void write_all(const std::string& path, int descriptor, const std::string& content) {
@@ -114,16 +115,14 @@ std::string read_file(const std::string& path) {
 
 void require_length(const std::string& path, std::int64_t length) {
   const auto refuse = [&](const std::string& state) {
-    throw Error(
-        ErrorKind::file_access,
-        fmt::format("{}: {}, but had {} bytes when the checkpoint was written: it has been changed since; put it "
-                    "back, or start anew with --force",
-                    path, state, length));
+    throw Error(ErrorKind::file_access, fmt::format("{}: {}, but had {} bytes when the checkpoint was written: it has "
+                                                    "changed since; restore it, or start anew with --force",
+                                                    path, state, length));
   };
   struct stat about {};
   if (stat(path.c_str(), &about) != 0) {
     if (errno == ENOENT) refuse("is missing");
-    throw_file_error(path, "look at", errno);
+    throw_file_error(path, "access", errno);
   }
   if (about.st_size < length) refuse(fmt::format("has {} bytes", about.st_size));
 }
@@ -131,13 +130,13 @@ void require_length(const std::string& path, std::int64_t length) {
 void truncate_file(const std::string& path, std::int64_t length) {
   require_length(path, length);
   const OpenFile file(path, O_WRONLY);
-  if (ftruncate(file.descriptor(), length) != 0) throw_file_error(path, "cut back", errno);
+  if (ftruncate(file.descriptor(), length) != 0) throw_file_error(path, "truncate", errno);
 }
 
 void reserve_space(const std::string& path, std::int64_t bytes) {
   const OpenFile file(path, O_WRONLY);
   struct stat about {};
-  if (fstat(file.descriptor(), &about) != 0) throw_file_error(path, "look at", errno);
+  if (fstat(file.descriptor(), &about) != 0) throw_file_error(path, "access", errno);
   // Reservation ignores the process limit (ulimit -f), so it is checked here.
   struct rlimit limit {};
   if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&

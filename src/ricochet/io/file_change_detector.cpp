@@ -16,7 +16,7 @@ namespace ricochet {
 
 FileChangeDetector::FileChangeDetector(std::string path) : path_(std::move(path)) {
   struct stat file {};
-  if (stat(path_.c_str(), &file) != 0) throw_file_error(path_, "look at", errno);
+  if (stat(path_.c_str(), &file) != 0) throw_file_error(path_, "access", errno);
   device_ = file.st_dev;
   number_ = file.st_ino;
   size_ = file.st_size;
@@ -24,10 +24,10 @@ FileChangeDetector::FileChangeDetector(std::string path) : path_(std::move(path)
 
 void FileChangeDetector::expect_present_size() {
   struct stat file {};
-  if (stat(path_.c_str(), &file) != 0) throw_file_error(path_, "look at", errno);
+  if (stat(path_.c_str(), &file) != 0) throw_file_error(path_, "access", errno);
   if (file.st_size < size_)
-    refuse(fmt::format("has {} bytes where this run has written {}", static_cast<std::int64_t>(file.st_size), size_));
-  if (knows_end_ && ends_with_zeros()) refuse("has zeros where this run has written something else");
+    refuse(fmt::format("has {} bytes, but this run has written {}", static_cast<std::int64_t>(file.st_size), size_));
+  if (knows_end_ && ends_with_zeros()) refuse("has zeros in place of data that this run has written");
   size_ = file.st_size;
   knows_end_ = !ends_with_zeros();
 }
@@ -44,19 +44,18 @@ bool FileChangeDetector::ends_with_zeros() const {
 void FileChangeDetector::require_unchanged() const {
   struct stat file {};
   if (stat(path_.c_str(), &file) != 0) {
-    if (errno == ENOENT) refuse("is not there any more");
-    throw_file_error(path_, "look at", errno);
+    if (errno == ENOENT) refuse("no longer exists");
+    throw_file_error(path_, "access", errno);
   }
-  if (file.st_dev != device_ || file.st_ino != number_) refuse("is another file than this run has been writing");
+  if (file.st_dev != device_ || file.st_ino != number_) refuse("is not the file that this run has been writing");
   if (file.st_size != size_)
-    refuse(fmt::format("has {} bytes where this run has written {}", static_cast<std::int64_t>(file.st_size), size_));
+    refuse(fmt::format("has {} bytes, but this run has written {}", static_cast<std::int64_t>(file.st_size), size_));
 }
 
 void FileChangeDetector::refuse(const std::string& state) const {
-  throw Error(ErrorKind::file_access,
-              fmt::format("{}: {}: another program has changed it while the run went on; put the file back and go on "
-                          "with --resume, or start anew with --force",
-                          path_, state));
+  throw Error(ErrorKind::file_access, fmt::format("{}: {}: another program has changed it during the run; restore the "
+                                                  "file and continue with --resume, or start anew with --force",
+                                                  path_, state));
 }
 
 }  // namespace ricochet

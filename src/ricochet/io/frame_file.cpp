@@ -123,12 +123,12 @@ void FrameFile::load(const Snapshot& snapshot, const std::string& name) {
   const std::size_t expected = options_.compression > 0 ? static_cast<std::size_t>(frames_) * layout_.size() : 0;
   if (stored_sizes_.size() != expected) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("the saved state does not fit: {} frames of {} data sets with {} sizes", frames_,
+                fmt::format("the saved state does not fit: it has {} frames of {} datasets with {} sizes", frames_,
                             layout_.size(), stored_sizes_.size()));
   }
   checksums_ = snapshot.integers(name + ".checksums", 0, 0xffffffff);
   if (static_cast<long>(checksums_.size()) != frames_)
-    throw Error(ErrorKind::invalid_input, "the saved state does not fit: a checksum per frame");
+    throw Error(ErrorKind::invalid_input, "the saved state does not fit: it does not have one checksum per frame");
   if (!arrangement_->keeps_times()) return;
   const Vector& times = snapshot.reals(name + ".times", frames_);
   times_.assign(times.begin(), times.end());
@@ -216,9 +216,9 @@ void FrameFile::require_same(const std::vector<FrameExtent>& extents) const {
       continue;
     throw Error(
         ErrorKind::file_access,
-        fmt::format("{}: {} is not what the run wrote before its checkpoint; put the file back as it was, or start "
-                    "anew with --force",
-                    path_, arrangement_->name(frame)));
+        fmt::format(
+            "{}: {} differs from the data written before the checkpoint; restore the file, or start anew with --force",
+            path_, arrangement_->name(frame)));
   }
 }
 

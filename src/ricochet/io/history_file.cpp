@@ -118,10 +118,11 @@ HistoryTable read_history(const std::string& path, bool may_grow) {
   }
   // The row of names may be missing: a row of numbers is not accepted as one.
   if (std::any_of(table.names.begin(), table.names.end(), [](const auto& name) { return number_in(name); }))
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("{}:1: the first row has the names of the columns, and begins with \"{}\": the file is "
-                            "damaged",
-                            path, table.names.front()));
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format(
+            "{}:1: the first row must hold the names of the columns, but begins with \"{}\": the file is damaged", path,
+            table.names.front()));
   std::vector<std::vector<double>*> columns;
   for (const std::string& name : table.names) columns.push_back(&table.columns[name]);
   for (long number = 2; std::getline(file, line); ++number) {

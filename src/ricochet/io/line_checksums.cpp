@@ -21,8 +21,7 @@ constexpr const char* file_suffix = ".lines.file";
 [[noreturn]] void refuse(const std::string& path, const std::string& lines, bool windows) {
   throw Error(
       ErrorKind::file_access,
-      fmt::format("{}: {} not what the run wrote before its checkpoint{}; put the file back as it was, or start "
-                  "anew with --force",
+      fmt::format("{}: {} from the data written before the checkpoint{}; restore the file, or start anew with --force",
                   path, lines, windows ? " (lines end in CR LF)" : ""));
 }
 
@@ -97,7 +96,8 @@ void LineChecksums::require_same(const std::string& path) const {
     const std::int64_t last = std::max(line, line + std::count(block.begin(), block.end(), '\n') - 1);
     if (Checksum().add(block.data(), block.size()).value() != expected.sum) {
       refuse(path,
-             line == last ? fmt::format("line {} is", line) : fmt::format("something in lines {} to {} is", line, last),
+             line == last ? fmt::format("line {} differs", line)
+                          : fmt::format("something in lines {} to {} differs", line, last),
              block.find('\r') != std::string::npos);
     }
     line = last + 1;

@@ -65,7 +65,7 @@ void Progress::draw(long step, double time) {
   const double elapsed = timer_.seconds();
   const double left = part > first_done_ ? elapsed / (part - first_done_) * (1.0 - part) : 0.0;
   const std::string of_all = steps_ > 0 ? fmt::format("/{}", steps_) : "";
-  const std::string numbers = fmt::format("step {}{}  t = {:.6g}  {} gone, {} left", step, of_all, time,
+  const std::string numbers = fmt::format("step {}{}  t = {:.6g}  {} elapsed, {} left", step, of_all, time,
                                           duration_text(elapsed), duration_text(left));
   if (!terminal_) {
     show(fmt::format("{:3.0f} %  {}\n", 100.0 * part, numbers));

@@ -99,7 +99,7 @@ void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, lon
     const std::string own = folder_of_rank(directory, ranks.rank());
     fs::create_directories(own, problem);
     if (problem)
-      throw Error(ErrorKind::file_access, fmt::format("{}: cannot make this directory: {}", own, problem.message()));
+      throw Error(ErrorKind::file_access, fmt::format("{}: cannot create this directory: {}", own, problem.message()));
     write_checkpoint(own, step, snapshot);
     const std::string path = checkpoint_path(directory, ranks.rank(), step);
     checksum = checksum_of(path);
@@ -128,14 +128,15 @@ std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::st
   for (const std::int64_t step : told.front()) {
     const Manifest manifest = read_manifest(manifest_path(directory, step), step);
     std::optional<Snapshot> snapshot;
-    std::string why = "the manifest is damaged, or of another run";
+    std::string why = "the manifest is damaged, or belongs to another run";
     if (manifest.checksums.size() == static_cast<std::size_t>(ranks.size())) {
       const std::string path = checkpoint_path(directory, ranks.rank(), manifest.step);
       try {
         const std::string checksum = checksum_of(path);
         if (checksum.empty()) throw Error(ErrorKind::file_access, fmt::format("{}: it cannot be read", path));
         if (checksum != manifest.checksums[static_cast<std::size_t>(ranks.rank())])
-          throw Error(ErrorKind::invalid_input, fmt::format("{}: it is not the file of the manifest", path));
+          throw Error(ErrorKind::invalid_input,
+                      fmt::format("{}: its checksum differs from that in the manifest", path));
         snapshot = read_checkpoint(path);
       } catch (const Error& problem) {
         why = problem.what();
@@ -181,12 +182,12 @@ void require_ranks_of_checkpoints(const std::string& directory, int ranks) {
   const int own = ranks_of_checkpoints(directory);
   if (own == 0 && ranks > 1 && !checkpoint_files(directory).empty())
     throw Error(ErrorKind::invalid_input,
-                fmt::format("{0}: this run is one of one process, and goes on as one: {1} --resume {0}", directory,
+                fmt::format("{0}: this is a run of one process; continue it with one: {1} --resume {0}", directory,
                             run_command(1)));
   if (own == 0 || own == ranks) return;
   throw Error(ErrorKind::invalid_input,
-              fmt::format("{0}: this run is one of {1} processes, and goes on with as many: {2} --resume {0}",
-                          directory, own, run_command(own)));
+              fmt::format("{0}: this is a run of {1} processes; continue it with as many: {2} --resume {0}", directory,
+                          own, run_command(own)));
 }
 
 std::vector<std::string> rank_checkpoint_files(const std::string& directory, long after_step) {

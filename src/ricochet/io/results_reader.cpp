@@ -44,9 +44,9 @@ class Connectivity {
         const std::int64_t number = list[at++];
         const CellShape shape =
             shape_of([this, number](CellShape s) { return vtk_cell(s, degree_).xdmf_number == number; },
-                     fmt::format("cells of XDMF's kind {}", number));
+                     fmt::format("cells of XDMF type {}", number));
         const auto size = static_cast<std::size_t>(node_count(shape, degree_));
-        if (at + size > list.size()) file_.fail(name_, "the last cell is not complete");
+        if (at + size > list.size()) file_.fail(name_, "the last cell is incomplete");
         append(shape, list.data() + at);
         at += size;
       }
@@ -73,7 +73,7 @@ class Connectivity {
     block.nodes.resize(begin + order_.size());
     for (std::size_t k = 0; k < order_.size(); ++k) {
       if (in_file[k] < 0 || in_file[k] >= nodes_)
-        file_.fail(name_, fmt::format("node {} does not exist: there are {}", in_file[k], nodes_));
+        file_.fail(name_, fmt::format("node {} does not exist: the number of nodes is {}", in_file[k], nodes_));
       block.nodes[begin + static_cast<std::size_t>(order_[k])] = static_cast<Index>(in_file[k]);
     }
     block.tags.push_back(static_cast<std::int64_t>(block.tags.size()) + 1);

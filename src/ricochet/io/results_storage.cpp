@@ -35,7 +35,7 @@ const Hdf5Reader& ResultsStorage::file() {
   reader_.emplace(path_);
   try {
     if (identify(path_) != identity_)
-      reader_->fail("/", "another run has been written since this one was read: read it again");
+      reader_->fail("/", "another run has replaced these results since they were read: read them again");
     look_up(*reader_);
   } catch (...) {
     close();
@@ -59,7 +59,7 @@ class GroupsStorage : public ResultsStorage {
     groups_ = file().members("/frames");
     if (groups_.size() < frames_.times.size()) {
       file().fail("/frames",
-                  fmt::format("has {} frames where results.xdmf has {}", groups_.size(), frames_.times.size()));
+                  fmt::format("has {} frames, but results.xdmf has {}", groups_.size(), frames_.times.size()));
     }
   }
 

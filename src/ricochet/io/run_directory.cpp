@@ -47,8 +47,8 @@ void RunDirectory::reserve() {
                              if (is_new_) rmdir(path_.c_str());  // fails unless it is empty
                            });
   if (problem || !fs::is_directory(path_, problem)) {
-    throw Error(ErrorKind::file_access, fmt::format("{}: cannot make this directory: {}", path_,
-                                                    problem ? problem.message() : "a file of that name is there"));
+    throw Error(ErrorKind::file_access, fmt::format("{}: cannot create this directory: {}", path_,
+                                                    problem ? problem.message() : "a file of that name exists"));
   }
   if (access(path_.c_str(), W_OK | X_OK) != 0) throw_file_error(path_, "write into this directory", errno);
   lock_ = open_directory(path_);
@@ -57,8 +57,8 @@ void RunDirectory::reserve() {
   for (int attempt = 0; attempt < 20; ++attempt) {
     if (flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
     if (errno != EWOULDBLOCK) {
-      log::info(
-          fmt::format("{}: cannot be locked ({}): see that no other run writes into it", path_, std::strerror(errno)));
+      log::info(fmt::format("{}: cannot be locked ({}): make sure that no other run writes into it", path_,
+                            std::strerror(errno)));
       return;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -66,7 +66,7 @@ void RunDirectory::reserve() {
   close(lock_);
   throw Error(
       ErrorKind::file_access,
-      fmt::format("{}: another run is writing into this directory; choose another one with -o, or stop that run",
+      fmt::format("{}: another run is writing into this directory; choose another directory with -o, or stop that run",
                   path_));
 }
 

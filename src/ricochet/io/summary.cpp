@@ -125,7 +125,7 @@ double largest_size(const RunSummary& summary, const Columns& columns) {
 double instant_from(const std::string& text, const std::string& path) {
   double steps = 0.0;
   if (std::sscanf(text.c_str(), "t %lf time_step", &steps) != 1)
-    throw Error(ErrorKind::invalid_input, fmt::format("{}: instants: \"{}\" is none", path, text));
+    throw Error(ErrorKind::invalid_input, fmt::format("{}: instants: \"{}\" is not an instant", path, text));
   return steps;
 }
 
@@ -250,13 +250,13 @@ RunSummary read_summary_of_run(const std::string& directory) {
   if (!holds_run(directory)) {
     throw Error(
         ErrorKind::file_access,
-        fmt::format("{}: no run is in this directory: it holds neither summary.json nor a checkpoint", directory));
+        fmt::format("{}: this directory holds no run: it has neither summary.json nor a checkpoint", directory));
   }
   const std::string path = (std::filesystem::path(directory) / "summary.json").string();
   if (std::error_code ignored; !std::filesystem::exists(path, ignored)) {
     throw Error(ErrorKind::file_access,
-                fmt::format("{0}: summary.json is missing, though the run in it has left a checkpoint: `ricochet run` "
-                            "with --resume goes on with it and writes a summary",
+                fmt::format("{0}: summary.json is missing, but the run in this directory has left a checkpoint: "
+                            "`ricochet run` with --resume continues the run and writes a summary",
                             directory));
   }
   return read_summary(path);
@@ -366,7 +366,7 @@ double summary_value(const std::string& json_text, const std::string& path) {
       const std::size_t dot = key.rfind('.');
       if (dot == std::string::npos) {
         throw Error(ErrorKind::invalid_input,
-                    fmt::format("summary.{}: there is nothing called \"{}\" in summary.json", path, rest));
+                    fmt::format("summary.{}: there is no entry \"{}\" in summary.json", path, rest));
       }
       key.resize(dot);
     }

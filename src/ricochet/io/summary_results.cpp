@@ -225,8 +225,9 @@ RigidMotionState motion_from(const Json& impact, const std::string& when) {
 
 const RigidBody& rigid_body(int body, const std::vector<BodyDescription>& bodies, const std::string& path) {
   if (body < 0 || body >= static_cast<int>(bodies.size()))
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("{}: not a summary of a run: an impact is of body {}, which it does not list", path, body));
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("{}: not a summary of a run: an impact refers to body {}, which is not listed", path, body));
   return bodies[static_cast<std::size_t>(body)].rigid;
 }
 

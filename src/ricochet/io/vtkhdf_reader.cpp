@@ -44,7 +44,7 @@ std::vector<ObstacleFrame> read_vtkhdf_obstacles(const std::string& path) {
   const auto whole_numbers = [&file](const std::string& name, double limit) {
     std::vector<int> result;
     for (const std::int64_t value : file.integers(name, file.size(name))) {
-      if (value < 0 || static_cast<double>(value) >= limit) file.fail(name, "holds a number that is no index");
+      if (value < 0 || static_cast<double>(value) >= limit) file.fail(name, "holds a number that is not a valid index");
       result.push_back(static_cast<int>(value));
     }
     return result;
@@ -56,7 +56,7 @@ std::vector<ObstacleFrame> read_vtkhdf_obstacles(const std::string& path) {
   const std::size_t cells = std::max<std::size_t>(frame.obstacle.size(), 1);
   frame.corners = static_cast<int>(frame.cells.size() / cells);
   if (frame.corners < 2 || frame.corners > 4 || frame.cells.size() % cells != 0)
-    file.fail("/VTKHDF", "points, cells and obstacles do not go together: the file is damaged");
+    file.fail("/VTKHDF", "points, cells and obstacles are inconsistent: the file is damaged");
   const Hdf5Rows positions(file, "/VTKHDF/Points");
   std::vector<ObstacleFrame> result;
   for (const double time : times_of(file)) {

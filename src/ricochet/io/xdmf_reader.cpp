@@ -58,7 +58,8 @@ class Scanner {
   [[nodiscard]] std::vector<int> whole_numbers(std::string_view text, double limit) const {
     std::vector<int> result;
     for (const double value : numbers(text)) {
-      if (!(value >= 0.0 && value < limit) || value != std::trunc(value)) fail(fmt::format("{} is no index", value));
+      if (!(value >= 0.0 && value < limit) || value != std::trunc(value))
+        fail(fmt::format("{} is not a valid index", value));
       result.push_back(static_cast<int>(value));
     }
     return result;
@@ -122,7 +123,7 @@ std::vector<ObstacleFrame> read_xdmf_obstacles(const std::string& path) {
     frame.obstacle = file.whole_numbers(item(), 1e6);
     if (frame.corners < 2 || frame.corners > 4 || frame.positions.size() % 3 != 0 ||
         frame.cells.size() != frame.obstacle.size() * static_cast<std::size_t>(frame.corners)) {
-      file.fail("points, cells and obstacles do not go together");
+      file.fail("points, cells and obstacles are inconsistent");
     }
     result.push_back(std::move(frame));
   }

@@ -72,7 +72,7 @@ EigenvalueBounds bound_largest_eigenvalue(Index size, const std::function<void(c
                                                                Eigen::Map<const Vector>(beside.data(), count - 1));
   if (!values) {
     throw Error(ErrorKind::not_converged,
-                "the largest eigenvalue of the stiffness was not found: it may not be finite");
+                "the largest eigenvalue of the stiffness was not found: it is possibly not finite");
   }
   bounds.lower = std::ldexp((*values)[count - 1], exponent);
   bounds.upper = bounds.lower / (1.0 - spread);

@@ -102,7 +102,7 @@ void PanelFactorization::assemble(const LowerColumns& matrix, double scale, cons
       const int row = local_[matrix.rows[k]];
       // Rows that are not in this panel still have indices of an earlier one.
       if (row >= rows_ || factor_.row(node_, panel_.begin + row) != matrix.rows[k])
-        throw std::logic_error("a matrix is factorized again, and has an entry where the first one had none");
+        throw std::logic_error("a matrix that is factorized again has an entry where the first one had none");
       if (row >= begin && row < end) column[row] = scale * matrix.values[k];
     }
   }

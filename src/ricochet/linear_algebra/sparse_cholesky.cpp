@@ -173,7 +173,7 @@ void SparseCholesky::Implementation::analyse() {
 }
 
 void SparseCholesky::Implementation::require_possible() const {
-  if (ordered.begin.empty()) throw std::logic_error("a matrix is to be analysed before it is factorized");
+  if (ordered.begin.empty()) throw std::logic_error("a matrix must be analysed before it is factorized");
   if (prediction.possible) return;
   throw Error(ErrorKind::invalid_input, fmt::format("the Cholesky factor of the operator would have {:.2g} entries, "
                                                     "more than CHOLMOD can count: set solver.method = \"iterative\"",

@@ -354,15 +354,15 @@ void CellwiseBuilder::refuse(const ContactCell& giver) {
   const int* const nodes = rings_.nodes(giver.cell);
   const Index node =
       *std::find_if(nodes, nodes + rings_.node_count(giver.cell), [this](Index n) { return is_contact(n); });
-  throw Error(ErrorKind::invalid_input,
-              fmt::format("mass type \"equivalent-cellwise\": the inertia of the contact node at {} cannot be moved to "
-                          "other cells: its body has {}, and no cell among the nearest {} with {} of them that are not "
-                          "all {}; refine the mesh there or set mesh.degree = 2, name only facets that may touch in "
-                          "the contact group, or "
-                          "use mass type \"equivalent-nodewise\", which needs no whole cell (\"consistent\" and "
-                          "\"lumped\", with scheme \"contact-stabilized\" or \"newmark\", need none of this)",
-                          text_of_point(*input_.nodes, node), describe_free_nodes(*input_.nodes, body, free),
-                          CellRings::many_cells, d_ + 1, d_ == 3 ? "in one plane" : "on one line"));
+  throw Error(
+      ErrorKind::invalid_input,
+      fmt::format("mass type \"equivalent-cellwise\": the inertia of the contact node at {} cannot be moved to other "
+                  "cells: its body has {}, and none of the nearest {} cells has {} of them that are not all {}; refine "
+                  "the mesh there or set mesh.degree = 2, name only facets that may touch in the contact group, or use "
+                  "mass type \"equivalent-nodewise\", which needs no whole cell (\"consistent\" and \"lumped\", with "
+                  "scheme \"contact-stabilized\" or \"newmark\", have no such requirement)",
+                  text_of_point(*input_.nodes, node), describe_free_nodes(*input_.nodes, body, free),
+                  CellRings::many_cells, d_ + 1, d_ == 3 ? "in one plane" : "on one line"));
 }
 
 class CellwiseEquivalentMass final : public MassConstruction {

@@ -225,11 +225,10 @@ void Builder::refuse(const std::vector<Index>& nodes, const std::vector<Index>& 
   throw Error(
       ErrorKind::invalid_input,
       fmt::format(
-          "mass type \"equivalent-compact\": the inertia of the contact node at {} cannot be moved to other "
-          "nodes: its body has {}; refine the mesh there or set mesh.degree = 2, so that at least {} nodes "
-          "that are not all {} "
+          "mass type \"equivalent-compact\": the inertia of the contact node at {} cannot be moved to other nodes: its "
+          "body has {}; refine the mesh there or set mesh.degree = 2, so that at least {} nodes that are not all {} "
           "are off the contact boundary, or name only facets that may touch in the contact group (mass types "
-          "\"consistent\" and \"lumped\", with scheme \"contact-stabilized\" or \"newmark\", need none of this)",
+          "\"consistent\" and \"lumped\", with scheme \"contact-stabilized\" or \"newmark\", have no such requirement)",
           text_of_point(*input_.nodes, node), describe_free_nodes(*input_.nodes, body, free_nodes_of(body)),
           input_.nodes->rows() + 1, input_.nodes->rows() == 3 ? "in one plane" : "on one line"));
 }

@@ -20,7 +20,7 @@ class EquivalentMass final : public MassConstruction {
 
   [[nodiscard]] std::optional<MassChoice> choose(const MassInput& input) const override {
     if (input.nodes->rows() == 2) return MassChoice{nodewise, {}, {}};
-    if (input.cells == nullptr) return MassChoice{nodewise, "the masses of single cells are not known", {}};
+    if (input.cells == nullptr) return MassChoice{nodewise, "the mass matrices of single cells are not available", {}};
     MassInput inertia = input;
     inertia.consistent = &input.inertia_matrix();
     inertia.inertia = nullptr;
@@ -28,15 +28,15 @@ class EquivalentMass final : public MassConstruction {
     const std::optional<SparseMatrix> by_cells = built(cellwise, inertia);
     const double top = by_cells ? top_eigenvalue(*by_cells, inertia.consistent->diagonal()) : 0.0;
     if (by_cells && top <= (is_large ? most_of_large : most_of_small))
-      return MassChoice{cellwise, "its factor is that of the consistent mass", by_cells};
+      return MassChoice{cellwise, "its factor has the size of that of the consistent mass", by_cells};
     const std::string reason =
-        by_cells ? fmt::format("on so coarse a body cells would heap up {:.3g} times the inertia that was there", top)
-                 : "cells with enough free nodes to take the inertia of others are rare or missing";
+        by_cells ? fmt::format("on such a coarse body cells would accumulate {:.3g} times their original inertia", top)
+                 : "cells with enough free nodes to receive the inertia of others are rare or missing";
     // If no free cell is near, `compact` searches far away for each cell, and the factor of `nodewise` is small.
     const char* const name = is_large && by_cells ? compact : nodewise;
     if (std::optional<SparseMatrix> mass = built(name, inertia)) return MassChoice{name, reason, std::move(mass)};
     if (!by_cells) return MassChoice{name, reason, {}};  // building it throws an error with the reason
-    return MassChoice{cellwise, fmt::format("{}, but \"{}\" refuses it", reason, name), by_cells};
+    return MassChoice{cellwise, fmt::format("{}, but \"{}\" cannot be built", reason, name), by_cells};
   }
 
   [[nodiscard]] SparseMatrix build(const MassInput& input) const override {

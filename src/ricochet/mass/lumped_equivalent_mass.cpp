@@ -215,12 +215,11 @@ class LumpedEquivalentMass final : public MassConstruction {
   }
 
   static void warn(const MassInput& input, const MassBody& body, double lacking) {
-    log::warning(fmt::format(
-        "mass type \"equivalent-lumped\" keeps the mass and the centre of gravity of {}, but its moments of inertia "
-        "only within {:.2g} %: the nodes off the contact boundary are too few, or too close together, to carry them "
-        "with "
-        "positive masses; refine the mesh where rotation matters",
-        name_of(input, body), 100.0 * lacking));
+    log::warning(
+        fmt::format("mass type \"equivalent-lumped\" preserves the mass and the centre of gravity of {}, but its "
+                    "moments of inertia only within {:.2g} %: the nodes off the contact boundary are too few, or too "
+                    "close together, to carry them with positive masses; refine the mesh where rotation matters",
+                    name_of(input, body), 100.0 * lacking));
   }
 
   /// Fraction of a moment of inertia below which the mass is no longer an approximation.
@@ -261,7 +260,7 @@ class LumpedEquivalentMass final : public MassConstruction {
     if (!(inertia.least >= least_inertia)) {
       refuse(input, body,
              fmt::format("too few nodes off the contact boundary to carry its moments of inertia: about one axis only "
-                         "{:.2g} % would be left",
+                         "{:.2g} % would remain",
                          std::max(100.0 * inertia.least, 0.0)));
     }
     for (Index i = 0; i < mass.size(); ++i) diagonal[body.nodes[static_cast<std::size_t>(i)]] = mass[i];

@@ -48,7 +48,7 @@ std::vector<char> MassInput::marked_contact_nodes() const {
 
 void MassInput::require_cells(const std::string& name) const {
   if (cells != nullptr) return;
-  throw Error(ErrorKind::invalid_input, fmt::format("mass type \"{}\" needs the masses of single cells", name));
+  throw Error(ErrorKind::invalid_input, fmt::format("mass type \"{}\" needs the mass matrices of single cells", name));
 }
 
 MassChoice mass_to_build(const std::string& asked, const Parameters& parameters, const MassInput& input) {

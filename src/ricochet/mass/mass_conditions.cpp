@@ -109,13 +109,13 @@ void check_moments(const MassInput& input, const SparseMatrix& mass, const std::
     const double defect = moment_defect(mass, *input.consistent, frames, body);
     // Σ|w| is about ten if the weights extrapolate by a few cells.
     if (defect <= 1e-10 + 100.0 * position_rounding(*input.nodes, body)) continue;
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("mass type \"{}\": the moments of inertia of the body with the node at {} would be off by "
-                            "{:.2g} of the largest, as the nodes off the contact boundary that are to carry it are far "
-                            "away, or nearly on a line or in a plane; refine "
-                            "the mesh around the contact boundary, or use mass type \"consistent\" or \"lumped\" with "
-                            "scheme \"contact-stabilized\" or \"newmark\"",
-                            type, text_of_point(*input.nodes, body.nodes.front()), defect));
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("mass type \"{}\": the moments of inertia of the body with the node at {} would be wrong by {:.2g} "
+                    "of the largest, as the nodes off the contact boundary that would carry them are far away, or "
+                    "nearly on a line or in a plane; refine the mesh around the contact boundary, or use mass type "
+                    "\"consistent\" or \"lumped\" with scheme \"contact-stabilized\" or \"newmark\"",
+                    type, text_of_point(*input.nodes, body.nodes.front()), defect));
   }
 }
 

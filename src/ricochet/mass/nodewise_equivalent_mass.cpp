@@ -265,17 +265,16 @@ class NodewiseEquivalentMass final : public MassConstruction {
                                   std::vector<Index> free) {
     std::sort(free.begin(), free.end());
     const bool flat = free.empty() || !degeneracy(*input.nodes, body, free).empty();
-    throw Error(
-        ErrorKind::invalid_input,
-        fmt::format("mass type \"equivalent-nodewise\": the inertia of the contact node at {} cannot be moved to other "
-                    "nodes: its body has {}{}; refine the mesh there or set mesh.degree = 2, so that {} nodes "
-                    "that are not all {} are off the contact boundary, or name only facets that may touch in "
-                    "the contact group (mass types \"consistent\" and \"lumped\", with scheme \"contact-stabilized\" "
-                    "or \"newmark\", need none of this)",
-                    text_of_point(*input.nodes, node), describe_free_nodes(*input.nodes, body, free),
-                    flat ? "" : ", which are too close together for their distance from it",
-                    input.nodes->rows() == 3 ? "at least 4" : "at least 3",
-                    input.nodes->rows() == 3 ? "in one plane" : "on one line"));
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("mass type \"equivalent-nodewise\": the inertia of the contact node at {} cannot be moved "
+                            "to other nodes: its body has {}{}; refine the mesh there or set mesh.degree = 2, so that "
+                            "{} nodes that are not all {} are off the contact boundary, or name only facets that may "
+                            "touch in the contact group (mass types \"consistent\" and \"lumped\", with scheme "
+                            "\"contact-stabilized\" or \"newmark\", have no such requirement)",
+                            text_of_point(*input.nodes, node), describe_free_nodes(*input.nodes, body, free),
+                            flat ? "" : ", which are too close together for their distance from it",
+                            input.nodes->rows() == 3 ? "at least 4" : "at least 3",
+                            input.nodes->rows() == 3 ? "in one plane" : "on one line"));
   }
 };
 

@@ -23,8 +23,7 @@ void check_coordinates(const RawMesh& raw, const std::string& source) {
       not_finite.add(raw.node_tags[i]);
     }
   }
-  if (not_finite.any())
-    fail_mesh(source, fmt::format("{} with a coordinate that is not finite", not_finite.text("node")));
+  if (not_finite.any()) fail_mesh(source, fmt::format("coordinates are not finite at {}", not_finite.text("node")));
 }
 
 /// Names groups for a file that has none: see BuildOptions.
@@ -41,7 +40,7 @@ class EntityNamer {
       if (dimension == dimension_) elements.groups = {body_tag};
       if (const int tag = tag_of(dimension, elements.entity); tag != 0) elements.groups.push_back(tag);
     }
-    std::string text = "no physical groups; all cells are in the group \"body\"";
+    std::string text = "the mesh has no physical groups; all cells are in the group \"body\"";
     if (cell_entities_.size() > 1) text += fmt::format(" and in {}", describe(dimension_, cell_entities_.size()));
     if (!facet_entities_.empty())
       text += fmt::format(", and the facets in {}", describe(dimension_ - 1, facet_entities_.size()));
@@ -129,7 +128,7 @@ NodeNumbering::NodeNumbering(std::span<const std::int64_t> tags, const std::stri
     largest = std::max(largest, tag);
   }
   if (not_positive.any())
-    fail_mesh(source, fmt::format("{} with a number that is not positive", not_positive.text("node")));
+    fail_mesh(source, fmt::format("node numbers must be positive; found {}", not_positive.text("node")));
   Offenders repeated;
   if (largest / 4 <= static_cast<std::int64_t>(tags.size())) {
     dense_.assign(static_cast<std::size_t>(largest) + 1, -1);
@@ -146,7 +145,7 @@ NodeNumbering::NodeNumbering(std::span<const std::int64_t> tags, const std::stri
       if (sorted_[i].first == sorted_[i - 1].first) repeated.add(sorted_[i].first);
     }
   }
-  if (repeated.any()) fail_mesh(source, fmt::format("in $Nodes more than once: {}", repeated.text("node")));
+  if (repeated.any()) fail_mesh(source, fmt::format("defined more than once in $Nodes: {}", repeated.text("node")));
 }
 
 Index NodeNumbering::find_sorted(std::int64_t tag) const {
@@ -167,7 +166,7 @@ void keep_used_nodes(const RawMesh& raw, double scale, Mesh& mesh) {
   }
   if (mesh.dimension == 2) check_plane(raw, used, mesh.source);
   if (const std::size_t dropped = raw.node_tags.size() - used.size(); dropped > 0) {
-    log::info(fmt::format("{}: {} no cell uses left out", mesh.source, counted(dropped, "node")));
+    log::info(fmt::format("{}: left out {} that no cell uses", mesh.source, counted(dropped, "node")));
   }
   for (auto* blocks : {&mesh.cells, &mesh.facets}) {
     for (CellBlock& block : *blocks) {

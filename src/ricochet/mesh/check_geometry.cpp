@@ -146,12 +146,11 @@ void check_folds(const Mesh& mesh) {
     pairs += fmt::format("{}elements {} and {} at {}", i == 0 ? "" : ", ", tag(found[i].first), tag(found[i].second),
                          facet_centre_text(mesh, found[i].first));
   }
-  fail_mesh(
-      mesh.source,
-      fmt::format("the mesh is folded, cells overlap: {} on the same side of the facet that they "
-                  "share: {}{}; a node has probably been moved across its neighbours: put it back, or mesh the "
-                  "part anew",
-                  counted(found.size(), "pair of cells", "pairs of cells"), pairs, found.size() > most ? ", …" : ""));
+  fail_mesh(mesh.source,
+            fmt::format("the mesh is folded and cells overlap: {} on the same side of the facet that they share: {}{}; "
+                        "a node has probably been moved across its neighbours: move it back, or remesh the part",
+                        counted(found.size(), "pair of cells is", "pairs of cells are"), pairs,
+                        found.size() > most ? ", …" : ""));
 }
 
 template <int Dimension>
@@ -179,9 +178,9 @@ void orient_cells_of_dimension(Mesh& mesh) {
   if (flat.any())
     fail_mesh(mesh.source, fmt::format("degenerate cells, whose Jacobian vanishes: {}", flat.text("element")));
   if (tangled.any()) {
-    const char* cure =
-        mesh.degree > 1 ? "; smaller cells where the part is curved untangle them, or Gmsh's Mesh.HighOrderOptimize = 2"
-                        : "";
+    const char* cure = mesh.degree > 1
+                           ? "; use smaller cells where the part is curved, or set Mesh.HighOrderOptimize = 2 in Gmsh"
+                           : "";
     fail_mesh(mesh.source,
               fmt::format("tangled cells, whose Jacobian changes sign: {}{}", tangled.text("element"), cure));
   }
@@ -189,7 +188,8 @@ void orient_cells_of_dimension(Mesh& mesh) {
     const bool all = reversed.count() == mesh.cell_count();
     if (!all) check_folds(mesh);
     log::info(fmt::format(
-        "{0}: {1} {2} reversed (a negative Jacobian) and {2} turned round; the mesh is the same", mesh.source,
+        "{0}: {1} {2} reversed (a negative Jacobian) and {2} reoriented; the shape of the mesh is unchanged",
+        mesh.source,
         all ? (reversed.count() == 1 ? "its only cell" : fmt::format("all {} cells", reversed.count()))
             : fmt::format("of {} cells, {}", mesh.cell_count(), reversed.text("element")),
         reversed.count() == 1 ? "was" : "were"));
@@ -291,7 +291,7 @@ void require_positive_cells(const Mesh& mesh, const std::string& what) {
   const Offenders found = mesh.dimension == 2 ? cells_not_positive<2>(mesh) : cells_not_positive<3>(mesh);
   if (!found.any()) return;
   throw Error(ErrorKind::invalid_input,
-              fmt::format("{} so far that cells are turned inside out: {}", what, found.text("element")));
+              fmt::format("{} so far that cells are inverted: {}", what, found.text("element")));
 }
 
 void check_coincident_nodes(const Mesh& mesh, bool bodies_may_touch) {
@@ -310,10 +310,12 @@ void check_coincident_nodes(const Mesh& mesh, bool bodies_may_touch) {
   if (count == 0) return;
   fail_mesh(
       mesh.source,
-      fmt::format("{} at the same place: {}{}; cells that should be joined are not (in Gmsh: "
-                  "Mesh > Remove duplicate nodes, or BooleanFragments on the geometry){}",
-                  counted(count, "pair of nodes", "pairs of nodes"), pairs, count > 5 ? ", …" : "",
-                  bodies_may_touch ? "" : "; of bodies that touch a case says so by a [[contact]] with \"against\""));
+      fmt::format("{} at the same position: {}{}; cells that should be joined are not (in Gmsh: Mesh > Remove "
+                  "duplicate nodes, or BooleanFragments on the geometry){}",
+                  counted(count, "pair of nodes is", "pairs of nodes are"), pairs, count > 5 ? ", …" : "",
+                  bodies_may_touch
+                      ? ""
+                      : "; if the nodes belong to bodies that touch, add a [[contact]] with \"against\" to the case"));
 }
 
 }  // namespace ricochet::gmsh

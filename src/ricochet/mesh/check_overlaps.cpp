@@ -92,8 +92,8 @@ void warn_of_overlaps(const Mesh& mesh) {
   if (count == 0) return;
   const auto place = mesh.nodes.col(static_cast<Index>(worst));
   log::warning(fmt::format(
-      "{}: cells overlap: around node {} at ({:.6g}) they take up {:.3g} times the whole angle{}; the body "
-      "is counted twice there, in its mass and its stiffness: mesh the part anew",
+      "{}: cells overlap: around node {} at ({:.6g}) they fill {:.3g} times the full angle{}; the mass and the "
+      "stiffness of the body are counted twice there: remesh the part",
       mesh.source, mesh.node_tags[worst], fmt::join(place.begin(), place.end(), ", "), sums[worst] / whole,
       count > 1 ? fmt::format(" ({} affected, too)", counted(count - 1, "other node is", "other nodes are")) : ""));
 }

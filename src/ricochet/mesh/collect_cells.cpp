@@ -47,7 +47,7 @@ class BlockCollector {
     if (repeated_.any()) {
       fail_mesh(source,
                 fmt::format("{} ha{} the same vertices as another element without being in another group: the same {} "
-                            "must not be there twice (in Gmsh: Mesh > Remove duplicate elements)",
+                            "must not occur twice (in Gmsh: Mesh > Remove duplicate elements)",
                             repeated_.text("element"), repeated_.count() == 1 ? "s" : "ve", name(block_.shape)));
     }
     return std::move(block_);
@@ -109,11 +109,10 @@ void sort_members(const std::vector<CellBlock>& blocks, const std::string& sourc
     if (members[i] == members[i - 1]) repeated.add(tag_of(blocks, members[i]));
   }
   if (repeated.any()) {
-    fail_mesh(
-        source,
-        fmt::format("{}: there more than once in the group \"{}\", with the same vertices (in Gmsh: Mesh > Remove "
-                    "duplicate elements)",
-                    repeated.text("element"), group.name));
+    fail_mesh(source,
+              fmt::format(
+                  "{}: repeated in the group \"{}\" with the same vertices (in Gmsh: Mesh > Remove duplicate elements)",
+                  repeated.text("element"), group.name));
   }
 }
 

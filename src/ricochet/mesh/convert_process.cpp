@@ -68,7 +68,7 @@ void check(const Answer& answer, const std::string& source) {
   std::string text;
   for (const std::string& line : answer.last_lines) text += "\n  " + line;
   fail(fmt::format("{}: the file could not be read: {} {}{}", source, python_program(), answer.outcome.description(),
-                   text.empty() ? " and said nothing" : ":" + text));
+                   text.empty() ? " without any output" : ":" + text));
 }
 
 }  // namespace

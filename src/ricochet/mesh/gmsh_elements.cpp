@@ -143,7 +143,7 @@ const ElementType* find_element_type(int number) {
 
 std::string describe_type(int number) {
   const ElementType* type = find_element_type(number);
-  return fmt::format("type {} ({})", number, type != nullptr ? type->name : "not known to Ricochet");
+  return fmt::format("type {} ({})", number, type != nullptr ? type->name : "unknown to Ricochet");
 }
 
 const std::vector<int>& node_order(CellShape shape, int degree) {

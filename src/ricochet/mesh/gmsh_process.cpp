@@ -48,7 +48,7 @@ std::string last_lines(const std::filesystem::path& log) {
   }
   std::string text;
   for (const std::string& line : errors.empty() ? all : errors) text += "\n  " + line;
-  return text.empty() ? " (it said nothing)" : text;
+  return text.empty() ? " (no output)" : text;
 }
 
 void check_spawned(const ChildResult& outcome, const std::string& source) {

@@ -44,8 +44,8 @@ std::int64_t tag_step(const std::vector<NamedMesh>& parts) {
   while (step <= largest && step <= most) step *= 10;
   if (step <= largest) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("{}: a node or an element has the number {}: the numbers of several parts would be too "
-                            "large; number the nodes and elements of the file from 1 on (in Gmsh: Mesh.Renumber)",
+                fmt::format("{}: a node or an element has the number {}: the numbers in the joined mesh would be too "
+                            "large; number the nodes and elements of the file from 1 (in Gmsh: Mesh.Renumber)",
                             source_of(parts), largest));
   }
   return step;
@@ -131,7 +131,7 @@ std::vector<Index> cells_of(const NamedMesh& part, const BlockMerger& cells, std
 
 void note_numbers(const std::vector<NamedMesh>& parts, std::int64_t step) {
   for (std::size_t i = 1; i < parts.size(); ++i)
-    log::info(fmt::format("part \"{}\": its nodes and elements are called by their numbers in the file plus {}",
+    log::info(fmt::format("part \"{}\": the numbers of its nodes and elements are those in the file plus {}",
                           parts[i].name, step * static_cast<std::int64_t>(i)));
 }
 
@@ -140,15 +140,14 @@ void note_numbers(const std::vector<NamedMesh>& parts, std::int64_t step) {
 std::string mismatch_of_parts(const NamedMesh& first, const NamedMesh& other) {
   if (first.mesh.dimension != other.mesh.dimension) {
     return fmt::format(
-        "part \"{}\" is a mesh of dimension {}, part \"{}\" of dimension {}: all parts have one dimension; give meshes "
-        "of "
-        "solids for all of them, or plane ones for all",
+        "part \"{}\" is a mesh of dimension {}, part \"{}\" of dimension {}: all parts must have the same dimension; "
+        "use meshes of solids for all of them, or plane meshes for all",
         other.name, other.mesh.dimension, first.name, first.mesh.dimension);
   }
   if (first.mesh.degree != other.mesh.degree) {
     return fmt::format(
-        "part \"{}\" is a mesh of degree {}, part \"{}\" of degree {}: all parts have cells of one degree; mesh them "
-        "alike (gmsh FILE.geo -2 or -3 with -order {} writes such a mesh)",
+        "part \"{}\" is a mesh of degree {}, part \"{}\" of degree {}: all parts must have cells of the same degree; "
+        "mesh them alike (gmsh FILE.geo -2 or -3 with -order {} writes such a mesh)",
         other.name, other.mesh.degree, first.name, first.mesh.degree, first.mesh.degree);
   }
   return "";

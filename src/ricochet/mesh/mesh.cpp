@@ -43,9 +43,9 @@ std::vector<std::string> names_in_parts(const Mesh& mesh, const std::string& nam
                            : fmt::format("the groups of {} are {}", entities, join_names(names));
   const auto is_free = [&](const char* built_in) { return mesh.find_group(built_in, dimension) == nullptr; };
   if (dimension == mesh.dimension && is_free(all_cells_name))
-    message += fmt::format("; a case's \"{}\" is every cell", all_cells_name);
+    message += fmt::format("; in a case, \"{}\" means all cells", all_cells_name);
   if (dimension == mesh.dimension - 1 && is_free(whole_boundary_name))
-    message += fmt::format("; a case's \"{}\" is every boundary facet", whole_boundary_name);
+    message += fmt::format("; in a case, \"{}\" means all boundary facets", whole_boundary_name);
   if (!mesh.parts.empty() && (dimension == mesh.dimension || dimension == mesh.dimension - 1)) {
     message +=
         fmt::format(", and \"{}\" those of part \"{}\"",

@@ -115,10 +115,9 @@ fs::path cache_directory() {
     fs::create_directories(candidate, error);
     if (!error && access(candidate.c_str(), W_OK | X_OK) == 0) return candidate;
   }
-  throw Error(ErrorKind::file_access,
-              fmt::format("no place to keep meshes that were made or converted: cannot write to {}; set RICOCHET_CACHE "
-                          "to a directory that can be written to",
-                          candidates.front().string()));
+  throw Error(ErrorKind::file_access, fmt::format("no directory to cache generated or converted meshes in: cannot "
+                                                  "write to {}; set RICOCHET_CACHE to a writable directory",
+                                                  candidates.front().string()));
 }
 
 std::string gmsh_options(const MeshFile& file) {
@@ -144,7 +143,7 @@ fs::path kept(const std::string& source, const std::string& key, const char* doi
               const std::function<void(const fs::path& workspace, const fs::path& output)>& make) {
   const fs::path result = cache_path(source, key);
   if (fs::exists(result)) {
-    log::debug(fmt::format("{}: made before, {}", source, result.string()));
+    log::debug(fmt::format("{}: using the cached mesh {}", source, result.string()));
     return result;
   }
   log::info(fmt::format("{}: {}", source, doing));

@@ -100,7 +100,7 @@ void TextReader::fail_token(const char* what, const char* kind) const {
   const std::string_view token = rest.substr(0, rest.find_first_of(" \t\r\n"));
   if (rest.empty()) cursor_.fail(fmt::format("the file ends where {} should be; it is truncated", what));
   if (token.empty()) cursor_.fail(fmt::format("the line ends where {} should be", what));
-  cursor_.fail(fmt::format("\"{}\" where {} should be, which is not {}", printable(token), what, kind));
+  cursor_.fail(fmt::format("found \"{}\" where {} should be; it is not {}", printable(token), what, kind));
 }
 
 std::size_t BinaryReader::count(const char* what, std::size_t /*text_bytes_each*/, std::size_t binary_bytes_each) {

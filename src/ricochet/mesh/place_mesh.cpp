@@ -63,7 +63,7 @@ void place_mesh(Mesh& mesh, const Placement& placement) {
     }
   }
   if (!placement.move.empty()) mesh.nodes.colwise() += vector_of(placement.move);
-  if (!mesh.nodes.allFinite()) fail_mesh(mesh.source, "coordinates overflow when the mesh is turned and moved");
+  if (!mesh.nodes.allFinite()) fail_mesh(mesh.source, "coordinates overflow when the mesh is rotated and moved");
 }
 
 }  // namespace ricochet

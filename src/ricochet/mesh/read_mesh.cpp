@@ -59,7 +59,8 @@ void check_request(const MeshFile& file, bool by_program) {
     fail(fmt::format("the degree of the geometry must be 1 or 2, not {}", file.geometry_degree));
   }
   if (!file.size) return;
-  if (!by_program) fail("a size can only be given for .geo and CAD files: the elements of a mesh have theirs already");
+  if (!by_program)
+    fail("a size can only be set for .geo and CAD files: the elements of a mesh already have their sizes");
   if (!(*file.size > 0.0) || !std::isfinite(*file.size)) {
     fail(fmt::format("the size of the elements must be positive and finite, not {}", *file.size));
   }

@@ -25,14 +25,14 @@ Version read_format(Cursor& cursor) {
   const int binary = text.integer("the file type (0: ASCII, 1: binary)");
   const int data_size = text.integer("the data size");
   if (binary != 0 && binary != 1)
-    cursor.fail(fmt::format("file type {}, which is neither 0 (ASCII) nor 1 (binary)", binary));
-  if (data_size != 8) cursor.fail(fmt::format("data size {}; only 8 is supported", data_size));
+    cursor.fail(fmt::format("the file type is {}, which is neither 0 (ASCII) nor 1 (binary)", binary));
+  if (data_size != 8) cursor.fail(fmt::format("the data size is {}; only 8 is supported", data_size));
   text.end_record();
   if (binary == 1) {
     cursor.set_binary();
     const int one = BinaryReader(cursor).integer("the number 1 that shows the byte order");
     if (one == 1 << 24)
-      cursor.fail("the file was written on a machine with the other byte order; save it as ASCII there");
+      cursor.fail("the file was written on a machine with the opposite byte order; save it as ASCII there");
     if (one != 1) cursor.fail(fmt::format("the number that shows the byte order is {} instead of 1", one));
   }
   return version == 2.2 ? Version::v22 : Version::v41;
@@ -47,7 +47,8 @@ void read_physical_names(Cursor& cursor, RawMesh& mesh) {
     text.begin_record();
     const int dimension = text.integer("the dimension of a physical group");
     const int tag = text.integer("the tag of a physical group");
-    if (dimension < 0 || dimension > 3) cursor.fail(fmt::format("a physical group of dimension {}", dimension));
+    if (dimension < 0 || dimension > 3)
+      cursor.fail(fmt::format("a physical group has the invalid dimension {}", dimension));
     const char* start = cursor.position();
     const std::string_view line = cursor.line();
     const std::size_t first = line.find('"');
@@ -117,14 +118,15 @@ class Reader {
     if (!known) return false;
     const char* content = cursor_.position();
     cursor_.move_to(start);
-    if (!seen_.insert(name).second) cursor_.fail(fmt::format("a second ${} section", name));
+    if (!seen_.insert(name).second) cursor_.fail(fmt::format("the section ${} occurs twice", name));
     if (name != "MeshFormat" && version_ == Version::unknown) {
-      cursor_.fail(fmt::format("${} before $MeshFormat", name));
+      cursor_.fail(fmt::format("${} precedes $MeshFormat", name));
     }
     if (name == "PartitionedEntities") {
       cursor_.fail("the mesh is partitioned; save it unpartitioned (in Gmsh: Mesh > Unpartition)");
     }
-    if (name == "ParametricNodes") cursor_.fail("nodes with parametric coordinates; save with Mesh.SaveParametric = 0");
+    if (name == "ParametricNodes")
+      cursor_.fail("nodes with parametric coordinates are not supported; save the mesh with Mesh.SaveParametric = 0");
     if (name == "Entities" && seen_.contains("Elements")) cursor_.fail("$Entities should come before $Elements");
     cursor_.move_to(content);
     read_content(name);
@@ -149,7 +151,7 @@ class Reader {
     if (line == wanted) return;
     cursor_.move_to(start);
     if (cursor_.remaining() == 0) cursor_.fail(fmt::format("the file ends before {}; it is truncated", wanted));
-    cursor_.fail(fmt::format("{} should be here; the section does not hold what its counts say", wanted));
+    cursor_.fail(fmt::format("{} should be here; the content of the section does not match its counts", wanted));
   }
 
   /// Skips sections (results, comments, periodicity and others) that do not describe the mesh itself.

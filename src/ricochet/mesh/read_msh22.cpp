@@ -75,7 +75,7 @@ void add_element(const Cursor& cursor, Blocks& blocks, const ElementType& type, 
     if (i == 1) entity = value;
   }
   if (group == std::numeric_limits<int>::min())
-    cursor.fail(fmt::format("element {} is in physical group {}", tag, group));
+    cursor.fail(fmt::format("element {} is in the invalid physical group {}", tag, group));
   RawElements& block = blocks.find(type.number, group, entity);
   block.tags.push_back(tag);
   for (int i = 0; i < type.node_count; ++i) block.nodes.push_back(read("a node of an element"));
@@ -90,7 +90,7 @@ void read_text_elements(Cursor& cursor, RawMesh& mesh) {
     const std::int64_t tag = text.integer64("an element's number");
     const ElementType& type = fixed_type(cursor, text.integer("an element's type"));
     const int tag_count = text.integer("the number of an element's tags");
-    if (tag_count < 0) cursor.fail(fmt::format("element {} has {} tags", tag, tag_count));
+    if (tag_count < 0) cursor.fail(fmt::format("element {} has an invalid number of tags, {}", tag, tag_count));
     add_element(cursor, blocks, type, tag, tag_count, [&](const char* what) { return text.integer(what); });
     text.end_record();
   }
@@ -106,8 +106,8 @@ void read_binary_elements(Cursor& cursor, RawMesh& mesh) {
     const int block_size = binary.integer("the number of elements of a block");
     const int tag_count = binary.integer("the number of tags of a block's elements");
     if (block_size < 1 || static_cast<std::size_t>(block_size) > count - done || tag_count < 0) {
-      cursor.fail(fmt::format("a block of {} elements with {} tags each, where {} elements are still to come",
-                              block_size, tag_count, count - done));
+      cursor.fail(fmt::format("a block has {} elements with {} tags each, but {} elements remain", block_size,
+                              tag_count, count - done));
     }
     for (int i = 0; i < block_size; ++i)
       add_element(cursor, blocks, type, read("an element's number"), tag_count, read);

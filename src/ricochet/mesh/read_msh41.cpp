@@ -21,7 +21,7 @@ std::vector<int> read_physical_tags(Reader& reader) {
   for (std::size_t i = 0; i < count; ++i) {
     const int tag = reader.integer("an entity's physical group");
     if (tag == 0 || tag == std::numeric_limits<int>::min()) {
-      reader.cursor().fail(fmt::format("an entity is in the physical group {}, which cannot be", tag));
+      reader.cursor().fail(fmt::format("an entity is in the invalid physical group {}", tag));
     }
     tags.push_back(std::abs(tag));
   }
@@ -32,7 +32,7 @@ std::vector<int> read_physical_tags(Reader& reader) {
 
 template <class Reader>
 void read_entities(Reader reader, Entities& entities) {
-  constexpr const char* what = "the number of an entity dimension's entities";
+  constexpr const char* what = "the number of entities of a dimension";
   reader.begin_record();
   std::size_t counts[4];
   for (std::size_t& count : counts) count = reader.count(what, 8, sizeof(std::int32_t) + 4 * sizeof(double));
@@ -45,7 +45,7 @@ void read_entities(Reader reader, Entities& entities) {
       for (int k = 0; k < box_size; ++k) (void)reader.number("an entity's bounding box");
       std::vector<int> groups = read_physical_tags(reader);
       if (!entities.groups.try_emplace({dimension, tag}, std::move(groups)).second) {
-        reader.cursor().fail(fmt::format("the entity of dimension {} and tag {} is there twice", dimension, tag));
+        reader.cursor().fail(fmt::format("the entity of dimension {} and tag {} occurs twice", dimension, tag));
       }
       if (dimension > 0) {
         const std::size_t boundary =
@@ -77,7 +77,8 @@ Head read_head(Reader& reader, const char* blocks_what, const char* total_what) 
 
 void check_total(const Cursor& cursor, const char* things, std::size_t found, std::size_t announced) {
   if (found == announced) return;
-  cursor.fail(fmt::format("the blocks hold {} {}, but the section's head announces {}", found, things, announced));
+  cursor.fail(
+      fmt::format("the blocks contain {} {}, but the head of the section announces {}", found, things, announced));
 }
 
 template <class Reader>
@@ -91,7 +92,8 @@ void read_nodes(Reader reader, RawMesh& mesh) {
     (void)reader.integer("the tag of a node block's entity");
     const int parametric = reader.integer("the parametric flag of a node block");
     if (dimension < 0 || dimension > 3 || parametric < 0 || parametric > 1) {
-      reader.cursor().fail(fmt::format("a node block of dimension {} with parametric flag {}", dimension, parametric));
+      reader.cursor().fail(
+          fmt::format("a node block has dimension {} and parametric flag {}, which is invalid", dimension, parametric));
     }
     const std::size_t count =
         reader.count("the number of nodes of a block", 8, sizeof(std::uint64_t) + 3 * sizeof(double));
@@ -142,7 +144,7 @@ void read_elements(Reader reader, const Entities& entities, RawMesh& mesh) {
     }
     if (type->dimension != dimension) {
       reader.cursor().fail(
-          fmt::format("elements of {} on an entity of dimension {}", describe_type(elements.type), dimension));
+          fmt::format("elements of {} are on an entity of dimension {}", describe_type(elements.type), dimension));
     }
     elements.groups = block_groups(reader.cursor(), entities, dimension, elements.entity);
     reader.end_record();

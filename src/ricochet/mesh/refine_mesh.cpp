@@ -297,12 +297,12 @@ void require_room(const Mesh& mesh, int times) {
   const double there = physical_memory();
   if (cells <= std::numeric_limits<int>::max() && bytes <= there) return;
   throw Error(ErrorKind::invalid_input,
-              fmt::format("{}: refined {} times it would have {:.3g} cells, {}: refine it less often", mesh.source,
-                          times, cells,
-                          bytes > there ? fmt::format("whose nodes' numbers alone need {:.3g} GB of the {:.3g} GB of "
-                                                      "this machine",
-                                                      1e-9 * bytes, 1e-9 * there)
-                                        : "more than can be counted"));
+              fmt::format("{}: refined {} times, the mesh would have {:.3g} cells, {}: refine it fewer times",
+                          mesh.source, times, cells,
+                          bytes > there
+                              ? fmt::format("whose node numbers alone need {:.3g} GB, while this machine has {:.3g} GB",
+                                            1e-9 * bytes, 1e-9 * there)
+                              : "more than can be numbered"));
 }
 
 Bounds bounds_of(const Mesh& mesh) {

@@ -19,7 +19,7 @@ std::string advice(int number, int degree) {
   if (number == 16 || number == 17)
     return "set Mesh.SecondOrderIncomplete = 0 in Gmsh to get the full second-order element";
   if (degree > 2) return "mesh with order 1 or 2";
-  return "cells may be triangles, quadrilaterals, tetrahedra and hexahedra of order 1 or 2";
+  return "cells must be triangles, quadrilaterals, tetrahedra or hexahedra of order 1 or 2";
 }
 
 void refuse_unsupported(const RawMesh& raw, int dimension, const std::string& source) {
@@ -46,14 +46,15 @@ void check_element_tags(const RawMesh& raw, const std::string& source) {
     if (tag <= 0) not_positive.add(tag);
   }
   if (not_positive.any())
-    fail_mesh(source, fmt::format("{} with a number that is not positive", not_positive.text("element")));
+    fail_mesh(source, fmt::format("element numbers must be positive; found {}", not_positive.text("element")));
   if (!std::is_sorted(tags.begin(), tags.end())) std::sort(tags.begin(), tags.end());
   Offenders repeated;
   for (std::size_t i = 1; i < tags.size(); ++i) {
     if (tags[i] == tags[i - 1] && (i == 1 || tags[i - 2] != tags[i])) repeated.add(tags[i]);
   }
   if (repeated.any())
-    fail_mesh(source, fmt::format("more than one element has the number of {}", repeated.text("element")));
+    fail_mesh(source,
+              fmt::format("element numbers must be unique; found more than once: {}", repeated.text("element")));
 }
 
 void check_degree(const Selection& selection, const std::string& source) {
@@ -68,7 +69,7 @@ void check_degree(const Selection& selection, const std::string& source) {
     names.push_back(fmt::format("{} of {}", count, describe_type(number)));
   }
   if (degrees.size() > 1) {
-    fail_mesh(source, fmt::format("elements of first and second order in one mesh ({}); all must have the same order",
+    fail_mesh(source, fmt::format("the mesh has elements of first and second order ({}); all must have the same order",
                                   join_names(names, " and ", false)));
   }
 }
@@ -85,11 +86,11 @@ Selection select_elements(const RawMesh& raw, const std::string& source) {
   }
   if (raw.node_tags.empty()) fail_mesh(source, "the mesh has no nodes");
   if (selection.dimension < 2) {
-    fail_mesh(source,
-              count == 0 ? std::string("the mesh has no elements")
-                         : fmt::format("the mesh has {}, but none of dimension 2 or 3; if the geometry has surfaces or "
-                                       "volumes, are they meshed, and in a physical group?",
-                                       counted(count, "element")));
+    fail_mesh(source, count == 0
+                          ? std::string("the mesh has no elements")
+                          : fmt::format("the mesh has {}, but none of dimension 2 or 3; if the geometry has surfaces "
+                                        "or volumes, check that they are meshed and in a physical group",
+                                        counted(count, "element")));
   }
   check_element_tags(raw, source);
   refuse_unsupported(raw, selection.dimension, source);

@@ -95,8 +95,8 @@ void warn_of_brief_changes(const Case& input, const Vector& centre) {
     if (!brief) continue;
     told = key;
     log::warning(fmt::format(
-        "{}: what this gives comes and goes at t = {:.6g}, within {:.2g}, and steps may be as long as {:g}: "
-        "adaptive steps look at their ends, and may pass over it; take time.largest = {:.1g} or less",
+        "{}: this value changes and returns at t = {:.6g}, within {:.2g}, but steps may be as long as {:g}: adaptive "
+        "steps evaluate it at their ends and may miss the change; set time.largest = {:.1g} or less",
         input.where(key).text(), brief->start, brief->duration, longest, rounded_down(0.5 * brief->duration, 1)));
   }
 }

@@ -28,7 +28,7 @@ void refuse(const Case& input, const std::string& key_path, const std::string& m
 void check_length(const Case& input, const std::string& key_path, std::size_t length, int dimension) {
   if (length != 0 && static_cast<int>(length) != dimension) {
     refuse(input, key_path,
-           fmt::format("{} has {}, but the mesh has dimension {}: give {}", key_path,
+           fmt::format("{} has {}, but the mesh has dimension {}: write {}", key_path,
                        counted(length, "entry", "entries"), dimension, dimension));
   }
 }
@@ -64,18 +64,16 @@ void check_obstacle_motion(const Case& input, const ObstacleSection& obstacle, i
         std::pair{"torque", obstacle.torque.size()}}) {
     if (size != 0 && size != turns)
       refuse(input, key + "." + name,
-             fmt::format("\"{}\" has {}, but the mesh has dimension {}, where it has {}", name,
+             fmt::format("\"{}\" has {}, but the mesh has dimension {}, where it must have {}", name,
                          counted(size, "entry", "entries"), dimension, turns));
   }
   const std::size_t entries = obstacle.rotation.size();
   if (entries == 0 || entries == (dimension == 2 ? 1U : 3U)) return;
-  refuse(
-      input, key + ".rotation",
-      dimension == 2
-          ? "\"rotation\" has 3 entries, but the mesh has dimension 2, where it is one angle: write rotation = "
-            "\"0.5*t\""
-          : "\"rotation\" is one angle, but the mesh has dimension 3, where it is a vector: write rotation = [\"0\", "
-            "\"0\", \"0.5*t\"]");
+  refuse(input, key + ".rotation",
+         dimension == 2 ? "\"rotation\" has 3 entries, but the mesh has dimension 2, where it must be one angle: write "
+                          "rotation = \"0.5*t\""
+                        : "\"rotation\" is one angle, but the mesh has dimension 3, where it must be a vector: write "
+                          "rotation = [\"0\", \"0\", \"0.5*t\"]");
 }
 
 }  // namespace
@@ -163,12 +161,12 @@ void report_supports_at_ties(const Model& model, const std::map<Index, Expressio
   }
   if (lost.empty()) return;
   const Vector at = model.space.nodes.col(*lost.begin());
-  log::warning(fmt::format(
-      "{} tied to another surface that is not supported there as they are, and {} it: the support does not hold "
-      "there, first at ({:.6g}); support the nodes of the other surface, or let that one follow "
-      "(multipliers_on)",
-      counted(lost.size(), "supported node is", "supported nodes are"), lost.size() == 1 ? "follows" : "follow",
-      fmt::join(at, ", ")));
+  log::warning(
+      fmt::format("{} tied to another surface that does not have the same support there, and {} it: the support has no "
+                  "effect there, first at ({:.6g}); support the nodes of the other surface, or make that surface "
+                  "follow this one (multipliers_on)",
+                  counted(lost.size(), "supported node is", "supported nodes are"),
+                  lost.size() == 1 ? "follows" : "follow", fmt::join(at, ", ")));
 }
 
 void add_supports(const Case& input, Model& model) {
@@ -286,10 +284,10 @@ namespace {
 void warn_of_memory(const Model& model) {
   const double needed = memory_of_iterations(model.space.dof_count()), there = physical_memory();
   if (needed <= there) return;
-  log::warning(fmt::format(
-      "{} need some {:.3g} GB, and this machine has {:.3g} GB for them: `ricochet-mpi` divides a body among "
-      "several machines (docs/distributed.md)",
-      counted(model.space.dof_count(), "dof"), 1e-9 * needed, 1e-9 * there));
+  log::warning(
+      fmt::format("{} need about {:.3g} GB, but this machine has {:.3g} GB: use `ricochet-mpi` to divide the body "
+                  "among several machines (docs/distributed.md)",
+                  counted(model.space.dof_count(), "dof"), 1e-9 * needed, 1e-9 * there));
 }
 
 std::unique_ptr<Model> build(const Case& input, bool with_forces, BuildTimes* times) {
@@ -312,7 +310,8 @@ std::unique_ptr<Model> build(const Case& input, bool with_forces, BuildTimes* ti
   } else if (!model->contains_rotations) {
     log::warning(
         "the mesh has curved cells but the displacement is of degree 1: on curved cells its functions do not contain "
-        "rigid rotations, so angular momentum is kept only to the order h²; use mesh.degree = 2 or a straight mesh");
+        "rigid rotations, so angular momentum is conserved only to the order h²; use mesh.degree = 2 or a straight "
+        "mesh");
   }
   model->problem.dimension = model->mesh.dimension;
   assign_materials(input, *model);

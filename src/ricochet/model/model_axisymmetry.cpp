@@ -20,8 +20,8 @@ constexpr double on_axis = 1e-9;
 void refuse_radial(const Case& input, const std::string& key_path, double radial, const std::string& what) {
   if (radial == 0.0) return;
   refuse(input, key_path,
-         fmt::format("{} has the radial component {:g}, but of an axisymmetric body nothing translates but along the "
-                     "axis, y: give [0.0, …]",
+         fmt::format("{} has the radial component {:g}, but an axisymmetric body can translate only along the axis, y: "
+                     "write [0.0, …]",
                      what, radial));
 }
 
@@ -29,8 +29,8 @@ void refuse_spin(const Case& input, const MotionSection& motion) {
   const bool spins = std::any_of(motion.spin.begin(), motion.spin.end(), [](double rate) { return rate != 0.0; });
   if (!spins) return;
   refuse(input, motion.section + ".spin",
-         "an axisymmetric body does not turn in the plane of its section (and a spin about its axis is not part of "
-         "the model): leave \"spin\" out");
+         "an axisymmetric body cannot rotate in the plane of its section (and a spin about its axis is not part of the "
+         "model): remove \"spin\"");
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ void check_axisymmetry(const Case& input, int dimension) {
   if (!is_axisymmetric(input)) return;
   if (dimension != 2)
     refuse(input, "mesh.plane",
-           "\"axisymmetric\" is for meshes in the plane of a section, but this one has dimension 3");
+           "\"axisymmetric\" requires a mesh in the plane of a section, but this mesh has dimension 3");
   if (!input.load.gravity.empty()) refuse_radial(input, "load.gravity", input.load.gravity[0], "gravity");
   for (std::size_t i = 0; i < input.contacts.size(); ++i) {
     const std::vector<double>& place = input.contacts[i].pair_at;
@@ -58,7 +58,8 @@ void check_axisymmetric_obstacle(const Case& input, const ObstacleSection& secti
   const std::string key = "obstacle." + name;
   if (obstacle.turns() || obstacle.spins())
     refuse(input, key,
-           fmt::format("obstacle \"{}\" turns, but the case is axisymmetric: only motions along the axis are", name));
+           fmt::format("obstacle \"{}\" rotates, but the case is axisymmetric: obstacles can move only along the axis",
+                       name));
   if (!section.velocity.empty())
     refuse_radial(input, key, section.velocity[0], fmt::format("the motion of \"{}\"", name));
   constexpr int instants = 64;
@@ -74,18 +75,17 @@ void place_on_axis(const Case& input, Mesh& mesh) {
   for (Index node = 0; node < mesh.node_count(); ++node) {
     double& x = mesh.nodes(0, node);
     if (x < -limit) {
-      refuse(
-          input, "mesh.plane",
-          fmt::format("node {} is at ({:.6g}, {:.6g}), on the wrong side of the axis: x is the distance from it, and "
-                      "never negative; move the mesh (\"move\"), or mesh one half of the section",
-                      mesh.node_tags[static_cast<std::size_t>(node)], x, mesh.nodes(1, node)));
+      refuse(input, "mesh.plane",
+             fmt::format("node {} is at ({:.6g}, {:.6g}), on the wrong side of the axis: x is the distance from the "
+                         "axis and must not be negative; move the mesh (\"move\"), or mesh one half of the section",
+                         mesh.node_tags[static_cast<std::size_t>(node)], x, mesh.nodes(1, node)));
     }
     if (x > limit || x == 0.0) continue;
     x = 0.0;
     ++moved;
   }
   if (moved > 0)
-    log::info(fmt::format("axisymmetric: {} within {:.2g} of the axis x = 0 {} put on it", counted(moved, "node"),
+    log::info(fmt::format("axisymmetric: {} within {:.2g} of the axis x = 0 {} moved onto it", counted(moved, "node"),
                           limit, moved == 1 ? "is" : "are"));
 }
 
@@ -100,9 +100,10 @@ std::vector<Index> facets_off_axis(const Case& input, const std::string& key_pat
   }
   const std::size_t left_out = group.members.size() - result.size();
   if (result.empty() && !mesh.is_piece)
-    refuse(input, key_path, fmt::format("group \"{}\" lies on the axis, which is no surface of the body", group.name));
+    refuse(input, key_path,
+           fmt::format("group \"{}\" lies on the axis, which is not a surface of the body", group.name));
   if (left_out > 0) {
-    log::info(fmt::format("{}: {} of group \"{}\" {} on the axis, which is no surface of the body, and {} left out",
+    log::info(fmt::format("{}: {} of group \"{}\" {} on the axis, which is not a surface of the body, and {} left out",
                           input.where(key_path).text(), counted(left_out, "facet"), group.name,
                           left_out == 1 ? "lies" : "lie", left_out == 1 ? "is" : "are"));
   }
@@ -120,7 +121,7 @@ void add_axis_supports(const Case& input, Model& model) {
     if (model.problem.supports.add(dof, at_rest) || model.problem.supports.expression(dof) == at_rest) continue;
     refuse(input, "support",
            fmt::format("a support prescribes x of the node at (0, {:.6g}) as \"{}\": a node on the axis of an "
-                       "axisymmetric body does not move away from it",
+                       "axisymmetric body cannot leave the axis",
                        model.space.nodes(1, node), model.problem.supports.expression(dof).text()));
   }
   log::info(held > 0 ? fmt::format("axisymmetric about the axis x = 0: {} held there in the radial direction",

@@ -43,9 +43,10 @@ void warn_of_overlap_where_paired(const Case& input, std::size_t number, const M
   const PenetratingPoints overlap = penetrating_points(model.problem, gap, static_cast<int>(number));
   if (overlap.count == 0) return;
   log::warning(fmt::format(
-      "{}: {} overlap where pair_at puts them: {} inside of the other body, the deepest by {:.3g} at {} of the mesh, "
-      "so that facets are paired past where they will meet; give the displacement at which the bodies begin to touch, "
-      "or set initial_gap = \"closed\" where surfaces that touch overlap since their facets are flat",
+      "{}: {} overlap at the displacement pair_at: {} inside the other body, the deepest by {:.3g} at {} of the mesh, "
+      "so that facets are paired beyond the position where they will meet; set pair_at to the displacement at which "
+      "the bodies begin to touch, or set initial_gap = \"closed\" if surfaces that touch overlap only because their "
+      "facets are flat",
       input.where(fmt::format("contact.{}.pair_at", model.contacts[number].entry)).text(), names_of_pair(pair),
       counted(overlap.count, "contact point is", "contact points are"), overlap.deepest,
       position_text(overlap.position)));
@@ -59,11 +60,10 @@ void check_sliding_bodies(const Case& input, const std::string& key, const Model
     for (const Index node : facet_nodes(model.space, facets))
       bodies.insert(body_of_node[static_cast<std::size_t>(node)]);
     if (bodies.size() < 2) return;
-    refuse(
-        input, key + name,
-        fmt::format("with sliding = \"large\" each side is the surface of one body, and \"{}\" is on {} bodies; give "
-                    "each of them a contact of its own",
-                    group, bodies.size()));
+    refuse(input, key + name,
+           fmt::format("with sliding = \"large\" each side must be the surface of one body, but \"{}\" is on {} "
+                       "bodies; use a separate contact for each of them",
+                       group, bodies.size()));
   };
   check(pair.facets, "group", pair.group);
   check(pair.opposite_facets, "against", pair.opposite_group);
@@ -74,19 +74,19 @@ void check_sliding_bodies(const Case& input, const std::string& key, const Model
 void warn_of_side(const ContactPair& pair, const SideDoubt& doubt, bool is_chosen) {
   std::string advice;
   if (doubt.other_is_better && !is_chosen) {
-    advice = fmt::format("leave multipliers_on out: with the multipliers on \"{}\" they turn by {:.2g}",
+    advice = fmt::format("leave multipliers_on out: with the multipliers on \"{}\" they vary by {:.2g}",
                          pair.opposite_group, doubt.other_variation);
     if (doubt.finer < 1.0) advice += fmt::format(", and facets there {:.2g} times as large", 0.9 * doubt.finer);
   } else {
     advice = fmt::format(
-        "take facets of \"{}\" {:.2g} times as large where it is round, or what it touches is; a run "
-        "with multipliers_on = \"{}\" shows by how much forces differ",
+        "use facets of \"{}\" {:.2g} times as large where it or the surface that it touches is curved; a run with "
+        "multipliers_on = \"{}\" shows by how much forces differ",
         pair.group, 0.9 * doubt.finer, pair.exchanged ? "group" : "against");
   }
   log::warning(
-      fmt::format("contact of \"{}\" against \"{}\": normals turn by {:.2g} rad in the mean within the facets "
-                  "of \"{}\", which carries the multipliers, and forces of a contact that is no wider than a facet may "
-                  "be off by up to as large a part; {}",
+      fmt::format("contact of \"{}\" against \"{}\": normals vary by {:.2g} rad on average within the facets of "
+                  "\"{}\", which carries the multipliers, and the forces of a contact that is no wider than a facet "
+                  "may have a relative error of up to this size; {}",
                   pair.first_group(), pair.second_group(), doubt.variation, pair.group, advice));
 }
 
@@ -95,11 +95,12 @@ void warn_of_side(const ContactPair& pair, const SideDoubt& doubt, bool is_chose
 void report_partly_covered(const ContactPair& pair, const PairingSummary& facing) {
   constexpr double felt = 0.02;
   if (pair.tied || pair.large_sliding || facing.partly_covered <= felt * facing.covered) return;
-  log::info(fmt::format(
-      "{}: {:.2g} % of what faces lies on facets of \"{}\" that are covered in part: areas in contact count "
-      "such facets as a whole, and pressures at their nodes are extrapolated (forces are right); let facets "
-      "end where the other surface ends, or put the multipliers on the side whose facets do (multipliers_on)",
-      names_of_pair(pair), 100.0 * facing.partly_covered / facing.covered, pair.group));
+  log::info(
+      fmt::format("{}: {:.2g} % of the area in which they face each other is on facets of \"{}\" that are only partly "
+                  "covered: areas in contact count such facets as a whole, and pressures at their nodes are "
+                  "extrapolated (forces are correct); make facets end where the other surface ends, or put the "
+                  "multipliers on the side whose facets do (multipliers_on)",
+                  names_of_pair(pair), 100.0 * facing.partly_covered / facing.covered, pair.group));
 }
 
 }  // namespace
@@ -155,25 +156,25 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
   const PairingSummary& facing = model.pair_facings[number];
   if (pair.large_sliding && !pair.is_one_of_many && facing.points + facing.held > 0 &&
       facing.uncovered == facing.points) {
-    log::info(fmt::format("{} do not face each other at the start: contact begins where they do", names_of_pair(pair)));
+    log::info(fmt::format("{} do not face each other at the start: contact begins once they do", names_of_pair(pair)));
   }
   if (facing.points == 0 && facing.held == 0) {
     if (pair.is_one_of_many) return;  // other pairs do
     refuse(input, fmt::format("contact.{}.against", model.contacts[number].entry),
-           fmt::format("{} do not face each other: seen along the normals of \"{}\" there is no facet of \"{}\"; check "
-                       "which groups they are and where the bodies lie, {} by how much the body of "
-                       "\"{}\" moves until they meet{}",
-                       names_of_pair(pair), pair.group, pair.opposite_group,
-                       pair.pair_at.size() > 0 ? "and that pair_at says" : "or say with pair_at",
-                       model.contacts[number].group,
-                       pair.pair_at.size() > 0 ? " (surfaces that it puts deeper than half a cell into each other are "
-                                                 "past each other)"
-                                               : ""));
+           fmt::format(
+               "{} do not face each other: seen along the normals of \"{}\" there is no facet of \"{}\"; check the "
+               "groups and the positions of the bodies, {} the displacement of the body of \"{}\" at which they meet{}",
+               names_of_pair(pair), pair.group, pair.opposite_group,
+               pair.pair_at.size() > 0 ? "and that pair_at is" : "or set pair_at to", model.contacts[number].group,
+               pair.pair_at.size() > 0
+                   ? " (surfaces that it moves more than half a cell into each other count as having passed each other)"
+                   : ""));
   }
   if (facing.held > 0) {
-    log::warning(fmt::format("{}: {} held by supports on both sides in the direction of contact: no contact {} there",
-                             names_of_pair(pair), counted(facing.held, "multiplier is", "multipliers are"),
-                             facing.held == 1 ? "point is" : "points are"));
+    log::warning(
+        fmt::format("{}: {} held by supports on both sides in the direction of contact: no contact {} created there",
+                    names_of_pair(pair), counted(facing.held, "multiplier is", "multipliers are"),
+                    facing.held == 1 ? "point is" : "points are"));
   }
   report_partly_covered(pair, facing);
   if (facing.lost > 0) {
@@ -190,34 +191,34 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
     const double off = distance_from_curved(model.body, pair);
     if (off > felt * interference) {
       log::warning(fmt::format(
-          "{}: the surfaces are curved, and their straight facets are off by {:.2g} in the mean, beside an "
-          "overlap of {:.2g}: where meshes do not match, gaps and pressures are those of the facets, not of "
-          "the curved surfaces; use a mesh of second order (mesh.degree = 2 makes one of a geometry)",
+          "{}: the surfaces are curved, and their straight facets deviate from them by {:.2g} on average, compared "
+          "with an overlap of {:.2g}: where meshes do not match, gaps and pressures are those of the facets, not of "
+          "the curved surfaces; use a mesh of second order (mesh.degree = 2 creates one from a geometry)",
           names_of_pair(pair), off, interference));
     }
   }
   if (facing.closed > 0) {
-    log::info(fmt::format("{} overlap by up to {:.3g} at {}, as meshes: there they are taken to touch",
+    log::info(fmt::format("the meshes of {} overlap by up to {:.3g} at {}, where they are treated as touching",
                           names_of_pair(pair), -facing.smallest_gap, counted(facing.closed, "contact point")));
   }
   const bool has_edge = facing.agreement < sharp_edge && anchor_of(pair.multipliers) == MultiplierAnchor::node;
   if (has_edge && pair.large_sliding) {
     if (pair.is_one_of_many) return;
     log::info(
-        fmt::format("{}: facets of \"{}\" meet at edges, the sharpest at {}, where a contact point is the mean of both "
-                    "sides: where an edge itself presses, the mesh there should be fine",
+        fmt::format("{}: facets of \"{}\" meet at edges, the sharpest at {}, where a contact point averages over both "
+                    "sides: the mesh should be fine where an edge itself presses",
                     names_of_pair(pair), pair.group, position_text(facing.edge)));
   } else if (has_edge) {
     log::warning(
         fmt::format("{}: facets of \"{}\" meet at an edge at {}, where the direction of contact is the mean of their "
-                    "normals; give the facets of each side of the edge a contact of their own",
+                    "normals; use a separate contact for the facets on each side of the edge",
                     names_of_pair(pair), pair.group, position_text(facing.edge)));
   }
   warn_of_overlap_where_paired(input, number, model);
   if (pair.multipliers == "nodal" && !facing.matches) {
     log::warning(fmt::format(
         "{}: multipliers \"nodal\" on meshes that do not match: nodes of one side against facets of the other do not "
-        "pass a uniform pressure, and stresses near the contact can be wrong by tens of per cent; use \"p1\"",
+        "transmit a uniform pressure, and stresses near the contact can be wrong by tens of per cent; use \"p1\"",
         names_of_pair(pair)));
   }
 }
@@ -233,12 +234,12 @@ void check_body_overlaps(const Case& input, const Model& model) {
     if (overlap.count == 0) continue;
     refuse(
         input, fmt::format("contact.{}.group", model.contacts[number].entry),
-        fmt::format("{} overlap at the start: {} inside of the other body, the deepest by {:.3g} at {}, and would be "
-                    "pushed out at once, which creates energy; move the bodies apart, set initial_gap = \"closed\" "
-                    "where surfaces that touch overlap since their facets are flat, or set initial.displacement = "
-                    "\"static\" for a press fit",
-                    names_of_pair(pair), counted(overlap.count, "contact point is", "contact points are"),
-                    overlap.deepest, position_text(overlap.position)));
+        fmt::format(
+            "{} overlap at the start: {} inside the other body, the deepest by {:.3g} at {}, and would be pushed out "
+            "at once, which creates energy; move the bodies apart, set initial_gap = \"closed\" if surfaces that touch "
+            "overlap only because their facets are flat, or set initial.displacement = \"static\" for a press fit",
+            names_of_pair(pair), counted(overlap.count, "contact point is", "contact points are"), overlap.deepest,
+            position_text(overlap.position)));
   }
 }
 
@@ -250,10 +251,10 @@ void refuse_overlap_with_obstacle(const Case& input, const Model& model, std::si
       penetrating_points(model.problem, gap, static_cast<int>(number), facet_deviation * model.sizes.diameter);
   if (overlap.count == 0) return;
   refuse(input, fmt::format("contact.{}.group", model.contacts[number].entry),
-         fmt::format("at the start {} of group \"{}\" {} inside of obstacle \"{}\", the deepest by {:.3g} at {}, and "
-                     "would be pushed out at once, which creates energy; move one of them away, look on which side of "
-                     "the obstacle the body lies (a plane's normal points out of it, other shapes have a \"side\"), or "
-                     "start from initial.displacement = \"static\"",
+         fmt::format("at the start {} of group \"{}\" {} inside obstacle \"{}\", the deepest by {:.3g} at {}, and "
+                     "would be pushed out at once, which creates energy; move one of them away, check on which side of "
+                     "the obstacle the body is (the normal of a plane points out of it, other shapes have a \"side\"), "
+                     "or set initial.displacement = \"static\"",
                      counted(overlap.count, "contact point"), pair.group, overlap.count == 1 ? "is" : "are",
                      pair.obstacle_name, overlap.deepest, position_text(overlap.position)));
 }

@@ -92,12 +92,12 @@ class PairFinder {
 
   void check_count(const ModelContact& of_all, std::size_t count) const {
     if (count > 1) return;
-    refuse(
-        input_, fmt::format("contact.{}.group", of_all.entry),
-        fmt::format("contact of every body against every other: \"{}\" is on {}, {}; give [[contact]] an obstacle, or "
-                    "\"against\", which may be the group itself: a surface that touches itself",
-                    of_all.group, counted(count, "body", "bodies"),
-                    count == 0 ? "apart from tied surfaces" : "and there is no other"));
+    refuse(input_, fmt::format("contact.{}.group", of_all.entry),
+           fmt::format(
+               "contact of every body against every other: \"{}\" is on {}, {}; add an \"obstacle\" or \"against\" to "
+               "[[contact]]; \"against\" can be the group itself, for a surface that touches itself",
+               of_all.group, counted(count, "body", "bodies"),
+               count == 0 ? "apart from tied surfaces" : "and there is no other body"));
   }
 
   const Case& input_;

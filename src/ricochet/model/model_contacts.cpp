@@ -29,7 +29,7 @@ void check_overlap(const Case& input, const Model& model) {
   const std::vector<ContactPair>& pairs = model.contact_pairs;
   const auto refuse_pair = [&](std::size_t i, std::size_t k, std::size_t facets, const std::string& against) {
     refuse(input, fmt::format("contact.{}.group", model.contacts[i].entry),
-           fmt::format("contact groups \"{}\" and \"{}\" overlap: they share {} against {}", pairs[k].group,
+           fmt::format("contact groups \"{}\" and \"{}\" overlap: they share {} in contact with {}", pairs[k].group,
                        pairs[i].group, counted(facets, "facet"), against));
   };
   for (std::size_t i = 1; i < pairs.size(); ++i) {
@@ -45,7 +45,7 @@ void check_overlap(const Case& input, const Model& model) {
                    &second = crosswise ? pairs[k].facets : pairs[k].opposite_facets;
         const std::vector<Index> own = common_facets(pairs[i].facets, first);
         if (own.empty() || common_facets(pairs[i].opposite_facets, second).empty()) continue;
-        refuse_pair(i, k, own.size(), "the same facets of another group: one contact of two surfaces is enough");
+        refuse_pair(i, k, own.size(), "the same facets of another group; one contact per pair of surfaces is enough");
       }
     }
   }
@@ -82,7 +82,7 @@ void check_stability(const Case& input, const ModelContact& section, const Model
     if (reason.empty()) continue;
     if (!section.allow_unstable_multipliers) {
       refuse(input, fmt::format("contact.{}.multipliers", section.entry),
-             fmt::format("{} (unstable_multipliers = \"allow\" runs it all the same)", reason));
+             fmt::format("{} (unstable_multipliers = \"allow\" permits the run anyway)", reason));
     }
     log::warning(
         fmt::format("contact of group \"{}\": {}; pressures may oscillate from point to point", section.group, reason));
@@ -141,9 +141,10 @@ void add_contacts(const Case& input, Model& model) {
   model.problem.contact_stress = [&model] { return make_contact_stress(model.body, model.problem.contact); };
   warn_of_bounds_without_area(model);
   if (held > 0) {
-    log::warning(fmt::format("{} held by supports in the direction of the obstacle's normal: no contact {} there",
-                             counted(held, "node of contact boundaries is", "nodes of contact boundaries are"),
-                             held == 1 ? "point is" : "points are"));
+    log::warning(
+        fmt::format("{} held by supports in the direction of the obstacle's normal: no contact {} created there",
+                    counted(held, "node of contact boundaries is", "nodes of contact boundaries are"),
+                    held == 1 ? "point is" : "points are"));
   }
 }
 

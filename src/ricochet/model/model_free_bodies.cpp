@@ -32,12 +32,11 @@ void require_ground(const Case& input, const ObstacleSection& section, const std
         is_rotation ? section.rotation_spring > 0.0 : k < section.spring.size() && section.spring[k] > 0.0;
     const bool is_held = std::find(section.hold.begin(), section.hold.end(), motions[k]) != section.hold.end();
     if (has_spring || is_held) continue;
-    refuse(
-        input, key,
-        fmt::format("initial.displacement = \"static\" needs what holds \"{}\" against {}, as contact alone holds no "
-                    "rigid body in a static start: give it a {}, however weak, or name \"{}\" in \"hold\"",
-                    section.name, is_rotation ? "rotation" : "motion along " + motions[k],
-                    is_rotation ? "rotation_spring (in two dimensions)" : "spring", motions[k]));
+    refuse(input, key,
+           fmt::format("initial.displacement = \"static\" requires a restraint of \"{}\" against {}, because contact "
+                       "alone holds no rigid body in a static start: add a {}, however weak, or add \"{}\" to \"hold\"",
+                       section.name, is_rotation ? "rotation" : "motion along " + motions[k],
+                       is_rotation ? "rotation_spring (in two dimensions)" : "spring", motions[k]));
   }
 }
 
@@ -49,8 +48,8 @@ FreeMotion::Inertia inertia_of(const Case& input, const ObstacleSection& section
   const auto need_solid = [&](const std::string& what) {
     if (!solid)
       refuse(input, key,
-             fmt::format("obstacle \"{}\" encloses nothing that has {}: give its mass, inertia and centre_of_mass (a "
-                         "ball, a ring or a closed surface, seen from outside, has them from its density)",
+             fmt::format("obstacle \"{}\" encloses nothing that has {}: set its mass, inertia and centre_of_mass (for "
+                         "a ball, a ring or a closed surface, seen from outside, they follow from its density)",
                          section.name, what));
   };
   FreeMotion::Inertia result;
@@ -80,7 +79,7 @@ FreeMotion::Inertia inertia_of(const Case& input, const ObstacleSection& section
   if (!(result.moments.minCoeff() > 0.0)) refuse(input, key + ".inertia", "moments of inertia must be positive");
   if (dimension == 3 && 2.0 * result.moments.maxCoeff() > result.moments.sum() * (1.0 + 1e-9)) {
     refuse(input, key + ".inertia",
-           "a moment of inertia must not be larger than the sum of the other two: no body has such ones");
+           "a moment of inertia must not be larger than the sum of the other two: no body has such moments");
   }
   return result;
 }
@@ -94,10 +93,11 @@ void add_free_bodies(const Case& input, Model& model) {
     if (!section.is_free()) continue;
     if (is_axisymmetric(input))
       refuse(input, "obstacle." + section.name,
-             "rigid bodies that move freely are for plane and spatial cases, not for axisymmetric ones");
+             "rigid bodies that move freely are supported in plane and three-dimensional cases, not in axisymmetric "
+             "cases");
     if (d == 3 && section.rotation_spring > 0.0)
       refuse(input, "obstacle." + section.name + ".rotation_spring",
-             "a spring against rotation is for two dimensions: in three, hold the rotation or damp it");
+             "a spring against rotation is supported in two dimensions only: in three, hold the rotation or damp it");
     const FreeMotion::Inertia inertia = inertia_of(input, section, model.obstacles[k]->shape(), d);
     Points& nodes = model.space.nodes;
     const Index first = nodes.cols();
@@ -151,7 +151,7 @@ void add_ground(const Case& input, Model& model) {
          {std::tuple{"spring", &section.spring, &stiffness}, std::tuple{"damper", &section.damper, &damping}}) {
       for (std::size_t k = 0; k < values->size(); ++k) {
         if ((*values)[k] < 0.0)
-          refuse(input, key + "." + name, fmt::format("\"{}\" must not be negative: it would give energy", name));
+          refuse(input, key + "." + name, fmt::format("\"{}\" must not be negative: it would create energy", name));
         (*target)[body.centre_node() * d + static_cast<Index>(k)] = (*values)[k];
       }
     }

@@ -111,7 +111,7 @@ class GroupCompleter {
     if (!made_before && mesh_.find_group(group, dimension) != nullptr) {
       problems_.add(
           input_.where(key_path),
-          fmt::format("{}: the mesh has a group that is called \"{}\" as a whole; give the list in another order",
+          fmt::format("{}: the mesh has a group whose name is the whole list, \"{}\"; write the list in another order",
                       mesh_.source, group));
       return;
     }

@@ -37,7 +37,7 @@ void choose_dilatation(const Case& input, std::size_t i, Model& model) {
                         !is_plane_stress(model.body);
   if (section.dilatation == "mean" && !has_mean) {
     refuse(input, fmt::format("material.{}.dilatation", i),
-           "\"mean\" needs a law with an energy of the volume alone (neo-hookean, mooney-rivlin), cells that are no "
+           "\"mean\" requires a law with a separate volumetric energy (neo-hookean, mooney-rivlin), cells other than "
            "triangles or tetrahedra of degree 1, and no plane stress");
   }
   const double poisson = material.poisson();
@@ -45,11 +45,11 @@ void choose_dilatation(const Case& input, std::size_t i, Model& model) {
       has_mean && (section.dilatation == "mean" || (section.dilatation == "automatic" && poisson >= mean_from));
   const bool locks = input.mesh.degree == 1 && !is_plane_stress(model.body) && !material.mean_dilatation;
   if (!locks || poisson < locks_from) return;
-  log::warning(
-      fmt::format("material \"{}\" is nearly incompressible (Poisson's ratio {:.4g}): elements of degree 1 lock and "
-                  "are far too stiff; use mesh.degree = 2{}",
-                  section.group, poisson,
-                  material.law->is_linear() ? "" : ", or quadrilaterals or hexahedra, whose mean dilatation does not"));
+  log::warning(fmt::format(
+      "material \"{}\" is nearly incompressible (Poisson's ratio {:.4g}): elements of degree 1 lock and "
+      "are far too stiff; use mesh.degree = 2{}",
+      section.group, poisson,
+      material.law->is_linear() ? "" : ", or quadrilaterals or hexahedra, which do not lock with the mean dilatation"));
 }
 
 /// Adds the viscoelastic branches.
@@ -60,18 +60,19 @@ void add_relaxation(const Case& input, std::size_t i, Model& model) {
   const std::string key = fmt::format("material.{}.relaxation", i);
   if (material.law->is_linear()) {
     refuse(input, key,
-           "the law \"linear\" does not relax: use \"saint-venant-kirchhoff\", which is the same for small strains, or "
-           "another law of finite strain");
+           "the law \"linear\" does not support viscoelastic branches: use \"saint-venant-kirchhoff\", which is the "
+           "same for small strains, or another law of finite strain");
   }
   if (is_plane_stress(model.body))
     refuse(input, key,
-           "stress relaxes in plane strain, axisymmetric bodies and solids; not with mesh.plane = \"stress\"");
+           "viscoelastic branches are supported in plane strain, axisymmetric bodies and solids, not with mesh.plane = "
+           "\"stress\"");
   for (std::size_t k = 0; k < section.time.size(); ++k) {
     material.relaxation.push_back({section.modulus[k], section.time[k]});
     if (input.time.adaptive || !(input.time.step > section.time[k])) continue;
     log::info(
-        fmt::format("{}: time.step is {:.3g} times the relaxation time {:.3g}: steps do not resolve how that branch "
-                    "relaxes, and it is relaxed at the end of each",
+        fmt::format("{}: time.step is {:.3g} times the relaxation time {:.3g}: steps do not resolve the relaxation of "
+                    "that branch, which is relaxed at the end of each step",
                     input.where(key).text(), input.time.step / section.time[k], section.time[k]));
   }
 }
@@ -94,21 +95,22 @@ void require_digits(const Case& input, std::size_t i, const Model& model) {
   double at_once = 0.0;
   for (const RelaxationBranch& branch : material.relaxation) at_once += branch.modulus;
   if (!(at_once <= most)) {
-    refuse(input, fmt::format("material.{}.relaxation", i),
-           fmt::format("the entries of \"modulus\" sum to {:.3g}: they are relative to the shear modulus of the law, "
-                       "what is left in the end, of which hardly a digit counts beside {:.0e} and more; the law's own "
-                       "constants are those that are left, so take larger ones there and smaller entries here",
-                       at_once, most));
+    refuse(
+        input, fmt::format("material.{}.relaxation", i),
+        fmt::format("the entries of \"modulus\" sum to {:.3g}: they are relative to the shear modulus of the law, the "
+                    "long-term modulus, of which hardly a digit remains beside a sum of {:.0e} or more; the constants "
+                    "of the law are the long-term ones, so use larger constants there and smaller entries here",
+                    at_once, most));
   }
   if (bulk > most * shear || shear > most * bulk) {
     const bool is_stiff_in_volume = bulk > shear;
     refuse(
         input, key_of(section, i, {"poisson", "bulk_modulus", "lambda"}),
         fmt::format("material \"{}\" has the shear modulus {:.3g} and the bulk modulus {:.3g}: beside the larger one "
-                    "hardly a digit of the other is left (at most {:.0e} times as much is possible); {}",
+                    "hardly a digit of the other remains (their ratio must not exceed {:.0e}); {}",
                     section.group, shear, bulk, most,
-                    is_stiff_in_volume ? "Poisson's ratio up to 0.49999 is nearly incompressible, too"
-                                       : "a Poisson's ratio of -0.9999 is as near to -1 as matters"));
+                    is_stiff_in_volume ? "use a Poisson's ratio of at most 0.49999, which is nearly incompressible, too"
+                                       : "use a Poisson's ratio of at least -0.9999, which is practically -1"));
   }
 }
 
@@ -123,11 +125,10 @@ void require_inertia(const Case& input, std::size_t i, const Model& model) {
   const double crossings = input.time.step * speed / extent(model.mesh.nodes);
   if (crossings * crossings <= most) return;
   refuse(input, key_of(input.materials[i], i, {"young", "mu", "c10"}),
-         fmt::format(
-             "material \"{}\" has compression waves of the speed {:.3g}, which cross all of the mesh {:.3g} times in "
-             "time.step = {:.3g}: beside such a stiffness no digit is left of the inertia of bodies that no "
-             "support holds; check the units of stiffness ({:.3g}, Young's modulus) and density ({:.3g})",
-             input.materials[i].group, speed, crossings, input.time.step, material.young(), material.density));
+         fmt::format("material \"{}\" has compression waves of speed {:.3g}, which cross the whole mesh {:.3g} times "
+                     "in time.step = {:.3g}: beside such a stiffness no digit remains of the inertia of bodies without "
+                     "supports; check the units of stiffness ({:.3g}, Young's modulus) and density ({:.3g})",
+                     input.materials[i].group, speed, crossings, input.time.step, material.young(), material.density));
 }
 
 /// Warns if λ is thousands of times μ: its changes during the iterations then hide those of μ.
@@ -151,8 +152,8 @@ void require_one_kind_of_law(const Case& input, const Model& model) {
   for (std::size_t i = 0; i < model.body.materials.size(); ++i) {
     if (!model.body.materials[i].law->is_linear()) continue;
     refuse(input, fmt::format("material.{}.law", i),
-           "another material has a law of finite strain, and \"linear\" holds for small rotations only: use "
-           "\"saint-venant-kirchhoff\", which is the same for small strains and sees no rotation");
+           "another material has a law of finite strain, and \"linear\" is valid for small rotations only: use "
+           "\"saint-venant-kirchhoff\", which is the same for small strains and valid for any rotation");
   }
 }
 
@@ -161,14 +162,14 @@ void refuse_fields_of_finite_strain(const Case& input, const Model& model) {
   for (const std::string& name : input.output.fields) {
     if (name.starts_with("nominal_")) {
       refuse(input, "output.fields",
-             fmt::format("\"{}\" is of laws of finite strain, and this case has the linear one, with which it is the "
-                         "same as \"{}\": name that, or set material.law",
+             fmt::format("\"{}\" requires a law of finite strain; with the linear law of this case it is the same as "
+                         "\"{}\": use that field, or set material.law",
                          name, name.substr(std::string_view("nominal_").size())));
     }
     if (!name.starts_with("principal_stretch")) continue;
     refuse(input, "output.fields",
-           fmt::format("\"{}\" is of laws of finite strain, and this case has the linear one, whose stretches are 1 + "
-                       "principal strain: leave it out, or set material.law",
+           fmt::format("\"{}\" requires a law of finite strain, but this case has the linear law, whose stretches are "
+                       "1 + principal strain: leave it out, or set material.law",
                        name));
   }
 }
@@ -210,8 +211,8 @@ void assign_materials(const Case& input, Model& model) {
       if (group.dimension == mesh.dimension) names.push_back(group.name);
     }
     refuse(input, "material",
-           fmt::format("{} of {} of {} {} no material: give a [[material]] for every group of cells "
-                       "(the mesh has {}), and put every cell into a group",
+           fmt::format("{} of {} of {} {} no material: add a [[material]] for every group of cells (the mesh has {}), "
+                       "and put every cell into a group",
                        without, counted(mesh.cell_count(), "cell"), mesh.source, without == 1 ? "has" : "have",
                        names.empty() ? "none" : join_names(names)));
   }

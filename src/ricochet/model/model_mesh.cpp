@@ -74,10 +74,10 @@ void check_placement(const Case& input, const CaseMeshFile& file, int dimension)
     if (input.locations.contains(fmt::format("{}.{}", key, i))) key += fmt::format(".{}", i);
     check_length(input, key + ".about", turn.about.size(), dimension);
     if (dimension == 2 && !turn.axis.empty())
-      refuse(input, key + ".axis", "the mesh has dimension 2, where it turns about a point: leave out the axis");
+      refuse(input, key + ".axis", "the mesh has dimension 2, where it rotates about a point: remove the axis");
     check_length(input, key + ".axis", turn.axis.size(), dimension);
     if (dimension == 3 && turn.axis.empty() && turn.angle != 0.0)
-      refuse(input, key, "the mesh has dimension 3: give \"turn\" an axis, as in axis = [0, 0, 1]");
+      refuse(input, key, "the mesh has dimension 3: add an axis to \"turn\", as in axis = [0, 0, 1]");
   }
 }
 

@@ -39,10 +39,9 @@ std::vector<Index> cells_of(const Case& input, const MotionSection& motion, cons
 [[noreturn]] void refuse_both(const Case& input, int a, int b, const std::string& shared) {
   const MotionSection& first = input.motions[static_cast<std::size_t>(std::min(a, b))];
   const MotionSection& second = input.motions[static_cast<std::size_t>(std::max(a, b))];
-  refuse(
-      input, key_of_cells(second),
-      fmt::format("{} shares {} with {}, which has a motion at {}: give motions to groups that have no node in common",
-                  text_of(second), shared, text_of(first), input.where(key_of_cells(first)).text()));
+  refuse(input, key_of_cells(second),
+         fmt::format("{} shares {} with {}, which has a motion at {}: use groups that have no node in common",
+                     text_of(second), shared, text_of(first), input.where(key_of_cells(first)).text()));
 }
 
 /// Returns per node the index of its motion; −1 if none.
@@ -117,10 +116,11 @@ void check_motions(const Case& input, int dimension) {
     if (entries == 0 || entries == wanted) continue;
     refuse(input, motion.section + ".spin",
            dimension == 2
-               ? fmt::format("\"spin\" has {}, but the mesh has dimension 2, where it is one number: write spin = 3.0",
-                             counted(entries, "entry", "entries"))
-               : std::string("\"spin\" is a number, but the mesh has dimension 3, where it is a vector: write spin = "
-                             "[0.0, 0.0, 3.0]"));
+               ? fmt::format(
+                     "\"spin\" has {}, but the mesh has dimension 2, where it must be one number: write spin = 3.0",
+                     counted(entries, "entry", "entries"))
+               : std::string("\"spin\" is a number, but the mesh has dimension 3, where it must be a vector: write "
+                             "spin = [0.0, 0.0, 3.0]"));
   }
 }
 

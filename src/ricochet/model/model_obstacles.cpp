@@ -35,14 +35,14 @@ std::unique_ptr<Obstacle> make_obstacle(const Case& input, const ObstacleSection
     std::unique_ptr<ObstacleShape> shape = make_obstacle_shape(section.type, section.parameters);
     if (shape->centre().size() > 0 && shape->centre().size() != dimension) {
       refuse(input, key,
-             fmt::format("obstacle \"{}\" is in {} dimensions, but the mesh has {}", section.name,
+             fmt::format("obstacle \"{}\" has dimension {}, but the mesh has dimension {}", section.name,
                          shape->centre().size(), dimension));
     }
     if (section.rotation_rate != 0.0 && !shape->symmetry_axis().exists) {
       refuse(
           input, key + ".rotation_rate",
-          fmt::format("obstacle \"{}\" has no axis of its own that it could turn about and stay the same surface (the "
-                      "normal of a plane is one in three dimensions): give \"rotation\" in place of \"rotation_rate\"",
+          fmt::format("obstacle \"{}\" has no axis about which it could rotate without changing its surface (in three "
+                      "dimensions the normal of a plane is one): use \"rotation\" instead of \"rotation_rate\"",
                       section.name));
     }
     Vector about = as_vector(section.about);

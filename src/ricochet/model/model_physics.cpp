@@ -25,10 +25,10 @@ namespace {
 
 void warn_of_creep(const Case& input, const Scheme& scheme, const SemidiscreteProblem& problem) {
   if (!scheme.stuck_nodes_alternate() || problem.has_singular_mass() || !problem.contact.has_friction()) return;
-  log::warning(fmt::format(
-      "{}, friction and mass \"{}\": nodes that stick keep their velocity with alternating sign, their forces rattle "
-      "and slips come out wrong; use mass \"equivalent\"",
-      scheme_text(input.time), input.mass.type));
+  log::warning(
+      fmt::format("{} with friction and mass \"{}\": nodes that stick keep their velocity with alternating sign, their "
+                  "forces oscillate and slips are wrong; use mass \"equivalent\"",
+                  scheme_text(input.time), input.mass.type));
 }
 
 void warn_of_long_steps(const Case& input, const Scheme& scheme, const Model& model) {
@@ -38,12 +38,12 @@ void warn_of_long_steps(const Case& input, const Scheme& scheme, const Model& mo
   const std::vector<double> times = cell_crossing_times(model.body);
   const double median = times[times.size() / 2], crossings = input.time.step / median;
   if (!(crossings > limit.crossings)) return;
-  log::warning(fmt::format(
-      "{}: in time.step = {:.3g} a compression wave crosses a median cell {:.3g} times, and with {} with steps of more "
-      "than {:g} such times {}; take a step of at most {:.2g}, or scheme \"reduced-kane\" with mass \"equivalent\", "
-      "which takes any step",
-      input.where("time.step").text(), input.time.step, crossings, scheme_text(input.time), limit.crossings,
-      limit.trouble, rounded_down(limit.crossings * median, 2)));
+  log::warning(
+      fmt::format("{}: in time.step = {:.3g} a compression wave crosses a median cell {:.3g} times; with {}, at more "
+                  "than {:g} per step, {}; use a step of at most {:.2g}, or scheme \"reduced-kane\" with mass "
+                  "\"equivalent\", which accepts any step",
+                  input.where("time.step").text(), input.time.step, crossings, scheme_text(input.time), limit.crossings,
+                  limit.trouble, rounded_down(limit.crossings * median, 2)));
 }
 
 /// Warns of a body of degree 1 most of whose nodes are on its contact boundary: few are left inside to carry the
@@ -56,9 +56,9 @@ void warn_of_few_interior_nodes(const Model& model, std::size_t contact_nodes) {
       model.space.degree == 1 && static_cast<double>(contact_nodes) > most * static_cast<double>(nodes);
   if (!is_thin || !model.problem.has_singular_mass() || !model.problem.contact.has_friction()) return;
   log::warning(
-      fmt::format("{} of {} nodes are contact nodes, whose inertia mass \"{}\" moves inside: on so coarse a mesh the "
-                  "motion along the obstacle and the spin that friction makes can be wrong by tens of per cent; name "
-                  "only facets that may touch in the contact group, refine the mesh, or set mesh.degree = 2",
+      fmt::format("{} of {} nodes are contact nodes, whose inertia mass \"{}\" moves to inner nodes: on such a coarse "
+                  "mesh the motion along the obstacle and the spin caused by friction can be wrong by tens of per "
+                  "cent; name only facets that may touch in the contact group, refine the mesh, or set mesh.degree = 2",
                   contact_nodes, nodes, model.mass_built));
 }
 
@@ -70,12 +70,11 @@ void warn_of_concentrated_inertia(const Case& input, const std::string& built, c
   const double top = top_eigenvalue(mass, diagonal);
   if (top <= most) return;
   log::warning(fmt::format(
-      "mass \"{}\" heaps up to {:.2g} times the inertia that was there on nodes off the contact boundary, which are "
-      "few "
-      "or far away: vibrations of this body and its restitution can be wrong by tens of per cent; {}refine the mesh, "
-      "set "
-      "mesh.degree = 2, or name only facets that may touch in the contact group",
-      built, top, built == input.mass.type ? "see whether mass \"equivalent\" chooses one that does not, " : ""));
+      "mass \"{}\" concentrates up to {:.2g} times the original inertia on nodes off the contact boundary, which are "
+      "few or far away: vibrations of this body and its restitution can be wrong by tens of per cent; {}refine the "
+      "mesh, set mesh.degree = 2, or name only facets that may touch in the contact group",
+      built, top,
+      built == input.mass.type ? "check whether mass \"equivalent\" selects a construction that does not, " : ""));
 }
 
 /// Returns the step at which the velocity of a prescribed displacement jumps; none if it is smooth. A jump is a second
@@ -116,8 +115,8 @@ void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
     if (!jump) continue;
     log::warning(
         fmt::format("{}: the velocity of this support jumps at t = {:.6g}. {} keeps such a jump from step to step with "
-                    "alternating sign{}; make the motion smooth, for example with 0.5*(1-cos(pi*t/T)), and take ten "
-                    "steps or more for it, or do not use the forces of this support",
+                    "alternating sign{}; make the motion smooth, for example with 0.5*(1-cos(pi*t/T)), and resolve it "
+                    "with at least ten steps, or do not use the forces of this support",
                     input.where(fmt::format("support.{}.value", i)).text(), static_cast<double>(*jump) * time.step,
                     scheme_text(time),
                     response == Scheme::JumpResponse::grows ? ", and the support's force grows with every step"
@@ -134,8 +133,8 @@ void refuse_stiffness_damping(const Case& input, const Model& model) {
   for (std::size_t i = 0; i < model.body.materials.size(); ++i) {
     if (model.body.materials[i].stiffness_damping == 0.0) continue;
     refuse(input, fmt::format("material.{}.damping.stiffness", i),
-           "stiffness damping resists rotations that are not small, and some material here has a law of finite strain: "
-           "set it to 0");
+           "stiffness damping resists rotations that are not small, and a material of this case has a law of finite "
+           "strain: set it to 0");
   }
 }
 
@@ -185,7 +184,7 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
     } catch (const Error& problem) {
       const bool is_chosen = !choice.name.empty() && choice.name != input.mass.type;
       refuse(input, "mass.type",
-             is_chosen ? fmt::format("\"{}\" is one of several masses: {}", input.mass.type, problem.what())
+             is_chosen ? fmt::format("\"{}\" selects one of several masses: {}", input.mass.type, problem.what())
                        : std::string(problem.what()));
     }
   };
@@ -222,14 +221,15 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
   if (!model.problem.internal_force->is_linear() && !scheme->supports_nonlinear_force()) {
     refuse(input, "time.scheme",
-           fmt::format("scheme \"{}\" needs the linear material law; \"reduced-kane\", the default, takes those of "
-                       "finite strain, too, and so does \"semi-explicit\"",
+           fmt::format("scheme \"{}\" requires the linear material law; \"reduced-kane\", the default, also supports "
+                       "laws of finite strain, and so does \"semi-explicit\"",
                        input.time.scheme));
   }
   if (!model.problem.free_bodies.empty() && !scheme->supports_free_bodies()) {
-    refuse(input, "time.scheme",
-           fmt::format("scheme \"{}\" takes no rigid bodies that move freely; \"reduced-kane\", the default, does",
-                       input.time.scheme));
+    refuse(
+        input, "time.scheme",
+        fmt::format("scheme \"{}\" does not support rigid bodies that move freely; \"reduced-kane\", the default, does",
+                    input.time.scheme));
   }
   require_relaxation(*scheme, model.problem,
                      fmt::format("{}: scheme \"{}\"", input.where("time.scheme").text(), input.time.scheme));

@@ -63,7 +63,8 @@ SpaceVector direction_of(const Case& input, const std::string& key, const Obstac
   if (!is_axisymmetric(input)) return direction;
   direction[0] = 0.0;
   if (direction.norm() == 0.0)
-    refuse(input, key, "an axisymmetric body moves along its axis alone, and the obstacle's normal is across it");
+    refuse(input, key,
+           "an axisymmetric body can move only along its axis, and the obstacle's normal is perpendicular to it");
   return direction.normalized();
 }
 
@@ -85,11 +86,10 @@ void rest_on_obstacle(const Case& input, const CaseMeshFile& file, const Model& 
     way -= nearest.gap - file.rest_gap;
     if (way == before) break;
     if (!(std::abs(way) < limit) || round > most_rounds) {
-      refuse(
-          input, key,
-          fmt::format("the body does not come to rest on obstacle \"{}\": moved along ({:.4g}) it passes by; say with "
-                      "\"move\" where it is to come down",
-                      file.rest_on, fmt::join(SpaceVector(way < 0.0 ? -direction : direction), ", ")));
+      refuse(input, key,
+             fmt::format("the body does not come to rest on obstacle \"{}\": moved along ({:.4g}) it misses the "
+                         "obstacle; use \"move\" to set where it comes down",
+                         file.rest_on, fmt::join(SpaceVector(way < 0.0 ? -direction : direction), ", ")));
     }
     nearest = nearest_to(obstacle, nodes, way * direction);
   }

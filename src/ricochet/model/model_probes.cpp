@@ -46,14 +46,13 @@ class ProbeFinder {
     const auto entries = std::count(nodes.begin(), nodes.end(), node);
     if (entries > 0) probe.contact_node = nearest_contact(node);
     if (entries > 0 && std::isnan(model_.problem.contact.node_initial_gap[probe.contact_node]))
-      log::info(fmt::format("probe \"{}\" is at a node that faces nothing of the other body: it has no gap", name));
+      log::info(fmt::format("probe \"{}\" is at a node that does not face the other body: it has no gap", name));
     if (entries > 1) {
       const auto first = static_cast<std::size_t>(probe.contact_node);
       const auto pair = static_cast<std::size_t>(model_.problem.contact.node_pair[first]);
       log::warning(fmt::format(
-          "probe \"{}\" is at a node of {} contacts: its gap, pressure and reaction are those with {}, which is the "
-          "nearest "
-          "one at the start",
+          "probe \"{}\" is at a node of {} contacts: its gap, pressure and reaction refer to {}, the nearest one at "
+          "the start",
           name, entries, model_.contact_pairs[pair].opponent(model_.problem.contact.is_opposite[first] != 0)));
     }
     targets_.columns.push_back(make_point_sensor(model_.problem, probe)->columns());
@@ -99,7 +98,7 @@ class ProbeFinder {
     const Index node = with_multipliers(nearest.node);
     if (node != nearest.node) {
       log::info(
-          fmt::format("probe \"{}\": nodes of two bodies are there; it is at that of {}, which carries the "
+          fmt::format("probe \"{}\": nodes of two bodies coincide there; it is at the node of {}, which carries the "
                       "multipliers of their contact",
                       section.name, body_of(node)));
     }
@@ -144,8 +143,8 @@ class ProbeFinder {
     }
     if (found.empty()) {
       refuse(input_, key + ".from",
-             fmt::format("no node lies within {:.3g} of the segment; the nearest is {:.3g} away: give \"within\"",
-                         limit, nearest));
+             fmt::format("no node lies within {:.3g} of the segment; the nearest is {:.3g} away: set \"within\"", limit,
+                         nearest));
     }
     std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
       return std::pair(a.along, a.number) < std::pair(b.along, b.number);
@@ -161,8 +160,8 @@ class ProbeFinder {
     if (!model_.tied.empty() &&
         std::any_of(nodes.begin(), nodes.end(), [&](Index node) { return model_.tied.is_tied(node); })) {
       log::warning(
-          fmt::format("probe \"{}\": forces that pass through a tie are not in the force of boundary \"{}\": they "
-                      "are inside of one body",
+          fmt::format("probe \"{}\": forces transmitted by a tie are not included in the force of boundary \"{}\": "
+                      "they are internal to one body",
                       section.name, section.boundary));
     }
     targets_.nodes = nodes;
@@ -185,7 +184,7 @@ class ProbeFinder {
     if (!held) return "its force is that of the contacts at its nodes, which no support holds (loads are not counted)";
     return fmt::format(
         "its force and moment are the sum of supports and of contacts, which share {} with it; support and "
-        "support_moment are of the supports alone (loads are not counted)",
+        "support_moment are those of the supports alone (loads are not counted)",
         counted(shared, "node"));
   }
 
@@ -197,8 +196,8 @@ class ProbeFinder {
     }
     if (input_.contacts[static_cast<std::size_t>(*section.contact)].tied) {
       refuse(input_, key + ".contact",
-             fmt::format("contact {} is tied: it has no contact points whose forces could be watched; use a probe with "
-                         "\"group\" for stresses near the surface",
+             fmt::format("contact {} is tied: it has no contact points whose forces could be recorded; use a probe "
+                         "with \"group\" for stresses near the surface",
                          *section.contact));
     }
     targets_.sums = describe_contact_forces(*section.contact);
@@ -211,8 +210,8 @@ class ProbeFinder {
     }
     if (pairs.size() != 1)
       return fmt::format(
-          "its force is the sum over {} of contact {}, of each that on the body of its first group; its area is "
-          "that of the pressed parts of the sides that carry the multipliers",
+          "its force is the sum, over {} of contact {}, of the force on the body of the first group; its area is that "
+          "of the pressed parts of the sides that carry the multipliers",
           counted(pairs.size(), "pair"), entry);
     const ContactPair& pair = *pairs.front();
     const std::string on =

@@ -28,22 +28,21 @@ void check_tie(const Case& input, std::size_t number, const ContactPair& pair, c
   const std::string key = fmt::format("contact.{}.against", number);
   if (surface.ties.empty()) {
     refuse(input, key,
-           fmt::format("nothing of groups \"{}\" and \"{}\" can be tied: seen along the normals of \"{}\" there is no "
-                       "facet of \"{}\"; check which groups they are and where the bodies lie",
+           fmt::format("groups \"{}\" and \"{}\" cannot be tied: seen along the normals of \"{}\" there is no facet of "
+                       "\"{}\"; check the groups and the positions of the bodies",
                        pair.group, pair.opposite_group, pair.group, pair.opposite_group));
   }
   if (surface.farthest_in_heights > farthest_apart) {
-    refuse(
-        input, key,
-        fmt::format("groups \"{}\" and \"{}\" are too far apart to be tied: by {:.3g} heights of a cell at ({:.6g}); "
-                    "move the bodies until the surfaces touch, or tie only what touches",
-                    pair.group, pair.opposite_group, surface.farthest_in_heights,
-                    fmt::join(surface.farthest_position, ", ")));
+    refuse(input, key,
+           fmt::format("groups \"{}\" and \"{}\" are too far apart to be tied: by {:.3g} cell heights at ({:.6g}); "
+                       "move the bodies until the surfaces touch, or tie only the parts that touch",
+                       pair.group, pair.opposite_group, surface.farthest_in_heights,
+                       fmt::join(surface.farthest_position, ", ")));
   }
   if (surface.farthest_in_heights > moved) {
     (surface.farthest_in_heights > moved_far ? log::warning : log::info)(
-        fmt::format("nodes of \"{}\" move by up to {:.2g} heights of a cell onto the surface of \"{}\", so that "
-                    "turns have no strain",
+        fmt::format("nodes of \"{}\" are moved by up to {:.2g} cell heights onto the surface of \"{}\", so that "
+                    "rotations cause no strain",
                     pair.group, surface.farthest_in_heights, pair.opposite_group));
   }
   log::info(fmt::format("{} of \"{}\" {} \"{}\", on {:.3g} % of the area of \"{}\"",
@@ -76,9 +75,9 @@ class TieCollection {
     if (2 * taken.size() > surface.ties.size()) refuse_second_tie(contact, *taken.begin());
     if (!taken.empty()) {
       surface = tie(contact, taken);
-      log::info(fmt::format("tied groups \"{}\" and \"{}\": {} another tied surface, too, and {} that one", pair.group,
-                            pair.opposite_group,
-                            counted(taken.size(), "node is at the end of", "nodes are at the end of"),
+      log::info(fmt::format("tied groups \"{}\" and \"{}\": {} another tied surface, too, and {} that surface",
+                            pair.group, pair.opposite_group,
+                            counted(taken.size(), "node is at the rim of", "nodes are at the rim of"),
                             taken.size() == 1 ? "follows" : "follow"));
     }
     check_tie(input_, model_.contacts[contact].entry, pair, surface);
@@ -111,12 +110,12 @@ class TieCollection {
     const Vector at = model_.space.nodes.col(node);
     const int by = tied_by_[static_cast<std::size_t>(node)];
     refuse(input_, fmt::format("contact.{}.group", model_.contacts[contact].entry),
-           fmt::format("the node at ({:.6g}) of group \"{}\", and others, {}: they cannot follow two surfaces; let the "
+           fmt::format("the node at ({:.6g}) of group \"{}\" and others {}: they cannot follow two surfaces; make the "
                        "other group follow (multipliers_on), leave the facets around them out of one of the groups, or "
-                       "give one contact a list of groups",
+                       "use one contact with a list of groups",
                        fmt::join(at, ", "), model_.contact_pairs[contact].group,
-                       by >= 0 ? fmt::format("are tied already, by contact {}", by)
-                               : "are followed by what they would follow"));
+                       by >= 0 ? fmt::format("are already tied by contact {}", by)
+                               : "are followed by the nodes that they would follow"));
   }
 
   const Case& input_;
@@ -133,15 +132,15 @@ void move_nodes(const Case& input, Model& model) {
                                  "the nodes of tied surfaces, which are moved onto the other surface, move");
   } catch (const Error& problem) {
     refuse(input, "contact",
-           fmt::format("{}; mesh the surfaces so that they touch, or let the other one follow (multipliers_on)",
+           fmt::format("{}; mesh the surfaces so that they touch, or make the other surface follow (multipliers_on)",
                        problem.what()));
   }
   if (off <= moved) return;
   model.contains_rotations = false;
   log::warning(
-      fmt::format("tied surfaces are curved, and the displacement has nodes that the mesh does not have: these lie "
-                  "off the mesh's edges by {:.2g} of a facet where they follow the other surface, so turns have "
-                  "strain there; make the mesh of order {}",
+      fmt::format("tied surfaces are curved, and the displacement has nodes that the mesh does not have: these lie off "
+                  "the mesh's edges by {:.2g} of a facet where they follow the other surface, so that rotations cause "
+                  "strain there; use a mesh of order {}",
                   off, input.mesh.degree));
 }
 
@@ -174,11 +173,10 @@ void warn_of_torn_ties(const Model& model) {
   const double largest = model.initial.velocity.lpNorm<Eigen::Infinity>();
   const double torn = (completed - model.initial.velocity).lpNorm<Eigen::Infinity>();
   if (!(torn > rounding * largest)) return;
-  log::warning(
-      fmt::format("bodies that are tied start with velocities that differ by up to {:.3g} at the tie: its nodes take "
-                  "those of the other surface, and the momentum and energy of the start are not those of the "
-                  "velocities given",
-                  torn));
+  log::warning(fmt::format(
+      "tied bodies start with velocities that differ by up to {:.3g} at the tie: its nodes adopt the velocities of the "
+      "other surface, and the initial momentum and energy are not those of the specified velocities",
+      torn));
 }
 
 }  // namespace ricochet

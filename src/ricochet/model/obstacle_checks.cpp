@@ -40,8 +40,8 @@ void warn_of_sharp_obstacle(const ContactPair& pair, const DisplacementSpace& sp
   if (!(radius < distance)) return;
   log::warning(
       fmt::format("contact of group \"{}\": the radius of curvature of obstacle \"{}\", {:.3g}, is smaller than the "
-                  "distance of nodes on the group, {:.3g}: the obstacle can go in between them unseen, and the force "
-                  "is wrong where it does not; take cells a third of the radius in size there",
+                  "distance between nodes of the group, {:.3g}: the obstacle can pass between them undetected, and the "
+                  "force is wrong where it does not; use cells a third of the radius in size there",
                   pair.group, pair.obstacle_name, radius, distance));
 }
 
@@ -61,7 +61,7 @@ void warn_of_long_step(const Case& input, const ContactPair& pair, const Model& 
   if (!(longest > radius)) return;
   log::warning(fmt::format(
       "contact of group \"{}\": at the start the body moves by {:.3g} in a step relative to obstacle \"{}\", whose "
-      "radius of curvature is {:.3g}: it can be past it without having touched; take time.step = {:.1g} or less",
+      "radius of curvature is {:.3g}: it can pass the obstacle without touching it; set time.step = {:.1g} or less",
       pair.group, longest, pair.obstacle_name, radius, rounded_down(0.1 * radius / longest * input.time.step, 1)));
 }
 
@@ -91,14 +91,14 @@ void warn_of_fast_turn(const Case& input, const ContactPair& pair, Index dimensi
   if (!(turn > most)) return;
   const std::string wrong =
       turn < 3.0 ? fmt::format("too large by {:.2g} %", 100.0 * (std::tan(0.5 * turn) / (0.5 * turn) - 1.0))
-                 : "of no use";
-  log::warning(fmt::format(
-      "contact of group \"{}\": obstacle \"{}\" turns by up to {:.3g} rad in a step, and the speed of its surface that "
-      "the step sees is {}; take time.step = {:.1g} or less{}",
-      pair.group, pair.obstacle_name, turn, wrong, rounded_down(advised / turn * input.time.step, 1),
-      pair.obstacle->shape().symmetry_axis().exists
-          ? ", or, where it turns about its own axis, a rotation_rate in place of the rotation"
-          : ""));
+                 : "meaningless";
+  log::warning(
+      fmt::format("contact of group \"{}\": obstacle \"{}\" rotates by up to {:.3g} rad in a step, and the surface "
+                  "speed that the step uses is {}; set time.step = {:.1g} or less{}",
+                  pair.group, pair.obstacle_name, turn, wrong, rounded_down(advised / turn * input.time.step, 1),
+                  pair.obstacle->shape().symmetry_axis().exists
+                      ? ", or, if it rotates about its own axis, use rotation_rate instead of rotation"
+                      : ""));
 }
 
 /// Refuses obstacles that are far away or have a distant centre: distances to them are differences of large numbers.
@@ -111,9 +111,9 @@ void refuse_lost_digits(const Case& input, const ContactPair& pair, const Model&
   rounding += 8.0 * std::numeric_limits<double>::epsilon() * path.lpNorm<1>();
   if (rounding <= least_precision * body) return;
   refuse(input, "obstacle." + pair.obstacle_name,
-         fmt::format("gaps to obstacle \"{}\" are rounded to {:.2g}, too much for a body of size {:.3g}: it is too "
-                     "large, too far from the origin or moves too far; take a plane in place of a sphere of this size, "
-                     "or move body and obstacle near to the origin",
+         fmt::format("gaps to obstacle \"{}\" are rounded to {:.2g}, too much for a body of size {:.3g}: the obstacle "
+                     "is too large, too far from the origin or moves too far; use a plane instead of a sphere of this "
+                     "size, or move body and obstacle closer to the origin",
                      pair.obstacle_name, rounding, body));
 }
 

@@ -45,11 +45,9 @@ void FiniteElasticity::condense(Vector& force) const {
 void FiniteElasticity::require_positive_volume(const InvertedCell& inverted) const {
   if (inverted.cell < 0) return;
   const CellLocation place = location_of_cell(*body_.mesh, inverted.cell);
-  throw Error(
-      ErrorKind::not_converged,
-      fmt::format("cell {} at ({:.6g}) is turned inside out: somewhere in it the volume is {:.3g} times that at "
-                  "rest",
-                  place.tag, fmt::join(place.centre, ", "), inverted.volume_ratio));
+  throw Error(ErrorKind::not_converged,
+              fmt::format("cell {} at ({:.6g}) is inverted: somewhere in it the volume is {:.3g} times that at rest",
+                          place.tag, fmt::join(place.centre, ", "), inverted.volume_ratio));
 }
 
 void FiniteElasticity::evaluate(const Vector& displacement, Vector& force) const {

@@ -14,7 +14,7 @@ void require_linear(const InternalForce& internal_force, const std::string& who)
 namespace {
 
 [[noreturn]] void throw_linear() {
-  throw std::logic_error("what is asked for is of internal forces of another kind");
+  throw std::logic_error("this internal force does not provide the requested function");
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ std::vector<std::size_t> frames_of(const RunData& run, const AnimationOptions& o
   if (options.time) {
     const double rounding = 1e-9 * std::abs(times.back());
     if (!(*options.time >= times.front() - rounding && *options.time <= times.back() + rounding))
-      refuse_animation(fmt::format("--at {:g}: the frames of {} are from {:.9g} to {:.9g}", *options.time,
+      refuse_animation(fmt::format("--at {:g}: the frames of {} cover times from {:.9g} to {:.9g}", *options.time,
                                    run.directory, times.front(), times.back()));
     const auto nearest = std::min_element(times.begin(), times.end(), [&](double a, double b) {
       return std::abs(a - *options.time) < std::abs(b - *options.time);
@@ -66,9 +66,9 @@ std::vector<std::size_t> frames_of(const RunData& run, const AnimationOptions& o
   }
   if (frames.size() < 2)
     refuse_animation(
-        fmt::format("{}: there are fewer than two frames{}: an animation needs more (output.fields_every), and one "
-                    "of them is drawn with --at T",
-                    run.directory, options.interval ? " in this part of the time" : ""));
+        fmt::format("{}: there are fewer than two frames{}: an animation needs more (output.fields_every); use --at T "
+                    "to draw a single frame",
+                    run.directory, options.interval ? " in this time interval" : ""));
   const std::size_t every = (frames.size() + drawn_frames - 1) / drawn_frames;
   std::vector<std::size_t> shown;
   for (std::size_t k = 0; k < frames.size(); k += every) shown.push_back(frames[k]);
@@ -83,7 +83,7 @@ const ResultField& field_of(const RunData& run, const std::string& name) {
   for (const ResultField& field : run.results->fields()) names.push_back(field.name);
   const std::string near = nearest_name(name, names);
   refuse_animation(fmt::format("--field {}: {} has no such field{}; it has {}", name, run.directory,
-                               near.empty() ? "" : fmt::format(" (is \"{}\" meant?)", near), join_names(names)));
+                               near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near), join_names(names)));
 }
 
 /// Returns one number for each node or cell: the value of a scalar, the length of a vector.
@@ -109,10 +109,10 @@ class SceneWriter {
         displacement_(field_of(run, "displacement")),
         pressure_(options.zoom ? run.results->find_field("contact_pressure") : nullptr) {
     if (field_.components > 3)
-      refuse_animation(fmt::format("--field {}: it is a tensor; a scalar or a vector can be shown", options.field));
+      refuse_animation(fmt::format("--field {}: this field is a tensor; choose a scalar or a vector", options.field));
     if (options.zoom && pressure_ == nullptr)
       refuse_animation(fmt::format(
-          "{}: --zoom looks at the contact, and the run wrote no contact_pressure (output.fields)", run.directory));
+          "{}: --zoom shows the contact, but the run wrote no contact_pressure (output.fields)", run.directory));
     const Index most = std::min(drawn_triangles, static_cast<Index>(drawn_in_all / static_cast<double>(frames)));
     surface_ = make_surface(run.results->nodes(), run.results->cells(), most);
   }
@@ -186,8 +186,8 @@ class SceneWriter {
 
 std::string describe(const RunData& run, const AnimationOptions& options) {
   if (run.results == nullptr) {
-    refuse_animation(fmt::format("{}: the run wrote no fields (output.fields_every), so there is no body to be drawn",
-                                 run.directory));
+    refuse_animation(
+        fmt::format("{}: the run wrote no fields (output.fields_every), so there is no body to draw", run.directory));
   }
   const std::vector<std::size_t> frames = frames_of(run, options);
   SceneWriter scene(run, options, frames.size());

@@ -91,7 +91,7 @@ Quantity quantity_of(const std::string& what, const RunData& run) {
     const Probe* probe = run.contact_probe();
     if (probe == nullptr) {
       refuse(
-          fmt::format("{}: no probe of this run is a node on the contact boundary: add a [[probe]] there, or take "
+          fmt::format("{}: no probe of this run is a node on the contact boundary: add a [[probe]] there, or use "
                       "--what pressure-map",
                       run.directory));
     }
@@ -101,9 +101,9 @@ Quantity quantity_of(const std::string& what, const RunData& run) {
   if (!run.has_column(column)) {
     const std::string near = nearest_name(column, run.column_names());
     refuse(
-        fmt::format("--what {}: {}/history.csv has no column \"{}\"{}; energy, force, momentum, pressure, "
-                    "pressure-map, probe:NAME.COLUMN and the columns of history.csv can be drawn",
-                    what, run.directory, column, near.empty() ? "" : fmt::format(" (is \"{}\" meant?)", near)));
+        fmt::format("--what {}: {}/history.csv has no column \"{}\"{}; available: energy, force, momentum, pressure, "
+                    "pressure-map, probe:NAME.COLUMN and the columns of history.csv",
+                    what, run.directory, column, near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near)));
   }
   return {column, in_words(column), false};
 }
@@ -123,9 +123,9 @@ Curve curve_of(const RunData& run, std::size_t number, const std::string& label,
     if (shown) curve.extent.add(values[i]);
   }
   if (!(curve.extent.low <= curve.extent.high)) {
-    refuse(fmt::format("{}: \"{}\" has nothing to be drawn{}{}", run.directory, column,
-                       options.time ? " in this part of the time" : "",
-                       options.logarithmic ? ": a logarithmic scale shows what is positive" : ""));
+    refuse(fmt::format("{}: \"{}\" has nothing to draw{}{}", run.directory, column,
+                       options.time ? " in this time interval" : "",
+                       options.logarithmic ? ": a logarithmic scale shows only positive values" : ""));
   }
   if (curve.times.size() > most_points) {
     const std::size_t rows = (2 * curve.times.size() + most_points - 1) / most_points;
@@ -205,8 +205,8 @@ Json panel_of_map(const RunData& run, const std::string& label, const FigureOpti
   const ContactLine line = make_contact_line(run.results->nodes(), run.results->contact_facets());
   if (line.position.empty()) {
     refuse(
-        fmt::format("{}: a map of the pressure over time needs a contact boundary in the plane; `ricochet report` "
-                    "shows it on the surface of bodies in space",
+        fmt::format("{}: a map of the pressure over time requires a contact boundary in the plane; `ricochet report` "
+                    "shows the pressure on the surface of bodies in space",
                     run.directory));
   }
   Json panel{{"kind", "map"},
@@ -233,7 +233,7 @@ Json panel_of_map(const RunData& run, const std::string& label, const FigureOpti
     panel["x"].push_back(time);
     panel["values"].push_back(std::move(row));
   }
-  if (panel["x"].size() < 2) refuse(fmt::format("{}: there are fewer than two frames to be drawn", run.directory));
+  if (panel["x"].size() < 2) refuse(fmt::format("{}: there are fewer than two frames to draw", run.directory));
   // The scale ends at a percentile, so that a few peaks hide nothing.
   std::sort(pressures.begin(), pressures.end());
   panel["high"] = pressures.empty() ? 1.0 : pressures[(pressures.size() - 1) * 99 / 100];
@@ -244,7 +244,7 @@ Json panel_of_map(const RunData& run, const std::string& label, const FigureOpti
 
 std::string describe_figure(const std::vector<RunData>& runs, const FigureOptions& options) {
   if (!options.labels.empty() && options.labels.size() != runs.size())
-    refuse(fmt::format("--label is there {} times for {} runs", options.labels.size(), runs.size()));
+    refuse(fmt::format("--label appears {} times for {} runs", options.labels.size(), runs.size()));
   std::vector<std::string> labels = options.labels;
   std::vector<double> roughness;
   for (const RunData& run : runs) {

@@ -195,10 +195,9 @@ Json PageBuilder::start(const RunData& run, std::size_t number) {
   json["rows_per_pair"] = history.rows_per_pair;
   if (history.rows_per_pair > 0) {
     note(run, json,
-         fmt::format(
-             "curves show the least and the largest value of every {} rows of the history, so that the file stays "
-             "small; history.csv has all {}",
-             history.rows_per_pair, run.column("time").size()));
+         fmt::format("curves show the smallest and the largest value of every {} rows of the history, to keep the file "
+                     "small; history.csv has all {}",
+                     history.rows_per_pair, run.column("time").size()));
   }
   json["obstacles"] = run.obstacles.empty() ? Json(nullptr) : to_json(pack_obstacles(run.obstacles, arrays_));
   return json;
@@ -214,7 +213,7 @@ void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_by
   const auto all = static_cast<std::size_t>(frames.frame_count());
   const auto say_frames = [&](const char* of_what, std::size_t there) {
     if (there == all) return;
-    note(run, json, fmt::format("{}: {} of the {} frames, so that the file stays small", of_what, there, all));
+    note(run, json, fmt::format("{}: {} of the {} frames, to keep the file small", of_what, there, all));
   };
   if (!contact.line.nodes.empty()) {
     say_frames("the contact boundary", contact.frames.size());
@@ -223,28 +222,27 @@ void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_by
   const BodyPart body = frames.pack_body(most_bytes - std::min(arrays_.page_bytes() - before, most_bytes), arrays_);
   say_frames("the body", body.frames.size());
   if (body.deviations.empty())
-    note(run, json, "the run wrote no displacements: the body stands as it was at the start");
+    note(run, json, "the run wrote no displacements: the body is shown as it was at the start");
   if (body.is_coarse) {
     note(run, json,
-         fmt::format("displacements stand in the page in {} steps from the least to the largest, fields in {}",
+         fmt::format("displacements are stored in {} steps from the smallest to the largest value, fields in {}",
                      (1 << body.displacement_bits) - 2, (1 << body.field_bits) - 2));
   }
   if (body.is_thinned) {
-    note(
-        run, json,
-        fmt::format("the body is drawn in {} triangles, for which nodes near one another were merged", body.triangles));
+    note(run, json,
+         fmt::format("the body is drawn with {} triangles, after nodes near one another were merged", body.triangles));
   }
   if (body.volume && body.volume->is_thinned) {
     note(run, json,
          fmt::format(
-             "the inside, which cuts show, is made of {} tetrahedra, for which nodes near one another were merged",
+             "the interior, which cuts show, consists of {} tetrahedra, after nodes near one another were merged",
              body.volume->tetrahedra));
   }
   if (!body.volume && run.summary.dimension == 3)
-    note(run, json, "the inside is not in the page, so that the file stays small: there are no cuts");
+    note(run, json, "the interior is omitted to keep the file small: there are no cuts");
   if (!body.left_out.empty()) {
     note(run, json,
-         fmt::format("fields that only {} has: {}",
+         fmt::format("fields that are only in {}: {}",
                      run.results->format() == ResultsFormat::vtkhdf ? "results.vtkhdf" : "results.h5",
                      fmt::join(body.left_out, ", ")));
   }

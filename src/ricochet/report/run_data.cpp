@@ -30,13 +30,14 @@ std::vector<std::string> probe_files(const std::string& directory) {
 
 void check_rows(const std::string& path, const HistoryTable& table) {
   const auto time = table.columns.find("time");
-  if (time == table.columns.end()) throw Error(ErrorKind::invalid_input, fmt::format("{}:1: there is no time", path));
+  if (time == table.columns.end())
+    throw Error(ErrorKind::invalid_input, fmt::format("{}:1: there is no column \"time\"", path));
   const std::vector<double>& times = time->second;
-  if (times.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: there is no row yet", path));
+  if (times.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: there are no rows yet", path));
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (std::isfinite(times[i]) && (i == 0 || times[i] >= times[i - 1])) continue;
     throw Error(ErrorKind::invalid_input,
-                fmt::format("{}:{}: the time {} is not later than that before", path, i + 2, times[i]));
+                fmt::format("{}:{}: the time {} is not later than the previous one", path, i + 2, times[i]));
   }
 }
 
@@ -57,7 +58,7 @@ void read_results(RunData& run) {
   const auto found = static_cast<long>(run.results ? run.results->times().size() : 0);
   if (run.summary.status != "running" && found < run.summary.frames) {
     const std::string files =
-        format ? files_of_results(*format) : "the files of fields (results.h5 and results.xdmf, or results.vtkhdf)";
+        format ? files_of_results(*format) : "the field files (results.h5 and results.xdmf, or results.vtkhdf)";
     run.notes.push_back(fmt::format("{} {} {} of the {} frames that were written: {} {}", files,
                                     format == ResultsFormat::vtkhdf ? "has" : "have", found, run.summary.frames,
                                     format == ResultsFormat::vtkhdf ? "it is" : "they are",
@@ -84,7 +85,7 @@ RunData read_run(const std::string& directory, bool with_results) {
   }
   const double last = run.history.columns.contains("step") ? run.history.columns.at("step").back() : 0.0;
   if (run.summary.status == "done" && last < static_cast<double>(run.summary.steps)) {
-    run.notes.push_back(fmt::format("history.csv ends at step {:g} of {}: it was cut off", last, run.summary.steps));
+    run.notes.push_back(fmt::format("history.csv ends at step {:g} of {}: it is truncated", last, run.summary.steps));
   }
   if (with_results) read_results(run);
   return run;

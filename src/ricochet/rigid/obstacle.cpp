@@ -83,12 +83,12 @@ Obstacle::Obstacle(std::unique_ptr<ObstacleShape> shape, std::unique_ptr<const O
     : shape_(std::move(shape)), path_(std::move(path)), spin_(spin), about_(about), time_scale_(time_scale) {
   if (about_.size() == 0) about_ = shape_->centre();
   if (about_.size() == 0)
-    throw Error(ErrorKind::invalid_input, "an obstacle that is in two dimensions or three needs a point");
+    throw Error(ErrorKind::invalid_input, "an obstacle that exists in two dimensions and in three requires a point");
   const ObstacleShape::SymmetryAxis own = shape_->symmetry_axis();
   axis_ = own.direction;
   if (spin_ != 0.0 && !own.exists)
     throw Error(ErrorKind::invalid_input,
-                "it has no axis about which it could turn without another surface: give its rotation in place of a "
+                "it has no axis about which it could turn without changing its surface: set its rotation instead of a "
                 "rotation_rate");
 }
 

@@ -97,11 +97,11 @@ void look_at_angle(const NumberLines& lines, const std::string& file) {
   const std::array lengths{"z", "uz", "u_z", "dz", "Z", "UZ", "U_Z", "DZ"};
   const std::string last = lines.header().empty() ? "" : lines.header().back();
   if (std::find(lengths.begin(), lengths.end(), last) != lengths.end())
-    lines.fail(fmt::format("the fourth column is called \"{}\", and in two dimensions it is the rotation in rad; leave "
-                           "it out, or call it \"rotation\"",
+    lines.fail(fmt::format("the fourth column is called \"{}\", but in two dimensions it is the rotation in rad; "
+                           "remove it, or call it \"rotation\"",
                            last),
                lines.header_line());
-  log::info(fmt::format("{}: time, two displacements and the rotation in rad in each line", file));
+  log::info(fmt::format("{}: each line has the time, two displacements and the rotation in rad", file));
 }
 
 }  // namespace
@@ -129,16 +129,16 @@ std::unique_ptr<ObstaclePath> read_path(const std::string& file, Index dimension
     if (columns == 0) columns = numbers.size();
     if (numbers.size() != columns || (columns != still && columns != turning)) {
       lines.fail(
-          fmt::format("{} numbers; each line of a motion in {}D has {} (t and the displacement), or {} with the "
+          fmt::format("{} numbers; each line of a motion in {}D must have {} (t and the displacement), or {} with the "
                       "rotation in rad",
                       numbers.size(), dimension, still, turning));
     }
     if (!times.empty() && !(numbers.front() > times.back()))
-      lines.fail(fmt::format("the time {} does not come after {}", numbers.front(), times.back()));
+      lines.fail(fmt::format("the time {} is not after {}", numbers.front(), times.back()));
     times.push_back(numbers.front());
     values.insert(values.end(), numbers.begin() + 1, numbers.end());
   }
-  if (times.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: the motion has no numbers", file));
+  if (times.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: the motion contains no numbers", file));
   if (dimension == 2 && columns == turning) look_at_angle(lines, file);
   const auto rows = static_cast<Index>(columns) - 1, count = static_cast<Index>(times.size());
   return std::make_unique<TablePath>(std::move(times), Eigen::Map<const Points>(values.data(), rows, count), dimension);

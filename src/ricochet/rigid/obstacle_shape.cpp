@@ -106,7 +106,7 @@ void check_direction(const ParameterCheck& check, const Parameters& values, cons
 void require_space(const Parameters& parameters, const std::string& key, const std::string& what,
                    const std::string& instead) {
   if (parameters.vector(key).size() != 3)
-    throw Error(ErrorKind::invalid_input, what + " needs three dimensions; in two " + instead);
+    throw Error(ErrorKind::invalid_input, what + " requires three dimensions; in two " + instead);
 }
 
 Key obstacle_side_key(const std::string& doc) {

@@ -14,7 +14,7 @@ constexpr std::size_t most_legs = 8;
 void check_rates(const char* what, const SpaceVector& rates, Index wanted) {
   if (rates.size() != wanted)
     throw Error(ErrorKind::invalid_input,
-                fmt::format("its {} has {} numbers where {} are needed", what, rates.size(), wanted));
+                fmt::format("its {} has {} numbers, but {} are required", what, rates.size(), wanted));
   if (!rates.allFinite()) throw Error(ErrorKind::invalid_input, fmt::format("its {} is not finite", what));
 }
 
@@ -45,10 +45,9 @@ void SteeredPath::steer(double time, const SpaceVector& velocity, const SpaceVec
   Leg leg{time, displacement(time), rotation(time), velocity, SpaceVector::Zero(rotations_)};
   if (rotation_rate.size() > 0) {
     if (!turns())
-      throw Error(
-          ErrorKind::invalid_input,
-          "it has no rotation whose rate could be set: give it one in the case, which may be zero, as in rotation = "
-          "\"0\" (a rotation_rate in the case is the turning of its surface in place, and stays what it is)");
+      throw Error(ErrorKind::invalid_input,
+                  "it has no rotation whose rate could be set: add one to the case, which can be zero, as in rotation "
+                  "= \"0\" (a rotation_rate in the case turns its surface in place and remains unchanged)");
     check_rates("rotation rate", rotation_rate, rotations_);
     leg.rotation_rate = rotation_rate;
   }
@@ -72,7 +71,7 @@ void SteeredPath::load(const Snapshot& snapshot, const std::string& name) {
   const Vector& numbers = snapshot.reals(name);
   const Index width = 1 + 2 * (dimension_ + rotations_);
   if (numbers.size() % width != 0 || numbers.size() / width > static_cast<Index>(most_legs))
-    Snapshot::refuse(name, "is no motion of an obstacle of this case");
+    Snapshot::refuse(name, "is not a motion of an obstacle of this case");
   legs_.clear();
   for (Index first = 0; first < numbers.size(); first += width) {
     Index at = first;

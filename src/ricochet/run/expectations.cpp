@@ -63,7 +63,7 @@ double found_value(const ExpectSection& expect, const HistoryTable& history, con
   const double value = expect.times * value_of(parse_quantity(expect.quantity), history, summary_json);
   if (expect.over.empty()) return value;
   const double divisor = value_of(parse_quantity(expect.over), history, summary_json);
-  if (divisor == 0.0) throw Error(ErrorKind::invalid_input, fmt::format("{} is 0: nothing divides by it", expect.over));
+  if (divisor == 0.0) throw Error(ErrorKind::invalid_input, fmt::format("{} is 0: cannot divide by it", expect.over));
   return value / divisor;
 }
 
@@ -94,7 +94,7 @@ std::string problem_of(const Case& input, const Quantity& quantity, const std::v
   if (quantity.interval) times = {quantity.interval->begin, quantity.interval->end};
   for (const double time : times) {
     if (time < 0.0 || time > end * (1.0 + 1e-9))
-      return fmt::format("the time {:.9g} lies outside the run, which goes from 0 to {:.9g}", time, end);
+      return fmt::format("the time {:.9g} is outside the run, which extends from 0 to {:.9g}", time, end);
   }
   return "";
 }

@@ -124,13 +124,13 @@ std::string output_text(const OutputEstimate& estimate) {
   std::string text;
   if (estimate.frames > 0) {
     text += fmt::format(
-        "{} of fields of {}, {} in all{}{}; ", counted(estimate.frames, "frame"), size_text(estimate.frame_bytes),
+        "{} of fields of {}, {} in total{}{}; ", counted(estimate.frames, "frame"), size_text(estimate.frame_bytes),
         size_text(estimate.results_bytes), estimate.is_compressed ? " before compression" : "",
         estimate.is_limited
-            ? fmt::format(" (as many as stay below {}, as the case does not say how many)", size_text(most_bytes))
+            ? fmt::format(" (as many as fit into {}, since the case does not state how many)", size_text(most_bytes))
             : "");
   }
-  return text + fmt::format("history.csv of {}{}", estimate.is_adaptive ? "at least " : "some ",
+  return text + fmt::format("history.csv of {}{}", estimate.is_adaptive ? "at least " : "about ",
                             size_text(estimate.history_bytes));
 }
 

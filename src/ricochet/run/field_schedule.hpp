@@ -48,7 +48,7 @@ struct OutputEstimate {
   bool is_compressed = false;  ///< the files will be smaller than stated
 };
 [[nodiscard]] OutputEstimate estimate_output(const Case& input, const Model& model);
-/// Returns a text such as "101 frames of fields of 1.9 MB, 190 MB in all; history.csv of some 4.2 MB".
+/// Returns a text such as "101 frames of fields of 1.9 MB, 190 MB in all; history.csv of about 4.2 MB".
 [[nodiscard]] std::string output_text(const OutputEstimate& estimate);
 
 }  // namespace ricochet

@@ -54,7 +54,7 @@ void NewtonWatch::load(const Snapshot& snapshot, const std::string& name) {
   constexpr double limit = 1e15;  // integers below it are exact
   const Vector& numbers = snapshot.reals(name, 4);
   if (!(numbers.array() >= 0.0 && numbers.array() < limit).all())
-    Snapshot::refuse(name, fmt::format("has entries that are not from 0 to {:g}", limit));
+    Snapshot::refuse(name, fmt::format("has entries that are not between 0 and {:g}", limit));
   weight_ = numbers[0];
   steps_ = static_cast<long>(numbers[1]);
   seconds_ = numbers[2];
@@ -76,7 +76,7 @@ ExplicitRun try_explicit(const Case& input) {
     const std::unique_ptr<Model> model = build_model(other);
     const std::optional<double> limit = make_scheme(other.time)->stability_limit(model->problem);
     if (!limit || !std::isfinite(*limit)) {
-      result.refusal = "its critical step is not known";
+      result.refusal = "its critical step is unknown";
       return result;
     }
     result.critical_step = *limit;
@@ -91,21 +91,20 @@ ExplicitRun try_explicit(const Case& input) {
 std::string many_iterations_text(const NewtonWatch& watch, const ExplicitRun& other, double now, double left,
                                  double step) {
   const std::string what =
-      fmt::format("at t = {:.6g} Newton's method has taken more than {} iterations in {} steps, {:.2g} s each", now,
+      fmt::format("at t = {:.6g} Newton's method has needed more than {} iterations in {} steps, {:.2g} s each", now,
                   NewtonWatch::many, watch.steps(), watch.seconds_per_step());
   if (!other.refusal.empty()) {
     return fmt::format(
-        "{}; scheme \"{}\" with mass.type = \"{}\", which solves no system of the whole body, "
-        "does not take this case: {}",
+        "{}; scheme \"{}\" with mass.type = \"{}\", which solves no system of the whole body, does not support this "
+        "case: {}",
         what, scheme, mass, other.refusal);
   }
   const double own = left / step * watch.seconds_per_step(), steps = std::ceil((now + left) / other.step);
   return fmt::format(
-      "{}, which is {} for the rest of the run. "
-      "Scheme \"{}\" with mass.type = \"{}\" solves no system of the whole body "
-      "and takes this case with time.step = {:.2g}, {:g} of its critical step at rest: "
-      "{:.2g} steps from the start, {} at the pace of the first ones. "
-      "A slow load may act faster there, as long as the kinetic energy stays small beside the elastic one",
+      "{}, which amounts to {} for the rest of the run. Scheme \"{}\" with mass.type = \"{}\" solves no system of the "
+      "whole body and supports this case with time.step = {:.2g}, {:g} times its critical step at rest: {:.2g} steps "
+      "from the start, {} at the rate of the first ones. With it, a slow load can be applied faster, as long as the "
+      "kinetic energy stays small compared with the elastic energy",
       what, duration_text(own), scheme, mass, other.step, safe_part, steps,
       duration_text(steps * other.seconds_per_step));
 }

@@ -42,7 +42,7 @@ void refuse_overwriting_inputs(const RunDirectory& directory, const RunOptions& 
       std::error_code ignored;
       if (!std::filesystem::equivalent(file, other, ignored)) continue;
       throw Error(ErrorKind::file_access,
-                  fmt::format("{}: the case is read from this file, and a run into {} would write over it; choose "
+                  fmt::format("{}: the case is read from this file, and a run into {} would overwrite it; choose "
                               "another directory with -o, or rename the file",
                               file, options.output_directory));
     }
@@ -54,16 +54,17 @@ void refuse_old_run(const RunDirectory& directory, const RunOptions& options) {
   if (results.empty()) results = directory.leftover_files(-1);
   if (!results.empty()) {
     throw Error(ErrorKind::file_access,
-                fmt::format("{}: holds a run already ({}); choose another directory with -o, go on with that run with "
+                fmt::format("{}: already holds a run ({}); choose another directory with -o, continue that run with "
                             "--resume, or overwrite it with --force",
                             options.output_directory, std::filesystem::path(results.front()).filename().string()));
   }
   const std::string contact = export_directory(options);
   if (exported_contact_problems(contact).empty()) return;
-  throw Error(ErrorKind::file_access,
-              fmt::format("{}: holds contact problems of a run already; choose another directory, or overwrite them "
-                          "with --force",
-                          contact));
+  throw Error(
+      ErrorKind::file_access,
+      fmt::format(
+          "{}: already holds contact problems of a run; choose another directory, or overwrite them with --force",
+          contact));
 }
 
 namespace {
@@ -94,9 +95,9 @@ RunOrigin find_origin(const std::string& directory) {
   std::error_code problem;
   if (!std::filesystem::is_directory(directory, problem)) refuse("there is no such directory");
   RunOrigin origin = read_origin(directory);
-  if (origin.case_path.empty()) refuse("no run is in this directory that says which case it is of");
+  if (origin.case_path.empty()) refuse("no run in this directory states its case");
   if (!std::filesystem::exists(origin.case_path, problem))
-    refuse(fmt::format("its case file {} is not there any more", origin.case_path));
+    refuse(fmt::format("its case file {} no longer exists", origin.case_path));
   return origin;
 }
 

@@ -64,10 +64,10 @@ TimePosition locate_time(const TimeSeries& course, double time, const std::strin
   } else if (time == times.front()) {
     return {};
   }
-  throw Error(ErrorKind::invalid_input,
-              fmt::format("history.{}: the time {:.9g} lies outside the rows of history.csv, which go from {:.9g} to "
-                          "{:.9g}",
-                          column, time, times.front(), times.back()));
+  throw Error(
+      ErrorKind::invalid_input,
+      fmt::format("history.{}: the time {:.9g} is outside the rows of history.csv, which extend from {:.9g} to {:.9g}",
+                  column, time, times.front(), times.back()));
 }
 
 double value_at(const TimeSeries& course, TimePosition place) {
@@ -172,8 +172,8 @@ std::string no_such_column(const Case& input, const std::string& name, const std
   for (const ProbeSection& probe : input.probes) {
     if (probe.every == 0 || !name.starts_with(probe.name + ".")) continue;
     return fmt::format(
-        "history.csv has no column \"{}\": probe \"{}\" has \"every\", so that its columns are in "
-        "probes-{}.csv; leave \"every\" out",
+        "history.csv has no column \"{}\": probe \"{}\" has \"every\", so its columns are in probes-{}.csv; remove "
+        "\"every\"",
         name, probe.name, probe.every);
   }
   return no_such_column(name, names);

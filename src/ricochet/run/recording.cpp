@@ -267,8 +267,8 @@ void Recording::check_finite(const std::vector<double>& row) const {
   for (std::size_t i = 0; i < row.size(); ++i) {
     if (std::isfinite(row[i])) continue;
     throw Error(ErrorKind::not_converged,
-                fmt::format("step {:.0f} (t = {:.9g}): {} is no longer finite, so the motion has grown beyond all "
-                            "bounds; use a stable scheme (reduced-kane with mass \"equivalent\")",
+                fmt::format("step {:.0f} (t = {:.9g}): {} is no longer finite, so the motion has diverged; use a "
+                            "stable scheme (reduced-kane with mass \"equivalent\")",
                             row[0], row[1], recorder_.columns()[i]));
   }
 }

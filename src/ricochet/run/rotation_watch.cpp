@@ -22,8 +22,7 @@ constexpr double least_noted = 1e-6, noted_growth = 1.01;
 }  // namespace
 
 std::string spurious_strain(double rotation) {
-  return fmt::format("a strain of {:.2g} % that is not there (1 - cos of the angle)",
-                     100.0 * (1.0 - std::cos(rotation)));
+  return fmt::format("a spurious strain of {:.2g} % (1 - cos of the angle)", 100.0 * (1.0 - std::cos(rotation)));
 }
 
 RotationWatch::RotationWatch(const Body& body, const Ranks& ranks, std::size_t column)
@@ -70,13 +69,13 @@ void RotationWatch::watch(const std::vector<double>& row, const State& state) {
   const bool passes = before <= limit_ && rotation > limit_;
   if (passes || (rotation > least_noted && rotation > noted_growth * before)) records_.push_back({row[1], rotation});
   if (!passes) return;
-  log::warning(fmt::format(
-      "at t = {:.6g} a cell has rotated by {:.3g} rad: above {} rad small strain no longer holds; it takes this "
-      "rotation for {}, and the largest strain that is there is {:.2g} %. A body that turns inflates, and from "
-      "here on its forces and rebounds are wrong; an impact that had ended before is not affected. "
-      "A law of finite strain (law = \"neo-hookean\" in [[material]]) holds for any rotation",
-      row[1], rotation, rotation_limit, spurious_strain(rotation),
-      100.0 * ranks_.maximum(largest_green_strain(body_, state.displacement))));
+  log::warning(
+      fmt::format("at t = {:.6g} a cell has rotated by {:.3g} rad: above {} rad small strain no longer holds; this "
+                  "rotation causes {}, and the largest actual strain is {:.2g} %. A rotating body inflates, and from "
+                  "here on its forces and rebounds are wrong; an impact that ended before is not affected. A law of "
+                  "finite strain (law = \"neo-hookean\" in [[material]]) holds for any rotation",
+                  row[1], rotation, rotation_limit, spurious_strain(rotation),
+                  100.0 * ranks_.maximum(largest_green_strain(body_, state.displacement))));
 }
 
 }  // namespace ricochet

@@ -33,21 +33,23 @@ void check_export(const Case& input, const RunOptions& options, long steps) {
   if (options.export_contact.empty()) return;
   if (input.time.adaptive)
     throw Error(ErrorKind::usage,
-                "--export-contact: not of adaptive steps, of which some are taken again; set time.step to a number");
+                "--export-contact: adaptive steps are not supported, since some of them are repeated; set time.step to "
+                "a number");
   for (std::size_t i = 0; i < input.contacts.size(); ++i) {
     if (!(input.contacts[i].friction_bound > 0.0)) continue;
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("{}: contact problems with a friction_bound cannot be exported: FCLib's files state "
-                            "Coulomb's law only",
-                            input.where(fmt::format("contact.{}.friction_bound", i)).text()));
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format(
+            "{}: contact problems with a friction_bound cannot be exported: FCLib files support Coulomb's law only",
+            input.where(fmt::format("contact.{}.friction_bound", i)).text()));
   }
   const auto& asked = options.export_contact;
   const bool some = std::any_of(asked.begin(), asked.end(), [&](const StepRange& r) { return r.first <= steps; });
   const bool all = std::all_of(asked.begin(), asked.end(), [&](const StepRange& r) { return r.last <= steps; });
   if (!some)
-    throw Error(ErrorKind::usage, fmt::format("--export-contact: the run has {} only", counted(steps, "step")));
+    throw Error(ErrorKind::usage, fmt::format("--export-contact: the run has only {}", counted(steps, "step")));
   if (!all)
-    log::warning(fmt::format("--export-contact: the run has {}; those after it are left out", counted(steps, "step")));
+    log::warning(fmt::format("--export-contact: the run has {}; later ones are ignored", counted(steps, "step")));
 }
 
 }  // namespace
@@ -118,9 +120,9 @@ bool Run::is_complete() {
   if (summary_.status != "done") return false;
   was_complete_ = true;
   if (input_.time.adaptive ? input_.time.end > summary_.end_time : steps_ > summary_.all_steps) return false;
-  log::info(fmt::format("{}: this run is complete, there is nothing to resume", options_.output_directory));
+  log::info(fmt::format("{}: this run is complete; there is nothing to resume", options_.output_directory));
   if (!options_.export_contact.empty())
-    log::warning("--export-contact: the run is complete, nothing more is exported; make it again with --force");
+    log::warning("--export-contact: the run is complete, so nothing more is exported; repeat it with --force");
   if (ranks_.is_first())
     summary_.expectations = check_expectations(input_, options_.output_directory, to_json(summary_));
   return true;
@@ -142,40 +144,37 @@ void Run::check_snapshot() {
       refuse_earlier_end(reached);
     if (ranks_.is_first()) require_same_files(options_.output_directory, *snapshot_);
     if (!options_.resume_load && Session::is_steered(*snapshot_)) {
-      throw Error(
-          ErrorKind::invalid_input,
-          fmt::format("{}: cannot be resumed here: a program loads this run or moves its obstacles as it goes "
-                      "(Session::set_load, set_obstacle_velocity), and without it the last load and motion would "
-                      "stay; resume it with that program",
-                      options_.output_directory));
+      throw Error(ErrorKind::invalid_input,
+                  fmt::format("{}: cannot be resumed here: a program sets loads or moves obstacles during this run "
+                              "(Session::set_load, set_obstacle_velocity), and without it the last load and motion "
+                              "would persist; resume it with that program",
+                              options_.output_directory));
     }
   } else if (!checkpoint_files(options_.output_directory).empty() || has_rank_checkpoints(options_.output_directory)) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: cannot be resumed: no checkpoint can be read; start anew with --force",
                             options_.output_directory));
   } else if (was_complete_) {
-    throw Error(
-        ErrorKind::invalid_input,
-        fmt::format("{}: this run is complete and cannot go on to a later time.end: the checkpoint of its end is "
-                    "not there; start anew with --force",
-                    options_.output_directory));
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}: this run is complete and cannot continue to a later time.end: the checkpoint of its "
+                            "end is missing; start anew with --force",
+                            options_.output_directory));
   } else if (const auto results = directory_.results(); !has_matching_summary_ && !results.empty()) {
     throw Error(
         ErrorKind::file_access,
-        fmt::format("{}: cannot be resumed: there are results ({}), but neither a checkpoint nor a summary.json "
-                    "that says what ran; choose another directory with -o, or start anew with --force",
+        fmt::format("{}: cannot be resumed: there are results ({}), but neither a checkpoint nor a summary.json that "
+                    "describes the run; choose another directory with -o, or start anew with --force",
                     options_.output_directory, std::filesystem::path(results.front()).filename().string()));
   } else {
-    log::info(fmt::format("{}: there is no checkpoint, the run starts from the beginning", options_.output_directory));
+    log::info(fmt::format("{}: there is no checkpoint; the run starts from the beginning", options_.output_directory));
   }
 }
 
 void Run::refuse_earlier_end(double reached) const {
-  throw Error(
-      ErrorKind::invalid_input,
-      fmt::format("{}: time.end = {:.9g} comes before t = {:.9g}, which the run in {} has reached; give a later "
-                  "end, or start anew in another directory (-o) or over it (--force)",
-                  input_.where("time.end").text(), input_.time.end, reached, options_.output_directory));
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{}: time.end = {:.9g} is before t = {:.9g}, which the run in {} has already reached; set a "
+                          "later end, start anew in another directory (-o), or overwrite that run (--force)",
+                          input_.where("time.end").text(), input_.time.end, reached, options_.output_directory));
 }
 
 void Run::begin_session() {
@@ -378,8 +377,8 @@ void Run::report_size() const {
     const double rows = (model.problem.contact.has_friction() ? model.mesh.dimension : 1) *
                         static_cast<double>(model.sizes.contact_points);
     log::info(
-        fmt::format("{}, {}; preparing the steps, which take some {} of memory by iterations and more with a "
-                    "factor, and {} where all contact points press",
+        fmt::format("{}, {}; preparing the steps, which need about {} of memory with iterations and more with a "
+                    "factorization, and {} if all contact points are pressed",
                     counted(model.sizes.dofs, "dof"), counted(model.sizes.contact_points, "contact point"),
                     size_text(memory_of_iterations(model.sizes.dofs)), size_text(memory_of_contact(rows))));
   }

@@ -14,8 +14,7 @@ void warn_of_end(const TimeSection& time) {
   const double end = static_cast<double>(step_count(time)) * time.step;
   if (std::abs(end - time.end) <= 1e-9 * time.end) return;
   log::warning(
-      fmt::format("{}{:.9g} is no whole number of steps of {:.9g}: the run ends at t = {:.9g}, after "
-                  "step {}",
+      fmt::format("{}{:.9g} is not a whole number of steps of {:.9g}: the run ends at t = {:.9g}, after step {}",
                   end_warning, time.end, time.step, end, step_count(time)));
 }
 

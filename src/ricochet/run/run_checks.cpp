@@ -42,14 +42,14 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
   model.problem.mass.multiply(Vector::Ones(model.problem.mass.size()), inertia);
   mass_ = model.problem.ranks->sum(inertia.sum()) / model.problem.dimension;
   const std::string solver =
-      input.solver.method == "direct" ? "" : ", or solver.tolerance where steps are solved by iterations";
+      input.solver.method == "direct" ? "" : ", or solver.tolerance if steps are solved by iterations";
   energy_.result.name = "energy_residual";
   energy_.result.limit = input.check.energy_residual;
   energy_.advice = linear_.advice = angular_.advice =
       "stiffnesses or densities that differ by many orders of magnitude, a Poisson's ratio at 1/2 or an extreme "
       "time.step "
       "are likely causes" +
-      solver + "; do not trust this run to more digits than that";
+      solver + "; do not trust more digits of this run than that";
   linear_.result.name = "momentum";
   linear_.result.limit = input.check.momentum;
   angular_.result.name = "angular_momentum";

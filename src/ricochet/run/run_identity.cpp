@@ -121,12 +121,10 @@ void require_same_case(const Case& input, const std::string& version_before,
       differences += fmt::format("\n  {}: {} was {}, now it is {}", input.where(key).text(), key, was, is);
   }
   if (differences.empty()) return;
-  throw Error(
-      ErrorKind::invalid_input,
-      fmt::format(
-          "{} cannot be resumed: the case has changed since this run began:{}\nRestore it (the same --set, too), or "
-          "start anew in another directory (-o) or over it (--force)",
-          before, differences));
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{} cannot be resumed: the case has changed since this run began:{}\nRestore it (including "
+                          "--set), start anew in another directory (-o), or overwrite the run (--force)",
+                          before, differences));
 }
 
 void require_same_case(const Case& input, const Snapshot& snapshot, const std::string& before) {
@@ -146,7 +144,7 @@ std::string compare_model(const Case& input, const Model& model, const Snapshot&
   if (!differences.empty()) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: the run cannot be resumed: the mesh has changed since it began (differences in: {}); "
-                            "restore the mesh, or start anew in another directory (-o) or over this run (--force)",
+                            "restore the mesh, start anew in another directory (-o), or overwrite the run (--force)",
                             input.where(place).text(), differences));
   }
   const std::map<std::string, std::string> obstacles =
@@ -156,20 +154,19 @@ std::string compare_model(const Case& input, const Model& model, const Snapshot&
     if (found != obstacles.end() && found->second == sum) continue;
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: the run cannot be resumed: the file of obstacle \"{}\" has changed since it began; "
-                            "restore it, or start anew in another directory (-o) or over this run (--force)",
+                            "restore it, start anew in another directory (-o), or overwrite the run (--force)",
                             input.where("obstacle." + name).text(), name));
   }
   const std::string libraries = library_versions();
   if (libraries != snapshot.text("identity.libraries")) {
     return fmt::format(
-        "resumed with other libraries, another processor or RICOCHET_INSTRUCTION_SET ({}; before: {}): results agree "
-        "with those of "
-        "a run that was never interrupted to rounding only",
+        "resumed with other libraries, another processor or another RICOCHET_INSTRUCTION_SET ({}; before: {}): results "
+        "agree with those of an uninterrupted run only to rounding",
         libraries, snapshot.text("identity.libraries"));
   }
   if (operator_checksum(model.problem) != snapshot.text("identity.operators")) {
-    return "resumed with matrices that differ by rounding from those before (another build of the program or its "
-           "libraries): results agree with those of a run that was never interrupted to rounding only";
+    return "resumed with matrices that differ from the earlier ones by rounding (another build of the program or its "
+           "libraries): results agree with those of an uninterrupted run only to rounding";
   }
   return "";
 }

@@ -48,18 +48,18 @@ void judge_loss(const RunSummary& summary, const SemidiscreteProblem& problem, c
                                     [](const Impact& impact) { return impact.restitution().has_value(); });
   if (!rebounds) {
     if (loss * energy > most * work) {
-      log::warning(fmt::format(
-          "contact forces and the scheme itself have taken {:.2g} % of the largest energy (contact_work and "
-          "numerical_dissipation of the history), which a real body keeps as waves: vibrations of this run "
-          "are too weak by that",
-          100.0 * loss));
+      log::warning(
+          fmt::format("contact forces and the scheme itself have removed {:.2g} % of the largest energy (contact_work "
+                      "and numerical_dissipation of the history), which a real body keeps as waves: vibrations of this "
+                      "run are too weak by this amount",
+                      100.0 * loss));
     }
     return;
   }
   log::warning(
-      fmt::format("contact forces and the scheme itself have taken {:.2g} % of the largest energy (contact_work and "
+      fmt::format("contact forces and the scheme itself have removed {:.2g} % of the largest energy (contact_work and "
                   "numerical_dissipation of the history), which a real body keeps as waves: rebounds are too slow by "
-                  "that; a smaller time.step and smaller cells lose less{}",
+                  "this amount; a smaller time.step and smaller cells lose less{}",
                   100.0 * loss,
                   problem.contact.has_friction() && summary.scheme == "reduced-kane"
                       ? ", and so does time.reaction_weight = \"adaptive\""
@@ -78,8 +78,8 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
   if (summary.adaptive && summary.adaptive->counts.tolerated > 0) {
     const StepCounts& counts = summary.adaptive->counts;
     log::warning(
-        fmt::format("{} of {} have an error above time.tolerance, up to {:.2g} times it: make time.smallest "
-                    "shorter, or the tolerance larger",
+        fmt::format("{} of {} have an error above time.tolerance, up to {:.2g} times it: set a smaller time.smallest "
+                    "or a larger time.tolerance",
                     counts.tolerated, counted(summary.steps, "step"), counts.largest_error));
   }
   judge_loss(summary, problem, state);
@@ -87,31 +87,31 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
   if (contact_creates) {
     const bool helps = scheme.suits_singular_mass() && problem.has_singular_mass();
     log::warning(fmt::format(
-        "contact forces have created energy, {:.2g} of the largest (contact_work less numerical_dissipation of the "
-        "history); {} scheme \"reduced-kane\" with mass \"equivalent\", which creates none",
+        "contact forces have created energy, {:.2g} times the largest energy (contact_work less numerical_dissipation "
+        "of the history); {} scheme \"reduced-kane\" with mass \"equivalent\", which creates none",
         summary.creation_by_method(),
-        helps ? "take a smaller time.step, below the time in which a wave crosses a cell, or"
+        helps ? "use a smaller time.step, below the time in which a wave crosses a cell, or"
               : "it comes from the time scheme: use"));
   }
   if (friction_creates) {
-    const char* const remedy =
-        problem.has_singular_mass() ? "take a smaller time.step, or"
-        : scheme.suits_singular_mass()
-            ? "with inertia on contact nodes smaller steps are no cure: take mass \"equivalent\" with a smaller "
-              "time.step, or"
-            : "use";
-    log::warning(fmt::format(
-        "friction has created energy: friction_work reaches {:.2g} of the largest energy; it comes from the weights "
-        "that {} gives to the forces at the two ends of a step: {} scheme \"reduced-kane\" with mass \"equivalent\", "
-        "whose friction creates none",
-        summary.digest("friction_work").maximum / scale, summary.scheme, remedy));
+    const char* const remedy = problem.has_singular_mass() ? "use a smaller time.step, or"
+                               : scheme.suits_singular_mass()
+                                   ? "with inertia on contact nodes, smaller steps alone do not help: use mass "
+                                     "\"equivalent\" with a smaller time.step, or"
+                                   : "use";
+    log::warning(
+        fmt::format("friction has created energy: friction_work reaches {:.2g} times the largest energy; it comes from "
+                    "the weights that {} assigns to the forces at the two ends of a step: {} scheme \"reduced-kane\" "
+                    "with mass \"equivalent\", whose friction creates none",
+                    summary.digest("friction_work").maximum / scale, summary.scheme, remedy));
   }
   if (rotates) {
-    log::warning(fmt::format(
-        "cells rotate by up to {:.3g} rad, which small strain takes for {}: energies, forces and rebounds "
-        "of this run are not those of a real body. Give its [[material]] a law that rotations do not change (law = "
-        "\"neo-hookean\"); a stiffer body, a slower impact or less spin keeps within {} rad; check the units, too",
-        rotation, spurious_strain(rotation), rotation_limit));
+    log::warning(
+        fmt::format("cells rotate by up to {:.3g} rad, which under small strain causes {}: energies, forces and "
+                    "rebounds of this run are not those of a real body. Use a law in its [[material]] that holds for "
+                    "any rotation (law = \"neo-hookean\"); a stiffer body, a slower impact or less spin keeps "
+                    "rotations below {} rad; also check the units",
+                    rotation, spurious_strain(rotation), rotation_limit));
   }
 }
 
@@ -119,11 +119,11 @@ void judge_unsettled(const RunSummary& summary) {
   for (const UnsettledContact& contact : summary.unsettled) {
     if (contact.share <= UnsettledContact::doubtful) continue;
     const ContactDescription& pair = summary.contacts[static_cast<std::size_t>(contact.contact)];
-    log::warning(fmt::format(
-        "the force of the contact of \"{}\" and \"{}\" is in doubt: up to {:.3g} % of it were at stake at points that "
-        "steps which were held have left at gaps of up to {:.3g}, in {} from t = {:.6g} on",
-        pair.group, pair.opponent, 100.0 * contact.share, contact.gap, counted(contact.steps, "step"),
-        contact.first_time));
+    log::warning(
+        fmt::format("the force of the contact of \"{}\" and \"{}\" is in doubt: up to {:.3g} % of it is at stake where "
+                    "held steps have left gaps of up to {:.3g}, in {} from t = {:.6g} on",
+                    pair.group, pair.opponent, 100.0 * contact.share, contact.gap, counted(contact.steps, "step"),
+                    contact.first_time));
   }
 }
 
@@ -134,8 +134,8 @@ void judge_sliding(const RunSummary& summary, const SemidiscreteProblem& problem
   const std::vector<double> times = cell_crossing_times(body);
   log::warning(
       fmt::format("contact was made {} times: a body that slides without damping flutters, and contact forces and "
-                  "stresses are those of its vibrations. If it is to slide, give its [[material]] damping = "
-                  "{{ stiffness = {:.2g} }}, the time in which a wave crosses a cell",
+                  "stresses are those of its vibrations. If it should slide, set damping = {{ stiffness = "
+                  "{:.2g} }} in its [[material]]: the time in which a wave crosses a cell",
                   impacts, times[times.size() / 2]));
 }
 
@@ -147,13 +147,12 @@ void judge_strain(const RunSummary& summary, const Body& body) {
   if (material == body.materials.end()) return;
   const double strain = summary.peak_stress->peak.von_mises / (3.0 * material->mu());
   if (!(strain > strain_limit) || !material->law->is_linear()) return;
-  log::warning(fmt::format(
-      "at t = {:.6g} the largest von Mises stress corresponds to an equivalent strain of {:.2g} %: small "
-      "strain leaves out terms "
-      "of that relative size and does not hold there; stresses and forces are wrong by as much. law = "
-      "\"neo-hookean\" holds for any strain; a stiffer body or a slower impact keeps within {:g} %; check the "
-      "units, too",
-      summary.peak_stress->peak.time, 100.0 * strain, 100.0 * strain_limit));
+  log::warning(
+      fmt::format("at t = {:.6g} the largest von Mises stress corresponds to an equivalent strain of {:.2g} %: small "
+                  "strain neglects terms of that relative size and does not hold there; stresses and forces are wrong "
+                  "by as much. law = \"neo-hookean\" holds for any strain; a stiffer body or a slower impact keeps the "
+                  "strain below {:g} %; also check the units",
+                  summary.peak_stress->peak.time, 100.0 * strain, 100.0 * strain_limit));
 }
 
 void judge_rotation_growth(const RunSummary& summary) {
@@ -169,9 +168,9 @@ void judge_rotation_growth(const RunSummary& summary) {
   if (worst == summary.impacts.size()) return;
   const double error = restitution_excess(summary.impacts[worst]);
   log::warning(fmt::format(
-      "the restitution of impact {} is too {} by about {:.2g}, its force and duration are wrong by about a third of "
-      "that part: the linear law makes a body that turns grow, here at a speed of {:.2g} towards the contact, as if an "
-      "obstacle moved; take law = \"neo-hookean\" in [[material]], which holds for any rotation",
+      "the restitution of impact {} is too {} by about {:.2g}, and its force and duration are wrong by about a third "
+      "of that fraction: under the linear law a rotating body grows, here at a speed of {:.2g} towards the contact, as "
+      "if an obstacle moved; use law = \"neo-hookean\" in [[material]], which holds for any rotation",
       worst + 1, error > 0.0 ? "large" : "small", largest, summary.impacts[worst].rotation_growth));
 }
 

@@ -59,8 +59,8 @@ void Run::interrupt(const std::string& how) {
   // After the checkpoint: a resumed run removes these results again.
   recording_->record_end(session_.state(), session_.simulation().account());
   summary_.status = "interrupted";
-  summary_.message = fmt::format("{} after {}; {} goes on from there", how, step_in_words(),
-                                 session_.is_steered()   ? "the program that steers it"
+  summary_.message = fmt::format("{} after {}; {} continues from there", how, step_in_words(),
+                                 session_.is_steered()   ? "the program that steers the run"
                                  : !ranks_.are_several() ? "run --resume"
                                                          : run_command(ranks_.size()) + " --resume");
 }
@@ -73,9 +73,9 @@ void Run::end_on_interruption() {
   if (!files || !reported_) return;
   RunSummary& summary = *reported_;
   summary.status = "interrupted";
-  summary.message = fmt::format(
-      "stopped in the middle of a step or of what comes before the first; run --resume {}",
-      before_step_ ? "goes on from the state before that step" : "goes on from the last checkpoint, if there is one");
+  summary.message = fmt::format("stopped during a step or before the first one; run --resume {}",
+                                before_step_ ? "continues from the state before that step"
+                                             : "continues from the last checkpoint, if there is one");
   if (before_step_) {
     summary.steps = summary.checkpoint_step = static_cast<long>(before_step_->integer("state.step"));
     ricochet::write_checkpoint(options_.output_directory, summary.checkpoint_step, *before_step_);
@@ -198,7 +198,7 @@ void Run::gather_from_ranks(RunSummary& summary) {
   summary.warnings = session_.warnings();
   for (const std::string& text : ranks_.gather_texts(ranks_.is_first() ? "" : to_json(summary))) {
     if (text.empty()) continue;
-    const RunSummary other = summary_from_json(text, "what another process says");
+    const RunSummary other = summary_from_json(text, "the summary of another process");
     merge_findings(other, summary);
     for (const std::string& warning : other.warnings) {
       const std::vector<std::string>& said = session_.warnings();

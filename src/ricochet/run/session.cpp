@@ -24,11 +24,12 @@ StepSolverOptions solver_options(const Case& input, const Model& model) {
   options.preconditioners = model.preconditioners;
   const std::string& name = options.preconditioner;
   if (model.preconditioners != nullptr || name == "auto" || name == "block-jacobi") return options;
-  throw Error(ErrorKind::invalid_input,
-              fmt::format("{}: \"{}\" is one of `ricochet-mpi`, which runs with one process, too "
-                          "(docs/distributed.md); here there is \"block-jacobi\", and a factor with solver.method = "
-                          "\"direct\"",
-                          input.where("solver.preconditioner").text(), name));
+  throw Error(
+      ErrorKind::invalid_input,
+      fmt::format(
+          "{}: \"{}\" is available in `ricochet-mpi` only, which also runs with one process (docs/distributed.md); "
+          "this program has \"block-jacobi\", and a factorization with solver.method = \"direct\"",
+          input.where("solver.preconditioner").text(), name));
 }
 
 }  // namespace
@@ -68,7 +69,7 @@ void Session::start() {
 }
 
 void Session::resume(const Snapshot& snapshot) {
-  if (simulation_ != nullptr) refuse_use("it has started and cannot take up another state");
+  if (simulation_ != nullptr) refuse_use("it has started and cannot resume another state");
   const log::CollectWarnings collect(warnings_);
   require_same_case(input_, snapshot, "this state");
   if (snapshot.has(steered_name)) {
@@ -108,7 +109,7 @@ bool Session::is_complete_already() const {
 }
 
 Simulation& Session::simulation() {
-  if (is_complete_already()) refuse_use("the run is complete: there is no state to look at");
+  if (is_complete_already()) refuse_use("the run is complete: there is no state to access");
   start();
   return *simulation_;
 }
@@ -118,7 +119,7 @@ namespace {
 void check_values(const SemidiscreteProblem& problem, const Vector& values, const char* what) {
   if (values.size() != problem.dof_count()) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("session: a {} has a number for each of the {} dofs of the problem, not {}", what,
+                fmt::format("session: a {} must have a number for each of the {} dofs of the problem, not {}", what,
                             problem.dof_count(), values.size()));
   }
   if (!values.allFinite())
@@ -145,14 +146,15 @@ void Session::set_velocity(const Vector& velocity) {
   Simulation& running = simulation();
   check_values(problem(), velocity, "velocity");
   if (!std::isfinite(problem().mass.quadratic_form(velocity)))
-    throw Error(ErrorKind::invalid_input, "session: the velocity is so large that its energy is no finite number");
+    throw Error(ErrorKind::invalid_input, "session: the velocity is so large that its energy is not finite");
   const Vector impulse = running.set_velocity(velocity);
   if (run_ == nullptr) return;
   run_->enter_impulse(impulse);
   if (state().forces.acting_normal().size() > 0 && state().forces.acting_normal().maxCoeff() > 0.0) {
-    log::warning(fmt::format(
-        "t = {:.9g}: the velocity was set while contact forces act: the restitution of this impact counts that, too",
-        time()));
+    log::warning(
+        fmt::format("t = {:.9g}: the velocity was set while contact forces acted: the restitution of this impact "
+                    "includes this change",
+                    time()));
   }
 }
 
@@ -162,8 +164,9 @@ ObstacleSection& Session::section_of_obstacle(const std::string& obstacle) {
     if (section.name == obstacle) return section;
     names += (names.empty() ? "" : ", ") + section.name;
   }
-  throw Error(ErrorKind::invalid_input, fmt::format("session: there is no obstacle \"{}\" in this case; there is {}",
-                                                    obstacle, names.empty() ? "none" : names));
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("session: there is no obstacle \"{}\" in this case; its obstacles: {}", obstacle,
+                          names.empty() ? "none" : names));
 }
 
 /// Marks an obstacle as steered. The motion of an obstacle affects how the problem is built, so that an existing model
@@ -171,15 +174,14 @@ ObstacleSection& Session::section_of_obstacle(const std::string& obstacle) {
 void Session::steer_from_start(ObstacleSection& section) {
   if (section.is_steered) return;
   if (section.is_free()) {
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("session: obstacle \"{}\" moves by the forces on it: give it a force in the case, or set a "
-                            "load on its nodes",
-                            section.name));
+    throw Error(ErrorKind::invalid_input, fmt::format("session: obstacle \"{}\" moves freely under the forces on it: "
+                                                      "set a force on it in the case, or a load on its nodes",
+                                                      section.name));
   }
   if (run_ != nullptr || simulation_ != nullptr)
     refuse_use(
-        fmt::format("the velocity of obstacle \"{}\" must first be set before the session starts: before "
-                    "start(), write_to() and any look at its state; zero will do",
+        fmt::format("the velocity of obstacle \"{}\" must be set for the first time before the session starts: before "
+                    "start(), write_to() and any access to its state; zero is sufficient",
                     section.name));
   section.is_steered = true;
   model_.reset();
@@ -194,7 +196,7 @@ SteeredPath& Session::steered_path(const std::string& obstacle) {
 void Session::set_obstacle_velocity(const std::string& obstacle, const Vector& velocity, const Vector& rotation_rate) {
   const log::CollectWarnings collect(warnings_);
   steer_from_start(section_of_obstacle(obstacle));
-  if (is_complete_already()) refuse_use("the run is complete: there are no steps to come");
+  if (is_complete_already()) refuse_use("the run is complete: there are no further steps");
   try {
     SteeredPath& path = steered_path(obstacle);
     const double now = simulation_ != nullptr ? time() : 0.0;
@@ -202,8 +204,8 @@ void Session::set_obstacle_velocity(const std::string& obstacle, const Vector& v
     path.steer(now, velocity, rotation_rate);
     if (is_turning && rotation_rate.size() == 0) {
       log::warning(
-          fmt::format("session: obstacle \"{}\" was turning and stops turning, as its velocity is given without a "
-                      "rotation rate: give that, too (zero, where it is to stop)",
+          fmt::format("session: obstacle \"{}\" was rotating and stops rotating, since its velocity is set without a "
+                      "rotation rate: set that, too (zero if it should stop)",
                       obstacle));
     }
   } catch (const Error& problem) {
@@ -226,7 +228,7 @@ bool Session::step() {
 }
 
 bool Session::take_step() {
-  if (has_finished_) refuse_use("it has finished, and nothing would be written any more");
+  if (has_finished_) refuse_use("it has finished, and nothing more would be written");
   if (run_ != nullptr) return run_->take_step();
   if (at_end()) return false;
   simulation().advance();
@@ -240,8 +242,8 @@ void Session::run(const std::function<void()>& each) {
 }
 
 void Session::write_to(RunOptions options) {
-  if (run_ != nullptr || has_finished_) refuse_use("it writes already");
-  if (simulation_ != nullptr && state().step > 0) refuse_use("what it writes must begin before the first step");
+  if (run_ != nullptr || has_finished_) refuse_use("it already writes results");
+  if (simulation_ != nullptr && state().step > 0) refuse_use("writing must begin before the first step");
   const log::CollectWarnings collect(warnings_);
   options_ = std::move(options);
   if (options_.settings.empty()) options_.settings = changes_;
@@ -251,7 +253,7 @@ void Session::write_to(RunOptions options) {
 }
 
 void Session::write_checkpoint_now() {
-  if (run_ == nullptr) refuse_use("it writes nothing: there is nothing that a checkpoint could go on with");
+  if (run_ == nullptr) refuse_use("it writes nothing: there is no run that a checkpoint could continue");
   const log::CollectWarnings collect(warnings_);
   run_->write_checkpoint_now();
 }

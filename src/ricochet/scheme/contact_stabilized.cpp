@@ -32,7 +32,7 @@ class ContactStabilized final : public Scheme {
   }
 
   void analyse(const SemidiscreteProblem& problem) override {
-    require_contact_inertia(problem, "contact-stabilized", "it projects in their norm");
+    require_contact_inertia(problem, "contact-stabilized", "it projects in the norm of the mass");
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {

@@ -95,13 +95,13 @@ SchemeRegistration moreau_jean_scheme() {
             .unit = "1",
             .default_value = "0.5",
             .range = {.at_least = 0.5, .at_most = 1.0},
-            .doc = "Where in the step forces are taken: 1/2 is the midpoint, more damps."},
+            .doc = "Instant within the step at which forces are evaluated: 1/2 is the midpoint, larger values damp."},
            restitution_key(),
            {.name = "slip",
             .type = KeyType::choice,
             .default_value = "end",
             .choices = {"end", "theta"},
-            .doc = "Of which instant Coulomb's law takes the slip rate; at \"theta\" friction never creates energy."}}};
+            .doc = "Instant of the slip rate in Coulomb's law; with \"theta\" friction never creates energy."}}};
 }
 
 }  // namespace ricochet

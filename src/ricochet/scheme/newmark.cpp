@@ -37,8 +37,8 @@ class Newmark final : public Scheme {
   [[nodiscard]] LongSteps long_steps(const SemidiscreteProblem&) const override {
     return {.crossings = 1.0,
             .trouble =
-                "its contact and friction forces can create energy: more than 1 % of the whole was created in one of "
-                "eleven random cases at one to three crossings, in half at three to ten, and in nine of ten "
+                "its contact and friction forces can create energy: more than 1 % of the total was created in one of "
+                "eleven random cases at one to three crossings, in half of them at three to ten, and in nine of ten "
                 "beyond thirty"};
   }
   /// γ = ½ damps nothing: V₁ = 2ΔU/h − V₀, and for β < ½ A₁ = −4V₀/h − A₀ once the node is held.

@@ -33,10 +33,11 @@ bool is_complete(const ParameterCheck& check) {
   const bool has_preset = check.is_given("preset");
   for (const std::string name : {"beta", "gamma"}) {
     if (has_preset && check.is_given(name) && check.is_override(name) == check.is_override("preset")) {
-      check.add_problem("preset",
-                        fmt::format("\"preset\" and \"{}\" are given together: \"preset\" stands for beta and "
-                                    "gamma, leave out one or the other",
-                                    name));
+      check.add_problem(
+          "preset",
+          fmt::format(
+              "\"preset\" and \"{}\" are given together: \"preset\" sets beta and gamma, remove one or the other",
+              name));
       return false;
     }
     if (!has_preset && !check.is_given(name)) {

@@ -28,24 +28,22 @@ void require_explicit(const SemidiscreteProblem& problem, const std::string& sch
   if (!problem.has_singular_mass() && problem.has_diagonal_mass()) return;
   throw Error(ErrorKind::invalid_input,
               fmt::format("scheme \"{}\" is explicit and needs a diagonal mass with inertia at every node; set "
-                          "mass.type = \"lumped\", or use scheme \"reduced-kane\", which takes the equivalent mass",
+                          "mass.type = \"lumped\", or use scheme \"reduced-kane\", which supports the equivalent mass",
                           scheme));
 }
 
 void require_changing_steps(const Scheme& scheme, const std::string& name) {
   if (scheme.supports_step_changes()) return;
-  throw Error(ErrorKind::invalid_input,
-              fmt::format("{} remembers the step before and cannot change its length; give time.step as a number, or "
-                          "use scheme \"reduced-kane\"",
-                          name));
+  throw Error(ErrorKind::invalid_input, fmt::format("{} uses the previous step and cannot change the length of steps; "
+                                                    "set time.step to a number, or use scheme \"reduced-kane\"",
+                                                    name));
 }
 
 void require_relaxation(const Scheme& scheme, const SemidiscreteProblem& problem, const std::string& name) {
   if (problem.internal_force->viscous() == nullptr || scheme.supports_relaxation()) return;
-  throw Error(ErrorKind::invalid_input,
-              name +
-                  " does not relax stress: use scheme \"reduced-kane\", \"mean-reaction\" or \"reduced-midpoint\", "
-                  "or leave material.relaxation out");
+  throw Error(ErrorKind::invalid_input, name +
+                                            " does not support viscoelastic branches: use scheme \"reduced-kane\", "
+                                            "\"mean-reaction\" or \"reduced-midpoint\", or remove material.relaxation");
 }
 
 void check_critical_step(const std::string& scheme, double step, double critical_step) {
@@ -59,8 +57,8 @@ void check_critical_step(const std::string& scheme, double step, double critical
   }
   if (fraction <= safe_fraction) return;
   log::warning(
-      fmt::format("scheme \"{}\": time.step = {:.6g} is {:.3g} of the critical step, {:.6g}; near to it changes of "
-                  "contact leave high frequencies of large amplitude, take {:.3g} or less",
+      fmt::format("scheme \"{}\": time.step = {:.6g} is {:.3g} of the critical step, {:.6g}; close to it changes of "
+                  "contact cause high frequencies of large amplitude, set time.step = {:.3g} or less",
                   scheme, step, fraction, critical_step, rounded_down(safe_fraction * critical_step, 3)));
 }
 

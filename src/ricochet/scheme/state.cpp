@@ -50,7 +50,7 @@ namespace {
 const Vector& memory(const Snapshot& snapshot, const std::string& name, std::initializer_list<Index> lengths) {
   const Vector& values = snapshot.reals(name);
   if (std::find(lengths.begin(), lengths.end(), values.size()) == lengths.end())
-    Snapshot::refuse(name, "has a length that is none of this problem's");
+    Snapshot::refuse(name, "has a length that does not fit this problem");
   return values;
 }
 

@@ -89,7 +89,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
     kept.chosen = saved_methods(snapshot, name, scheme_.operators(problem_).size());
     make_level(number, kept).solver->load(snapshot, name);
   }
-  if (!levels_.contains(first)) Snapshot::refuse("level", "is none of the lengths of steps");
+  if (!levels_.contains(first)) Snapshot::refuse("level", "is none of the saved step lengths");
   if (scheme_.step() != length_of(first)) scheme_.change_step(problem_, length_of(first));
   current_ = &levels_.at(first);
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_, snapshot, "account");
@@ -157,11 +157,10 @@ const StageSolution& Simulation::solve(std::size_t number) {
   auto& [stage, solution, dofs] = current_->stages.at(number);
   current_->solver->solve(number, stage, solution);
   if (problem_.ranks->any(!is_finite(problem_, dofs, solution.increment))) {
-    throw Error(ErrorKind::not_converged,
-                problem_.internal_force->is_linear()
-                    ? "the displacement is no longer finite, so the motion has grown beyond all bounds; use a stable "
-                      "scheme (reduced-kane with mass \"equivalent\")"
-                    : "a correction of Newton's method has entries that are no finite numbers");
+    throw Error(ErrorKind::not_converged, problem_.internal_force->is_linear()
+                                              ? "the displacement is no longer finite, so the motion has diverged; use "
+                                                "a stable scheme (reduced-kane with mass \"equivalent\")"
+                                              : "a correction of Newton's method has entries that are not finite");
   }
   iterations_ += solution.iterations;
   // Stages of contact nodes alone, if there are other stages, are solved within the iterations of these.
@@ -223,7 +222,7 @@ void Simulation::solve_step() {
     return;
   } catch (const Error& problem) {
     if (problem.kind() != ErrorKind::not_converged || problem_.internal_force->is_linear()) throw;
-    log::debug(fmt::format("{}: once more, with the tangent of the start", problem.what()));
+    log::debug(fmt::format("{}: attempting the step again, with the tangent at its start", problem.what()));
   }
   renew(state_.displacement, state_.displacement);
   attempt_step();
@@ -295,8 +294,8 @@ const char* Simulation::failure_reason() const {
 void Simulation::warn_of_short_parts(int level) {
   if (level < short_parts || std::exchange(short_parts_warned_, true)) return;
   log::warning(fmt::format(
-      "step {} is taken in parts as short as 1/{} of it, and perhaps shorter ones, as {} in longer ones: that takes as "
-      "much longer, while the progress stands, and it may fail in the end",
+      "step {} is computed in parts as short as 1/{} of it, and possibly shorter ones, since {} in longer ones: this "
+      "takes correspondingly longer, during which the progress does not advance, and it may still fail",
       state_.step + 1, 1L << level, failure_reason()));
 }
 
@@ -337,7 +336,7 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
   }
   use_level(0);
   if (cut_steps_++ == 0)
-    log::info(fmt::format("step {} is taken in parts, as {} in all of it", state_.step + 1, reason));
+    log::info(fmt::format("step {} is computed in parts, since {} in the whole step", state_.step + 1, reason));
 }
 
 void Simulation::advance(const std::function<void(const State&)>& each_part) {

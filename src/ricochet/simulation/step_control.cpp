@@ -41,8 +41,9 @@ StepControl::StepControl(const SemidiscreteProblem& problem, const StepControlOp
   const double ticks =
       std::ceil(options.end / step_of(deepest_) - std::min(1e-12 * options.end / step_of(deepest_), 0.5));
   if (!(ticks <= most_ticks))
-    refuse(fmt::format("{:.3g} of the smallest step, {:.6g}, lead to the end, {:.6g}; at most {:.0e} are possible",
-                       ticks, options.smallest, options.end, most_ticks));
+    refuse(fmt::format(
+        "{:.3g} of the smallest step, {:.6g}, are needed to reach the end, {:.6g}; at most {:.0e} are possible", ticks,
+        options.smallest, options.end, most_ticks));
   end_ticks_ = std::max(std::int64_t{1}, static_cast<std::int64_t>(ticks));
   find_inertia();
 }
@@ -144,10 +145,9 @@ void StepControl::watch(double energy, double created) {
   if (!(created > most_created * own_energy_)) return;
   throw Error(
       ErrorKind::not_converged,
-      fmt::format(
-          "t = {:.9g}: the time scheme has created an energy of {:.3g} where the motion had {:.3g}; shorter steps only "
-          "make it create more: use scheme \"reduced-kane\" with mass \"equivalent\"",
-          time(), created, own_energy_));
+      fmt::format("t = {:.9g}: the time scheme has created an energy of {:.3g}, while the motion itself had {:.3g}; "
+                  "shorter steps only make it create more: use scheme \"reduced-kane\" with mass \"equivalent\"",
+                  time(), created, own_energy_));
 }
 
 /// No energy ahead counts once its time has come; one found after a refusal also serves the repeated attempt.
@@ -165,20 +165,20 @@ void StepControl::count_step() {
   if (stretch_steps_ != many_steps && stretch_steps_ != most_steps) return;
   const double gone = static_cast<double>(ticks_ - stretch_ticks_) * step_of(deepest_);
   const std::string pace = fmt::format(
-      "t = {:.9g}: the last {} steps have led no further than {:.3g}, a part of time.largest = {:g}, "
-      "and the last has an error of {:.2g} times time.tolerance: "
-      "the motion has jumps that steps of no length resolve, or vibrations that need such steps",
+      "t = {:.9g}: the last {} steps have advanced by only {:.3g}, a fraction of time.largest = {:g}, and the last has "
+      "an error of {:.2g} times time.tolerance: the motion has jumps that no step length resolves, or vibrations that "
+      "require such steps",
       time(), stretch_steps_, gone, options_.largest, error_);
   const std::string advice = fmt::format(
-      "set time.smallest = {:.3g}, below which no step is refused, or a larger time.tolerance; "
-      "where so many steps are meant, a smaller time.largest",
+      "set time.smallest = {:.3g}, a length at which no step is rejected, or a larger time.tolerance; if so many steps "
+      "are intended, a smaller time.largest",
       step_of(first_level));
   if (stretch_steps_ == most_steps)
     throw Error(ErrorKind::not_converged,
-                fmt::format("{}; the run would have a row of history.csv for each; {}", pace, advice));
+                fmt::format("{}; history.csv would have a row for each of them; {}", pace, advice));
   log::warning(
-      fmt::format("{}; at this pace the run takes {:.2g} steps, each a row of history.csv, "
-                  "and it ends with an error after {} of them; {}",
+      fmt::format("{}; at this rate the run needs {:.2g} steps, each with a row of history.csv, and it ends with an "
+                  "error after {} of them; {}",
                   pace, static_cast<double>(stretch_steps_) * options_.end / gone, most_steps, advice));
 }
 
@@ -210,30 +210,31 @@ void StepControl::save(Snapshot& snapshot, const std::string& name) const {
 
 void StepControl::load(const Snapshot& snapshot, const std::string& name) {
   const Snapshot::Integers& ticks = snapshot.integers(name + ".ticks", 0, std::int64_t{1} << 60);
-  if (ticks.size() != 4) Snapshot::refuse(name + ".ticks", "are not four");
+  if (ticks.size() != 4) Snapshot::refuse(name + ".ticks", "does not have four entries");
   ticks_ = ticks[0];
   energy_ahead_ticks_ = ticks[1];
   stretch_ticks_ = ticks[2];
   stretch_steps_ = static_cast<long>(ticks[3]);
   const Snapshot::Integers& levels = snapshot.integers(name + ".levels", 0, deepest_);
-  if (levels.size() != 4 || levels[3] != deepest_) Snapshot::refuse(name + ".levels", "are those of other steps");
+  if (levels.size() != 4 || levels[3] != deepest_) Snapshot::refuse(name + ".levels", "belongs to other step lengths");
   level_ = static_cast<int>(levels[0]);
   wanted_ = static_cast<int>(levels[1]);
   last_level_ = static_cast<int>(levels[2]);
   const Snapshot::Integers& steps =
       snapshot.integers(name + ".steps", std::numeric_limits<int>::min() / 2, most_levels * most_patience);
   if (steps.size() != 3 || steps[0] < 0 || steps[0] > deepest_ || steps[2] < 0)
-    Snapshot::refuse(name + ".steps", "are none of these steps");
+    Snapshot::refuse(name + ".steps", "does not belong to these step lengths");
   finest_ = static_cast<int>(steps[0]);
   patience_ = static_cast<int>(steps[1]);
   backoff_ = static_cast<int>(steps[2]);
   const Snapshot::Integers& counts = snapshot.integers(name + ".counts");
-  if (counts.size() != 3) Snapshot::refuse(name + ".counts", "are not three");
+  if (counts.size() != 3) Snapshot::refuse(name + ".counts", "does not have three entries");
   counts_.refused = counts[0];
   counts_.unsolved = counts[1];
   counts_.tolerated = counts[2];
   const Vector& numbers = snapshot.reals(name + ".numbers", 8);
-  if (!(numbers.array() >= 0.0).all()) Snapshot::refuse(name + ".numbers", "are not all positive");
+  if (!(numbers.array() >= 0.0).all())
+    Snapshot::refuse(name + ".numbers", "has entries that are negative or not numbers");
   largest_energy_ = numbers[0];
   step_before_ = numbers[1];
   error_ = numbers[2];

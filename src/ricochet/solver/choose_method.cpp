@@ -100,9 +100,9 @@ void compare(const SparseCholesky::Prediction& predicted, double solves, const I
   chosen.expected_iterations = iteration.iterations;
   const bool direct = factorization + solves * solve <= solves * iterative_solve;
   chosen.method = direct ? SolverMethod::direct : SolverMethod::iterative;
-  chosen.reason =
-      fmt::format("for {:.0f} solves a factor would take {} and then {} each, iterations {} each, by estimate", solves,
-                  seconds_text(factorization), seconds_text(solve), seconds_text(iterative_solve));
+  chosen.reason = fmt::format(
+      "estimate for {:.0f} solves: {} to factorize and {} per solve with the factor, {} per solve by iterations",
+      solves, seconds_text(factorization), seconds_text(solve), seconds_text(iterative_solve));
 }
 
 }  // namespace
@@ -139,29 +139,31 @@ ChosenMethod choose_method(const SparseCholesky::Prediction& predicted, const Op
                       .predicted_entries = predicted.entries,
                       .predicted_operations = predicted.operations};
   if (coefficients.dofs == StageDofs::contact) {
-    chosen.reason = "the contact nodes alone are few, and have no inertia that would help an iteration";
+    chosen.reason =
+        "the operator of the contact nodes alone is small, and has no inertia that would help iterations to converge";
     return chosen;
   }
   if (options.method != SolverMethod::automatic) {
     chosen.method = options.method;
-    chosen.reason = "the case asks for it";
+    chosen.reason = "requested by the case";
     return chosen;
   }
   const double limit = options.memory > 0.0 ? options.memory : memory_part * physical_memory();
   const double bytes = sizeof(double) * predicted.entries;
   if (!predicted.possible) {
     chosen.method = SolverMethod::iterative;
-    chosen.reason = fmt::format("a factor would have {:.2g} entries, more than can be counted", predicted.entries);
+    chosen.reason = fmt::format("a factor would have {:.2g} entries, more than CHOLMOD can count", predicted.entries);
   } else if (bytes > limit) {
     chosen.method = SolverMethod::iterative;
-    chosen.reason = fmt::format("a factor would take {:.3g} GB, and {:.3g} GB are allowed", 1e-9 * bytes, 1e-9 * limit);
+    chosen.reason =
+        fmt::format("a factor would need {:.3g} GB, but only {:.3g} GB are allowed", 1e-9 * bytes, 1e-9 * limit);
   } else if (predicted.operations <= short_factorization * estimated_operations_per_second) {
-    chosen.reason = "a factor is made within seconds";
+    chosen.reason = "a factor is computed within seconds";
   } else if (coefficients.mass == 0.0) {
-    chosen.reason = "there is no inertia, without which iterations converge badly";
+    chosen.reason = "the operator has no inertia, without which iterations converge badly";
   } else {
     compare(predicted, options.solves > 0 ? static_cast<double>(options.solves) : many_solves, iterations(), chosen);
-    if (options.solves == 0) chosen.reason += ", for a number of solves that nobody knows";
+    if (options.solves == 0) chosen.reason += "; the actual number of solves is unknown";
   }
   return chosen;
 }

@@ -313,8 +313,8 @@ void IterativeStage::solve_linear(double norm, double target) {
   counts_.gradients += result.iterations;
   if (result.converged || switch_to_multigrid()) return;
   throw Error(ErrorKind::not_converged,
-              fmt::format("conjugate gradients stopped after {} iterations at {:.2g} of the residual asked for; "
-                          "set solver.method = \"direct\" if memory allows",
+              fmt::format("conjugate gradients stopped after {} iterations at {:.2g} times the requested residual; set "
+                          "solver.method = \"direct\" if memory allows",
                           result.iterations, result.residual / target));
 }
 
@@ -364,10 +364,10 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
   }
   throw Error(
       ErrorKind::not_converged,
-      fmt::format("contact and conjugate gradients did not converge in {} rounds; the time step is long compared "
-                  "with the time in which a wave crosses a cell: set solver.method = \"direct\" or take a smaller "
-                  "time.step",
-                  round_limit));
+      fmt::format(
+          "contact and conjugate gradients did not converge in {} iterations; the time step is long compared with the "
+          "time in which a wave crosses a cell: set solver.method = \"direct\" or use a smaller time.step",
+          round_limit));
 }
 
 void IterativeStage::end(const Stage& stage, StageSolution& solution) {

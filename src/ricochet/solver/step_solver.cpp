@@ -27,7 +27,7 @@ constexpr const char* made_at_entry = ".made_at";
 constexpr const char* contact_made_at_entry = ".contact_made_at";
 constexpr const char* pressure_at_entry = ".pressure_at";  ///< at the factorization; of the last forces
 constexpr const char* frame_entry = ".frame";
-constexpr const char* kept = "as when the run began";
+constexpr const char* kept = "as at the beginning of the run";
 
 void log_factorization(const ChosenMethod& chosen, std::size_t unknowns) {
   if (chosen.predicted_operations < long_factorization) return;
@@ -37,8 +37,8 @@ void log_factorization(const ChosenMethod& chosen, std::size_t unknowns) {
 }
 
 void log_iterations(const ChosenMethod& chosen) {
-  log::info(fmt::format("solved by iterations: {} (a factor of {:.2g} GB takes {:.2g} operations to make)",
-                        chosen.reason, 1e-9 * sizeof(double) * chosen.predicted_entries, chosen.predicted_operations));
+  log::info(fmt::format("solved by iterations: {} (a factor of {:.2g} GB would take {:.2g} operations)", chosen.reason,
+                        1e-9 * sizeof(double) * chosen.predicted_entries, chosen.predicted_operations));
 }
 
 class StagesStepSolver final : public StepSolver {
@@ -176,7 +176,7 @@ class StagesStepSolver final : public StepSolver {
                          const StepSolverOptions& options) {
     if (coefficients.dofs == StageDofs::contact) {
       stages_.push_back(make_gathered_stage(problem, coefficients, options, *gathered_));
-      methods_.push_back({.method = SolverMethod::direct, .reason = "on one of the processes"});
+      methods_.push_back({.method = SolverMethod::direct, .reason = "solved on one of the processes"});
       return;
     }
     FactoredStage* const condensed_stage =
@@ -190,13 +190,13 @@ class StagesStepSolver final : public StepSolver {
   void add_stage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                  const StepSolverOptions& options) {
     const SolverMethod before = options.chosen.empty() ? SolverMethod::automatic : options.chosen[methods_.size()];
-    ChosenMethod chosen{.method = options.method, .reason = "the case asks for it"};
+    ChosenMethod chosen{.method = options.method, .reason = "requested by the case"};
     AnalysedOperator analysed;
     Timer timer;
     if (options.method == SolverMethod::automatic && before == SolverMethod::iterative) {
       chosen.method = before;
       chosen.reason = kept;
-      log::info("solved by iterations, as when the run began");
+      log::info("solved by iterations, as at the beginning of the run");
     } else if (chosen.method != SolverMethod::iterative || coefficients.dofs == StageDofs::contact) {
       analysed = analyse_operator(problem, coefficients);
       chosen = choose_method(problem, analysed.factor.predicted(), coefficients, options);
@@ -212,7 +212,7 @@ class StagesStepSolver final : public StepSolver {
             ? stages_.at(static_cast<std::size_t>(coefficients.condensed_operator))->factored()
             : nullptr;
     if (coefficients.condensed_operator >= 0 && condensed_stage == nullptr)
-      throw std::logic_error("the layer of a stage needs a factor, and its operator is solved by iterations");
+      throw std::logic_error("the contact nodes of a stage need a factor, but their operator is solved by iterations");
     if (chosen.method == SolverMethod::direct) {
       log_factorization(chosen, analysed.dofs.size());
       stages_.push_back(make_direct_stage(problem, coefficients, std::move(analysed), options, condensed_stage));
@@ -246,7 +246,7 @@ std::vector<SolverMethod> saved_methods(const Snapshot& snapshot, const std::str
              most = static_cast<std::int64_t>(SolverMethod::iterative);
   for (const std::int64_t method : snapshot.integers(name + methods_entry, least, most))
     result.push_back(static_cast<SolverMethod>(method));
-  if (result.size() != operators) Snapshot::refuse(name + methods_entry, "is of another number of operators");
+  if (result.size() != operators) Snapshot::refuse(name + methods_entry, "belongs to another number of operators");
   return result;
 }
 

@@ -74,8 +74,8 @@ void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSo
     }
     if (is_last || !std::isfinite(error)) {
       throw Error(ErrorKind::not_converged,
-                  fmt::format("the contact forces, which turn with what the bodies touch, did not settle in {} rounds "
-                              "({:.3g} is left of the gaps)",
+                  fmt::format("the contact forces, which rotate with the surfaces that the bodies touch, did not "
+                              "converge in {} iterations (the gaps are still wrong by {:.3g})",
                               round, least));
     }
     if (round == plain_rounds || round - std::max(last_progress, last_start) > patience_of_acceleration) {

@@ -97,7 +97,7 @@ ComparedQuantity find_compared(const std::string& name, const HistoryTable& tabl
   if (!columns.empty()) return {name, columns};
   const std::string near = nearest_name(name, table.names);
   throw Error(ErrorKind::usage, fmt::format("--compare {}: the history of the reference has no such column or vector{}",
-                                            name, near.empty() ? "" : fmt::format("; is \"{}\" meant?", near)));
+                                            name, near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near)));
 }
 
 std::vector<ComparedQuantity> usual_compared(const HistoryTable& table) {

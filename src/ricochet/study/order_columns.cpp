@@ -43,7 +43,7 @@ std::vector<std::optional<double>> orders_of(const Study& study, const ResultTab
   return orders;
 }
 
-/// Returns a text such as "2 of 6 of tip.displacement", or "".
+/// Returns a text such as "2 of 6 for tip.displacement", or "".
 std::string idle_text(const std::string& key, const std::string& name,
                       const std::vector<std::optional<double>>& orders) {
   std::vector<double> found;
@@ -52,7 +52,7 @@ std::string idle_text(const std::string& key, const std::string& name,
   }
   const std::vector<bool> idle = find_stagnant_orders(key, found);
   const auto count = std::count(idle.begin(), idle.end(), true);
-  return count > 0 ? fmt::format("{} of {} of {}", count, found.size(), name) : "";
+  return count > 0 ? fmt::format("{} of {} for {}", count, found.size(), name) : "";
 }
 
 bool is_biased(const StudyQuestions& questions) {
@@ -86,17 +86,17 @@ void add_order_columns(const Study& study, ResultTable& table, std::vector<std::
     if (std::string text = idle_text(key, name, orders); !text.empty()) idle.push_back(std::move(text));
   }
   if (!any) return;
-  notes.push_back(fmt::format("Orders are those between a value of {} and the one before it.", key));
+  notes.push_back(fmt::format("Orders are observed between a value of {} and the previous one.", key));
   if (!idle.empty()) {
     notes.push_back(
-        fmt::format("Orders below {} mean nothing ({}): there the error no longer falls with {}, and what is left of "
-                    "it comes from something else, such as the mesh or the reference.",
+        fmt::format("Orders below {} are meaningless ({}): the error no longer decreases with {} there, and the "
+                    "remaining error has another cause, such as the mesh or the reference.",
                     least_order, fmt::join(idle, ", "), key));
   }
   if (is_biased(study.questions)) {
     notes.push_back(
-        "The last orders are too large, since the reference is a run of this study: at half the step it makes an order "
-        "of 2 seem 2.3. Name a run that is much finer with --reference to have none of this.");
+        "The last orders are too large, since the reference is a run of this study: with half the step it makes an "
+        "order of 2 appear as 2.3. To avoid this, name a much finer run with --reference.");
   }
 }
 

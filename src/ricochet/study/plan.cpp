@@ -90,7 +90,7 @@ std::string name_of(const std::vector<std::string>& short_keys, const std::vecto
 
 StudyAxis parse_axis(const std::string& text) {
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) refuse_axis(text, "there is no =");
+  if (equals == std::string::npos) refuse_axis(text, "\"=\" is missing");
   StudyAxis axis;
   axis.keys = split(text.substr(0, equals), ',', text);
   for (const std::string& key : axis.keys) {
@@ -115,8 +115,8 @@ StudyAxis parse_axis(const std::string& text) {
     const auto [same, is_new] = seen.emplace(meant, entry);
     if (is_new) continue;
     refuse_axis(text, same->second == entry
-                          ? fmt::format("\"{}\" is there twice", entry)
-                          : fmt::format("\"{}\" and \"{}\" are one value: leave one out", same->second, entry));
+                          ? fmt::format("\"{}\" appears twice", entry)
+                          : fmt::format("\"{}\" and \"{}\" are the same value: remove one", same->second, entry));
   }
   return axis;
 }
@@ -125,17 +125,18 @@ void check_plan(const StudyPlan& plan) {
   if (plan.axes.empty()) throw Error(ErrorKind::usage, "study: nothing varies: add --vary KEY=V1,V2,...");
   std::set<std::string> keys;
   for (const std::string& key : varied_keys(plan)) {
-    if (!keys.insert(key).second) throw Error(ErrorKind::usage, fmt::format("study: --vary has {} twice", key));
+    if (!keys.insert(key).second) throw Error(ErrorKind::usage, fmt::format("study: --vary lists {} twice", key));
   }
   for (const std::string& setting : plan.settings) {
     const std::string key = trimmed_value(setting.substr(0, setting.find('=')));
-    if (keys.contains(key)) throw Error(ErrorKind::usage, fmt::format("study: {} is in --vary and in --set", key));
+    if (keys.contains(key)) throw Error(ErrorKind::usage, fmt::format("study: {} is in both --vary and --set", key));
   }
   std::size_t count = 1;
   for (const StudyAxis& axis : plan.axes) {
     count *= axis.values.size();
     if (count > most_runs)
-      throw Error(ErrorKind::usage, fmt::format("study: these are more than {} runs: vary less at a time", most_runs));
+      throw Error(ErrorKind::usage,
+                  fmt::format("study: there are more than {} runs: vary fewer keys or values at a time", most_runs));
   }
 }
 
@@ -183,7 +184,7 @@ KeyPosition find_varied(const StudyPlan& plan, const std::string& key, const std
     if (found != keys.end()) return {a, static_cast<std::size_t>(found - keys.begin())};
   }
   throw Error(ErrorKind::usage,
-              fmt::format("{}: \"{}\" does not vary; {} does", option, key, join_names(varied_keys(plan))));
+              fmt::format("{}: \"{}\" does not vary; keys that vary: {}", option, key, join_names(varied_keys(plan))));
 }
 
 bool is_numeric(const StudyPlan& plan, KeyPosition place) {

@@ -19,10 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void refuse_to_remove(const fs::path& path, const std::string& why) {
-  throw Error(ErrorKind::file_access,
-              fmt::format("{}: {}, and is not removed: see what it is, remove it yourself, or choose another directory "
-                          "with -o",
-                          path.string(), why));
+  throw Error(
+      ErrorKind::file_access,
+      fmt::format("{}: {}, and is not removed: check it and remove it yourself, or choose another directory with -o",
+                  path.string(), why));
 }
 
 /// Returns true for a folder of a run; an empty one belongs to a run that ended before it wrote anything.
@@ -36,8 +36,8 @@ bool looks_like_run(const fs::path& folder) {
 void require_folder(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status status = fs::symlink_status(path, ignored);
-  if (fs::is_symlink(status)) refuse_to_remove(path, "is a link");
-  if (!fs::is_directory(status)) refuse_to_remove(path, "is no folder");
+  if (fs::is_symlink(status)) refuse_to_remove(path, "is a symbolic link");
+  if (!fs::is_directory(status)) refuse_to_remove(path, "is not a folder");
 }
 
 }  // namespace
@@ -53,8 +53,8 @@ bool is_run_folder_name(std::string_view name) {
 
 void refuse_damaged_plan(const std::string& path, const std::string& why, const std::string& of) {
   throw Error(ErrorKind::invalid_input,
-              fmt::format("{}: this file is damaged: {}; put it back from a copy, or choose another directory for the "
-                          "{} with -o, or remove it and the folder \"runs\" beside it and begin anew",
+              fmt::format("{}: this file is damaged: {}; restore it from a copy, or choose another directory for the "
+                          "{} with -o, or remove it and the folder \"runs\" beside it and start anew",
                           path, why, of));
 }
 
@@ -65,7 +65,7 @@ void require_run_folder_names(const std::vector<std::string>& names, const std::
     if (is_name && seen.insert(name).second) continue;
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: \"{}\" {}", file, name,
-                            is_name ? "is the folder of two runs" : "cannot be the name of the folder of a run"));
+                            is_name ? "is the folder of two runs" : "is not a valid name for the folder of a run"));
   }
 }
 
@@ -79,7 +79,7 @@ void remove_run_folders(const std::string& directory, const std::vector<std::str
   for (const std::string& name : names) {
     if (!fs::exists(fs::symlink_status(runs / name, problem))) continue;
     require_folder(runs / name);
-    if (!looks_like_run(runs / name)) refuse_to_remove(runs / name, "holds nothing that a run leaves");
+    if (!looks_like_run(runs / name)) refuse_to_remove(runs / name, "holds no files of a run");
     folders.push_back(runs / name);
   }
   for (const fs::path& folder : folders) {

@@ -49,8 +49,9 @@ RunPool::RunPool(const std::vector<PooledRun>& runs, const RunPoolOptions& optio
     actions_.push_back(action);
   }
   if (kept > 0) {
-    log::info(fmt::format("{} refused or failed and would again: its directory says why; remove it to try again",
-                          counted(kept, "run")));
+    log::info(fmt::format(
+        "{} skipped (refused or failed earlier): see the directory of each for the reason, and remove it to try again",
+        counted(kept, "run")));
   }
   progress_.emplace(runs.size(), runs.size() - pending_.size(), options.quiet);
 }
@@ -70,7 +71,9 @@ ChildProcess RunPool::start(std::size_t i) {
   const std::string& directory = run_at(i).directory;
   std::error_code problem;
   std::filesystem::create_directories(directory, problem);
-  if (problem) throw Error(ErrorKind::file_access, fmt::format("{}: cannot be made: {}", directory, problem.message()));
+  if (problem)
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: cannot create this directory: {}", directory, problem.message()));
   record_exit_status(directory, 0, "");
   ChildProcess child;
   child.arguments = {options_.program, "run", run_at(i).case_path, "-o", directory};

@@ -29,7 +29,8 @@ void require_one_valid_case(const Study& study) {
       if (!first) first = problem;
     }
   }
-  throw Error(first->kind(), fmt::format("study: no run of it could start; the first one says:\n{}", first->what()));
+  throw Error(first->kind(),
+              fmt::format("study: none of the runs can start; the first one reports:\n{}", first->what()));
 }
 
 /// Requires that completed runs are those of the present case.
@@ -41,8 +42,8 @@ void require_runs_of_this_case(const Study& study) {
       require_same_case(read_case(study.plan.case_path, run.planned.settings), state.summary->version,
                         state.summary->parameters, study.path(run));
     } catch (const Error& problem) {
-      throw Error(problem.kind(), fmt::format("{}\nthe runs of this study are not those of its case any more: choose "
-                                              "another directory with -o, or start anew over it with --force",
+      throw Error(problem.kind(), fmt::format("{}\nthe runs of this study no longer match its case: choose another "
+                                              "directory with -o, or overwrite the study with --force",
                                               problem.what()));
     }
   }
@@ -55,8 +56,8 @@ void refuse_other_results(const std::string& directory, const StudyOptions& opti
   }
   if (!holds_study(directory) || options.resume || options.force) return;
   throw Error(ErrorKind::file_access,
-              fmt::format("{}: holds a study already; go on with it, or add runs to it, with --resume, choose another "
-                          "directory with -o, or start anew over it with --force",
+              fmt::format("{}: already contains a study; continue it, or add runs to it, with --resume, choose another "
+                          "directory with -o, or overwrite the study with --force",
                           directory));
 }
 

@@ -32,7 +32,7 @@ struct StudyPanel {
 [[noreturn]] void refuse_figure(const std::string& what, const std::string& why) {
   throw Error(
       ErrorKind::usage,
-      fmt::format("--what {}: {}; of a study work-precision, order and COLUMN-against-KEY can be drawn", what, why));
+      fmt::format("--what {}: {}; figures of a study are work-precision, order and COLUMN-against-KEY", what, why));
 }
 
 bool has_numbers(const ResultTable& table, const std::string& column) {
@@ -53,7 +53,7 @@ void require_column(const std::string& what, const std::string& column, const Re
   if (std::count(names.begin(), names.end(), column) > 0) return;
   const std::string near = nearest_name(column, names);
   refuse_figure(what, fmt::format("study.csv has no column \"{}\"{}", column,
-                                  near.empty() ? "" : fmt::format(" (is \"{}\" meant?)", near)));
+                                  near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near)));
 }
 
 /// Returns the components of a vector written as "[0, -0.5]"; empty if the text is not a vector.
@@ -135,13 +135,15 @@ std::vector<StudyPanel> panels_of(const std::string& what, const Study& study, c
   }
   const std::size_t colon = what.find(':');
   const std::string kind = what.substr(0, colon);
-  if (kind != "work-precision" && kind != "order") refuse_figure(what, "is not known");
+  if (kind != "work-precision" && kind != "order") refuse_figure(what, "there is no such figure");
   std::vector<std::string> errors = error_columns(table);
   if (colon != std::string::npos) errors = {error_prefix + what.substr(colon + 1)};
   if (errors.empty())
-    refuse_figure(what, "the table has no errors: run the study with --exact or --reference, or again with --resume");
+    refuse_figure(
+        what,
+        "the table has no errors: run the study with --exact or --reference (with --resume if it exists already)");
   const bool of_order = kind == "order";
-  if (of_order && study.questions.order_key.empty()) refuse_figure(what, "no key varies with numbers");
+  if (of_order && study.questions.order_key.empty()) refuse_figure(what, "no key varies with numeric values");
   std::vector<StudyPanel> panels;
   for (const std::string& error : errors) {
     require_column(what, error, table);
@@ -280,7 +282,7 @@ Json describe_panel(StudyPanel panel, const Study& study, const ResultTable& tab
   std::vector<std::string> categories;
   const std::vector<double> numbers = axis_positions(table, panel, categories);
   const std::vector<StudyLine> lines = lines_of(panel, study, table, numbers);
-  if (lines.empty()) refuse_figure(what, fmt::format("no run has numbers under {} and {}", panel.x, panel.y));
+  if (lines.empty()) refuse_figure(what, fmt::format("no run has numbers in the columns {} and {}", panel.x, panel.y));
   Json json{{"kind", "lines"},
             {"x_label", (panel.log_x && counts_halvings(panel.x) ? "2^-" : "") + label_of_part(panel)},
             {"y_label", axis_label(panel.y)},

@@ -82,7 +82,7 @@ std::string only_numeric_key(const StudyPlan& plan, const std::string& option, b
     const bool has_step = std::count(numeric.begin(), numeric.end(), "time.step") > 0;
     return has_step ? "time.step" : numeric.empty() ? "" : numeric.front();
   }
-  throw Error(ErrorKind::usage, fmt::format("{}: {} with numbers; name the key, as in {}:{}", option,
+  throw Error(ErrorKind::usage, fmt::format("{}: {} with numeric values; name the key, as in {}:{}", option,
                                             numeric.empty() ? "no key varies" : "several keys vary", option,
                                             numeric.empty() ? plan.axes.front().keys.front() : numeric.front()));
 }
@@ -99,15 +99,15 @@ std::string checked_reference(const std::string& reference, const StudyPlan& pla
     const std::string key = reference.substr(kind.size() + 1);
     const KeyPosition place = find_varied(plan, key, option);
     if (kind == "finest" && !is_numeric(plan, place))
-      throw Error(ErrorKind::usage, fmt::format("{}: the values of {} are not numbers, or only one", option, key));
+      throw Error(ErrorKind::usage,
+                  fmt::format("{}: the key {} must have at least two values, all of them numbers", option, key));
     return reference;
   }
   if (reference.empty()) return "";
   if (holds_run(reference)) return std::filesystem::absolute(reference).lexically_normal().string();
   throw Error(ErrorKind::usage,
-              fmt::format("--reference {}: is neither the directory of a run nor last:KEY nor "
-                          "finest:KEY of a key that varies; if that run was moved or removed, name another with "
-                          "--reference",
+              fmt::format("--reference {}: is neither the directory of a run nor last:KEY or finest:KEY with a key "
+                          "that varies; if that run was moved or removed, name another with --reference",
                           reference));
 }
 
@@ -115,34 +115,31 @@ void require_study(const std::string& directory) {
   if (holds_study(directory)) return;
   std::error_code ignored;
   const bool is_there = std::filesystem::is_directory(directory, ignored);
-  const std::string why = !is_there ? "there is no such directory"
-                          : holds_run(directory)
-                              ? "holds a run and no study; `ricochet run --resume` goes on with a run"
-                              : "holds no study: study.json is missing";
-  throw Error(ErrorKind::file_access,
-              fmt::format("{}: {}; name the directory of a study, or begin one with `ricochet study CASE.toml --vary "
-                          "KEY=V1,V2,... -o {}`",
-                          directory, why, is_there ? "DIR" : directory));
+  const std::string why = !is_there              ? "there is no such directory"
+                          : holds_run(directory) ? "holds a run, not a study; `ricochet run --resume` continues a run"
+                                                 : "holds no study: study.json is missing";
+  throw Error(ErrorKind::file_access, fmt::format("{}: {}; name the directory of a study, or start one with `ricochet "
+                                                  "study CASE.toml --vary KEY=V1,V2,... -o {}`",
+                                                  directory, why, is_there ? "DIR" : directory));
 }
 
 void require_format(const Json& json, const std::string& path) {
   const int format = json.at("ricochet_study");
   if (format == study_format) return;
-  throw Error(
-      ErrorKind::file_access,
-      fmt::format("{}: has format {}, and this version of Ricochet knows format {}: go on with the version that "
-                  "has made it, or choose another directory for the study with -o",
-                  path, format, study_format));
+  throw Error(ErrorKind::file_access,
+              fmt::format("{}: has format {}, but this version of Ricochet reads format {}: continue with the version "
+                          "that wrote it, or choose another directory for the study with -o",
+                          path, format, study_format));
 }
 
 /// Refuses a plan that no command line could have made. Throws Json::Exception or Error.
 void require_sound(const StudyPlan& plan) {
   for (const StudyAxis& axis : plan.axes) {
-    if (axis.keys.empty() || axis.values.empty()) throw Json::Exception("\"axes\": one has no keys or no values");
+    if (axis.keys.empty() || axis.values.empty()) throw Json::Exception("\"axes\": an axis has no keys or no values");
     for (const Texts& entry : axis.values) {
       if (entry.size() != axis.keys.size())
-        throw Json::Exception(
-            fmt::format("\"axes\": {} for {}", counted(entry.size(), "value"), counted(axis.keys.size(), "key")));
+        throw Json::Exception(fmt::format("\"axes\": an entry has {} for {}", counted(entry.size(), "value"),
+                                          counted(axis.keys.size(), "key")));
     }
   }
   check_plan(plan);
@@ -188,7 +185,7 @@ Study read_study(const std::string& directory) {
     study.runs = number_runs(study.plan);
     const Texts folders = json.at("runs").get<Texts>();
     if (folders.size() != study.runs.size()) {
-      throw Json::Exception(fmt::format("\"runs\" has {}, but the values of \"axes\" make {}",
+      throw Json::Exception(fmt::format("\"runs\" has {}, but the values of \"axes\" result in {}",
                                         counted(folders.size(), "folder"), counted(study.runs.size(), "run")));
     }
     require_run_folder_names(folders, "\"runs\"");
@@ -225,10 +222,11 @@ std::vector<StudyRun> number_runs(const StudyPlan& plan) {
 
 std::vector<StudyRun> reuse_runs(const StudyPlan& plan, const Study& before) {
   const auto refuse = [&](const std::string& why) {
-    throw Error(ErrorKind::file_access,
-                fmt::format("{}: holds another study: {}; choose another directory with -o, or start anew over it "
-                            "with --force",
-                            before.directory, why));
+    throw Error(
+        ErrorKind::file_access,
+        fmt::format(
+            "{}: holds another study: {}; choose another directory with -o, or overwrite the study with --force",
+            before.directory, why));
   };
   if (plan.case_path != before.plan.case_path) refuse(fmt::format("its case is {}", before.plan.case_path));
   std::vector<StudyRun> left = before.runs, runs;
@@ -242,7 +240,7 @@ std::vector<StudyRun> reuse_runs(const StudyPlan& plan, const Study& before) {
     if (same != left.end()) left.erase(same);
   }
   if (!left.empty()) {
-    refuse(fmt::format("this plan has no run with {}, which is there as {}",
+    refuse(fmt::format("this plan has no run with {}, which exists as {}",
                        fmt::join(left.front().planned.settings, ", "), left.front().folder));
   }
   return runs;
@@ -259,11 +257,11 @@ StudyQuestions checked_questions(StudyQuestions questions, const StudyPlan& plan
                          (reference.starts_with("last:") && is_numeric(plan, find_varied(plan, key, "--reference")));
     questions.order_key = follows ? key : only_numeric_key(plan, "--order", false);
   } else if (!is_numeric(plan, find_varied(plan, questions.order_key, "--order"))) {
-    throw Error(ErrorKind::usage,
-                fmt::format("--order {}: its values are not numbers, or only one", questions.order_key));
+    throw Error(ErrorKind::usage, fmt::format("--order {}: this key must have at least two values, all of them numbers",
+                                              questions.order_key));
   }
   if (!questions.compare.empty() && questions.reference.empty())
-    throw Error(ErrorKind::usage, "--compare: says which columns are compared with a run: name it with --reference");
+    throw Error(ErrorKind::usage, "--compare: selects the columns to compare with a run: name it with --reference");
   return questions;
 }
 
@@ -271,7 +269,8 @@ std::pair<std::string, double> parse_exact(const std::string& text) {
   const std::size_t equals = text.rfind('=');
   const std::optional<double> value = equals == std::string::npos ? std::nullopt : number_in(text.substr(equals + 1));
   if (!value)
-    throw Error(ErrorKind::usage, fmt::format("--exact {}: write --exact QUANTITY=VALUE, VALUE a number", text));
+    throw Error(ErrorKind::usage,
+                fmt::format("--exact {}: write --exact QUANTITY=VALUE, where VALUE is a number", text));
   return {text.substr(0, equals), *value};
 }
 

@@ -76,7 +76,7 @@ void StudyProgress::draw() {
   const double done = runs_done();
   constexpr int width = 30;
   const int filled = static_cast<int>(width * done / static_cast<double>(runs_));
-  fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}/{} runs, {} going on  {} gone{}\033[K", "", filled, "", width - filled,
+  fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}/{} runs, {} running  {} elapsed{}\033[K", "", filled, "", width - filled,
              ended_, runs_, running_.size(), duration_text(last_drawn_), time_left(done));
   std::fflush(stderr);
   open_ = true;

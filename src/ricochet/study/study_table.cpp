@@ -233,7 +233,7 @@ std::vector<ComparedQuantity> StudyTableMaker::compared() {
     return result;
   }
   problems_["--reference " + questions_.reference] =
-      "no run that could be one has a history, or it was moved or removed";
+      "no possible reference run has a history, or the run was moved or removed";
   return {};
 }
 
@@ -246,7 +246,7 @@ void StudyTableMaker::add_history_errors() {
       const RunHistory *history = history_of(own), *reference = history_of(directory);
       const std::string question = "--compare " + quantity.name;
       if (reference == nullptr || reference->summary.status != "done") {
-        problems_["--reference " + directory] = "this run is not done, and there are no errors against it";
+        problems_["--reference " + directory] = "this run is not done, so there are no errors relative to it";
         return {};
       }
       answered_.insert("--reference " + directory);
@@ -254,12 +254,13 @@ void StudyTableMaker::add_history_errors() {
           history != nullptr ? relative_error(quantity, *history, *reference) : std::nullopt;
       if (error) answered_.insert(question);
       if (!error && !questions_.compare.empty())
-        problems_[question] = "some runs have no such column, no two rows in common with the reference, or it is 0";
+        problems_[question] =
+            "some runs have no such column or no two rows in common with the reference, or the reference is 0";
       return error ? TableCell(*error) : TableCell();
     });
   }
   results_.notes.push_back(
-      fmt::format("Errors of histories are those against {} in the L2 norm over time, relative to its norm.",
+      fmt::format("Errors of histories are differences from {} in the L2 norm over time, relative to its norm.",
                   reference_in_words(questions_.reference)));
 }
 

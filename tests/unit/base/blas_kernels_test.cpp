@@ -25,8 +25,7 @@ namespace {
 constexpr InstructionSet baseline = InstructionSet::baseline, avx2 = InstructionSet::avx2,
                          avx512 = InstructionSet::avx512;
 
-/// The features of the processor decide, not the table of OpenBLAS; a kernel that is as good, or an unknown one, is
-/// kept.
+/// The features of the processor decide, not the table of OpenBLAS; an equally good or an unknown kernel is kept.
 TEST(BlasKernels, AreThoseOfTheProcessorUnlessOpenBlasHasChosenAsWell) {
   for (const char* lesser : {"Prescott", "PRESCOTT", "Nehalem", "Core2", "Barcelona", "Sandybridge", "Bulldozer"}) {
     EXPECT_EQ(better_blas_core(lesser, avx512, false), "SkylakeX") << lesser;
@@ -42,7 +41,7 @@ TEST(BlasKernels, AreThoseOfTheProcessorUnlessOpenBlasHasChosenAsWell) {
   }
 }
 
-/// Whoever asks for a set gets the same kernels on every machine.
+/// Requesting a set selects the same kernels on every machine.
 TEST(BlasKernels, OfASetThatIsGivenAreAlwaysTheSame) {
   for (const char* chosen : {"Nehalem", "Sandybridge", "Zen", "Cooperlake", "SapphireRapids", "a core of tomorrow"}) {
     EXPECT_EQ(better_blas_core(chosen, baseline, true), "Prescott");
@@ -54,7 +53,7 @@ TEST(BlasKernels, OfASetThatIsGivenAreAlwaysTheSame) {
   EXPECT_EQ(better_blas_core("SkylakeX", avx512, true), "");
 }
 
-/// In a process where OpenBLAS has chosen badly, here because the variable made it do so.
+/// A process in which OpenBLAS chose badly, forced here by its variable.
 class BadChoice : public testing::Test {
  protected:
   void SetUp() override {

@@ -59,7 +59,7 @@ TEST_F(ChildProcesses, TellHowTheyEnd) {
   EXPECT_EQ(run_child(without_input).spawn_error, ENOENT);
 }
 
-/// The process that waits for a child is killed, and cannot say anything: the child goes with it.
+/// When the waiting process is killed and cannot react, its child ends with it.
 TEST_F(ChildProcesses, EndWithTheProcessThatIsKilled) {
   ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);  // orphans come here
   const pid_t parent = fork();

@@ -47,7 +47,7 @@ TEST(RunChildren, EndsThoseThatRunAndStartsNoMoreWhenASignalComes) {
   PoolWork work;
   work.make = [&](std::size_t i) {
     ++begun;
-    // One ends as it is asked to, in its own way; the other would go on.
+    // One child ends as requested, in its own way; the other would continue.
     return shell(i == 0 ? "trap 'exit 7' TERM; sleep 600 & wait" : "sleep 600");
   };
   work.ended = [&](std::size_t i, const ChildResult& outcome) {

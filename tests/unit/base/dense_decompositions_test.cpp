@@ -35,7 +35,7 @@ TEST(DenseDecompositions, OfMatricesOfAnyRank) {
   EXPECT_EQ(PivotedQr(flat).rank(), 2);
   EXPECT_EQ(PivotedQr(flat, 1e-6).rank(), 1);
   const Vector least = LeastNormSolver(flat, 1e-6).solve(Vector(flat.col(0)));
-  // x + 2y = 1 at the least length.
+  // Solution of x + 2y = 1 of least length.
   EXPECT_NEAR(least[0], 0.2, 1e-7);
   EXPECT_NEAR(least[1], 0.4, 1e-7);
   const Matrix upper = upper_of_qr(flat);

@@ -9,7 +9,7 @@
 namespace ricochet {
 namespace {
 
-/// The message of the error the call throws; it must be one about input.
+/// Message of the error that the call throws; it must be an input error.
 template <class Call>
 std::string message_of(Call call) {
   try {
@@ -92,7 +92,7 @@ TEST(Expression, RefusesListsAndAssignments) {
 
 TEST(Expression, RefusesUnknownNamesWithAHint) {
   expect_refusal("2*sped", {"unknown name \"sped\"", "did you mean \"speed\"?", "\"t\"", "\"pi\""});
-  expect_refusal("temperature", {"unknown name \"temperature\"", "known are"});
+  expect_refusal("temperature", {"unknown name \"temperature\"", "known names are"});
   EXPECT_EQ(message_of([] { (void)Expression("temperature"); }).find("did you mean"), std::string::npos);
 }
 

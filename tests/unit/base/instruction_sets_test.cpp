@@ -18,7 +18,7 @@ TEST(InstructionSets, TheOneThatRunsIsWhatTheEnvironmentSaysOrTheBest) {
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
-/// (1 + 2⁻³⁰)² = 1 + 2⁻²⁹ + 2⁻⁶⁰, whose last term is lost where the product is rounded by itself.
+/// (1 + 2⁻³⁰)² = 1 + 2⁻²⁹ + 2⁻⁶⁰, whose last term is lost if the product is rounded separately.
 RICOCHET_EACH_INSTRUCTION_SET(double, last_term, (double value), (value)) {
   return value * value - (1.0 + 0x1p-29);
 }
@@ -28,7 +28,7 @@ __attribute__((target("arch=x86-64-v3"), noinline)) double last_term_with_avx2(d
 }
 
 TEST(InstructionSets, TheVersionForTheSetIsCalled) {
-  const volatile double value = 1.0 + 0x1p-30;  // unknown to the compiler, which would multiply by itself
+  const volatile double value = 1.0 + 0x1p-30;  // unknown to the compiler, which would evaluate it
   if (instruction_set() == InstructionSet::baseline) {
     EXPECT_EQ(last_term(value), 0.0);
     return;

@@ -16,15 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whoever takes the actions ends the process: each test does that in one of its own.
+// Taking the actions ends the process, so each test does it in a process of its own.
 
-/// Between making a thing and registering what removes it, nothing comes.
+/// No interruption occurs between creating a resource and registering its removal.
 TEST(Interruption, WaitsForWhatIsJustBeingMade) {
   const auto scenario = [] {
     std::thread other;
     bool is_made = false;
     const auto make = [&] {
-      other = std::thread([] { _exit(interruption::run_actions() ? 1 : 2); });  // 1: nothing was there to be removed
+      other = std::thread([] { _exit(interruption::run_actions() ? 1 : 2); });  // 1: nothing to remove yet
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
       is_made = true;
     };
@@ -53,14 +53,13 @@ TEST(Interruption, TemporaryFoldersGo) {
     std::ofstream(inner.file("file")) << "text";
     if (fs::is_empty(outer.path())) _exit(1);
     if (!interruption::run_actions()) _exit(2);
-    // The process that takes the actions takes those of the outer folder, too, and may have made it anew: it looks
-    // itself.
+    // The process that takes the actions also takes those of the outer folder, but may have made it anew: check here.
     _exit(fs::exists(outer.path()) ? 3 : 0);
   };
   EXPECT_EXIT(scenario(), testing::ExitedWithCode(0), "");
 }
 
-/// A run that has come to a stopping point is not ended in the middle; the next run of the same process may be.
+/// A run at a stopping point is not ended half-way; the next run of the same process may be.
 TEST(Interruption, AStoppingPointIsThatOfOneRun) {
   const auto scenario = [] {
     {

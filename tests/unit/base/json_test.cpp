@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-/// @file JSON documents: what is written is read again, and what does not fit is said.
+/// @file JSON documents: written values are read back, and errors of format are reported.
 namespace ricochet {
 namespace {
 
@@ -73,7 +73,7 @@ TEST(JsonDocument, RefusesWhatDoesNot) {
     EXPECT_THROW((void)Json::parse(text), Json::Exception) << text;
 }
 
-/// Paths of files may be anything.
+/// Paths of files may contain any bytes.
 TEST(JsonDocument, WritesTextsThatAreNoUtf8) {
   EXPECT_EQ(Json(std::string("a\xff")).dump(), "\"a\xef\xbf\xbd\"");
 }

@@ -5,7 +5,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
 
-/// @file A number that is misspelt is neither skipped nor taken for a header, wherever it stands.
+/// @file A misspelt number is neither skipped nor mistaken for a header, on any line.
 namespace ricochet {
 namespace {
 
@@ -41,7 +41,7 @@ TEST(NumberLines, SeparateNumbersByBlanksCommasOrSemicolons) {
     EXPECT_EQ(rows_of(text), expected) << text;
 }
 
-/// Each of these words was once taken for a header where it stood in the first line.
+/// Each of these words was once mistaken for a header on the first line.
 TEST(NumberLines, TakeNoMisspeltNumberForAHeader) {
   for (const std::string word : {"0.0m", "nan", "NaN", "inf", "-Infinity", "1.5.2", "1e", "0x10", "+-1", "--1", "1d3",
                                  ".", "-", "1e999", "12:30", "3rd", "\"0.0\"",
@@ -50,7 +50,7 @@ TEST(NumberLines, TakeNoMisspeltNumberForAHeader) {
                                  "(0.0"}) {
     EXPECT_FALSE(number_in(word)) << word;
     for (const Header header : {Header::allowed, Header::refused}) {
-      EXPECT_EQ(problem_of("0.0 " + word + " 0.0\n", header).find("f:1:5: \"" + word + "\" is no finite number"), 0U)
+      EXPECT_EQ(problem_of("0.0 " + word + " 0.0\n", header).find("f:1:5: \"" + word + "\" is not a finite number"), 0U)
           << problem_of("0.0 " + word + " 0.0\n", header);
       EXPECT_EQ(problem_of(word + "\n", header).find("f:1:1: "), 0U) << word;
       EXPECT_EQ(problem_of("\n0 0\n0 " + word, header).find("f:3:3: "), 0U) << word;
@@ -64,7 +64,7 @@ TEST(NumberLines, TakeNoMisspeltNumberForAHeader) {
 }
 
 TEST(NumberLines, HaveOneHeaderAtMost) {
-  EXPECT_EQ(problem_of("t x\ns mm\n0 1\n").find("f:2:1: \"s\" is no finite number"), 0U);
+  EXPECT_EQ(problem_of("t x\ns mm\n0 1\n").find("f:2:1: \"s\" is not a finite number"), 0U);
   EXPECT_EQ(problem_of("0 1\nt x\n").find("f:2:1: \"t\""), 0U);
   EXPECT_EQ(problem_of("t x\n0 1\n", Header::refused).find("f:1:1: \"t\""), 0U);
   const std::string file = "f", text = "# a\n time, \"ux\"\n0 1\n";
@@ -75,7 +75,7 @@ TEST(NumberLines, HaveOneHeaderAtMost) {
   EXPECT_EQ(lines.header_line(), 2);
 }
 
-/// A value that is left out would move the others by a column; "0,5;1,0" are two numbers to some, and four to others.
+/// An omitted value would shift the others by a column; "0,5;1,0" can be read as two numbers or as four.
 TEST(NumberLines, RefuseWhatCouldBeReadInTwoWays) {
   EXPECT_EQ(problem_of("0,,1\n").find("f:1:3: a number is missing before this \",\""), 0U);
   EXPECT_EQ(problem_of("1 2\n, 1\n").find("f:2:1: a number is missing"), 0U);
@@ -92,7 +92,7 @@ TEST(TextWords, KnowTheirPlaces) {
     (void)words.number();
     FAIL();
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "f:3:5: \"+.5x\" is no finite number");
+    EXPECT_STREQ(error.what(), "f:3:5: \"+.5x\" is not a finite number");
   }
   EXPECT_EQ(words.next(), "");
 }

@@ -14,7 +14,7 @@
 namespace ricochet {
 namespace {
 
-/// Sets the number of threads for a test, and back.
+/// Sets the number of threads for a test, and restores it.
 class Threads {
  public:
   explicit Threads(int count) : before_(thread_count()) { set_thread_count(count); }
@@ -42,14 +42,13 @@ TEST(Parallel, CoversEveryIndexOnce) {
   }
 }
 
-/// Ranges that wait for one another end only if as many threads as asked for are at work; and they are the same threads
-/// in the next call.
+/// Ranges that wait for one another end only if all requested threads work; the next call uses the same threads.
 TEST(Parallel, UsesTheThreadsAskedForAgainAndAgain) {
   const Threads set(3);
   std::set<std::thread::id> seen;
   std::mutex guard;
   for (int repeat = 0; repeat < 20; ++repeat) {
-    if (repeat % 5 == 4) std::this_thread::sleep_for(std::chrono::milliseconds(2));  // they fall asleep
+    if (repeat % 5 == 4) std::this_thread::sleep_for(std::chrono::milliseconds(2));  // the threads fall asleep
     std::atomic<int> arrived{0};
     parallel_ranges(3, [&](Index, Index) {
       ++arrived;
@@ -80,7 +79,7 @@ TEST(Parallel, RethrowsTheFirstRangesExceptionWhenAllHaveEnded) {
       }
       EXPECT_GE(done, 500);
     }
-    Index sum = 0;  // and the next call is as if nothing had been
+    Index sum = 0;  // the next call is unaffected
     std::mutex guard;
     parallel_ranges(100, [&](Index begin, Index end) {
       const std::lock_guard<std::mutex> lock(guard);

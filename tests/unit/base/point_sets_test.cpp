@@ -33,7 +33,7 @@ TEST(PointSets, OfShapesThatAreKnown) {
   EXPECT_EQ(enclosing_diameter(Points::Constant(3, 4, 7.0)), 0.0);
 }
 
-/// Jung's theorem: between the largest distance D and D√(2d/(d + 1)). Nodes on a circle or a sphere all hold the ball.
+/// Jung's theorem: the diameter is between the largest distance D and D√(2d/(d + 1)). All nodes on a sphere bound it.
 TEST(PointSets, HoldAllPointsInABallThatIsNoLargerThanJungs) {
   std::mt19937 random{3};
   for (int round = 0; round < 40; ++round) {

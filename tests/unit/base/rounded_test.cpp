@@ -8,7 +8,7 @@
 namespace ricochet {
 namespace {
 
-/// A number that a user reads in a message, and takes over, is a bound as the number itself is.
+/// A rounded number in a message, copied by a user, is a bound as the exact number is.
 TEST(Rounded, WhatIsPrintedIsABound) {
   for (const double value : {0.00705, 1.0, 9.99999, 9.94, 123456.0, 6.1602e-3, 2.0 / 3.0, 1e-300, 5e299}) {
     for (int digits = 1; digits <= 3; ++digits) {

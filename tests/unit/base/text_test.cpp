@@ -23,7 +23,7 @@ TEST(Text, TheNearestNameIsOneThatMayHaveBeenMeant) {
   EXPECT_EQ(nearest_name("", names), "");
   EXPECT_EQ(nearest_name("tpo.displacment_x", names), "top.displacement_x");
   EXPECT_EQ(nearest_name("topgap", names), "top.gap") << "the dot itself may be missing";
-  // A long part does not bring a short one near.
+  // A long component does not bring a short one near.
   EXPECT_EQ(nearest_name("f.displacement_x", names), "");
   EXPECT_EQ(nearest_name("foot.displacement_x", names), "");
   EXPECT_EQ(nearest_name("side.displacement_x", names), "");

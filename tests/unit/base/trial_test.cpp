@@ -18,10 +18,10 @@ TEST(Trial, TellsWhatCameOfTheWork) {
   const TrialResult crashed = try_in_child([] { return raise(SIGSEGV) == 0; }, 10.0);
   EXPECT_FALSE(crashed.succeeded);
   EXPECT_EQ(crashed.signal, SIGSEGV);
-  EXPECT_EQ(crashed.description(), "ended a process with signal 11");
+  EXPECT_EQ(crashed.description(), "crashed with signal 11");
 }
 
-/// As in what a daemon starts that ignores the ends of its children.
+/// A daemon that ignores the ends of its children passes this on to the processes it starts.
 TEST(Trial, TellsWhatCameOfTheWorkWhereEndsOfChildrenAreIgnored) {
   const auto before = signal(SIGCHLD, SIG_IGN);
   EXPECT_TRUE(try_in_child([] { return true; }, 10.0).succeeded);
@@ -39,10 +39,10 @@ TEST(Trial, EndsWhatHasNoEnd) {
       },
       0.5);
   EXPECT_TRUE(endless.endless);
-  EXPECT_EQ(endless.description(), "does not come to an end");
+  EXPECT_EQ(endless.description(), "does not end");
 }
 
-/// Keeps what the child does to the child: neither memory nor handlers of this process are touched.
+/// Effects of the child stay in the child: neither memory nor handlers of this process change.
 TEST(Trial, LeavesThisProcessAlone) {
   static volatile sig_atomic_t handled = 0;
   const auto before = signal(SIGABRT, [](int) { handled = 1; });

@@ -36,7 +36,7 @@ inline std::string edited_case(std::size_t line, const std::string& text) {
   return document;
 }
 
-/// A file that lives as long as the object.
+/// A file that is removed with the object.
 class CaseFile {
  public:
   explicit CaseFile(const std::string& document) {
@@ -58,7 +58,7 @@ inline Case read_text(const std::string& document, const std::vector<std::string
   return read_case(CaseFile(document).path(), overrides);
 }
 
-/// The message of the Error(invalid_input) that reading throws, without the name of the file; "" when it throws none.
+/// Message of the Error(invalid_input) that reading throws, without the file name; "" if it throws none.
 inline std::string problems_of(const std::string& document, const std::vector<std::string>& overrides = {}) {
   const CaseFile file(document);
   try {
@@ -74,7 +74,7 @@ inline std::string problems_of(const std::string& document, const std::vector<st
   return "";
 }
 
-/// How a message lists the schemes there are, and the keys of [time].
+/// The list of schemes and of the keys of [time], as in messages.
 inline std::string all_schemes() {
   return join_names(scheme_names(), " or ");
 }
@@ -85,7 +85,7 @@ inline std::string keys_of_time() {
   return "";
 }
 
-/// An edit of the shortest case that makes it invalid, and everything that is then said about it.
+/// An edit that makes the shortest case invalid, and all messages that follow from it.
 struct MalformedCase {
   std::size_t line;
   std::string text;

@@ -42,7 +42,7 @@ TEST(MalformedCase, References) {
        "16:12: \"velocity\" must be a vector of 2 or 3 numbers (unit: length/time); found the number 1.0"},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\nvelocity = [1.0, 0, 0]",
        "16:12: \"velocity\" of [obstacle.floor] has 3 entries, but \"point\" of [obstacle.floor] at 14:9 has 2: all "
-       "vectors must have as many as the mesh has dimensions"},
+       "vectors must have as many entries as the mesh has dimensions"},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\nrotation_rate = [1.0]",
        "16:17: \"rotation_rate\" must be a number (unit: angle/time); found a list of 1 value"},
       {0,
@@ -56,24 +56,18 @@ TEST(MalformedCase, References) {
       {0,
        "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n[[contact]]\ngroup = \"low\"\nobstacle = "
        "\"floor\"\n[[contact]]\ngroup = \"low\"\nobstacle = \"floor\"",
-       "20:9: the group \"low\" is in another [[contact]] already, at 17:9"},
+       "20:9: the group \"low\" is already in another [[contact]], at 17:9"},
       {0, "[obstacle.floor]\ntype = \"cone\"\npoint = [0, 0]\nnormal = [0, 1]",
        "13:8: \"type\" must be one of \"plane\", \"sphere\", \"cylinder\", \"torus\", \"surface\" or \"implicit\"; "
-       "found the "
-       "text "
-       "\"cone\". Its shape: a plane with a half-space behind it, a sphere or a cylinder or a torus, from outside or "
-       "from "
-       "inside, a surface from a file, or what an expression describes."},
-      // What belongs to another shape is no further problem.
+       "found the text \"cone\". Shape of the obstacle: a plane with a half-space behind it; a sphere, cylinder or "
+       "torus, touched from outside or from inside; a surface from a file; or a shape described by an expression."},
+      // Keys of another shape cause no further messages.
       {0,
        "[obstacle.ring]\ntype = \"cone\"\ncentre = [0, 0, 0]\nminor = 1.0\n[[contact]]\ngroup = "
        "\"low\"\nobstacle = \"ring\"",
        "13:8: \"type\" must be one of \"plane\", \"sphere\", \"cylinder\", \"torus\", \"surface\" or \"implicit\"; "
-       "found the "
-       "text "
-       "\"cone\". Its shape: a plane with a half-space behind it, a sphere or a cylinder or a torus, from outside or "
-       "from "
-       "inside, a surface from a file, or what an expression describes."},
+       "found the text \"cone\". Shape of the obstacle: a plane with a half-space behind it; a sphere, cylinder or "
+       "torus, touched from outside or from inside; a surface from a file; or a shape described by an expression."},
       {0, "[obstacle.ball]\ntype = \"sphere\"\npoint = [0, 0]\nradius = -1\nside = \"within\"",
        "12:1: [obstacle.ball] has no \"centre\": a vector of 2 or 3 numbers (unit: length). Centre of the sphere; in "
        "two "
@@ -84,7 +78,7 @@ TEST(MalformedCase, References) {
       {0, "[obstacle.floor]\ntype = \"plain\"\nnrmal = [0, 1]",
        "13:8: \"type\" must be one of \"plane\", \"sphere\", \"cylinder\", \"torus\", \"surface\" or \"implicit\"; "
        "found the text \"plain\"; did you mean \"plane\"?"},
-      // A suggestion would be refused next where the type does not take it.
+      // A key that the type does not accept is not suggested.
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\nradus = 1",
        "16:1: unknown key \"radus\" in [obstacle.floor]; \"radius\" is for the types \"sphere\" and \"cylinder\" only; "
        "the type is "
@@ -95,17 +89,17 @@ TEST(MalformedCase, References) {
        "14:1: unknown key \"piont\" in [obstacle.floor]; did you mean \"point\"?"},
       {0, "[obstacle.floor]\ntype = 3",
        "13:8: \"type\" must be one of \"plane\", \"sphere\", \"cylinder\", \"torus\", \"surface\" or \"implicit\"; "
-       "found the integer 3. Its shape: a plane with a half-space behind it, a sphere or a cylinder or a torus, from "
-       "outside or from inside, a surface from a file, or what an expression describes."},
+       "found the integer 3. Shape of the obstacle: a plane with a half-space behind it; a sphere, cylinder or torus, "
+       "touched from outside or from inside; a surface from a file; or a shape described by an expression."},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 0]",
        "15:10: \"normal\" must not be zero: it points out of the obstacle"},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 0, 1]",
        "15:10: \"normal\" of [obstacle.floor] has 3 entries, but \"point\" of [obstacle.floor] at 14:9 has 2: all "
-       "vectors must have as many as the mesh has dimensions"},
+       "vectors must have as many entries as the mesh has dimensions"},
       {0, "[obstacle.floor]\npoint = [0]\nnormal = [0, 1, 2, 3]",
        "12:1: [obstacle.floor] has no \"type\": one of \"plane\", \"sphere\", \"cylinder\", \"torus\", \"surface\" or "
-       "\"implicit\". Its shape: a plane with a half-space behind it, a sphere or a cylinder or a torus, from outside "
-       "or from inside, a surface from a file, or what an expression describes.\n13:9: \"point\" "
+       "\"implicit\". Shape of the obstacle: a plane with a half-space behind it; a sphere, cylinder or torus, touched "
+       "from outside or from inside; a surface from a file; or a shape described by an expression.\n13:9: \"point\" "
        "must be a vector of 2 or 3 numbers (unit: length); found a list of 1 value\n14:10: \"normal\" must be a vector "
        "of 2 or 3 numbers; found a list of 4 values"},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, \"a\"]\nnormal = [nan, 1]",
@@ -114,11 +108,10 @@ TEST(MalformedCase, References) {
       // loads
       {0, "[[support]]\ngroup = \"a\"\ncomponents = []",
        "14:14: \"components\" must be a list with one or more of \"x\", \"y\" and \"z\"; found an empty list"},
-      {0, "[[support]]\ngroup = \"a\"\ncomponents = [\"x\", \"x\"]",
-       "14:20: an entry of \"components\" has \"x\" twice"},
+      {0, "[[support]]\ngroup = \"a\"\ncomponents = [\"x\", \"x\"]", "14:20: an entry of \"components\" repeats \"x\""},
       {0, "[[support]]\ngroup = \"a\"\ncomponents = [\"w\", 3]",
-       "14:15: an entry of \"components\" can only be \"x\", \"y\" or \"z\"; found the text \"w\"\n14:20: an entry of "
-       "\"components\" can only be \"x\", \"y\" or \"z\"; found the integer 3"},
+       "14:15: an entry of \"components\" must be \"x\", \"y\" or \"z\"; found the text \"w\"\n14:20: an entry of "
+       "\"components\" must be \"x\", \"y\" or \"z\"; found the integer 3"},
       {0, "[[support]]\ngroup = \"a\"\ncomponents = \"x\"",
        "14:14: \"components\" must be a list with one or more of \"x\", \"y\" and \"z\"; found the text \"x\""},
       {0, "[[support]]\ngroup = \"a\"\ncomponents = [\"x\"]\nvalue = \"2*x\"",
@@ -133,7 +126,7 @@ TEST(MalformedCase, References) {
       {0, "[[support]]\ngroup = \"a\"\ncomponents = [\"x\"]\nvalue = \"p*t\"\nparameters = { p = \"a\" }",
        "16:20: the parameter \"p\" must be a finite number; found the text \"a\""},
       {0, "[[traction]]\ngroup = \"a\"\nvalue = [\"0\", \"q*t\"]\nparameters = { p = 1.0 }",
-       "14:15: \"value\": in the expression \"q*t\": unknown name \"q\"; known are \"x\", \"y\", "
+       "14:15: \"value\": in the expression \"q*t\": unknown name \"q\"; known names are \"x\", \"y\", "
        "\"z\", \"t\", \"pi\" and \"p\""},
       {0, "[[traction]]\ngroup = \"a\"\nvalue = 3.0",
        "14:9: \"value\" must be a vector of 2 or 3 numbers or expressions in x, y, z and t (unit: stress); found the "
@@ -144,9 +137,9 @@ TEST(MalformedCase, References) {
        "14:9: \"value\" must be a vector of 2 or 3 numbers or expressions in x, y, z and t (unit: stress); found the "
        "text \"static\""},
       {0, "[[traction]]\ngroup = \"a\"\nvalue = [\"0\", \"t\"]\nparameters = { t = 1.0 }",
-       "15:16: \"t\" cannot be the name of a parameter: x, y, z, t and pi have a meaning of their own"},
+       "15:16: \"t\" cannot be the name of a parameter: x, y, z, t and pi are reserved"},
       {0, "[[traction]]\ngroup = \"a\"\nvalue = [\"0\", \"t\"]\nparameters = { a-b = 1.0 }",
-       "15:16: \"a-b\" cannot be the name of a parameter: it must be made of letters, digits and _, not beginning with "
+       "15:16: \"a-b\" cannot be the name of a parameter: it must consist of letters, digits and _, and not begin with "
        "a digit"},
       {0, "[[traction]]\ngroup = \"a\"\nvalue = [\"0\", \"t\"]\nparameters = 3",
        "15:14: \"parameters\" must be a table of numbers; found the integer 3"},
@@ -160,7 +153,7 @@ TEST(MalformedCase, References) {
        "13:12: entry 1 of \"gravity\" must be a finite number; found the text \"0\""},
       {0, "[load]\ngravity = [0, -9.81]\nbody_force = [0, 0, \"x\"]",
        "14:14: \"body_force\" of [load] has 3 entries, but \"gravity\" of [load] at 13:11 has 2: all vectors must have "
-       "as many as the mesh has dimensions"},
+       "as many entries as the mesh has dimensions"},
       {0, "[initial]\ndisplacement = \"statc\"",
        "13:16: \"displacement\" must be a vector of 2 or 3 numbers or expressions in x, y and z, or \"static\" (unit: "
        "length); found the text \"statc\"; did you mean \"static\"?"},
@@ -172,15 +165,15 @@ TEST(MalformedCase, References) {
        "13:12: \"velocity\" must be a vector of 2 or 3 numbers or expressions in x, y and z (unit: length/time); found "
        "the text \"static\""},
       // outputs
-      {0, "[[probe]]\nname = \"a b\"\nat = [0, 0]", "13:8: the name \"a b\" can only have letters, digits, _ and -"},
+      {0, "[[probe]]\nname = \"a b\"\nat = [0, 0]", "13:8: the name \"a b\" can only contain letters, digits, _ and -"},
       {0, "[[probe]]\nname = \"time\"\nat = [0, 0]",
-       "13:8: the name \"time\" is that of a standard column of history.csv"},
+       "13:8: the name \"time\" is already that of a standard column of history.csv"},
       {0, "[[probe]]\nname = \"a\"\nat = [0, 0]\n[[probe]]\nname = \"a\"\nat = [0, 1]",
-       "16:8: the name \"a\" is in another [[probe]] already, at 13:8"},
+       "16:8: the name \"a\" is already in another [[probe]], at 13:8"},
       {0, "[[probe]]\nname = \"a\"\nat = 0.0",
        "14:6: \"at\" must be a vector of 2 or 3 numbers (unit: length); found the number 0.0"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"",
-       "12:1: [[expect]] expects nothing: give \"value\" with \"relative\" or \"absolute\", or bounds (\"minimum\", "
+       "12:1: [[expect]] expects nothing: set \"value\" with \"relative\" or \"absolute\", or bounds (\"minimum\", "
        "\"maximum\")"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nvalue = 1.0",
        "14:9: \"value\" needs a tolerance: \"relative\", \"absolute\" or both"},
@@ -200,10 +193,10 @@ TEST(MalformedCase, References) {
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"contact.0.friction\" = 0 }",
        "15:10: \"when\" names \"contact.0.friction\": there is no entry 0 of [[contact]]: the case has none"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"contact.friction\" = 0 }",
-       "15:10: \"when\" names \"contact.friction\": [[contact]] is a list: say which entry, counted from 0, as in "
+       "15:10: \"when\" names \"contact.friction\": [[contact]] is a list: specify the entry, counted from 0, as in "
        "contact.0.group"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"mesh\" = \"a\" }",
-       "15:10: \"when\" names \"mesh\": \"mesh\" is a section: say which of its keys, as in mesh.file"},
+       "15:10: \"when\" names \"mesh\": \"mesh\" is a section: specify one of its keys, as in mesh.file"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = \"midpoint\"",
        "15:8: \"when\" must be a table of key paths and their values; found the text \"midpoint\""},
       {0,
@@ -217,11 +210,11 @@ TEST(MalformedCase, References) {
        "\"adaptive\" (unit: "
        "time); found the text \"a\""},
       {0, "[[expect]]\nquantity = \"history.time\"\nminimum = 3.0",
-       "13:12: \"history.time\" is not a quantity: which row is not said: add [i], as in [-1] for the last one, or the "
+       "13:12: \"history.time\" is not a quantity: the row is missing: add [i], as in [-1] for the last row, or a "
        "time, as in (t=0.5); write " +
            quantities},
       {0, "[[expect]]\nquantity = \"history.time[1]\"\nover = \"history.time()\"\nminimum = 3.0",
-       "14:8: \"history.time()\" is not a quantity: in the parentheses stands no time, as in (t=0.5); write " +
+       "14:8: \"history.time()\" is not a quantity: the parentheses must contain a time, as in (t=0.5); write " +
            quantities},
   };
   for (const MalformedCase& malformed : cases) expect_problems(malformed);

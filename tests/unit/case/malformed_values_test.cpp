@@ -27,9 +27,9 @@ TEST(MalformedCase, Values) {
        "3:9: \"plane\" must be one of \"strain\", \"stress\" or \"axisymmetric\"; found the text \"stres\"; did you "
        "mean \"stress\"?"},
       {2, "file = \"a.msh\"\nsize = 0.1",
-       "3:8: \"size\" is for geometry that is still to be meshed; \"a.msh\" is a mesh already"},
+       "3:8: \"size\" is only for geometry that the gmsh program meshes; \"a.msh\" is already a mesh"},
       {2, "file = \"a.MSH\"\nsize = 0.1",
-       "3:8: \"size\" is for geometry that is still to be meshed; \"a.MSH\" is a mesh already"},
+       "3:8: \"size\" is only for geometry that the gmsh program meshes; \"a.MSH\" is already a mesh"},
       {2, "file = \"a.geo\"\nsize = -1",
        "3:8: \"size\" must be a positive number (unit: length); found the integer -1"},
       {7, "mu = 1.0\ndamping = 3",
@@ -39,7 +39,7 @@ TEST(MalformedCase, Values) {
       {7, "mu = 1.0\nrelaxation = { modulus = [0.5, -1.0], time = [1.0, 2.0] }",
        "8:32: entry 2 of \"modulus\" must be a positive number; found the number -1.0"},
       {7, "mu = 1.0\nrelaxation = { modulus = [0.5], time = [1.0, 2.0] }",
-       "8:40: \"modulus\" and \"time\" have one entry for each branch, and there are 1 and 2 of them"},
+       "8:40: \"modulus\" and \"time\" must have one entry for each branch, but have 1 and 2 entries"},
       {9, "scheme = \"newmrk\"",
        "9:10: \"scheme\" must be one of " + all_schemes() +
            "; found the "
@@ -102,7 +102,7 @@ TEST(MalformedCase, Values) {
       {0, "[[material]]\ngroup = \"b\"\ndensity = 1",
        "12:1: [[material]] needs either \"lambda\" and \"mu\" or \"young\" and \"poisson\"; found none of them"},
       {0, "[[material]]\ngroup = \"body\"\ndensity = 1\nyoung = 1.0\npoisson = 0.3",
-       "13:9: the group \"body\" is in another [[material]] already, at 4:9"},
+       "13:9: the group \"body\" is already in another [[material]], at 4:9"},
       // times
       {9, "scheme = \"newmark\"",
        "9:10: the scheme \"newmark\" needs \"beta\" and \"gamma\", or a \"preset\": \"trapezoidal\" (beta = 0.25, "
@@ -111,7 +111,7 @@ TEST(MalformedCase, Values) {
        "9:10: the scheme \"newmark\" needs \"beta\" and \"gamma\", or a \"preset\": \"trapezoidal\" (beta = 0.25, "
        "gamma = 0.5) or \"textbook-half\" (beta = 0.5, gamma = 0.5); \"gamma\" is missing"},
       {9, "scheme = \"newmark\"\nbeta = 0.25\ngamma = 0.5\npreset = \"trapezoidal\"",
-       "12:10: \"preset\" and \"beta\" are given together: \"preset\" stands for beta and gamma, leave out one or the "
+       "12:10: \"preset\" and \"beta\" are given together: \"preset\" sets beta and gamma, remove one or the "
        "other"},
       {9, "scheme = \"newmark\"\npreset = \"trapezodal\"",
        "10:10: \"preset\" must be \"trapezoidal\" or \"textbook-half\"; found the text \"trapezodal\"; did you mean "
@@ -126,7 +126,7 @@ TEST(MalformedCase, Values) {
        "10:10: \"preset\" is for the scheme \"newmark\" only; the scheme is \"klr-conserving\""},
       {10, "step = 0", "10:8: \"step\" must be a positive number, or \"adaptive\" (unit: time); found the integer 0"},
       {10, "step = 2.0", "11:7: \"end\" is 1, before the end of the first step of 2"},
-      {10, "step = 1e-10", "10:8: a step of 1e-10 up to the end 1 makes 1e+10 steps; at most 1e+09 are possible"},
+      {10, "step = 1e-10", "10:8: a step of 1e-10 up to the end 1 results in 1e+10 steps; at most 1e+09 are possible"},
       {11, "end = -1.0", "11:7: \"end\" must be a positive number (unit: time); found the number -1.0"},
   };
   for (const MalformedCase& malformed : cases) expect_problems(malformed);

@@ -64,20 +64,21 @@ TEST(Overrides, RepairAFileBeforeItIsChecked) {
 
 TEST(Overrides, SayWhatIsWrongWithThem) {
   const std::vector<std::pair<std::string, std::string>> expected{
-      {"contact.7.friction=0.3", "there is no entry 7 of [[contact]]: they go from 0 to 1"},
+      {"contact.7.friction=0.3", "there is no entry 7 of [[contact]]: the entries are 0 to 1"},
       {"support.0.value=0.3", "there is no entry 0 of [[support]]: the case has none"},
       {"material.1.density=1", "there is no entry 1 of [[material]]: there is only entry 0"},
-      {"contact.friction=0.3", "[[contact]] is a list: say which entry, counted from 0, as in contact.0.group"},
-      {"contact.-1.friction=0.3", "[[contact]] is a list: say which entry, counted from 0, as in contact.0.group"},
-      {"contact.01.friction=0.3", "\"01\" is no number of an entry of [[contact]]: write 1, as in contact.1.friction"},
-      {"contact.00=0.3", "\"00\" is no number of an entry of [[contact]]: write 0, as in contact.0.group"},
-      {"contact=3", "[[contact]] is a list: say which entry, counted from 0, as in contact.0.group"},
-      {"obstacle=3", "the sections [obstacle.NAME] are named: say which one, as in obstacle.floor.type"},
-      {"time=3", "\"time\" is a section: say which of its keys, as in time.scheme"},
+      {"contact.friction=0.3", "[[contact]] is a list: specify the entry, counted from 0, as in contact.0.group"},
+      {"contact.-1.friction=0.3", "[[contact]] is a list: specify the entry, counted from 0, as in contact.0.group"},
+      {"contact.01.friction=0.3",
+       "\"01\" is not a valid number of an entry of [[contact]]: write 1, as in contact.1.friction"},
+      {"contact.00=0.3", "\"00\" is not a valid number of an entry of [[contact]]: write 0, as in contact.0.group"},
+      {"contact=3", "[[contact]] is a list: specify the entry, counted from 0, as in contact.0.group"},
+      {"obstacle=3", "the sections [obstacle.NAME] have names: specify one, as in obstacle.floor.type"},
+      {"time=3", "\"time\" is a section: specify one of its keys, as in time.scheme"},
       {"time.stp=1", "unknown key \"stp\" in [time]; did you mean \"step\"?"},
       {"tme.step=1", "unknown section \"tme\"; did you mean [time]?"},
       {"material.0.damping.mas=1", "unknown key \"mas\" in material.damping; did you mean \"mass\"?"},
-      {"obstacle.floor.normal.1=1", "\"normal\" is a vector of 2 or 3 numbers: it has no part \"1\""},
+      {"obstacle.floor.normal.1=1", "\"normal\" is a vector of 2 or 3 numbers: it has no key \"1\""},
       {"time.step=fast", "\"step\" must be a positive number, or \"adaptive\" (unit: time); found the text \"fast\""},
       {"time.step=", "\"step\" must be a positive number, or \"adaptive\" (unit: time); found the text \"\""},
       {"time.step=nan",
@@ -86,11 +87,11 @@ TEST(Overrides, SayWhatIsWrongWithThem) {
        "\"step\" must be a positive number, or \"adaptive\" (unit: time); found the text \"1\nfoo=2\""},
       {"contact.0.friction=-0.3", "\"friction\" must be a number of at least 0; found the number -0.3"},
       {"obstacle.wall.type=plane",
-       "[obstacle.wall] has no \"point\": a vector of 2 or 3 numbers (unit: length). A point of "
+       "[obstacle.wall] has no \"point\": a vector of 2 or 3 numbers (unit: length). A point on "
        "the plane.\n--set obstacle.wall.type=plane: [obstacle.wall] has no \"normal\": a vector "
-       "of 2 or 3 numbers. Normal of the plane, out of the obstacle; of any length but zero."},
-      {"traction.0.parameters.t=1",
-       "\"t\" cannot be the name of a parameter: x, y, z, t and pi have a meaning of their own"},
+       "of 2 or 3 numbers. Normal of the plane, pointing out of the obstacle; of any length "
+       "but zero."},
+      {"traction.0.parameters.t=1", "\"t\" cannot be the name of a parameter: x, y, z, t and pi are reserved"},
   };
   for (const auto& [text, problem] : expected) {
     EXPECT_EQ(problems_of(contact_case, {text}), "--set " + text + ": " + problem);

@@ -161,7 +161,7 @@ TEST(ReadCase, ReadsProbesAndExpectations) {
   EXPECT_FALSE(read.expectations[0].minimum.has_value());
   EXPECT_EQ(read.expectations[0].times, 1.0);
   EXPECT_EQ(read.expectations[0].name + read.expectations[0].over + read.expectations[0].published, "");
-  // Both spellings of a path, and 2.0 for what the file has as 2.
+  // Both spellings of a path, and 2.0 written for the 2 of the file.
   const std::map<std::string, std::string> when{{"time.scheme", "midpoint"}, {"mesh.scale", "2"}};
   EXPECT_EQ(read.expectations[0].when, when);
   EXPECT_EQ(read.expectations[1].name, "a part");
@@ -284,13 +284,12 @@ TEST(ReadCase, SaysWhenAFileCannotBeRead) {
 }
 
 TEST(ReadCase, AnEmptyFileLacksTheRequiredSections) {
-  EXPECT_EQ(
-      problems_of(""),
-      "1:1: there is no section [mesh], which must have \"file\", and no [part.NAME] either. The body and how it is "
-      "discretized. With sections [part.NAME] only `degree` and `plane` are given here, and hold for all parts.\n"
-      "1:1: there is no section [[material]], which must have \"group\" and \"density\". The material of one or more "
-      "groups of cells.\n"
-      "1:1: there is no section [time], which must have \"step\" and \"end\". The time scheme and its steps.");
+  EXPECT_EQ(problems_of(""),
+            "1:1: there is no section [mesh], which must have \"file\", and no [part.NAME] either. The body and its "
+            "discretization. With sections [part.NAME], this section contains only `degree` and `plane`, which apply "
+            "to all parts.\n1:1: there is no section [[material]], which must have \"group\" and \"density\". The "
+            "material of one or more groups of cells.\n1:1: there is no section [time], which must have \"step\" and "
+            "\"end\". The time scheme and its steps.");
 }
 
 TEST(ReadCase, AdaptiveSteps) {
@@ -303,11 +302,10 @@ TEST(ReadCase, AdaptiveSteps) {
   EXPECT_FALSE(fixed.adaptive);
   EXPECT_EQ(fixed.step, 0.5);
   EXPECT_EQ(problems_of(edited_case(10, "step = 0.1\nlargest = 0.25")),
-            "11:11: \"largest\" is of adaptive steps; write step = \"adaptive\"");
-  EXPECT_EQ(
-      problems_of(edited_case(10, "step = \"adaptive\"")),
-      "10:8: adaptive steps need \"largest\", the longest of them: at most the time between two rows that you want "
-      "to see");
+            "11:11: \"largest\" is only for adaptive steps; write step = \"adaptive\"");
+  EXPECT_EQ(problems_of(edited_case(10, "step = \"adaptive\"")),
+            "10:8: adaptive steps require \"largest\", the largest length: at most the time between two rows that you "
+            "want to see");
   EXPECT_EQ(problems_of(edited_case(10, "step = \"adaptive\"\nlargest = 0.25\nsmallest = 0.5")),
             "12:12: \"smallest\" is 0.5, above \"largest\", 0.25");
 }

@@ -65,16 +65,16 @@ TEST(ReadParts, SeveralTurns) {
   EXPECT_EQ(turns[1].axis, (std::vector<double>{1.0, 0.0, 0.0}));
   EXPECT_EQ(read.values.at("part.ball.turn.1.angle"), "50");
   const auto problem = [&](const std::string& override) { return problems_of(text, {override}); };
-  EXPECT_NE(
-      problem("part.ball.turn.angle=3").find("\"turn\" is a list: say which entry, from turn.0.angle to turn.1.angle"),
-      std::string::npos);
+  EXPECT_NE(problem("part.ball.turn.angle=3")
+                .find("\"turn\" is a list: specify the entry, from turn.0.angle to turn.1.angle"),
+            std::string::npos);
   EXPECT_NE(problem("part.ball.turn.2.angle=3").find("from turn.0.angle to turn.1.angle"), std::string::npos);
   EXPECT_NE(problem("part.ball.turn=[]").find("\"turn\" must be a table with"), std::string::npos);
   EXPECT_NE(problem("part.ball.turn=[{ axis = [1, 0, 0] }]").find("\"turn\" of [part.ball] has no \"angle\""),
             std::string::npos);
 }
 
-/// v = sqrt(2 g H) along gravity, on top of the velocity: 5 m/s from 1.25 m under 10 m/s².
+/// v = sqrt(2 g H) along gravity is added to the velocity: 5 m/s from 1.25 m under 10 m/s².
 TEST(ReadParts, DroppedFromAHeight) {
   const std::string text =
       "[part.ball]\nfile = \"b.msh\"\ndrop_height = 1.25\nvelocity = [2, 0]\n[load]\ngravity = [0, -10]\n" +
@@ -84,7 +84,7 @@ TEST(ReadParts, DroppedFromAHeight) {
   ASSERT_EQ(read.motions[0].velocity.size(), 2U);
   EXPECT_EQ(read.motions[0].velocity[0], 2.0);
   EXPECT_DOUBLE_EQ(read.motions[0].velocity[1], -5.0);
-  EXPECT_NE(problems_of(text, {"load.gravity=[0, 0]"}).find("the case has none: give [load] gravity"),
+  EXPECT_NE(problems_of(text, {"load.gravity=[0, 0]"}).find("the case has none: set \"gravity\" of [load]"),
             std::string::npos);
   const Case whole =
       read_text("[mesh]\nfile = \"b.msh\"\ndrop_height = 5\n[load]\ngravity = [0, 0, -10]\n" + rest_of_case);
@@ -103,7 +103,7 @@ TEST(ReadParts, RestOnAnObstacleThatIsThere) {
   EXPECT_EQ(read.parts.at(0).rest_gap, 0.5);
   EXPECT_NE(problems_of(text, {"part.ball.rest_on=flor"}).find("there is no [obstacle.flor]; did you mean \"floor\"?"),
             std::string::npos);
-  EXPECT_NE(problems_of("[part.ball]\nfile = \"b.msh\"\nrest_gap = 0.5\n" + rest_of_case).find("give that, too"),
+  EXPECT_NE(problems_of("[part.ball]\nfile = \"b.msh\"\nrest_gap = 0.5\n" + rest_of_case).find("set \"rest_on\", too"),
             std::string::npos);
 }
 
@@ -147,8 +147,8 @@ TEST(ReadParts, ExcludeAFileAndAPlaceOfTheWhole) {
   for (const auto& [key, value] : keys) {
     EXPECT_EQ(problems_of("[mesh]\n" + key + " = " + value + "\n" + two_parts),
               "2:" + std::to_string(key.size() + 4) + ": \"" + key +
-                  "\" of [mesh] and [part.NAME] exclude each other: each [part.NAME] has a \"" + key +
-                  "\" of its own; leave it out here");
+                  "\" of [mesh] and [part.NAME] exclude each other: each [part.NAME] has its own \"" + key +
+                  "\"; remove it here");
   }
   EXPECT_NE(problems_of(two_parts, {"mesh.file=a.msh"}).find("exclude each other"), std::string::npos);
 }
@@ -162,7 +162,7 @@ TEST(ReadParts, OrAFileMustBeThere) {
   EXPECT_NE(problems_of("[part]\n" + rest_of_case).find("no [part.NAME] either"), std::string::npos);
   EXPECT_NE(problems_of("[part.ball]\nsize = 1\n" + rest_of_case).find("1:1: [part.ball] has no \"file\""),
             std::string::npos);
-  // Misspelt, and nothing else.
+  // The misspelling is the only message.
   EXPECT_EQ(problems_of("[parts.ball]\nfile = \"a.msh\"\n" + rest_of_case),
             "1:2: unknown section \"parts\"; did you mean [part.NAME]?");
   EXPECT_EQ(problems_of("[mesh]\nfile = \"a.msh\"\n[parts.ball]\nfile = \"a.msh\"\n" + rest_of_case),
@@ -173,9 +173,9 @@ TEST(ReadParts, NamesHaveNoOddCharacters) {
   const auto named = [](const std::string& name) {
     return problems_of("[part." + name + "]\nfile = \"a.msh\"\n" + rest_of_case);
   };
-  EXPECT_EQ(named("\"a.b\""), "1:7: the name of [part.a.b] can only have letters, digits, _ and -");
-  EXPECT_EQ(named("\"ball 1\""), "1:7: the name of [part.ball 1] can only have letters, digits, _ and -");
-  EXPECT_EQ(named("a.b"), "1:9: [part.a.b]: a name has no dot; write [part.a-b] or the like");
+  EXPECT_EQ(named("\"a.b\""), "1:7: the name of [part.a.b] can only contain letters, digits, _ and -");
+  EXPECT_EQ(named("\"ball 1\""), "1:7: the name of [part.ball 1] can only contain letters, digits, _ and -");
+  EXPECT_EQ(named("a.b"), "1:9: [part.a.b]: a name must not contain a dot; write [part.a-b], for instance");
   EXPECT_EQ(named("ball_2-x"), "");
 }
 
@@ -190,7 +190,7 @@ TEST(ReadParts, WrongValues) {
       {"part.ball.spin=nan",
        "\"spin\" must be a number in two dimensions, a vector of 3 numbers in three (unit: 1/time); found the number "
        "nan"},
-      {"part.wall.size=1", "\"size\" is for geometry that is still to be meshed; \"w.msh\" is a mesh already"},
+      {"part.wall.size=1", "\"size\" is only for geometry that the gmsh program meshes; \"w.msh\" is already a mesh"},
       {"part.ball.axis=1", "unknown key \"axis\" in [part.NAME]; its keys are"},
       {"part.ball.turn={angle = 3, axis = [0, 0, 0]}", "\"axis\" must not be zero"}};
   for (const auto& [change, problem] : expected)
@@ -199,20 +199,19 @@ TEST(ReadParts, WrongValues) {
 
 TEST(ReadParts, SpinsHaveTheDimensionOfTheVectors) {
   const std::string plane = two_parts + "[load]\ngravity = [0, -1]\n";
-  EXPECT_EQ(
-      problems_of(plane + "[[motion]]\ngroup = \"a\"\nspin = [0, 0, 1]\n"),
-      "18:8: \"spin\" of [[motion]] is a vector, as in three dimensions, but \"gravity\" of [load] at 15:11 has 2: "
-      "all vectors must have as many as the mesh has dimensions");
+  EXPECT_EQ(problems_of(plane + "[[motion]]\ngroup = \"a\"\nspin = [0, 0, 1]\n"),
+            "18:8: \"spin\" of [[motion]] is a vector, as in three dimensions, but \"gravity\" of [load] at 15:11 has "
+            "2: all vectors must have as many entries as the mesh has dimensions");
   EXPECT_EQ(problems_of("[part.top]\nfile = \"t.msh\"\nspin = 1\n" + two_parts + "[load]\ngravity = [0, 0, -1]\n"),
             "18:11: \"gravity\" of [load] has 3 entries, but \"spin\" of [part.top] at 3:8 is a number, as in two "
-            "dimensions: all vectors must have as many as the mesh has dimensions");
+            "dimensions: all vectors must have as many entries as the mesh has dimensions");
 }
 
 TEST(ReadParts, MotionsThatMoveNothing) {
   EXPECT_EQ(problems_of(two_parts + "[[motion]]\ngroup = \"a\"\n"),
-            "14:1: [[motion]] moves nothing: give \"velocity\", \"spin\" or both");
+            "14:1: [[motion]] moves nothing: set \"velocity\", \"spin\" or both");
   EXPECT_EQ(problems_of(two_parts + "[[motion]]\ngroup = \"a\"\nvelocity = [0, 1]\nabout = [0, 0]\n"),
-            "17:9: \"about\" is a point of the axis of \"spin\": give \"spin\", or leave it out");
+            "17:9: \"about\" is a point on the axis of \"spin\": set \"spin\", or remove \"about\"");
 }
 
 }  // namespace ricochet::case_test

@@ -3,7 +3,7 @@
 #include "case_text.hpp"
 #include "ricochet/base/log.hpp"
 
-// Newmark's parameters: from the file, from presets, from --set, and how these go together.
+// Newmark's parameters from the file, from presets and from --set, and their combinations.
 namespace ricochet::case_test {
 
 namespace {
@@ -23,7 +23,7 @@ TEST(ReadTime, PresetsStandForBetaAndGamma) {
   EXPECT_EQ(half.time.parameters.text("preset"), "textbook-half");
   EXPECT_EQ(half.time.parameters.number("beta"), 0.5);
   EXPECT_EQ(half.time.parameters.number("gamma"), 0.5);
-  EXPECT_EQ(half.values.at("time.beta"), "0.5");  // in effect, so that `when` can ask for it
+  EXPECT_EQ(half.values.at("time.beta"), "0.5");  // the value in effect, so that `when` can test it
   EXPECT_EQ(half.values.at("time.preset"), "textbook-half");
   const Case trapezoidal = read_text(preset_file, {"time.preset=trapezoidal"});
   EXPECT_EQ(trapezoidal.time.parameters.number("beta"), 0.25);
@@ -84,8 +84,7 @@ TEST(ReadTime, OneStepIsEnough) {
 
 TEST(ReadTime, RefusesStepsThatNumbersDoNotReach) {
   const std::string square =
-      ": the numbers that a computer has do not reach to its square; choose a unit of time in which steps are nearer "
-      "to "
+      ": its square is outside the range of floating-point numbers; choose a unit of time in which steps are closer to "
       "1";
   const std::string file = with_scheme("scheme = \"midpoint\"");
   for (const std::string step : {"1e-300", "1e-160", "5e-324", "1e+300"}) {
@@ -106,14 +105,14 @@ TEST(ReadTime, RefusesShortestStepsInWhichTimesCannotBeCounted) {
   for (const std::string smallest : {"1e-300", "5e-324", "1e-17"}) {
     EXPECT_EQ(problem(smallest, "0.1"),
               "--set time.smallest=" + smallest + ": \"smallest\" is " + smallest +
-                  ", too short beside \"largest\", 0.01, and \"end\", 0.1: times are whole numbers of it and would not "
-                  "have all of their digits; give at least 9.1e-15, or leave it out");
+                  ", too short compared with \"largest\", 0.01, and \"end\", 0.1: times are whole multiples of it and "
+                  "would lose digits; set at least 9.1e-15, or remove it");
   }
   EXPECT_EQ(problem("9.1e-15", "0.1"), "") << "what the message says is enough";
-  // Far away the end decides: 2e-9 of it are 1e15.
+  // Far from zero the end decides: 2e-9 of it are 1e15.
   EXPECT_EQ(problem("1e-8", "1e6"), "");
   EXPECT_NE(problem("1e-11", "1e6"), "");
-  EXPECT_NE(problem("1e-12", "1e6").find("give at least 1.5e-10"), std::string::npos) << problem("1e-12", "1e6");
+  EXPECT_NE(problem("1e-12", "1e6").find("set at least 1.5e-10"), std::string::npos) << problem("1e-12", "1e6");
   EXPECT_EQ(problem("1.5e-10", "1e6"), "");
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// The object that holds a section's keys, below lists and names.
+// Returns the object that holds a section's keys, below lists and names.
 const Json& entry_schema(const Json& schema, const Section& section) {
   if (section.kind == SectionKind::top) return schema;
   const Json& found = schema.at("properties").at(section.name);
@@ -30,7 +30,7 @@ void expect_keys(const Json& schema, const std::vector<Key>& keys) {
     EXPECT_NE(found.at("description").get<std::string>().find(key.doc), std::string::npos);
     EXPECT_EQ(found.contains("default"), key.default_value.has_value());
     const Json required = schema.value("required", Json::array());
-    // A key of one type among several is required where that type is named; one that gives way, without the others.
+    // A key of one type is required where that type is named; one that gives way, only without the others.
     const bool always = key.required && key.only_for.empty() && key.replaced_by.empty();
     EXPECT_EQ(std::find(required.begin(), required.end(), key.name) != required.end(), always);
     if (key.type == KeyType::table) expect_keys(found, key.keys);
@@ -102,7 +102,7 @@ TEST(CaseSchema, CarriesBoundsChoicesAndUnits) {
   const Json& poisson = properties.at("material").at("items").at("properties").at("poisson");
   EXPECT_EQ(poisson.at("exclusiveMinimum"), -1);
   EXPECT_EQ(poisson.at("exclusiveMaximum"), 0.5);
-  // Either pair of constants, of a law that has these.
+  // Either pair of constants of a law that has such pairs.
   const Json& law = properties.at("material").at("items").at("allOf").at(0);
   EXPECT_EQ(law.at("if").at("properties").at("law").at("const"), "linear");
   EXPECT_EQ(law.at("then").at("oneOf").size(), 2U);
@@ -129,11 +129,14 @@ TEST(CaseReference, IsTheDocumentationPage) {
       << "docs/case-file.md is generated: write case_reference() into it";
 }
 
-TEST(CaseReference, ShowsAValidCase) {
-  const std::string page = case_reference();
-  const std::string opening = "```toml\n";
-  const std::size_t first = page.find(opening) + opening.size();
-  EXPECT_EQ(read_text(page.substr(first, page.find("```", first) - first)).title, "Elastic disc on a rigid foundation");
+TEST(CaseReference, ShowsValidCases) {
+  const std::string page = case_reference(), opening = "```toml\n";
+  std::vector<std::string> titles;
+  for (std::size_t at = page.find(opening); at < page.find("## Rules"); at = page.find(opening, at)) {
+    at += opening.size();
+    titles.push_back(read_text(page.substr(at, page.find("```", at) - at)).title);
+  }
+  EXPECT_EQ(titles, (std::vector<std::string>{"", "Elastic disc on a rigid foundation"}));
 }
 
 }  // namespace ricochet::case_test

@@ -9,7 +9,7 @@
 namespace ricochet {
 namespace {
 
-/// p = ½E* c √s and g = ⅔ c s^{3/2} at distances θh and (1 − θ)h from the border give θ back, whatever c, E* and h are.
+/// p = ½E* c √s and g = ⅔ c s^{3/2} at distances θh and (1 − θ)h from the border return θ, for any c, E* and h.
 TEST(PressedPartOfEdge, IsThatOfTheBorderOfSmoothContact) {
   for (const double part : {1e-6, 0.01, 0.3, 0.5, 0.9, 0.999}) {
     for (const double c : {1e-3, 7.0}) {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-/// @file Rows that follow the motion: derivatives of the gaps where the points are, with revisions that tell which of
-/// them have changed.
+/// @file Rows that follow the motion: derivatives of the gaps at the current positions, with revisions that mark
+/// changed rows.
 namespace ricochet {
 namespace {
 
@@ -77,7 +77,7 @@ TEST_P(TwoPoints, HaveRowsThatAreTheDerivativesOfTheirGaps) {
     EXPECT_NEAR(rows_.gap_operator.coeff(0, dof), slope[0], 1e-9);
     EXPECT_NEAR(rows_.gap_operator.coeff(1, dof), slope[1], 1e-9);
   }
-  // Along the surface no gap changes, and directions are orthonormal.
+  // Motion along the surface changes no gap; directions are orthonormal.
   for (Index i = 0; i < 2; ++i) {
     const Points& tangents = rows_.tangents[static_cast<std::size_t>(i)];
     EXPECT_LE((tangents.transpose() * rows_.normals.col(i)).cwiseAbs().maxCoeff(), 1e-15);
@@ -87,7 +87,7 @@ TEST_P(TwoPoints, HaveRowsThatAreTheDerivativesOfTheirGaps) {
   EXPECT_NEAR(slip[0], rows_.tangents[0].col(0).sum(), 1e-15);
 }
 
-/// The obstacle's motion changes gaps as that of the body the other way does.
+/// A motion of the obstacle changes gaps as the opposite motion of the body does.
 TEST_P(TwoPoints, SeeTheObstacleMove) {
   const Vector still = Vector::Zero(2 * GetParam());
   constexpr double time = 0.3;
@@ -101,7 +101,7 @@ TEST_P(TwoPoints, ChangeTheirRevisionWithTheirRowsAlone) {
   const std::vector<long> first = rows_.revision;
   geometry_->update(displacement, 0.0, nullptr, rows_);
   EXPECT_EQ(rows_.revision, first);
-  // The first point is at the first node alone, which stays.
+  // The first point depends only on the first node, which stays.
   displacement[GetParam()] = 0.05;
   displacement[2 * GetParam() - 1] = -1.0;
   geometry_->update(displacement, 0.0, nullptr, rows_);

@@ -19,8 +19,8 @@
 #include "support/surface_files.hpp"
 #include "support/two_bodies.hpp"
 
-/// @file Measures of facets, cells, bodies and surfaces under rotations, reflections, renumbering and other units. The
-/// box around points is none of them: it depends on the axes of the frame.
+/// @file Measures of facets, cells, bodies and surfaces under rotations, reflections, renumbering and changes of units.
+/// The bounding box of points is excluded: it depends on the axes of the frame.
 namespace ricochet::test_support {
 namespace {
 
@@ -63,10 +63,10 @@ std::vector<Index> random_order(Index count, std::mt19937& random) {
   return order;
 }
 
-/// Cells or facets in another order within their blocks, and the members of groups that they are.
+/// Reorders cells or facets within their blocks, and adapts the members of groups.
 void reorder(std::vector<CellBlock>& blocks, int dimension, std::vector<Group>& groups, std::mt19937& random) {
   Index first = 0;
-  std::vector<Index> number;  // of each, where it is now
+  std::vector<Index> number;  // new number of each
   for (CellBlock& block : blocks) {
     const std::vector<Index> order = random_order(block.size(), random);
     block.nodes = permuted(block.nodes, order, block.nodes_per_cell);
@@ -106,7 +106,7 @@ Mesh changed(Mesh mesh, const Change& change) {
   return mesh;
 }
 
-/// Numbers without an order, with the powers of length and time that they have.
+/// Numbers in no particular order, with their powers of length and time.
 struct Measure {
   std::vector<double> values;
   int length = 0, time = 0;
@@ -187,7 +187,7 @@ void expect_same(const Measures& plain, const Measures& other, const Change& cha
 
 class MeasureInvariance : public testing::TestWithParam<ElementKind> {};
 
-/// Two blocks of distorted cells, the upper one with a round side below, so that facets of hexahedra are no plane ones.
+/// Two blocks of distorted cells, the upper one with a round lower side, so that facets of hexahedra are not plane.
 TEST_P(MeasureInvariance, OfBodiesAndTheirSurfaces) {
   const int d = GetParam().dimension();
   StackedBoxes stack;
@@ -216,7 +216,7 @@ INSTANTIATE_TEST_SUITE_P(Elements, MeasureInvariance,
                                                                     {CellShape::hexahedron, 1, 1}}),
                          [](const auto& of) { return of.param.label(); });
 
-/// No measure of a warped quadrilateral depends on a diagonal along which it could be cut into triangles.
+/// No measure of a warped quadrilateral depends on the diagonal that would divide it into triangles.
 TEST(MeasureInvariance, OfAWarpedFacetWhereverItsNumberingBegins) {
   Mesh mesh = make_box_mesh({CellShape::hexahedron, {1, 1, 1}, 1, 0.0, {}});
   mesh.nodes(2, mesh.cells[0].cell(0)[7]) += 0.3;

@@ -7,14 +7,14 @@
 #include "ricochet/contact/mortar/choose_side.hpp"
 #include "support/two_bodies.hpp"
 
-/// @file A flat body below a round one: within a facet of size h the normals of a circle of radius R turn by h/R, those
-/// of the flat side by nothing, and the other way round only where the circle can touch it.
+/// @file A flat body below a round one: within a facet of size h the normals of a circle of radius R rotate by h/R,
+/// those of the flat side not at all, and vice versa only where the circle can touch it.
 namespace ricochet::test_support {
 namespace {
 
 constexpr double radius = 2.0;
 
-/// The upper body has a round side below, of a width of 1, and the lower one a flat side above.
+/// The upper body has a round lower side of width 1, the lower one a flat upper side.
 StackedBoxes round_on_flat(int flat_cells, int round_cells, int degree) {
   StackedBoxes stack;
   stack.lower_counts = {flat_cells, 2};
@@ -56,7 +56,7 @@ TEST(NormalVariation, OfACircleAboveAPlane) {
   }
 }
 
-/// Half of the round side, from the plane of symmetry on, which its normals end at.
+/// Half of the round side, bounded by the plane of symmetry, at which its normals end.
 TEST(NormalVariation, OfAHalfThatEndsAtAPlaneOfSymmetry) {
   StackedBoxes stack = round_on_flat(8, 8, 1);
   const PointMap whole = stack.upper_map;
@@ -68,7 +68,7 @@ TEST(NormalVariation, OfAHalfThatEndsAtAPlaneOfSymmetry) {
   EXPECT_NEAR(turns.opposite, 1.0 / (16.0 * radius), 0.02 * turns.opposite);
 }
 
-/// The round side carries the multipliers unless its facets are twice as large as those of the flat one.
+/// The round side carries the multipliers unless its facets are twice as large as the flat ones.
 TEST(NormalVariation, ChooseTheRoundSideUpToTwiceTheSize) {
   for (const auto& [flat, round, takes_round] :
        {std::tuple{16, 16, true}, {20, 16, true}, {8, 16, true}, {48, 16, false}}) {
@@ -94,7 +94,7 @@ TEST(NormalVariation, DoubtASideWhoseFacetsSpanALargeTurn) {
   EXPECT_FALSE(doubt_side(test.body->body, test.pair)) << "glued surfaces do not touch elsewhere";
 }
 
-/// Faces that lie on each other have one direction, whatever edges are around them.
+/// Faces that lie on each other have one direction, whatever their edges are.
 TEST(NormalVariation, HaveNoDoubtOfFlatFaces) {
   StackedBoxes stack;
   stack.lower_counts = {4, 2};
@@ -106,7 +106,7 @@ TEST(NormalVariation, HaveNoDoubtOfFlatFaces) {
   EXPECT_FALSE(doubt_side(test.body->body, test.pair));
 }
 
-/// Two flat faces at an angle touch nowhere on their insides.
+/// Two flat faces at an angle do not touch in their interiors.
 TEST(NormalVariation, AreNoneOfFacesThatDoNotLookAtEachOther) {
   StackedBoxes stack;
   stack.lower_counts = stack.upper_counts = {3, 2};
@@ -115,7 +115,7 @@ TEST(NormalVariation, AreNoneOfFacesThatDoNotLookAtEachOther) {
   EXPECT_FALSE(Pair(stack).turns().touch);
 }
 
-/// A flat face reaches the rim of a hollow, and nothing inside of it.
+/// A flat face reaches the rim of a hollow, but not its interior.
 TEST(NormalVariation, AreNoneInAHollowThatAFlatFaceDoesNotReach) {
   StackedBoxes stack = round_on_flat(6, 8, 1);
   stack.upper_map = [](const Vector& x) -> Vector {

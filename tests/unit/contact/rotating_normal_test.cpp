@@ -7,11 +7,11 @@
 
 #include "support/box_mesh.hpp"
 
-/// @file A direction that turns with the facets around a point.
+/// @file A direction that rotates with the facets around a point.
 namespace ricochet {
 namespace {
 
-/// Facets of a bent and distorted box around one of its corners, which are on several sides of it.
+/// Facets of a bent and distorted box around one of its corners, on several of its sides.
 std::vector<Index> facets_around(const DisplacementSpace& space, Index node) {
   Index count = 0;
   for (const CellBlock& block : space.facets) count += block.size();
@@ -23,7 +23,7 @@ std::vector<Index> facets_around(const DisplacementSpace& space, Index node) {
   return result;
 }
 
-/// The order in which a mesh file has the facets says nothing about the surface.
+/// The order of the facets in a mesh file has no effect on the surface.
 TEST(RotatingNormal, NoOrderOfFacetsMatters) {
   for (const CellShape shape : test_support::all_cell_shapes) {
     const int d = dimension(shape);

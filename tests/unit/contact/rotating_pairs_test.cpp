@@ -9,7 +9,7 @@
 #include "support/pair_rows.hpp"
 #include "support/two_bodies.hpp"
 
-/// @file Rows of contact between bodies that turn with them.
+/// @file Rows of contact between bodies that rotate with them.
 namespace ricochet {
 namespace {
 
@@ -43,7 +43,7 @@ std::vector<Stack> stacks() {
   return result;
 }
 
-/// Nothing is smooth, and all of it is a motion that keeps cells upright: it turns by 1 and stretches.
+/// A random motion that keeps cells upright: it rotates by 1 and stretches.
 Vector some_motion(const SemidiscreteProblem& problem, unsigned seed, double size) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> number(-size, size);
@@ -60,10 +60,10 @@ Vector some_motion(const SemidiscreteProblem& problem, unsigned seed, double siz
   return result;
 }
 
-/// The rows of all points, as if all were about to touch.
+/// Rows of all points, as if all were about to touch.
 ContactRows rows_of(const SemidiscreteProblem& problem, const Vector& displacement, const StepStart* start) {
   ContactRows rows = *problem.contact.rows;
-  rows.gap.setConstant(1e6);  // all gaps have changed by far: all points are looked at
+  rows.gap.setConstant(1e6);  // all gaps have changed by far, so all points are evaluated
   problem.contact.geometry->update(displacement, 0.0, start, rows);
   return rows;
 }
@@ -85,7 +85,7 @@ TEST(RotatingPairs, RowsAreTheDerivativesOfGaps) {
   }
 }
 
-/// So that the work of normal forces over a step is that of the change of gaps, whatever the step.
+/// The work of normal forces over a step then equals the work along the change of gaps, for any step.
 TEST(RotatingPairs, RowsOfAStepMeetBothEnds) {
   for (const Stack& stack : stacks()) {
     const CaseRun run = stack_of(stack);

@@ -9,7 +9,7 @@
 #include "support/case_run.hpp"
 #include "support/two_bodies.hpp"
 
-/// @file Which points carry the conditions where a surface touches itself: here the faces of two boxes as one surface.
+/// @file Choice of the points that carry the conditions of self-contact: here the faces of two boxes as one surface.
 namespace ricochet {
 namespace {
 
@@ -51,7 +51,7 @@ SlidingPair::Data both_faces(const CaseRun& run) {
   return data;
 }
 
-/// The smallest singular value of the rows of these points over the largest; 1 without any.
+/// Ratio of the smallest to the largest singular value of the rows of these points; 1 if there are none.
 double independence(const std::vector<SlidingView>& views, const std::vector<std::size_t>& points, Index nodes) {
   Matrix rows = Matrix::Zero(static_cast<Index>(points.size()), 3 * nodes);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -81,7 +81,7 @@ TEST(SelfContactSelection, HaveIndependentRowsAndLeaveOutThoseOfTheOtherSide) {
       pair.compute_views(displacement, SlidingPair::Wanted::row, {}, {}, views);
       std::vector<const SlidingView*> seen;
       std::vector<std::size_t> all, some;
-      std::array<std::vector<std::size_t>, 2> faces_alone;  // as a pair of surfaces would have them
+      std::array<std::vector<std::size_t>, 2> faces_alone;  // as a pair of surfaces would choose them
       for (std::size_t i = 0; i < views.size(); ++i) {
         seen.push_back(views[i].faces ? &views[i] : nullptr);
         if (!views[i].faces) continue;
@@ -96,12 +96,12 @@ TEST(SelfContactSelection, HaveIndependentRowsAndLeaveOutThoseOfTheOtherSide) {
       ASSERT_FALSE(some.empty());
       EXPECT_LT(some.size(), all.size());
       EXPECT_GE(3 * some.size(), all.size());
-      // Where a face hangs over, a pair's points see parts of their facets, and are nearly those of their neighbours.
+      // Where a face overhangs, a pair's points see parts of their facets and nearly coincide with their neighbours.
       const double of_pair =
           std::min(independence(views, faces_alone[0], nodes), independence(views, faces_alone[1], nodes));
       EXPECT_GT(independence(views, some, nodes), std::min(0.05, 0.5 * of_pair)) << slide;
       EXPECT_LT(independence(views, all, nodes), 0.3 * independence(views, some, nodes)) << slide;
-      // The same again.
+      // A second evaluation gives the same choice.
       const auto first = chosen.choices();
       chosen.choose(seen);
       EXPECT_TRUE(chosen.choices() == first);

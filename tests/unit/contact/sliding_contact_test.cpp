@@ -20,7 +20,7 @@ using test_support::CaseRun;
 
 using Sled = test_support::PairOfBoxes;
 
-/// A small box above a larger one; all of its base faces the other one.
+/// A small box above a larger one; its whole base faces the larger one.
 CaseRun sled_of(const Sled& of) {
   const bool plane = dimension(of.shape) == 2;
   const int d = plane ? 2 : 3;
@@ -56,7 +56,7 @@ std::vector<Sled> sleds() {
   return result;
 }
 
-/// Nodes at random, and a turn of both bodies.
+/// Random displacements of the nodes, and a rotation of both bodies.
 Vector some_slide(const SemidiscreteProblem& problem, unsigned seed, double size, double turn) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> number(-size, size);
@@ -78,7 +78,7 @@ ContactRows sled_rows(const SemidiscreteProblem& problem, const Vector& displace
   return rows;
 }
 
-/// The largest difference of the rows and the derivatives of gaps along a motion, where the upper body is raised.
+/// Largest difference between the rows and the derivatives of gaps along a motion, with the upper body raised.
 double error_of_rows(const SemidiscreteProblem& problem, const std::string& what, double raised) {
   const Index d = problem.dimension;
   Vector at = some_slide(problem, 1, 0.002, 0.0);
@@ -96,7 +96,7 @@ double error_of_rows(const SemidiscreteProblem& problem, const std::string& what
   return (difference - change).lpNorm<Eigen::Infinity>() / change.lpNorm<Eigen::Infinity>();
 }
 
-/// Up to terms that the gap is a factor of, and that raise with it.
+/// Up to terms that are proportional to the gap, and grow as the body is raised.
 TEST(SlidingContact, RowsAreTheDerivativesOfGapsThatClose) {
   for (const Sled& sled : sleds()) {
     const CaseRun run = sled_of(sled);
@@ -147,7 +147,7 @@ TEST(SlidingContact, RigidMotionsChangeNoGapAndRowsHaveNoResultant) {
   }
 }
 
-/// The force on the upper body is a unit vector for a reaction of 1.
+/// For a reaction of 1, the force on the upper body is a unit vector.
 TEST(SlidingContact, AReactionIsTheForceOnTheBody) {
   for (const Sled& sled : sleds()) {
     const CaseRun run = sled_of(sled);
@@ -165,7 +165,7 @@ TEST(SlidingContact, AReactionIsTheForceOnTheBody) {
   }
 }
 
-/// Made from the places that the rows tell: with the same bits.
+/// Rows rebuilt from their stored positions have the same bits.
 TEST(SlidingContact, RowsAreRestored) {
   const CaseRun run = sled_of({CellShape::triangle, "p1", 2});
   const SemidiscreteProblem& problem = run.problem();

@@ -7,13 +7,13 @@
 #include "ricochet/base/temporary_folder.hpp"
 #include "ricochet/rigid/obstacle.hpp"
 
-/// @file The normal of a step of a point that sticks to an obstacle which turns.
+/// @file The normal of a step at a point that sticks to a rotating obstacle.
 namespace ricochet {
 namespace {
 
-/// It goes with the material, and what it goes beside that is rounding, without a direction. At a rounded corner the
-/// gap has more of it than a plane has: normals that follow it change from one iteration to the next, and forces of a
-/// node that sticks there do not settle.
+/// The point moves with the material up to rounding, which has no direction. At a rounded corner the gap contains more
+/// rounding than at a plane: normals that follow it change in each iteration, and forces at a sticking node do not
+/// settle.
 TEST(StickingNormal, DoesNotFollowRounding) {
   std::mt19937 random(5);
   const auto number = [&] { return 2.0 * static_cast<double>(random()) / 4294967296.0 - 1.0; };
@@ -36,7 +36,7 @@ TEST(StickingNormal, DoesNotFollowRounding) {
     const SpaceVector from = before.pose().to_space(at), noise = 1e-15 * Eigen::Vector2d(number(), number());
     const SpaceVector to = after.pose().to_space(at) + noise;
     const SpaceVector normal = normal_of_step(before, from, after, to);
-    // That of the middle of the turn.
+    // The normal in the middle of the rotation.
     const SpaceVector mean = (before.normal(from) + after.normal(to)).normalized();
     EXPECT_LT((normal - mean).norm(), 1e-9) << at.transpose();
   }

@@ -90,7 +90,7 @@ TEST(FclibFile, SparseAndDenseOperators) {
 // Equality constraints.
 
 TEST(FclibFile, EqualityConstraintsAreEliminated) {
-  // Units of the constraints that differ by many orders of magnitude do not matter.
+  // Constraint units that differ by many orders of magnitude have no effect.
   for (const double unit : {1.0, 0x1p-100}) {
     FclibProblem problem = example(3, 4, 3);
     Vector scale(3);
@@ -105,7 +105,7 @@ TEST(FclibFile, EqualityConstraintsAreEliminated) {
     reduction.problem.contact_operator->multiply(found.reaction, found.motion);
     found.motion += reduction.problem.offset;
     const FclibSolution whole = reduction.solution(found);
-    // Directly: unknowns λ from Vᵀ r + R λ + s = 0, then u = W r + V λ + q.
+    // Direct solution: unknowns λ from Vᵀ r + R λ + s = 0, then u = W r + V λ + q.
     const Vector multiplier =
         Matrix(problem.r).partialPivLu().solve(-(problem.v.transpose() * whole.reaction + problem.s));
     const Vector motion = problem.w * whole.reaction + problem.v * whole.multiplier + problem.q;
@@ -162,7 +162,7 @@ TEST(FclibFile, OnlyEligiblePointsAndTangentsForAll) {
     }
   }
   EXPECT_EQ(reduce(made).problem.offset_rounding, made.q_rounding);
-  // The same from a sparse W, and from its product alone.
+  // The same problem from a sparse W, and from its product alone.
   for (const auto& other :
        {make_sparse_operator(w.sparseView()), make_product_operator(8, [&](const Vector&x, Vector&y) { y = w * x; })}) {
     problem.contact_operator = other;

@@ -52,12 +52,12 @@ const Malformed cases[] = {
      [](Raw& r) {
        r = Raw{{}, {}, {}, {"/fclib_global"}};
      },
-     "/fclib_global: a global problem"},
+     "/fclib_global: is a global problem"},
     {"empty",
      [](Raw& r) {
        r = Raw{{}, {}, {}, {"/fclib_local"}};
      },
-     "/fclib_local/spacedim: there is no such data set"},
+     "/fclib_local/spacedim: there is no such dataset"},
     {"spacedim", [](Raw& r) { r.integers["/fclib_local/spacedim"] = {4}; }, "/fclib_local/spacedim: is 4; 2 or 3"},
     {"two spacedims",
      [](Raw& r) {
@@ -73,7 +73,7 @@ const Malformed cases[] = {
      "/fclib_local/spacedim: entry 0 is 2.5, which is not a whole number"},
     {"a group in the place of a data set",
      [](Raw& r) { r.integers.erase("/fclib_local/spacedim"), r.groups = {"/fclib_local/spacedim"}; },
-     "/fclib_local/spacedim: there is no such data set"},
+     "/fclib_local/spacedim: there is no such dataset"},
     // sizes of W
     {"no W",
      [](Raw& r) {
@@ -81,12 +81,12 @@ const Malformed cases[] = {
        r.reals.erase(w + "x");
      },
      "/fclib_local/W: there is no such group"},
-    {"no m", [](Raw& r) { r.integers.erase(w + "m"); }, "W/m: there is no such data set"},
-    {"negative m", [](Raw& r) { r.integers[w + "m"] = {-2}; }, "W/m: is -2, but counts something"},
-    {"m too small", [](Raw& r) { r.integers[w + "m"] = {1}; }, "W/p: entry 2 is 1, outside of 0 to 0"},
+    {"no m", [](Raw& r) { r.integers.erase(w + "m"); }, "W/m: there is no such dataset"},
+    {"negative m", [](Raw& r) { r.integers[w + "m"] = {-2}; }, "W/m: is -2, but a count cannot be negative"},
+    {"m too small", [](Raw& r) { r.integers[w + "m"] = {1}; }, "W/p: entry 2 is 1, outside the range 0 to 0"},
     {"m != n", [](Raw& r) { r.integers[w + "m"] = {4}; }, "/fclib_local/W: has 4 rows and 2 columns"},
     {"m not d points", [](Raw& r) { r.integers[w + "m"] = r.integers[w + "n"] = {3}; },
-     "/fclib_local/W: has 3 rows, not 2 (spacedim) for each point"},
+     "/fclib_local/W: has 3 rows, which is not a multiple of 2 (spacedim)"},
     {"m huge", [](Raw& r) { r.integers[w + "m"] = {2147483647}; }, "W/m: is 2147483647, which is too large"},
     {"n huge", [](Raw& r) { compress(r, -1), r.integers[w + "n"] = {2147483646}; },
      "W/p: has 3 entries where 2147483647 are expected"},
@@ -95,12 +95,13 @@ const Malformed cases[] = {
     {"nz above nzmax", [](Raw& r) { r.integers[w + "nz"] = {6}; }, "W/nz: is 6, more than nzmax = 5"},
     {"nz below the entries", [](Raw& r) { r.integers[w + "nz"] = {4}, r.integers[w + "nzmax"] = {6}; },
      "W/p: has 5 entries where 4, or nzmax = 6, are expected"},
-    {"nzmax negative", [](Raw& r) { r.integers[w + "nzmax"] = {-1}; }, "W/nzmax: is -1, but counts something"},
-    {"negative row", [](Raw& r) { r.integers[w + "p"][3] = -1; }, "W/p: entry 3 is -1, outside of 0 to 1"},
-    {"large column", [](Raw& r) { r.integers[w + "i"][1] = 2; }, "W/i: entry 1 is 2, outside of 0 to 1"},
+    {"nzmax negative", [](Raw& r) { r.integers[w + "nzmax"] = {-1}; },
+     "W/nzmax: is -1, but a count cannot be negative"},
+    {"negative row", [](Raw& r) { r.integers[w + "p"][3] = -1; }, "W/p: entry 3 is -1, outside the range 0 to 1"},
+    {"large column", [](Raw& r) { r.integers[w + "i"][1] = 2; }, "W/i: entry 1 is 2, outside the range 0 to 1"},
     {"few columns", [](Raw& r) { r.integers[w + "i"].pop_back(); }, "W/i: has 4 entries where 5 are expected"},
     {"few values", [](Raw& r) { r.reals[w + "x"].pop_back(); }, "W/x: has 4 entries where 5 are expected"},
-    {"no values", [](Raw& r) { r.reals.erase(w + "x"); }, "W/x: there is no such data set"},
+    {"no values", [](Raw& r) { r.reals.erase(w + "x"); }, "W/x: there is no such dataset"},
     {"nan in W", [](Raw& r) { r.reals[w + "x"][2] = std::nan(""); }, "W/x: entry 2 is nan, which is not finite"},
     {"infinite sum", [](Raw& r) { r.reals[w + "x"][3] = r.reals[w + "x"][4] = 1e308; },
      "W/x: has entries whose sum is not finite"},
@@ -115,13 +116,14 @@ const Malformed cases[] = {
      [](Raw& r) {
        compress(r, -2), r.integers[w + "p"] = {0, 2, 1};
      },
-     "W/p: falls from 2 to 1 at entry 2"},
+     "W/p: decreases from 2 to 1 at entry 2"},
     {"negative start", [](Raw& r) { compress(r, -2), r.integers[w + "p"][1] = -1; },
-     "W/p: falls from 0 to -1 at entry 1"},
+     "W/p: decreases from 0 to -1 at entry 1"},
     {"beyond", [](Raw& r) { compress(r, -1), r.integers[w + "p"][2] = 5; }, "W/p: entry 2 is 5, more than nzmax = 4"},
     {"few starts", [](Raw& r) { compress(r, -1), r.integers[w + "p"].pop_back(); },
      "W/p: has 2 entries where 3 are expected"},
-    {"index", [](Raw& r) { compress(r, -1), r.integers[w + "i"][3] = 7; }, "W/i: entry 3 is 7, outside of 0 to 1"},
+    {"index", [](Raw& r) { compress(r, -1), r.integers[w + "i"][3] = 7; },
+     "W/i: entry 3 is 7, outside the range 0 to 1"},
     {"few indices", [](Raw& r) { compress(r, -2), r.integers[w + "i"].pop_back(); },
      "W/i: has 3 entries where 4 are expected"},
     {"indices between",
@@ -142,9 +144,9 @@ const Malformed cases[] = {
      },
      "/fclib_local/W: is not symmetric"},
     // vectors
-    {"no q", [](Raw& r) { r.reals.erase(vectors + "q"); }, "vectors/q: there is no such data set"},
+    {"no q", [](Raw& r) { r.reals.erase(vectors + "q"); }, "vectors/q: there is no such dataset"},
     {"no vectors", [](Raw& r) { r.reals.erase(vectors + "q"), r.reals.erase(vectors + "mu"); },
-     "vectors/q: there is no such data set"},
+     "vectors/q: there is no such dataset"},
     {"short q", [](Raw& r) { r.reals[vectors + "q"] = {1.0}; }, "vectors/q: has 1 entries where 2 are expected"},
     {"infinite q", [](Raw& r) { r.reals[vectors + "q"][1] = -infinity; },
      "vectors/q: entry 1 is -inf, which is not finite"},
@@ -164,15 +166,15 @@ const Malformed cases[] = {
        std::erase_if(r.integers, [](const auto& e) { return e.first.starts_with("/fclib_local/R"); });
        r.reals.erase("/fclib_local/R/x");
      },
-     "/fclib_local/R: there is no such group; V and R come together"},
+     "/fclib_local/R: there is no such group; V and R must both be present"},
     {"no V",
      [](Raw& r) {
        constrain(r);
        std::erase_if(r.integers, [](const auto& e) { return e.first.starts_with("/fclib_local/V"); });
        r.reals.erase("/fclib_local/V/x");
      },
-     "/fclib_local/V: there is no such group; V and R come together"},
-    {"no s", [](Raw& r) { constrain(r), r.reals.erase(vectors + "s"); }, "vectors/s: there is no such data set"},
+     "/fclib_local/V: there is no such group; V and R must both be present"},
+    {"no s", [](Raw& r) { constrain(r), r.reals.erase(vectors + "s"); }, "vectors/s: there is no such dataset"},
     {"long s",
      [](Raw& r) {
        constrain(r), r.reals[vectors + "s"] = {1.0, 2.0};
@@ -205,7 +207,7 @@ const Malformed cases[] = {
      [](Raw& r) {
        r.reals["/solution/r"] = {1.0, 0.0};
      },
-     "/solution/u: there is no such data set"},
+     "/solution/u: there is no such dataset"},
     {"short r",
      [](Raw& r) {
        r.reals["/solution/r"] = {1.0}, r.reals["/solution/u"] = {0.0, 0.0};
@@ -215,10 +217,10 @@ const Malformed cases[] = {
      [](Raw& r) {
        constrain(r), r.reals["/solution/r"] = r.reals["/solution/u"] = {0.0, 0.0};
      },
-     "/solution/l: there is no such data set"},
+     "/solution/l: there is no such dataset"},
     {"no number of guesses", [](Raw& r) { r.groups = {"/guesses"}; }, "/guesses/number_of_guesses: there is no such"},
     {"guesses", [](Raw& r) { r.integers["/guesses/number_of_guesses"] = {1}; },
-     "/guesses/1: there is no such group, of 1 guesses"},
+     "/guesses/1: there is no such group, but number_of_guesses is 1"},
     {"negative guesses", [](Raw& r) { r.integers["/guesses/number_of_guesses"] = {-1}; }, "number_of_guesses: is -1"},
 };
 
@@ -258,7 +260,7 @@ TEST(MalformedFclib, WhatIsNoFileOfThisKind) {
 // --- damage
 // -----------------------------------------------------------------------------------------------------------
 
-/// Reads what may be damaged: an error, or exactly what was written.
+/// Expects that reading a possibly damaged file gives an error or exactly the written data.
 void expect_error_or_same(const TemporaryFile& file, const std::string& bytes, const FclibProblem& original,
                           const std::string& what, Index& errors) {
   std::ofstream(file.path, std::ios::binary | std::ios::trunc) << bytes;
@@ -294,7 +296,7 @@ TEST(MalformedFclib, DamagedSmallFile) {
 }
 
 TEST(MalformedFclib, DamagedFileWithChunks) {
-  FclibProblem problem = example(3, 22, 0);  // 66² values are beyond what lies in headers
+  FclibProblem problem = example(3, 22, 0);  // 66² values do not fit into headers
   fuzz(problem, 997);
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 using namespace test_support;
 
-/// Sanitizers make thousands of curved cells take minutes: there less is assembled.
+/// Under sanitizers thousands of curved cells take minutes, so fewer are assembled.
 #ifdef __SANITIZE_ADDRESS__
 constexpr bool sanitized = true;
 #else
@@ -60,7 +60,7 @@ TEST_P(Assembly, IsExactlySymmetricAndTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-/// Under the sanitizers without those that have many curved cells for few nodes.
+/// All kinds; under the sanitizers without those that have many curved cells for few nodes.
 std::vector<ElementKind> assembled_kinds() {
   std::vector<ElementKind> result = all_element_kinds();
   std::erase_if(result, [](const ElementKind& kind) {
@@ -72,7 +72,7 @@ std::vector<ElementKind> assembled_kinds() {
 INSTANTIATE_TEST_SUITE_P(Elements, Assembly, testing::ValuesIn(assembled_kinds()),
                          [](const auto& info) { return info.param.label(); });
 
-/// Every pair of nodes of a cell is there, and nothing else.
+/// The graph holds exactly the pairs of nodes of the cells.
 TEST(NodeGraph, HoldsTheNodesThatShareACell) {
   const auto test = large_body({CellShape::tetrahedron, 1, 1});
   const NodeGraph graph = node_graph(test->space);
@@ -104,7 +104,7 @@ TEST(EquivalentMass, IsTheSameBitsForAnyNumberOfThreads) {
   set_thread_count(1);
 }
 
-/// One cell turned by more than the others is found, whichever it is, on straight simplices and on other cells.
+/// A cell that rotates more than the others is found in any position, on straight simplices and on other cells.
 TEST(CellRotations, FindsTheCellThatTurnsMost) {
   for (const ElementKind& kind :
        {ElementKind{CellShape::triangle, 1, 1}, ElementKind{CellShape::tetrahedron, 1, 1},
@@ -112,7 +112,7 @@ TEST(CellRotations, FindsTheCellThatTurnsMost) {
     const auto test = large_body(kind);
     const int d = kind.dimension();
     const CellRotations gauge(test->body);
-    // A rotation of the whole by 0.3, which is exact for any size below π.
+    // A rotation of the whole body by 0.3, exact for any angle below π.
     Matrix turn = Matrix::Identity(d, d);
     turn.topLeftCorner(2, 2) << std::cos(0.3), -std::sin(0.3), std::sin(0.3), std::cos(0.3);
     Vector u(test->space.dof_count());
@@ -121,7 +121,7 @@ TEST(CellRotations, FindsTheCellThatTurnsMost) {
       u.segment(node * d, d) = turn * x - x + Vector::Constant(d, 7.0);
     }
     EXPECT_NEAR(gauge.largest(u), 0.3, 1e-11) << kind.label();
-    // One node moved: the cell that turns most is one of its cells.
+    // One node moved: the cell with the largest rotation is one of its cells.
     const std::vector<Index>& numbers = test->space.number;
     const Index node = std::max_element(numbers.begin(), numbers.end()) - numbers.begin();
     u.setZero();
@@ -135,7 +135,7 @@ TEST(CellRotations, FindsTheCellThatTurnsMost) {
   }
 }
 
-/// The angle of a cell of degree 1 from the gradient, by dense algebra.
+/// Angle of a cell of degree 1 from the gradient, by dense algebra.
 double rotation_of_simplex(const Points& nodes, const Vector& u, const Index* cell) {
   const Index d = nodes.rows();
   Matrix edges(d, d), differences(d, d);
@@ -171,7 +171,7 @@ TEST(CellRotations, FindsTheLargestOfAllCells) {
       EXPECT_TRUE(size < 10.0 || wanted > 2.0) << wanted;
       EXPECT_TRUE(size > 1e-9 || wanted < 1e-6) << wanted;
     }
-    // One node at a time, the first and the last ones among them.
+    // One node at a time, including the first and the last ones.
     for (Index node = 0; node < nodes; node += node < 3 || node >= nodes - 4 ? 1 : (nodes - 7) / 5) {
       Vector u = Vector::Zero(nodes * d);
       u[node * d] = 0.01;

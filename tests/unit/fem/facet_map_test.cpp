@@ -6,7 +6,7 @@
 
 #include "support/box_mesh.hpp"
 
-// Places on curved facets, seen along a direction, are found again.
+// Positions on curved facets, projected along a direction, are recovered.
 
 namespace ricochet::test_support {
 namespace {
@@ -32,7 +32,7 @@ TEST(FacetMap, FindsThePlacesThatItGives) {
         map.positions(facet, local, positions);
         ASSERT_TRUE(map.invert(facet, axes, axes.transpose() * positions, found));
         EXPECT_LT((found - local).lpNorm<Eigen::Infinity>(), 1e-13) << name(shape) << degree;
-        // The shape functions of the displacement, which are those of the geometry, have the same places.
+        // The shape functions of the displacement, which are also the geometry's, give the same positions.
         Matrix values;
         map.displacement(facet, local, values);
         const IndexInBlocks place = locate_facet(test->space, facet);

@@ -50,7 +50,7 @@ Tensor changed(const Tensor& strain, int component, double by) {
   return result;
 }
 
-/// Stress is the derivative of the energy, the tangent that of the stress: of every law, in every state.
+/// Stress is the derivative of the energy and the tangent that of the stress, for every law in every state.
 TEST(MaterialLaw, StressAndTangentAreDerivatives) {
   constexpr double h = 1e-6;
   for (const Law& each : laws()) {
@@ -89,7 +89,7 @@ TEST(MaterialLaw, IsLinearElasticityWhereStrainsAreSmall) {
       Tensor stress, wanted;
       law->stress(strain, stress);
       linear.stress(strain, wanted);
-      // The next term of the series, and rounding.
+      // The next term of the series, plus rounding.
       EXPECT_LT((stress - wanted).norm(), (20.0 * size + 1e-14) * wanted.norm()) << each.name;
       EXPECT_NEAR(law->energy(strain), linear.energy(strain), (20.0 * size + 1e-14) * linear.energy(strain))
           << each.name;
@@ -97,7 +97,7 @@ TEST(MaterialLaw, IsLinearElasticityWhereStrainsAreSmall) {
   }
 }
 
-/// The formulas as books have them, with the invariants of C = FᵀF.
+/// The textbook formulas, with the invariants of C = FᵀF.
 TEST(MaterialLaw, HasTheEnergyOfItsInvariants) {
   const Tensor gradient = random_gradient(5, 0.4), f = Tensor::Identity() + gradient, c = f.transpose() * f;
   const double j = f.determinant(), first = c.trace(), second = 0.5 * (first * first - (c * c).trace());
@@ -125,7 +125,7 @@ TEST(MaterialLaw, SeesNoRotation) {
   EXPECT_LT((green_strain(turned) - green_strain(gradient)).norm(), 1e-15);
 }
 
-/// No stress across the plane, and the tangent of what is left.
+/// The stress across the plane vanishes, and the tangent is condensed accordingly.
 TEST(PointLaw, PlaneStressHasNoStressAcrossThePlane) {
   constexpr double h = 1e-6;
   for (const Law& each : laws()) {
@@ -141,12 +141,12 @@ TEST(PointLaw, PlaneStressHasNoStressAcrossThePlane) {
     StressTangent tangent;
     point.tangent(strain, tangent);
     if (!law->is_linear()) continue;
-    // ∂S/∂E in the plane is that of the law of plane stress.
+    // ∂S/∂E in the plane equals the tangent of the plane-stress law.
     const IsotropicElasticity section = *law->constant_tangent(true);
     EXPECT_NEAR(tangent(0, 1), section.lambda, 1e-14);
     EXPECT_NEAR(tangent(0, 0), section.lambda + 2.0 * section.mu, 1e-14);
   }
-  // Differences of the stress with the thickness found anew.
+  // Differences of the stress, with the thickness solved again.
   const auto law = make_material_law("neo-hookean", {{"lambda", 1.3}, {"mu", 0.8}});
   const PointLaw point(*law, true);
   Tensor gradient = Tensor::Zero();
@@ -167,7 +167,7 @@ TEST(PointLaw, PlaneStressHasNoStressAcrossThePlane) {
 TEST(FiniteStrain, RemaindersHaveAllDigits) {
   for (const double x : {1e-12, -1e-6, 0.05, -0.0999, 0.1001, 3.0, -0.9}) {
     const auto exact = static_cast<double>(static_cast<long double>(x) - std::log1p(static_cast<long double>(x)));
-    // Long doubles lose what x has to little.
+    // Cancellation in long doubles leaves 1e-19/|x|.
     const double tolerance = 1e-19 / std::abs(x) + 1e-15 * exact;
     EXPECT_NEAR(logarithm_remainder(x), exact, tolerance + 1e-19 * std::abs(x)) << x;
   }

@@ -8,14 +8,14 @@
 
 #include "support/box_mesh.hpp"
 
-// Sizes and places of groups, against those of boxes, parallelepipeds and discs.
+// Sizes and positions of groups, compared with boxes, parallelepipeds and discs.
 
 namespace ricochet::test_support {
 namespace {
 
 class MeshMeasures : public testing::TestWithParam<CellShape> {};
 
-/// A box under an affine map A: volume det A, side 0 of the area |A e₁ × A e₂|, its normal out of the body.
+/// A box under an affine map A: volume det A, side 0 with area |A e₁ × A e₂| and its normal out of the body.
 TEST_P(MeshMeasures, OfAParallelepiped) {
   const int d = dimension(GetParam());
   Matrix whole(3, 3);
@@ -36,7 +36,7 @@ TEST_P(MeshMeasures, OfAParallelepiped) {
     const Vector lowest = shift + a.cwiseMin(0.0).rowwise().sum(), highest = shift + a.cwiseMax(0.0).rowwise().sum();
     EXPECT_LT((body.lowest.head(d) - lowest).norm(), 1e-13);
     EXPECT_LT((body.highest.head(d) - highest).norm(), 1e-13);
-    // The normal of the side x = 1 is that of the row of A⁻¹, its area det A times the length of that.
+    // The normal of the side x = 1 is parallel to that row of A⁻¹; its area is det A times the length of the row.
     const Vector row = a.inverse().row(0).transpose();
     for (const double side : {0.0, 1.0}) {
       const MeshMeasure facets = measure_group(mesh, mesh.group(side == 0.0 ? "x0" : "x1", d - 1));
@@ -66,7 +66,7 @@ TEST_P(MeshMeasures, HeightsOfCells) {
   ASSERT_EQ(static_cast<Index>(heights.size()), mesh.cell_count());
   for (const double height : heights) {
     if (GetParam() == CellShape::tetrahedron) {
-      // Six to a cube, each of 1/6 of it, and its largest facet of √2/2 (an edge and a diagonal of a side).
+      // Six cells to a cube, each 1/6 of it, with a largest facet of √2/2 (an edge and a diagonal of a side).
       EXPECT_NEAR(height, 3.0 * (1.0 / 6.0) / (std::sqrt(2.0) / 2.0) * 0.25, 1e-14);
     } else {
       EXPECT_NEAR(height, expected, 1e-14);

@@ -5,7 +5,7 @@
 namespace ricochet {
 namespace {
 
-/// Two cells of each body.
+/// Names of bodies of two cells each.
 std::vector<std::string> names(int bodies, std::vector<Group> groups, std::vector<MeshPart> parts = {}) {
   Mesh mesh;
   mesh.groups = std::move(groups);
@@ -24,7 +24,7 @@ TEST(NamesOfBodies, AreGroupsThatNoOtherBodyHasAPartIn) {
   EXPECT_EQ(names(2, {all}), (Names{"body 0", "body 1"}));
   EXPECT_EQ(names(2, {all, left, edge}), (Names{"body \"left\"", "body 1"}));
   EXPECT_EQ(names(2, {left, core, shell}), (Names{"body \"left\"", "body \"core\" and \"shell\""}));
-  // One name of the whole is enough.
+  // One name for the whole body is enough.
   EXPECT_EQ(names(2, {core, {"right", 7, 2, {2, 3}}, mixed}), (Names{"body 0", "body \"right\""}));
 }
 
@@ -33,7 +33,7 @@ TEST(NamesOfBodies, AreThePartsThatHaveOneBody) {
   const Group all{"ball.all", 1, 2, {0, 1}}, core{"ring.core", 2, 2, {2}}, both{"all", 3, 2, {0, 1, 2, 3}};
   const MeshPart ball{"ball", 0, 0, {0, 1}}, ring{"ring", 0, 0, {2, 3}}, pair{"pair", 0, 0, {2, 3, 4, 5}};
   EXPECT_EQ(names(2, {all, core, both}, {ball, ring}), (Names{"body \"ball\"", "body \"ring\""}));
-  // Two bodies in one file are called by its groups.
+  // Two bodies in one file are named after its groups.
   EXPECT_EQ(names(3, {all, {"pair.one", 4, 2, {2, 3}}}, {ball, pair}),
             (Names{"body \"ball\"", "body \"pair.one\"", "body 2"}));
 }

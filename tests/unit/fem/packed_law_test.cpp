@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-/// @file Laws of packs of points, and the functions that they are made of.
+/// @file Laws evaluated on packs of points, and the functions that they use.
 namespace ricochet {
 namespace {
 
@@ -22,8 +22,8 @@ const std::vector<PackedCase>& packed_laws() {
   return all;
 }
 
-/// Green's strains of random gradients, pack after pack; sizes from 1e-12 to 1.5 side by side, so that some have a
-/// tenth of their volume left and some ten times it.
+/// Green's strains of random gradients in successive packs; sizes from 1e-12 to 1.5 side by side, so that some retain a
+/// tenth of their volume and some grow tenfold.
 class RandomStrains {
  public:
   RandomStrains(Index count, bool in_plane) : packs_{nullptr, count, pack_width(), in_plane} {
@@ -57,7 +57,7 @@ class RandomStrains {
   std::vector<Tensor> strains_;
 };
 
-/// A law that has no loops over packs of its own: what MaterialLaw has goes from point to point.
+/// A law without loops over packs: the default of MaterialLaw evaluates point by point.
 class OnePointAfterAnother final : public MaterialLaw {
  public:
   explicit OnePointAfterAnother(const MaterialLaw& law) : law_(law) {}
@@ -71,8 +71,8 @@ class OnePointAfterAnother final : public MaterialLaw {
   const MaterialLaw& law_;
 };
 
-/// Sums are rounded in another order in packs: a few units in the last place of the strain's own stress, which a
-/// determinant near zero has larger by its inverse.
+/// Packs round sums in another order: a few units in the last digit of the strain's own stress, which a determinant
+/// near zero enlarges by its inverse.
 TEST(PackedLaw, HasOfPacksWhatItHasOfEachPoint) {
   constexpr Index count = 100;
   for (const bool in_plane : {false, true}) {
@@ -105,7 +105,7 @@ TEST(PackedLaw, HasOfPacksWhatItHasOfEachPoint) {
   }
 }
 
-/// In long doubles, over all volumes; where x is small its square has the digits.
+/// In long doubles, over all volumes; for small x its square holds the digits.
 TEST(PackedLaw, FunctionsOfPacksHaveAllDigits) {
   using Number = Pack<4>;
   const double values[] = {1e-12, -1e-12, 1e-7,  -1e-5, 0.05, -0.05,  0.0999, 0.1001, -0.1001, 0.3,   -0.3,        0.7,
@@ -123,7 +123,7 @@ TEST(PackedLaw, FunctionsOfPacksHaveAllDigits) {
   }
 }
 
-/// No energy is made of a volume that is gone.
+/// A negative volume has no energy.
 TEST(PackedLaw, IsNotFiniteWhereTheVolumeIsNegative) {
   std::vector<double> strains(static_cast<std::size_t>(6 * pack_width()), 0.0),
       energies(static_cast<std::size_t>(pack_width()));

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <random>
 
-/// @file The rule of a branch that relaxes over one step, h = 1.
+/// @file The rule of a viscoelastic branch over one step, h = 1.
 namespace ricochet {
 namespace {
 
@@ -48,7 +48,7 @@ TEST(Relaxation, TheWorkOfTheMeanIsStoredAndDissipated) {
           work, after.squaredNorm() - before.squaredNorm() + dissipated + kept * far.cwiseProduct(after - before).sum(),
           1e-13 * (before.squaredNorm() + far.squaredNorm()))
           << x;
-      // At the start of the path.
+      // The strain at the start of the path.
       const Strain first = 2.0 * middle - branch.end;
       EXPECT_LT((rule.start_stress(first, branch.internal, after) - (2.0 * mean - after)).norm(), 1e-13) << x;
     }
@@ -85,7 +85,7 @@ TEST(Relaxation, AStrainThatStaysRelaxesExponentially) {
   }
 }
 
-/// Against many short steps of the midpoint rule, whose error is seen to be of the second order.
+/// Compared with many short steps of the midpoint rule, whose error is of second order.
 TEST(Relaxation, IsExactForAStrainThatGoesLinearly) {
   const Branch branch;
   for (const double x : {0.3, 3.0}) {
@@ -116,7 +116,7 @@ TEST(Relaxation, ItsLimitsAreASpringAndNothing) {
   EXPECT_LT(gone.stiffness(), 1e-12);
 }
 
-/// ∂q̄/∂Ē with E₀ given.
+/// ∂q̄/∂Ē at fixed E₀.
 TEST(Relaxation, TheStiffnessIsThatOfTheMean) {
   const Branch branch;
   for (const double x : ratios()) {

@@ -31,7 +31,7 @@ Snapshot example() {
   return snapshot;
 }
 
-/// The checksum at the end put right: what a damaged file would have to look like to get past it.
+/// Corrects the checksum at the end, so that damage is not detected by it.
 std::string with_checksum(std::string text) {
   text.resize(text.size() - 4);
   const std::uint32_t sum = Checksum().add(text.data(), text.size()).value();
@@ -75,7 +75,7 @@ TEST(Checkpoint, EveryBitThatChangesIsSeen) {
   EXPECT_NE(refusal(text + "x"), "");
 }
 
-/// With a right checksum: an absurd count must not be tried.
+/// An absurd count is not tried, even if the checksum is right.
 TEST(Checkpoint, AbsurdSizesAreRefused) {
   const std::string text = encode_snapshot(example());
   std::mt19937_64 random(3);
@@ -119,14 +119,14 @@ TEST(Checkpoint, APipeInItsPlaceIsPassedOver) {
   Snapshot snapshot;
   snapshot.save("step", std::int64_t{7});
   write_checkpoint(folder, 7, snapshot);
-  std::filesystem::remove(folder + "/checkpoint-000000008.ckpt");  // of a run before
+  std::filesystem::remove(folder + "/checkpoint-000000008.ckpt");  // left by an earlier run
   ASSERT_EQ(mkfifo((folder + "/checkpoint-000000008.ckpt").c_str(), 0600), 0);
   log::set_level(log::Level::off);
   std::vector<std::string> warnings;
   const log::CollectWarnings collect(warnings);
   EXPECT_EQ(newest_checkpoint(folder)->integer("step"), 7);
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_NE(warnings.front().find("it is no regular file"), std::string::npos);
+  EXPECT_NE(warnings.front().find("it is not a regular file"), std::string::npos);
 }
 
 TEST(Snapshot, SaysWhatDoesNotFit) {

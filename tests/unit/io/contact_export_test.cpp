@@ -44,12 +44,12 @@ TEST(ContactExport, StepsThatAreNone) {
       {"5:3", "\"5:3\" ends before it begins"},
       {"0:3", "names step 0, the initial state"},
       {"-1", "names a negative step"},
-      {"99999999999999999999", "is beyond all steps"},
+      {"99999999999999999999", "is too large for a step number"},
   };
   for (const auto& [text, expected] : cases) expect_error([&] { (void)parse_steps(text); }, expected, ErrorKind::usage);
 }
 
-/// Two points without friction, of which one is eligible.
+/// Two points without friction, one of them eligible.
 ContactProblem problem() {
   ContactProblem result(1, Matrix::Identity(2, 2) * 4.0, Vector::Constant(2, -8.0), 0.0);
   result.eligible = {0, 1};
@@ -112,10 +112,10 @@ TEST(ContactExport, AFileInThePlaceOfTheDirectory) {
       [&] {
         ContactExport({{1, 1}}, file.path, {});
       },
-      file.path + ": cannot make this directory", ErrorKind::file_access);
+      file.path + ": cannot create this directory", ErrorKind::file_access);
 }
 
-/// A contact problem that was not solved can be read and solved later; where FCLib cannot state it, that is said.
+/// An unsolved contact problem can be read and solved later; a problem that FCLib cannot state is reported.
 TEST(FailureBundle, HoldsTheStateAndTheProblem) {
   const TemporaryDirectory directory;
   fs::create_directories(directory.path);
@@ -147,7 +147,7 @@ TEST(FailureBundle, HoldsTheStateAndTheProblem) {
   EXPECT_NE(other.write(8, snapshot, "").find("the contact problem could not be written"), std::string::npos);
 }
 
-/// A step may be solved at a second attempt: nothing of the first is left, and a later failure does not name it.
+/// If a second attempt solves the step, no file of the first is left, and a later failure does not name one.
 TEST(FailureBundle, ForgetsTheProblemOfAStepThatWasSolved) {
   const TemporaryDirectory directory;
   fs::create_directories(directory.path);

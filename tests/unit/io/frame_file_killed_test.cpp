@@ -11,13 +11,13 @@
 #include "ricochet/io/frame_file.hpp"
 #include "support/case_run.hpp"
 
-// A run may be killed between any two writes to a file of VTKHDF: every state of the file between them can be read, and
-// holds all steps that it counts. HDF5 restructures some of its indices in place when they grow (those of the format
-// before 1.10 at step 64), and such a file cannot be read until it is complete.
+// A run may be killed between any two writes to a VTKHDF file: every state of the file between them can be read, and
+// holds all steps that it counts. HDF5 restructures some of its indices in place when they grow (in the format before
+// 1.10 at step 64), and such a file cannot be read until it is complete.
 
 namespace {
 
-/// Called before something is written to the file of this inode, if it is not empty.
+/// Called before each write to the file of this inode, if it is not empty.
 std::function<void()> before_write;
 ino_t watched = 0;
 
@@ -28,7 +28,7 @@ void announce(int file) {
 
 }  // namespace
 
-// These are found before the system's own: HDF5 and the standard library call them.
+// Linked in place of the system's functions: HDF5 and the standard library call them.
 extern "C" ssize_t pwrite(int file, const void* data, std::size_t size, off_t offset) {
   announce(file);
   return syscall(SYS_pwrite64, file, data, size, offset);
@@ -63,7 +63,7 @@ void append(FrameFile& file) {
   file.append({step.reals.data(), step.integers.data()}, 0.1 * static_cast<double>(file.frames()));
 }
 
-/// The rows of one step, or fewer if they cannot be read.
+/// Rows of one step, or fewer if they cannot be read.
 template <class Number>
 std::vector<Number> read_step(hid_t file, const DatasetLayout& set, hsize_t step, hid_t type) {
   std::vector<Number> values(static_cast<std::size_t>(set.rows * std::max<Index>(set.columns, 1)));
@@ -76,7 +76,7 @@ std::vector<Number> read_step(hid_t file, const DatasetLayout& set, hsize_t step
   return good ? values : std::vector<Number>();
 }
 
-/// Number of steps that the file counts; -1 if one of them is not there.
+/// Number of steps that the file counts; -1 if one of them is missing.
 long whole_steps(const std::string& path) {
   const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file < 0) return -1;
@@ -93,7 +93,7 @@ long whole_steps(const std::string& path) {
   return count;
 }
 
-/// The states of a file between the writes of something that is done to it.
+/// Checks the states of a file between the writes of an operation on it.
 void expect_whole_steps_between_writes(const std::string& path, long lowest, long highest,
                                        const std::function<void()>& work) {
   std::vector<std::string> states;
@@ -126,7 +126,7 @@ TEST_P(KilledFrameFiles, HoldAllStepsThatTheyCount) {
   while (file.frames() < count) {
     const long k = file.frames();
     if (k == saved) file.save(snapshot, "results");
-    // Indices grow at some steps: these by the way they are laid out, older ones at step 64.
+    // Indices grow at some steps: these at steps fixed by their layout, older ones at step 64.
     const bool grows = k == 0 || k == 4 || k == 20 || k == 36 || k >= saved;
     if (grows)
       expect_whole_steps_between_writes(path, k, k + 1, [&] { append(file); });

@@ -10,13 +10,13 @@
 #include "ricochet/base/error.hpp"
 #include "support/case_run.hpp"
 
-// Frames that a run which was interrupted anywhere goes on with: the bytes are those of a run that was not.
+// Frames continued by a run that was interrupted anywhere: their bytes equal those of an uninterrupted run.
 
 namespace ricochet {
 namespace {
 
-/// Number of nodes: enough that displacements are compressed in single precision, too, and few enough that status
-/// numbers are not.
+/// Number of nodes: large enough that displacements are compressed in single precision too, and small enough that
+/// status numbers are not.
 constexpr Index rows = 1500;
 
 std::string content(const std::string& path) {
@@ -45,7 +45,7 @@ struct Writer {
     for (DatasetLayout& each : layout) each.name = each.name.substr(each.name.find('/') + 1);
   }
 
-  /// Numbers of a frame: some of them compress well, how well depends on the frame.
+  /// Numbers of a frame: some of them compress well, to a degree that depends on the frame.
   static std::vector<double> reals(long frame) {
     std::vector<double> values(3 * rows, static_cast<double>(frame));
     std::mt19937 random(static_cast<unsigned>(frame));
@@ -92,7 +92,7 @@ TEST_P(FrameFiles, GoOnWithTheSameBytesWhereverTheyWereLeft) {
   }
 }
 
-/// Everything but the numbers of the first frames may be damaged: torn index, lost end, garbage behind.
+/// Anything but the numbers of the first frames may be damaged: torn index, lost end, garbage at the end.
 TEST_P(FrameFiles, GoOnFromAFileThatWasTorn) {
   constexpr long count = 12, saved = 8;
   FrameFile file = writer.start();
@@ -106,7 +106,7 @@ TEST_P(FrameFiles, GoOnFromAFileThatWasTorn) {
     Writer::append(file);
   }
   const std::string end = content(writer.path);
-  // Bytes that later frames changed in what was there: they may be the old or the new ones, or worse.
+  // Existing bytes that later frames changed: they may be the old or the new ones, or corrupted.
   for (int trial = 0; trial < 50; ++trial) {
     std::mt19937 random(static_cast<unsigned>(trial));
     std::string torn = end.substr(0, at_checkpoint.size() + random() % (end.size() - at_checkpoint.size()));

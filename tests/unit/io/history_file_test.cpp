@@ -23,11 +23,12 @@ std::string problem_of(const std::string& text) {
   return "none";
 }
 
-/// A file whose first row is lost has numbers where the names of columns should be.
+/// A file without its first row has numbers in the row of column names.
 TEST(HistoryFile, TakesNoNumbersForNames) {
   EXPECT_EQ(problem_of("step,time,gap\n0,0,nan\n1,0.5,-1e-3\n"), "none");
   for (const std::string row : {"0,0,0.1", "1,0.5,nan", "step,time,-0.1"})
-    EXPECT_EQ(problem_of(row + "\n1,0.5,0.1\n").find("history.csv:1: the first row has the names of the columns"), 0U)
+    EXPECT_EQ(problem_of(row + "\n1,0.5,0.1\n").find("history.csv:1: the first row must hold the names of the columns"),
+              0U)
         << row;
   EXPECT_EQ(problem_of("step,time\n0,0.5m\n").find("history.csv:2: column 2 (\"time\") is not a number"), 0U);
 }

@@ -59,10 +59,10 @@ TEST_F(LineChecksumsTest, NamesTheLinesThatHaveChanged) {
       write(other);
       const std::string message = problem(snapshot);
       std::smatch found;
-      if (std::regex_search(message, found, std::regex(": line ([0-9]+) is"))) {
+      if (std::regex_search(message, found, std::regex(": line ([0-9]+) differs"))) {
         EXPECT_EQ(std::stoi(found[1]), changed + 1);
       } else {
-        ASSERT_TRUE(std::regex_search(message, found, std::regex("lines ([0-9]+) to ([0-9]+) is"))) << message;
+        ASSERT_TRUE(std::regex_search(message, found, std::regex("lines ([0-9]+) to ([0-9]+) differs"))) << message;
         EXPECT_LE(std::stoi(found[1]), changed + 1);
         EXPECT_GE(std::stoi(found[2]), changed + 1);
         EXPECT_LE(std::stoi(found[2]) - std::stoi(found[1]), count / 128) << message;
@@ -96,7 +96,7 @@ TEST_F(LineChecksumsTest, RefuseWhatTheyHaveNotSaved) {
   checksums.save(snapshot, "rows", "rows.csv");
   snapshot.save("rows.lines.pieces", std::int64_t{11});
   EXPECT_THROW(LineChecksums(snapshot, "rows"), Error);
-  // Blocks of less than nothing.
+  // Blocks of negative length.
   checksums.save(snapshot, "rows", "rows.csv");
   Snapshot::Integers lengths = snapshot.integers("rows.lines.lengths");
   lengths.front() = -1;

@@ -30,7 +30,7 @@ TEST_F(SummaryTest, ReadsHowStepsWereSolvedAndWritten) {
   summary.processor_seconds = 1.5;
   summary.peak_memory = 2.0e9;
   summary.solver = "iterative";
-  summary.solver_reason = "the case asks for it";
+  summary.solver_reason = "requested by the case";
   const RunSummary back = read_back(summary);
   EXPECT_EQ(back.history_every, summary.history_every);
   EXPECT_EQ(back.processor_seconds, summary.processor_seconds);
@@ -51,8 +51,8 @@ TEST_F(SummaryTest, KnowsTheInstantsOfColumns) {
   EXPECT_EQ(summary.delay_of("tip.displacement_x"), 0.0);
 }
 
-/// A run that overflows between two rows of the history is stopped at the next row; what was found until then may be
-/// infinite or no number, which JSON has no numbers for.
+/// A run that overflows between two rows of the history stops at the next row; its values may be infinite or NaN, for
+/// which JSON has no numbers.
 TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   RunSummary summary;
   summary.penetration.checked = true;
@@ -258,7 +258,7 @@ TEST_F(SummaryTest, TellsWhatTheMethodDidToTheEnergy) {
   EXPECT_EQ(written("energy_budget.at_end.loads"), 0.0);
 }
 
-/// By the columns that they have: the largest energy is 8.
+/// The columns give the estimate: the largest energy is 8.
 TEST_F(SummaryTest, EstimatesTheMethodsEnergyOfOlderResults) {
   const RunSummary back = read_back(summary_of_works());
   EXPECT_FALSE(back.method_energy.has_value());
@@ -266,7 +266,7 @@ TEST_F(SummaryTest, EstimatesTheMethodsEnergyOfOlderResults) {
   EXPECT_EQ(back.loss_by_method(), 0.25);
   EXPECT_EQ(back.creation_by_method(), 0.0625);
   EXPECT_EQ(RunSummary().loss_by_method(), 0.0) << "no energy";
-  // Before these entries: as if they were not there.
+  // Older results without these entries read as if they were absent.
   std::string text = to_json(summary_of_works());
   for (const std::string entry : {"  \"energy_budget\": null,\n", "  \"reactions\": null,\n"}) {
     ASSERT_NE(text.find(entry), std::string::npos) << text;
@@ -337,7 +337,7 @@ TEST_F(SummaryTest, ReadsWhatBecameOfExpectations) {
   EXPECT_EQ(summary_value(text, "expectations.1.maximum"), 3.0);
 }
 
-/// Entries of results of before names and numbers were told.
+/// Results from before names and numbers were recorded.
 TEST_F(SummaryTest, ReadsOlderExpectations) {
   RunSummary summary;
   summary.expectations = {{.quantity = "summary.steps", .value = 3.0, .wanted = "≤ 3"}};

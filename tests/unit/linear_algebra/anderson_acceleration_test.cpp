@@ -18,7 +18,7 @@ class ExpandingMap : public testing::Test {
   Vector slopes_, offset_;
 };
 
-/// As GMRES it takes a step per eigenvalue, where plain rounds go away.
+/// Like GMRES it needs a step per eigenvalue, while plain iterations diverge.
 TEST_F(ExpandingMap, IsSolvedInAsManyRoundsAsItHasEigenvalues) {
   AndersonAcceleration acceleration(12);
   Vector x = Vector::Zero(6), plain = x;
@@ -30,7 +30,7 @@ TEST_F(ExpandingMap, IsSolvedInAsManyRoundsAsItHasEigenvalues) {
   EXPECT_GT(residual(plain), 1e3);
 }
 
-/// Beyond its depth it forgets, and goes on.
+/// Beyond its depth it discards iterates, and continues.
 TEST_F(ExpandingMap, IsSolvedWithLessMemoryAlso) {
   AndersonAcceleration acceleration(4);
   Vector x = Vector::Zero(6);
@@ -38,7 +38,7 @@ TEST_F(ExpandingMap, IsSolvedWithLessMemoryAlso) {
   EXPECT_LE(residual(x), 1e-9);
 }
 
-/// A point that is solved is where it stays: changes that are rounding do not move it.
+/// At the solution the iterate stays: changes of rounding size do not move it.
 TEST_F(ExpandingMap, StaysWhereItIsSolved) {
   AndersonAcceleration acceleration(12);
   Vector x = offset_.cwiseQuotient(Vector::Ones(6) - slopes_);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 
-/// Columns of every length near the widths of registers, one to three of them, with room between them.
+/// Columns of all lengths near the widths of registers, one to three of them, with gaps between them.
 template <typename Number, typename Test>
 void for_columns(const Test& test) {
   for (Index size = 0; size <= 70; ++size) {

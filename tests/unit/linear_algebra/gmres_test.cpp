@@ -17,7 +17,7 @@ Matrix near_identity(Index size, std::mt19937& random) {
   return matrix;
 }
 
-/// The preconditioner is exact but for k columns: k + 1 iterations are enough.
+/// The preconditioner is exact except for k columns: k + 1 iterations are enough.
 TEST(Gmres, NeedsAsManyIterationsAsThereAreDifferences) {
   std::mt19937 random(4);
   const Index size = 60;
@@ -35,7 +35,7 @@ TEST(Gmres, NeedsAsManyIterationsAsThereAreDifferences) {
   EXPECT_LE((matrix * x - right).norm(), 1e-11 * right.norm());
 }
 
-/// The residual that it reports is the one of the solution that it returns.
+/// The reported residual belongs to the returned solution.
 TEST(Gmres, KnowsItsResidual) {
   std::mt19937 random(5);
   const Index size = 40;
@@ -54,7 +54,7 @@ TEST(Gmres, KnowsItsResidual) {
   EXPECT_EQ(x, Vector::Zero(size));
 }
 
-/// Six digits, also where entries decay below the range of single precision, and without losing time there.
+/// Six digits, even where entries decay below the range of single precision, and without loss of speed.
 TEST(SingleLu, SolvesToSixDigits) {
   std::mt19937 random(6);
   const Index size = 100;

@@ -9,7 +9,7 @@
 namespace ricochet {
 namespace {
 
-/// Rings of 1 to 7 nodes, numbered at random: the components are the rings, in the order of their smallest nodes.
+/// Rings of 1 to 7 nodes, numbered at random: the components are the rings, ordered by their smallest nodes.
 TEST(GraphComponents, AreTheRingsThatWerePutIn) {
   constexpr Index rings = 7, nodes = rings * (rings + 1) / 2;
   std::mt19937 random(3);

@@ -48,8 +48,8 @@ TEST(LargestEigenvalue, ScalesByPowersOfTwoToTheBit) {
   }
 }
 
-/// An eigenvalue that stands out is found from a random guess, one that has moved from its last vector, and no value is
-/// above the spectrum. Products with errors leave theirs.
+/// An isolated eigenvalue is found from a random guess, a shifted one from its last vector, and no value exceeds the
+/// spectrum. Inexact products leave their errors.
 TEST(LargestEigenvalue, IsFollowedFromAGuess) {
   const Index n = 2000;
   Vector spectrum = Vector::LinSpaced(n, 0.0, 7.0);
@@ -74,7 +74,7 @@ TEST(LargestEigenvalue, IsFollowedFromAGuess) {
   EXPECT_NEAR(improve(guess, 1e-6), 10.3, 1e-4);
   spectrum *= 1e-12;  // of any size
   EXPECT_NEAR(improve(guess, 0.0), 10.3e-12, 1e-16);
-  Vector one = Vector::Unit(n, 17);  // an eigenvector is an invariant space
+  Vector one = Vector::Unit(n, 17);  // an eigenvector spans an invariant space
   EXPECT_NEAR(improve(one, 0.0), 10.3e-12, 1e-24);
 }
 

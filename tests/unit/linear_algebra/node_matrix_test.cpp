@@ -20,7 +20,7 @@ using test_support::make_box_mesh;
 using test_support::make_meshed_body;
 using test_support::MeshedBody;
 
-/// Large enough for several parts.
+/// A body large enough for several parts.
 std::unique_ptr<MeshedBody> body_of(int d) {
   return make_meshed_body(make_box_mesh(d == 2 ? BoxMesh{CellShape::triangle, {70, 61}, 1, 0.15, {}}
                                                : BoxMesh{CellShape::tetrahedron, {17, 16, 15}, 1, 0.15, {}}),
@@ -73,7 +73,7 @@ TEST(NodeMatrix, MultipliesAsTheWholeMatrixDoes) {
   }
 }
 
-/// Patterns of which none contains another, blocks and scalars: sums equal those of sparse matrices to the bit.
+/// Patterns none of which contains another, blocks and scalars: sums equal those of sparse matrices to the bit.
 TEST(NodeMatrix, AddsUp) {
   for (const int d : {2, 3}) {
     const auto test = body_of(d);
@@ -188,7 +188,7 @@ TEST(NodeMatrix, ScalesByPowersOfTwoToTheBit) {
   EXPECT_EQ(std::ldexp(1.0, 4) * matrix.quadratic_form(x), scaled.quadratic_form(std::ldexp(1.0, -33) * x));
 }
 
-/// Matrices that are not of the form m ⊗ I, although they begin as it, or whose blocks are not full.
+/// Matrices that are not of the form m ⊗ I although they begin so, or whose blocks are not full.
 TEST(NodeMatrix, TakesAnySymmetricPattern) {
   const auto test = body_of(2);
   const Vector x = Vector::Random(test->space.dof_count());
@@ -224,7 +224,7 @@ TEST(NodeMatrix, TakesAnySymmetricPattern) {
     EXPECT_EQ(x, y);
   }
   {
-    // Blocks on the diagonal only, which are full or not.
+    // Diagonal blocks only, full or not.
     SparseMatrix blocks(mass.rows(), mass.cols());
     for (Index i = 0; i < mass.rows(); ++i) blocks.insert(i, i) = 2.0 + static_cast<double>(i % 2);
     EXPECT_TRUE(NodeMatrix(blocks, 2).is_diagonal());

@@ -32,7 +32,7 @@ void expect_factor(const SparseMatrix& matrix, const std::string& what) {
   EXPECT_LE((matrix * x - right).norm(), 1e-13 * right.norm()) << what;
 }
 
-/// One supernode, of every width near those of blocks, heads and panels.
+/// One supernode, of every width near the widths of blocks, heads and panels.
 TEST(NumericFactorization, OfDenseMatricesOfEverySize) {
   std::mt19937 random(1);
   std::vector<Index> sizes;
@@ -45,7 +45,7 @@ TEST(NumericFactorization, OfDenseMatricesOfEverySize) {
   }
 }
 
-/// Supernodes of many shapes, some of which follow one another in ways that grids do not have.
+/// Supernodes of many shapes, some in sequences that grids do not produce.
 TEST(NumericFactorization, OfRandomPatterns) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     std::mt19937 random(seed);
@@ -54,7 +54,7 @@ TEST(NumericFactorization, OfRandomPatterns) {
     std::vector<Eigen::Triplet<double>> entries;
     Vector diagonal = Vector::Constant(size, 0.5);
     for (int k = 0; k < couplings; ++k) {
-      // Cliques of nodes, as elements couple them.
+      // Cliques of nodes, as coupled by elements.
       const int width = 2 + static_cast<int>(random() % 6);
       std::vector<int> nodes;
       for (int i = 0; i < width; ++i) nodes.push_back(static_cast<int>(random() % static_cast<unsigned>(size)));
@@ -74,7 +74,7 @@ TEST(NumericFactorization, OfRandomPatterns) {
   }
 }
 
-/// Large enough for subtrees that are tasks, panels above them that are divided, and supernodes of several panels.
+/// A matrix large enough for subtrees as tasks, divided panels above them, and supernodes of several panels.
 class DividedFactorization : public testing::Test {
  protected:
   ~DividedFactorization() override { set_thread_count(1); }
@@ -124,7 +124,7 @@ TEST_F(DividedFactorization, IsMadeAgainWithTheBitsOfANewOne) {
   }
 }
 
-/// In the triangle of a panel, below it, and in subtrees: whatever entry does not fit is noticed.
+/// A misfit entry is detected in the triangle of a panel, below it, and in subtrees.
 TEST_F(DividedFactorization, RefusesAMatrixOfAnotherPattern) {
   SparseCholesky factor(matrix_);
   Vector expected, x;
@@ -159,7 +159,7 @@ TEST_F(DividedFactorization, MayBeAnalysedAnew) {
   EXPECT_TRUE(x == expected);
 }
 
-/// Whoever finds it first: the unknown is the one at which one thread would stop.
+/// Whichever thread finds it first, the reported unknown is the one at which a single thread would stop.
 TEST_F(DividedFactorization, StopsAtTheSameUnknownForAnyNumberOfThreads) {
   const SparseCholesky order(matrix_);
   const Index size = matrix_.cols();

@@ -13,7 +13,7 @@ Vector solve_afresh(const Matrix& w, const std::vector<Index>& indices, const Ve
   return Matrix(w(indices, indices)).llt().solve(right);
 }
 
-/// A walk through sets of indices: a few come and go at every step, and now and then many.
+/// A walk through sets of indices: a few enter and leave at every step, and now and then many.
 TEST(PrincipalFactor, FollowsItsIndices) {
   std::mt19937 random(1);
   const Index size = 80;

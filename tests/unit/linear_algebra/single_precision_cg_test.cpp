@@ -14,7 +14,7 @@
 namespace ricochet {
 namespace single_gradients_test {
 
-/// An operator αM + K of a thrown body, with rows that nobody solves for.
+/// An operator αM + K of a thrown body, with rows that are not solved for.
 struct Problem {
   SparseMatrix matrix;
   int d;
@@ -63,7 +63,7 @@ TEST(SinglePrecisionCg, ReachDoublePrecisionInRounds) {
       const ConjugateGradients::Result result = single.solve(residual, 1e-4, 5000, x);
       EXPECT_TRUE(result.converged);
       residual = problem.force - masked_product(problem, x);
-      // What it says is in the same norm, and true.
+      // The reported residual is in the same norm, and correct.
       EXPECT_LE(result.residual, 1.001e-4 * norm);
       EXPECT_LT(gradients.norm(*blocks, residual), 2e-4 * norm);
     }
@@ -75,7 +75,7 @@ TEST(SinglePrecisionCg, ReachDoublePrecisionInRounds) {
   }
 }
 
-/// As many iterations as in double precision, nearly.
+/// Nearly as many iterations as in double precision.
 TEST(SinglePrecisionCg, TakeTheIterationsOfDiagonalBlocks) {
   for (const Problem& problem : problems()) {
     const NodeMatrix matrix(problem.matrix, problem.d);
@@ -104,7 +104,7 @@ TEST(SinglePrecisionCg, AreTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one, three);
 }
 
-/// Numbers near the ends of what single precision has: the scaled matrix and residual do not know units.
+/// Numbers near the limits of single precision: the scaled matrix and residual are independent of units.
 TEST(SinglePrecisionCg, DoNotKnowUnits) {
   const Problem problem = problems().front();
   const NodeMatrix matrix(problem.matrix, problem.d);

@@ -13,8 +13,8 @@ namespace {
 using test_support::random_vector;
 using test_support::uniform;
 
-/// A sparse symmetric positive definite matrix: a weighted graph's Laplacian (a ring and random chords) and a small
-/// diagonal, badly scaled when asked.
+/// A sparse symmetric positive definite matrix: the Laplacian of a weighted graph (a ring and random chords) plus a
+/// small diagonal, badly scaled on request.
 SparseMatrix random_matrix(Index size, unsigned seed, double spread = 1.0) {
   std::mt19937 random(seed);
   Matrix dense = Matrix::Zero(size, size);
@@ -116,7 +116,7 @@ TEST(SparseCholesky, SeesThatAMatrixIsNotPositiveDefinite) {
 }
 
 TEST(SparseCholesky, NamesTheUnknownAtWhichItStops) {
-  // A diagonal matrix: only one pivot can fail.
+  // A diagonal matrix, so that only one pivot can fail.
   for (const Index unknown : {Index{0}, Index{4}, Index{9}}) {
     for (const double bad : {0.0, -3.0}) {
       SparseMatrix diagonal(10, 10);

@@ -21,7 +21,7 @@ using test_support::grid_matrix;
 using test_support::random_vector;
 using test_support::uniform;
 
-/// A supernode's numbers in the order that the layout promises.
+/// Numbers of a supernode in the order of the layout.
 std::vector<double> stream_of(const Matrix& factor) {
   const Index columns = factor.cols(), rows = factor.rows();
   std::vector<double> stream;
@@ -43,7 +43,7 @@ std::vector<double> stream_of(const Matrix& factor) {
   return stream;
 }
 
-/// A lower triangular supernode of every shape near the widths of blocks and panels, against plain loops.
+/// A lower triangular supernode of every shape near the widths of blocks and panels, compared with plain loops.
 TEST(SupernodalKernels, SolveWithEveryShape) {
   for (Index columns = 1; columns <= 19; ++columns) {
     for (Index below = 0; below <= 19; ++below) {
@@ -93,7 +93,7 @@ TEST(SupernodalKernels, SolveWithEveryShape) {
   }
 }
 
-/// One that threads share, against the same by one thread, near the widths of strips and parts.
+/// A supernode shared by threads, compared with one thread, near the widths of strips and parts.
 TEST(SupernodalKernels, AreSharedByThreads) {
   for (const Index columns : {32, 39, 40, 127, 128, 129, 135, 136, 137, 264}) {
     for (const Index below : {0, 1, 2, 3, 7, 8, 62, 65, 333}) {
@@ -125,7 +125,7 @@ TEST(SupernodalKernels, AreSharedByThreads) {
   }
 }
 
-/// Large enough to be divided into subtrees.
+/// A matrix large enough to be divided into subtrees.
 class LargeFactor : public testing::Test {
  protected:
   ~LargeFactor() override { set_thread_count(1); }

@@ -5,7 +5,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/mass/mass_conditions.hpp"
 
-/// @file Small matrices whose masses are known by hand.
+/// @file Small matrices whose masses are computed by hand.
 namespace ricochet {
 namespace {
 
@@ -26,7 +26,7 @@ TEST(LumpedMass, IsTheSumOfEachRow) {
   EXPECT_LE((lumped_diagonal(sparse(bar())) - Vector::Constant(2, 0.5)).cwiseAbs().maxCoeff(), 1e-16);
 }
 
-/// Quadratic triangles have corners without a positive sum.
+/// At corners of quadratic triangles the row sum is not positive.
 TEST(LumpedMass, IsTheScaledDiagonalWhereASumIsNotPositive) {
   const Matrix mass = (Matrix(2, 2) << 1.0, -1.0, -1.0, 3.0).finished();
   const Vector lumped = lumped_diagonal(sparse(mass));
@@ -41,11 +41,11 @@ TEST(PositiveDefinite, IsAskedOfTheOtherNodes) {
   EXPECT_TRUE(is_positive_definite(sparse(mass), {2}));
   mass(0, 1) = mass(1, 0) = 0.5;
   EXPECT_FALSE(is_positive_definite(sparse(mass), {2}));
-  // Whatever the units.
+  // The units have no effect.
   EXPECT_TRUE(is_positive_definite(sparse(1e-30 * bar()), {}));
 }
 
-/// The mass of a bar's free node: all of it cannot be there, and the refusal says where the nodes are.
+/// A bar with one free node: it cannot carry the whole mass, and the refusal states the positions of the nodes.
 TEST(Masses, AreRefusedWhereOneNodeIsLeft) {
   const SparseMatrix mass = sparse(bar());
   const Points nodes = points(2, {0.0, 0.0, 1.0, 0.0});
@@ -62,7 +62,7 @@ TEST(Masses, AreRefusedWhereOneNodeIsLeft) {
       ADD_FAILURE() << name << " was built";
     } catch (const Error& problem) {
       const std::string message = problem.what();
-      if (message.find("needs the masses of single cells") != std::string::npos) continue;
+      if (message.find("needs the mass matrices of single cells") != std::string::npos) continue;
       EXPECT_NE(message.find("(1, 0)"), std::string::npos) << message;
       ++refused;
     }
@@ -92,7 +92,7 @@ TEST(Degeneracy, IsSaidInWords) {
   EXPECT_EQ(degeneracy(nodes, {0, 1, 2, 3}, {0, 1, 3}), "in one plane") << "with all of the body";
 }
 
-/// A body of 1 × 1000 is as good as a square.
+/// A body of 1 × 1000 is as well conditioned as a square.
 TEST(SpanSpace, IsAskedInTheBodysOwnFrame) {
   for (const double height : {1.0, 1e-3}) {
     const Points nodes = points(2, {0, 0, 1, 0, 1, height, 0, height, 0.5, 1e-8 * height});

@@ -98,7 +98,7 @@ TEST(DerivedGroups, UnionsHaveNoDuplicates) {
   EXPECT_EQ(mesh.group("[floor, face]", 2).members.size(), 2u);
 }
 
-// As gmsh saves a mesh without physical groups: everything, by entity.
+// As gmsh saves a mesh without physical groups: all elements, by entity.
 TEST(DerivedGroups, AMeshWithoutGroupsHasThoseOfItsEntities) {
   const TemporaryDirectory directory;
   std::string text = two_shapes;

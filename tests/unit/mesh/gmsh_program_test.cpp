@@ -9,7 +9,7 @@
 namespace ricochet::test {
 namespace {
 
-/// Sets a variable of the environment for as long as it lives.
+/// Sets an environment variable for the lifetime of the object.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {
@@ -54,7 +54,7 @@ TEST_F(GmshProgram, MeshesPlaneAndSolidGeometry) {
 }
 
 TEST_F(GmshProgram, SizeAndDegreeRule) {
-  // The file asks for something else in each of the ways it can.
+  // The file requests other values in each of the possible ways.
   MeshFile file = mesh_file(files_.write(
       "square.geo",
       std::string("Mesh.MeshSizeMax = 3; Mesh.ElementOrder = 3; Mesh.MeshSizeFactor = 2;\n") + square_geo));
@@ -67,7 +67,7 @@ TEST_F(GmshProgram, SizeAndDegreeRule) {
   EXPECT_EQ(read_mesh(file).group("low", 1).members.size(), 2u);
   file.scale = 0.25;
   EXPECT_EQ(read_mesh(file).nodes.maxCoeff(), 0.25);
-  EXPECT_EQ(cached(), 2);  // the scale is ours
+  EXPECT_EQ(cached(), 2);  // the scale is not part of the key
 }
 
 TEST_F(GmshProgram, CadFilesGetGroupsByEntity) {
@@ -89,7 +89,7 @@ TEST_F(GmshProgram, MeshesAreCachedByContent) {
   const Mesh first = read_mesh(mesh_file(path));
   EXPECT_EQ(cached(), 1);
   {
-    // A program that only tells its version: the mesh must come from the cache.
+    // A program that only reports its version: the mesh must come from the cache.
     TemporaryDirectory programs;
     const std::string program =
         programs.write("gmsh", "#!/bin/sh\n[ \"$1\" = -version ] && echo " + gmsh::program_version("") +
@@ -97,7 +97,7 @@ TEST_F(GmshProgram, MeshesAreCachedByContent) {
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);
     const Variable search("PATH", programs.path().string() + ":" + std::getenv("PATH"));
     EXPECT_EQ(read_mesh(mesh_file(path)).node_tags, first.node_tags);
-    // The content counts, not the name.
+    // The key is the content, not the name.
     EXPECT_EQ(read_mesh(mesh_file(path)).cell_count(), first.cell_count());
     files_.write("size.geo", "// changed\n");
     const std::string message = message_of([&] { (void)read_mesh(mesh_file(path)); });
@@ -105,7 +105,7 @@ TEST_F(GmshProgram, MeshesAreCachedByContent) {
     EXPECT_NE(message.find("status 1"), std::string::npos) << message;
   }
   (void)read_mesh(mesh_file(path));
-  EXPECT_EQ(cached(), 2);  // and nothing is left behind of the run that failed
+  EXPECT_EQ(cached(), 2);  // the failed run leaves nothing behind
 }
 
 TEST_F(GmshProgram, FailuresQuoteGmsh) {

@@ -11,7 +11,7 @@
 namespace ricochet::test {
 namespace {
 
-/// A cell or facet by the coordinates of its nodes in their order: says which one it is in any numbering.
+/// A cell or facet by the coordinates of its nodes in order, which identify it in any numbering.
 using PlacedCell = std::vector<std::vector<double>>;
 
 PlacedCell placed_cell(const Mesh& mesh, const std::vector<CellBlock>& blocks, Index number, double shift = 0.0) {
@@ -103,7 +103,7 @@ TEST(MergeParts, NumbersForMessagesHaveThoseOfTheFileInTheirLastDigits) {
   const auto first = static_cast<std::size_t>(parts[0].mesh.node_count());
   EXPECT_EQ(mesh.node_tags[0], parts[0].mesh.node_tags[0]);
   EXPECT_EQ(mesh.node_tags[first], parts[1].mesh.node_tags[0] + 1'000'000);
-  // A number of the first file that has as many digits.
+  // A number with as many digits as those of the first file.
   parts[0].mesh.node_tags[0] = 1'000'000;
   mesh = merge_parts(parts);
   EXPECT_EQ(mesh.node_tags[first], parts[1].mesh.node_tags[0] + 10'000'000);
@@ -125,7 +125,7 @@ TEST(MergeParts, FacetsThatNoFileHasStayWithoutNumber) {
 
 TEST(MergeParts, AllAndBoundaryOfAPartAreBuiltIn) {
   for (const std::string order : {"_o1_", "_o2_"}) {
-    // At one place: nothing is joined.
+    // At the same position as well, nothing is joined.
     for (const double shift : {apart, 0.0}) {
       std::vector<NamedMesh> parts = two_parts(order, shift);
       Mesh mesh = merge_parts(parts);
@@ -140,7 +140,7 @@ TEST(MergeParts, AllAndBoundaryOfAPartAreBuiltIn) {
                 mesh.group("left.boundary", 1).members.size() + mesh.group("right.boundary", 1).members.size());
       EXPECT_EQ(mesh.group("left.all", 2).members, mesh.parts[0].cells);
       EXPECT_EQ(mesh.group("all", 2).members.size(), static_cast<std::size_t>(mesh.cell_count()));
-      // The file has a group "all" itself.
+      // The file already has a group "all".
       EXPECT_EQ(placed_members(mesh, mesh.group("right.all", 2)),
                 placed_members(parts[1].mesh, parts[1].mesh.group("all", 2)));
     }

@@ -11,12 +11,12 @@
 #include "support.hpp"
 #include "support/box_mesh.hpp"
 
-/// @file Cells that overlap though no Jacobian is negative.
+/// @file Cells that overlap although no Jacobian is negative.
 namespace ricochet::test {
 namespace {
 
-/// Triangles of a quarter each around node 1 at (3, 4), so many that they close after `turns`; in space each with a
-/// tetrahedron above and below. Radii differ, so that no nodes are at the same place.
+/// Triangles of a quarter turn each around node 1 at (3, 4), closing after `turns`; in space each with a tetrahedron
+/// above and below. Radii differ, so that no nodes coincide.
 std::string fan(int turns, bool in_space) {
   const int count = 4 * turns;
   std::string nodes = "1 3 4 0\n", cells;
@@ -51,15 +51,14 @@ TEST(Overlaps, AroundANodeAreWarnedOf) {
   for (const bool in_space : {false, true}) {
     EXPECT_EQ(warnings_of(fan(1, in_space)), "");
     const std::string twice = warnings_of(fan(2, in_space));
-    EXPECT_NE(
-        twice.find(fmt::format("around node 1 at (3, 4{}) they take up 2 times the whole", in_space ? ", 0" : "")),
-        std::string::npos)
+    EXPECT_NE(twice.find(fmt::format("around node 1 at (3, 4{}) they fill 2 times the full", in_space ? ", 0" : "")),
+              std::string::npos)
         << twice;
-    EXPECT_NE(warnings_of(fan(3, in_space)).find("take up 3 times"), std::string::npos);
+    EXPECT_NE(warnings_of(fan(3, in_space)).find("fill 3 times"), std::string::npos);
   }
 }
 
-/// Angles around the nodes inside add up exactly, also where cells are distorted and curved.
+/// Angles around interior nodes add up exactly, also for distorted and curved cells.
 TEST(Overlaps, AreNotSeenWhereThereAreNone) {
   for (const CellShape shape : test_support::all_cell_shapes) {
     for (const int degree : {1, 2}) {

@@ -33,7 +33,7 @@ TEST(PlaceMesh, QuarterTurnsInThePlaneAreExact) {
 TEST(PlaceMesh, TurnsAboutAnAxisThroughAPointThenMoves) {
   Matrix nodes(3, 3), expected(3, 3);
   nodes << 2.0, 1.0, 1.0, 1.0, 2.0, 1.0, 1.0, 1.0, 5.0;
-  // A third of a turn about the diagonal through (1, 1, 1) takes x to y, y to z, z to x.
+  // A rotation by 120° about the diagonal through (1, 1, 1) maps x to y, y to z, z to x.
   expected << 1.0, 1.0, 5.0, 2.0, 1.0, 1.0, 1.0, 2.0, 1.0;
   expected.colwise() += Eigen::Vector3d(10.0, 20.0, 30.0);
   Mesh mesh = points(nodes);
@@ -54,7 +54,7 @@ TEST(PlaceMesh, AgreesWithQuaternions) {
   }
 }
 
-/// Turns do not commute: x goes to y by the first and on to z by the second, while the other order leaves it at y.
+/// Rotations do not commute: the first maps x to y and the second that to z; the other order leaves it at y.
 TEST(PlaceMesh, TurnsOneAfterTheOther) {
   const Turn about_z{90.0, {0.0, 0.0, 1.0}, {}}, about_x{90.0, {1.0, 0.0, 0.0}, {}};
   for (const auto& [turns, expected] : {std::pair{std::vector{about_z, about_x}, Eigen::Vector3d(0.0, 0.0, 1.0)},

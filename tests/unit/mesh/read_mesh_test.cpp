@@ -13,7 +13,7 @@ namespace {
 
 using CellByNodes = std::vector<std::int64_t>;
 
-/// Cells and facets of every group as sets of node tags: what must not depend on the dialect of the file.
+/// Cells and facets of every group as sets of node tags, which do not depend on the dialect of the file.
 std::map<std::string, std::set<CellByNodes>> content_by_group(const Mesh& mesh) {
   std::map<std::string, std::set<CellByNodes>> result;
   const auto add = [&](const std::string& key, const std::vector<CellBlock>& blocks, Index number) {
@@ -61,7 +61,7 @@ TEST(ReadMesh, GroupsAreThoseOfTheGeometry) {
   EXPECT_EQ(mesh.dimension, 2);
   EXPECT_EQ(mesh.degree, 1);
   EXPECT_EQ(mesh.group("body", 2).members.size(), static_cast<std::size_t>(mesh.cell_count()));
-  EXPECT_EQ(mesh.group("7", 1).tag, 7);  // which has no name
+  EXPECT_EQ(mesh.group("7", 1).tag, 7);  // an unnamed group
   EXPECT_NE(mesh.find_group("corner", 0), nullptr);
   EXPECT_EQ(mesh.find_group("corner", 1), nullptr);
   std::size_t facets = 0;

@@ -21,7 +21,7 @@ BoxMesh bent_box(CellShape shape, int degree) {
 }
 
 double moment(const Mesh& mesh) {
-  // With its geometry's determinant a polynomial that the rule takes exactly.
+  // Together with the geometry's determinant a polynomial that the rule integrates exactly.
   return test_support::integrate(*make_meshed_body(mesh, mesh.degree), 10,
                                  [](const Vector& x) { return 1.0 + x[0] - 2.0 * x[1]; });
 }
@@ -38,7 +38,7 @@ TEST_P(RefineMesh, KeepsTheBodyAndItsGroups) {
     const Index parts = Index{1} << (d * times), of_facets = Index{1} << ((d - 1) * times);
     EXPECT_EQ(fine.cell_count(), parts * mesh.cell_count());
     EXPECT_EQ(fine.facet_count(), of_facets * mesh.facet_count());
-    // Curved cells are cut along their geometry: the body is the same to rounding.
+    // Curved cells are divided along their geometry: the body is unchanged to rounding.
     const double whole = moment(mesh);
     EXPECT_NEAR(moment(fine), whole, 1e-12 * std::abs(whole));
     for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
@@ -51,7 +51,7 @@ TEST_P(RefineMesh, KeepsTheBodyAndItsGroups) {
   }
 }
 
-/// Cells meet in whole facets: what belongs to one cell only is the surface that was there, cut.
+/// Cells share whole facets: facets of one cell only are those of the original surface, divided.
 TEST_P(RefineMesh, LeavesNoGaps) {
   const auto [shape, degree] = GetParam();
   Mesh mesh = make_box_mesh(bent_box(shape, degree));
@@ -67,13 +67,13 @@ TEST_P(RefineMesh, LeavesNoGaps) {
   for (Index i = 0; i < mesh.node_count(); ++i)
     places.insert(std::vector<double>(mesh.nodes.col(i).begin(), mesh.nodes.col(i).end()));
   EXPECT_EQ(places.size(), static_cast<std::size_t>(mesh.node_count())) << "two nodes at one place";
-  // As many as cells ask for, each of them a node of a cell.
+  // The nodes are exactly those of the cells.
   std::set<Index> used;
   for (const CellBlock& block : mesh.cells) used.insert(block.nodes.begin(), block.nodes.end());
   EXPECT_EQ(used.size(), static_cast<std::size_t>(mesh.node_count()));
 }
 
-/// All parts are the right way round, and none is much thinner than its parent.
+/// All parts are correctly oriented, and none is much thinner than its parent.
 TEST_P(RefineMesh, HasNoTangledCells) {
   const auto [shape, degree] = GetParam();
   Mesh mesh = make_box_mesh(bent_box(shape, degree));
@@ -103,7 +103,8 @@ TEST(RefinedMesh, RefusesMoreCellsThanTheMachineHolds) {
     FAIL() << "it was not refused";
   } catch (const Error& problem) {
     EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
-    EXPECT_NE(std::string(problem.what()).find("refined 16 times it would have "), std::string::npos) << problem.what();
+    EXPECT_NE(std::string(problem.what()).find("refined 16 times, the mesh would have "), std::string::npos)
+        << problem.what();
   }
   EXPECT_EQ(mesh.cell_count(), before);
 }

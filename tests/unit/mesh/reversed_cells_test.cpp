@@ -9,12 +9,12 @@
 #include "ricochet/mesh/reference_cell.hpp"
 #include "support.hpp"
 
-/// Cells whose nodes are numbered the other way round, as many programs write them.
+/// Cells whose nodes are numbered in reverse orientation, as many programs write them.
 namespace ricochet::test {
 namespace {
 
-/// By Gmsh's element type: its nodes in the order of its mirror image, in Gmsh's numbering (reference manual, "Node
-/// ordering"). The mirrors are others than the one the reader uses to turn cells round.
+/// Node permutation of the mirror image for each of Gmsh's element types, in Gmsh's numbering (reference manual, "Node
+/// ordering"). These mirrors differ from the one with which the reader reorients cells.
 const std::map<int, std::vector<std::size_t>>& mirror_images() {
   static const std::map<int, std::vector<std::size_t>> images{
       {2, {0, 2, 1}},
@@ -70,7 +70,7 @@ TEST(ReversedCells, AreTurnedRound) {
       const Mesh reference = read_test_mesh(name);
       for (const std::size_t stride : {1u, 3u}) {
         const gmsh::RawMesh raw = with_reversed_cells(name, stride);
-        // Tangled cells would be refused: so all nodes, those of the second order too, are where they belong.
+        // Tangled cells would be refused: so all nodes, second-order ones included, are at their positions.
         const Mesh mesh = gmsh::build_mesh(raw, {name, 1.0, false, false});
         ASSERT_EQ(mesh.cells.size(), reference.cells.size());
         for (std::size_t b = 0; b < mesh.cells.size(); ++b) {
@@ -87,7 +87,7 @@ TEST(ReversedCells, AreTurnedRound) {
   }
 }
 
-/// Two cells of unit size that share the facet x = 1; those of the second have their other vertices at x = `far`.
+/// Two cells of unit size that share the facet x = 1; the other vertices of the second one are at x = `far`.
 gmsh::RawMesh two_cells(int type, double far, bool second_reversed) {
   gmsh::RawMesh raw;
   std::vector<std::vector<double>> points;
@@ -143,7 +143,7 @@ TEST(ReversedCells, AreToldFromFoldedMeshes) {
     };
     EXPECT_EQ(refusal(1.7, false), "") << type;
     EXPECT_EQ(refusal(1.7, true), "") << type;
-    // The second cell lies on the first: its nodes are numbered as if it were beside it.
+    // The second cell overlaps the first: its nodes are numbered as if it were beside it.
     const std::string message = refusal(0.4, false);
     EXPECT_NE(message.find("folded"), std::string::npos) << type << message;
     EXPECT_NE(message.find("elements 41 and 42 at (1, "), std::string::npos) << type << message;

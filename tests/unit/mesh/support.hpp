@@ -37,13 +37,13 @@ inline Mesh read_test_mesh(const std::string& name) {
   return read_mesh(mesh_file(mesh_path(name)));
 }
 
-/// As read_mesh, but from a string.
+/// Reads a mesh as read_mesh does, but from a string.
 inline Mesh mesh_of(const std::string& content, double scale = 1.0, bool bodies_may_touch = false) {
   gmsh::BuildOptions options{"test.msh", scale, bodies_may_touch, false};
   return gmsh::build_mesh(gmsh::read_msh(content, "test.msh"), options);
 }
 
-/// The message of the error the call throws, or "" when it does not throw.
+/// Message of the error that the call throws, or "" if it does not throw.
 template <class Call>
 std::string message_of(Call call) {
   try {
@@ -54,14 +54,14 @@ std::string message_of(Call call) {
   return "";
 }
 
-/// `text` with the first `what` replaced; the test is wrong when it is not there.
+/// Returns `text` with the first `what` replaced; an absent `what` is an error of the test.
 inline std::string replaced(std::string text, const std::string& what, const std::string& by) {
   const std::size_t found = text.find(what);
   if (found == std::string::npos) throw std::logic_error("nothing to replace: " + what);
   return text.replace(found, what.size(), by);
 }
 
-/// A directory that is removed with its content.
+/// A directory that is removed with its contents.
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {

@@ -8,13 +8,13 @@
 #include "ricochet/base/log.hpp"
 #include "support/case_run.hpp"
 
-/// @file Material data beside which nothing is left of other data: refused at the place where they are.
+/// @file Material data that cancel the digits of other data are refused, with their position in the file.
 namespace ricochet {
 namespace material_digits_test {
 
 using test_support::CaseRun;
 
-/// Line 3 is the first of the material.
+/// A case whose line 3 is the first of the material.
 std::string block(const std::string& material, const std::string& support = "") {
   const std::string mesh = test_support::mesh_geometry(
       "material-digits",
@@ -48,8 +48,8 @@ TEST(MaterialDigits, WhatLeavesNoneIsRefused) {
       {"law = \"mooney-rivlin\"\nc10 = 1.0\nc01 = -0.9999999999999999\nbulk_modulus = 100.0",
        ":9:16: ", "shear modulus 2.22e-16"},
       {"young = 100.0\npoisson = 0.4999999999999999", ":7:11: ", "hardly a digit of the other"},
-      {"young = 1e30\npoisson = 0.3", ":6:9: ", "no digit is left of the inertia"},
-      {"lambda = 1.0\nmu = 1e30", ":7:6: ", "no digit is left of the inertia"},
+      {"young = 1e30\npoisson = 0.3", ":6:9: ", "no digit remains of the inertia"},
+      {"lambda = 1.0\nmu = 1e30", ":7:6: ", "no digit remains of the inertia"},
   };
   for (const Absurd& absurd : all) {
     const std::string message = refusal(absurd.material);
@@ -64,7 +64,7 @@ TEST(MaterialDigits, WhatLeavesSomeRuns) {
       refusal("law = \"neo-hookean\"\nyoung = 100.0\npoisson = 0.3\nrelaxation = {modulus = [1e6], time = [1.0]}"), "");
   EXPECT_EQ(refusal("young = 100.0\npoisson = 0.499999"), "");
   EXPECT_EQ(refusal("young = 1e10\npoisson = 0.3"), "");
-  // Supports hold a body of any stiffness.
+  // Supports can hold a body of any stiffness.
   const CaseRun held(
       block("young = 1e30\npoisson = 0.3", "[[support]]\ngroup = \"bottom\"\ncomponents = [\"x\", \"y\"]\n"));
   EXPECT_EQ(held.state().step, 0);

@@ -8,13 +8,13 @@
 #include "support/paths.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file Warnings of what a model makes of a case.
+/// @file Warnings about the model that is made of a case.
 namespace ricochet {
 namespace {
 
 using test_support::ThrownBody;
 
-/// A block of tetrahedra of degree 2: flat six-node triangles, whose vertices have no share of the area.
+/// A block of tetrahedra of degree 2: flat six-node triangles, whose vertices have zero area.
 ThrownBody flat_block() {
   return {"block", 3, 2,
           test_support::mesh_geometry("block2",
@@ -44,7 +44,7 @@ TEST(ModelWarnings, OfBoundsWhereThereIsNoArea) {
   EXPECT_FALSE(warns("multipliers = \"nodal\"\nfriction = 0.3\n", sentence));
 }
 
-/// A bar one cell thick, all of which may touch, on a cube that may not, or only the far face of the cube may touch.
+/// Either a bar one cell thick on a cube is all contact boundary, or only the far face of the cube is.
 TEST(ModelWarnings, OfInertiaThatIsHeapedUp) {
   log::set_level(log::Level::error);
   const auto bar = [](const std::string& name, const std::string& contact) {
@@ -57,7 +57,7 @@ TEST(ModelWarnings, OfInertiaThatIsHeapedUp) {
                               contact + ";",
                           0.1, 1)};
   };
-  const std::string sentence = "times the inertia that was there";
+  const std::string sentence = "times the original inertia";
   for (const char* mass : {"equivalent", "equivalent-cellwise", "equivalent-compact"}) {
     EXPECT_TRUE(warns("", sentence, bar("bar", "{-0.01,-1,-1,7,1,1}"), mass)) << mass;
     EXPECT_FALSE(warns("", sentence, bar("cube", "{-0.31,-1,-1,-0.29,1,1}"), mass)) << mass;

@@ -103,7 +103,7 @@ TEST(Parts, HaveTheMomentaOfRigidBodies) {
                       "\"\nscale = 2.0\nturn = { angle = 25.0 }\nmove = [-50.0, 7.0]\nvelocity = [0.5, -1.5]\n"
                       "spin = 3.0\n[part.second]\nfile = \"" +
                       mesh + "\"\n" + material("\"all\"", density) + time_section());
-    // The centre of the rectangle, turned and moved.
+    // The centre of the rectangle, rotated and moved.
     const Vector centre = Eigen::Rotation2Dd(25.0 * std::numbers::pi / 180.0) * Eigen::Vector2d(width, height) +
                           Eigen::Vector2d(-50.0, 7.0);
     const Momenta first = momenta(run, {centre[0], centre[1], 0.0}, -1e9, -1.0);
@@ -126,7 +126,7 @@ TEST(Parts, OfSolidsSpinAboutEveryAxis) {
   const std::string text = "[part.box]\nfile = \"" + box +
                            "\"\nmove = [10.0, 20.0, 30.0]\nvelocity = [3.0, 0.0, -1.0]\nspin = [1.0, -2.0, 0.5]\n" +
                            material("\"box.body\"", density);
-  // A mass that moves inertia keeps the whole of it.
+  // Masses that redistribute inertia preserve its total.
   for (const std::string made : {"consistent", "equivalent"}) {
     std::string contact;
     if (made == "equivalent")
@@ -158,7 +158,7 @@ TEST(Motions, TurnAboutTheCentreOfMassOfTheActualDensities) {
   const std::string mesh = write_temporary("joined.msh", two_rectangles(true));
   const std::string text = "[mesh]\nfile = \"" + mesh + "\"\n" + material("\"left\"", 8.0) + material("\"right\"", 1.0);
   const CaseRun run(text + "[[motion]]\ngroup = [\"left\", \"right\"]\nspin = 2.0\n" + time_section());
-  // 8 about (½, ½) and 2 about (2, ½).
+  // Masses 8 about (½, ½) and 2 about (2, ½).
   const double mass = 10.0, centre = (8.0 * 0.5 + 2.0 * 2.0) / mass;
   const double inertia =
       8.0 * (2.0 / 12.0 + std::pow(centre - 0.5, 2)) + 2.0 * (5.0 / 12.0 + std::pow(2.0 - centre, 2));
@@ -189,23 +189,22 @@ TEST(Motions, OfOneNodeAreRefused) {
   const std::string left = "[[motion]]\ngroup = \"left\"\nspin = 2.0\n",
                     right = "[[motion]]\ngroup = \"right\"\nspin = 2.0\n";
   EXPECT_EQ(refusal(text + left), "");
-  EXPECT_EQ(
-      refusal(text + left + right),
-      "CASE:18:9: group \"right\" shares nodes with group \"left\", which has a motion at CASE:15:9: give motions "
-      "to groups that have no node in common");
+  EXPECT_EQ(refusal(text + left + right),
+            "CASE:18:9: group \"right\" shares nodes with group \"left\", which has a motion at CASE:15:9: use groups "
+            "that have no node in common");
   EXPECT_EQ(refusal(text + right + "[[motion]]\ngroup = \"all\"\nvelocity = [1.0, 0.0]\n"),
-            "CASE:18:9: group \"all\" shares cells with group \"right\", which has a motion at CASE:15:9: give motions "
-            "to groups that have no node in common");
+            "CASE:18:9: group \"all\" shares cells with group \"right\", which has a motion at CASE:15:9: use groups "
+            "that have no node in common");
   const std::string apart = write_temporary("apart.msh", two_rectangles(false));
   EXPECT_EQ(refusal(text + left + right, {"mesh.file=" + apart}), "");
   const std::string of_part = "[part.a]\nfile = \"" + apart + "\"\nspin = 1.0\n" + material("\"all\"", 1.0) +
                               "[[motion]]\ngroup = \"a.left\"\nspin = 2.0\n" + time_section();
   EXPECT_EQ(refusal(of_part),
-            "CASE:10:9: group \"a.left\" shares cells with part \"a\", which has a motion at CASE:1:1: give motions to "
-            "groups that have no node in common");
+            "CASE:10:9: group \"a.left\" shares cells with part \"a\", which has a motion at CASE:1:1: use groups "
+            "that have no node in common");
 }
 
-/// The file has a group "all" that is one cell of two: a part moves as a whole.
+/// The file has a group "all" with one of two cells; a motion of the part moves both.
 TEST(Motions, OfAPartMoveAllOfIt) {
   std::string named = two_rectangles(false);
   named.replace(named.find("\"left\""), 6, "\"all\"");
@@ -221,7 +220,7 @@ TEST(Motions, HaveTheDimensionOfTheMesh) {
   const std::string text = "[mesh]\nfile = \"" + mesh + "\"\n" + material("\"all\"", 1.0) + time_section();
   EXPECT_EQ(
       refusal(text + "[[motion]]\ngroup = \"left\"\nspin = [0.0, 0.0, 1.0]\n"),
-      "CASE:16:8: \"spin\" has 3 entries, but the mesh has dimension 2, where it is one number: write spin = 3.0");
+      "CASE:16:8: \"spin\" has 3 entries, but the mesh has dimension 2, where it must be one number: write spin = 3.0");
   EXPECT_NE(refusal(text + "[[motion]]\ngroup = \"left\"\nvelocity = [0.0, 0.0, 1.0]\n")
                 .find("CASE:16:12: motion.0.velocity has 3 entries, but the mesh has dimension 2"),
             std::string::npos);
@@ -251,7 +250,7 @@ TEST(Parts, AreRefusedAtTheirPlaces) {
   EXPECT_TRUE(both.starts_with("--set part.a.file=/nowhere/a.msh: there is no file /nowhere/a.msh")) << both;
   EXPECT_NE(both.find("\nCASE:4:8: there is no file /nowhere/b.msh"), std::string::npos) << both;
   EXPECT_NE(refusal(text(square), {"part.b.move=[0, 0, 1]"}).find("part.b.move has 3 entries"), std::string::npos);
-  EXPECT_NE(refusal(text(square), {"part.b.turn={angle = 1, axis = [0, 1]}"}).find("leave out the axis"),
+  EXPECT_NE(refusal(text(square), {"part.b.turn={angle = 1, axis = [0, 1]}"}).find("remove the axis"),
             std::string::npos);
 }
 

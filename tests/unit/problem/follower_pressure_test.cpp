@@ -94,7 +94,7 @@ class Pressed : public testing::TestWithParam<Kind> {
   }
 };
 
-/// The virtual work of p on the whole boundary is −p times the change of the volume, which is a cubic polynomial.
+/// The virtual work of p on the whole boundary is −p times the change of volume, a cubic polynomial.
 TEST_P(Pressed, AllRoundItDoesTheWorkOfTheVolume) {
   const Vector u = random(0.04, 1), along = random(1.0, 2);
   const auto change = [&](double h) { return volume(u + h * along) - volume(u - h * along); };

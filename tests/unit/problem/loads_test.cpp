@@ -35,7 +35,7 @@ TEST(Loads, AreTheSumOfTheirParts) {
   EXPECT_EQ(load, Vector(Eigen::Vector3d(0.0, 12.0, 9.0)));
   loads.total(3.0, load);
   EXPECT_EQ(load, Vector(Eigen::Vector3d(3.0, 14.0, 11.0)));
-  loads.total(0.0, load);  // nothing is left of the previous instant
+  loads.total(0.0, load);  // the previous instant leaves no trace
   EXPECT_EQ(load, loads.constant());
 }
 
@@ -82,7 +82,7 @@ TEST(Supports, KeepTheFirstValueOfADof) {
   EXPECT_EQ(supports.expression(1).text(), "5");
 }
 
-/// One formula may be given twice with different parameters.
+/// One formula may occur twice with different parameters.
 TEST(Supports, TellFormulasApartByTheirParameters) {
   Supports supports;
   supports.add(0, Expression("a*t", {{"a", 1.0}}));
@@ -134,7 +134,7 @@ TEST(Supports, DerivativesAreOfSecondOrder) {
   }
 }
 
-/// Formulas may be undefined before the instant asked for.
+/// Formulas may be undefined before the requested instant.
 TEST(Supports, DerivativesLookForwardOnly) {
   Supports supports;
   supports.add(0, Expression("sqrt(t)^3"));
@@ -160,7 +160,7 @@ TEST(LinearElasticity, HasItsForceEnergyAndTangent) {
   EXPECT_EQ(Matrix(elasticity.tangent()), Matrix(stiffness));
 }
 
-/// Springs along the lines between nodes: their stiffness sees no rigid motion.
+/// Springs along the lines between nodes: rigid motions cause no force.
 SparseMatrix springs(const Points& nodes, const std::vector<std::pair<Index, Index>>& pairs) {
   const Index d = nodes.rows();
   std::vector<Eigen::Triplet<double>> entries;
@@ -192,7 +192,7 @@ TEST(RigidMotion, OfManyNodesIsTakenOut) {
   for (Index i = 0; i < count; ++i) displacement.segment(3 * i, 3) = travel + axis.cross(Eigen::Vector3d(nodes.col(i)));
   rigid.remove(displacement, deformation);
   EXPECT_LT(deformation.lpNorm<Eigen::Infinity>(), 1e-13);
-  // A strain stays what it is, and so small a one that a fit to few nodes is seen to do.
+  // A strain is unchanged, and is so small that a fit to few nodes would alter it visibly.
   for (Index i = 0; i < count; ++i) displacement[3 * i] += 1e-6 * nodes(0, i);
   rigid.remove(displacement, deformation);
   EXPECT_LT(deformation.lpNorm<Eigen::Infinity>(), 1e-5);
@@ -204,7 +204,7 @@ TEST(RigidMotion, OfManyNodesIsTakenOut) {
 }
 
 TEST(RigidMotion, LeavesTheDeformationOfEachBody) {
-  // Two triangles of three nodes each, in three dimensions too: rigid motions of their own, and a deformation.
+  // Two bodies of d + 1 nodes, each with its own rigid motion, and a deformation.
   for (const Index d : {Index{2}, Index{3}}) {
     const Index count = d + 1;
     Points nodes = Points::Random(d, 2 * count);
@@ -225,7 +225,7 @@ TEST(RigidMotion, LeavesTheDeformationOfEachBody) {
     }
     rigid.remove(displacement, deformation);
     EXPECT_LT(deformation.lpNorm<Eigen::Infinity>(), 1e-14) << "rigid motions are taken out";
-    // What is taken out is rigid: distances change by the same amount with and without it.
+    // The removed part is rigid: distances change by the same amount with and without it.
     const Vector random = Vector::Random(2 * count * d);
     rigid.remove(random + displacement, deformation);
     for (const Index first : {Index{0}, count}) {
@@ -263,7 +263,7 @@ TEST(LinearElasticity, IsThatOfItsTangentOnCurvedCells) {
       const Vector terms = stiffness.cwiseAbs() * u.cwiseAbs();
       EXPECT_LT((force - stiffness * u).lpNorm<Eigen::Infinity>(), 1e-14 * terms.lpNorm<Eigen::Infinity>());
       EXPECT_NEAR(elasticity.energy(u), 0.5 * u.dot(stiffness * u), 1e-14 * u.cwiseAbs().dot(terms));
-      // From the force that is known: also far from where the body began, where U alone would leave no digits.
+      // From the known force: also far from the start, where U alone would leave no digits.
       const double energy = elasticity.energy(u);
       const double rounding = 1e-15 * u.cwiseAbs().dot(terms);
       EXPECT_NEAR(elasticity.energy(u, force), energy, rounding);

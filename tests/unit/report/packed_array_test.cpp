@@ -112,7 +112,7 @@ TEST(PackedArrays, TakeTheBetterPrediction) {
   std::vector<float> still, wave;
   for (int r = 0; r < 30; ++r) {
     for (int i = 0; i < 200; ++i) {
-      // What flickers here and there has nothing to do with its neighbours; a body that moves as a whole has.
+      // Local flicker is uncorrelated with its neighbours; the motion of a whole body is correlated.
       still.push_back(static_cast<float>((i * 7919 + r * (i % 3)) % 101));
       wave.push_back(static_cast<float>(0.5 * r * r + std::sin(0.05 * i)));
     }

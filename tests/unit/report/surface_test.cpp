@@ -18,7 +18,7 @@ using test_support::BoxMesh;
 using test_support::ElementKind;
 using test_support::make_box_mesh;
 
-/// Three rows, as files have them.
+/// Nodes in three rows, as in files.
 Points in_space(const Points& nodes) {
   Points result = Points::Zero(3, nodes.cols());
   result.topRows(nodes.rows()) = nodes;
@@ -33,7 +33,7 @@ double area(const Points& nodes, const Surface& surface, Index t) {
 }
 
 struct Sides {
-  std::map<std::pair<int, int>, int> times, edges;  ///< how many triangles have a side, and call it an edge of a cell
+  std::map<std::pair<int, int>, int> times, edges;  ///< triangles with a side, and those that mark it as a cell edge
   explicit Sides(const Surface& surface) {
     for (Index t = 0; t < surface.triangle_count(); ++t) {
       for (int k = 0; k < 3; ++k) {
@@ -48,7 +48,7 @@ struct Sides {
 
 class SurfaceOf : public testing::TestWithParam<ElementKind> {};
 
-/// The whole square in the plane (area 1), the cube's boundary in space (area 6), whatever the cells.
+/// The whole square in the plane (area 1), or the cube's boundary in space (area 6), for all cells.
 TEST_P(SurfaceOf, ABoxIsComplete) {
   const ElementKind& kind = GetParam();
   const BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 3));
@@ -60,8 +60,8 @@ TEST_P(SurfaceOf, ABoxIsComplete) {
   for (Index t = 0; t < surface.triangle_count(); ++t) sum += area(nodes, surface, t);
   EXPECT_NEAR(sum, kind.dimension() == 2 ? 1.0 : 6.0, 1e-13);
 
-  // In space every side belongs to two triangles; in the plane those of the outline to one. Both agree on what is an
-  // edge of a cell.
+  // In space every side belongs to two triangles; in the plane those of the outline to one. Both agree on whether it is
+  // a cell edge.
   const Sides sides(surface);
   Index outline = 0;
   for (const auto& [side, times] : sides.times) {
@@ -75,7 +75,7 @@ TEST_P(SurfaceOf, ABoxIsComplete) {
   }
   EXPECT_EQ(outline, kind.dimension() == 2 ? 4 * 3 * kind.displacement_degree : 0);
 
-  // All that is named exists, once.
+  // Every named node exists and occurs once.
   EXPECT_EQ(std::set<Index>(surface.nodes.begin(), surface.nodes.end()).size(), surface.nodes.size());
   for (const int node : surface.triangles) EXPECT_LT(static_cast<std::size_t>(node), surface.nodes.size());
   if (kind.dimension() == 2) {
@@ -86,7 +86,7 @@ TEST_P(SurfaceOf, ABoxIsComplete) {
   }
 }
 
-/// A triangle lies in the cell that is said to be its own: all its corners are nodes of that cell.
+/// A triangle lies in its assigned cell: all its corners are nodes of that cell.
 TEST_P(SurfaceOf, TrianglesBelongToTheirCells) {
   const ElementKind& kind = GetParam();
   const BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 2));
@@ -102,8 +102,8 @@ TEST_P(SurfaceOf, TrianglesBelongToTheirCells) {
   }
 }
 
-/// The surface on a page is the surface of contact detection: the same facets, subdivided at the same points. In the
-/// plane it is the outline of the surface on the page.
+/// The surface on a page is that of contact detection: the same facets, subdivided at the same points. In the plane it
+/// is the outline of the page's surface.
 TEST_P(SurfaceOf, ItIsTheOneThatContactSees) {
   const ElementKind& kind = GetParam();
   const BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 2));
@@ -152,7 +152,7 @@ TEST(Surface, IsThinnedToWhatIsAskedFor) {
 TEST(ContactLine, FollowsASideFromItsLeftEnd) {
   for (const int degree : {1, 2}) {
     const auto body = test_support::make_meshed_body(make_box_mesh(box_of(CellShape::quadrilateral, {4, 3})), degree);
-    // The facets of the bottom and the top, in whatever order.
+    // The facets of the bottom and the top, in any order.
     std::vector<CellBlock> facets{{CellShape::interval, degree + 1, {}, {}}};
     for (const char* name : {"y1", "y0"}) {
       for (const Index facet : body->mesh.group(name, 1).members) {

@@ -25,7 +25,7 @@ double volume_of(const Points& nodes, const Volume& volume, Index t) {
   return std::abs((corner(1) - corner(0)).cross(corner(2) - corner(0)).dot(corner(3) - corner(0))) / 6.0;
 }
 
-/// How many tetrahedra share each face; and how many of them call it one of the cell's.
+/// Number of tetrahedra that share each face, and of those that mark it as a cell face.
 struct Faces {
   std::map<std::array<int, 3>, int> times, of_cells;
   explicit Faces(const Volume& volume) {
@@ -43,7 +43,7 @@ struct Faces {
 
 class VolumeOf : public testing::TestWithParam<ElementKind> {};
 
-/// The tetrahedra fill the unit cube without gap or overlap, also where the cells' vertices are moved about.
+/// The tetrahedra fill the unit cube without gap or overlap, also if the cells' vertices are displaced.
 TEST_P(VolumeOf, ACubeIsComplete) {
   const ElementKind& kind = GetParam();
   const auto body =
@@ -61,7 +61,7 @@ TEST_P(VolumeOf, ACubeIsComplete) {
   for (const auto& [cell, part] : of_cell) sum += part;
   EXPECT_NEAR(sum, 1.0, 1e-13);
 
-  // A face belongs to two tetrahedra, on the cube's surface to one, and both agree on whether it is a cell's.
+  // A face belongs to two tetrahedra, on the cube's surface to one, and both agree on whether it is a cell face.
   double surface = 0.0;
   const Faces faces(volume);
   for (const auto& [face, times] : faces.times) {
@@ -77,7 +77,7 @@ TEST_P(VolumeOf, ACubeIsComplete) {
   EXPECT_NEAR(surface, 6.0, 1e-12);
 }
 
-/// Without a cut, the boundary of the volume is the drawn surface, triangle for triangle.
+/// Without a cut, the boundary of the volume is the drawn surface, triangle by triangle.
 TEST_P(VolumeOf, ItsOutsideIsTheSurface) {
   const ElementKind& kind = GetParam();
   const auto body =
@@ -101,7 +101,7 @@ TEST_P(VolumeOf, ItsOutsideIsTheSurface) {
   EXPECT_EQ(outside, drawn);
 }
 
-/// Too many tetrahedra are made fewer: first only those of the vertices, which still fill the cube, then larger ones.
+/// The number of tetrahedra is limited: first only the vertices are used, which still fill the cube, then larger cells.
 TEST_P(VolumeOf, ManyCellsAreMadeFewer) {
   const ElementKind& kind = GetParam();
   const auto body =

@@ -24,7 +24,7 @@ FreeMotion::Inertia inertia(Index dimension) {
   return result;
 }
 
-/// A step under a force and a torque in space, as schemes make it.
+/// A step under a force and a torque in space, built as schemes do.
 class Stepped {
  public:
   explicit Stepped(FreeMotion::Inertia own) : motion(std::move(own), 0) {
@@ -111,7 +111,7 @@ TEST_P(FreeMotions, MovePointsAsTheirRowsSay) {
 
 INSTANTIATE_TEST_SUITE_P(Dimensions, FreeMotions, testing::Values(Index{2}, Index{3}));
 
-/// A top without torque: its axis goes round the angular momentum at the rate |L|/J₁, to the square of the step.
+/// A top without torque: its axis circles the angular momentum at the rate |L|/J₁, to second order in the step.
 TEST(FreeMotion, TurnsLikeATop) {
   FreeMotion::Inertia own;
   own.mass = 1.0;

@@ -100,9 +100,9 @@ TEST_P(Obstacles, HaveNormalsOfStepsThatKnowTheChangeOfTheGap) {
     EXPECT_GE(normal.dot(obstacle->normal(to)), 0.0);
     // For every step: no force along its normal creates energy.
     EXPECT_GE(normal.dot(to - from) * (obstacle->gap(to) - obstacle->gap(from)), -rounding());
-    if (normal.dot(obstacle->normal(to)) < 0.5) continue;                          // too far round
-    if (normal == obstacle->normal(to) && !obstacle->shape().is_flat()) continue;  // too far round
-    if (std::abs(normal.dot(to - from)) < rounding()) continue;                    // far round, across the way
+    if (normal.dot(obstacle->normal(to)) < 0.5) continue;                          // far round the obstacle
+    if (normal == obstacle->normal(to) && !obstacle->shape().is_flat()) continue;  // far round the obstacle
+    if (std::abs(normal.dot(to - from)) < rounding()) continue;                    // far round, on the opposite side
     ++near;
     const double change = obstacle->gap(to) - obstacle->gap(from);
     EXPECT_GE(normal.dot(to - from) * change, -rounding());
@@ -198,7 +198,7 @@ TEST_P(Obstacles, HaveSurfacesThatFaceOut) {
       }
     }
     EXPECT_EQ(std::count(uses.begin(), uses.end(), 0), 0);
-    // About one node per cell, plus one at a pole or an end, not four for each cell.
+    // About one node per cell, plus one at a pole or an end, instead of four per cell.
     const auto cells = static_cast<Index>(surface.cells.size() / corners);
     const bool has_rims = type() == "cylinder" || type() == "torus" || type() == "implicit";
     EXPECT_LE(surface.points.cols(), obstacle->shape().is_flat() ? 4 : has_rims ? 3 * cells / 2 : cells + 1);
@@ -266,9 +266,10 @@ TEST(Obstacle, IsRefusedWithoutItsValuesOrWithOthers) {
   EXPECT_EQ(message("plane", {{"point", Numbers{0.0, 0.0}}, {"normal", Numbers{0.0, 0.0}}}),
             "the normal of a plane is zero");
   EXPECT_EQ(message("cylinder", {{"centre", Numbers{0.0, 0.0}}, {"axis", Numbers{0.0, 1.0}}, {"radius", 1.0}}),
-            "a cylinder needs three dimensions; in two take a sphere, which is a circle there");
+            "a cylinder requires three dimensions; in two use a sphere, which is a circle there");
   EXPECT_NE(message("implicit", {{"expression", std::string("x + t")}}).find("depends on t"), std::string::npos);
-  EXPECT_NE(message("implicit", {{"expression", std::string("2")}}).find("the same everywhere"), std::string::npos);
+  EXPECT_NE(message("implicit", {{"expression", std::string("2")}}).find("does not depend on the position"),
+            std::string::npos);
 }
 
 /// x² has no slope where it is zero, and x − 3 has one everywhere.
@@ -384,14 +385,14 @@ TEST(Obstacle, FollowsATable) {
     return std::string("none");
   };
   EXPECT_NE(problem("0 0 0\n1 0\n", 2).find("motion.csv:2: 2 numbers"), std::string::npos);
-  EXPECT_NE(problem("0 0 0\n0 1 1\n", 2).find("motion.csv:2: the time 0 does not come after 0"), std::string::npos);
+  EXPECT_NE(problem("0 0 0\n0 1 1\n", 2).find("motion.csv:2: the time 0 is not after 0"), std::string::npos);
   EXPECT_NE(problem("0 0 0\n1 nan 1\n", 2).find("motion.csv:2:3: "), std::string::npos);
   // The first line, too: a header is letters.
-  EXPECT_NE(problem("0.0 0.0m 0.0\n1 1 1\n", 2).find("motion.csv:1:5: \"0.0m\" is no finite number"),
+  EXPECT_NE(problem("0.0 0.0m 0.0\n1 1 1\n", 2).find("motion.csv:1:5: \"0.0m\" is not a finite number"),
             std::string::npos);
   EXPECT_NE(problem("0 nan 0\n1 1 1\n", 2).find("motion.csv:1:3: "), std::string::npos);
-  EXPECT_NE(problem("t x y\n", 2).find("has no numbers"), std::string::npos);
-  EXPECT_NE(problem("0 0 0\n", 3).find("motion.csv:1: 3 numbers; each line of a motion in 3D has 4"),
+  EXPECT_NE(problem("t x y\n", 2).find("contains no numbers"), std::string::npos);
+  EXPECT_NE(problem("0 0 0\n", 3).find("motion.csv:1: 3 numbers; each line of a motion in 3D must have 4"),
             std::string::npos);
 }
 

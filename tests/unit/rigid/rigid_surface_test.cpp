@@ -310,16 +310,16 @@ TEST_F(RigidSurfaces, RefuseWhatHasNoInside) {
   open.corners.erase(open.corners.begin() + 4);
   EXPECT_EQ(problem(open), "none");
   EXPECT_NE(problem(open, {{"side", std::string("inside")}})
-                .find("it is not closed: 3 of its edges belong to one triangle only"),
+                .find("it is not closed: 3 of its edges belong to only one triangle"),
             std::string::npos);
   SurfaceFacets turned = block;
   std::swap(turned.corners[4][0], turned.corners[4][1]);
-  EXPECT_NE(problem(turned).find("are neighbours that are turned against each other"), std::string::npos);
+  EXPECT_NE(problem(turned).find("are neighbours with opposite orientations"), std::string::npos);
   EXPECT_NE(problem(turned).find("triangle 5 at ("), std::string::npos);
   SurfaceFacets twice = block;
   twice.corners.push_back(block.corners[2]);
   EXPECT_NE(problem(twice).find("triangle 3 at ("), std::string::npos);
-  EXPECT_NE(problem(twice).find("are one and the same"), std::string::npos);
+  EXPECT_NE(problem(twice).find("are identical"), std::string::npos);
   SurfaceFacets joined = block;
   for (const auto& triangle : block_surface({1, 1, 0}, {2, 2, 1}).corners) joined.corners.push_back(triangle);
   EXPECT_NE(problem(joined).find("4 triangles meet at the edge at (1, 1, 0.5)"), std::string::npos);
@@ -349,15 +349,15 @@ TEST_F(RigidSurfaces, SayWhereAFileIsWrong) {
     return std::string("none");
   };
   EXPECT_NE(problem("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 o 0\n")
-                .find("bad.stl:5:10: \"o\" is no finite number"),
+                .find("bad.stl:5:10: \"o\" is not a finite number"),
             std::string::npos);
   EXPECT_NE(problem("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n")
                 .find("expected \"vertex\" but found \"the end of the file\""),
             std::string::npos);
   for (const std::string normal : {"0 0 1m", "x 0 1", "0 0 -"}) {
-    EXPECT_NE(
-        problem("solid a\nfacet normal " + normal + "\nouter loop\nvertex 0 0 0\n").find("is no number of a normal"),
-        std::string::npos)
+    EXPECT_NE(problem("solid a\nfacet normal " + normal + "\nouter loop\nvertex 0 0 0\n")
+                  .find("is not a component of a normal"),
+              std::string::npos)
         << normal;
   }
   // Some programs write such normals for triangles without area.
@@ -368,7 +368,7 @@ TEST_F(RigidSurfaces, SayWhereAFileIsWrong) {
   EXPECT_NE(problem(std::string(80, ' ') + std::string("\5\0\0\0", 4) + std::string(100, '\1'))
                 .find("the file ends before the 5 triangles"),
             std::string::npos);
-  EXPECT_NE(problem("").find("it is cut off, or no STL"), std::string::npos);
+  EXPECT_NE(problem("").find("it is truncated, or not an STL file"), std::string::npos);
   EXPECT_THROW((void)read_stl(folder_.file("absent.stl"), 1.0), Error);
   const auto problem_of_polygons = [&](const std::string& text) {
     std::ofstream(file, std::ios::binary) << text;
@@ -380,9 +380,10 @@ TEST_F(RigidSurfaces, SayWhereAFileIsWrong) {
     return std::string("none");
   };
   EXPECT_EQ(problem_of_polygons("0 0\n1, 0 # a corner\n\n2;0\n3;1\n"), "none");
-  EXPECT_NE(problem_of_polygons("0 0\n1 0.0m\n").find("bad.stl:2:3: \"0.0m\" is no finite number"), std::string::npos);
+  EXPECT_NE(problem_of_polygons("0 0\n1 0.0m\n").find("bad.stl:2:3: \"0.0m\" is not a finite number"),
+            std::string::npos);
   EXPECT_NE(problem_of_polygons("x y\n0 0\n1 0\n").find("bad.stl:1:1: \"x\""), std::string::npos);
-  EXPECT_NE(problem_of_polygons("0 0\n1 0 2\n").find("bad.stl:2: a line of a polygon has two numbers"),
+  EXPECT_NE(problem_of_polygons("0 0\n1 0 2\n").find("bad.stl:2: a line of a polygon must have two numbers"),
             std::string::npos);
 }
 

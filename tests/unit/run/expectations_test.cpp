@@ -14,7 +14,7 @@ class ExpectationsTest : public testing::Test {
   ExpectationsTest() {
     std::ofstream(folder_.file("history.csv")) << "step,time,force,weight\n0,0,0,2\n1,0.5,6,4\n2,1,3,0\n";
   }
-  /// The outcome of one entry of a case.
+  /// Result of one [[expect]] entry.
   [[nodiscard]] ExpectationResult outcome(const ExpectSection& expect,
                                           ExpectationScope scope = ExpectationScope::settings_of_the_case) {
     case_.expectations = {expect};
@@ -65,7 +65,7 @@ TEST_F(ExpectationsTest, AreOfMultiplesAndQuotients) {
       outcome({.quantity = "history.force[1]", .over = "history.weight[-1]", .minimum = 0.0});
   EXPECT_FALSE(none.holds);
   EXPECT_TRUE(none.checked);
-  EXPECT_EQ(none.note, "history.weight[-1] is 0: nothing divides by it");
+  EXPECT_EQ(none.note, "history.weight[-1] is 0: cannot divide by it");
 }
 
 TEST_F(ExpectationsTest, AreOfTheCaseAsItIsUnlessAllAreAskedFor) {

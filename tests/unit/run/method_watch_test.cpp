@@ -7,7 +7,7 @@
 namespace ricochet {
 namespace {
 
-/// A step at whose end this was put in so far, with a mean of this weight that acts on a point, or on none.
+/// Enters a step with this method energy so far, and a mean of this weight that acts on a point, or on none.
 void enter(MethodWatch& watch, double method_energy, double weight = 0.0, double reaction = 1.0) {
   State state;
   state.forces.mean_normal_reaction = Vector::Constant(1, reaction);
@@ -32,7 +32,7 @@ TEST(MethodWatch, TellsTheWeightsThatActed) {
   MethodWatch watch(ReactionMean::mixed);
   EXPECT_EQ(watch.reactions()->mean_steps, 0);
   enter(watch, 0.0, 0.25);
-  enter(watch, 0.0, 0.5, 0.0);  // nothing presses
+  enter(watch, 0.0, 0.5, 0.0);  // no pressure
   enter(watch, 0.0, 0.125);
   enter(watch, 0.0, 1.0);  // no mean was found
   const ActingReactions acting = *watch.reactions();

@@ -10,7 +10,7 @@
 namespace ricochet {
 namespace {
 
-/// Number of the step, from 1, after which it tells; 0: after none of them.
+/// Number of the step, from 1, after which it reports; 0 if it does not.
 int tells_after(NewtonWatch& watch, const std::vector<int>& iterations) {
   int told = 0;
   for (std::size_t k = 0; k < iterations.size(); ++k) {

@@ -21,7 +21,7 @@ HistoryTable pulse() {
   return history;
 }
 
-/// Rounding of differences of times, which are a tenth of the times, and of values up to 10.
+/// Rounding of time differences, which are a tenth of the times, and of values up to 10.
 constexpr double rounding = 1e-14;
 
 double value(const std::string& text, const HistoryTable& history = pulse()) {
@@ -52,7 +52,7 @@ TEST(QuantityValue, IsLinearBetweenRows) {
   EXPECT_EQ(value("history.count(t=0)"), 0.0);
 }
 
-/// 0.1·3 is not 0.3 in binary, and yet nothing of the next row enters.
+/// 0.1·3 is not 0.3 in binary, but the next row does not contribute.
 TEST(QuantityValue, IsThatOfTheRowWhereTheTimeIsThatOfARow) {
   for (int row = 0; row < 6; ++row) {
     const std::string time = "0." + std::to_string(row);
@@ -83,7 +83,7 @@ TEST(QuantityValue, IsAMeanOrAnIntegralOverTime) {
   EXPECT_NEAR(value("mean(history.count, 0.125, 0.475)"), 3.0, rounding) << "exact for what is linear";
 }
 
-/// The trapezoidal rule, also where rows are not at equal distances.
+/// The trapezoidal rule, also for rows at unequal distances.
 TEST(QuantityValue, WeighsRowsByTheirTimes) {
   HistoryTable history;
   history.names = {"time", "a"};
@@ -110,14 +110,14 @@ TEST(QuantityValue, SaysWhatThereIsNot) {
   EXPECT_EQ(problem("history.force[6]"), "history.force[6]: history.csv has 6 rows");
   for (const std::string quantity : {"history.force(t=0.6)", "max(history.force, 0.4, 0.6)"})
     EXPECT_EQ(problem(quantity),
-              "history.force: the time 0.6 lies outside the rows of history.csv, which go from 0 to 0.5");
+              "history.force: the time 0.6 is outside the rows of history.csv, which extend from 0 to 0.5");
   EXPECT_EQ(problem("history.force(t=-0.1)"),
-            "history.force: the time -0.1 lies outside the rows of history.csv, which go from 0 to 0.5");
+            "history.force: the time -0.1 is outside the rows of history.csv, which extend from 0 to 0.5");
   EXPECT_EQ(problem("first_time(history.force > 5)"),
             "history.force is never above 5: its largest value from 0 to 0.5 is 4");
   EXPECT_EQ(problem("first_time(history.count < 1, 0.1, 0.2)"),
             "history.count is never below 1: its smallest value from 0.1 to 0.2 is 1");
-  EXPECT_EQ(problem("summary.stps"), "summary.stps: there is nothing called \"stps\" in summary.json");
+  EXPECT_EQ(problem("summary.stps"), "summary.stps: there is no entry \"stps\" in summary.json");
 }
 
 TEST(QuantityValue, NeedsRows) {

@@ -12,7 +12,7 @@ TEST(DenseComplementarity, HoldsForRandomProblemsFromAnyStart) {
   for (int trial = 0; trial < 200; ++trial) {
     const Index n = 1 + trial % 40;
     const Matrix a = Matrix::Random(n, n);
-    // From well conditioned to nearly singular, of any units.
+    // From well conditioned to nearly singular, in any units.
     const Matrix h =
         std::pow(10.0, trial % 7 - 3) * (a * a.transpose() + std::pow(10.0, -(trial % 5)) * Matrix::Identity(n, n));
     const Vector b = h.diagonal().cwiseProduct(Vector::Random(n));

@@ -7,7 +7,7 @@
 namespace ricochet {
 namespace {
 
-/// Places that answer σ at once: the balance asks for c + slope σ. Returns how many rounds find the σ of the balance.
+/// Positions respond to σ at once: the balance requires c + slope σ. Returns the number of iterations to its σ.
 int rounds_to_balance(double c, double slope, double tolerance) {
   EnergySecant secant;
   secant.start();
@@ -30,9 +30,9 @@ TEST(EnergySecant, FindsABalanceThatIsLinearInSigmaInThreeRounds) {
 TEST(EnergySecant, WaitsUntilPlacesHaveSettledWhereTheWorkHardlyAnswers) {
   EnergySecant secant;
   secant.start();
-  EXPECT_FALSE(secant.choose(0.01, 1.0, 0.0, false));  // nothing is known of the slope yet
+  EXPECT_FALSE(secant.choose(0.01, 1.0, 0.0, false));  // the slope is still unknown
   EXPECT_FALSE(secant.is_weak());
-  EXPECT_TRUE(secant.choose(0.0195, 1.0, 0.0, false));  // 0.95 of it came back
+  EXPECT_TRUE(secant.choose(0.0195, 1.0, 0.0, false));  // 0.95 of the change is achieved
   EXPECT_TRUE(secant.is_weak());
   const double kept = secant.value();
   EXPECT_FALSE(secant.choose(0.5, 0.5, 0.0, false));
@@ -60,7 +60,7 @@ TEST(EnergySecant, GivesUpWhereChangesBringNothingAndStaysWithinStrains) {
   EXPECT_FALSE(secant.is_settled());
 }
 
-/// Rounding in what is asked for would make any slope of it.
+/// Rounding of the required value would give an arbitrary slope.
 TEST(EnergySecant, KeepsTheSlopeThatItHasWhereTheRestIsRounding) {
   EnergySecant secant;
   secant.start();

@@ -8,11 +8,11 @@
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/scheme/scheme.hpp"
 
-/// @file A type of a user's own: one class and one registration make it valid in case files, with its keys.
+/// @file A user-defined type: one class and one registration make it valid in case files, with its keys.
 namespace ricochet {
 namespace {
 
-/// Bodies fly on, slowed down: V₁ = V₀ / (1 + h d).
+/// Bodies continue with a damped velocity: V₁ = V₀ / (1 + h d).
 class Drag final : public Scheme {
  public:
   Drag(double step, double drag) : Scheme(step), drag_(drag) {}
@@ -139,7 +139,7 @@ TEST(Registry, MakesByNameWithParametersInCode) {
       "scheme \"newmark\": the parameter \"preset\" is trapezoid; it must be \"trapezoidal\" or \"textbook-half\"");
 }
 
-/// A key that its type does not admit is refused at registration, not at its first use.
+/// A key that its type cannot have is refused at registration, not at first use.
 TEST(Registry, RefusesKeysThatATypeCannotHave) {
   const auto with = [](Key key) {
     SchemeRegistration registration = drag_scheme();
@@ -152,7 +152,7 @@ TEST(Registry, RefusesKeysThatATypeCannotHave) {
                Error);
   EXPECT_THROW(scheme_registry().add(with({.name = "drag", .type = KeyType::number, .doc = "?"})), Error);
   EXPECT_THROW(scheme_registry().remove("keys"), Error) << "nothing was added";
-  // A key of the section's own, or of another type of another kind.
+  // A key of the section itself, or of another type of another kind.
   for (const char* const name : {"step", "beta"}) {
     scheme_registry().add(with({.name = name, .type = KeyType::text, .doc = "?"}));
     EXPECT_THROW((void)case_schema(), Error) << name;

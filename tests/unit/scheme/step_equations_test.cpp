@@ -5,7 +5,7 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file Stages of the schemes, compared with their formulas on the matrices of the problem.
+/// @file Stages of the schemes, compared with their formulas in the matrices of the problem.
 namespace ricochet {
 namespace {
 
@@ -38,7 +38,7 @@ TEST_F(StepEquationsTest, BalanceTheForcesAtTheBase) {
   EXPECT_LE((stage_.right_hand_side - (load - internal - damping)).norm(), 1e-15 * (size + damping.norm()));
 }
 
-/// p = B_T v − the obstacle's, on the motion of the whole step: v = ΔU/h, and the plane drags along.
+/// p = B_T v minus the obstacle's velocity, over the whole step: v = ΔU/h, and the plane drags along.
 TEST_F(StepEquationsTest, TakeTheSlipOfTheWholeStep) {
   constexpr double h = 0.01;
   const Vector predicted = h * velocity_;
@@ -74,7 +74,7 @@ TEST(StepEquations, PrescribeWhatSupportsDo) {
   }
 }
 
-/// Dofs without inertia have no acceleration, and the mean velocity of the step.
+/// Dofs without inertia have no acceleration, and their velocity is the mean over the step.
 TEST(StepEquations, LetMasslessDofsFollow) {
   CaseRun run(test_support::thrown_case(test_support::one_sided_block(), "equivalent",
                                         "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"));

@@ -11,7 +11,7 @@
 #include "ricochet/simulation/monitor/surface_pieces.hpp"
 #include "support/box_mesh.hpp"
 
-// The surface of a unit box, meshed with every cell shape: distances from its closed form.
+// The surface of a unit box, meshed with every cell shape: distances compared with the closed form.
 
 namespace ricochet {
 namespace {
@@ -28,7 +28,7 @@ std::unique_ptr<MeshedBody> box_of(CellShape shape, int degree) {
                           degree);
 }
 
-/// To the surface of [0, 1]ᵈ, negative inside.
+/// Distance to the surface of [0, 1]ᵈ, negative inside.
 double distance_to_box(const Eigen::Vector3d& point, int d) {
   double outside = 0.0, inside = 1.0;
   for (int k = 0; k < d; ++k) {

@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-// Two squares of unit cells, one of which moves through the other as a rigid body: how deep it is follows from where it
-// is.
+// Two squares of unit cells, one of which moves through the other as a rigid body: its position determines its depth.
 
 namespace ricochet {
 namespace {
 
 constexpr double edge = 0.1;
 
-/// [0, 1]² and, 0.2 above its middle, a square with a side of 0.4.
+/// The square [0, 1]² and, 0.2 above its middle, a square with a side of 0.4.
 struct TwoSquares {
   Points positions{2, 0};
   std::vector<CellBlock> cells{{CellShape::quadrilateral, 4, {}, {}}};
@@ -48,7 +47,7 @@ struct TwoSquares {
   [[nodiscard]] BodyWatch watch(const std::vector<ContactNodeAllowance>& kept = {}) const {
     return {positions, cells, boundary_facets(cells), bodies, size, kept};
   }
-  /// Nodes of the facing sides of the two squares, as nodes of a contact with these allowances.
+  /// Nodes of the facing sides of the two squares, as contact nodes with these allowances.
   [[nodiscard]] std::vector<ContactNodeAllowance> facing_nodes(double of_lower, double of_upper) const {
     std::vector<ContactNodeAllowance> result;
     for (Index node = 0; node < positions.cols(); ++node) {
@@ -73,8 +72,7 @@ struct TwoSquares {
 TEST(BodyWatch, FindsBodiesThatGoThroughEachOther) {
   const TwoSquares squares;
   BodyWatch watch = squares.watch();
-  // Its lower side is at 1.2 − t. Nodes of its corners are 0.3 from the sides: until then 1 − y tells how deep they
-  // are.
+  // Its lower side is at 1.2 − t. Its corner nodes are 0.3 from the sides: until then 1 − y is their depth.
   const double speed = 1.0, step = 1e-3;
   long steps = 0;
   for (; static_cast<double>(steps) * step < 0.35; ++steps) {
@@ -84,7 +82,7 @@ TEST(BodyWatch, FindsBodiesThatGoThroughEachOther) {
     if (depth < 0.0) {
       EXPECT_TRUE(watch.pairs().empty()) << depth;
     } else if (depth > 0.25 * edge) {
-      // No deeper than a quarter of an edge unseen, and within an edge from then on.
+      // Detected no deeper than a quarter of an edge, and within an edge from then on.
       ASSERT_EQ(watch.pairs().size(), 1U) << depth;
       EXPECT_LE(watch.pairs()[0].deepest.depth, depth + 1e-12);
       EXPECT_GE(watch.pairs()[0].deepest.depth, depth - edge - speed * step);
@@ -105,7 +103,7 @@ TEST(BodyWatch, FindsBodiesThatGoThroughEachOther) {
 TEST(BodyWatch, SaysNothingOfBodiesThatPassOrTouch) {
   const TwoSquares squares;
   BodyWatch watch = squares.watch();
-  // Down beside it, then along its side with coinciding nodes, in touch.
+  // Down beside the other square, then along its side in contact, with coinciding nodes.
   for (int i = 0; i <= 200; ++i) watch.check(squares.displacement(0.8, -0.01 * i), i, false);
   for (int i = 0; i <= 200; ++i) watch.check(squares.displacement(0.7, -0.01 * i), i, true);
   EXPECT_TRUE(watch.pairs().empty());
@@ -149,7 +147,7 @@ TEST(BodyWatch, LetsNodesOfAContactBeInsideByTheirAllowance) {
   knowing.check(squares.displacement(0.0, -0.2 - 0.11), 0.75, true, gaps);
   EXPECT_NEAR(knowing.pairs()[0].deepest.depth, 0.01, 1e-12);
   EXPECT_NEAR(knowing.pairs()[0].at_contact.depth, 0.091, 1e-12);
-  // Both are kept where a run goes on.
+  // A resumed run keeps both.
   Snapshot snapshot;
   knowing.save(snapshot, "bodies");
   BodyWatch resumed = squares.watch(squares.facing_nodes(0.05, 0.05));

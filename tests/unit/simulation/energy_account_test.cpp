@@ -6,7 +6,7 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file Works of forces and motions that are made up: each part of the account against its formula.
+/// @file Works of prescribed forces and motions: each part of the account compared with its formula.
 namespace ricochet {
 namespace {
 
@@ -28,7 +28,7 @@ class Account : public testing::Test {
     increment_ = Vector::Random(problem.dof_count());
   }
 
-  // Midpoint's forces act over the whole step: the account takes those at its end once.
+  // Midpoint's forces act over the whole step: the account counts those at its end once.
   CaseRun run_{test_support::thrown_case(test_support::one_sided_block(), "consistent", "scheme = \"midpoint\"\n",
                                          "friction = 0.3\n")};
   State state_;
@@ -52,7 +52,7 @@ TEST_F(Account, HasEachWorkByItsFormula) {
        forces.normal_reaction.dot(obstacle.normal) - forces.tangential_reaction.dot(obstacle.tangential));
   near(works.load, forces.varying_load.dot(increment_));
   near(works.damping, -forces.damping_force.dot(increment_));
-  // Together the reactions' works are those of their nodal forces: nothing is counted twice or left out.
+  // The works of the reactions sum to the work of their nodal forces: nothing is counted twice or left out.
   Vector nodal = Vector::Zero(problem.dof_count());
   problem.contact.rows->add_force(forces.normal_reaction, forces.tangential_reaction, nodal);
   near(works.contact + works.friction + works.obstacle, nodal.dot(increment_));
@@ -70,7 +70,7 @@ TEST_F(Account, GoesOnFromWhatWasSaved) {
   EXPECT_EQ(resumed.residual(resumed.energies(state_)), account.residual(account.energies(state_)));
 }
 
-/// Energies of a body that flies: ½ m v², and what gravity has in store.
+/// Energies of a body in flight: ½ m v² and the potential of gravity.
 TEST_F(Account, KnowsTheEnergyOfAFreeFlight) {
   const SemidiscreteProblem& problem = run_.problem();
   EnergyAccount account(problem, run_.scheme(), run_.state());

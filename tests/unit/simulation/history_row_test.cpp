@@ -6,8 +6,8 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file A row of the history against its formulas, with whole matrices: what it takes from the step, or leaves out
-/// because the mass allows it, changes nothing but rounding.
+/// @file A row of the history compared with its formulas and whole matrices: values reused from the step, and terms
+/// left out because the mass allows it, change only the rounding.
 namespace ricochet {
 namespace {
 
@@ -80,7 +80,7 @@ TEST(HistoryRow, HasEnergiesAndMomentaByTheirFormulas) {
   }
 }
 
-/// Masses of densities act on the components alike; one that does not has momenta, too.
+/// Masses from densities act equally on all components; a mass that does not still has momenta.
 TEST(HistoryRow, TakesAMassThatCouplesComponents) {
   CaseRun run(test_support::thrown_case(test_support::one_sided_block(), "consistent", "scheme = \"midpoint\"\n"));
   SemidiscreteProblem problem = run.problem();

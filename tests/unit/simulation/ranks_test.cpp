@@ -8,20 +8,20 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file Results of a body that is distributed over processes.
+/// @file Results of a body distributed over processes.
 namespace ricochet {
 namespace {
 
 using test_support::CaseRun;
 
-/// Two ranks that have the same halves.
+/// Two ranks with identical halves.
 class TwoAlike final : public Ranks {
  public:
   void reduce(std::span<double> values, std::span<const Reduction> by) const override {
     ASSERT_EQ(values.size(), by.size());
     for (std::size_t i = 0; i < values.size(); ++i) values[i] *= by[i] == Reduction::sum ? 2.0 : 1.0;
   }
-  /// The other one speaks.
+  /// The other rank owns everything.
   [[nodiscard]] bool is_owned(Index) const override { return false; }
 };
 
@@ -36,8 +36,8 @@ TEST(Ranks, OneAloneChangesNothing) {
   EXPECT_TRUE(one_rank().is_owned(0));
 }
 
-/// Energies, works, forces, momenta and counts are sums; what is largest is not; the step, the time and the iterations
-/// are the same everywhere.
+/// Energies, works, forces, momenta and counts are summed, largest values are not; the step, the time and the
+/// iterations are equal on all ranks.
 TEST(Ranks, EveryColumnOfTheHistorySaysHowItIsReduced) {
   CaseRun run(test_support::thrown_case(test_support::one_sided_block(), "equivalent",
                                         "scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "friction = 0.3\n"));
@@ -45,7 +45,7 @@ TEST(Ranks, EveryColumnOfTheHistorySaysHowItIsReduced) {
   SemidiscreteProblem divided = run.problem();
   const TwoAlike two;
   divided.ranks = &two;
-  // Half of the whole body: cells and facets of the groups, which averages are taken over.
+  // Half of the whole body: cells and facets of the groups over which averages are formed.
   const std::vector<Group>& groups = run.model().mesh.groups;
   const Group& body =
       *std::find_if(groups.begin(), groups.end(), [](const Group& group) { return group.dimension == 2; });

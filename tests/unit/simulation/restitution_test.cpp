@@ -7,7 +7,7 @@
 namespace ricochet {
 namespace {
 
-/// A body of mass 2 that came to a floor with this velocity (along x, and down), and goes up at half its approach plus
+/// A body of mass 2 that reached a floor with this velocity (along x, and down), and leaves at half its approach plus
 /// `more`; no other force acted.
 Impact impact(double along, double down, double more = 0.0) {
   Impact result;
@@ -46,7 +46,7 @@ TEST(Restitution, IsNoneOfABodyThatStaysOrDidNotCome) {
 }
 
 /// The velocity that friction, vibrations or gravity give to a body that hardly approaches would be 1000 times its
-/// velocity of approach.
+/// approach velocity.
 TEST(Restitution, IsNoneWhereOtherThingsMakeTheVelocityAfter) {
   expect_none(impact(1.0, 1e-4, 0.1), "along the obstacle");
   Impact vibrating = impact(0.0, 1e-4, 0.1);
@@ -60,7 +60,7 @@ TEST(Restitution, IsNoneWhereOtherThingsMakeTheVelocityAfter) {
   expect_none(pushed, "other forces");
 }
 
-/// Units do not matter, nor does an obstacle that moves along with the body.
+/// Units have no effect, nor has an obstacle that moves along with the body.
 TEST(Restitution, LooksAtRatiosOnly) {
   for (const double unit : {1e-12, 1.0, 1e12}) {
     for (const double along : {50.0, 200.0}) {
@@ -77,7 +77,7 @@ TEST(Restitution, LooksAtRatiosOnly) {
   EXPECT_NEAR(*moving.restitution(), 0.5, 1e-15);
 }
 
-/// Seen from a belt that runs along with the body, it does not slide; seen from one that runs, a body that falls does.
+/// Relative to a belt that moves along, the body does not slide; relative to a moving belt, a falling body does.
 TEST(Restitution, LooksAtSlidingOnTheObstacle) {
   Impact carried = impact(200.0, 1.0);
   carried.obstacle_sliding = {200.0, 0.0, 0.0};
@@ -88,8 +88,8 @@ TEST(Restitution, LooksAtSlidingOnTheObstacle) {
   expect_none(dropped, "along the obstacle");
 }
 
-/// Two bodies: that of `impact`, and one of mass 1 that goes up from below at 1, and down at 0.5 after it: they part at
-/// half the speed at which they came.
+/// Two bodies: that of `impact`, and one of mass 1 that goes up from below at 1, and down at 0.5 afterwards: they
+/// separate at half their approach speed.
 Impact impact_of_two() {
   Impact result = impact(0.0, 1.0);
   result.after.velocity = {0.0, 0.5, 0.0};
@@ -97,7 +97,7 @@ Impact impact_of_two() {
   result.other->before.velocity = {0.0, 1.0, 0.0};
   result.other->after.velocity = {0.0, -0.5, 0.0};
   result.other->before.kinetic_energy = result.other->before.rigid_kinetic_energy = 0.5;
-  // Of the impulse 2 · 1.5 = 3 on the first body the second has got 1.5, and other forces have done the rest.
+  // Of the impulse 2 · 1.5 = 3 on the first body, 1.5 acts on the second one; other forces supply the rest.
   result.impulse = result.normal_impulse = {0.0, 3.0, 0.0};
   return result;
 }
@@ -111,7 +111,7 @@ TEST(Restitution, OfTwoBodiesIsThatOfTheirVelocityAgainstEachOther) {
   EXPECT_NEAR(*two.restitution(), 0.5, 1e-15);
   EXPECT_NEAR(two.other_impulse().norm(), 0.0, 1e-15);
   EXPECT_NEAR((two.other_impulse_on_other() - Eigen::Vector3d(0.0, 1.5, 0.0)).norm(), 0.0, 1e-15);
-  // Results do not depend on the observer.
+  // Results are independent of the observer.
   for (RigidMotionState* motion : {&two.before, &two.after, &two.other->before, &two.other->after})
     motion->velocity += Eigen::Vector3d(100.0, -100.0, 7.0);
   two.before.kinetic_energy = 0.5 * two.mass * two.before.velocity.squaredNorm();
@@ -144,7 +144,7 @@ TEST(Restitution, OfTwoBodiesIsNoneWhereOtherThingsMakeTheVelocityAfter) {
   slides.other->before.velocity[0] = 300.0;
   slides.other->before.kinetic_energy = 0.5 * slides.other->before.velocity.squaredNorm();
   expect_none(slides, "slid along each other");
-  // Gravity gives both the same velocity, and none of it to one against the other.
+  // Gravity gives both bodies the same velocity, and none to one relative to the other.
   Impact falls = impact_of_two();
   falls.impulse = falls.normal_impulse = {0.0, 1.5, 0.0};
   falls.after.velocity += Eigen::Vector3d(0.0, -0.75 - 100.0, 0.0);
@@ -154,8 +154,8 @@ TEST(Restitution, OfTwoBodiesIsNoneWhereOtherThingsMakeTheVelocityAfter) {
   expect_none(falls, "other forces gave them");
 }
 
-/// Supports that hold the second body put any impulse into it. It is a part of the ground, and what its centre does is
-/// vibration, whichever of the two is named first.
+/// Supports of the second body can give it any impulse. It belongs to the ground, and the motion of its centre is
+/// vibration, whichever body is named first.
 TEST(Restitution, OfABodyThatMeetsAHeldOneIsItsOwn) {
   Impact onto_held = impact_of_two();
   onto_held.other->held = true;
@@ -176,7 +176,7 @@ TEST(Restitution, OfABodyThatMeetsAHeldOneIsItsOwn) {
   EXPECT_EQ(exchanged.approach_mass(), 2.0);
   ASSERT_TRUE(exchanged.restitution().has_value()) << why_no_restitution(exchanged);
   EXPECT_NEAR(*exchanged.restitution(), 0.5, 1e-15);
-  // Whatever it does before is vibration; of two that are held there is none, as each gets impulses from its supports.
+  // Its previous motion is vibration; two held bodies have no restitution, as supports give impulses to each.
   Impact vibrates = onto_held;
   vibrates.other->before.velocity = {0.0, 30.0, 0.0};
   vibrates.other->before.kinetic_energy = 0.5 * 30.0 * 30.0;
@@ -187,7 +187,7 @@ TEST(Restitution, OfABodyThatMeetsAHeldOneIsItsOwn) {
   expect_none(both, "other forces gave them");
 }
 
-/// At an approach of 1 the energy of a body of mass 2 is 1, and of a restitution of 0.5 the body has lost 0.75.
+/// At an approach of 1 the energy of a body of mass 2 is 1, and at a restitution of 0.5 it has lost 0.75.
 TEST(Restitution, IsInexactWhereTheMethodDidATenthOfIt) {
   Impact lossy = impact(3.0, 1.0);
   EXPECT_FALSE(restitution_error(lossy).is_large) << "results that do not tell";
@@ -202,7 +202,7 @@ TEST(Restitution, IsInexactWhereTheMethodDidATenthOfIt) {
   }
   lossy.ended = false;
   EXPECT_FALSE(restitution_error(lossy).is_large) << "there is no restitution";
-  // Of a restitution of 1 no loss is left to be a tenth of: what changes the third digit is told.
+  // A restitution of 1 has no loss to compare with: a change of the third digit is reported.
   Impact elastic = impact(0.0, 1.0, 0.5);
   elastic.method_energy = -0.0009;
   EXPECT_FALSE(restitution_error(elastic).is_large);

@@ -19,7 +19,7 @@ RotatingBody disc(double radius, double turn, double before, double after) {
           radius * down};
 }
 
-/// Radius R √(1 + φ²), which grows at the rate R φ ω.
+/// The radius R √(1 + φ²) grows at the rate R φ ω.
 TEST(TurnGrowth, OfASteadySpinIsThatOfTheRadius) {
   const double radius = 9.525e-3, spin = 800.0, duration = 54e-6, turn = 0.01;
   const double before = radius * turn * spin, after = radius * (turn + spin * duration) * spin;
@@ -44,7 +44,7 @@ TEST(TurnGrowth, IsThatAcrossTheAxis) {
   EXPECT_EQ(rotation_growth(aslant, down, 0.25), 0.0) << "it does not turn any more";
 }
 
-/// Velocity with which a mass on a spring leaves a floor that it reached at 1, with a radius that grows.
+/// Velocity with which a mass on a spring leaves a floor that it reached at 1, with a growing radius.
 double velocity_after(const std::function<double(double)>& growth) {
   constexpr double h = 1e-5;
   double height = 0.0, velocity = -1.0, grown = 0.0, time = 0.0;
@@ -57,7 +57,7 @@ double velocity_after(const std::function<double(double)>& growth) {
   return velocity;
 }
 
-/// Unit mass and stiffness, so that contact lasts for π.
+/// Unit mass and stiffness, so that contact lasts π.
 TEST(TurnGrowth, GivesTheVelocityAfter) {
   constexpr double pi = std::numbers::pi, turn = 0.004;
   EXPECT_NEAR(velocity_after([](double) { return 0.0; }), 1.0, 1e-4);

@@ -12,7 +12,7 @@ namespace self_overlap_test {
 using Two = Eigen::Vector2d;
 using Vector3 = Eigen::Vector3d;
 
-/// Corners, each edge in so many parts.
+/// Polygon of the corners, with each edge divided into `parts`.
 std::vector<Two> refined(const std::vector<Two>& corners, int parts, bool closed = true) {
   std::vector<Two> result;
   for (std::size_t i = 0; i + (closed ? 0 : 1) < corners.size(); ++i) {
@@ -40,13 +40,13 @@ std::vector<BodySurface::Piece> segments(std::size_t count, bool closed = true) 
 /// Two arms of thickness 1 with a gap of 1 between them, from x = 1 to 4.
 const std::vector<Two> clamp = {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 2}, {4, 2}, {4, 3}, {0, 3}};
 
-/// The upper arm moved down: from x = 2 on so far that it overlaps the lower one by `overlap`.
+/// The upper arm moved down from x = 2 on, so far that it overlaps the lower one by `overlap`.
 Two closed(const Two& point, double overlap) {
   if (point[1] < 1.5) return point;
   return {point[0], point[1] - (1.0 + overlap) * std::clamp(point[0] - 1.0, 0.0, 1.0)};
 }
 
-/// Nodes that lie where both arms are, away from their ends.
+/// Nodes in the range of both arms, away from their ends.
 bool is_between(const Two& reference) {
   return reference[0] >= 2.5 && reference[0] <= 3.5 && (reference[1] == 1.0 || reference[1] == 2.0);
 }
@@ -72,7 +72,7 @@ TEST(SelfOverlap, IsThatOfTheArmsOfAClamp) {
           } else if (is_between(reference[i])) {
             ASSERT_TRUE(found) << overlap << ' ' << i;
             EXPECT_NEAR(depth, overlap * size, 1e-13 * size);
-            // The two surfaces look at each other.
+            // The two surfaces face each other.
             EXPECT_NEAR(surface.normal_of(found->own_piece).dot(surface.normal_of(found->other_piece)), -1.0, 1e-9);
           } else {
             EXPECT_LE(depth, overlap * size * (1.0 + 1e-9));
@@ -83,7 +83,7 @@ TEST(SelfOverlap, IsThatOfTheArmsOfAClamp) {
   }
 }
 
-/// A clamp that is as thick as it likes: its sides are of triangles.
+/// A clamp of any thickness: its sides consist of triangles.
 /// Nodes between the arms face the other arm; nodes outside of the clamp face nothing.
 TEST(SelfOverlap, KnowsHowFarAwayWhatFacesANodeIs) {
   const std::vector<Two> reference = refined(clamp, 12);
@@ -138,8 +138,8 @@ TEST(SelfOverlap, IsTheSameInSpace) {
   }
 }
 
-/// Half of the section of a hollow ball, of which the pole of the hollow is pushed into the opposite wall: on the axis
-/// and beside it, where rays meet the other half.
+/// Half of the section of a hollow ball: the pole of the hollow is pushed into the opposite wall, on the axis and
+/// beside it, where rays meet the other half.
 TEST(SelfOverlap, GoesOnBeyondAnAxis) {
   constexpr int parts = 24;
   for (const double overlap : {-0.1, 0.2}) {
@@ -158,7 +158,7 @@ TEST(SelfOverlap, GoesOnBeyondAnAxis) {
     }
     const BodySurface surface(as_points(outline), pieces);
     const SelfOverlap test(surface, true);
-    const int pole = parts + 1;  // of the hollow, at the top
+    const int pole = parts + 1;  // pole of the hollow, at the top
     ASSERT_NEAR(outline[pole][1], -1.0 - overlap, 1e-14);
     const auto found = test.at(pole);
     ASSERT_EQ(found.has_value(), overlap > 0.0);
@@ -183,7 +183,7 @@ TEST(SelfOverlap, IsNoneOfTubes) {
   }
 }
 
-/// Bodies that fold nowhere have none, whatever corners they have.
+/// Bodies without folds have no overlap, whatever their corners.
 TEST(SelfOverlap, IsNoneOfBodiesThatDoNotFold) {
   std::vector<Two> star, spiral;
   for (int k = 0; k < 14; ++k) {

@@ -10,8 +10,8 @@
 #include "support/case_run.hpp"
 #include "support/two_bodies.hpp"
 
-// A square of 4 × 4 cells on another one of 2 × 2, which is moved as a rigid body: how far it has slid and how deep it
-// is follows from where it is.
+// A square of 4 × 4 cells on another one of 2 × 2, moved as a rigid body: its position determines its slip and its
+// depth.
 
 namespace ricochet {
 namespace {
@@ -38,7 +38,7 @@ std::string stack(const std::string& contact) {
 
 const std::string lower_on_upper = "[[contact]]\ngroup = \"lower.y1\"\nagainst = \"upper.y0\"\n";
 
-/// The state of a run with the upper square displaced from where it touches, all points pressed or none.
+/// State of a run with the upper square displaced from its contact position, all points pressed or none.
 State displaced(const CaseRun& run, double x, double y, bool pressed, double time) {
   State state = run.state();
   const ConnectedBodies bodies = find_connected_bodies(run.model().space);
@@ -75,7 +75,7 @@ TEST(SlidingWatch, TellsOnceWhatSlidesByMoreThanHalfOfTheSmallerFacet) {
   EXPECT_EQ(watch.report()[0].time_beyond, 0.75);
   ASSERT_EQ(watch.report()[0].position.size(), 2U);
   EXPECT_NEAR(watch.report()[0].position[1], 1.0 + gap, 1e-12) << "of the finer side";
-  // What it was is known where a run goes on, and not told again.
+  // A resumed run keeps the slip, and does not report it again.
   Snapshot snapshot;
   watch.save(snapshot, "sliding");
   SlidingWatch resumed(run.model().body, run.problem(), run.model().contact_pairs);
@@ -98,7 +98,7 @@ TEST(SlidingWatch, BeginsAtPairAt) {
   }
 }
 
-/// How deep they are the contact itself sees: its gaps are in the history (max_penetration).
+/// The contact itself measures the depth of its nodes: its gaps are in the history (max_penetration).
 TEST(PenetrationWatch, LeavesNodesOfAContactToItsGaps) {
   const CaseRun run(stack(lower_on_upper));
   PenetrationWatch watch(run.model().body, run.problem(), run.model().contact_pairs, {});
@@ -106,7 +106,7 @@ TEST(PenetrationWatch, LeavesNodesOfAContactToItsGaps) {
   EXPECT_TRUE(watch.report().found.empty());
 }
 
-/// The sides of the upper square are in no contact, so nothing keeps them out.
+/// The sides of the upper square are in no contact, so they may penetrate.
 TEST(PenetrationWatch, LooksAtAllOtherNodesOfTwoBodiesInContact) {
   const CaseRun run(stack(lower_on_upper));
   PenetrationWatch watch(run.model().body, run.problem(), run.model().contact_pairs, {});

@@ -10,7 +10,7 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-/// @file Direct or iterative: on both sides of every limit, and the same for the rest of a run.
+/// @file Direct or iterative: on both sides of every limit, and unchanged for the rest of a run.
 namespace ricochet {
 namespace {
 
@@ -18,7 +18,7 @@ using test_support::CaseRun;
 
 constexpr double enough_memory = 1e15;
 
-/// A factor of 10⁹ entries that is made in 100 seconds and read twice in 1.6; iterations take 3 seconds.
+/// A factor of 10⁹ entries: 100 seconds to compute, 1.6 for the two reads of a solve; iterations take 3 seconds.
 SparseCholesky::Prediction large_factor() {
   return {true, 1e9, 100.0 * estimated_operations_per_second};
 }
@@ -36,7 +36,7 @@ ChosenMethod choose(const SparseCholesky::Prediction& predicted, long solves, do
 }
 
 TEST(ChooseMethod, WeighsTheFactorizationAgainstTheSolves) {
-  // 100 + 1.6 n against 3 n: from 72 solves on.
+  // 100 + 1.6 n compared with 3 n: direct from 72 solves on.
   EXPECT_EQ(choose(large_factor(), 1).method, SolverMethod::iterative);
   EXPECT_EQ(choose(large_factor(), 71).method, SolverMethod::iterative);
   EXPECT_EQ(choose(large_factor(), 72).method, SolverMethod::direct);
@@ -69,14 +69,14 @@ TEST(ChooseMethod, IteratesWhereAFactorDoesNotFit) {
   EXPECT_EQ(choose(large_factor(), 100000, 8.1e9).method, SolverMethod::direct);
   EXPECT_EQ(choose(large_factor(), 100000, 7.9e9).method, SolverMethod::iterative);
   EXPECT_EQ(choose(large_factor(), 0, 7.9e9, {0.0, 1.0, 0.0}).method, SolverMethod::iterative);
-  EXPECT_NE(choose(large_factor(), 1, 7.9e9).reason.find("8 GB, and 7.9 GB are allowed"), std::string::npos)
+  EXPECT_NE(choose(large_factor(), 1, 7.9e9).reason.find("8 GB, but only 7.9 GB are allowed"), std::string::npos)
       << choose(large_factor(), 1, 7.9e9).reason;
 }
 
 TEST(ChooseMethod, IteratesWhereNobodyCanCountAFactor) {
   const ChosenMethod chosen = choose({false, 3e9, 1e15}, 100000);
   EXPECT_EQ(chosen.method, SolverMethod::iterative);
-  EXPECT_EQ(chosen.reason, "a factor would have 3e+09 entries, more than can be counted");
+  EXPECT_EQ(chosen.reason, "a factor would have 3e+09 entries, more than CHOLMOD can count");
 }
 
 TEST(ChooseMethod, DoesWhatItIsTold) {
@@ -86,7 +86,7 @@ TEST(ChooseMethod, DoesWhatItIsTold) {
   EXPECT_EQ(choose_method(large_factor(), {1e6, 1.0, 0.0}, options, slow_iterations).method, SolverMethod::direct);
   options.method = SolverMethod::iterative;
   EXPECT_EQ(choose_method(large_factor(), {1e6, 1.0, 0.0}, options, slow_iterations).method, SolverMethod::iterative);
-  // The contact nodes of an explicit step are few.
+  // An explicit step has few contact nodes.
   EXPECT_EQ(choose_method(large_factor(), {0.0, 1.0, 0.0, StageDofs::contact}, options, slow_iterations).method,
             SolverMethod::direct);
 }
@@ -114,12 +114,12 @@ TEST(IterationEstimate, IsOfTheSizeOfTheCounts) {
       CaseRun run(test_support::thrown_case(body, mass, test_support::time_of("newmark")));
       const SemidiscreteProblem& problem = run.problem();
       const double alpha = run.scheme().operators(problem).front().mass;
-      // Multiples of the case's step: waves cross two cells, or the body.
+      // Multiples of the case's step: waves cross two cells, or the whole body.
       for (const double longer : {30.0, 100.0}) {
         const OperatorCoefficients coefficients{alpha / (longer * longer), 1.0, 0.0};
         const int counted = iterations_of(problem, coefficients, 1e-10);
         const IterationEstimate estimate = estimate_iterations(problem, coefficients, 1e-10);
-        // Of two free bodies, one of hexahedra, up to 3.6 times as many were counted; nobody knows why.
+        // Two free bodies, one of hexahedra, needed up to 3.6 times as many, for unknown reasons.
         const double most = body.against.empty() ? 2.0 : 4.0;
         EXPECT_GT(estimate.iterations, counted / most) << body.name << ' ' << mass << ' ' << longer;
         EXPECT_LT(estimate.iterations, counted * 2.0) << body.name << ' ' << mass << ' ' << longer;

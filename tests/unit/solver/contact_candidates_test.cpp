@@ -9,7 +9,7 @@
 namespace ricochet {
 namespace {
 
-/// All points eligible, y = gap + Gδ.
+/// Stage with all points eligible, y = gap + Gδ.
 Stage stage_with_gaps(const Vector& gaps) {
   Stage stage;
   stage.gap_offset = gaps;
@@ -49,7 +49,7 @@ TEST(ContactCandidates, AreNoneFarFromTheObstacle) {
 
 TEST(ContactCandidates, TakeUpPointsInsideTheObstacleAndThoseWithinReachOfThem) {
   ContactCandidates candidates(5);
-  // Inside by 1: the stage moves points by that, and by twice that at most; eight times that are taken up together.
+  // Inside by 1: the stage moves points by that, and by twice that at most; points within eight times that are added.
   const Stage stage = stage_with_gaps(gaps({20.0, -1.0, 15.9, 0.5, 1.9}));
   EXPECT_TRUE(some_may_touch(candidates, stage));
   EXPECT_EQ(approaching(candidates, stage), (PointNumbers{1, 2, 3, 4}));
@@ -86,14 +86,14 @@ TEST(ContactCandidates, AreAskedForWhereOthersPenetrate) {
   ContactCandidates candidates(4);
   const Stage stage = stage_with_gaps(gaps({1.0, 1.0, 1.0, 1.0}));
   candidates.add_candidates({0});
-  // 0 is a candidate: its gap is the solver's business. 2 is deepest, 1 less than half as deep, 3 only rounding inside.
+  // 0 is a candidate, so the solver handles its gap. 2 is deepest, 1 less than half as deep, 3 inside by rounding only.
   EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, -1.4, -2.0, -1.0 - 5e-16}), false), (PointNumbers{2}));
   EXPECT_EQ(candidates.penetrating(stage, gaps({0.0, -1.6, -2.0, 0.0}), false), (PointNumbers{2, 1}));
   EXPECT_EQ(candidates.penetrating(stage, gaps({0.0, 0.0, 0.0, -1.0 - 5e-16}), false), PointNumbers{});
   EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, 0.0, 0.0, 0.0}), true), (PointNumbers{0})) << "nobody asked it";
 }
 
-/// A body that nothing held falls through its obstacle with all points; they are not all taken up at once.
+/// An unsupported body falls through its obstacle with all points, which are not all added at once.
 TEST(ContactCandidates, DoubleAtMost) {
   const Index count = 1000;
   ContactCandidates candidates(count);
@@ -146,15 +146,15 @@ TEST(ContactCandidates, AreTheNearestOfManyThatMayTouch) {
   for (const Index point : taken) EXPECT_LE(distance[point], static_cast<double>(taken.size()));
   candidates.add_candidates(taken);
   EXPECT_EQ(approaching(candidates, stage), PointNumbers{}) << "the others are asked for where they penetrate";
-  // Many that carry a force have many around them.
+  // Many loaded points have many neighbours.
   candidates.update_history(stage, Vector::Constant(count, -1e5), 1000);
   const std::size_t all = taken.size() + approaching(candidates, stage).size();
   EXPECT_GE(all, 2000U);
   EXPECT_LE(all, 4000U);
 }
 
-/// A wheel of 4,000 points rolls a whole turn: each of its points comes to the floor and leaves it. Those that have
-/// left are dropped.
+/// A wheel of 4,000 points rolls one turn: each point reaches the floor and leaves it. Points that have left are
+/// dropped.
 TEST(ContactCandidates, StayFewOnAWheelThatRolls) {
   const Index count = 4000;
   const int steps = 400;

@@ -53,7 +53,7 @@ class ContactColumnsTest : public testing::Test {
 TEST_F(ContactColumnsTest, GiveTheCondensedOperator) {
   DelassusColumns columns(factor_);
   Matrix w, h(0, size);
-  // Taken up in groups of several sizes, with and without a full block.
+  // Added in groups of several sizes, with and without a full block.
   for (const Index count : {5, 1, 60, 24}) {
     const SparseMatrix transposed = rows_of_h(size, count, static_cast<unsigned>(count));
     const Matrix before = w;

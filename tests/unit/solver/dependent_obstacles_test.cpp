@@ -12,9 +12,9 @@
 #include "support/case_run.hpp"
 #include "support/contact_problems.hpp"
 
-/// @file Bodies whose contact nodes meet more planes at once than they have freedom: held by supports, between planes
-/// that are nearly parallel, twice the same or opposed. A step has one motion all the same. A build with sanitizers
-/// runs a sample; RICOCHET_RANDOM_CASES=100 a hundred times as many.
+/// @file Bodies whose contact nodes meet more planes at once than they have degrees of freedom: held by supports,
+/// between planes that are nearly parallel, repeated or opposed. The motion of a step is still unique. A build with
+/// sanitizers runs a sample; RICOCHET_RANDOM_CASES=100 a hundred times as many.
 
 namespace ricochet::test_support {
 namespace {
@@ -45,7 +45,7 @@ std::string block_mesh() {
                        1.0, 1);
 }
 
-/// A plane against the lower side, which comes as close to it as `room` at the point x = `nearest`.
+/// A plane facing the lower side, at the distance `room` at its nearest point x = `nearest`.
 std::string plane(const std::string& name, const Eigen::Vector2d& normal, double nearest, double room, double friction,
                   const std::string& multipliers) {
   const Eigen::Vector2d point = Eigen::Vector2d(nearest, 0.0) - room * normal / normal.norm();
@@ -94,7 +94,7 @@ TEST(DependentObstacles, HoldAnyBodyUnderAnyScheme) {
     const double n = pick(0.2, 1e-7, 1e-3, 1e-12, 0.0, -0.2), room = pick(0.0, 1e-3, 1e-2);
     std::string text = body(mesh, pairing, random() % 3 != 0 ? held_along : "", step, 60);
     const auto add = [&](const std::string& name, const Eigen::Vector2d& normal, double extra) {
-      // Outside at all nodes.
+      // The plane is outside at all nodes.
       const double nearest = normal[0] > 0.0 ? 0.0 : normal[0] < 0.0 ? 2.0 : 1.0;
       text += plane(name, normal, nearest, room + extra, friction, multipliers);
     };
@@ -113,8 +113,8 @@ TEST(DependentObstacles, HoldAnyBodyUnderAnyScheme) {
   }
 }
 
-/// A plane that is there twice, or once more and hardly inclined, changes nothing, or as little: for a while, as
-/// impacts of nodes with inertia make more of any difference.
+/// A repeated plane, or an additional one with a tiny inclination, changes nothing, or as little: for a while, as
+/// impacts of nodes with inertia amplify any difference.
 TEST(DependentObstacles, APlaneTwiceIsAPlane) {
   const std::string mesh = block_mesh();
   for (const Pairing& pairing : pairings) {
@@ -149,7 +149,7 @@ TEST(DependentObstacles, APlaneTwiceIsAPlane) {
   }
 }
 
-/// A ceiling comes down on nodes on a floor: the step in which no clearance is left names the position and the
+/// A ceiling comes down on nodes on a floor: the step without remaining clearance reports the position and the
 /// obstacles.
 TEST(DependentObstacles, WithoutRoomAreNamed) {
   const std::string mesh = block_mesh();

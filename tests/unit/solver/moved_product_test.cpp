@@ -12,7 +12,7 @@ using test_support::BoxMesh;
 using test_support::make_box_mesh;
 using test_support::make_meshed_body;
 
-/// A (x − x₀) of few nodes, whose columns are kept, and of many, for which A is multiplied with.
+/// A (x − x₀) for few nodes, whose columns are kept, and for many, where A is multiplied.
 TEST(MovedProduct, IsTheProductWithWhatHasMoved) {
   const auto test = make_meshed_body(make_box_mesh(BoxMesh{CellShape::tetrahedron, {6, 7, 8}, 1, 0.15, {}}), 1);
   const SparseMatrix whole = assemble_stiffness(test->body, node_graph(test->space));
@@ -35,7 +35,7 @@ TEST(MovedProduct, IsTheProductWithWhatHasMoved) {
   }
 }
 
-/// A rank without nodes near the contact has a part all the same.
+/// A rank without nodes near the contact takes part as well.
 TEST(MovedProduct, OfNoNodesIsZero) {
   const auto test = make_meshed_body(make_box_mesh(BoxMesh{CellShape::triangle, {6, 7}, 1, 0.15, {}}), 1);
   const StageProduct product(assemble_stiffness(test->body, node_graph(test->space)), 2);

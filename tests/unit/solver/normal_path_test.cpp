@@ -16,7 +16,7 @@ struct Path {
   std::vector<char> eligible;
 };
 
-/// U random and definite, gaps of either sign, some points not eligible.
+/// A path with U random and definite, gaps of either sign, and some ineligible points.
 Path random_path(unsigned seed, Index count) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> number(-1.0, 1.0);
@@ -28,7 +28,7 @@ Path random_path(unsigned seed, Index count) {
   return path;
 }
 
-/// The reactions at q by going through all sets of points that may press.
+/// Reactions at q, found by enumerating all sets of pressing points.
 Vector by_enumeration(const Path& path, const Vector& q) {
   const Index count = q.size();
   Vector best = Vector::Zero(count);
@@ -77,7 +77,7 @@ TEST(NormalPath, EndsAndItsMeanAreRight) {
     const double potential = 0.5 * (end.dot(path.u * end) - start.dot(path.u * start));
     const double size = 1.0 + end.dot(path.u * end) + start.dot(path.u * start);
     EXPECT_NEAR(found.mean().dot(path.q1 - path.q0), -potential, 1e-12 * size) << seed;
-    // Between the ends by midpoints of many small pieces.
+    // Midpoint rule on many small pieces between the ends.
     Vector sum = Vector::Zero(end.size());
     constexpr int parts = 400;
     for (int k = 0; k < parts; ++k) sum += by_enumeration(path, path.q0 + ((k + 0.5) / parts) * (path.q1 - path.q0));
@@ -103,7 +103,7 @@ TEST(NormalPath, DerivativesAreThoseOfDifferences) {
   }
 }
 
-/// Without symmetry, as friction that goes with the normal reactions has it: the conditions hold all along.
+/// Without symmetry, as under friction proportional to the normal reactions, the conditions hold along the path.
 TEST(NormalPath, TakesMatricesWithoutSymmetry) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     Path path = random_path(seed, 1 + static_cast<Index>(seed % 6));
@@ -124,14 +124,14 @@ TEST(NormalPath, TakesMatricesWithoutSymmetry) {
   }
 }
 
-/// More points than motions of what they are on: gaps and forces are unique, reactions are those of some points.
+/// More points than degrees of freedom: gaps and forces are unique, and some of the points carry the reactions.
 TEST(NormalPath, TakesPointsThatDependOnOneAnother) {
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> number(-1.0, 1.0);
   const auto entry = [&] { return number(engine); };
   for (int seed = 0; seed < 200; ++seed) {
     const Index motions = 1 + seed % 5, count = 2 * motions;
-    // Rows of nonnegative weights, as multipliers on facets have them, of points of a definite compliance.
+    // Rows of nonnegative weights, as from multipliers on facets, of points with a definite compliance.
     const Matrix weights = Matrix::NullaryExpr(count, motions, [&] { return std::max(0.0, number(engine)) + 0.01; });
     const Matrix b = Matrix::NullaryExpr(motions, motions, entry);
     const Matrix compliance = b * b.transpose() + 0.1 * Matrix::Identity(motions, motions);

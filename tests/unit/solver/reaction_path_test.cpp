@@ -4,7 +4,7 @@
 
 #include <random>
 
-// Reactions along the path of a step, with friction: with Φ = ½ ρᵀUρ, start and end of which Coulomb's law holds,
+// Reactions along the path of a step, with friction: with Φ = ½ ρᵀUρ and Coulomb's law at its start and end,
 //   ρ̄·(q₁ − q₀) + Φ₁ − Φ₀ = −r(0+)·g₀ + work of friction − ½ jᵀUj,   j = ρ(0+) − ρ₀,
 // which is equation (3) of docs/energy.md.
 
@@ -51,7 +51,7 @@ class RandomStep {
  private:
   double number() { return std::uniform_real_distribution<double>(-1.0, 1.0)(engine_); }
 
-  /// Coulomb's law at one point: reactions, and gap and slip (none at the start) into `motion`.
+  /// Draws a state of Coulomb's law at one point: reactions, and gap and slip (zero at the start) in `motion`.
   void take_state(Index point, Vector& reaction, Vector& motion, bool is_end) {
     const Index row = row_offset[static_cast<std::size_t>(point)];
     const Index tangents = row_offset[static_cast<std::size_t>(point) + 1] - row - 1;
@@ -101,7 +101,7 @@ TEST(ReactionPath, LosesEnergyAtEachPartAndStaysOnTheCone) {
   EXPECT_GT(on_cone, 200);
 }
 
-/// Points that stick, or slip on as they did, have no jump: nothing is lost but to friction.
+/// Points that stick, or continue to slip, have no jump: energy is lost to friction only.
 TEST(ReactionPath, LosesNothingWhereFrictionGoesOn) {
   std::mt19937 engine(2);
   std::uniform_real_distribution<double> number(0.2, 1.0);
@@ -110,7 +110,7 @@ TEST(ReactionPath, LosesNothingWhereFrictionGoesOn) {
     const Matrix u = b * b.transpose() + 0.3 * Matrix::Identity(4, 4);
     const Vector friction = Vector::Constant(2, 0.4);
     Vector start(4), end(4), y1 = Vector::Zero(4);
-    // The first slips to the right, the second sticks.
+    // The first point slips to the right, the second sticks.
     const double r0 = number(engine), r1 = number(engine);
     start << r0, -0.4 * r0, number(engine), 0.1;
     end << r1, -0.4 * r1, number(engine), -0.05;
@@ -129,7 +129,7 @@ TEST(ReactionPath, LosesNothingWhereFrictionGoesOn) {
   }
 }
 
-/// If U_NN + U_NT D is no P-matrix, the cone has another path, along which all contact would open: it is not followed.
+/// If U_NN + U_NT D is no P-matrix, the cone has another path, along which all contact would open; it is rejected.
 TEST(ReactionPath, TakesNoPathThatEndsElsewhere) {
   Matrix u(2, 2);
   u << 1.0, 1.5, 1.5, 4.0;
@@ -147,7 +147,7 @@ TEST(ReactionPath, TakesNoPathThatEndsElsewhere) {
   EXPECT_LE(change, path.friction_work() + 1e-14);
 }
 
-/// Points come and go, and the inverse on those that are there stays one.
+/// Points enter and leave, and the inverse on the present ones stays exact.
 TEST(PressingSet, KeepsTheInverse) {
   std::mt19937 engine(7);
   std::uniform_real_distribution<double> number(-1.0, 1.0);

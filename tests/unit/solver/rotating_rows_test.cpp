@@ -10,7 +10,7 @@ namespace {
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// Points in space on two nodes of their own each; those with odd numbers have no turning trace.
+/// Points in space, each on two nodes of its own; those with odd numbers have no rotating trace.
 struct TurningPoints {
   static constexpr Index points = 5, nodes = 2 * points, d = 3;
   std::mt19937 random{3};
@@ -35,7 +35,7 @@ struct TurningPoints {
   }
   [[nodiscard]] double number() { return static_cast<double>(random()) / 2147483648.0 - 1.0; }
 
-  /// Other directions. Point 4 slips along one tangent alone.
+  /// Rotates the directions. Point 4 slips along one tangent alone.
   void turn() {
     Triplets gap, slip;
     for (Index i = 0; i < points; ++i) {
@@ -56,7 +56,7 @@ struct TurningPoints {
     rows.tangential_trace.resize(points * (d - 1), nodes * d);
     rows.tangential_trace.setFromTriplets(slip.begin(), slip.end());
   }
-  /// H of a point; only its row of G: without friction.
+  /// H of a point; without friction only its row of G.
   [[nodiscard]] Matrix rows_of(Index point, bool has_friction) const {
     Matrix result = Matrix(rows.gap_operator).row(point);
     if (!has_friction) return result;

@@ -30,7 +30,7 @@ TEST(HistoryErrors, AreRelativeInTheNormOverTimeOfAllComponents) {
   const auto zero = [](double) { return 0.0; };
   const RunHistory reference = history(
       10, [](double) { return 3.0; }, [](double) { return 4.0; });
-  // |(0.3, 0.4)| / |(3, 4)|, at any time.
+  // |(0.3, 0.4)| / |(3, 4)| at all times.
   const RunHistory near = history(
       7, [](double) { return 3.3; }, [](double) { return 4.4; });
   EXPECT_NEAR(*relative_error(vector_v, near, reference), 0.1, 1e-14);

@@ -9,7 +9,7 @@ using Bools = std::vector<bool>;
 
 TEST(IdleOrders, AreThoseOfErrorsThatNoLongerFall) {
   EXPECT_EQ(find_stagnant_orders("time.step", {2.0, 1.9, 0.4, 0.05, -2.7}), (Bools{false, false, false, true, true}));
-  // A step is the finer the smaller it is, whatever the orders say.
+  // A smaller step is finer, whatever the orders are.
   EXPECT_EQ(find_stagnant_orders("time.step", {-2.7, -4.2}), (Bools{true, true}));
 }
 

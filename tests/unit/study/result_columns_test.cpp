@@ -4,11 +4,11 @@
 
 #include <map>
 
-/// @file Each column has its own number of the run, and a run that lacks it an empty cell.
+/// @file Each column has its own number of the run; a run without that number has an empty cell.
 namespace ricochet {
 namespace {
 
-/// Down with velocity 2, up with 1.5, so that e = 0.75; of a body with mass 4.
+/// Impact of a body of mass 4: down with velocity 2, up with 1.5, so that e = 0.75.
 Impact bounce(double largest_force) {
   Impact impact;
   impact.mass = 4.0;

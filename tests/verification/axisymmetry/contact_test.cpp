@@ -17,7 +17,7 @@
 #include "support/two_bodies.hpp"
 
 /// @file Contact of axisymmetric bodies: uniform pressures, closed balances of energy and momentum under every scheme,
-/// and a rod that is a bar.
+/// and a rod equivalent to a bar.
 namespace ricochet {
 namespace contact_test {
 
@@ -54,7 +54,7 @@ class AxisymmetricPressure : public testing::TestWithParam<Blocks> {
  protected:
   static constexpr double pressure = 0.03, lambda = 30.0, mu = 20.0;
 
-  /// One cylinder of radius and height 1 on another one, whose meshes do not match.
+  /// One cylinder of radius and height 1 on another one, with non-matching meshes.
   [[nodiscard]] std::string mesh() const {
     const Blocks& given = GetParam();
     StackedBoxes stack;
@@ -110,12 +110,12 @@ TEST_P(AxisymmetricPressure, OnAPlaneAndThroughATie) {
 INSTANTIATE_TEST_SUITE_P(Blocks, AxisymmetricPressure, testing::ValuesIn(all_blocks()),
                          [](const auto& info) { return info.param.label(); });
 
-/// A cylinder with contact on a plane below: the section of it.
+/// Section of a cylinder in contact with a plane below.
 struct Side {
   std::unique_ptr<test_support::MeshedBody> test;
   std::unique_ptr<Obstacle> obstacle;
   ContactBoundary boundary;
-  Eigen::Vector2d normal = Eigen::Vector2d(0.2, 1.0).normalized();  ///< of the obstacle, a cone
+  Eigen::Vector2d normal = Eigen::Vector2d(0.2, 1.0).normalized();  ///< normal of the obstacle, a cone
 
   Side(const test_support::ElementKind& kind, const std::string& multipliers) {
     test = test_support::make_meshed_body(
@@ -166,7 +166,7 @@ TEST(Axisymmetry, ContactStressIsBoundedByTheElasticEnergy) {
   });
 }
 
-/// Averages over a group are those of its rings: of r over a full cylinder 2/3 of the radius.
+/// Averages over a group are weighted with its rings: the mean of r over a full cylinder is 2/3 of the radius.
 TEST(Axisymmetry, ProbesOfGroupsTakeMeansOverRings) {
   const Side side({CellShape::triangle, 1, 2}, "nodal");
   State state;
@@ -185,7 +185,7 @@ TEST(Axisymmetry, ProbesOfGroupsTakeMeansOverRings) {
   }
 }
 
-/// One half of the section of a ball of radius 1; the group "contact" has its axis, too.
+/// One half of the section of a ball of radius 1; the group "contact" includes its axis.
 std::string ball_mesh(int order) {
   return test_support::mesh_geometry(
       fmt::format("half_section{}", order),
@@ -212,7 +212,7 @@ double largest_violation(const CaseRun& run, const MomentumAccount& account, dou
   return size > 0.0 && run.problem().axisymmetric ? std::abs(at - start - account.impulse().force[1]) / size : 0.0;
 }
 
-/// The account of energy and the balance of the momentum along the axis, in every step.
+/// Expects the account of energy and the balance of the momentum along the axis to close in every step.
 void expect_balances(const std::string& text, const std::string& name) {
   std::unique_ptr<CaseRun> run;
   try {
@@ -268,7 +268,7 @@ TEST(Axisymmetry, BalancesHoldWithFrictionInEveryMultiplierSpace) {
   }
 }
 
-/// An impact is told by the motion along the axis alone: the ball's mass, no spin, a normal along the axis.
+/// An impact depends on the motion along the axis alone: the ball's mass, no spin, a normal along the axis.
 TEST(Axisymmetry, ImpactsAreAlongTheAxis) {
   for (const char* normal : {"[0.0, 1.0]", "[-0.3, 1.0]"}) {
     CaseRun run(ball_case(2, "equivalent", "", "friction = 0.2\n", normal));
@@ -294,8 +294,7 @@ TEST(Axisymmetry, ImpactsAreAlongTheAxis) {
   }
 }
 
-/// Without lateral contraction a rod is a bar: its motion is that of a strip, and its forces are πR² times those per
-/// width.
+/// Without lateral contraction a rod is a bar: it moves like a strip, with forces πR² times those per width.
 TEST(Axisymmetry, ARodWithoutLateralContractionIsAStrip) {
   StackedBoxes stack;
   stack.lower_shape = CellShape::quadrilateral;
@@ -315,7 +314,7 @@ TEST(Axisymmetry, ARodWithoutLateralContractionIsAStrip) {
         mesh, plane);
   };
   CaseRun rod(text("axisymmetric")), strip(text("strain"));
-  const double factor = pi * 0.4;  // πR² over the width R
+  const double factor = pi * 0.4;  // πR² relative to the width R
   double largest = 0.0;
   rod.run(
       [&] {
@@ -329,7 +328,7 @@ TEST(Axisymmetry, ARodWithoutLateralContractionIsAStrip) {
   EXPECT_GT(largest, 0.4 * 250.0);  // ρcv = 300 per area
 }
 
-/// A tube, 1 < r < 2, that is shrunk on a pin and free to slide along it: p = E u/a / ((b² + a²)/(b² − a²) + ν).
+/// A tube, 1 < r < 2, shrunk on a pin and free to slide along it: p = E u/a / ((b² + a²)/(b² − a²) + ν).
 TEST(Axisymmetry, AShrunkTubePressesAsLameSays) {
   const Mesh tube =
       test_support::make_box_mesh({CellShape::quadrilateral, {16, 6}, 1, 0.0, [](const Vector& x) -> Vector {
@@ -349,7 +348,7 @@ TEST(Axisymmetry, AShrunkTubePressesAsLameSays) {
   for (const double value : found) EXPECT_NEAR(value, pressure, 1e-3 * pressure);
 }
 
-/// A static start needs no support but contact: only the translation along the axis is free.
+/// Contact alone is enough for a static start: only the translation along the axis is free.
 TEST(Axisymmetry, ABallThatLiesOnAPlaneIsInEquilibrium) {
   std::string text = ball_case(2, "equivalent", "");
   const std::string velocity = "velocity = [\"0.1*x\", \"-0.5+0.1*x*x\"]";

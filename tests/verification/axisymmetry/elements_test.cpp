@@ -114,7 +114,7 @@ TEST_P(AxisymmetricPatch, StressIsUniform) {
   EXPECT_NEAR(largest_green_strain(test->body, interpolate(test->space, stretched)), a + 0.5 * a * a, 1e-12);
 }
 
-/// Σ density × volume = ½UᵀKU of any displacement.
+/// Σ density × volume = ½UᵀKU for any displacement.
 TEST_P(AxisymmetricPatch, EnergyDensitiesAddUpToTheStrainEnergy) {
   const auto test = make_body();
   const SparseMatrix stiffness = assemble_stiffness(test->body, node_graph(test->space));
@@ -128,7 +128,7 @@ TEST_P(AxisymmetricPatch, EnergyDensitiesAddUpToTheStrainEnergy) {
   EXPECT_NEAR(volumes.sum(), volume(), 1e-13 * volume());
 }
 
-/// The stress of u = (rz, …) of degree 2 is a linear function, which the recovery reproduces at the nodes.
+/// The stress of u = (rz, …) of degree 2 is linear, and recovered exactly at the nodes.
 TEST_P(AxisymmetricPatch, RecoveryIsExactForLinearStresses) {
   if (GetParam().kind.displacement_degree == 1 || GetParam().curved) return;  // not contained in the space
   const auto test = make_body({5, 5});
@@ -146,7 +146,7 @@ TEST_P(AxisymmetricPatch, RecoveryIsExactForLinearStresses) {
   }
 }
 
-/// The symmetric matrix has one motion without energy: the translation along the axis.
+/// The symmetric matrix has a single motion without energy: the translation along the axis.
 TEST_P(AxisymmetricPatch, OnlyTheTranslationAlongTheAxisIsRigid) {
   const auto test = make_body();
   const SparseMatrix stiffness = assemble_stiffness(test->body, node_graph(test->space));
@@ -171,7 +171,7 @@ TEST_P(AxisymmetricPatch, MassesAndLoadsAreThoseOfTheRings) {
   const auto test = make_body();
   const SparseMatrix mass = assemble_scalar_mass(test->body, node_graph(test->space));
   const double rho = test_material().density, r1 = outer(), r0 = inner();
-  const Matrix moments = mass_moments(mass, test->space.nodes);  // with 1, r, z
+  const Matrix moments = mass_moments(mass, test->space.nodes);  // products with 1, r, z
   const double first = 2.0 * pi / 3.0 * (r1 * r1 * r1 - r0 * r0 * r0);
   const double second = 0.5 * pi * (std::pow(r1, 4) - std::pow(r0, 4));
   Matrix expected(3, 3);
@@ -227,7 +227,7 @@ TEST_P(AxisymmetricPatch, EquivalentMassesKeepTheirMoments) {
     try {
       mass = make_mass(type)->build(input);
     } catch (const Error&) {
-      EXPECT_EQ(std::string(type), "equivalent-nearest");  // which is indefinite on coarse meshes
+      EXPECT_EQ(std::string(type), "equivalent-nearest");  // indefinite on coarse meshes
       continue;
     }
     for (const Index node : input.contact_nodes) EXPECT_EQ(mass.col(node).nonZeros(), 0) << type;
@@ -243,7 +243,7 @@ TEST_P(AxisymmetricPatch, EquivalentMassesKeepTheirMoments) {
 INSTANTIATE_TEST_SUITE_P(Elements, AxisymmetricPatch, testing::ValuesIn(patch_cases()),
                          [](const auto& info) { return info.param.label(); });
 
-/// Equilibrium under a load; the dofs with `is_held` are zero.
+/// Equilibrium under a load; dofs with `is_held` are zero.
 Vector equilibrium(const MeshedBody& test, const Vector& load, const std::function<bool(const Vector&, int)>& is_held) {
   std::vector<int> number(static_cast<std::size_t>(test.space.dof_count()), -1);
   int count = 0;
@@ -266,7 +266,7 @@ Vector equilibrium(const MeshedBody& test, const Vector& load, const std::functi
   return result;
 }
 
-/// Errors of the displacement at the nodes and of the hoop stress in the cells, root mean squares over the rings: at
+/// Errors of the displacement at the nodes and of the hoop stress in the cells, as root mean squares over the rings: on
 /// the axis itself values converge by up to half an order more slowly.
 struct LameErrors {
   double displacement = 0.0, hoop = 0.0;
@@ -317,7 +317,7 @@ class Lame : public testing::TestWithParam<LameCase> {
   }
 };
 
-/// A tube, 1 < r < 2, under pressure inside, held at both ends along its axis: u_r = A r + B/r.
+/// A tube, 1 < r < 2, under internal pressure, held axially at both ends: u_r = A r + B/r.
 TEST_P(Lame, TubeUnderPressure) {
   const double inner = 1.0, outer = 2.0, pressure = 0.7;
   const Material material = test_material();
@@ -341,7 +341,7 @@ TEST_P(Lame, TubeUnderPressure) {
   expect_orders(errors, GetParam().degree - 0.15);
 }
 
-/// A hollow ball, 1 < R < 2, under pressure inside: u_R = A R + B/R². Its section reaches the axis.
+/// A hollow ball, 1 < R < 2, under internal pressure: u_R = A R + B/R². Its section reaches the axis.
 TEST_P(Lame, HollowBallUnderPressure) {
   const double inner = 1.0, outer = 2.0, pressure = 0.7;
   const Material material = test_material();

@@ -12,14 +12,14 @@
 #include "ricochet/mesh/reference_cell.hpp"
 #include "support/two_bodies.hpp"
 
-/// @file Contact rows between two bodies on meshes that do not match: a uniform pressure passes, rows sum to zero, mean
+/// @file Contact rows between two bodies with non-matching meshes: a uniform pressure passes, rows sum to zero, mean
 /// gap vectors are along the normals.
 namespace ricochet::test_support {
 namespace body_contact_test {
 
 const FreeComponent all_free = [](Index, int) { return true; };
 
-/// A turn about a skew axis, and a move.
+/// A rotation about a skew axis, and a translation.
 PointMap skew(int d) {
   Matrix turn = Matrix::Identity(d, d);
   if (d == 2) turn = Eigen::Rotation2Dd(0.4).toRotationMatrix();
@@ -64,7 +64,7 @@ ContactPair pair_of(const MeshedBody& test, bool upper_carries, const std::strin
   return pair;
 }
 
-/// ∫φ_j over facets.
+/// Integrals ∫φ_j over facets.
 Vector integrals(const MeshedBody& test, const std::vector<Index>& facets) {
   Vector result = Vector::Zero(test.space.node_count());
   const FacetIntegration integration(test.body);
@@ -77,7 +77,7 @@ Vector integrals(const MeshedBody& test, const std::vector<Index>& facets) {
   return result;
 }
 
-/// Nodal forces of a uniform pressure 1 on both sides: on the own nodes Σ D_i c_ij, on the opposite ones −Σ D_i m_ik.
+/// Nodal forces of a uniform pressure 1 on both sides: Σ D_i c_ij at own nodes, −Σ D_i m_ik at opposite ones.
 Vector forces_of_pressure(const ContactBoundary& boundary) {
   return boundary.trace.transpose() * boundary.weights;
 }
@@ -108,13 +108,13 @@ TEST(BodyContact, PassesAUniformPressureBetweenMeshesThatDoNotMatch) {
       EXPECT_LT((found - expected).lpNorm<Eigen::Infinity>(), tolerance_of(*test) * largest);
       EXPECT_EQ(facings[0].uncovered, 0);
       EXPECT_NEAR(facings[0].covered, facings[0].area, 1e-9);
-      // Rows sum to zero; the gap is that of the planes, which touch.
+      // Rows sum to zero; the gap is that between the planes, which touch.
       const Vector sums = boundary.trace * Vector::Ones(test->space.node_count());
       EXPECT_LT(sums.lpNorm<Eigen::Infinity>(), 1e-13);
       EXPECT_LT(boundary.initial_gap.lpNorm<Eigen::Infinity>(), 1e-14);
       EXPECT_TRUE((boundary.net.array() == 0.0).all());
       EXPECT_GT(boundary.weights.minCoeff(), 0.0);
-      // The pressure on both sides, from the reactions of a uniform one.
+      // The pressure on both sides, recovered from uniform reactions.
       const Vector pressure = boundary.pressure_recovery * boundary.weights;
       EXPECT_LT((pressure.array() - 1.0).abs().maxCoeff(), 1e-12);
       EXPECT_EQ(pressure.size(), static_cast<Index>(facet_nodes(test->space, pair.facets).size() +
@@ -124,7 +124,7 @@ TEST(BodyContact, PassesAUniformPressureBetweenMeshesThatDoNotMatch) {
   }
 }
 
-/// A narrow body on a wide one, whose mesh has edges where the narrow one ends: what is covered can be integrated.
+/// A narrow body on a wide one whose mesh has edges at its ends: the covered part can be integrated.
 TEST(BodyContact, PassesAUniformPressureWhereOnlyAPartIsCovered) {
   for (const Pairing& p : all_pairings()) {
     const int d = dimension(p.lower);
@@ -173,8 +173,8 @@ TEST(BodyContact, PassesAUniformPressureWhereOnlyAPartIsCovered) {
   }
 }
 
-/// The narrow body ends within facets of the wide one. Multipliers sum to 1 wherever there is cover, so that the forces
-/// on the narrow side are those of a uniform pressure, and those on the wide side have its resultant and moment.
+/// The narrow body ends within facets of the wide one. Multipliers sum to 1 wherever there is cover, so the forces on
+/// the narrow side are those of a uniform pressure, and those on the wide side have its resultant and moment.
 TEST(BodyContact, PassesAUniformPressureWhereFacetsAreCoveredInPart) {
   for (const Pairing& p : all_pairings()) {
     const int d = dimension(p.lower);
@@ -207,7 +207,7 @@ TEST(BodyContact, PassesAUniformPressureWhereFacetsAreCoveredInPart) {
   }
 }
 
-/// Curved, tilted, apart: the mean gap vector of each point is along its normal, so that forces along it have no
+/// Curved, tilted, separated: the mean gap vector of each point is along its normal, so that forces along it have no
 /// moment.
 TEST(BodyContact, HasMeanGapVectorsAlongTheNormals) {
   for (const Pairing& p : all_pairings()) {

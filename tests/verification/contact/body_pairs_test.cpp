@@ -11,7 +11,7 @@
 #include "support/case_run.hpp"
 #include "support/two_bodies.hpp"
 
-/// @file Pairs of bodies as a case file names them: which are refused, and that either side may carry the multipliers.
+/// @file Pairs of bodies named in a case file: refused pairs, and multipliers on either side.
 namespace ricochet {
 namespace body_pairs_test {
 
@@ -56,12 +56,12 @@ TEST(BodyPairs, RefuseBodiesThatOverlap) {
   const std::string overlap = write_blocks(1, -0.05);
   expect_refusal(case_of(overlap, pair_of("upper.y0", "lower.y1")),
                  {"overlap at the start", "the deepest by 0.05 at ("});
-  // Closed gaps and a press fit are asked for.
+  // Closed gaps and a press fit are intended.
   const CaseRun closed(case_of(overlap, pair_of("upper.y0", "lower.y1", "initial_gap = \"closed\"\n")));
   EXPECT_EQ(closed.problem().contact.initial_gap.minCoeff(), 0.0);
 }
 
-/// pair_at takes the body of `group` 0.05 too far, whichever side carries the multipliers.
+/// pair_at moves the body of `group` 0.05 too far, whichever side carries the multipliers.
 TEST(BodyPairs, WarnOfBodiesThatOverlapWherePaired) {
   const std::string mesh = write_blocks(1, 0.2);
   for (const std::string side : {"group", "against"}) {
@@ -75,7 +75,7 @@ TEST(BodyPairs, WarnOfBodiesThatOverlapWherePaired) {
     EXPECT_TRUE(warnings("pair_at = [0.0, -0.25]\ninitial_gap = \"closed\"\n").empty()) << side;
     const std::vector<std::string> told = warnings("pair_at = [0.0, -0.25]\n");
     ASSERT_EQ(told.size(), 1U) << side;
-    for (const std::string part : {"overlap where pair_at puts them", "the deepest by 0.05 at ("})
+    for (const std::string part : {"overlap at the displacement pair_at", "the deepest by 0.05 at ("})
       EXPECT_NE(told[0].find(part), std::string::npos) << told[0];
   }
 }
@@ -83,7 +83,7 @@ TEST(BodyPairs, WarnOfBodiesThatOverlapWherePaired) {
 TEST(BodyPairs, RefuseGroupsThatNeverFaceEachOther) {
   const std::string mesh = write_blocks(1, 0.1);
   expect_refusal(case_of(mesh, pair_of("upper.y1", "lower.y1")), {"do not face each other", "pair_at"});
-  expect_refusal(case_of(mesh, pair_of("upper.y1", "lower.y0", "tied = true\n")), {"can be tied"});
+  expect_refusal(case_of(mesh, pair_of("upper.y1", "lower.y0", "tied = true\n")), {"cannot be tied"});
 }
 
 TEST(BodyPairs, RefuseTheSameFacetsOnBothSides) {
@@ -92,7 +92,7 @@ TEST(BodyPairs, RefuseTheSameFacetsOnBothSides) {
   expect_refusal(case_of(mesh, pair_of("upper.y0", "boundary")), {"share 7 facets", "cannot be on both sides"});
 }
 
-/// A body between two others: its one side cannot follow both.
+/// A body between two others: its one side cannot follow both of them.
 TEST(BodyPairs, RefuseNodesThatAreTiedTwice) {
   const auto block = [](double x, double y, std::vector<int> counts) {
     return test_support::make_box_mesh({CellShape::triangle, std::move(counts), 1, 0.0,
@@ -104,14 +104,14 @@ TEST(BodyPairs, RefuseNodesThatAreTiedTwice) {
                                                               {"other", block(0.0, 0.0, {3, 4})}}));
   const std::string tied = "tied = true\nmultipliers_on = \"group\"\n";
   expect_refusal(case_of(mesh, pair_of("upper.y0", "lower.y1", tied) + pair_of("upper.y0", "other.y1", tied)),
-                 {"are tied already, by contact 0", "cannot follow two surfaces"});
+                 {"are already tied by contact 0", "cannot follow two surfaces"});
 }
 
 TEST(BodyPairs, RefuseSurfacesTooFarApartToBeTied) {
   expect_refusal(case_of(write_blocks(1, 0.3), pair_of("upper.y0", "lower.y1", "tied = true\n")), {"too far apart"});
 }
 
-/// The impulse that the upper body gets.
+/// Impulse on the upper body.
 double impulse(int refinement, const std::string& side) {
   CaseRun run(case_of(write_blocks(refinement, 0.02, 0.1),
                       pair_of("upper.y0", "lower.y1", "multipliers_on = \"" + side + "\"\n"), "1.5"));
@@ -130,7 +130,7 @@ double impulse(int refinement, const std::string& side) {
   return momentum() - before;
 }
 
-/// Which side carries the multipliers is a choice of the discretization: what it matters goes down as the error does.
+/// The side of the multipliers is a choice of the discretization: its influence decreases as the error does.
 TEST(BodyPairs, ExchangeSidesWithinTheDiscretizationError) {
   std::vector<double> difference, error;
   const double exact = impulse(6, "group");

@@ -18,7 +18,7 @@
 #include "support/box_mesh.hpp"
 #include "support/paths.hpp"
 
-/// @file The contact boundary: supports on it, several groups and obstacles, friction, units, and what is refused.
+/// @file The contact boundary: supports on it, several groups and obstacles, friction, units, and refused cases.
 namespace ricochet::test_support {
 namespace contact_boundary_test {
 
@@ -77,10 +77,10 @@ TEST(ContactBoundary, LeavesOutMultipliersThatSupportsHoldAlongTheNormal) {
         const ContactBoundary boundary =
             make_contact_boundary(test->body, pairs, held_at_x0(*test, {d - 1}), &reported);
         EXPECT_EQ(reported, held);
-        // p1 has multipliers at vertices only; no facet is held all over.
+        // p1 has multipliers at vertices only; no facet is entirely held.
         const Index left_out = multipliers == "p0" ? 0 : multipliers == "p1" ? (d == 2 ? 1 : 4) : held;
         EXPECT_EQ(boundary.size(), free.size() - left_out);
-        // What is left is independent of the supports: W has full rank on the free nodes.
+        // The remaining multipliers are independent of the supports: W has full rank on the free nodes.
         Matrix trace = boundary.trace;
         for (const Index node : nodes) {
           if (is_held(node)) trace.col(node).setZero();
@@ -99,7 +99,7 @@ TEST(ContactBoundary, LeavesOutFacetsAllOfWhoseNodesAreHeld) {
   const FreeComponent is_free = [&](Index node, int k) { return k == 0 || test->space.nodes(0, node) > 0.5; };
   const ContactBoundary boundary = make_contact_boundary(test->body, {pair_of(*test, "y0", *obstacle, "p0")}, is_free);
   EXPECT_EQ(boundary.size(), 2);         // of three facets
-  EXPECT_EQ(boundary.nodes.size(), 3U);  // not the end that only the held facet has
+  EXPECT_EQ(boundary.nodes.size(), 3U);  // excludes the end that only the held facet has
 }
 
 TEST(ContactBoundary, HasNoFrictionWhereSupportsLeaveNoIndependentSlipIn2D) {
@@ -139,8 +139,8 @@ TEST(ContactBoundary, KeepsTheSlipThatOneHeldComponentLeavesIn3D) {
   }
 }
 
-/// Whatever supports hold on a side that the contact boundary ends at, H = [G; B_T] has full rank on the free dofs, so
-/// that the condensed operator is positive definite.
+/// For any supports on a side that bounds the contact boundary, H = [G; B_T] has full rank on the free dofs, so that
+/// the condensed operator is positive definite.
 TEST(ContactBoundary, HasIndependentConditionsWhateverIsHeld) {
   for (const CellShape shape : all_cell_shapes) {
     for (const int degree : {1, 2}) {
@@ -246,7 +246,7 @@ TEST(ContactBoundary, RefusesWhatIsNotDetermined) {
   for (const std::string& multipliers : multiplier_space_names()) {
     EXPECT_EQ(message_of(*test, {pair_of(*test, "y0", *floor, multipliers), pair_of(*test, "x0", *wall, multipliers)}),
               "no error");
-    // Conditions that depend on one another leave one motion; friction on two planes in one place does not.
+    // Dependent conditions still determine one motion; friction on two coinciding planes does not.
     EXPECT_EQ(
         message_of(*test, {pair_of(*test, "y0", *floor, multipliers), pair_of(*test, "x0", *other, multipliers),
                            pair_of(*test, "y0", *wall, multipliers), pair_of(*test, "y0", *ceiling, multipliers)}),
@@ -255,7 +255,7 @@ TEST(ContactBoundary, RefusesWhatIsNotDetermined) {
       return message_of(
           *test, {pair_of(*test, "y0", *floor, multipliers, one), pair_of(*test, "x0", *other, multipliers, two)});
     };
-    EXPECT_NE(rubbing({0.3, 0.0}, {0.2, 0.0}).find("are one and the same surface at the node at ("), std::string::npos);
+    EXPECT_NE(rubbing({0.3, 0.0}, {0.2, 0.0}).find("are the same surface at the node at ("), std::string::npos);
     EXPECT_NE(rubbing({0.3, 0.0}, {}).find("different friction or motion"), std::string::npos);
     EXPECT_EQ(rubbing({0.3, 0.0}, {0.3, 0.0}), "no error");
   }
@@ -294,7 +294,7 @@ TEST(ContactBoundary, HasTheSizesOfThePage) {
   }
 }
 
-/// Lengths in another unit, a power of two away: the same bits.
+/// A length unit that differs by a power of two gives the same bits.
 TEST(ContactBoundary, HasNoUnit) {
   for (const CellShape shape : all_cell_shapes) {
     const int d = dimension(shape);

@@ -8,8 +8,8 @@
 #include "ricochet/problem/internal_force.hpp"
 #include "support/box_mesh.hpp"
 
-// The stress at the contact points against that of uniform strains, of every element and multiplier space, and the
-// stiffness that bounds it against the largest there is.
+// Stress at the contact points, compared with uniform strains for every element and multiplier space; and the stiffness
+// that bounds it, compared with the largest possible one.
 
 namespace ricochet::test_support {
 namespace contact_stress_test {
@@ -70,7 +70,7 @@ TEST(ContactStress, IsExactForUniformStrainsAndZeroForRigidMotions) {
 TEST(ContactStress, HasAStiffnessThatBoundsItByTheElasticEnergy) {
   each_side([](const Side& side, const std::string& label) {
     const ContactStress stress = make_contact_stress(side.test->body, side.boundary);
-    // The largest Σ s²/κ of a U with UᵀKU = 1.
+    // Largest Σ s²/κ over U with UᵀKU = 1.
     const SymmetricEigen modes =
         symmetric_eigen(Matrix(assemble_stiffness(side.test->body, node_graph(side.test->space))));
     const int d = side.boundary.dimension;

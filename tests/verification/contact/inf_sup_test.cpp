@@ -13,8 +13,8 @@
 #include "support/box_mesh.hpp"
 #include "support/paths.hpp"
 
-/// @file Which pairs of displacement and multiplier spaces are inf–sup stable: the numerical constant on families of
-/// meshes. The test prints the table of docs/multipliers.md, and checks the numbers that the page has.
+/// @file Inf–sup stability of pairs of displacement and multiplier spaces: the numerical constant on families of
+/// meshes. The test prints the table of docs/multipliers.md, and checks the numbers on that page.
 namespace ricochet::test_support {
 namespace inf_sup_test {
 
@@ -23,14 +23,14 @@ const std::vector<std::string>& spaces() {
   return all;
 }
 
-/// Meshes of one kind, finer and finer.
+/// Meshes of one kind under refinement.
 struct Family {
   CellShape shape = CellShape::triangle;
   int degree = 1;  ///< of the displacement
   std::string boundary;
 
   [[nodiscard]] int dimension() const { return ricochet::dimension(shape); }
-  /// Boxes along the contact boundary (for a ring: along its thickness).
+  /// Numbers of cells along the contact boundary (for a ring: along its thickness).
   [[nodiscard]] std::vector<int> refinements() const {
     if (boundary == "circle") return {2, 4, 8, 16};
     if (dimension() == 2) return {4, 8, 16, 32};
@@ -57,7 +57,7 @@ std::vector<Family> families() {
   return result;
 }
 
-/// Joins the nodes of two sides that a map has brought together on the axis y = 0, x > 0.
+/// Joins the nodes of two sides that a map brings together on the axis y = 0, x > 0.
 void join_coincident_nodes(Mesh& mesh) {
   std::vector<Index> number(static_cast<std::size_t>(mesh.node_count()));
   std::vector<Index> kept;
@@ -118,7 +118,7 @@ double constant(const Family& family, const std::string& multipliers, int n) {
   return inf_sup_constant(test->body, test->mesh.group(d == 2 ? "y0" : "z0", d - 1).members, multipliers, is_held);
 }
 
-/// The table of the page: family → per space the constants on its meshes.
+/// Table of the page: for each family and space the constants on its meshes.
 std::map<std::string, std::vector<std::vector<double>>> documented() {
   std::map<std::string, std::vector<std::vector<double>>> result;
   std::ifstream page(source_path("docs/multipliers.md"));
@@ -184,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(Families, InfSupTest, testing::ValuesIn(families()), []
   return label;
 });
 
-/// Lengths in other units, and a body elsewhere: the same constant.
+/// Other length units, and another position of the body, give the same constant.
 TEST(InfSup, HasNoUnit) {
   const auto at = [](double scale) {
     const PointMap map = affine_map(scale * Matrix::Identity(2, 2), Vector::Constant(2, scale));

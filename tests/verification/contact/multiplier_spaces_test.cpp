@@ -65,7 +65,7 @@ class SpaceTest : public testing::TestWithParam<ElementKind> {
                                  const std::string& multipliers) const {
     return {name, facets, "plane", obstacle_.get(), {0.3, 0.0}, multipliers};
   }
-  /// ∫ over the patch of a function of the facet's quadrature, which returns values per point.
+  /// Integral over the patch of a function of the facet's quadrature, which returns values per point.
   [[nodiscard]] double integral(const std::function<Vector(const FacetQuadrature&)>& values) const {
     const FacetIntegration integration(test_->body);
     FacetQuadrature quadrature;
@@ -147,7 +147,7 @@ TEST_P(SpaceTest, TraceIsThatOfTheFunctions) {
   }
 }
 
-/// The gap of a point is the mean gap that its multiplier sees, at any displacement.
+/// The gap of a point is the mean of the gap weighted with its multiplier, at any displacement.
 TEST_P(SpaceTest, GapsAreMeansOfTheGap) {
   for (const SpaceCase& given : space_cases(GetParam())) {
     SCOPED_TRACE(given.label());
@@ -216,7 +216,7 @@ TEST_P(SpaceTest, UniformPressureIsRecoveredAtEveryNode) {
   }
 }
 
-/// Reactions of a uniform pressure are its consistent nodal forces: Σ_i D_i c_ij = ∫φ_j.
+/// Reactions of a uniform pressure give its consistent nodal forces: Σ_i D_i c_ij = ∫φ_j.
 TEST_P(SpaceTest, UniformPressureIsTransmittedExactly) {
   for (const SpaceCase& given : space_cases(GetParam())) {
     SCOPED_TRACE(given.label());
@@ -239,7 +239,7 @@ TEST_P(SpaceTest, UniformPressureIsTransmittedExactly) {
 INSTANTIATE_TEST_SUITE_P(Elements, SpaceTest, testing::ValuesIn(all_element_kinds()),
                          [](const auto& info) { return info.param.label(); });
 
-/// Degree 1: the dual basis sees what the nodes see.
+/// For degree 1 the dual basis gives the displacements of the nodes.
 TEST(DualMultipliers, OfDegreeOneAreNodalForces) {
   for (const CellShape shape : all_cell_shapes) {
     for (const int geometry : {1, 2}) {
@@ -260,7 +260,7 @@ TEST(DualMultipliers, OfDegreeOneAreNodalForces) {
       EXPECT_LE((nodal.weights - dual.weights).norm(), 1e-14 * nodal.weights.norm());
       const Matrix recovery = nodal.pressure_recovery;
       EXPECT_LE((recovery - Matrix(dual.pressure_recovery)).norm(), 1e-13 * recovery.norm());
-      // The gap of a curved facet is its mean, not that of a node, unless the nodes carry the geometry.
+      // The gap of a curved facet is its mean instead of a nodal value, unless the nodes carry the geometry.
       const double difference = (nodal.initial_gap - dual.initial_gap).lpNorm<Eigen::Infinity>();
       EXPECT_EQ(difference == 0.0, geometry == 1);
     }
@@ -298,7 +298,7 @@ TEST(DualMultipliers, AreBiorthogonalAcrossATriangleAndAQuadrilateral) {
   }
 }
 
-/// Why the basis is changed: without it the weight of a vertex vanishes.
+/// Without the change of basis the weight of a vertex vanishes.
 TEST(DualMultipliers, HavePositiveWeightsWhereNodalForcesHaveNone) {
   const auto test = make_meshed_body(make_box_mesh({CellShape::tetrahedron, {3, 3, 3}, 1, 0.0, {}}), 2);
   const auto obstacle = tilted_plane(3);
@@ -307,7 +307,7 @@ TEST(DualMultipliers, HavePositiveWeightsWhereNodalForcesHaveNone) {
     return make_contact_boundary(test->body, {{"z0", facets, "plane", obstacle.get(), {}, multipliers}}, all_free);
   };
   EXPECT_LE(build("nodal").weights.minCoeff(), 1e-16);
-  // A corner vertex of one triangle of area 1/18: (2/5 of its sixth part of each of two edges' A/3) = 2A/15.
+  // A corner vertex of one triangle of area A = 1/18 has (2/5 of a sixth of each of two edges' A/3) = 2A/15.
   EXPECT_NEAR(build("dual").weights.minCoeff(), 2.0 / 15.0 / 18.0, 1e-15);
 }
 

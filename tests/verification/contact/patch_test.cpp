@@ -25,11 +25,11 @@ namespace patch_test {
 constexpr double pressure = 0.02;
 constexpr double closing = 0.01;  ///< gap to the plane at the start
 
-/// How the cells of the block are shaped; its sides are flat.
+/// Shape of the cells of the block; its sides are flat.
 enum class Cells { straight, curved };
 
-/// Moves nodes within the sides of the unit box: with second-order geometry the edges of cells become curved, also
-/// those in the contact side.
+/// Moves nodes within the sides of the unit box: with second-order geometry the edges of cells become curved, also on
+/// the contact side.
 Vector curve(const Vector& x) {
   Vector result = x;
   for (Index k = 0; k < x.size(); ++k) {
@@ -136,7 +136,7 @@ class PressedBlock {
     return std::max({node_deviation(), reaction_deviation(), displacement_deviation()});
   }
   [[nodiscard]] double smallest_weight() const { return problem_.contact.weights.minCoeff(); }
-  /// Deviation of the resultant reaction from that of the pressure.
+  /// Deviation of the resultant reaction from the resultant of the pressure.
   [[nodiscard]] double resultant_deviation() const {
     return std::abs(reaction_.sum() / (pressure * problem_.contact.weights.sum()) - 1.0);
   }
@@ -197,8 +197,7 @@ class PressedBlock {
   Vector displacement_, reaction_;
 };
 
-/// Whether some nodal forces of a uniform pressure are tensile, so that contact cannot transmit it: curved six-node
-/// triangles.
+/// Whether a uniform pressure has tensile nodal forces, which contact cannot transmit: curved six-node triangles.
 bool pulls(const ElementKind& kind, const std::string& multipliers) {
   return multipliers == "nodal" && kind.shape == CellShape::tetrahedron && kind.geometry_degree == 2 &&
          kind.displacement_degree == 2;
@@ -256,7 +255,7 @@ TEST_P(ContactPatchTest, UniformPressureIsThatOfThePressedBoundary) {
   }
 }
 
-/// With sign conditions, too, except for nodal forces that would have to be tensile. The page tabulates the deviations.
+/// Sign conditions preserve this, except for tensile nodal forces. The page tabulates the deviations.
 TEST_P(ContactPatchTest, UniformPressureIsTransmittedOrDeviatesAsThePageSays) {
   const ElementKind& kind = GetParam();
   const auto table = documented();

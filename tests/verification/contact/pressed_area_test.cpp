@@ -8,12 +8,12 @@
 #include "ricochet/fem/facet_integration.hpp"
 #include "support/box_mesh.hpp"
 
-/// @file Areas in contact: whole faces to rounding, and Hertz' contacts of a cylinder and of a ball, whose pressures
-/// and gaps are given at the nodes, to a part of a facet.
+/// @file Areas in contact: whole faces to rounding, and Hertz' contacts of a cylinder and of a ball, with prescribed
+/// pressures and gaps at the nodes, to a part of a facet.
 namespace ricochet::test_support {
 namespace pressed_area_test {
 
-/// A face of a body at a plane, with numbers at its nodes that are given.
+/// A face of a body at a plane, with prescribed numbers at its nodes.
 class Face {
  public:
   Face(
@@ -32,7 +32,7 @@ class Face {
     displacement_.setZero(body_->space.dof_count());
   }
 
-  /// `pressure` and `gap` of a position, of which one is zero.
+  /// Sets `pressure` and `gap` at a position, of which one is zero.
   template <class Pressure, class Gap>
   void set(const Pressure& pressure, const Gap& gap) {
     for (std::size_t entry = 0; entry < boundary_.nodes.size(); ++entry) {
@@ -79,7 +79,7 @@ class Face {
   Vector reaction_, gap_, pressure_, displacement_;
 };
 
-/// A face that is pressed all over has its whole area, in all spaces, also with nodes that supports hold.
+/// An entirely pressed face has its whole area, in all spaces, also with nodes held by supports.
 TEST(PressedArea, OfAWholeFace) {
   for (const ElementKind& kind : all_element_kinds()) {
     for (const std::string multipliers : {"nodal", "p0", "p1", "dual"}) {
@@ -108,8 +108,8 @@ TEST(PressedArea, OfARing) {
   EXPECT_NEAR(face.area(), std::numbers::pi * (1.5 * 1.5 - 0.5 * 0.5), 1e-13);
 }
 
-/// The face's side is 2, the contact's half-width or radius a. What `measure` is off by is a part of a facet all round
-/// the border, which a sum of nodal areas misses by up to half a facet.
+/// The face's side is 2, the contact's half-width or radius a. The error of `measure` is a part of a facet all round
+/// the border, while a sum of nodal areas errs by up to half a facet.
 void expect_hertz(const ElementKind& kind, double a) {
   const int d = kind.dimension();
   const double exact = d == 2 ? 2.0 * a : std::numbers::pi * a * a, border = d == 2 ? 2.0 : 2.0 * std::numbers::pi * a;

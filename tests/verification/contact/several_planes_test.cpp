@@ -9,12 +9,12 @@
 #include "ricochet/simulation/simulation.hpp"
 #include "support/case_run.hpp"
 
-/// @file Bodies between planes of which any node may meet any: a floor and a ceiling, three walls, wedges.
+/// @file Bodies whose nodes may each meet any of several planes: a floor and a ceiling, three walls, wedges.
 
 namespace ricochet::test_support {
 namespace several_planes_test {
 
-/// A block of 4 × 4 squares, all of whose sides may touch.
+/// A block of 4 × 4 squares with all sides as contact boundary.
 std::string block_mesh(const std::string& motion = "") {
   return mesh_geometry("block",
                        "Rectangle(1)={0,0,0,1,1}; Transfinite Curve{1:4}=5; Transfinite Surface{1}; " + motion +
@@ -48,8 +48,8 @@ std::string walled_case(const std::string& mesh, const std::vector<Wall>& walls,
 
 const std::string trapezoidal = "scheme = \"newmark\"\npreset = \"trapezoidal\"\n";
 
-/// Runs to the end. Every step: all nodes are outside of all walls, and without friction energy changes by what the
-/// scheme's identity says (see energy_identities_test.cpp). Every wall is hit.
+/// Runs to the end. In every step all nodes are outside of all walls, and without friction energy changes by the
+/// scheme's identity (see energy_identities_test.cpp). Every wall is hit.
 void expect_bounces(CaseRun& run, std::size_t walls, bool frictionless = true) {
   std::vector<double> impulse(walls, 0.0);
   StepEnd before(run);
@@ -76,7 +76,7 @@ const std::vector<Wall> floor_and_ceiling{{"floor", {0.0, -0.1}, {0.0, 1.0}}, {"
 TEST(SeveralPlanes, ABlockBouncesBetweenFloorAndCeiling) {
   CaseRun run(walled_case(block_mesh(), floor_and_ceiling, {0.0, -1.0}, 0.0, trapezoidal + "step = 2e-3\nend = 1.0\n"));
   expect_bounces(run, 2);
-  // As in a mirror at x = 1/2, to rounding that grows with the number of impacts.
+  // Mirrored at x = 1/2, up to rounding that grows with the number of impacts.
   const Points& nodes = run.problem().nodes;
   const Vector& u = run.state().displacement;
   for (Index i = 0; i < nodes.cols(); ++i) {
@@ -88,7 +88,7 @@ TEST(SeveralPlanes, ABlockBouncesBetweenFloorAndCeiling) {
   }
 }
 
-/// The floor's bounce is the ceiling's, turned over.
+/// The floor's bounce mirrors the ceiling's.
 TEST(SeveralPlanes, FloorAndCeilingAreAlike) {
   for (const double friction : {0.0, 0.3}) {
     const std::vector<Wall> same_distance{{"floor", {0.0, -0.1}, {0.0, 1.0}}, {"ceiling", {0.0, 1.1}, {0.0, -1.0}}};
@@ -117,9 +117,9 @@ TEST(SeveralPlanes, ABlockInThreeWallsHitsAllOfThem) {
   }
 }
 
-/// A corner falls into a wedge; a third plane through its edge bounds nothing that the two do not.
+/// A corner falls into a wedge; a third plane through its edge adds no constraint to the other two.
 TEST(SeveralPlanes, APlaneThroughTheEdgeOfAWedgeChangesNothing) {
-  // The edge where the corner of the block, turned by 45 degrees about the origin, comes down.
+  // Edge of the wedge, reached by the corner of the block, which is rotated by 45 degrees about the origin.
   const std::string mesh = block_mesh("Rotate{{0,0,1},{0,0,0},Pi/4}{Surface{1};} ");
   const std::vector<Wall> two{{"one", {0.0, -0.1}, {1.0, 2.0}}, {"other", {0.0, -0.1}, {-1.0, 2.0}}};
   std::vector<Wall> three = two;
@@ -133,7 +133,7 @@ TEST(SeveralPlanes, APlaneThroughTheEdgeOfAWedgeChangesNothing) {
     wedge.run([&] { touched = std::max(touched, StepEnd(wedge).normal.maxCoeff()); }, false);
     more.run([&] { EXPECT_GE(StepEnd(more).gap.minCoeff(), -1e-13); }, false);
     EXPECT_GT(touched, 0.0);
-    if (friction > 0.0) continue;  // how three planes share a force, and so their friction, is not determined
+    if (friction > 0.0) continue;  // the share of three planes in a force, and so their friction, is not determined
     EXPECT_LT((wedge.state().displacement - more.state().displacement).lpNorm<Eigen::Infinity>(), 1e-9);
   }
 }

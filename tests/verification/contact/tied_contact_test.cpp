@@ -10,7 +10,7 @@
 #include "support/case_run.hpp"
 #include "support/two_bodies.hpp"
 
-/// @file Bodies of tied halves in contact: the seam ends on the contact boundary, so nodes of it are tied.
+/// @file Bodies of tied halves in contact: the seam ends on the contact boundary, so some of its nodes are tied.
 namespace ricochet::test_support {
 namespace tied_contact_test {
 
@@ -113,7 +113,7 @@ TEST(TiedHalves, AreSolvedAlikeWithAndWithoutAFactor) {
   }
 }
 
-/// Reactions of a uniform pressure 1 are D_i: then it is 1 at every node that is reported, and acts on all of the area.
+/// The reactions of a uniform pressure 1 are D_i: the reported pressure is 1 at every node, on the whole area.
 void expect_uniform_pressure(const ContactBoundary& contact, double area) {
   EXPECT_NEAR(contact.weights.sum(), area, 1e-12 * area);
   Vector pressure;
@@ -133,7 +133,7 @@ TEST(TiedHalves, HaveAUniformPressureAcrossTheSeam) {
   }
 }
 
-/// The halves against a third body, on either side of the contact.
+/// The halves in contact with a third body, on either side of the contact.
 TEST(TiedHalves, TouchAnotherBody) {
   const auto block = [](const PointMap& map, std::vector<int> counts) {
     return make_box_mesh({CellShape::quadrilateral, std::move(counts), 1, 0.0, map});

@@ -10,7 +10,7 @@
 #include "ricochet/fem/mesh_measures.hpp"
 #include "support/two_bodies.hpp"
 
-/// @file Surfaces tied on meshes that do not match: linear displacements pass, turns have no strain.
+/// @file Surfaces tied with non-matching meshes: linear displacements pass, rotations cause no strain.
 namespace ricochet::test_support {
 namespace tied_surfaces_test {
 
@@ -44,7 +44,7 @@ TiedStack tie(const StackedBoxes& stack, int degree, bool upper_follows) {
   return result;
 }
 
-/// Displacements of the nodes by a linear function, or by a small turn.
+/// Nodal displacements of a linear function, or of a small rotation.
 Vector linear_field(const DisplacementSpace& space, const Matrix& gradient) {
   const Points values = gradient * space.nodes;
   return values.reshaped();
@@ -152,8 +152,8 @@ TEST(TiedSurfaces, HaveNoStrainInTurnsAlsoWhereTheyAreCurved) {
   }
 }
 
-/// The last node of the upper side overhangs by all but a part of its facet. Its own condition is that of this part
-/// alone: P would have entries of the size 1/part.
+/// The last node of the upper side overhangs except for a part of its facet. A condition of its own would integrate
+/// over this part alone, and P would have entries of the size 1/part.
 TEST(TiedSurfaces, LeaveNodesFreeThatOverhang) {
   for (const double part : {0.5, 0.1, 0.01, 1e-3, 1e-5}) {
     for (const int degree : {1, 2}) {
@@ -163,7 +163,7 @@ TEST(TiedSurfaces, LeaveNodesFreeThatOverhang) {
         return Vector(Eigen::Vector2d(x[0] * 4.0 / (3.0 + part), 1.0 + x[1]));
       };
       const TiedStack tied = tie(stack, degree, true);
-      // Of degree 2 the middle of the last facet overhangs, too, where less than half of it is covered.
+      // For degree 2 the middle of the last facet overhangs, too, if less than half of it is covered.
       EXPECT_EQ(tied.surface.facing.uncovered, degree == 2 && part < 0.5 ? 2 : 1) << part;
       double largest = 0.0;
       for (const TiedNodes::Tie& tie : tied.tied.ties()) {
@@ -179,8 +179,8 @@ TEST(TiedSurfaces, LeaveNodesFreeThatOverhang) {
   }
 }
 
-/// Middle nodes of a displacement of degree 2 on a mesh of straight edges leave the edges where the surface is curved:
-/// a turn is not a function of the space any more, and the caller hears of it.
+/// With degree 2 on straight edges, middle nodes leave the edges where the surface is curved: the space does not
+/// contain rotations any more, and the caller is informed.
 TEST(TiedSurfaces, TellWhereTurnsHaveStrain) {
   for (const int geometry_degree : {1, 2}) {
     for (const int degree : {1, 2}) {

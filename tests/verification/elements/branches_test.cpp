@@ -7,7 +7,7 @@
 #include "ricochet/problem/finite_elasticity.hpp"
 #include "support/box_mesh.hpp"
 
-/// @file Stress that relaxes beside a law, on all cells: energy, forces, dissipation.
+/// @file Viscoelastic branches on all cells: energy, forces, dissipation.
 namespace ricochet {
 namespace branches_test {
 
@@ -55,7 +55,7 @@ class BranchesOfKind : public ::testing::TestWithParam<Kind> {
     for (double& each : result) each = random(generator);
     return result;
   }
-  /// X ↦ Q (X + u).
+  /// Displacement of X ↦ Q (X + u).
   [[nodiscard]] Vector turned(const Vector& displacement, const Matrix& rotation) const {
     const Points places = body_->space.nodes + displacement.reshaped(dimension(), body_->space.node_count());
     return Vector((rotation * places - body_->space.nodes).reshaped());
@@ -84,7 +84,7 @@ TEST_P(BranchesOfKind, TheForceIsTheDerivativeOfTheEnergy) {
         (2.0 * small);
     EXPECT_NEAR(force.dot(direction), difference, 1e-8 * force.norm() * direction.norm());
   }
-  // What is stored at an instant, where nothing has time to relax.
+  // The energy stored at an instant, without time to relax.
   EXPECT_NEAR(force_->start_energy({middle, increment, end, internal_, 1e-12}, u), force_->branch_energy(u, internal_),
               1e-10);
 }
@@ -99,7 +99,7 @@ TEST_P(BranchesOfKind, TheWorkOfAStepIsStoredAndDissipated) {
     const double dissipated = force_->advance_internal(over, next), before = force_->branch_energy(start, internal_);
     EXPECT_GE(dissipated, 0.0);
     EXPECT_NEAR(force.dot(increment), force_->branch_energy(end, next) - before + dissipated, 1e-13 * before) << h;
-    // The force at the end is that of the internal strains there.
+    // The force at the end follows from the internal strains there.
     Vector at_end = Vector::Zero(end.size()), same = at_end;
     force_->add_end_force(over, at_end);
     force_->add_start_force({middle, increment, end, next, 1e-14}, end, same);
@@ -108,7 +108,7 @@ TEST_P(BranchesOfKind, TheWorkOfAStepIsStoredAndDissipated) {
 }
 
 TEST_P(BranchesOfKind, NothingChangesWhereTheMotionIsTurned) {
-  // A rotation is a displacement of the space.
+  // The displacement space contains rotations.
   if (kind().plane == PlaneState::axisymmetric || !kind().element.contains_affine()) return;
   const Matrix rotation = some_rotation();
   const Vector start = some_displacement(0.05, 2), end = some_displacement(0.05, 4);
@@ -128,7 +128,7 @@ TEST_P(BranchesOfKind, NothingChangesWhereTheMotionIsTurned) {
   EXPECT_LT((next - other).lpNorm<Eigen::Infinity>(), 1e-13);
   const Points expected = rotation * force.reshaped(dimension(), body_->space.node_count());
   EXPECT_LT((turned_force - Vector(expected.reshaped())).norm(), 1e-12 * force.norm());
-  // A rigid motion of any size from where nothing has stress: none, and no dissipation.
+  // A rigid motion of any size from a stress-free state causes no stress and no dissipation.
   force_->relax(start, internal_);
   EXPECT_LT(advance(start, turned(start, rotation), next, force), 1e-26);
   EXPECT_LT(force.lpNorm<Eigen::Infinity>(), 1e-13);

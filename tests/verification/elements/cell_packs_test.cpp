@@ -7,13 +7,13 @@
 #include "ricochet/fem/elastic_cells.hpp"
 #include "support/box_mesh.hpp"
 
-/// @file Forces and energies do not depend on how cells are shared out among parts, packs and threads.
+/// @file Forces and energies do not depend on the distribution of cells over parts, packs and threads.
 namespace ricochet {
 namespace {
 
 using namespace test_support;
 
-/// Some thousand nodes, for several parts, and two materials in cells side by side, so that packs are not full.
+/// Some thousand nodes, for several parts, and two materials in adjacent cells, so that packs are not full.
 struct LargeBody {
   explicit LargeBody(const ElementKind& kind) {
     const int per_axis = (kind.dimension() == 2 ? 80 : 17) / kind.displacement_degree;

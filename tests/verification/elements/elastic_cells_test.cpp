@@ -66,12 +66,12 @@ class ElasticCellsOfKind : public ::testing::TestWithParam<Kind> {
     for (double& each : result) each = random(generator);
     return result;
   }
-  /// X ↦ Q (X + u).
+  /// Displacement of X ↦ Q (X + u).
   [[nodiscard]] Vector turned(const Vector& displacement, const Matrix& rotation) const {
     const Points places = body_->space.nodes + displacement.reshaped(dimension(), body_->space.node_count());
     return Vector((rotation * places - body_->space.nodes).reshaped());
   }
-  /// An axisymmetric body does not rotate in the plane, and forces along x are balanced round the axis.
+  /// An axisymmetric body does not rotate in the plane, and forces along x are balanced around the axis.
   [[nodiscard]] static bool is_axisymmetric() { return kind().plane == PlaneState::axisymmetric; }
   [[nodiscard]] Matrix some_rotation() const {
     const Matrix space = Eigen::AngleAxisd(2.3, Eigen::Vector3d(0.3, -0.2, 0.8).normalized()).toRotationMatrix();
@@ -125,7 +125,7 @@ TEST_P(ElasticCellsOfKind, RotationsChangeNothing) {
   EXPECT_LT((turned_force - Vector(wanted.reshaped())).norm(), 1e-12 * force.norm());
 }
 
-/// Neither a resultant nor a moment about the current positions, and the work on the increment is a square.
+/// It has neither a resultant nor a moment about the current positions; its work on the increment is a square.
 TEST_P(ElasticCellsOfKind, StrainForceIsSelfEquilibrated) {
   if (kind().law == "linear") return;
   const Vector u = random_displacement(0.03, 5), change = random_displacement(0.02, 6);
@@ -184,7 +184,7 @@ std::string name_of(const ::testing::TestParamInfo<Kind>& info) {
 
 INSTANTIATE_TEST_SUITE_P(, ElasticCellsOfKind, ::testing::ValuesIn(kinds()), name_of);
 
-/// A cell that is turned inside out is named.
+/// The message names the inverted cell.
 TEST(FiniteElasticity, NamesTheCellThatIsTurnedInsideOut) {
   const auto body = make_meshed_body(make_box_mesh(box_of(CellShape::triangle, {2, 2})), 1);
   body->body.materials[0].law = make_material_law("neo-hookean", parameters_of("neo-hookean"));
@@ -196,7 +196,7 @@ TEST(FiniteElasticity, NamesTheCellThatIsTurnedInsideOut) {
     FAIL();
   } catch (const Error& problem) {
     EXPECT_EQ(problem.kind(), ErrorKind::not_converged);
-    EXPECT_NE(std::string(problem.what()).find("turned inside out"), std::string::npos) << problem.what();
+    EXPECT_NE(std::string(problem.what()).find("is inverted"), std::string::npos) << problem.what();
   }
 }
 

@@ -10,7 +10,7 @@
 #include "support/convergence.hpp"
 #include "support/mass_moments.hpp"
 
-/// @file Total mass, centre of gravity and second moments, PᵀMP with P = (1, x, y[, z]), against exact values.
+/// @file Total mass, centre of gravity and second moments, PᵀMP with P = (1, x, y[, z]), compared with exact values.
 namespace ricochet::test_support {
 namespace inertia_test {
 
@@ -73,7 +73,7 @@ TEST_P(Inertia, OfAStraightBoxIsExact) {
   EXPECT_LE(relative_error(moments, exact_box_moments(matrix, shift)), 1e-14);
 }
 
-/// Curved cells inside a body that is still the box, when the space contains x: no error at all.
+/// Curved cells inside a body that is still the box: exact if the space contains x.
 TEST_P(Inertia, OfABoxOfCurvedCellsIsExact) {
   const ElementKind& kind = GetParam();
   const int d = kind.dimension();
@@ -88,8 +88,8 @@ TEST_P(Inertia, OfABoxOfCurvedCellsIsExact) {
   }
 }
 
-/// A disc or ball: the geometry's error is of order 2 when straight; second-order geometry gives 3 at least (4 here,
-/// the nodes being spaced smoothly).
+/// A disc or ball: the error of straight geometry is of order 2; second-order geometry gives at least 3 (4 here, as the
+/// nodes are smoothly spaced).
 TEST_P(Inertia, OfADiscOrBallConverges) {
   const ElementKind& kind = GetParam();
   const int d = kind.dimension();
@@ -104,7 +104,7 @@ TEST_P(Inertia, OfADiscOrBallConverges) {
   EXPECT_GE(errors.last_order(), expected - 0.25);
 }
 
-/// Every construction against the consistent mass, on the same discrete body, with a side as contact boundary.
+/// Every construction compared with the consistent mass, on the same discrete body, with a side as contact boundary.
 TEST_P(Inertia, IsKeptByEveryConstruction) {
   const ElementKind& kind = GetParam();
   const int d = kind.dimension();
@@ -135,7 +135,7 @@ TEST_P(Inertia, IsKeptByEveryConstruction) {
   }
 }
 
-/// The nearest mass refuses on coarse meshes; these are fine enough.
+/// The nearest mass refuses coarse meshes; these are fine enough.
 TEST_P(Inertia, IsKeptByTheNearestMass) {
   const ElementKind& kind = GetParam();
   const int d = kind.dimension();

@@ -61,7 +61,7 @@ void expect_equal(const Resultant& found, const Resultant& exact) {
 
 class NodalLoads : public testing::TestWithParam<ElementKind> {
  protected:
-  /// [1, 2] × [1, 3] (× [1, 1.5]), distorted inside its sides, and of curved cells where the space contains x on them.
+  /// A box [1, 2] × [1, 3] (× [1, 1.5]), distorted inside, with curved cells if the space contains x on them.
   std::unique_ptr<MeshedBody> make_box() const {
     const ElementKind& kind = GetParam();
     const Vector sides = lengths();
@@ -123,7 +123,7 @@ TEST_P(NodalLoads, AddToWhatIsThere) {
   Vector twice = once;
   add_facet_load(test->body, test->mesh.group("x1", d - 1).members, force, twice);
   add_body_load(test->body, force, twice);
-  // Each entry is a sum over some hundred quadrature points, begun here from another value.
+  // Each entry is a sum over some hundred quadrature points, here with another initial value.
   EXPECT_LE((twice - 2.0 * once).cwiseAbs().maxCoeff(), 1e-14 * once.cwiseAbs().maxCoeff());
   EXPECT_GT(once.cwiseAbs().maxCoeff(), 0.0);
 }

@@ -34,7 +34,7 @@ struct Wave {
   [[nodiscard]] Vector angle(const Vector& x, double turn) const {
     return wave * x + phase - Vector::Constant(dimension, turn);
   }
-  /// The displacement where ωt = turn.
+  /// Displacement at ωt = turn.
   [[nodiscard]] Vector displacement(const Vector& x, double turn) const {
     return amplitude.cwiseProduct(angle(x, turn).array().sin().matrix());
   }
@@ -60,7 +60,7 @@ struct Wave {
   }
 };
 
-/// Load of the body force and of the tractions on all sides but x = 0, where ωt = turn.
+/// Load of the body force and of the tractions on all sides but x = 0, at ωt = turn.
 Vector load_at(const MeshedBody& test, const Wave& wave, double turn) {
   const int d = test.mesh.dimension;
   Vector load = Vector::Zero(test.space.dof_count());
@@ -131,7 +131,7 @@ double error_norm(const MeshedBody& test, const Wave& wave, const Vector& displa
   return std::sqrt(sum);
 }
 
-/// Runs with the trapezoidal rule to t = 0.8; the root mean square of the error's norm at the quarters of that time.
+/// Runs with the trapezoidal rule to t = 0.8; root mean square of the error norm at the quarters of that time.
 double run_error(const MeshedBody& test, const SemidiscreteProblem& problem, const Wave& wave, int quarter_steps) {
   log::set_level(log::Level::warning);  // differences of the supports' formulas give the first velocity: expected
   const double step = 0.2 / quarter_steps;
@@ -171,7 +171,7 @@ TEST_P(ManufacturedSolution, ConvergesWithOneOrderMoreThanTheDegree) {
   for (const int count : counts) {
     const auto test = make_body(kind, count);
     const SemidiscreteProblem problem = make_problem(*test, wave, false);
-    // Δt ~ h for degree 1 and h^(3/2) for degree 2: the error in time falls as that in space does, far below it.
+    // Δt ~ h for degree 1 and h^(3/2) for degree 2: the error in time decreases as in space, far below it.
     const int steps = k == 1 ? count : static_cast<int>(std::ceil(1.5 * std::pow(count, 1.5)));
     errors.push_back(run_error(*test, problem, wave, steps));
     std::printf("  %2d: %.2e", count, errors.back());
@@ -189,7 +189,7 @@ TEST_P(ManufacturedSolution, ConvergesWithOneOrderMoreThanTheDegree) {
 INSTANTIATE_TEST_SUITE_P(Elements, ManufacturedSolution, testing::ValuesIn(all_element_kinds()),
                          [](const auto& info) { return info.param.label(); });
 
-/// A load integrated anew at every instant gives what the two patterns give.
+/// A load integrated anew at every instant equals the combination of the two patterns.
 TEST(ManufacturedSolutionLoads, GeneralAndSeparableAgree) {
   const Wave wave(2);
   const auto test = make_body({CellShape::quadrilateral, 2, 2}, 4);
@@ -207,7 +207,7 @@ TEST(ManufacturedSolutionLoads, GeneralAndSeparableAgree) {
 }
 
 /// On a fixed mesh the trapezoidal rule is of second order in Δt: successive halvings change the error norm's limit by
-/// a quarter of the change before.
+/// a quarter of the previous change.
 TEST(ManufacturedSolutionInTime, IsOfSecondOrder) {
   log::set_level(log::Level::warning);
   const Wave wave(2);

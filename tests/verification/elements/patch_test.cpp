@@ -5,14 +5,14 @@
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "support/box_mesh.hpp"
 
-/// @file Patch tests: an affine displacement is reproduced, its stress is that of the law and in equilibrium.
+/// @file Patch tests: an affine displacement is reproduced, its stress follows the law and is in equilibrium.
 namespace ricochet::test_support {
 namespace patch_test {
 
 struct PatchCase {
   ElementKind kind;
   PlaneState plane = PlaneState::strain;
-  bool bent = false;  ///< the sides are curved too, or the body stays a box
+  bool bent = false;  ///< the sides are curved too, instead of plane
 
   [[nodiscard]] std::string label() const {
     const std::string law = kind.dimension() == 3 ? "solid" : plane == PlaneState::strain ? "strain" : "stress";
@@ -42,7 +42,7 @@ Vector shift(int dimension) {
   return Vector::LinSpaced(dimension, 0.4, -0.9);
 }
 
-/// The law written out here once more: in plane stress from E and ν, not through the condensed λ of the library.
+/// The law written out independently: in plane stress from E and ν, not through the condensed λ of the library.
 Matrix stress_of(const Matrix& h, PlaneState plane) {
   const Material material = test_material();
   const Matrix strain = 0.5 * (h + h.transpose());
@@ -74,7 +74,7 @@ class PatchTest : public testing::TestWithParam<PatchCase> {
 
 class BoxPatchTest : public PatchTest {};
 
-/// Numbers of the dofs that are (not) on the boundary, −1 elsewhere.
+/// Numbers of the dofs that are (not) on the boundary, −1 for others.
 std::vector<int> number_dofs(const MeshedBody& test, bool on_boundary, int& count) {
   const int d = test.mesh.dimension;
   std::vector<char> held(static_cast<std::size_t>(test.space.node_count()), 0);
@@ -128,7 +128,7 @@ TEST_P(PatchTest, UniformStressHasNoForceInside) {
   EXPECT_LE(largest, 2e-14 * size * std::sqrt(static_cast<double>(stiffness.nonZeros() / stiffness.cols())));
 }
 
-/// The energy of the affine displacement is ½ σ:ε times the volume: the law and the integration of curved cells.
+/// The energy of the affine displacement is ½ σ:ε times the volume: checks the law and the integration of curved cells.
 TEST_P(PatchTest, EnergyIsThatOfTheUniformStress) {
   const auto test = make_body();
   const int d = test->mesh.dimension;

@@ -12,7 +12,7 @@ namespace rigid_modes_test {
 
 class RigidModes : public testing::TestWithParam<ElementKind> {
  protected:
-  /// A bent body with curved cells where these can turn rigidly, else straight cells.
+  /// A bent body, with curved cells if these can rotate rigidly, else with straight cells.
   std::unique_ptr<MeshedBody> make_body(double size = 1.0) const {
     const ElementKind& kind = GetParam();
     const int d = kind.dimension();
@@ -77,7 +77,7 @@ TEST_P(RigidModes, OperatorsAreSymmetricBitForBit) {
   }
 }
 
-/// K scales with length to the power d−2 and M with d: with a power of two, bit for bit.
+/// K scales with length to the power d−2 and M with d: for a power of two, bit for bit.
 TEST_P(RigidModes, OperatorsScaleBitForBit) {
   const auto one = make_body();
   const auto small = make_body(0.0078125);
@@ -107,7 +107,7 @@ TEST_P(RigidModes, AnyRotationBelowHalfATurnIsMeasured) {
   EXPECT_LE(gauge.largest(interpolate(test->space, affine_map(stretch, Vector::Zero(d)))), 1e-14);
 }
 
-/// One node turns its cells only: the largest rotation of any cell is not an average.
+/// One node rotates only its own cells: the gauge returns the largest rotation of a cell, not an average.
 TEST_P(RigidModes, OneCellThatTurnsIsSeen) {
   const auto test = make_body();
   const int d = test->mesh.dimension;
@@ -124,8 +124,8 @@ TEST_P(RigidModes, OneCellThatTurnsIsSeen) {
   }
 }
 
-/// Linear displacements on curved cells contain no rotation: a rotation has an energy there, which must vanish with h².
-/// (On curved meshes use degree 2 where rotation matters.)
+/// Linear displacements on curved cells contain no rotation: there a rotation has an energy, which must vanish with h².
+/// (On curved meshes use degree 2 if rotation matters.)
 TEST(RigidModesOfLinearDisplacementOnCurvedCells, HaveAnEnergyOfSecondOrder) {
   for (const CellShape shape : all_cell_shapes) {
     const int d = dimension(shape);

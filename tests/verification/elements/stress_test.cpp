@@ -9,7 +9,7 @@
 #include "ricochet/fem/nodal_recovery.hpp"
 #include "support/box_mesh.hpp"
 
-/// @file Stress of cells, what is recovered at the nodes from it, and strain energy.
+/// @file Stress of cells, its recovery at the nodes, and strain energy.
 namespace ricochet::test_support {
 namespace stress_test {
 
@@ -38,7 +38,7 @@ std::vector<StressCase> stress_cases() {
 
 class StressTest : public testing::TestWithParam<StressCase> {};
 
-/// Hooke's law by E and ν; in the plane with what keeps ε_zz, or σ_zz, at zero.
+/// Hooke's law in terms of E and ν; in the plane with ε_zz, or σ_zz, kept at zero.
 TEST_P(StressTest, OfAnAffineDisplacement) {
   const int d = GetParam().kind.dimension();
   const auto body = curved_body(GetParam());
@@ -74,7 +74,7 @@ TEST_P(StressTest, OfAnAffineDisplacement) {
   }
 }
 
-/// Σ density × volume = ½UᵀKU of any displacement.
+/// Σ density × volume = ½UᵀKU for any displacement.
 TEST_P(StressTest, EnergyDensitiesAddUpToTheStrainEnergy) {
   const auto body = curved_body(GetParam());
   const SparseMatrix stiffness = assemble_stiffness(body->body, node_graph(body->space));
@@ -93,7 +93,7 @@ TEST_P(StressTest, EnergyDensitiesAddUpToTheStrainEnergy) {
   EXPECT_EQ(von_mises[largest.cell], largest.value);
 }
 
-/// A linear function sampled at the centres of the cells comes back at every node, corners included.
+/// A linear function sampled at the cell centres is recovered at every node, corners included.
 TEST_P(StressTest, RecoveryIsExactForLinearFunctions) {
   const auto body = curved_body(GetParam());
   const int d = GetParam().kind.dimension();
@@ -116,7 +116,7 @@ TEST_P(StressTest, RecoveryIsExactForLinearFunctions) {
   }
 }
 
-/// Returns by how much, relative, the value of a cell is above those of all its nodes, at most.
+/// Returns the largest relative excess of the value of a cell over those of all its nodes.
 double worst_hidden_cell(const MeshedBody& body, const std::vector<double>& cells, const std::vector<double>& nodes) {
   double worst = 0.0;
   each_cell(body.space.cells, [&](Index cell, std::span<const Index> of_cell) {
@@ -130,8 +130,8 @@ double worst_hidden_cell(const MeshedBody& body, const std::vector<double>& cell
   return worst;
 }
 
-/// Von Mises' stress is convex (Jensen's inequality): no field has less in all of a cell than its mean has. A fit alone
-/// breaks that at a peak. The tensors are those of cells or of the fit, so that principal stresses agree with them.
+/// Von Mises' stress is convex (Jensen's inequality): no field stays below that of its mean all over a cell. A fit
+/// alone violates this at a peak. The tensors are those of cells or of the fit, so principal stresses agree with them.
 TEST_P(StressTest, NodesHideNoCell) {
   const auto body = curved_body(GetParam());
   std::srand(7);
@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(Elements, StressTest, testing::ValuesIn(stress_cases())
 });
 
 /// On a regular mesh the recovered stress is of (nearly) second order inside the body and of first on its boundary, so
-/// of order 3/2 in the mean; the cells' own of first.
+/// of order 3/2 in the mean; the stress of cells is of first order.
 TEST(NodalRecovery, IsOfHigherOrder) {
   const PointMap field = [](const Vector& x) {
     Vector u(2);
@@ -191,7 +191,7 @@ TEST(NodalRecovery, IsOfHigherOrder) {
       const Vector x = body->space.nodes.col(node);
       const double square = std::pow(recovered[node] - exact(x), 2);
       nodal_error += square;
-      // Where the cells lie around the node on all sides.
+      // Only if cells surround the node on all sides.
       if (x.minCoeff() > 0.01 && x.maxCoeff() < 0.99) inside_error += square;
     }
     const CellBlock& cells = body->space.cells.front();
@@ -208,8 +208,8 @@ TEST(NodalRecovery, IsOfHigherOrder) {
   }
 }
 
-/// Two materials side by side under the same strain: nothing of one leaks into the other. The nodes between have the
-/// larger stress: the mean would be that of neither.
+/// Two materials side by side under the same strain do not affect each other. The nodes between them have the larger
+/// stress: the mean would belong to neither.
 TEST(NodalRecovery, KeepsMaterialsApart) {
   BoxMesh box;
   box.counts = {6, 4};

@@ -16,7 +16,7 @@
 #include "support/mass_bodies.hpp"
 #include "support/mass_moments.hpp"
 
-// Mass redistributed cell by cell: its invariances, the nodes that may receive it, and its effect on frequencies.
+// Mass redistributed cell by cell: its invariances, its possible receiving nodes, and its effect on frequencies.
 
 namespace ricochet {
 namespace cellwise_equivalent_mass_test {
@@ -27,7 +27,7 @@ using test_support::mass_moments;
 
 constexpr const char* cellwise = "equivalent-cellwise";
 
-/// A copy of a body with other positions, another density, renumbered nodes, cells in another order.
+/// A copy of a body with other positions, another density, renumbered nodes and reordered cells.
 struct Variant : AssembledBody {
   std::vector<Index> number;  ///< new number of each node
 
@@ -88,7 +88,7 @@ TEST(CellwiseEquivalentMass, NumbersOfNodesAndCellsDoNotMatter) {
         worst = std::max(worst, std::abs(there - entry.value()));
       }
     }
-    // In grids, donors that are equal up to rounding have equal shares: the result does not depend on ties.
+    // In grids, donors that are equal up to rounding have equal shares: ties do not affect the result.
     EXPECT_LE(worst, 1e-12 * plain.coeffs().cwiseAbs().maxCoeff()) << name;
   }
 }
@@ -135,7 +135,7 @@ TEST(CellwiseEquivalentMass, OfFlatCellsIsThatOfRoundOnes) {
         const SparseMatrix found = mapped.build(body, type);
         ASSERT_EQ(found.nonZeros(), plain.nonZeros()) << name << ": the same nodes are taken";
         // The rounding of the mapped positions is about 1e-15 times the ratio of the thickness of a cell, and
-        // extrapolating weights are hundreds of times as sensitive. At 1e6:1 the mesh has no digits left to compare.
+        // extrapolating weights are hundreds of times as sensitive. At 1e6:1 no digits remain to compare.
         if (ratio <= 1e5) {
           const SparseMatrix change = found / map.determinant() - plain;
           EXPECT_LE(change.coeffs().cwiseAbs().maxCoeff(),
@@ -152,7 +152,7 @@ TEST(CellwiseEquivalentMass, OfFlatCellsIsThatOfRoundOnes) {
   }
 }
 
-/// The `kept` cells of a grid of triangles with a slit along x = ½, y < ¾, each side of which has its own nodes.
+/// The `kept` cells of a grid of triangles with a slit along x = ½, y < ¾, whose sides have separate nodes.
 struct Slit {
   std::unique_ptr<test_support::MeshedBody> body;
   std::map<Index, Index> left;  ///< node of the grid → node here, for nodes of cells with x < ½
@@ -212,7 +212,7 @@ TEST(CellwiseEquivalentMass, NothingIsHandedAcrossASlit) {
   const double largest = arm.mass.coeffs().cwiseAbs().maxCoeff();
   double of_cut = 0.0, of_whole = 0.0;
   for (const auto& [from, to] : arm.left) {
-    if (arm.body->space.nodes(1, to) > 0.3) continue;  // further up the other half may matter
+    if (arm.body->space.nodes(1, to) > 0.3) continue;  // farther up the other half may matter
     const double here = arm.mass.coeff(to, to);
     of_cut = std::max(of_cut, std::abs(cut.mass.coeff(cut.left.at(from), cut.left.at(from)) - here));
     of_whole = std::max(of_whole, std::abs(whole.mass.coeff(whole.left.at(from), whole.left.at(from)) - here));

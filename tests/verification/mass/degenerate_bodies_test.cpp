@@ -11,8 +11,8 @@
 #include "support/mass_bodies.hpp"
 #include "support/mass_moments.hpp"
 
-// Any set of a mesh's nodes may be its contact nodes. Whatever is left for the inertia: a mass that is handed out keeps
-// what it promises, or the warning says by how much it does not.
+// Any set of a mesh's nodes may be its contact nodes. For any remaining inertia, a constructed mass has the promised
+// properties, or the warning states the deviation.
 
 namespace ricochet {
 namespace degenerate_bodies_test {
@@ -29,12 +29,12 @@ constexpr const char* block =
     "Box(1)={0,0,0,1,1,2}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={5}; Transfinite Curve{:}=5; "
     "Transfinite Surface{:}; Recombine Surface{:}; Transfinite Volume{1};";
 
-/// Nodes without contact: a few anywhere, or all on one line or in one plane of the grid, or all of a part of the body.
+/// Nodes without contact: a few anywhere, or all on one line or in one plane of the grid, or all in a part of the body.
 std::vector<char> random_free_nodes(const Points& nodes, std::mt19937& random) {
   std::vector<char> free(static_cast<std::size_t>(nodes.cols()), 0);
   const auto any = [&](Index count) { return static_cast<Index>(random() % static_cast<unsigned>(count)); };
   const Vector through = nodes.col(any(nodes.cols()));
-  const Index fixed = 1 + any(nodes.rows());  // coordinates that are fixed: what remains is a plane, a line, a point
+  const Index fixed = 1 + any(nodes.rows());  // number of fixed coordinates: a plane, a line or a point remains
   const Index kind = any(3);
   const Index first_axis = any(nodes.rows());
   for (Index i = 0; i < nodes.cols(); ++i) {
@@ -51,7 +51,7 @@ std::vector<char> random_free_nodes(const Points& nodes, std::mt19937& random) {
   return free;
 }
 
-/// Twice the energy of the velocity ω × (x − c), or of the plane's one rotation.
+/// Twice the energy of the velocity ω × (x − c), or of the rotation in the plane.
 double energy_of_spin(const SparseMatrix& mass, const Points& nodes, const Vector& centre,
                       const Eigen::Vector3d& axis) {
   Matrix velocity(nodes.cols(), nodes.rows());
@@ -164,8 +164,8 @@ TEST(DegenerateBodies, NoBodyGivesMassToAnother) {
   }
 }
 
-/// All free nodes of two layers of cells are in one plane, also to rounding where the plate is turned. To find that out
-/// cell after cell would take the 141 rings of the first cell, each with a factorization of all that it has reached.
+/// All free nodes of two layers of cells are in one plane, up to rounding if the plate is rotated. Detecting this cell
+/// by cell would take the 141 rings of the first cell, each with a factorization of everything reached.
 TEST(DegenerateBodies, ALargePlateOfTwoLayersIsRefused) {
   const Matrix turned = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
   const Eigen::Vector3d size(1.0, 1.0, 0.01), shift(3.0, -5.0, 7.0);
@@ -189,7 +189,7 @@ TEST(DegenerateBodies, ALargePlateOfTwoLayersIsRefused) {
   }
 }
 
-/// Cells that become 10⁴ times as long from one end to the other: node by node the nearest 40 nodes are too close
+/// Cells that become 10⁴ times as long from one end to the other: for a node the nearest 40 nodes are too close
 /// together for their distance, but a cell is large enough.
 TEST(DegenerateBodies, WhereNodesAreTooCloseTogetherTheDefaultTakesCells) {
   const auto grade = [](const Vector& x) {
@@ -204,7 +204,7 @@ TEST(DegenerateBodies, WhereNodesAreTooCloseTogetherTheDefaultTakesCells) {
   EXPECT_THROW((void)make_mass("equivalent-nodewise")->build(input), Error);
   const MassChoice choice = mass_to_build("equivalent", {}, input);
   EXPECT_EQ(choice.name, "equivalent-cellwise");
-  EXPECT_NE(choice.reason.find("but \"equivalent-nodewise\" refuses it"), std::string::npos) << choice.reason;
+  EXPECT_NE(choice.reason.find("but \"equivalent-nodewise\" cannot be built"), std::string::npos) << choice.reason;
 }
 
 }  // namespace degenerate_bodies_test

@@ -10,8 +10,8 @@
 #include "support/mass_bodies.hpp"
 #include "support/mass_moments.hpp"
 
-// An affine map of a mesh changes neither which nodes lie how to one another nor, but for one factor, its consistent
-// mass: the equivalent mass must be the same one, however flat the map makes the cells.
+// An affine map of a mesh preserves the relative positions of nodes and, up to one factor, the consistent mass: the
+// equivalent mass must be the same, however flat the map makes the cells.
 
 namespace ricochet {
 namespace flat_cells_test {
@@ -29,14 +29,14 @@ Matrix rotation(Index dimension, std::mt19937& random) {
   return Eigen::HouseholderQR<Matrix>(matrix).householderQ();
 }
 
-/// Stretches by 1 to `ratio` in directions of its own.
+/// A map that stretches by 1 to `ratio` in random directions.
 Matrix affine_map(Index dimension, double ratio, std::mt19937& random) {
   Vector stretch = Vector::Ones(dimension);
   for (Index k = 1; k < dimension; ++k) stretch[k] = k == 1 ? ratio : std::pow(ratio, 0.5 + 0.5 * uniform(random));
   return rotation(dimension, random) * stretch.asDiagonal() * rotation(dimension, random);
 }
 
-/// The body after x ↦ A x + b. Its mass is |det A| times what it was.
+/// The body after x ↦ A x + b. Its mass is multiplied by |det A|.
 struct MappedBody {
   Points nodes;
   SparseMatrix consistent;
@@ -47,8 +47,8 @@ struct MappedBody {
         input{&consistent, &nodes, body.input.contact_nodes} {}
 };
 
-/// The largest defect of mass, centre and inertia, where no number is small: affine functions of the mapped positions,
-/// rounded as they are, are those of the positions mapped back.
+/// Largest defect of mass, centre and inertia, evaluated without small numbers: affine functions of the rounded mapped
+/// positions are affine functions of the positions mapped back.
 double defect(const SparseMatrix& mass, const MappedBody& mapped, const Matrix& map, const Vector& shift) {
   using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
   Long monomials(mapped.nodes.cols(), mapped.nodes.rows() + 1);
@@ -88,7 +88,7 @@ TEST(FlatCells, TheEquivalentMassOfAMappedMeshIsThatOfTheMesh) {
                   defect(found, mapped, map, shift));
       EXPECT_EQ(found.nonZeros(), plain.nonZeros()) << name << ": the same nodes are taken";
       // Rounding of the mapped positions is 1e-13 of the thickness at 1000:1, and solving for the weights leaves as
-      // much; where they extrapolate far (the plate of one layer), they are a hundred times as sensitive.
+      // much; weights that extrapolate far (the plate of one layer) are a hundred times as sensitive.
       EXPECT_LE(difference, 1e-11 * largest) << name;
       EXPECT_LE(defect(found, mapped, map, shift), 1e-12) << name;
       EXPECT_TRUE(is_positive_definite(found, body.input.contact_nodes)) << name;
@@ -97,7 +97,7 @@ TEST(FlatCells, TheEquivalentMassOfAMappedMeshIsThatOfTheMesh) {
   }
 }
 
-/// A grid of transfinite cells that are flat along the axes, as they are drawn.
+/// A grid of transfinite cells, drawn flat along the axes.
 TEST(FlatCells, LayersOfFlatCellsAreTaken) {
   struct Layers {
     int count;
@@ -127,7 +127,7 @@ TEST(FlatCells, WhatIsRefusedIsRefusedInEveryShape) {
     const char* expected;
   };
   const Kind kinds[] = {
-      // Free nodes: none; on the one line between two layers; in the one plane between two layers.
+      // No free nodes; only those on the one line between two layers; only those in the one plane between two layers.
       {"Rectangle(1)={0,0,0,1,1}; Physical Surface(\"body\")={1}; Transfinite Curve{:}=2; Transfinite Surface{1}; "
        "Physical Curve(\"contact\")={1,2,3,4};",
        "no node off the contact boundary"},

@@ -18,7 +18,7 @@ using test_support::AssembledBody;
 using test_support::BodyDescription;
 using test_support::mass_moments;
 
-/// Largest relative difference of total mass and first moments; of second moments about the centre of gravity.
+/// Largest relative differences of total mass and first moments, and of second moments about the centre of gravity.
 struct Lack {
   double centre = 0.0, inertia = 0.0;
 };
@@ -33,7 +33,7 @@ Lack lack(const SparseMatrix& mass, const AssembledBody& body) {
           difference.bottomRightCorner(d, d).maxCoeff() / wanted.bottomRightCorner(d, d).maxCoeff()};
 }
 
-/// Diagonal, nothing on contact nodes, positive on all others.
+/// Expects a diagonal mass, zero on contact nodes, positive on all others.
 void expect_lumped(const SparseMatrix& mass, const AssembledBody& body, const std::string& name) {
   const Vector diagonal = mass.diagonal();
   EXPECT_EQ((SparseMatrix(mass) - SparseMatrix(Matrix(diagonal.asDiagonal()).sparseView())).norm(), 0.0) << name;
@@ -83,7 +83,7 @@ TEST(LumpedEquivalentMass, KeepsTheConditionsOnMeshesOfEveryKind) {
                 body.input.contact_nodes.size(), least, most, found.centre, found.inertia);
     EXPECT_LE(found.centre, 1e-14) << description.name;
     EXPECT_GT(least, 0.25) << description.name << ": half of a mass in each of two steps";
-    // What is not kept is said.
+    // A moment that is not kept is reported.
     EXPECT_EQ(warnings.size(), found.inertia > 1e-12 ? 1u : 0u) << description.name;
     EXPECT_LE(found.inertia, 0.9) << description.name;
     all_kept += found.inertia <= 1e-12 ? 1 : 0;
@@ -100,7 +100,7 @@ TEST(LumpedEquivalentMass, MovesLessMassOnFinerMeshes) {
     const AssembledBody body(description);
     const SparseMatrix mass = make_mass("equivalent-lumped")->build(body.input);
     const Vector lumped = lumped_diagonal(body.consistent);
-    // Nodes that share no cell with a contact node only have the correction, which is of the order of h².
+    // Nodes that share no cell with a contact node only have the correction, of order h².
     double correction = 0.0;
     for (Index i = 0; i < lumped.size(); ++i) {
       bool beside = false;
@@ -118,7 +118,7 @@ TEST(LumpedEquivalentMass, MovesLessMassOnFinerMeshes) {
 }
 
 TEST(LumpedEquivalentMass, KeepsMassAndCentreWhereInertiaAcrossIsOutOfReach) {
-  // A bar of one layer of cells: a lumped mass has all of it at the sides, three times the inertia across.
+  // A bar of one layer of cells: a lumped mass has all of it at the sides, with three times the inertia across.
   log::set_level(log::Level::error);
   const AssembledBody body({"bar", 1, 1.0,
                             "Rectangle(1)={0,0,0,12,1}; Physical Surface(\"body\")={1}; Transfinite Curve{1,3}=13; "
@@ -153,7 +153,7 @@ TEST(LumpedEquivalentMass, TreatsEachBodyOnItsOwn) {
 TEST(LumpedEquivalentMass, DampingKeepsTheRateOfEachNode) {
   const AssembledBody body(test_support::body_of_kind("disc, h 0.25, degree 2"));
   const SparseMatrix mass = make_mass("equivalent-lumped")->build(body.input);
-  // Damping in the right half alone.
+  // Damping in the right half only.
   Vector inside(body.space.nodes.cols());
   for (Index i = 0; i < inside.size(); ++i) inside[i] = body.space.nodes(0, i) > 0.0 ? std::sqrt(0.7) : 0.0;
   const SparseMatrix damping = inside.asDiagonal() * body.consistent * inside.asDiagonal();

@@ -18,18 +18,18 @@ namespace {
 /// Checks that multipliers that share a node agree in their properties.
 void check_agreement(const ContactPair& first, const ContactPair& second, bool held) {
   if (first.multipliers != second.multipliers) {
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("contact groups \"{}\" and \"{}\" share a node against obstacle \"{}\" with different "
-                            "multipliers (\"{}\" and \"{}\"); separate them by at least one facet or give them the "
-                            "same",
-                            first.group, second.group, first.obstacle_name, first.multipliers, second.multipliers));
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("contact groups \"{}\" and \"{}\" share a node against obstacle \"{}\" with different multipliers "
+                    "(\"{}\" and \"{}\"); separate them by at least one facet or use the same for both",
+                    first.group, second.group, first.obstacle_name, first.multipliers, second.multipliers));
   }
   if (held || first.friction == second.friction) return;
   if (anchor_of(first.multipliers) == MultiplierAnchor::facet) return;  // each facet has its own
   throw Error(ErrorKind::invalid_input,
               fmt::format("contact groups \"{}\" and \"{}\" share a node against obstacle \"{}\" with different "
-                          "friction coefficients or bounds; separate them by at least one facet, give them the same, "
-                          "or use multipliers \"p0\", whose friction is per facet",
+                          "friction coefficients or bounds; separate them by at least one facet, use the same for "
+                          "both, or use multipliers \"p0\", whose friction is per facet",
                           first.group, second.group, first.obstacle_name));
 }
 
@@ -90,9 +90,9 @@ void BoundaryNodes::check_coincidence(const Body& body, const std::vector<Contac
       std::string place;
       for (const double coordinate : at) place += fmt::format("{}{}", place.empty() ? "" : ", ", coordinate);
       throw Error(ErrorKind::invalid_input,
-                  fmt::format("obstacles \"{}\" and \"{}\" are one and the same surface at the node at ({}), with "
-                              "different friction or motion: which of them carries the node is not determined; remove "
-                              "one of these contacts or move one of the obstacles",
+                  fmt::format("obstacles \"{}\" and \"{}\" are the same surface at the node at ({}), with different "
+                              "friction or motion: which of them carries the node is undetermined; remove one of these "
+                              "contacts or move one of the obstacles",
                               std::min(first.obstacle_name, second.obstacle_name),
                               std::max(first.obstacle_name, second.obstacle_name), place));
     }

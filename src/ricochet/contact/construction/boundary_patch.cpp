@@ -97,8 +97,7 @@ void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
     const Vector at = patch.facets.body->space->nodes.col(lost.front());
     log::warning(
         fmt::format("{} at tied nodes, first at ({:.6g}), and {} left out: no node that these follow is in the "
-                    "contact; let the other surface follow (multipliers_on of the tie), or take multipliers "
-                    "\"p1\"",
+                    "contact; make the other surface follow (multipliers_on of the tie), or use multipliers \"p1\"",
                     counted(lost.size(), "contact point lies", "contact points lie"), fmt::join(at, ", "),
                     lost.size() == 1 ? "is" : "are"));
   }

@@ -58,8 +58,8 @@ void check_weights(const BoundaryPatch& patch, const std::vector<ContactPair>& p
     }
     if (!patch.space->has_functions() && pair.friction.bound > 0.0 && multiplier.weight < -1e-10 * largest) {
       throw Error(ErrorKind::invalid_input,
-                  fmt::format("contact group \"{}\": a node's share of the area is negative on its curved facets, so "
-                              "a friction bound has no meaning for its force; use multipliers \"dual\" or \"p1\"",
+                  fmt::format("contact group \"{}\": a node's share of the area is negative on its curved facets, so a "
+                              "friction bound is meaningless for its force; use multipliers \"dual\" or \"p1\"",
                               pair.group));
     }
   }

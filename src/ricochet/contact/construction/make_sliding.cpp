@@ -65,9 +65,9 @@ void check_ties(const Body& body, const ContactPair& pair) {
       if (!body.tied->is_tied(node)) continue;
       const Vector at = body.space->nodes.col(node);
       throw Error(ErrorKind::invalid_input,
-                  fmt::format("contact groups \"{}\" and \"{}\": the node at ({:.6g}) is tied to another surface, and "
-                              "surfaces that slide far have no tied nodes; leave its facets out of the groups, or tie "
-                              "the other side of that surface (multipliers_on of the tie)",
+                  fmt::format("contact groups \"{}\" and \"{}\": the node at ({:.6g}) is tied to another surface, but "
+                              "surfaces that slide far cannot have tied nodes; remove its facets from the groups, or "
+                              "tie the other side of that surface (multipliers_on of the tie)",
                               pair.group, pair.opposite_group, fmt::join(at, ", ")));
     }
   }

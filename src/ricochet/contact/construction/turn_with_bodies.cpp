@@ -144,8 +144,8 @@ void find_rotating_normals(const Body& body, const std::vector<ContactPair>& pai
     }
     if (constant == 0) continue;
     log::warning(fmt::format(
-        "contact of \"{}\" and \"{}\": {} the direction of the start while bodies turn, as no "
-        "facet around them has contact nodes alone",
+        "contact of \"{}\" and \"{}\": {} the initial direction while bodies rotate, as no facet around them has only "
+        "contact nodes",
         pair.first_group(), pair.second_group(), counted(constant, "contact point keeps", "contact points keep")));
   }
 }

@@ -38,9 +38,9 @@ constexpr double rounding_of_files = 1e-6;
 void refuse_fold(const ContactPair& pair, const PairingSummary& facing) {
   if (facing.agreement >= folded) return;
   throw Error(ErrorKind::invalid_input,
-              fmt::format("contact group \"{}\": its facets around the node at ({:.6g}) fold so sharply that they "
-                          "have no common direction in which \"{}\" could be met; leave those of one side of the "
-                          "edge out of the group, or give them a contact of their own",
+              fmt::format("contact group \"{}\": its facets around the node at ({:.6g}) fold so sharply that they have "
+                          "no common direction in which they could meet \"{}\"; remove the facets on one side of the "
+                          "edge from the group, or put them into a separate contact",
                           pair.group, fmt::join(facing.edge, ", "), pair.opposite_group));
 }
 

@@ -117,7 +117,7 @@ SideChoice choose_side(const Body& body, const ContactPair& pair) {
   const double own = by_bends ? turns.own_of_bends : turns.own,
                others = by_bends ? turns.opposite_of_bends : turns.opposite;
   if (std::max(own, others) > std::max(flat, alike_turns * std::min(own, others)))
-    return choice(others < own, "normals turn less within its facets", own, others);
+    return choice(others < own, "normals vary less within its facets", own, others);
   if (pair.large_sliding && smaller_from * std::min(one.area, other.area) < std::max(one.area, other.area)) {
     const bool is_other = other.area < one.area;
     if ((is_other ? other.size : one.size) < coarsest * (is_other ? one.size : other.size))

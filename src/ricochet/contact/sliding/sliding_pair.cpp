@@ -65,7 +65,7 @@ struct SlidingPair::Implementation {
   bool is_self;
   mutable MovingSurfaces surfaces;
   double least_height = std::numeric_limits<double>::infinity();
-  double detection_depth = least_height;  ///< see SlidingPair::sight()
+  double detection_depth = least_height;  ///< see SlidingPair::detection_depth()
   /// Per own facet, in the order of the space's anchors there: number of the point, or −1.
   std::vector<std::vector<int>> points_of;
   std::vector<RotatingNormal> normals;  ///< per own facet, into its body
@@ -321,11 +321,11 @@ bool warn_of_undetected_contact(const SlidingPair& pair, const Vector& to, const
   if (!pair.is_self()) return false;
   const double longest = largest_motion(pair, to, from);
   if (2.0 * longest <= pair.detection_depth()) return false;
-  log::warning(fmt::format(
-      "a surface that may touch itself moves in a step by up to {:.3g} to either side of its mean motion, and "
-      "sees no more than {:.3g} deep into itself: its parts may pass through each other unseen; take a "
-      "time.step that is {:.2g} times smaller",
-      longest, pair.detection_depth(), rounded_up(2.0 * longest / pair.detection_depth(), 2)));
+  log::warning(
+      fmt::format("a surface that may touch itself moves in one step by up to {:.3g} to either side of its mean "
+                  "motion, but detects contact with itself only up to a depth of {:.3g}: its parts may pass through "
+                  "each other undetected; use a time.step that is {:.2g} times smaller",
+                  longest, pair.detection_depth(), rounded_up(2.0 * longest / pair.detection_depth(), 2)));
   return true;
 }
 

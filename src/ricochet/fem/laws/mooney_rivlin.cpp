@@ -103,12 +103,12 @@ std::vector<Key> mooney_rivlin_keys() {
            .type = KeyType::number,
            .unit = "stress",
            .required = true,
-           .doc = "Of the first invariant; c10 + c01 > 0."},
+           .doc = "Coefficient of the first invariant; c10 + c01 > 0."},
           {.name = "c01",
            .type = KeyType::number,
            .unit = "stress",
            .required = true,
-           .doc = "Of the second invariant; the shear modulus at zero strain is 2 (c10 + c01)."},
+           .doc = "Coefficient of the second invariant; the shear modulus at zero strain is 2 (c10 + c01)."},
           {.name = "bulk_modulus",
            .type = KeyType::number,
            .unit = "stress",
@@ -126,19 +126,18 @@ void check_mooney_rivlin(const ParameterCheck& check, Parameters& values) {
   }
   const char* const negative = values.number("c10") < 0.0 ? "c10" : "c01";
   if (values.number(negative) < 0.0) {
-    check.add_warning(negative,
-                      fmt::format("{} is negative: at large strains such a body resists no more, and steps find "
-                                  "no solution",
-                                  negative));
+    check.add_warning(
+        negative,
+        fmt::format("{} is negative: at large strains such a body no longer resists, and steps find no solution",
+                    negative));
   }
   if (!check.is_usable("bulk_modulus")) return;
   const double bulk = values.number("bulk_modulus"), shear = 2.0 * sum;
   if (bulk < 2.0 / 3.0 * shear) {
     check.add_warning(
         "bulk_modulus",
-        fmt::format("the bulk modulus {:.3g} is small beside the shear modulus 2 (c10 + c01) = {:.3g}: "
-                    "Poisson's ratio is {:.3g}, below zero; check the units (rubber has a bulk modulus of "
-                    "some 2e9 Pa)",
+        fmt::format("the bulk modulus {:.3g} is small compared with the shear modulus 2 (c10 + c01) = {:.3g}: "
+                    "Poisson's ratio is {:.3g}, below zero; check the units (rubber has a bulk modulus of some 2e9 Pa)",
                     bulk, shear, (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear)));
   }
 }

@@ -73,7 +73,7 @@ def dimension_of(kind):
                               ("hexahedron", 3), ("wedge", 3), ("pyramid", 3), ("polyhedron", 3)):
         if kind.lower().startswith(prefix) or kind.lower().startswith("vtk_lagrange_" + prefix):
             return dimension
-    raise Refusal(f"cells of the kind {kind} are not supported")
+    raise Refusal(f"cells of type {kind} are not supported")
 
 
 class Block:

@@ -38,11 +38,11 @@ def element_kind(name, fail):
     if re.match(r"B[23][123]", name):
         return LINES["3" if name[2] == "2" else "2"]
     if re.match(r"(DC|C)?CAX|CGAX|MAX|SAX|DCAX", name):
-        fail(f"elements of type {name}: write the section of an axisymmetric body with CPE3, CPE4 or CPE6, and give "
-             "mesh.plane = \"axisymmetric\"")
+        fail(f"elements of type {name} are not supported; write the section of an axisymmetric body with CPE3, CPE4 or "
+             "CPE6, and set mesh.plane = \"axisymmetric\"")
     if re.match(r"(C|DC|AC)(3D|PS|PE)", name):
-        fail(f"elements of type {name} are not supported; use C3D4, C3D10 or C3D8, in the plane CPS3 or CPE3, CPS6 or "
-             "CPE6, CPS4 or CPE4")
+        fail(f"elements of type {name} are not supported; use C3D4, C3D10 or C3D8, or in the plane CPS3, CPE3, "
+             "CPS6, CPE6, CPS4 or CPE4")
     return None
 
 
@@ -64,11 +64,11 @@ class InpReader:
     # Lines without comments and blank ones, with those of included files inserted.
     def lines(self, path, depth=0):
         if depth > 20:
-            self.fail("*INCLUDE goes more than 20 files deep")
+            self.fail("*INCLUDE is nested more than 20 files deep")
         try:
             # The program has checked the main file. Devices and pipes may have no end.
             if depth > 0 and not stat.S_ISREG(os.stat(path).st_mode):
-                self.fail(f"*INCLUDE: {path}: it is no regular file")
+                self.fail(f"*INCLUDE: {path}: it is not a regular file")
             file = open(path, encoding="latin-1")
         except OSError as problem:
             if depth == 0:
@@ -122,11 +122,11 @@ class InpReader:
     def begin(self, keyword, parameters):
         """Returns the function to call with each data line behind a keyword and None at their end; None to skip."""
         if keyword in GENERATORS:
-            self.fail(f"*{keyword} is not read; write the input file with all nodes and elements listed (in Abaqus/CAE: "
+            self.fail(f"*{keyword} is not supported; write the input file with all nodes and elements listed (in Abaqus/CAE: "
                       "Job > Write Input), or mesh the part in Gmsh")
         if keyword == "NODE":
             if parameters.get("SYSTEM", "R").upper() != "R":
-                self.fail("*NODE with cylindrical or spherical coordinates is not read; write Cartesian ones")
+                self.fail("*NODE with cylindrical or spherical coordinates is not supported; use Cartesian coordinates")
             return self.node_reader(parameters)
         if keyword == "ELEMENT":
             return self.element_reader(parameters)
@@ -146,14 +146,14 @@ class InpReader:
     def only_one(self, seen, name, what):
         seen.append(name)
         if len(seen) > 1:
-            self.fail(f'a second {what}, "{name}": files with several parts or instances are not read; join them to one '
-                      "part (in Abaqus/CAE: Assembly > Instance > Merge/Cut), or write a file for each")
+            self.fail(f'a second {what}, "{name}": files with several parts or instances are not supported; merge them into '
+                      "one part (in Abaqus/CAE: Assembly > Instance > Merge/Cut), or write a separate file for each")
 
     def refuse_placement(self, line):
         words = [] if line is None else [word for word in self.words(line) if word]
-        if any(number != 0.0 for number in self.numbers(words, float, "where an instance is placed")):
-            self.fail("an instance that is moved or turned is not read; place the body by `move` and `turn` in [mesh] "
-                      "and take out this line")
+        if any(number != 0.0 for number in self.numbers(words, float, "the placement of an instance")):
+            self.fail("an instance that is moved or rotated is not supported; place the body with `move` and `turn` in "
+                      "[mesh] and remove this line")
 
     def numbers(self, words, kind, what):
         for word in words if kind is int else []:
@@ -179,7 +179,7 @@ class InpReader:
             values = self.numbers(words[1:4], float, "the coordinates of a node") + [0.0, 0.0, 0.0]
             number = self.numbers(words[:1], int, "the number of a node")[0]
             if number in self.nodes and self.nodes[number] != values[:3]:
-                self.fail(f"node {number} is there already, at another place")
+                self.fail(f"node {number} is already defined, at another position")
             self.nodes[number] = values[:3]
             made.append(number)
         return handle
@@ -232,7 +232,7 @@ class InpReader:
         sets, what = (self.nsets, "set of nodes") if keyword == "NSET" else (self.elsets, "set of elements")
         name = parameters.get(keyword)
         if not name:
-            self.fail(f"*{keyword} without a name ({keyword}=...)")
+            self.fail(f"*{keyword} requires a name ({keyword}=...)")
         self.extend(sets, name, [])
         if "INTERNAL" in parameters:
             self.internal.add((id(sets), name.upper()))
@@ -253,7 +253,7 @@ class InpReader:
                 return
             values = self.numbers(words, int, "first, last and increment of a generated set")
             if len(values) not in (2, 3) or (len(values) == 3 and values[2] <= 0):
-                self.fail("a generated set needs first, last and a positive increment")
+                self.fail("a generated set requires first, last and a positive increment")
             known = self.nodes if keyword == "NSET" else self.element_ids
             numbers = range(values[0], values[1] + 1, values[2] if len(values) == 3 else 1)
             # Iterate over the shorter of the two: a generated set may name far more numbers than exist.
@@ -267,11 +267,11 @@ class InpReader:
         name = parameters.get("NAME", "")
         kind = parameters.get("TYPE", "ELEMENT").upper()
         if kind in ("SEGMENTS", "CYLINDER", "REVOLUTION"):  # an analytical rigid surface, not part of a body
-            self.aside[f"SURFACE of type {kind}, which an [obstacle.NAME] of the case can stand for"] = 1
+            self.aside[f"SURFACE of type {kind}, which an [obstacle.NAME] of the case can replace"] = 1
             return None
         if "COMBINE" in parameters or kind not in ("ELEMENT", "NODE"):
-            self.fail(f'surface "{name}": only surfaces of elements\' faces and of nodes are read, neither combined ones '
-                      f"nor those of type {kind}")
+            self.fail(f'surface "{name}": only surfaces of element faces and of nodes are supported, not combined surfaces or '
+                      f"surfaces of type {kind}")
         sides = self.surfaces.setdefault(name, [])
 
         def handle(line):
@@ -284,7 +284,7 @@ class InpReader:
                 return
             label = words[1].upper() if len(words) > 1 and words[1] else ""
             if not re.fullmatch(r"S[1-6]|SPOS|SNEG|", label):
-                self.fail(f'"{words[1]}" is no face of an element; S1 to S6, SPOS and SNEG are')
+                self.fail(f'"{words[1]}" is not a face of an element; use S1 to S6, SPOS or SNEG')
             sides.append((self.members(self.elsets, words[0], "set of elements"), label, self.at))
         return handle
 
@@ -302,14 +302,14 @@ class InpReader:
                 continue
             for i, number in enumerate(table[:, 0].tolist()):
                 if number in self.place:
-                    raise Refusal(f"element {number} is there twice")
+                    raise Refusal(f"element {number} is defined twice")
                 self.place[number] = (len(mesh.blocks), i)
             nodes = numpy.searchsorted(ids, table[:, 1:]).clip(max=len(ids) - 1)
             wrong = numpy.nonzero((ids[nodes] != table[:, 1:]).any(axis=1))[0]
             if len(wrong):
                 row = table[wrong[0]]
                 missing = row[1:][~numpy.isin(row[1:], ids)][0]
-                raise Refusal(f"element {row[0]} refers to node {missing}, which is not there")
+                raise Refusal(f"element {row[0]} refers to node {missing}, which does not exist")
             mesh.blocks.append(Block(self.kinds[name], nodes, table[:, 0], name))
         self.add_groups(mesh, ids)
         self.add_notes(mesh)
@@ -319,7 +319,7 @@ class InpReader:
         parts = {}
         for number in dict.fromkeys(numbers):
             if number not in self.place:
-                raise Refusal(f"{what} names element {number}, which is not there")
+                raise Refusal(f"{what} names element {number}, which does not exist")
             block, i = self.place[number]
             parts.setdefault(block, []).append(i)
         return {block: numpy.array(indices) for block, indices in parts.items()}
@@ -341,7 +341,7 @@ class InpReader:
                         continue
                     side = int(label[1]) - 1 if label else None
                     if side is not None and side >= len(kind.facets):
-                        self.fail(f"{label} is no face of an element of type {mesh.blocks[block].name}")
+                        self.fail(f"{label} is not a face of an element of type {mesh.blocks[block].name}")
                     parts.append((block, indices, side))
             mesh.side_groups.append((name, parts))
         for name, numbers in self.elsets.items():
@@ -356,14 +356,14 @@ class InpReader:
             spelling = self.spelling(self.nsets, name)
             if (ids[found] != wanted).any():
                 missing = wanted[ids[found] != wanted][0]
-                raise Refusal(f'the set of nodes "{spelling}" names node {missing}, which is not there')
+                raise Refusal(f'the set of nodes "{spelling}" names node {missing}, which does not exist')
             mesh.node_groups.append((spelling, found))
 
     def add_notes(self, mesh):
         if self.aside:
-            mesh.notes.append("note: only the mesh is read; left aside: "
+            mesh.notes.append("note: only the mesh is read; ignored: "
                               + ", ".join(f"*{keyword}" for keyword in sorted(self.aside)))
         if self.aside_elements:
-            mesh.notes.append("warning: elements that are no part of a body's mesh are left aside: "
+            mesh.notes.append("warning: elements that are not part of a body's mesh are ignored: "
                               + ", ".join(f"{count} of type {name or '(none)'}"
                                           for name, count in sorted(self.aside_elements.items())))

@@ -62,7 +62,7 @@ def add_exodus_sets(mesh, path):
                     continue  # refused by name later, or of a lower dimension
                 for side in numpy.unique(sides[blocks == block]):
                     if side >= len(table):
-                        raise Refusal(f'the side set "{name}" names side {side + 1} of a {kind}')
+                        raise Refusal(f'the side set "{name}" names side {side + 1} of a {kind}, which is not supported')
                     here = (blocks == block) & (sides == side)
                     parts.append((int(block), elements[here] - firsts[block], table[side]))
             mesh.side_groups.append((name, parts))
@@ -82,8 +82,8 @@ def add_cell_data(mesh, source):
             continue
         values = numpy.unique(numpy.concatenate(parts))
         if len(values) > MOST_VALUES:
-            mesh.notes.append(f'note: no groups are made of the array "{name}" of integers, which has {len(values)} '
-                              f"different values (at most {MOST_VALUES})")
+            mesh.notes.append(f'note: no groups are made from the integer array "{name}", which has {len(values)} '
+                              f"different values (at most {MOST_VALUES} are supported)")
             continue
         for value in values:
             mesh.cell_groups.append((f"{name} {value}", {number: numpy.nonzero(part == value)[0]
@@ -115,8 +115,8 @@ def read_by_meshio(path):
     extension = os.path.splitext(path)[1].lower()
     if extension in (".e", ".exo", ".ex2"):
         if any(block.kind in ("hexahedron27", "quad9") for block in mesh.blocks):
-            raise Refusal("cells of Exodus' kinds HEX27 and QUAD9 are not read: their order of nodes is another one; "
-                          "write HEX8, QUAD4, TETRA10 or TRI6")
+            raise Refusal("cells of the Exodus types HEX27 and QUAD9 are not supported: their node order differs; "
+                          "use HEX8, QUAD4, TETRA10 or TRI6")
         try:
             add_exodus_sets(mesh, path)
         except ImportError:
@@ -136,5 +136,5 @@ def read_by_meshio(path):
 def gmsh_advice(path):
     extension = os.path.splitext(path)[1].lower()
     if extension in (".bdf", ".nas", ".mesh", ".vtk"):
-        return f"; Gmsh may: gmsh {os.path.basename(path)} -save -format msh41 -o NEW.msh"
+        return f"; Gmsh may be able to: gmsh {os.path.basename(path)} -save -format msh41 -o NEW.msh"
     return ""

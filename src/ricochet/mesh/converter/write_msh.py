@@ -99,7 +99,7 @@ def collect_facets(mesh, dimension):
         if not found:
             without.append(name)
     if without:
-        mesh.notes.append("note: no group is made of the sets of nodes that contain all nodes of no boundary facet: "
+        mesh.notes.append("note: no groups are made from sets of nodes that contain no whole boundary facet: "
                           + ", ".join(f'"{name}"' for name in without))
     return facets
 
@@ -190,15 +190,15 @@ def refuse_kinds(mesh, dimension):
             counts[block.name] = counts.get(block.name, 0) + len(block.ids)
     if not counts:
         return
-    listed = ", ".join(f"{count} of the kind {name}" for name, count in counts.items())
+    listed = ", ".join(f"{count} of type {name}" for name, count in counts.items())
     kinds = {block.kind for block in mesh.blocks if block.name in counts}
-    advice = ("cells can be triangles, quadrilaterals, tetrahedra and hexahedra; mesh the part with these, for example "
+    advice = ("cells must be triangles, quadrilaterals, tetrahedra or hexahedra; mesh the part with these, for example "
               "with tetrahedra (C3D4 or C3D10 in Abaqus)")
     if kinds <= {"quad8", "hexahedron20"}:
         advice = ("second-order quadrilaterals and hexahedra need nodes on their faces and inside, too (9 and 27 "
                   "nodes); write the mesh with cells of the first order (C3D8, CPS4, CPE4 in Abaqus), or with "
                   "second-order triangles and tetrahedra (C3D10, CPS6, CPE6)")
-    raise Refusal(f"cells that are not supported: {listed}; {advice}")
+    raise Refusal(f"unsupported cells: {listed}; {advice}")
 
 
 def write_msh(mesh, path):
@@ -225,7 +225,7 @@ def write_msh(mesh, path):
     for kind, found in facets.items():
         nodes, ids = numpy.concatenate(found.nodes), numpy.concatenate(found.ids)
         if kind not in TYPES:
-            raise Refusal(f"facets of the kind {kind} in groups are not supported")
+            raise Refusal(f"facets of type {kind} in groups are not supported")
         first, inverse = unique_rows(numpy.sort(nodes[:, :TYPES[kind].vertices], axis=1))
         ids = ids[first]
         new = ids == 0

@@ -66,12 +66,12 @@ std::vector<Key> cylinder_keys() {
            .type = KeyType::vector,
            .unit = "length",
            .required = true,
-           .doc = "A point of the cylinder's axis."},
+           .doc = "A point on the cylinder's axis."},
           {.name = "axis",
            .type = KeyType::vector,
            .unit = "1",
            .required = true,
-           .doc = "Direction of the axis, of any length but zero. The cylinder has no ends; in two dimensions take a "
+           .doc = "Direction of the axis, of any length but zero. The cylinder has no ends; in two dimensions use a "
                   "sphere, which is a circle there."},
           {.name = "radius",
            .type = KeyType::number,
@@ -79,7 +79,7 @@ std::vector<Key> cylinder_keys() {
            .required = true,
            .range = positive,
            .doc = "Radius of the cylinder."},
-          obstacle_side_key("Where bodies are: \"outside\" of a shaft, or \"inside\" of a bore.")};
+          obstacle_side_key("Side of the bodies: \"outside\" a shaft, or \"inside\" a bore.")};
 }
 
 void check_cylinder(const ParameterCheck& check, const Parameters& values) {
@@ -90,7 +90,7 @@ void check_cylinder(const ParameterCheck& check, const Parameters& values) {
 
 ObstacleRegistration cylinder_obstacle() {
   const auto make = [](const Parameters& parameters) {
-    require_space(parameters, "centre", "a cylinder", "take a sphere, which is a circle there");
+    require_space(parameters, "centre", "a cylinder", "use a sphere, which is a circle there");
     return std::make_unique<Cylinder>(as_vector(parameters.vector("centre")), as_vector(parameters.vector("axis")),
                                       parameters.number("radius"), obstacle_side(parameters));
   };

@@ -32,12 +32,12 @@ class Implicit final : public ObstacleShape {
       : value_(parameters.text("expression"), parameters.constants()), side_(side) {
     const std::string& text = value_.text();
     if (value_.depends_on_time())
-      throw Error(ErrorKind::invalid_input,
-                  fmt::format("the expression \"{}\" depends on t; give the obstacle's motion by \"motion\" and "
-                              "\"rotation\"",
-                              text));
+      throw Error(
+          ErrorKind::invalid_input,
+          fmt::format("the expression \"{}\" depends on t; set the obstacle's motion by \"motion\" and \"rotation\"",
+                      text));
     if (!value_.depends_on_position())
-      throw Error(ErrorKind::invalid_input, fmt::format("the expression \"{}\" is the same everywhere", text));
+      throw Error(ErrorKind::invalid_input, fmt::format("the expression \"{}\" does not depend on the position", text));
   }
 
   [[nodiscard]] double gap(const SpaceVector& position) const override { return foot_of(position).gap; }
@@ -86,10 +86,11 @@ class Implicit final : public ObstacleShape {
   [[noreturn]] void refuse(const SpaceVector& at) const {
     std::string place;
     for (const double x : at) place += fmt::format("{}{:.6g}", place.empty() ? "" : ", ", x);
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("the gradient of the expression \"{}\" vanishes at ({}): there is no normal there; take an "
-                            "expression that changes its sign across the surface with a slope, such as a distance",
-                            value_.text(), place));
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("the gradient of the expression \"{}\" vanishes at ({}): there is no normal there; use an "
+                    "expression that changes its sign across the surface with a nonzero slope, such as a distance",
+                    value_.text(), place));
   }
 
   /// Moves a point along the gradient to the surface and computes the slope there; returns false if it does not
@@ -160,9 +161,9 @@ std::vector<Key> implicit_keys() {
   return {{.name = "expression",
            .type = KeyType::text,
            .required = true,
-           .doc = "An expression in x, y and z that is zero on the surface, positive outside of the obstacle and "
-                  "negative inside, with a slope where it is zero: \"sqrt(x^2 + y^2) - 0.5 - 0.1*z\"."},
-          obstacle_side_key("Where bodies are: \"outside\", where the expression is positive, or \"inside\".")};
+           .doc = "An expression in x, y and z that is zero on the surface, positive outside the obstacle and negative "
+                  "inside, with a nonzero slope where it is zero: \"sqrt(x^2 + y^2) - 0.5 - 0.1*z\"."},
+          obstacle_side_key("Side of the bodies: \"outside\", where the expression is positive, or \"inside\".")};
 }
 
 void check_implicit(const ParameterCheck& place, const Parameters& values) {

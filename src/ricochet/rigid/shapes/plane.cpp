@@ -49,12 +49,12 @@ class Plane final : public ObstacleShape {
 
 std::vector<Key> plane_keys() {
   return {
-      {.name = "point", .type = KeyType::vector, .unit = "length", .required = true, .doc = "A point of the plane."},
+      {.name = "point", .type = KeyType::vector, .unit = "length", .required = true, .doc = "A point on the plane."},
       {.name = "normal",
        .type = KeyType::vector,
        .unit = "1",
        .required = true,
-       .doc = "Normal of the plane, out of the obstacle; of any length but zero."}};
+       .doc = "Normal of the plane, pointing out of the obstacle; of any length but zero."}};
 }
 
 void check_plane(const ParameterCheck& check, const Parameters& values) {

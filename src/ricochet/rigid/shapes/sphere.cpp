@@ -116,7 +116,7 @@ std::vector<Key> sphere_keys() {
            .required = true,
            .range = positive,
            .doc = "Radius of the sphere."},
-          obstacle_side_key("Where bodies are: \"outside\" of a ball, or \"inside\" of a hollow (a bowl).")};
+          obstacle_side_key("Side of the bodies: \"outside\" a ball, or \"inside\" a hollow (a bowl).")};
 }
 
 }  // namespace

@@ -76,14 +76,14 @@ class Surface final : public ObstacleShape {
     const double width = surface_.in_space() ? sides[1] : sides[2], least = surface_.in_space() ? sides[0] : sides[1];
     if (width < scale.spacing) {
       log::warning(
-          fmt::format("{}: the surface is about {:.3g} wide, and nodes that may touch it are {:.3g} apart: "
-                      "it can go in between them unseen; take smaller cells there",
+          fmt::format("{}: the surface is about {:.3g} wide, and nodes that may touch it are {:.3g} apart: it can pass "
+                      "between them undetected; use smaller cells there",
                       file_, width, scale.spacing));
     }
     if (given_radius_ && 2.0 * radius_ > least) {
       log::warning(
-          fmt::format("{}: edges are rounded over {:.3g}, more than half of what the surface is thick, about {:.3g}: "
-                      "gaps are off by a part of that; take a smaller edge_radius",
+          fmt::format("{}: edges are rounded over {:.3g}, more than half of the thickness of the surface, about "
+                      "{:.3g}: gaps are wrong by a fraction of that; use a smaller edge_radius",
                       file_, radius_, least));
     }
   }
@@ -211,46 +211,45 @@ std::vector<Key> surface_keys() {
       {.name = "file",
        .type = KeyType::text,
        .required = true,
-       .doc = "The surface: STL, binary or ASCII, whose triangles turn counterclockwise seen from outside; in two "
-              "dimensions a text file with x and y of a corner of a polygon in each line, the obstacle to the right "
-              "of its lines, an empty line between polygons. What it encloses is the obstacle; behind one with a "
-              "border, everything is that faces it from behind."},
+       .doc = "The surface: an STL file, binary or ASCII, whose triangles are counterclockwise seen from outside; in "
+              "two dimensions a text file with x and y of a corner of a polygon in each line, the obstacle to the "
+              "right of the polygon's sides, and an empty line between polygons. The obstacle is the enclosed region; "
+              "if the surface has a border, the obstacle is everything that faces it from behind."},
       {.name = "scale",
        .type = KeyType::number,
        .unit = "1",
        .default_value = "1",
        .range = positive,
-       .doc = "Factor on all coordinates of the file: 1e-3 for millimetres in a case in metres."},
+       .doc = "Factor for all coordinates of the file: 1e-3 for millimetres in a case in metres."},
       {.name = "edge_radius",
        .type = KeyType::number,
        .unit = "length",
        .range = nonnegative,
-       .doc =
-           "Gaps and normals are means over the facets that are so near, which rounds edges; 0: edges are sharp, and "
-           "normals jump there. Absent: a quarter of the largest distance between nodes of the contacts with it, and "
-           "of a surface that bends by no more than 30 degrees at any edge no more than the width of its facets."},
-      obstacle_side_key("Where bodies are: \"outside\" of what the surface encloses, or \"inside\"; then it must be "
-                        "closed.")};
+       .doc = "Gaps and normals are means over the facets within this distance, which rounds edges; 0: edges are "
+              "sharp, and normals jump there. Absent: a quarter of the largest distance between nodes of the contacts "
+              "with it, but at most the width of its facets if the surface bends by at most 30 degrees at every edge."},
+      obstacle_side_key("Side of the bodies: \"outside\" the region that the surface encloses, or \"inside\" it; the "
+                        "surface must then be closed.")};
 }
 
 void tell_of(const RigidSurface& surface, const std::string& file) {
   const char* const noun = surface.in_space() ? "triangle" : "segment";
   if (surface.was_reversed())
-    log::warning(fmt::format("{}: the surface was inside out, its normals pointing inwards; all {}s were turned round",
-                             file, noun));
+    log::warning(
+        fmt::format("{}: the surface was inside out, its normals pointing inwards; all {}s were reversed", file, noun));
   if (surface.joined_count() > 0)
     log::info(
-        fmt::format("{}: {} corners at borders lie within a millionth of its size of others: they are taken for "
-                    "one, and the border there is closed",
+        fmt::format("{}: {} corners at borders are within a millionth of the surface's size of other corners: they are "
+                    "merged with these, which closes the border there",
                     file, surface.joined_count()));
   if (surface.flat_count() > 0)
-    log::info(fmt::format("{}: {} {}s without {} touch nothing but by their neighbours", file, surface.flat_count(),
-                          noun, surface.in_space() ? "an area" : "a length"));
+    log::info(fmt::format("{}: {} {}s without {} make contact only through their neighbours", file,
+                          surface.flat_count(), noun, surface.in_space() ? "an area" : "a length"));
   if (surface.is_closed()) return;
   const Vector3& place = surface.border_place();
   log::info(
-      fmt::format("{}: the surface is not closed: {} {} to one {} only, one of them at ({:.4g}, {:.4g}, {:.4g}); "
-                  "what is behind it counts as inside of the obstacle",
+      fmt::format("{}: the surface is not closed: {} {} to only one {}, one of them at ({:.4g}, {:.4g}, {:.4g}); "
+                  "everything behind it counts as inside the obstacle",
                   file, surface.border_count(), surface.in_space() ? "edges belong" : "corners belong", noun, place[0],
                   place[1], place[2]));
 }
@@ -268,8 +267,8 @@ ObstacleRegistration surface_obstacle() {
       const Vector3& place = surface.border_place();
       throw Error(
           ErrorKind::invalid_input,
-          fmt::format("{}: bodies are to be inside of this surface, but it is not closed: {} of its {} belong to "
-                      "one {} only, the first at ({:.6g}, {:.6g}, {:.6g}); close it, or take side = \"outside\"",
+          fmt::format("{}: bodies must be inside this surface, but it is not closed: {} of its {} belong to only "
+                      "one {}, the first at ({:.6g}, {:.6g}, {:.6g}); close it, or set side = \"outside\"",
                       file, surface.border_count(), surface.in_space() ? "edges" : "corners",
                       surface.in_space() ? "triangle" : "segment", place[0], place[1], place[2]));
     }

@@ -80,34 +80,35 @@ std::vector<Key> torus_keys() {
        .type = KeyType::vector,
        .unit = "1",
        .required = true,
-       .doc = "Direction of the axis that the torus is the same all round, of any length but zero."},
+       .doc = "Direction of the axis of rotational symmetry, of any length but zero."},
       {.name = "ring_radius",
        .type = KeyType::number,
        .unit = "length",
        .required = true,
        .range = positive,
-       .doc = "Distance of the middle of the tube from the axis."},
+       .doc = "Distance of the centre line of the tube from the axis."},
       {.name = "tube_radius",
        .type = KeyType::number,
        .unit = "length",
        .required = true,
        .range = positive,
        .doc = "Radius of the tube, less than `ring_radius`."},
-      obstacle_side_key("Where bodies are: \"outside\" of a ring, or \"inside\" of a pipe.")};
+      obstacle_side_key("Side of the bodies: \"outside\" a ring, or \"inside\" a pipe.")};
 }
 
 void check_torus(const ParameterCheck& check, const Parameters& values) {
   check_direction(check, values, "axis", "is the direction of the torus' axis");
   if (check.is_usable("ring_radius") && check.is_usable("tube_radius") &&
       values.number("tube_radius") >= values.number("ring_radius"))
-    check.add_problem("tube_radius", "\"tube_radius\" must be less than \"ring_radius\": the torus would meet itself");
+    check.add_problem("tube_radius",
+                      "\"tube_radius\" must be less than \"ring_radius\": the torus would intersect itself");
 }
 
 }  // namespace
 
 ObstacleRegistration torus_obstacle() {
   const auto make = [](const Parameters& parameters) {
-    require_space(parameters, "centre", "a torus", "take two circles there");
+    require_space(parameters, "centre", "a torus", "use two circles");
     return std::make_unique<Torus>(as_vector(parameters.vector("centre")), as_vector(parameters.vector("axis")),
                                    parameters.number("ring_radius"), parameters.number("tube_radius"),
                                    obstacle_side(parameters));

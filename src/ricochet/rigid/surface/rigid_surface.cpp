@@ -136,19 +136,18 @@ void RigidSurface::check_edge(std::span<const Side> sides, const std::string& na
   for (std::size_t k = 1; k < sides.size(); ++k) {
     for (std::size_t l = 0; l < k; ++l) {
       if (sorted(sides[k]) == sorted(sides[l]))
-        throw Error(ErrorKind::invalid_input, fmt::format("{}: {} and {} are one and the same: remove one of them",
-                                                          name, text_of(sides[l].facet), text_of(sides[k].facet)));
+        throw Error(ErrorKind::invalid_input, fmt::format("{}: {} and {} are identical: remove one of them", name,
+                                                          text_of(sides[l].facet), text_of(sides[k].facet)));
     }
   }
   if (sides.size() == 2)
-    throw Error(
-        ErrorKind::invalid_input,
-        fmt::format("{}: {} and {} are neighbours that are turned against each other: turn one of them over, so "
-                    "that normals point out of the obstacle everywhere",
-                    name, text_of(sides[0].facet), text_of(sides[1].facet)));
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}: {} and {} are neighbours with opposite orientations: reverse one of them, so that "
+                            "normals point out of the obstacle everywhere",
+                            name, text_of(sides[0].facet), text_of(sides[1].facet)));
   throw Error(ErrorKind::invalid_input,
-              fmt::format("{}: {} {}s meet at the {} at {}, {} among them; where there are more than two, it has no "
-                          "inside: part the bodies that touch there",
+              fmt::format("{}: {} {}s meet at the {} at {}, {} among them; where more than two meet, the surface has "
+                          "no inside: separate the bodies that touch there",
                           name, sides.size(), in_space_ ? "triangle" : "segment", in_space_ ? "edge" : "corner",
                           place_text(middle_of(sides[0])), text_of(sides[0].facet)));
 }

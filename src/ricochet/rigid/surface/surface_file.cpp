@@ -54,7 +54,7 @@ void skip_normal(TextWords& words) {
   for (int k = 0; k < 3; ++k) {
     const std::string_view word = words.next();
     const bool is_nan = is_like_number(word) && word.find_first_of("nN") != std::string_view::npos;
-    if (!is_nan && !number_in(word)) words.fail(fmt::format("\"{}\" is no number of a normal", shown_word(word)));
+    if (!is_nan && !number_in(word)) words.fail(fmt::format("\"{}\" is not a component of a normal", shown_word(word)));
   }
 }
 
@@ -96,9 +96,11 @@ std::uint32_t count_of_binary(const std::string& bytes) {
 SurfaceFacets read_binary(const std::string& file, const std::string& bytes, double scale) {
   const std::uint32_t count = count_of_binary(bytes);
   if (bytes.size() < binary_header || (bytes.size() - binary_header) / binary_triangle < count) {
-    refuse(file, fmt::format("the file ends before the {} triangles that it announces ({} bytes): it is cut off, or no "
-                             "STL",
-                             count, bytes.size()));
+    refuse(
+        file,
+        fmt::format(
+            "the file ends before the {} triangles that it announces ({} bytes): it is truncated, or not an STL file",
+            count, bytes.size()));
   }
   SurfaceFacets result;
   result.corners.resize(count);
@@ -121,7 +123,7 @@ SurfaceFacets read_stl(const std::string& file, double scale) {
   const bool is_binary = bytes.size() == binary_header + binary_triangle * std::size_t{count_of_binary(bytes)};
   const bool begins_as_text = same(std::string_view(bytes).substr(0, 5), "solid");
   SurfaceFacets result = is_binary || !begins_as_text ? read_binary(file, bytes, scale) : read_text(file, bytes, scale);
-  if (result.corners.empty()) refuse(file, "there are no triangles in it");
+  if (result.corners.empty()) refuse(file, "it contains no triangles");
   return result;
 }
 
@@ -138,13 +140,13 @@ SurfaceFacets read_polygons(const std::string& file, double scale) {
       continue;
     }
     if (numbers.size() != 2)
-      lines.fail(
-          fmt::format("a line of a polygon has two numbers, x and y of a corner; this one has {}", numbers.size()));
+      lines.fail(fmt::format("a line of a polygon must have two numbers, x and y of a corner; this one has {}",
+                             numbers.size()));
     const Eigen::Vector3d corner(scale * numbers[0], scale * numbers[1], 0.0);
     if (before) result.corners.push_back({*before, corner, corner});
     before = corner;
   }
-  if (result.corners.empty()) refuse(file, "there is no polygon in it: x and y of a corner in each line");
+  if (result.corners.empty()) refuse(file, "it contains no polygon: each line must have x and y of a corner");
   return result;
 }
 

@@ -90,8 +90,8 @@ Key spectral_radius_key(double least) {
           .default_value = "0.8",
           .range = {.at_least = least, .at_most = 1.0},
           .doc =
-              "What a step leaves of vibrations much faster than it: 1 damps none; at least 1/2 for hht-alpha, 0 "
-              "for the others."};
+              "Fraction that one step leaves of vibrations much faster than the step: 1 damps none; at least 1/2 for "
+              "hht-alpha, 0 for the others."};
 }
 
 }  // namespace ricochet

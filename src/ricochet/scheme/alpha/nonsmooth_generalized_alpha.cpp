@@ -43,8 +43,8 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
     require_contact_inertia(problem, "nonsmooth-generalized-alpha", "its impulses change their velocities");
     if (!problem.contact.has_friction() && !problem.has_damping()) return;
     throw Error(ErrorKind::invalid_input,
-                "scheme \"nonsmooth-generalized-alpha\" takes neither friction nor damping, with which its two contact "
-                "problems do not come apart; take them out, or use scheme \"moreau-jean\"");
+                "scheme \"nonsmooth-generalized-alpha\" supports neither friction nor damping, which couple its two "
+                "contact problems; remove them, or use scheme \"moreau-jean\"");
   }
 
   void start(const SemidiscreteProblem& problem, State& state, StageSolve& stages) override {

@@ -14,7 +14,7 @@ namespace {
 class KlrConserving final : public CentralScheme {
  public:
   explicit KlrConserving(double step)
-      : CentralScheme("klr-conserving", step, 0.25, "without it they oscillate more and more") {}
+      : CentralScheme("klr-conserving", step, 0.25, "without it their oscillations grow") {}
 
  private:
   void require_contact(const SemidiscreteProblem& problem, const Instant& instant, Stage& stage) override {

@@ -16,15 +16,15 @@ namespace {
 class PaoliSchatzman final : public CentralScheme {
  public:
   PaoliSchatzman(double step, double restitution, bool is_explicit)
-      : CentralScheme("paoli-schatzman", step, is_explicit ? 0.0 : 0.25, "without it they oscillate more and more"),
+      : CentralScheme("paoli-schatzman", step, is_explicit ? 0.0 : 0.25, "without it their oscillations grow"),
         restitution_(restitution) {}
 
   void analyse(const SemidiscreteProblem& problem) override {
     CentralScheme::analyse(problem);
     if (restitution_ == 0.0 || !problem.contact.follows_motion()) return;
     throw Error(ErrorKind::invalid_input,
-                "scheme \"paoli-schatzman\" has no restitution at curved obstacles, where gaps are no linear functions "
-                "of the displacement; set time.restitution = 0");
+                "scheme \"paoli-schatzman\" does not support restitution at curved obstacles, where gaps are not "
+                "linear functions of the displacement; set time.restitution = 0");
   }
 
  private:
@@ -57,8 +57,8 @@ SchemeRegistration paoli_schatzman_scheme() {
             .type = KeyType::choice,
             .default_value = "implicit",
             .choices = {"implicit", "explicit"},
-            .doc = "Elastic forces of a mean of three instants, or of the middle one, which needs mass \"lumped\" and "
-                   "a short step."}}};
+            .doc = "Elastic forces at a mean of three instants (\"implicit\"), or at the middle one (\"explicit\"), "
+                   "which requires mass \"lumped\" and a short step."}}};
 }
 
 }  // namespace ricochet

@@ -1,7 +1,7 @@
 #pragma once
 
-/// @file Secant iteration for the scalar σ of finite_layer.hpp, for which the work of a step's forces is the change of
-/// its energy. It runs along with the iterations for the displacements of the step.
+/// @file Secant iteration for the scalar σ of finite_strain_step.hpp, for which the work of a step's forces is the
+/// change of its energy. It runs along with the iterations for the displacements of the step.
 namespace ricochet {
 
 /// The energy balance at the last displacements determines a required σ, and the displacements depend on σ: two

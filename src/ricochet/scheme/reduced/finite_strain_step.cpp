@@ -108,7 +108,7 @@ void FiniteStrainStep::evaluate(const SemidiscreteProblem& problem, double step,
   energy_ = stored_energy(elastic, end_, internal_);
   if (!std::isfinite(energy_)) {
     elastic.evaluate(end_, scratch_);  // throws the error that names the inverted cell
-    throw Error(ErrorKind::not_converged, "the elastic energy at the end of the step is no number");
+    throw Error(ErrorKind::not_converged, "the elastic energy at the end of the step is not finite");
   }
   load_work_ = contact_cells_ ? loads_.work_of_change(problem.contact_dofs, state.displacement, end_, middle_) : 0.0;
   // P(x) on contact nodes is in neither term, since the work of D contains it, too.

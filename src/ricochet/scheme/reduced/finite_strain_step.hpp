@@ -15,7 +15,7 @@
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
-/// @file The step of massless_layer.hpp for an internal force f = ∂W/∂u that is nonlinear in the displacement.
+/// @file The step of massless_contact_step.hpp for an internal force f = ∂W/∂u that is nonlinear in the displacement.
 ///
 /// With c the contact nodes, f the others, H, ρ and the mean ρ̄ as there, Δ = u₁ − u₀, x the middle of the step, which
 /// is ½(u₀+u₁) on f and determined by the equations on c, and the forces at x of two stresses,
@@ -54,9 +54,9 @@
 /// minimum at the displacement of E₀ + J, since its force there is 2D − f(u₁) = L₀ + Hᵀρ; D then does exactly the
 /// required work, and σ = 0.
 ///
-/// For W quadratic in the displacement, σ = 0 and this is massless_layer.hpp. (The mean of strains is that of J. C.
-/// Simo and N. Tarnow, Z. Angew. Math. Phys. 43 (1992) 757–792; a scalar that makes a midpoint force conserve energy is
-/// due to O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449–467.)
+/// For W quadratic in the displacement, σ = 0 and this is massless_contact_step.hpp. (The mean of strains is that of J.
+/// C. Simo and N. Tarnow, Z. Angew. Math. Phys. 43 (1992) 757–792; a scalar that makes a midpoint force conserve energy
+/// is due to O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449–467.)
 namespace ricochet {
 
 class FiniteStrainStep {

@@ -27,11 +27,11 @@ bool FiniteStrainStep::is_balanced(double step, const State& state, const Iterat
   const int most_vain = energy_defect_size_ <= 1e-13 * size ? 1 : 2;
   const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : stalled_iterations_ >= most_vain;
   if (log::enabled(log::Level::debug)) {
-    log::debug(
-        fmt::format("Newton: round {}, correction {:.2e} of {:.2e}, sigma {:.2e}, {:.2e} of the energy is "
-                    "missing, {:.3g} of the reactions are the end's",
-                    progress_.iterations(), iteration.correction, iteration.increment, sigma_.value(),
-                    energy_defect_ / size, end_weight_));
+    log::debug(fmt::format(
+        "Newton: iteration {}, correction {:.2e} of {:.2e}, sigma {:.2e}, {:.2e} of the energy is missing, weight of "
+        "the end reactions {:.3g}",
+        progress_.iterations(), iteration.correction, iteration.increment, sigma_.value(), energy_defect_ / size,
+        end_weight_));
   }
   if (!converged_) return false;
   if (!is_exact && !is_last) return false;
@@ -40,23 +40,22 @@ bool FiniteStrainStep::is_balanced(double step, const State& state, const Iterat
       (energy_defect_size_ <= (is_short ? most_snapped : most_corrected) * size && correct_velocity(step, state));
   if (end_weight_ * dissipation_ < -most_created * size) {
     throw Error(ErrorKind::not_converged,
-                fmt::format("contact nodes have more than one place of equilibrium at the start of the step, and would "
-                            "go to one of more energy ({:.2g} of it)",
+                fmt::format("contact nodes have more than one equilibrium position at the start of the step, and would "
+                            "move to one of higher energy (by {:.2g} of the energy)",
                             -end_weight_ * dissipation_ / size));
   }
   if (is_done && corrects_velocity_ && energy_defect_size_ > most_corrected * size && !snap_logged_) {
     snap_logged_ = true;
     log::info(
-        fmt::format("step {}: contact nodes snap to another place of equilibrium; velocities make up for the {:.2g} of "
-                    "the energy that this sets free or takes (said once)",
+        fmt::format("step {}: contact nodes snap to another equilibrium position; velocities compensate for the {:.2g} "
+                    "of the energy that this releases or absorbs (reported once)",
                     state.step + 1, energy_defect_size_ / size));
   }
   if (is_done || energy_defect_size_ <= part_ * most * size) return true;
-  throw Error(
-      ErrorKind::not_converged,
-      fmt::format("no force of the middle of the step has the work of the elastic energy: {:.2g} of the energy is "
-                  "missing, as strains change too much in one step",
-                  energy_defect_size_ / size));
+  throw Error(ErrorKind::not_converged,
+              fmt::format("no force at the middle of the step does the work of the elastic energy: {:.2g} of the "
+                          "energy is missing, as strains change too much in one step",
+                          energy_defect_size_ / size));
 }
 
 /// Corrects the velocities at the end such that they balance the energy if no σ does.

@@ -28,7 +28,7 @@ void LaggedRows::start(const State& state) {
     std::fill(lagged_->revision.begin(), lagged_->revision.end(), ++revision_);
   }
   if (known->second.size() != row_value_count(*lagged_))
-    Snapshot::refuse(memory_of_rows, "has a length that is none of this problem's");
+    Snapshot::refuse(memory_of_rows, "has a length that does not fit this problem");
   is_new_ = false;
   if (set_row_values(known->second, *lagged_))
     std::fill(lagged_->revision.begin(), lagged_->revision.end(), ++revision_);

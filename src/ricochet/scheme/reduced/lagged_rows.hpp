@@ -16,7 +16,7 @@ namespace ricochet {
 /// limit satisfies everything with H. Ĥ is renewed point by point if its relative distance from H exceeds `slack`.
 ///
 /// The state remembers Ĥ, so that a resumed run continues with the same numbers. If rows reach other dofs as bodies
-/// slide (ContactRows::places), each step begins with its own H.
+/// slide (ContactRows::sliding_state), each step begins with its own H.
 class LaggedRows {
  public:
   /// Reads the rows that the state remembers, if any.

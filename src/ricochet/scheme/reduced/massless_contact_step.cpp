@@ -46,11 +46,13 @@ void MasslessContactStep::require_frictionless_planes(const SemidiscreteProblem&
   const auto refuse = [&](const std::string& what) {
     throw Error(ErrorKind::invalid_input, fmt::format("scheme \"{}\" {}; use scheme \"reduced-kane\"", scheme_, what));
   };
-  if (problem.contact.has_friction()) refuse("takes no friction: its balance of energy has no sign with it");
+  if (problem.contact.has_friction()) refuse("does not support friction: its energy balance then has no definite sign");
   if (problem.contact.follows_motion())
-    refuse("takes planes only, and bodies at small strain: it needs gaps that are linear in the motion");
+    refuse("supports only planes, and bodies at small strain: it needs gaps that are linear in the motion");
   if (damps_contact_nodes())
-    refuse("takes no stiffness damping at contact nodes, whose place must be a function of the others'");
+    refuse(
+        "does not support stiffness damping at contact nodes, whose positions must be functions of those of the other "
+        "nodes");
 }
 
 void MasslessContactStep::find_damping(const SemidiscreteProblem& problem) {
@@ -189,7 +191,8 @@ const StageSolution& MasslessContactStep::solve(const SemidiscreteProblem& probl
     if (change > 0.5 * last && change <= near * size) return *solution;
     last = change;
     if (round == most_rounds || !std::isfinite(change))
-      throw Error(ErrorKind::not_converged, "the rotation of a rigid body was not found: it turns too far in a step");
+      throw Error(ErrorKind::not_converged,
+                  "the rotation of a rigid body was not found: it rotates too far in one step");
     stage.right_hand_side += next_gyroscopic_force_ - gyroscopic_force_;
     gyroscopic_force_ = next_gyroscopic_force_;
     solution = &stages.solve(midpoint_stage(problem));

@@ -5,8 +5,8 @@ namespace ricochet {
 namespace {
 
 /// Contact nodes in equilibrium, and over a step the mean of the reactions along the straight path of the gaps
-/// (massless_layer.hpp, mean_reaction.hpp, μ = 0): without friction this mean is the discrete gradient of the potential
-/// of the contact nodes, so
+/// (massless_contact_step.hpp, mean_reaction.hpp, μ = 0): without friction this mean is the discrete gradient of the
+/// potential of the contact nodes, so
 ///   E₁ − E₀ = work of loads, supports and obstacles,
 /// contact does no work, and momenta are exact; each step has one solution, however long it is. Beyond the time in
 /// which a wave crosses a cell the end reactions alternate: reduced-kane is for such steps.
@@ -20,8 +20,8 @@ class MeanReactionScheme final : public EndContactScheme {
   }
   [[nodiscard]] LongSteps long_steps(const SemidiscreteProblem&) const override {
     return {.trouble =
-                "the contact forces at the ends of steps rattle: those of a block at rest alternated between "
-                "nothing and four times its weight at ten crossings, for ever (their means, which act, do not)"};
+                "the contact forces at the ends of steps oscillate: those of a block at rest alternated between zero "
+                "and four times its weight at ten crossings, without end (their means, which act, do not)"};
   }
 
  private:

@@ -11,8 +11,8 @@ namespace {
 
 /// In the scheme of C. Kane, E. A. Repetto, M. Ortiz and J. E. Marsden (Comput. Methods Appl. Mech. Engrg. 180 (1999)
 /// 1–26) the reactions of the end of the step act over all of it. Here nodes without inertia are in equilibrium with
-/// them, and the others follow the midpoint rule (massless_layer.hpp, ρ̄ = ρ): with z the change of the contact nodes'
-/// displacement relative to the others,
+/// them, and the others follow the midpoint rule (massless_contact_step.hpp, ρ̄ = ρ): with z the change of the contact
+/// nodes' displacement relative to the others,
 ///   E₁ − E₀ = −r_N·g₀ − Σ F r_N |Δy_T| − ½ zᵀK_cc z + work of loads, supports, obstacles and damping,
 /// each of the first three parts ≤ 0 at each point, for every step and friction. With weight "adaptive" ρ̄ is a mean
 /// (mean_reaction.hpp) whose parts have the same signs, and which loses much less at impacts.
@@ -28,12 +28,12 @@ class ReducedKane final : public EndContactScheme {
     log::info(fmt::format("time.reaction_weight = \"{}\": the reactions at the end of each step act, since {}", weight_,
                           problem.contact.follows_motion() ? "contact directions follow the motion"
                           : has_finite_strain_friction(problem)
-                              ? "the work of friction is that of the end at finite strain"
-                              : "there is stiffness damping at contact nodes"));
+                              ? "at finite strain the work of friction is that of the reactions at the end"
+                              : "contact nodes have stiffness damping"));
   }
 
  private:
-  /// True if the balance of a step has no term for the work of friction along a path (finite_layer.hpp).
+  /// True if the balance of a step has no term for the work of friction along a path (finite_strain_step.hpp).
   [[nodiscard]] static bool has_finite_strain_friction(const SemidiscreteProblem& problem) {
     return problem.contact.has_friction() && !problem.internal_force->is_linear();
   }
@@ -58,17 +58,16 @@ SchemeRegistration reduced_kane_scheme() {
   const auto make = [](double step, const Parameters& parameters) {
     return std::make_unique<ReducedKane>(step, parameters.text("reaction_weight"));
   };
-  return {
-      "reduced-kane",
-      make,
-      {{.name = "reaction_weight",
-        .type = KeyType::choice,
-        .default_value = "automatic",
-        .choices = {"automatic", "adaptive", "end"},
-        .doc = "Which reactions act over a step: \"adaptive\", a mean of those of the step, as near to the exact one "
-               "as smooth reactions allow (on planes, without stiffness damping at contact nodes; else as "
-               "\"end\"), for impacts; \"end\", those of its end, which lose more, for sliding; \"automatic\": "
-               "\"end\" with friction, else \"adaptive\"."}}};
+  return {"reduced-kane",
+          make,
+          {{.name = "reaction_weight",
+            .type = KeyType::choice,
+            .default_value = "automatic",
+            .choices = {"automatic", "adaptive", "end"},
+            .doc = "Reactions that act over a step. \"adaptive\", for impacts: a mean over the step, as close to the "
+                   "exact mean as smooth reactions allow (on planes, without stiffness damping at contact nodes; "
+                   "otherwise as \"end\"). \"end\", for sliding: the reactions at the end of the step, which lose more "
+                   "energy. \"automatic\": \"end\" with friction, otherwise \"adaptive\"."}}};
 }
 
 }  // namespace ricochet

@@ -7,13 +7,13 @@ namespace {
 
 /// Midpoint scheme for contact nodes without inertia: contact at the middle of the step determines the motion of the
 /// other nodes, and contact nodes are in equilibrium, contact included, at its end:
-///   1. A δ = b + Gᵀ r̄,   0 ≤ r̄ ⟂ g(x) ≥ 0,   u_f1 = 2x_f − u_f0   (massless_layer.hpp, ρ̄ = r̄);
+///   1. A δ = b + Gᵀ r̄,   0 ≤ r̄ ⟂ g(x) ≥ 0,   u_f1 = 2x_f − u_f0   (massless_contact_step.hpp, ρ̄ = r̄);
 ///   2. K_cc u_c1 + K_cf u_f1 = L₁ + Gᵀ r₁,   0 ≤ r₁ ⟂ g(u₁) ≥ 0.
 /// With W_c = G K_cc⁻¹ Gᵀ: E₁ − E₀ = r̄·Δg − (r̄ − ½(r₀+r₁))ᵀW_c(r₁−r₀) + work of loads, supports and obstacles; the
 /// first two terms, which are the contact work here, vanish while the set of pressing points is unchanged. The midpoint
 /// rule alone would have u_c1 = 2x_c − u_c0, with which contact nodes alternate from step to step.
 /// At finite strain the acting reactions are those of mean-reaction, and energy is conserved exactly
-/// (finite_layer.hpp).
+/// (finite_strain_step.hpp).
 class ReducedMidpoint final : public Scheme {
  public:
   explicit ReducedMidpoint(double step) : Scheme(step), massless_step_("reduced-midpoint", step) {}

@@ -18,7 +18,8 @@ void StickingDrift::require(const SemidiscreteProblem& problem, const State& sta
   if (!keeps_places(problem)) return;
   const auto memory = state.memory.find(stick_slip);
   if (memory == state.memory.end()) return;
-  if (memory->second.size() != stage.slip_offset.size()) Snapshot::refuse(stick_slip, "is of other contact points");
+  if (memory->second.size() != stage.slip_offset.size())
+    Snapshot::refuse(stick_slip, "belongs to other contact points");
   stage.slip_offset += memory->second / step;
 }
 

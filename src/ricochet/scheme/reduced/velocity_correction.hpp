@@ -2,7 +2,7 @@
 
 #include "ricochet/problem/body_rotations.hpp"
 
-/// @file Correction that balances the energy of a step if no stress of its middle does (finite_layer.hpp).
+/// @file Correction that balances the energy of a step if no stress of its middle does (finite_strain_step.hpp).
 namespace ricochet {
 
 /// If cells at contact nodes are so much stiffer than their inertia in a step that they are in equilibrium throughout,

@@ -24,11 +24,11 @@ const StageSolution& solve_with_forces(const SemidiscreteProblem& problem, const
 void warn_of_dense_response(const std::string& scheme, Index rows) {
   constexpr Index many = 1000;
   if (rows <= many) return;
-  log::warning(fmt::format(
-      "scheme \"{}\" keeps a dense matrix of {} for each length of a step, {:.2g} GB, one solve for each: it "
-      "is for a few hundred contact points; name only facets that may touch in the contact group, or use "
-      "scheme \"reduced-kane\"",
-      scheme, counted(rows, "row"), 8e-9 * static_cast<double>(rows) * static_cast<double>(rows)));
+  log::warning(
+      fmt::format("scheme \"{}\" stores a dense matrix of {} for each step length, {:.2g} GB, with one solve per row: "
+                  "it is intended for a few hundred contact points; name only facets that may touch in the contact "
+                  "group, or use scheme \"reduced-kane\"",
+                  scheme, counted(rows, "row"), 8e-9 * static_cast<double>(rows) * static_cast<double>(rows)));
 }
 
 Vector point_stiffness(const SemidiscreteProblem& problem) {

@@ -9,10 +9,9 @@ namespace ricochet {
 void ForcedMidpoint::analyse(const SemidiscreteProblem& problem) {
   Kane::analyse(problem);
   if (!problem.contact.has_friction() && !problem.contact.follows_motion()) return;
-  throw Error(ErrorKind::invalid_input,
-              fmt::format("scheme \"{}\" takes neither friction nor curved obstacles; take friction out, or use "
-                          "scheme \"reduced-kane\"",
-                          name()));
+  throw Error(ErrorKind::invalid_input, fmt::format("scheme \"{}\" supports neither friction nor curved obstacles; "
+                                                    "remove the friction, or use scheme \"reduced-kane\"",
+                                                    name()));
 }
 
 double ForcedMidpoint::algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const {

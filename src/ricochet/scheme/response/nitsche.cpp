@@ -32,8 +32,8 @@ class Nitsche final : public ForcedMidpoint {
     const double largest = stress_.stiffness.size() > 0 ? stress_.stiffness.maxCoeff() : 0.0;
     if (!(stress_.stiffness.array() > 1e-10 * largest).all() || !(problem.contact.weights.array() > 0.0).all())
       throw Error(ErrorKind::invalid_input,
-                  "scheme \"nitsche\" needs a share of the area at every contact point, which nodal forces of degree 2 "
-                  "have not; set multipliers = \"p1\" or \"dual\", or mesh.degree = 1");
+                  "scheme \"nitsche\" requires a positive area at every contact point, which multipliers \"nodal\" of "
+                  "degree 2 do not have; set multipliers = \"p1\" or \"dual\", or mesh.degree = 1");
     stiffness_ = penalty_ * stress_.stiffness;
   }
 
@@ -110,14 +110,15 @@ SchemeRegistration nitsche_scheme() {
   const auto make = [](double step, const Parameters& parameters) {
     return std::make_unique<Nitsche>(step, parameters.number("penalty"));
   };
-  return {"nitsche",
-          make,
-          {{.name = "penalty",
-            .type = KeyType::number,
-            .unit = "1",
-            .default_value = "4",
-            .range = {.above = 1.0, .at_most = 1e6},
-            .doc = "Stiffness of the contact, in units of the least with which the energy has a sign."}}};
+  return {
+      "nitsche",
+      make,
+      {{.name = "penalty",
+        .type = KeyType::number,
+        .unit = "1",
+        .default_value = "4",
+        .range = {.above = 1.0, .at_most = 1e6},
+        .doc = "Stiffness of the contact, in units of the smallest one for which the energy has a definite sign."}}};
 }
 
 }  // namespace ricochet

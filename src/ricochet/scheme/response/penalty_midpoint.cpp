@@ -30,9 +30,9 @@ class PenaltyMidpoint final : public ForcedMidpoint {
   void start(const SemidiscreteProblem&, State& state, StageSolve&) override {
     if (!(state.forces.normal_reaction.sum() > 0.0)) return;
     log::warning(
-        "scheme \"penalty-midpoint\": contact that presses in the static equilibrium has no penetration, without which "
-        "there is no force here: the body falls until it has, and vibrates; start it slightly above the obstacle "
-        "with damping, or use scheme \"reduced-kane\", which rests");
+        "scheme \"penalty-midpoint\": contact in the static equilibrium has no penetration, without which this scheme "
+        "has no contact force: the body falls until it penetrates, and vibrates; start it slightly above the obstacle "
+        "with damping, or use scheme \"reduced-kane\", with which it stays at rest");
   }
 
  protected:

@@ -55,7 +55,7 @@ Vector restoring_impulses(const Matrix& w, const Vector& approach, const Vector&
     if (next == p && worst <= good_enough) return p;
     p = next;
   }
-  throw Error(ErrorKind::not_converged, "the impulses that give back the energy of contact were not found");
+  throw Error(ErrorKind::not_converged, "the impulses that restore the energy of contact were not found");
 }
 
 }  // namespace ricochet

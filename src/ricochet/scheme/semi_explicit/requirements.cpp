@@ -10,32 +10,31 @@
 namespace ricochet {
 
 void require_semi_explicit(const SemidiscreteProblem& problem, const std::string& scheme) {
-  const char* const advice = "set mass.type = \"equivalent-lumped\", or use scheme \"newmark\", which takes any mass";
+  const char* const advice =
+      "set mass.type = \"equivalent-lumped\", or use scheme \"newmark\", which supports any mass";
   if (!problem.has_diagonal_mass()) {
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("scheme \"{}\" needs a diagonal mass without inertia on the contact nodes, and "
-                            "this one is not diagonal; {}",
-                            scheme, advice));
+    throw Error(ErrorKind::invalid_input, fmt::format("scheme \"{}\" needs a diagonal mass without inertia on the "
+                                                      "contact nodes, but this one is not diagonal; {}",
+                                                      scheme, advice));
   }
   if (problem.pressure) {
-    throw Error(
-        ErrorKind::invalid_input,
-        fmt::format("scheme \"{}\" takes no [[pressure]] that follows the surface; use scheme \"reduced-kane\" or "
-                    "\"newmark\", or a [[traction]], which keeps its direction",
-                    scheme));
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("scheme \"{}\" does not support a [[pressure]] that follows the surface; use scheme "
+                            "\"reduced-kane\" or \"newmark\", or a [[traction]], which keeps its direction",
+                            scheme));
   }
   const auto has_inertia = [&](Index dof) { return problem.is_massless[static_cast<std::size_t>(dof)] == 0; };
   if (std::any_of(problem.contact_dofs.begin(), problem.contact_dofs.end(), has_inertia)) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("scheme \"{}\" needs a mass without inertia on the contact nodes: their motion "
-                            "is that of their own equilibrium, contact included; {}",
+                fmt::format("scheme \"{}\" needs a mass without inertia on the contact nodes: their motion follows "
+                            "from their own equilibrium, contact included; {}",
                             scheme, advice));
   }
   if (problem.damping.has_stiffness_part()) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("scheme \"{}\" takes no damping proportional to the stiffness: it would make the stable "
-                            "step shorter and need a second product with K; set material damping.stiffness = 0 "
-                            "(damping.mass is possible), or use scheme \"reduced-kane\"",
+                fmt::format("scheme \"{}\" does not support damping proportional to the stiffness: it would shorten "
+                            "the stable step and require a second product with K; set material damping.stiffness = 0 "
+                            "(damping.mass is supported), or use scheme \"reduced-kane\"",
                             scheme));
   }
 }

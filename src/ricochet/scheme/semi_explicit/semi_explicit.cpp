@@ -36,15 +36,15 @@ constexpr const char* force_memory = "internal_force";
 /// A step performs one product with K, and one with its contact rows.
 ///
 /// For an internal force f = ∂W/∂u that is nonlinear in the displacement (finite strain) f_i(U) and f_c(U) replace the
-/// products, the contact nodes' equilibrium requires Newton's method (layer_equilibrium.hpp), and a step one evaluation
-/// of f and one of W. The body without its contact nodes has the potential Ψ(u_i) = min over admissible u_c of W − L·u,
-/// and this is the Störmer–Verlet scheme for it, so that
+/// products, the contact nodes' equilibrium requires Newton's method (nonlinear_contact_equilibrium.hpp), and a step
+/// one evaluation of f and one of W. The body without its contact nodes has the potential Ψ(u_i) = min over admissible
+/// u_c of W − L·u, and this is the Störmer–Verlet scheme for it, so that
 /// - energy: in a step J − (h²/8)AᵀMA changes by ½ΔUᵀ(F₀+F₁) and by ΔW − ½ΔUᵀ(f₀+f₁) (`integration_error`), of order h³
 /// and of either sign: in flight it oscillates and does not accumulate, which is no proof of a bound;
 /// - momenta: ΔU = hV^{n+½} has no moment with V^{n+½}, and f has no resultant and no moment about the current
 /// positions, so Σ m x×V changes in a step by (h/2)(N₀+N₁), N the moment of all external forces about the positions at
 /// their instant: exactly, as the resultant does.
-/// The critical step changes with the deformation (followed_critical_step.hpp): it is tracked, and a step beyond it is
+/// The critical step changes with the deformation (tracked_critical_step.hpp): it is tracked, and a step beyond it is
 /// not taken.
 class SemiExplicit final : public Scheme {
  public:

@@ -111,17 +111,18 @@ std::string TrackedCriticalStep::location_text(const SemidiscreteProblem& proble
 void TrackedCriticalStep::require_stable(const SemidiscreteProblem& problem, double step, const State& state) {
   const Vector& numbers = state.memory.at(critical_numbers);
   if (numbers.size() != State::memory_numbers || state.memory.at(critical_mode).size() != problem.dof_count())
-    Snapshot::refuse(critical_numbers, "or its mode has a length that is none of this problem's");
+    Snapshot::refuse(critical_numbers, "or its mode has a length that does not fit this problem");
   smallest_ = numbers[smallest_found];
   const double critical = numbers[last_found];
   if (step < critical) return;
-  throw Error(ErrorKind::not_converged,
-              fmt::format("the bodies are deformed so far that the critical step of \"{}\" is {:.6g} (made{}): "
-                          "time.step = {:.6g} is {:.3g} times that, and the motion would grow without bound; set "
-                          "time.step = {:.3g} or less, as it may fall further, or use scheme \"reduced-kane\", which "
-                          "is stable for any step",
-                          scheme_, critical, location_text(problem, state), step, step / critical,
-                          rounded_down(careful_fraction * critical, 3)));
+  throw Error(
+      ErrorKind::not_converged,
+      fmt::format(
+          "the bodies are deformed so much that the critical step of \"{}\" is {:.6g} (determined{}): time.step = "
+          "{:.6g} is {:.3g} times that, and the motion would grow without bound; set time.step = {:.3g} or less, as "
+          "the critical step may decrease further, or use scheme \"reduced-kane\", which is stable for any step",
+          scheme_, critical, location_text(problem, state), step, step / critical,
+          rounded_down(careful_fraction * critical, 3)));
 }
 
 /// Largest relative change of a distance of neighbours since the last check, weighted.
@@ -200,19 +201,17 @@ void TrackedCriticalStep::track(const SemidiscreteProblem& problem, double step,
   Vector& numbers = state.memory.at(critical_numbers);
   numbers[evaluations_made] += products;
   if (log::enabled(log::Level::debug)) {
-    log::debug(
-        fmt::format("critical step {:.6g}{}: the step is {:.3g} of it; {:.0f} evaluations of the internal force "
-                    "so far for that",
-                    critical, location_text(problem, state), step / critical, numbers[evaluations_made]));
+    log::debug(fmt::format(
+        "critical step {:.6g}{}: the step is {:.3g} of it; {:.0f} evaluations of the internal force so far to find it",
+        critical, location_text(problem, state), step / critical, numbers[evaluations_made]));
   }
   if (step < near_fraction * critical || step >= critical || numbers[told_near] != 0.0) return;
   numbers[told_near] = 1.0;
-  log::warning(
-      fmt::format("scheme \"{}\": at t = {:.6g} the bodies are deformed so far that the critical step is {:.6g} "
-                  "(made{}); time.step = {:.6g} is {:.3g} of it, and the run ends where it is more than all; take "
-                  "{:.3g} or less",
-                  scheme_, state.time + step, critical, location_text(problem, state), step, step / critical,
-                  rounded_down(careful_fraction * critical, 3)));
+  log::warning(fmt::format(
+      "scheme \"{}\": at t = {:.6g} the bodies are deformed so much that the critical step is {:.6g} (determined{}); "
+      "time.step = {:.6g} is {:.3g} of it, and the run stops when it exceeds the critical step; use {:.3g} or less",
+      scheme_, state.time + step, critical, location_text(problem, state), step, step / critical,
+      rounded_down(careful_fraction * critical, 3)));
 }
 
 std::string TrackedCriticalStep::explain(const SemidiscreteProblem& problem, double step, const State& state) const {

@@ -65,7 +65,7 @@ class EnergyAccount {
   /// rounding.
   [[nodiscard]] double residual(const Energies& now) const;
   /// Largest gap or overlap, between bodies with large sliding, of points that were pressed in the last step. Zero to
-  /// rounding unless a step has been held (ContactGeometry::hold).
+  /// rounding unless a step was frozen (ContactGeometry::freeze).
   [[nodiscard]] double unsettled_gap() const { return unsettled_gap_; }
   /// Velocity from which `energies` was last computed, for this state.
   [[nodiscard]] const Vector& velocity(const State& state) const {

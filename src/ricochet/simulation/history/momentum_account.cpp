@@ -112,7 +112,7 @@ void MomentumAccount::add_up_ranks(std::span<Resultant> parts) const {
 }
 
 /// The force of such a point has the entries of all its rows and is summed node by node: between bodies at finite
-/// strain, where it acts at the positions of the nodes (turning_pairs.hpp), and at rigid bodies.
+/// strain, where it acts at the positions of the nodes (rotating_pairs.hpp), and at rigid bodies.
 bool MomentumAccount::is_taken_by_nodes(Index point) const {
   if (problem_.contact.between_bodies(point)) return finite_strain_ || problem_.contact.slides(point);
   return !problem_.free_bodies.empty() && problem_.obstacle_of_point(point)->free_motion() != nullptr;

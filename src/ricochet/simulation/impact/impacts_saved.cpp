@@ -39,7 +39,7 @@ void ImpactRecorder::load(const Snapshot& snapshot, const std::string& name) {
   constexpr Index size = sizeof(Interval) / sizeof(double);
   constexpr double largest_count = 1e15;
   const auto damaged = [&] {
-    throw Error(ErrorKind::invalid_input, "the checkpoint's record of impacts is not one of this case");
+    throw Error(ErrorKind::invalid_input, "the checkpoint's record of impacts does not belong to this case");
   };
   from_numbers(snapshot.reals(name + ".open", size * static_cast<Index>(collision_pairs_.size())), open_);
   const Vector& filed = snapshot.reals(name + ".filed");

@@ -60,10 +60,10 @@ void LateContactWatch::warn(const Contact& contact, Index entry, double time) co
   const ContactPair& pair = pairs_[contact.number];
   const Vector place = problem_.nodes.col(problem_.contact.nodes[static_cast<std::size_t>(entry)]);
   log::warning(fmt::format(
-      "at t = {:.6g} a node at ({:.4g}) (reference position) is {:.3g} inside of the other body, and the "
-      "contact of \"{}\" and \"{}\" has no force yet: gaps are means over facets of \"{}\", which carries the "
-      "multipliers, and a corner or a ridge is met late by a part of such a facet; refine the mesh of \"{}\" "
-      "there",
+      "at t = {:.6g} a node at ({:.4g}) (reference position) is {:.3g} inside the other body, but the contact of "
+      "\"{}\" and \"{}\" has no force yet: gaps are means over facets of \"{}\", which carries the multipliers, and "
+      "contact with a corner or a ridge, which touches only a part of such a facet, is detected late; refine the mesh "
+      "of \"{}\" there",
       time, fmt::join(place, ", "), -gap_[entry], pair.first_group(), pair.second_group(), pair.group, pair.group));
 }
 

@@ -96,7 +96,7 @@ void PeakStress::load(const Snapshot& snapshot, const std::string& name) {
   const Snapshot::Integers& counts = snapshot.integers(name + ".counts");
   if (counts.size() != 6 || counts[1] < -1 || counts[1] >= body_.mesh->cell_count() || counts[5] < 0 ||
       counts[5] >= stress_raisers)
-    throw Error(ErrorKind::invalid_input, "the checkpoint's largest stress is not one of this mesh");
+    throw Error(ErrorKind::invalid_input, "the checkpoint's largest stress does not belong to this mesh");
   result_.step = counts[0];
   result_.cell = counts[1];
   result_.evaluations = counts[2];

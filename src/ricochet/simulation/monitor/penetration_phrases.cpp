@@ -16,7 +16,7 @@ std::string when(double time) {
 
 std::string depth_text(const UnwatchedPenetration& p) {
   return fmt::format("{:.3g} ({:.2g} of {} size)", p.depth, p.relative_depth,
-                     p.bodies.size() == 1 ? "its" : "the smaller one's");
+                     p.bodies.size() == 1 ? "its" : "the smaller body's");
 }
 
 }  // namespace ricochet::penetration_phrases

@@ -14,6 +14,6 @@ namespace ricochet::penetration_phrases {
 /// "3.1e-06 (0.00012 of its size)"
 [[nodiscard]] std::string depth_text(const UnwatchedPenetration& p);
 
-inline constexpr const char* see_summary = "\"unwatched_penetration\" in summary.json says how deep it gets";
+inline constexpr const char* see_summary = "see \"unwatched_penetration\" in summary.json for the largest depth";
 
 }  // namespace ricochet::penetration_phrases

@@ -111,7 +111,7 @@ void PenetrationWatch::warn() {
     if (obstacle_warned_[k] != 0 || !obstacles_.deepest()[k].found()) continue;
     obstacle_warned_[k] = 1;
     const UnwatchedPenetration p = in_obstacle(k);
-    log::warning(fmt::format("{} {} is {} inside obstacle \"{}\" at {}, where no contact keeps it out: {}; {}",
+    log::warning(fmt::format("{} {} is {} inside obstacle \"{}\" at {}, where no contact prevents it: {}; {}",
                              words::when(p.time), p.bodies.front(), words::depth_text(p), p.obstacle,
                              words::coordinates(p.position), advice(k), words::see_summary));
   }
@@ -121,14 +121,14 @@ void PenetrationWatch::warn() {
     const UnwatchedPenetration p = through_obstacle(k);
     log::warning(
         fmt::format("{} a node of {} at {} has gone through obstacle \"{}\" within one step, which no contact can "
-                    "see; take a time.step in which bodies move by less than the obstacle is thick",
+                    "detect; use a time.step in which bodies move by less than the thickness of the obstacle",
                     words::when(p.time), p.bodies.front(), words::coordinates(p.position), p.obstacle));
   }
   for (; rims_warned_ < obstacles_.rims().size(); ++rims_warned_) {
     const ContactBeyondRim rim = beyond(obstacles_.rims()[rims_warned_]);
     log::warning(
-        fmt::format("{} the contact of group \"{}\" with \"{}\" has reached the rim of the group, at {}: what lies "
-                    "beyond it goes into the obstacle unhindered; add the boundary beyond it to the group{}",
+        fmt::format("{} the contact of group \"{}\" with \"{}\" has reached the rim of the group, at {}: the boundary "
+                    "beyond it penetrates the obstacle unhindered; add that boundary to the group{}",
                     words::when(rim.time), rim.group, rim.obstacle, words::coordinates(rim.position),
                     rim.groups.empty() ? "" : fmt::format(" ({})", join_names(rim.groups))));
   }
@@ -155,13 +155,13 @@ void PenetrationWatch::warn_of_bodies() {
 void PenetrationWatch::warn_of(const BodyPair& pair) const {
   const UnwatchedPenetration p = of_pair(pair);
   const std::vector<const ContactPair*> contacts = contacts_between(pair.first, pair.second);
-  std::string why = "no [[contact]] keeps these bodies apart, they go through each other";
+  std::string why = "no [[contact]] keeps these bodies apart, so they go through each other";
   if (!contacts.empty()) {
     std::vector<std::string> names;
     for (const ContactPair* contact : contacts)
       names.push_back(fmt::format("\"{}\" and \"{}\"", contact->first_group(), contact->second_group()));
     const bool follows = std::all_of(contacts.begin(), contacts.end(), [](const auto* c) { return c->large_sliding; });
-    why = fmt::format("the contact of {} does not reach so far{}", fmt::join(names, ", "),
+    why = fmt::format("the contact of {} does not reach that far{}", fmt::join(names, ", "),
                       follows ? "; extend the groups"
                               : ", or its groups did not face each other there; extend the groups, or pair them with "
                                 "pair_at where they meet");
@@ -177,14 +177,14 @@ void PenetrationWatch::warn_at_contact(const BodyPair& pair) const {
   const std::string why =
       contact.large_sliding
           ? fmt::format(
-                "gaps are means over facets of \"{}\", which carries the multipliers, and this place does not "
-                "show in them: the force of this contact is not to be trusted from here on",
+                "gaps are means over facets of \"{}\", which carries the multipliers, and this overlap does not show "
+                "in them: the force of this contact is unreliable from here on",
                 contact.group)
-          : "the facets that faced each other at the start no longer do, as the bodies have slid along or past each "
-            "other; set sliding = \"large\", pair them with pair_at where they meet, or let them move less";
+          : "the facets that faced each other at the start no longer do so, since the bodies have slid along or past "
+            "each other; set sliding = \"large\", pair them with pair_at where they meet, or limit their motion";
   log::warning(
-      fmt::format("{} {} and {} overlap by {} at {}, more than half a facet, though the contact of \"{}\" and \"{}\" "
-                  "keeps that node out: {}; {}",
+      fmt::format("{} {} and {} overlap by {} at {}, more than half a facet, although the contact of \"{}\" and \"{}\" "
+                  "should keep that node out: {}; {}",
                   words::when(p.time), p.bodies[0], p.bodies[1], words::depth_text(p), words::coordinates(p.position),
                   p.contact[0], p.contact[1], why, words::see_summary));
 }
@@ -208,21 +208,21 @@ std::vector<const ContactPair*> PenetrationWatch::contacts_between(int first, in
 std::string PenetrationWatch::advice(std::size_t obstacle) const {
   const Index node = obstacles_.deepest()[obstacle].node;
   if (!is_on_boundary(node))
-    return "the body is in the obstacle, not beside it: move one of them, or take the other side";
+    return "the body is inside the obstacle, not next to it: move one of them, or choose the other side";
   std::vector<std::string> groups;
   for (const ContactPair& pair : pairs_) {
     if (pair.obstacle != named_[obstacle].obstacle) continue;
     const std::vector<Index> nodes = facet_nodes(*body_.space, pair.facets);
     if (std::binary_search(nodes.begin(), nodes.end(), node))
-      return fmt::format("it is in the contact group \"{}\", but supports hold it", pair.group);
+      return fmt::format("it belongs to the contact group \"{}\", but supports hold it", pair.group);
     groups.push_back(pair.group);
   }
   const std::vector<std::string> own = groups_of(node);
   const std::string place =
-      own.empty() ? "no boundary group of the mesh holds it; \"boundary\" is built in and names all of the boundary"
+      own.empty() ? "no boundary group of the mesh contains it; \"boundary\" is built in and names the whole boundary"
                   : fmt::format("it belongs to the boundary group{} {}", own.size() == 1 ? "" : "s", join_names(own));
   if (groups.empty()) return fmt::format("no [[contact]] names this obstacle ({})", place);
-  return fmt::format("the [[contact]] group {} does not reach so far; extend it ({})", join_names(groups), place);
+  return fmt::format("the [[contact]] group {} does not reach that far; extend it ({})", join_names(groups), place);
 }
 
 bool PenetrationWatch::is_on_boundary(Index node) const {
@@ -314,11 +314,11 @@ PenetrationReport PenetrationWatch::report() const {
     result.not_watched.emplace_back("rigid bodies against each other and other obstacles");
   if (const double unseen = self_watch_.unseen_motion(); unseen > most_unseen) {
     result.not_watched.push_back(
-        fmt::format("{} between looks ({} of them, and nodes moved by up to {:.2g} edges in between)",
+        fmt::format("{} between checks (there were {}, and nodes moved by up to {:.2g} edges in between)",
                     bodies_in_themselves, self_watch_.checks(), unseen));
   }
   if (!self_watch_.watches())
-    result.not_watched.push_back(std::string(bodies_in_themselves) + " (several processes have parts of them)");
+    result.not_watched.push_back(std::string(bodies_in_themselves) + " (they are divided among several processes)");
   return result;
 }
 

@@ -31,14 +31,14 @@ void PenetrationWatch::warn_of_self_penetration() {
 void PenetrationWatch::warn_of(const SelfPenetration& found) const {
   const UnwatchedPenetration p = self_penetration(found);
   const auto named = [](const std::vector<std::string>& groups) {
-    return groups.empty() ? std::string("which is in no boundary group of the mesh")
+    return groups.empty() ? std::string("outside all boundary groups of the mesh")
                           : fmt::format("of group{} {}", groups.size() == 1 ? "" : "s", join_names(groups));
   };
-  log::warning(fmt::format(
-      "{} {} has gone through itself by {} at {}: boundary {} is inside of what lies behind boundary {}, and no "
-      "[[contact]] keeps them apart; {}. {}",
-      words::when(p.time), p.bodies[0], words::depth_text(p), words::coordinates(p.position), named(p.groups),
-      named(p.through_groups), words::see_summary, contact_with_itself(found.body, p)));
+  log::warning(
+      fmt::format("{} {} has gone through itself by {} at {}: the boundary {} has passed through the boundary {}, and "
+                  "no [[contact]] keeps them apart; {}. {}",
+                  words::when(p.time), p.bodies[0], words::depth_text(p), words::coordinates(p.position),
+                  named(p.groups), named(p.through_groups), words::see_summary, contact_with_itself(found.body, p)));
 }
 
 /// Names the smallest group on this body alone that contains both facets, or one group for each.
@@ -65,22 +65,22 @@ std::string PenetrationWatch::contact_with_itself(int body, const UnwatchedPenet
   }
   if (bodies_.connected.count == 1 && (group.empty() || against.empty())) group = against = whole_boundary_name;
   if (group.empty() || against.empty())
-    return "Give the mesh a group of these facets of this body, "
-           "and name it as \"group\" and \"against\" of a [[contact]] with sliding = \"large\"";
+    return "Add a group of these facets of this body to the mesh, and name it as \"group\" and \"against\" of a "
+           "[[contact]] with sliding = \"large\"";
   return fmt::format("Add\n[[contact]]\ngroup = \"{}\"\nagainst = \"{}\"\nsliding = \"large\"", group, against);
 }
 
 void PenetrationWatch::warn_at_contact(const SelfPenetration& found) const {
   const UnwatchedPenetration p = self_penetration_at_contact(found);
   log::warning(fmt::format(
-      "{} {} is inside of itself by {} at {}, more than half a facet, though the contact of \"{}\" and \"{}\" keeps "
-      "that node out: {}; {}",
+      "{} {} penetrates itself by {} at {}, more than half a facet, although the contact of \"{}\" and \"{}\" should "
+      "keep that node out: {}; {}",
       words::when(p.time), p.bodies[0], words::depth_text(p), words::coordinates(p.position), p.contact[0],
       p.contact[1],
       pairs_[static_cast<std::size_t>(found.contact)].large_sliding
-          ? "its parts came nearer by more in a step than the contact sees into them, or were squeezed to less than "
-            "half of their thickness"
-          : "the facets that faced each other at the start no longer do",
+          ? "in one step its parts approached each other by more than the depth to which the contact detects them, or "
+            "they were compressed to less than half of their thickness"
+          : "the facets that faced each other at the start no longer do so",
       words::see_summary));
 }
 

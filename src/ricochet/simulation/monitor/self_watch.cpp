@@ -332,7 +332,7 @@ void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
     const bool fits = of.allFinite() && is_node(of[0]) && is_node(node_at_contact) &&
                       rest[0] >= (node_at_contact > -1.0 ? 0.0 : -1.0) && rest[0] < contacts_ &&
                       std::all_of(rest.data() + 1, rest.data() + 7, is_node);
-    if (!fits) Snapshot::refuse(name + ".found", "has numbers that are none of this problem's nodes and contacts");
+    if (!fits) Snapshot::refuse(name + ".found", "has numbers that do not denote nodes and contacts of this problem");
     found.deepest = DeepestPoint::from_numbers(of.head<DeepestPoint::numbers>());
     found.at_contact = DeepestPoint::from_numbers(of.segment<DeepestPoint::numbers>(DeepestPoint::numbers));
     found.contact = static_cast<int>(rest[0]);
@@ -344,18 +344,19 @@ void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
     parts_[k].at_start = snapshot.reals(part + ".at_start", parts_[k].at_start.size());
     parts_[k].last_displacement = snapshot.reals(part + ".seen", parts_[k].last_displacement.size());
     if (!parts_[k].at_start.allFinite() || !(parts_[k].at_start.array() >= 0.0).all())
-      Snapshot::refuse(part + ".at_start", "has entries that are no depths");
+      Snapshot::refuse(part + ".at_start", "has entries that are not depths");
     if (!parts_[k].last_displacement.allFinite()) Snapshot::refuse(part + ".seen", "is not finite");
     const Vector& unseen = snapshot.reals(part + ".unseen", 2);
-    if (!(unseen[0] >= 0.0 && unseen[1] >= 0.0)) Snapshot::refuse(part + ".unseen", "has entries below zero");
+    if (!(unseen[0] >= 0.0 && unseen[1] >= 0.0)) Snapshot::refuse(part + ".unseen", "has negative entries");
     parts_[k].unseen = unseen[0];
     parts_[k].clearance = unseen[1];
   }
   work_budget_ = snapshot.real(name + ".saved");
-  if (!(work_budget_ >= 0.0) || !std::isfinite(work_budget_)) Snapshot::refuse(name + ".saved", "is no work");
+  if (!(work_budget_ >= 0.0) || !std::isfinite(work_budget_))
+    Snapshot::refuse(name + ".saved", "is not a valid amount of work");
   // Infinite if all checks that are due are performed.
   work_per_step_ = snapshot.real(name + ".work");
-  if (!(work_per_step_ >= 0.0)) Snapshot::refuse(name + ".work", "is no work");
+  if (!(work_per_step_ >= 0.0)) Snapshot::refuse(name + ".work", "is not a valid amount of work");
   checks_ = snapshot.integer(name + ".looks");
   if (checks_ < 0) Snapshot::refuse(name + ".looks", "is negative");
 }

@@ -109,14 +109,14 @@ void SlidingWatch::enter(LargeSlidingContact& contact, const State& state) const
 
 void SlidingWatch::warn(const LargeSlidingContact& contact) const {
   const ContactPair& pair = pairs_[static_cast<std::size_t>(contact.contact)];
-  log::warning(fmt::format(
-      "at t = {:.6g} what faces what of \"{}\" and \"{}\" changed from one iteration of the step to the next, and was "
-      "held: points are left at gaps of up to {:.3g}, as at ({:.4g}) (reference position), which nothing closes while "
-      "they "
-      "are pressed, and up to {:.3g} % of the force of this contact is at stake. No energy is made of that. The column "
-      "unsettled_gap has the gap for every step, \"unsettled_contacts\" in summary.json the largest share of the force",
-      contact.time, pair.first_group(), pair.second_group(), contact.gap,
-      fmt::join(reference_position(contact.point), ", "), 100.0 * contact.share()));
+  log::warning(
+      fmt::format("at t = {:.6g} the pairing of \"{}\" and \"{}\" did not settle: it changed from one iteration of the "
+                  "step to the next and was held. Points are left at gaps of up to {:.3g}, for example at ({:.4g}) "
+                  "(reference position), which nothing closes while they are pressed, and up to {:.3g} % of the force "
+                  "of this contact is at stake. This creates no energy. The column unsettled_gap has the gap of every "
+                  "step, \"unsettled_contacts\" in summary.json the largest share of the force",
+                  contact.time, pair.first_group(), pair.second_group(), contact.gap,
+                  fmt::join(reference_position(contact.point), ", "), 100.0 * contact.share()));
 }
 
 /// Warns of the first held step, whatever its effect.
@@ -124,9 +124,9 @@ void SlidingWatch::warn_of_held_step(const State& state) {
   if (held_step_warned_ || !problem_.contact.geometry->has_frozen()) return;
   held_step_warned_ = true;
   log::warning(
-      fmt::format("at t = {:.6g} what faces what of bodies that slide far changed from one iteration of a step to the "
-                  "next, and was held: forces of such steps give no energy, but have a moment, which the angular "
-                  "momentum of free bodies shows",
+      fmt::format("at t = {:.6g} the pairing of bodies with large sliding changed from one iteration of a step to the "
+                  "next and was held: the forces of such steps create no energy, but they have a moment, which shows "
+                  "in the angular momentum of free bodies",
                   state.time));
 }
 
@@ -164,10 +164,9 @@ void SlidingWatch::warn(const Largest& largest) const {
   const ContactPair& pair = pairs_[static_cast<std::size_t>(largest.contact)];
   log::warning(fmt::format(
       "at t = {:.6g} the bodies of \"{}\" and \"{}\" have slid along each other by {:.3g} at ({:.4g}) (reference "
-      "position), more than half of the smaller facet there ({:.3g}): a contact between bodies keeps the facets "
-      "together that faced each other {}, and from here on its pressures act at other places than those that touch; "
-      "set sliding = \"large\" in this [[contact]], limit the motion, or pair the bodies with pair_at where they are "
-      "pressed",
+      "position), more than half of the smaller facet there ({:.3g}): a contact between bodies keeps the facets paired "
+      "that faced each other {}, and from here on its pressures no longer act where the bodies touch; set sliding = "
+      "\"large\" in this [[contact]], limit the motion, or pair the bodies with pair_at where they are pressed",
       largest.time, pair.first_group(), pair.second_group(), largest.slip,
       fmt::join(reference_position(largest.point), ", "), largest.limit,
       pair.pair_at.size() > 0 ? "at pair_at" : "at the start"));

@@ -117,7 +117,7 @@ void TunnellingWatch::load(const Snapshot& snapshot, const std::string& name) {
     const std::string own = name + "." + std::to_string(k);
     previous_[k].gaps = snapshot.reals(own + ".gaps");
     if (previous_[k].gaps.size() != 0 && previous_[k].gaps.size() != static_cast<Index>(nodes_.size()))
-      Snapshot::refuse(own + ".gaps", "has a length that is none of this problem's");
+      Snapshot::refuse(own + ".gaps", "has a length that does not fit this problem");
     const Vector& positions = snapshot.reals(own + ".places", problem_.dimension * previous_[k].gaps.size());
     previous_[k].positions = positions.reshaped(problem_.dimension, previous_[k].gaps.size());
     passages_[k] = DeepestPoint::from_numbers(snapshot.reals(own + ".passage", DeepestPoint::numbers));

@@ -60,7 +60,7 @@ class LoadPath {
     }
     throw Error(
         ErrorKind::not_converged,
-        fmt::format("Newton's method did not converge in {} corrections, the last of which moves a node by {:.3g}",
+        fmt::format("Newton's method did not converge in {} corrections, the last of which moved a node by {:.3g}",
                     most_corrections, last_ * size_));
   }
 
@@ -164,12 +164,12 @@ StaticEquilibrium finite_equilibrium(const SemidiscreteProblem& problem, const V
       if (error.kind() != ErrorKind::not_converged) throw;
       increment *= 0.25;
       if (increment >= shortest_increment) continue;
-      throw Error(ErrorKind::not_converged,
-                  fmt::format("initial.displacement = \"static\": no equilibrium was found beyond {:.4g} of the loads "
-                              "and prescribed displacements at t = 0 ({}); there the body may buckle, snap through, or "
-                              "be held by nothing: apply less, add a [[support]], or let the loads act from a "
-                              "start at rest",
-                              reached, error.what()));
+      throw Error(
+          ErrorKind::not_converged,
+          fmt::format("initial.displacement = \"static\": no equilibrium was found beyond {:.4g} times the loads and "
+                      "prescribed displacements at t = 0 ({}); there the body may buckle, snap through, or be held by "
+                      "nothing: apply smaller ones, add a [[support]], or start at rest without a static equilibrium",
+                      reached, error.what()));
     }
     at = std::move(next);
     reached = part;
@@ -179,8 +179,8 @@ StaticEquilibrium finite_equilibrium(const SemidiscreteProblem& problem, const V
     if (path.settle(at)) return at;
   }
   throw Error(ErrorKind::not_converged,
-              "initial.displacement = \"static\": the body still moves after many rounds: nothing holds it under the "
-              "loads at t = 0; add a [[support]] in the direction in which it is free to move or turn");
+              "initial.displacement = \"static\": the body still moves after many iterations: nothing holds it under "
+              "the loads at t = 0; add a [[support]] in the direction in which it is free to move or turn");
 }
 
 }  // namespace ricochet

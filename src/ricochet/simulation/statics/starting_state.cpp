@@ -71,9 +71,9 @@ void relax_contact_nodes(const SemidiscreteProblem& problem, double step, const 
     solver->solve(0, stage, solution);
   } catch (const Error& problem) {
     throw Error(problem.kind(),
-                fmt::format("at the start contact nodes, which have no inertia, find no equilibrium beside the given "
-                            "places of the others: {}; give an initial.displacement that strains bodies less there, or "
-                            "\"static\", or move the body by supports",
+                fmt::format("no equilibrium of the contact nodes, which have no inertia, was found at the start for "
+                            "the given positions of the other nodes: {}; use an initial.displacement that strains the "
+                            "bodies less there, or \"static\", or move the body by supports",
                             problem.what()));
   }
   state.displacement += solution.increment;
@@ -82,7 +82,8 @@ void relax_contact_nodes(const SemidiscreteProblem& problem, double step, const 
   const double change = largest(problem, solution.increment);
   if (change > 0.0) {
     log::info(fmt::format(
-        "contact nodes have no inertia: their initial displacement was moved by up to {:.3g} to equilibrium", change));
+        "contact nodes have no inertia: their initial displacement was changed by up to {:.3g} to reach equilibrium",
+        change));
   }
 }
 
@@ -198,10 +199,10 @@ void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
   const PenetratingPoints inside = initially_penetrating_points(problem, state.displacement);
   const Index points = problem.global_contact_point_count();
   if (inside.count == 0) return;
-  log::warning(
-      fmt::format("at the start {} of {} {} inside of an obstacle, the deepest by {:.3g}, as where facets stand "
-                  "for a curved surface: they are pushed out at once, which creates energy; move the body away by that",
-                  inside.count, counted(points, "contact point"), inside.count == 1 ? "is" : "are", inside.deepest));
+  log::warning(fmt::format(
+      "at the start {} of {} {} inside an obstacle, the deepest by {:.3g}, as happens where facets approximate a "
+      "curved surface: they are pushed out at once, which creates energy; move the body away by this distance",
+      inside.count, counted(points, "contact point"), inside.count == 1 ? "is" : "are", inside.deepest));
 }
 
 }  // namespace
@@ -223,9 +224,8 @@ void warn_of_closed_gaps(const SemidiscreteProblem& problem, const Vector& press
     }
     if (!presses || !(smallest > seen * enclosing_diameter(problem.nodes))) continue;
     log::warning(
-        fmt::format("initial.displacement = \"static\" closes the gap of contact.{}, which is {:.3g} wide in the "
-                    "mesh: it moves a body until it rests; where that body is to start with a gap, leave the "
-                    "static start out",
+        fmt::format("initial.displacement = \"static\" closes the gap of contact.{}, which is {:.3g} wide in the mesh: "
+                    "it moves a body until it rests; if that body should start with a gap, omit the static start",
                     contact, smallest));
   }
 }
@@ -256,10 +256,10 @@ namespace {
   const bool at_obstacle = problem.obstacles[static_cast<std::size_t>(inside.pair)] != nullptr;
   throw Error(
       reason.kind(),
-      fmt::format("initial.displacement = \"static\": without it {} of {} {} inside of {}, the deepest by {:.3g} at "
-                  "({:.6g}) (contact.{}), and pushing them out has led to no equilibrium. {}, so that no more overlaps "
-                  "than a press fit takes, a part of a cell; a body that nothing presses on another one needs a "
-                  "[[support]], or no static start. The search says: {}",
+      fmt::format("initial.displacement = \"static\": without it {} of {} {} inside {}, the deepest by {:.3g} at "
+                  "({:.6g}) (contact.{}), and pushing them out did not lead to an equilibrium. {}, so that they "
+                  "overlap by no more than in a press fit, a fraction of a cell; a body that nothing presses against "
+                  "another one needs a [[support]], or no static start. The search reports: {}",
                   inside.count, counted(problem.contact.size(), "contact point"), inside.count == 1 ? "is" : "are",
                   at_obstacle ? "their obstacle" : "the other body", inside.deepest, fmt::join(inside.position, ", "),
                   inside.pair,

@@ -86,8 +86,8 @@ class StaticFriction {
     if (problem.contact.follows_motion() && sliding_points() > 0) {
       throw Error(
           ErrorKind::invalid_input,
-          "initial.displacement = \"static\": friction on a curved obstacle that moves at t = 0 is not available "
-          "in a static start: let the obstacle rest, leave friction out, or give the displacement by expressions");
+          "initial.displacement = \"static\": friction on a curved obstacle that moves at t = 0 is not supported in a "
+          "static start: keep the obstacle at rest, remove the friction, or set the displacement by expressions");
     }
   }
 
@@ -170,18 +170,17 @@ std::string as_text(const Vector& vector) {
 /// A body that no reactions can hold has no equilibrium, whatever an iteration converges to.
 [[noreturn]] void refuse_unheld(const SemidiscreteProblem& problem, const StaticFriction& friction,
                                 const UnheldMotion& motion) {
-  std::string how = "turns or tips over: a moment has";
+  std::string how = "turns or tips over, since a moment has";
   if (!motion.force.isZero(0.0)) {
-    how = fmt::format("{} in the direction {}: a force of {} has", motion.slides ? "slides" : "moves",
+    how = fmt::format("{} in the direction {}, since a force of {} has", motion.slides ? "slides" : "moves",
                       as_text(motion.force.normalized()), as_text(motion.force));
   }
-  throw Error(
-      ErrorKind::invalid_input,
-      fmt::format("initial.displacement = \"static\": there is no equilibrium under the loads at t = 0: the body "
-                  "around {} {} nothing to balance it{}; add a [[support]] that holds it in the direction in "
-                  "which it moves or turns{}, or give the displacement by expressions",
-                  as_text(motion.centre), how, role_of_friction(problem, friction),
-                  motion.slides ? ", raise the friction" : ""));
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("initial.displacement = \"static\": there is no equilibrium under the loads at t = 0: the "
+                          "body centred at {} {} nothing to balance it{}; add a [[support]] that holds it in the "
+                          "direction in which it moves or turns{}, or set the displacement by expressions",
+                          as_text(motion.centre), how, role_of_friction(problem, friction),
+                          motion.slides ? ", increase the friction" : ""));
 }
 
 [[noreturn]] void refuse_static(const SemidiscreteProblem& problem, const StaticFriction& friction,
@@ -198,17 +197,16 @@ std::string as_text(const Vector& vector) {
     throw Error(
         ErrorKind::not_converged,
         fmt::format("initial.displacement = \"static\": the equilibrium was not found to rounding; a force of {:.2g} "
-                    "of the largest load is left. {}tiffnesses that differ by many orders of magnitude or very slender "
-                    "bodies are likely causes; give the displacement by expressions instead",
+                    "times the largest load remains. {}tiffnesses that differ by many orders of magnitude or very "
+                    "slender bodies are likely causes; set the displacement by expressions instead",
                     largest(problem, left_over) / largest(problem, load),
-                    problem.contact.has_friction() ? "Friction that just does not hold the body, s" : "S"));
+                    problem.contact.has_friction() ? "Friction slightly too weak to hold the body, s" : "S"));
   }
-  throw Error(
-      ErrorKind::invalid_input,
-      fmt::format("initial.displacement = \"static\": there is no equilibrium under the loads at t = 0: a resultant "
-                  "force of {} still moves the body{}; add a [[support]] in the direction in which it is free to move "
-                  "or turn, or give the displacement by expressions",
-                  force, role_of_friction(problem, friction)));
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("initial.displacement = \"static\": there is no equilibrium under the loads at t = 0: a "
+                          "resultant force of {} still moves the body{}; add a [[support]] in the direction in which "
+                          "it is free to move or turn, or set the displacement by expressions",
+                          force, role_of_friction(problem, friction)));
 }
 
 /// Iterates until the test is passed. Returns false after many iterations or, with `give_up_early`, as soon as the
@@ -294,8 +292,8 @@ StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const V
     if (!found) refuse_static(problem, friction, left_over);
     if (friction.sliding_points() > 0) {
       log::info(
-          fmt::format("initial.displacement = \"static\": {} at t = 0, and no equilibrium holds "
-                      "their friction: it is left out of the static start there and acts from t = 0 on",
+          fmt::format("initial.displacement = \"static\": {} at t = 0, and there is no equilibrium with friction "
+                      "there: the static start omits this friction, which acts from t = 0 on",
                       counted(friction.sliding_points(), "contact point slides", "contact points slide")));
     }
   }

@@ -129,7 +129,7 @@ std::string PrimalDualActiveSet::pivot(const ContactSystem& system, ContactItera
       active_[violations_.back()] ^= 1;
     }
   }
-  return "the active set still changes after the largest number of iterations";
+  return "the active set still changes at the iteration limit";
 }
 
 namespace {
@@ -146,7 +146,8 @@ class ActiveSetSolver final : public IterativeContactSolver {
   [[nodiscard]] std::string refuses(const ContactSystem& system) const override {
     if (system.dense() == nullptr) return "the active set method needs a dense W";
     for (const ContactPoint& point : system.points()) {
-      if (point.size > 2) return "the active set method takes friction in two dimensions only: slip has two directions";
+      if (point.size > 2)
+        return "the active set method supports friction in two dimensions only, where slip has two directions";
     }
     return "";
   }
@@ -181,7 +182,7 @@ std::string ActiveSetSolver::iterate(const ContactSystem& system, const ContactO
     std::swap(current, next_);
     note_iteration(system, options, "active set", system.residual(current), current.reaction, solution);
   }
-  return "the states of the points still change after the largest number of iterations";
+  return "the states of the points still change at the iteration limit";
 }
 
 }  // namespace

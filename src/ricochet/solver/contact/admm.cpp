@@ -124,7 +124,7 @@ double geometric_mean_eigenvalue(const ContactSystem& system) {
 class Admm final : public IterativeContactSolver {
  protected:
   [[nodiscard]] std::string refuses(const ContactSystem& system) const override {
-    if (!system.has_entries()) return "ADMM needs the entries of W, and W is known by its product alone";
+    if (!system.has_entries()) return "ADMM needs the entries of W, but only products with W are available";
     return refuse_bounds(system);
   }
   void forget() override { key_.clear(); }
@@ -255,15 +255,15 @@ std::string Admm::iterate(const ContactSystem& system, const ContactOptions& opt
       next_look += static_cast<int>(interval);
     }
   }
-  return "the largest number of iterations was not enough";
+  return "the iteration limit was reached";
 }
 
 }  // namespace
 
 ContactSolverRegistration admm_solver() {
-  return {
-      "admm",
-      {[] { return std::make_unique<Admm>(); }, "alternating direction method of multipliers with an adapted penalty"}};
+  return {"admm",
+          {[] { return std::make_unique<Admm>(); },
+           "alternating direction method of multipliers with an adaptive penalty"}};
 }
 
 }  // namespace ricochet

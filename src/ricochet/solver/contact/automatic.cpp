@@ -124,7 +124,7 @@ void AutomaticSolver::load_memory(const std::vector<Index>& row_offset, const Sn
   costs_ = {costs[0], costs[1]};
   const std::vector<Index>& base = snapshot.integers(name + ".active_set");
   if (!are_first_rows(row_offset, base, true))
-    Snapshot::refuse(name + ".active_set", "has entries that are no points of this problem");
+    Snapshot::refuse(name + ".active_set", "has entries that are not points of this problem");
   frictionless_.take_base(base);
   newton_.load_memory(row_offset, snapshot, name);
 }
@@ -284,10 +284,10 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
   if (const std::string reason = find_contradiction(work); !reason.empty()) return reason;
   if (!std::isfinite(best_.merit)) return "the iteration diverged: the contact operator is not positive definite";
   if (may_leave_out_twins())
-    return "some contact points nearly coincide, and it could not be decided which of them carry the force";
+    return "some contact points nearly coincide, and it could not be determined which of them carry the force";
   if (fall_back(work, cold)) return "";
-  return "the conditions of contact and friction are not met after all that was tried: there may be no solution, or W "
-         "is not positive semi-definite";
+  return "none of the methods satisfied the conditions of contact and friction: there may be no solution, or W is not "
+         "positive semi-definite";
 }
 
 /// Looks for a contradiction of the normal conditions among themselves: friction does not remove it.
@@ -361,7 +361,7 @@ bool AutomaticSolver::sweep_on(const ContactWork& work) {
 ContactSolverRegistration automatic_solver() {
   return {"automatic",
           {[] { return std::make_unique<AutomaticSolver>(); },
-           "accelerated Gauss-Seidel, then Newton with a line search, then fallbacks; no parameter"}};
+           "accelerated Gauss-Seidel, then Newton with a line search, then fallbacks; no parameters"}};
 }
 
 }  // namespace ricochet

@@ -7,7 +7,7 @@ namespace ricochet {
 std::string refuse_bounds(const ContactSystem& system) {
   for (const ContactPoint& point : system.points()) {
     if (point.bound > 0.0)
-      return "friction has a bound: with it the law is not that of a cone, on which this solver works";
+      return "friction has a bound: the friction law is then not that of a cone, which this solver requires";
   }
   return "";
 }

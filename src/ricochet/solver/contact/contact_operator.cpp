@@ -54,8 +54,9 @@ class ProductOperator final : public ContactOperator {
   ProductOperator(Index rows, std::function<void(const Vector&, Vector&)> product)
       : rows_(rows), product_(std::move(product)) {
     if (rows_ < 0 || product_ == nullptr) {
-      throw Error(ErrorKind::invalid_input, fmt::format("contact problem: W of {} rows needs {}", rows_,
-                                                        rows_ < 0 ? "a number of rows" : "a product"));
+      throw Error(ErrorKind::invalid_input,
+                  fmt::format("contact problem: W with {} rows needs {}", rows_,
+                              rows_ < 0 ? "a nonnegative number of rows" : "a product function"));
     }
   }
   [[nodiscard]] Index rows() const override { return rows_; }
@@ -65,7 +66,7 @@ class ProductOperator final : public ContactOperator {
     if (y.size() != rows_) {
       throw Error(
           ErrorKind::invalid_input,
-          fmt::format("contact problem: the product with W gives {} entries, but W has {} rows", y.size(), rows_));
+          fmt::format("contact problem: the product with W returns {} entries, but W has {} rows", y.size(), rows_));
     }
   }
   [[nodiscard]] PointMatrix block(Index first, Index size) const override {

@@ -27,7 +27,7 @@ void require_size(Index found, Index expected, const char* what) {
 
 ContactProblem::ContactProblem(Index dimension, std::shared_ptr<const ContactOperator> w, Vector q, Vector friction)
     : contact_operator(std::move(w)), offset(std::move(q)), friction_coefficient(std::move(friction)) {
-  if (dimension < 1 || dimension > 3) fail(fmt::format("{} rows per point; there can be 1, 2 or 3", dimension));
+  if (dimension < 1 || dimension > 3) fail(fmt::format("{} rows per point; the number must be 1, 2 or 3", dimension));
   if (offset.size() % dimension != 0) {
     fail(fmt::format("q has {} entries, which is not a multiple of the {} rows of a point", offset.size(), dimension));
   }
@@ -40,11 +40,11 @@ ContactProblem::ContactProblem(Index dimension, Matrix w, Vector q, double frict
                      Vector::Constant(dimension > 0 ? q.size() / dimension : 0, friction)) {}
 
 void ContactProblem::validate() const {
-  require(contact_operator != nullptr, "there is no operator W");
+  require(contact_operator != nullptr, "the operator W is missing");
   require(!row_offset.empty() && row_offset.front() == 0, "the first point must begin with row 0");
   for (std::size_t i = 0; i + 1 < row_offset.size(); ++i) {
     const Index size = row_offset[i + 1] - row_offset[i];
-    if (size < 1 || size > 3) fail(fmt::format("point {} has {} rows; there can be 1, 2 or 3", i, size));
+    if (size < 1 || size > 3) fail(fmt::format("point {} has {} rows; the number must be 1, 2 or 3", i, size));
   }
   require_size(offset.size(), row_offset.back(), "q");
   if (contact_operator->rows() != row_offset.back())

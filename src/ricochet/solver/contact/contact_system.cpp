@@ -73,7 +73,7 @@ void ContactSystem::analyse(const ContactProblem& problem) {
         operator_->block(problem.row_offset[at], problem.row_offset[at + 1] - problem.row_offset[at]);
     blocks_.push_back(block);
     if (fault_.empty() && !(block.allFinite() && (block.diagonal().array() >= 0.0).all()))
-      fault_ = fmt::format("W has an entry that is negative or no finite number in the diagonal block of point {}", i);
+      fault_ = fmt::format("W has a negative or non-finite entry in the diagonal block of point {}", i);
     normal_[at] = block(0, 0);
     mean_[at] = block.trace() / static_cast<double>(block.rows());
     largest_of[at] = block.diagonal().maxCoeff();
@@ -229,7 +229,7 @@ void ContactSystem::copy_dense() {
 
 /// Checks the sum of the scaled entries, which are too small for a sum of finite ones to overflow.
 void ContactSystem::note_sum(double sum) {
-  if (!std::isfinite(sum) && fault_.empty()) fault_ = "W has entries that are no finite numbers";
+  if (!std::isfinite(sum) && fault_.empty()) fault_ = "W has non-finite entries";
 }
 
 void ContactSystem::copy_sparse() {

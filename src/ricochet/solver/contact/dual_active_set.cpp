@@ -221,7 +221,7 @@ std::string DualActiveSet::solve(const ContactSystem& system, ContactIterate& cu
     excused_[static_cast<std::size_t>(entering)] = 1;
     excused = true;
   }
-  return "the active set still changes after the largest number of iterations";
+  return "the active set still changes at the iteration limit";
 }
 
 }  // namespace ricochet

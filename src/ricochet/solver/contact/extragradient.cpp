@@ -85,7 +85,7 @@ std::string Extragradient::iterate(const ContactSystem& system, const ContactOpt
     if (!std::isfinite(residual)) break;
     if (verdict_.is_solved(system, k, residual, current)) return "";
   }
-  return verdict_.finish(system, current) ? "the largest number of extragradient steps was not enough"
+  return verdict_.finish(system, current) ? "the limit of extragradient steps was reached"
                                           : "the extragradient steps diverged: W is not positive semi-definite";
 }
 
@@ -94,7 +94,7 @@ std::string Extragradient::iterate(const ContactSystem& system, const ContactOpt
 ContactSolverRegistration extragradient_solver() {
   return {"extragradient",
           {[] { return std::make_unique<Extragradient>(); },
-           "Korpelevich's extragradient with an adapted step: needs only products with W"}};
+           "Korpelevich's extragradient method with an adaptive step; needs only products with W"}};
 }
 
 }  // namespace ricochet

@@ -48,7 +48,7 @@ namespace {
 class GaussSeidelSolver final : public IterativeContactSolver {
  protected:
   [[nodiscard]] std::string refuses(const ContactSystem& system) const override {
-    return system.has_entries() ? "" : "Gauss-Seidel needs the entries of W, and W is known by its product alone";
+    return system.has_entries() ? "" : "Gauss-Seidel needs the entries of W, but only products with W are available";
   }
   std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
                       ContactSolution& solution) override {
@@ -64,7 +64,7 @@ class GaussSeidelSolver final : public IterativeContactSolver {
       system.evaluate(current);
       if (system.is_solved(current, options.tolerance)) return "";
     }
-    return "the largest number of sweeps was not enough";
+    return "the limit of sweeps was reached";
   }
 
  private:

@@ -50,7 +50,7 @@ void IterativeContactSolver::set_warm_start(const Vector& reactions) {
                             reactions.size(), rows));
   }
   if (!reactions.allFinite())
-    throw Error(ErrorKind::invalid_input, "contact solver: the warm start has entries that are no finite numbers");
+    throw Error(ErrorKind::invalid_input, "contact solver: the warm start has non-finite entries");
   warm_reaction_ = reactions;
 }
 
@@ -72,11 +72,12 @@ void IterativeContactSolver::load(const Snapshot& snapshot, const std::string& n
 void ContactOptions::validate() const {
   if (!(tolerance >= 0.0 && tolerance < 1.0))
     throw Error(ErrorKind::invalid_input,
-                fmt::format("contact solver: the tolerance {} must be from 0 to below 1", tolerance));
+                fmt::format("contact solver: the tolerance is {}; it must be at least 0 and below 1", tolerance));
   if (iteration_limit < 0) {
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("contact solver: the limit of {} iterations must be zero (the solver's own) or positive",
-                            iteration_limit));
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("contact solver: the limit is {} iterations; it must be zero (the solver's own limit) or positive",
+                    iteration_limit));
   }
 }
 
@@ -240,8 +241,8 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
   solution.rounding_floor = measure_.rounding_floor / system_.data();
   if (!std::isfinite(largest) || !finite) {
     return refuse_data(
-        "the iteration diverged: W has entries that are not finite, or is not positive semi-definite, or the "
-        "reactions are beyond the range of numbers",
+        "the iteration diverged: W has non-finite entries or is not positive semi-definite, or the reactions exceed "
+        "the range of floating-point numbers",
         solution, solution.residual);
   }
   if (is_accepted(options)) {
@@ -251,12 +252,11 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
     return;
   }
   solution.outcome = ContactOutcome::not_converged;
-  if (solution.reason.empty()) solution.reason = "the largest number of iterations was not enough";
+  if (solution.reason.empty()) solution.reason = "the iteration limit was reached";
   if (largest <= accepted_residual(options) * system_.data()) {
     solution.reason =
-        "the residual is meaningless, because the reactions have grown so large that rounding hides it: where a body "
-        "is "
-        "jammed by friction there may be no solution";
+        "the residual is meaningless, because the reactions have grown so large that rounding hides it: if a body is "
+        "jammed by friction, there may be no solution";
   }
 }
 
@@ -316,9 +316,9 @@ void IterativeContactSolver::solve_without_twins(const ContactProblem& problem, 
 void IterativeContactSolver::solve(const ContactProblem& problem, const ContactOptions& options,
                                    ContactSolution& solution) {
   if (problem.contact_operator != analysed_)
-    throw Error(ErrorKind::invalid_input, "contact problem: W is another than the one that was analysed");
+    throw Error(ErrorKind::invalid_input, "contact problem: W is not the operator that was analysed");
   if (problem.row_offset != analysed_row_offset_)
-    throw Error(ErrorKind::invalid_input, "contact problem: the points are others than those that were analysed");
+    throw Error(ErrorKind::invalid_input, "contact problem: the points are not those that were analysed");
   problem.validate();
   options.validate();
   solution.outcome = ContactOutcome::not_converged;
@@ -340,7 +340,7 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
     return;
   }
   if (!(system_.data() > 0.0))
-    return refuse_data("the entries of q are so far apart in size that the smaller ones vanish beside the others",
+    return refuse_data("the entries of q differ so much in magnitude that the smaller ones vanish beside the others",
                        solution);
   choose_points(problem);
   if (!system_.fault().empty()) return refuse_data(system_.fault(), solution);

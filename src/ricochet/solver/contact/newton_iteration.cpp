@@ -164,7 +164,7 @@ bool NewtonSystem::solve_sparse(const ContactSystem& system, const std::vector<P
 }
 
 std::string NewtonContactSolver::refuses(const ContactSystem& system) const {
-  return system.has_entries() ? "" : "Newton's method needs the entries of W, and W is known by its product alone";
+  return system.has_entries() ? "" : "Newton's method needs the entries of W, but only products with W are available";
 }
 
 double NewtonContactSolver::merit(const ContactSystem& system, const ContactIterate& iterate) const {
@@ -270,7 +270,7 @@ std::string NewtonContactSolver::iterate(const ContactSystem& system, const Cont
       merits_.fill(merit_);
     } else {
       current = best_;
-      return "no part of a Newton step brings the point equations closer to zero";
+      return "no fraction of a Newton step brings the point equations closer to zero";
     }
     const double reached = system.residual(current);
     if (reached < best) {
@@ -279,7 +279,7 @@ std::string NewtonContactSolver::iterate(const ContactSystem& system, const Cont
     }
   }
   current = best_;
-  return "the largest number of Newton steps was not enough";
+  return "the limit of Newton steps was reached";
 }
 
 }  // namespace ricochet

@@ -141,7 +141,7 @@ std::string AcceleratedGradient::iterate(const ContactSystem& system, const Cont
     }
     if (verdict_.is_solved(system, k, residual, current)) return "";
   }
-  return verdict_.finish(system, current) ? "the largest number of gradient steps was not enough"
+  return verdict_.finish(system, current) ? "the limit of gradient steps was reached"
                                           : "the gradient steps diverged: W is not positive semi-definite";
 }
 
@@ -150,7 +150,7 @@ std::string AcceleratedGradient::iterate(const ContactSystem& system, const Cont
 ContactSolverRegistration accelerated_gradient_solver() {
   return {"accelerated-gradient",
           {[] { return std::make_unique<AcceleratedGradient>(); },
-           "Nesterov's projected gradient with restarts: needs only products with W"}};
+           "Nesterov's projected gradient method with restarts; needs only products with W"}};
 }
 
 }  // namespace ricochet

@@ -74,7 +74,7 @@ void ReusedFactor::load(const std::vector<Index>& row_offset, const Snapshot& sn
   const std::vector<Index>& sizes = snapshot.integers(name + ".unknowns.sizes", 1, 3);
   const Vector& values = snapshot.reals(name + ".unknowns.values", 7 * static_cast<Index>(rows.size()));
   if (!are_first_rows(row_offset, rows, false) || sizes.size() != rows.size())
-    Snapshot::refuse(name + ".unknowns", "are not those of points of this problem");
+    Snapshot::refuse(name + ".unknowns", "do not belong to points of this problem");
   const double* next = values.data();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto point = std::lower_bound(row_offset.begin(), row_offset.end(), rows[i]);

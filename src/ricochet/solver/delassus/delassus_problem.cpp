@@ -156,7 +156,7 @@ void DelassusProblem::load(const Snapshot& snapshot, const std::string& name) {
   if (solver_ == nullptr) return;
   solver_->load(snapshot, name + ".solver");
   const double saved = snapshot.real(name + ".scale");
-  if (!(std::isnormal(saved) && saved > 0.0)) Snapshot::refuse(name + ".scale", "is no positive number");
+  if (!(std::isnormal(saved) && saved > 0.0)) Snapshot::refuse(name + ".scale", "is not a positive number");
   scale_warm_start(scale_ / saved);
   contact_solution_.reaction = solver_->warm_start();
   if (contact_solution_.reaction.size() == 0) contact_solution_.reaction.setZero(contact_.row_offset.back());
@@ -334,7 +334,7 @@ void DelassusProblem::solve_contact() {
 /// Logs a line per iteration, which shows where a step spends its time or why it fails.
 void DelassusProblem::log_iterations() const {
   if (contact_solution_.record.empty()) {
-    log::debug(fmt::format("contact: {} points, none that iterations were needed for", contact_.points()));
+    log::debug(fmt::format("contact: {} points, no iterations needed", contact_.points()));
     return;
   }
   for (std::size_t k = 0; k < contact_solution_.record.size(); ++k) {

@@ -19,7 +19,7 @@
 ///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + W ρ.
 /// For a stage with massless contact nodes, with U = (1 − ℓ/2) V and Z = W − V, V = 2⁻ᵏ H A_c⁻¹ Hᵀ, it is
 ///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + Z ρ̄ + U ρ.
-/// If directions turn, columns are those of E with H = D E (turned_rows.hpp).
+/// If directions turn, columns are those of E with H = D E (rotating_rows.hpp).
 namespace ricochet {
 
 class DelassusProblem {

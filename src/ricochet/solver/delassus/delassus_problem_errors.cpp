@@ -36,26 +36,26 @@ void DelassusProblem::throw_contradiction(const std::vector<Index>& contradictio
   some.resize(some.size() - more);
   const bool one = contacts.size() == 1;
   const std::string where =
-      fmt::format("{}{}", fmt::join(some, ", "), more > 0 ? fmt::format(" and {} more places", more) : "");
+      fmt::format("{}{}", fmt::join(some, ", "), more > 0 ? fmt::format(" and {} more positions", more) : "");
   // The conditions of an iteration may have no solution although the step has one.
   const ErrorKind kind = problem_.internal_force->is_linear() ? ErrorKind::invalid_input : ErrorKind::not_converged;
   if (between_bodies) {
     throw Error(
         kind,
-        fmt::format("no motion meets the conditions of contact: at {} (reference position) bodies would have to "
-                    "be outside of what they touch by {}{}; {}",
+        fmt::format("no motion meets the conditions of contact: at {} (reference position) bodies would simultaneously "
+                    "have to be outside their counterparts in {}{}; {}",
                     where, fmt::join(contacts, ", "),
-                    one ? " and where supports hold them" : " at once, and it leaves them no room",
+                    one ? " and in the positions where supports hold them" : ", which leaves them no room",
                     one ? "change the supports"
                         : "leave more room between them, change the supports or the motion of obstacles, or remove one "
                           "of these contacts"));
   }
   throw Error(
       kind,
-      fmt::format("no motion meets the conditions of contact: the body at {} (reference position) would have to be "
-                  "outside of the {} of {} at once{}; {}",
+      fmt::format("no motion meets the conditions of contact: the body at {} (reference position) would simultaneously "
+                  "have to be outside the {} of {}{}; {}",
                   where, one ? "obstacle" : "obstacles", fmt::join(contacts, ", "),
-                  one ? " and where supports hold it" : ", and they leave it no room",
+                  one ? " and in the position where supports hold it" : ", which leave it no room",
                   one ? "change the supports or the obstacle's motion"
                       : "leave more room between them, end their motion earlier, or remove one of these contacts"));
 }
@@ -63,9 +63,8 @@ void DelassusProblem::throw_contradiction(const std::vector<Index>& contradictio
 void DelassusProblem::throw_not_solved() const {
   if (!contact_solution_.contradiction.empty()) throw_contradiction(contact_solution_.contradiction);
   const bool tresca = ((bound_.array() > 0.0) && (coefficient_.array() == 0.0)).any();
-  const char* const advice = tresca ? "; with a friction_bound alone a step need not have a solution: give a friction "
-                                      "coefficient beside it"
-                                    : "";
+  const char* const advice =
+      tresca ? "; with a friction_bound alone a step may have no solution: set a friction coefficient as well" : "";
   throw Error(
       ErrorKind::not_converged,
       fmt::format("the contact problem{} of {} points was not solved in {} iterations (relative residual {:.3g}): "

@@ -149,8 +149,8 @@ void DelassusProblem::solve_mean(const Stage& stage) {
     return;
   }
   // The end reaction alone is always admissible.
-  log::debug(
-      fmt::format("contact: the mean of the reactions was not found ({}), the end reactions act", mean_.reason()));
+  log::debug(fmt::format("contact: the mean of the reactions was not found ({}); the end reactions act instead",
+                         mean_.reason()));
   const Vector last = solver_->warm_start();  // of the last problem solved
   use_end_weight(1.0);
   solver_->analyse(contact_);
@@ -179,11 +179,11 @@ void DelassusProblem::write_mean_reactions(const Stage& stage, StageSolution& so
 }
 
 void DelassusProblem::throw_no_mean() const {
-  throw Error(ErrorKind::not_converged,
-              fmt::format("the mean of the reactions over the step was not found ({} points): {}; such steps are far "
-                          "longer than the time in which a wave crosses a cell: take shorter ones, or scheme "
-                          "\"reduced-kane\"",
-                          contact_.points(), mean_.reason()));
+  throw Error(
+      ErrorKind::not_converged,
+      fmt::format("the mean of the reactions over the step was not found ({} points): {}; such steps are far longer "
+                  "than the time in which a wave crosses a cell: use shorter steps, or scheme \"reduced-kane\"",
+                  contact_.points(), mean_.reason()));
 }
 
 }  // namespace ricochet

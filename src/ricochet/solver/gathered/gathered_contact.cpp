@@ -21,7 +21,7 @@ class NoForce final : public InternalForce {
   [[nodiscard]] SparseMatrix tangent(const Vector&) const override { refuse(); }
 
  private:
-  [[noreturn]] static void refuse() { throw std::logic_error("gathered contact has no forces of its own"); }
+  [[noreturn]] static void refuse() { throw std::logic_error("gathered contact has no internal forces"); }
 };
 
 void append_row(const SparseRowMatrix& matrix, Index row, Index per_node, const Ranks& ranks,

@@ -23,7 +23,7 @@ class GatheredStage final : public StageSolver {
 
   void solve(const Stage& stage, StageSolution& solution) override;
   void refactorize(const Vector&) override {
-    throw Error(ErrorKind::invalid_input, "bodies of finite strain cannot be divided among processes");
+    throw Error(ErrorKind::invalid_input, "bodies at finite strain cannot be divided among processes");
   }
   void show_contact() const override {
     if (stage_) stage_->show_contact();

@@ -29,8 +29,8 @@ struct RegionNodes {
 };
 
 /// Share of the subdomains at one root: all roots partition the points in the same way, and each takes its share. All
-/// functions are collective over the ranks; those that end in _here work only at the root, where several roots may work
-/// at once.
+/// functions are collective over the ranks; those that end in _on_root work only at the root, where several roots may
+/// work at once.
 class RootSubdomains {
  public:
   /// `condensed_stage` is at the root, on `contact.nodes()`. Keeps references to all arguments.

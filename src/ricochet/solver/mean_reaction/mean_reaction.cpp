@@ -93,7 +93,7 @@ bool MeanReaction::find_mean(const Vector& acting, const Vector& offset, const V
   q1_ = offset;
   q1_.noalias() += z_ * acting;
   if (!path_.follow({q0_, q1_, start_, reaction, friction_, eligible_, pressing_})) {
-    reason_ = "the points that press were not found along the path of the step";
+    reason_ = "the points in contact were not found along the path of the step";
     return false;
   }
   mean = (1.0 - mu_) * path_.mean() + mu_ * reaction;
@@ -115,7 +115,7 @@ bool MeanReaction::solve_with(ContactProblem& contact, const Vector& offset, con
                               ContactSolution& solution, double& error) {
   contact.offset = offset + z_ * difference_;
   if (!solve_contact()) {
-    reason_ = "a contact problem on the way to it was not solved";
+    reason_ = "a contact problem of its iteration was not solved";
     return false;
   }
   const Vector acting = theta() * solution.reaction + difference_;
@@ -152,7 +152,7 @@ bool MeanReaction::iterate(ContactProblem& contact, const Vector& offset, const 
     if (round == rounds_before_settling) path_.freeze_shares();
     acceleration_.advance(asked, difference_, difference_);
   }
-  reason_ = fmt::format("rounds stopped at {:.2g} of the reactions", least);
+  reason_ = fmt::format("iterations stopped at an error of {:.2g} of the reactions", least);
   return false;
 }
 
@@ -169,7 +169,7 @@ bool MeanReaction::newton(ContactProblem& contact, const Vector& offset, const s
     return true;
   };
   Vector acting = acting_, residual, trial;
-  reason_ = "the points that press were not found along the path of the step";
+  reason_ = "the points in contact were not found along the path of the step";
   if (!evaluate(acting, residual)) return false;
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0, last_progress = 0; k < most_newton_steps; ++k) {
@@ -214,7 +214,7 @@ bool MeanReaction::newton(ContactProblem& contact, const Vector& offset, const s
     }
     acting = trial;
   }
-  reason_ = "Newton's method did not settle";
+  reason_ = "Newton's method did not converge";
   return false;
 }
 
@@ -229,7 +229,7 @@ bool MeanReaction::solve(ContactProblem& contact, const Vector& offset, const Ve
   for (const Index row : normal_rows_) pressing_.push_back(start_[row] > 0.0 ? 1 : 0);
   acting_weight_ = mu_;
   if (!usable_) {
-    reason_ = "the compliance of the contact nodes is not positive definite on them";
+    reason_ = "the compliance matrix of the contact nodes is not positive definite";
     return false;
   }
   friction_ = contact.friction_coefficient;

@@ -76,8 +76,8 @@ void refuse_existing_results(const std::string& directory, const BenchmarkOption
   }
   if (!holds_benchmarks(directory) || options.resume || options.force) return;
   throw Error(ErrorKind::file_access,
-              fmt::format("{}: holds benchmarks already; keep the runs that are done with --resume, choose another "
-                          "directory with -o, or start anew over it with --force",
+              fmt::format("{}: already contains benchmarks; keep the completed runs with --resume, choose another "
+                          "directory with -o, or overwrite the benchmarks with --force",
                           directory));
 }
 

@@ -67,7 +67,7 @@ BenchmarkPlan read_benchmark_plan(const std::string& directory) {
   try {
     const Json json = Json::parse(read_file(path));
     if (const int format = json.at("ricochet_benchmark"); format != benchmark_format)
-      throw Error(ErrorKind::invalid_input, fmt::format("{}: is of another version of Ricochet", path));
+      throw Error(ErrorKind::invalid_input, fmt::format("{}: was written by another version of Ricochet", path));
     plan.is_scorecard = json.at("scorecard");
     for (const Json& run : json.at("runs")) plan.runs.push_back(run_from(run));
   } catch (const Json::Exception& problem) {
@@ -75,7 +75,7 @@ BenchmarkPlan read_benchmark_plan(const std::string& directory) {
   }
   for (const BenchmarkRun& run : plan.runs) {
     if (!is_run_folder_name(run.folder))
-      refuse_damaged_plan(path, fmt::format("\"{}\" cannot be the name of the folder of a run", run.folder),
+      refuse_damaged_plan(path, fmt::format("\"{}\" is not a valid name for the folder of a run", run.folder),
                           "benchmarks");
   }
   return plan;

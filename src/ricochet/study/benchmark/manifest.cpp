@@ -34,7 +34,7 @@ void add_unknown(const TomlNode& node, const std::vector<std::string>& known, Pr
   const std::string meant = nearest_name(node.key, known);
   problems.add(node.key_location,
                fmt::format("unknown key \"{}\"{}; known: {}", node.key,
-                           meant.empty() ? "" : fmt::format(" (is \"{}\" meant?)", meant), join_names(known)));
+                           meant.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", meant), join_names(known)));
 }
 
 /// Returns true if a text can be a name, which becomes part of the names of directories.
@@ -52,7 +52,7 @@ Benchmark read_benchmark(const TomlNode& entry, const fs::path& folder, Problems
     if (key == manifest_keys.end()) {
       add_unknown(value, known_keys(), problems);
     } else if (value.kind != TomlNode::Kind::text) {
-      problems.add(value.location, fmt::format("\"{}\" must be a text, not {}", value.key, describe(value)));
+      problems.add(value.location, fmt::format("\"{}\" must be a text; found {}", value.key, describe(value)));
     } else {
       benchmark.*key->second = value.text;
     }
@@ -89,13 +89,13 @@ std::vector<Benchmark> read_benchmarks(const std::string& path) {
       const bool is_there = std::any_of(benchmarks.begin(), benchmarks.end(),
                                         [&](const Benchmark& other) { return other.name == benchmark.name; });
       if (is_there && !benchmark.name.empty())
-        problems.add(entry.location, fmt::format("there are two benchmarks \"{}\"", benchmark.name));
+        problems.add(entry.location, fmt::format("two benchmarks have the name \"{}\"", benchmark.name));
       benchmarks.push_back(std::move(benchmark));
     }
   }
   problems.raise();
   if (benchmarks.empty())
-    throw Error(ErrorKind::invalid_input, fmt::format("{}: lists no benchmark: add a [[benchmark]]", path));
+    throw Error(ErrorKind::invalid_input, fmt::format("{}: lists no benchmarks: add a [[benchmark]]", path));
   return benchmarks;
 }
 
@@ -105,8 +105,8 @@ std::vector<Benchmark> choose_benchmarks(const std::vector<Benchmark>& all, cons
   for (const std::string& name : names) {
     if (std::count(known.begin(), known.end(), name) > 0) continue;
     const std::string meant = nearest_name(name, known);
-    throw Error(ErrorKind::usage, fmt::format("benchmark: there is no \"{}\"{}; there are {}", name,
-                                              meant.empty() ? "" : fmt::format(" (is \"{}\" meant?)", meant),
+    throw Error(ErrorKind::usage, fmt::format("benchmark: there is no \"{}\"{}; available: {}", name,
+                                              meant.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", meant),
                                               join_names(known, " and ", false)));
   }
   if (names.empty()) return all;

@@ -25,8 +25,8 @@ constexpr long most_steps = 50'000;
 void require_known(const std::string& noun, const std::string& name, const std::vector<std::string>& known) {
   if (std::count(known.begin(), known.end(), name) > 0) return;
   const std::string meant = nearest_name(name, known);
-  throw Error(ErrorKind::usage, fmt::format("--scheme: there is no {} \"{}\"{}; there are {}", noun, name,
-                                            meant.empty() ? "" : fmt::format(" (is \"{}\" meant?)", meant),
+  throw Error(ErrorKind::usage, fmt::format("--scheme: there is no {} \"{}\"{}; available: {}", noun, name,
+                                            meant.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", meant),
                                             join_names(known, " and ", false)));
 }
 
@@ -119,7 +119,7 @@ std::vector<std::string> MethodChooser::settings_with(const std::string& scheme_
     settings.push_back(fmt::format("time.step={:.6g}", part_of_critical_step * *limit));
     const TimeSection shortened = read_case(case_path_, settings).time;
     if (step_count(shortened) > most_steps)
-      throw Error(ErrorKind::invalid_input, "left out: with a stable step it would take more than 50,000 steps");
+      throw Error(ErrorKind::invalid_input, "omitted: a stable time step would require more than 50,000 steps");
     scheme = make_scheme(shortened);
   }
   scheme->analyse(problem);

@@ -131,8 +131,8 @@ void MatrixMaker::add_part(const std::string& group) {
 }
 
 ScorecardMatrix MatrixMaker::make() {
-  matrix_.totals.columns = {{"scheme"},  {"mass"},   {"benchmarks"},   {"all right"}, {"failed"},
-                            {"refused"}, {"values"}, {"most created"}, {"most lost"}};
+  matrix_.totals.columns = {{"scheme"},  {"mass"},   {"benchmarks"},   {"all values hold"}, {"failed"},
+                            {"refused"}, {"values"}, {"max. created"}, {"max. lost"}};
   matrix_.totals.key_columns = 2;
   for (const std::string& method : methods_) add_totals(method);
   for (const std::string& group : groups_) add_part(group);

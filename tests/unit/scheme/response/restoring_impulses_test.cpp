@@ -8,7 +8,7 @@
 
 #include "ricochet/base/error.hpp"
 
-/// @file p_i (a_i + ½(Wp)_i) = c_i with p > 0, against closed forms and the equation itself.
+/// @file p_i (a_i + ½(Wp)_i) = c_i with p > 0, compared with closed forms and with the equation itself.
 namespace ricochet {
 namespace {
 
@@ -20,7 +20,7 @@ double root(double w, double a, double c) {
   return a > 0.0 ? 2.0 * c / (a + s) : (s - a) / w;
 }
 
-/// Symmetric and positive definite, its points coupled as those of an elastic body are: near ones most.
+/// A symmetric positive definite matrix whose coupling decays with distance, as in an elastic body.
 Matrix coupled(Index size) {
   Matrix w(size, size);
   for (Index i = 0; i < size; ++i) {
@@ -29,7 +29,7 @@ Matrix coupled(Index size) {
   return w;
 }
 
-/// The largest |p_i (a_i + ½(Wp)_i) − c_i| as a part of the terms that it is the sum of.
+/// Largest |p_i (a_i + ½(Wp)_i) − c_i|, relative to the terms of the sum.
 double largest_residual(const Matrix& w, const Vector& a, const Vector& c, const Vector& p) {
   const Vector residual = p.cwiseProduct(a + 0.5 * (w * p)) - c;
   const Vector terms = p.cwiseProduct(a.cwiseAbs() + 0.5 * (w.cwiseAbs() * p)) + c;
@@ -41,7 +41,7 @@ TEST(RestoringImpulses, OfOnePointAreTheRootOfAQuadraticEquation) {
     for (const double a : {-4.0, -1e-3, 0.0, 1e-3, 7.0}) {
       for (const double c : {1e-12, 0.3, 1e5}) {
         const Vector p = restoring_impulses(Matrix::Constant(1, 1, w), Vector::Constant(1, a), Vector::Constant(1, c));
-        // Where a is large beside the root, c alone says how large p is: to the rounding of the terms.
+        // If a is large relative to the root, c alone determines p, to the rounding of the terms.
         const double condition = (std::abs(a) + w * p[0]) / std::abs(a + w * p[0]);
         EXPECT_NEAR(p[0], root(w, a, c), 64.0 * rounding * condition * p[0]) << w << " " << a << " " << c;
       }
@@ -61,18 +61,18 @@ TEST(RestoringImpulses, SolveTheEquationOfManyPoints) {
   Vector a(size), c(size);
   for (Index i = 0; i < size; ++i) {
     const auto x = static_cast<double>(i);
-    a[i] = 3.0 * std::sin(1.7 * x) - 1.0;  // some come nearer, others part
+    a[i] = 3.0 * std::sin(1.7 * x) - 1.0;  // some approach, others separate
     c[i] = std::pow(10.0, -6.0 + std::fmod(2.3 * x, 6.0));
   }
   const Vector p = restoring_impulses(w, a, c);
   EXPECT_GT(p.minCoeff(), 0.0);
   EXPECT_LE(largest_residual(w, a, c, p), 1e-12) << "what is good enough where no step makes it smaller";
-  // In another order the points have the same impulses: there is one minimum only.
+  // Another order gives the same impulses: the minimum is unique.
   const Vector turned = restoring_impulses(w.reverse(), a.reverse(), c.reverse());
   EXPECT_LE((turned.reverse() - p).cwiseQuotient(p).lpNorm<Eigen::Infinity>(), 1e-9);
 }
 
-/// a → αa, W → βW and c → (α²/β)c give (α/β)p; to the last bit, where α and β are powers of 2 whose roots are, too.
+/// a → αa, W → βW and c → (α²/β)c give (α/β)p; to the last bit if α and β are powers of 4.
 TEST(RestoringImpulses, DoNotDependOnUnits) {
   const Matrix w = coupled(6);
   const Vector a{{-1.0, 0.5, -2.0, 0.1, 0.0, 3.0}}, c{{0.3, 1e-4, 2.0, 0.7, 1e-9, 0.05}};
@@ -84,7 +84,7 @@ TEST(RestoringImpulses, DoNotDependOnUnits) {
   }
 }
 
-/// Without energy to give back only points that approach have an impulse: that which turns a into −a.
+/// Without energy to restore, only approaching points have an impulse, which turns a into −a.
 TEST(RestoringImpulses, GoOverIntoThoseOfAnElasticCollision) {
   const Vector p =
       restoring_impulses(Matrix(Vector{{2.0, 5.0}}.asDiagonal()), Vector{{-3.0, 3.0}}, Vector::Constant(2, 1e-300));

@@ -17,7 +17,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 using test::is_sanitized;
 using test::uniform;
 
-/// A contact problem with its data in one place.
+/// A contact problem together with its data.
 struct Problem {
   Matrix w;
   Vector q, rounding;
@@ -57,11 +57,11 @@ Problem random_problem(Index size, unsigned seed, double digits = 1.0) {
   return {w, q};
 }
 
-/// The registered solver.
+/// The registered solver "active-set".
 class ActiveSetRun : public test::ContactRun {
  public:
   ActiveSetRun() : test::ContactRun("active-set") {}
-  /// Starts where these have a reaction.
+  /// Starts with reactions at these points.
   void set_active(const std::vector<char>& active) {
     Vector start(static_cast<Index>(active.size()));
     for (std::size_t i = 0; i < active.size(); ++i) start[static_cast<Index>(i)] = active[i] != 0 ? 1.0 : 0.0;
@@ -73,7 +73,7 @@ Vector solve(const Problem& problem, ActiveSetRun& solver, int* steps = nullptr)
   const ContactSolution& solution = solver.solve(problem.points());
   EXPECT_TRUE(solution.solved()) << solution.reason;
   if (steps != nullptr) *steps = solution.newton_steps;
-  // What compares with this fails, and does not stop the other tests.
+  // Comparisons with NaN fail without stopping the other tests.
   if (!solution.solved()) return Vector::Constant(problem.q.size(), std::nan(""));
   return solution.reaction;
 }
@@ -104,7 +104,7 @@ void expect_solution(const Problem& problem, const Vector& r) {
   }
 }
 
-/// The one solution, by trying every set of points.
+/// The unique solution, found by trying every set of points.
 Vector brute_force(const Problem& problem) {
   const Index size = problem.q.size();
   for (unsigned set = 0; set < (1U << size); ++set) {
@@ -166,7 +166,7 @@ TEST(ActiveSet, SolvesIllConditionedProblems) {
   }
 }
 
-/// r and y both zero at some points, exactly: integers, and the solution made first.
+/// r and y are both exactly zero at some points: integers, with the solution chosen first.
 TEST(ActiveSet, SolvesDegenerateProblems) {
   std::mt19937 random(3);
   for (int trial = 0; trial < 40; ++trial) {
@@ -200,7 +200,7 @@ TEST(ActiveSet, NoOffsetNoReaction) {
   EXPECT_EQ(iterations, 0);
 }
 
-/// The plain primal–dual active set: all violations change sides at once. True when it comes back to a set.
+/// The plain primal–dual active set method: all violations change sides at once. True if it returns to a set.
 bool plain_method_cycles(const Problem& problem) {
   const Index size = problem.q.size();
   std::vector<char> active(static_cast<std::size_t>(size), 0);
@@ -281,7 +281,7 @@ TEST(ActiveSet, StartsFromTheLastSet) {
   EXPECT_TRUE(solve(problem, solver, &again) == expected);
   EXPECT_EQ(again, 1);
   Problem scaled = problem;
-  scaled.q *= 2.0;  // the set stays, the offset does not
+  scaled.q *= 2.0;  // the set stays, but not the offset
   EXPECT_TRUE(solve(scaled, solver, &again) == 2.0 * expected);
   EXPECT_EQ(again, 1);
   solver.reset();
@@ -289,7 +289,7 @@ TEST(ActiveSet, StartsFromTheLastSet) {
   EXPECT_EQ(cold, first);
 }
 
-/// After reset() nothing of an earlier operator is left, though the set may be the same.
+/// After reset() no data of an earlier operator remain, even if the set is the same.
 TEST(ActiveSet, AnotherOperatorMayFollowAReset) {
   const Problem first(2.0 * Matrix::Identity(2, 2), Vector::Constant(2, -1.0));
   const Problem second(8.0 * Matrix::Identity(2, 2) + Matrix::Ones(2, 2), Vector::Constant(2, -1.0));
@@ -321,7 +321,7 @@ TEST(ActiveSet, IneligiblePointsAreNotThere) {
   EXPECT_EQ(solve(problem, solver), Vector::Zero(size));
 }
 
-/// An ineligible point may even have no operator: W needs to be positive definite on the others only.
+/// An ineligible point may have no operator at all: W must be positive definite on the others only.
 TEST(ActiveSet, AnIneligiblePointNeedsNoOperator) {
   Problem problem(Matrix::Zero(2, 2), Vector::Constant(2, -1.0));
   problem.w(1, 1) = 4.0;
@@ -363,14 +363,14 @@ TEST(ActiveSet, SolvesConditionsThatDependOnOneAnother) {
   ActiveSetRun solver;
   const Problem singular(Matrix::Ones(2, 2), Vector::Constant(2, -1.0));
   EXPECT_EQ(solve(singular, solver).sum(), 1.0);
-  // One that is in the way of the other.
+  // A point that obstructs the other one.
   solver.reset();
   Problem opposed(Matrix::Ones(2, 2), Eigen::Vector2d(-1.0, 0.5));
   opposed.w(0, 1) = opposed.w(1, 0) = -1.0;
   const ContactSolution solution = solver.solve(opposed.points());
   EXPECT_FALSE(solution.solved());
   EXPECT_NE(solution.reason.find("contradict one another"), std::string::npos);
-  // The same solver goes on with a problem that can be solved.
+  // The same solver then solves a solvable problem.
   solver.reset();
   EXPECT_EQ(solve(Problem(2.0 * Matrix::Identity(2, 2), Vector::Constant(2, -1.0)), solver), Vector::Constant(2, 0.5));
 }

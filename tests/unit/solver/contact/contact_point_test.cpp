@@ -58,9 +58,9 @@ TEST(ContactPoint, SticksAndSlipsInClosedFormInTwoDimensions) {
   PointMatrix w(2, 2);
   w << 2.0, 0.5, 0.5, 1.0;
   const ContactPoint point = make_point(2, 0.4);
-  // W (1, 0.3) = (2.15, 0.8): stick, 0.3 < 0.4.
+  // W (1, 0.3) = (2.15, 0.8): stick, as 0.3 < 0.4.
   expect_near(solve_point(point, w, vector({-2.15, -0.8})), vector({1.0, 0.3}));
-  // Slip: r_N = −q_N/(W_NN ± F W_NT), u_T against ρ_T.
+  // Slip: r_N = −q_N/(W_NN ± F W_NT), u_T opposite to ρ_T.
   expect_near(solve_point(point, w, vector({-2.2, -5.0})), vector({1.0, 0.4}));
   expect_near(solve_point(point, w, vector({-1.8, 5.0})), vector({1.0, -0.4}));
   // The limit between stick and slip, from both sides: ρ is continuous there.
@@ -84,7 +84,7 @@ TEST(ContactPoint, FindsTheSlipItWasMadeFrom) {
     const PointMatrix w = test::random_operator(3, 4.0 * std::abs(test::uniform(random)), random);
     const double kappa = std::pow(10.0, 6.0 * test::uniform(random));
     const double angle = 4.0 * test::uniform(random);
-    // Weak enough that r_N is determined for every direction of slip.
+    // Weak enough that r_N exists for every direction of slip.
     const double friction = 0.5 * std::abs(w(0, 0) / w.row(0).tail(2).norm());
     const PointVector rho = vector({1.0, friction * std::cos(angle), friction * std::sin(angle)});
     PointVector u = -kappa * rho;
@@ -92,7 +92,7 @@ TEST(ContactPoint, FindsTheSlipItWasMadeFrom) {
     const PointVector q = u - w * rho;
     const PointVector found = solve_point(make_point(3, friction), w, q);
     const PointVector motion = w * found + q;
-    // Up to the rounding of q: u and the cone are compared.
+    // Compared up to the rounding of q: u and the cone.
     const double rounding = 1e-13 * (q.norm() + found.norm());
     EXPECT_NEAR(motion[0], 0.0, rounding);
     const PointVector slip = motion.tail(2);
@@ -100,7 +100,7 @@ TEST(ContactPoint, FindsTheSlipItWasMadeFrom) {
     if (slip.norm() > rounding) {
       EXPECT_NEAR(found.tail(2).norm(), limit, 8e-15 * limit);
     } else {
-      // A strong coefficient admits stick beside the slip; rare here.
+      // A strong coefficient admits stick as well as slip; rare here.
       EXPECT_LE(found.tail(2).norm(), limit);
       ++sticking;
     }

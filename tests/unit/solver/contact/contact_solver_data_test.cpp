@@ -11,7 +11,7 @@
 #include "ricochet/base/error.hpp"
 #include "support/contact_solver_test.hpp"
 
-/// @file Behaviour of every solver of the library for data and options that are invalid, or at the limits.
+/// @file Behaviour of every solver of the library for data and options that are invalid or at the limits.
 namespace ricochet {
 namespace {
 
@@ -84,7 +84,7 @@ TEST_P(ContactSolverData, RefuseSizesAndOptionsThatDoNotFit) {
   EXPECT_TRUE(solution.solved());
 }
 
-/// A checkpoint of another program, version or problem: refused, and the solver then starts cold.
+/// A checkpoint of another program, version or problem is refused, and the solver then starts cold.
 TEST_P(ContactSolverData, RefuseMemoriesThatAreNotTheirs) {
   // The rows of the points: 0 to 2, 3, 4 to 6 (or one less for those with two).
   FrictionProblem data({dimension(), 1, dimension()}, 0.3);
@@ -142,12 +142,12 @@ TEST_P(ContactSolverData, RefuseMemoriesThatAreNotTheirs) {
     expect_refused("not in order", {{"active_set", Integers{second, 0}}});
     solver->load(with({{"active_set", Integers{0, second}}}), "solver");
   }
-  // What is theirs is not.
+  // Its own memory is accepted.
   solver->solve(problem, options, solution);
   EXPECT_TRUE(solution.solved());
 }
 
-/// Also if the solver has solved nothing yet.
+/// Also if the solver has not solved anything yet.
 TEST_P(ContactSolverData, TakeTheMemoryTheySave) {
   for (const Index points : {1, 2, 30}) {
     const ContactProblem problem = random_problem(points, dimension(), 0.3, 2).contact();
@@ -189,15 +189,15 @@ TEST_P(ContactSolverData, SolveDataOfAnySize) {
   beyond.q *= 0x1p500;
   const ContactSolution solution = solve(beyond, {.tolerance = 1e-10});
   EXPECT_FALSE(solution.solved());
-  EXPECT_NE(solution.reason.find("range of numbers"), std::string::npos) << solution.reason;
+  EXPECT_NE(solution.reason.find("range of floating-point numbers"), std::string::npos) << solution.reason;
 }
 
-/// For large F the residual of the cone hardly measures a penetration: it is 1/F of it.
+/// For large F the residual of the cone hardly measures a penetration: it is 1/F times it.
 TEST_P(ContactSolverData, DoNotTakePenetrationForRounding) {
   for (const double friction : {1e6, 1e7, 1e9}) {
     for (unsigned seed = 0; seed < seeds(10); ++seed) {
       const FrictionProblem problem = random_problem(10, dimension(), friction, seed, 1.0);
-      // Who solves these needs fewer than 50 iterations; who has the cone alone does not in 50 000.
+      // Solvers that succeed need fewer than 50 iterations; the cone alone does not suffice in 50 000.
       const ContactSolution solution = solve(problem, {.tolerance = 1e-8, .iteration_limit = 200});
       if (!solution.solved()) continue;
       const Vector u = problem.q + problem.w * solution.reaction;

@@ -8,7 +8,7 @@
 
 #include "support/contact_solver_test.hpp"
 
-/// @file Solutions of every solver of the library, judged by an independent residual of this file.
+/// @file Solutions of every solver of the library, judged by an independent residual.
 namespace ricochet {
 namespace {
 
@@ -53,13 +53,13 @@ Long measure(const FrictionProblem& problem, const LongVector& reaction) {
   return largest;
 }
 
-/// Relative to the data.
+/// The residual relative to the data.
 double true_residual(const FrictionProblem& problem, const Vector& reaction) {
   const LongVector none = LongVector::Zero(reaction.size());
   return static_cast<double>(measure(problem, reaction.cast<Long>()) / measure(problem, none));
 }
 
-/// Solved: to the tolerance, and so it is reported.
+/// Expects a solution to the tolerance, reported as solved.
 void expect_solved(const FrictionProblem& problem, const ContactSolution& solution, double tolerance) {
   ASSERT_EQ(solution.outcome, ContactOutcome::solved) << solution.reason << ", residual " << solution.residual;
   EXPECT_EQ(solution.reason, "");
@@ -69,7 +69,7 @@ void expect_solved(const FrictionProblem& problem, const ContactSolution& soluti
   EXPECT_LE(solution.rounding_floor, 1e-9);
 }
 
-/// D W D, D q and the coefficients as they are: r becomes D⁻¹ r.
+/// The problem with D W D, D q and the same coefficients: r becomes D⁻¹ r.
 FrictionProblem scaled(const FrictionProblem& problem, const Vector& scales) {
   FrictionProblem result = problem;
   result.w = scales.asDiagonal() * problem.w * scales.asDiagonal();
@@ -77,7 +77,7 @@ FrictionProblem scaled(const FrictionProblem& problem, const Vector& scales) {
   return result;
 }
 
-/// One factor for all rows of a point.
+/// Scales with one factor for all rows of a point.
 Vector point_scales(const FrictionProblem& problem, const std::function<double(Index)>& scale) {
   Vector result(problem.q.size());
   for (Index i = 0; i < problem.points(); ++i) {
@@ -143,7 +143,7 @@ TEST_P(ContactSolvers, StartFromTheLastSolution) {
   const ContactSolution next = run.solve(problem, {.tolerance = 1e-6});
   expect_solved(problem, next, 1e-6);
   EXPECT_LT(next.iterations, cold);
-  // With the same start another solver finds the same bits.
+  // From the same start another solver object finds the same bits.
   problem.q *= 1.01;
   test::ContactRun resumed(GetParam());
   resumed.start_with(run.saved());
@@ -178,7 +178,7 @@ TEST_P(ContactSolvers, SayWhatTheyDidNotSolve) {
   EXPECT_NEAR(solution.residual, residual, 1e-9 * residual);
 }
 
-/// Strong friction: solutions need not exist or be found, but "solved" is true.
+/// Under strong friction solutions need not exist or be found, but "solved" is true.
 TEST_P(ContactSolvers, NeverCallALargeResidualSolved) {
   int solved = 0;
   for (const double friction : {3.0, 10.0, 100.0}) {
@@ -237,7 +237,7 @@ TEST_P(ContactSolvers, MeasureTheSameInAnyScaling) {
   EXPECT_NEAR(solution.residual, residual, 1e-10);
 }
 
-/// Blocks of neighbours only.
+/// A problem that couples neighbours only.
 FrictionProblem chain(Index points, Index dimension, double friction) {
   FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(points), dimension), friction);
   std::mt19937 random(3);
@@ -331,7 +331,7 @@ TEST_P(ContactSolvers, TakeFrictionBoundsOrSayThatTheyDoNot) {
   }
 }
 
-/// Every point twice: W has half its rank, u stays what it was.
+/// Every point occurs twice: W has half its rank, u is unchanged.
 TEST_P(ContactSolvers, FindTheMotionOfPointsThatAreThereTwice) {
   for (unsigned seed = 0; seed < 4; ++seed) {
     SCOPED_TRACE(seed);

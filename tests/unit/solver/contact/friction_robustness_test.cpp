@@ -39,7 +39,7 @@ TEST(FrictionInTime, TakesFewNewtonSteps) {
     EXPECT_LE((solution.reaction - solve(problem).reaction).lpNorm<Eigen::Infinity>(),
               1e-11 * solution.reaction.lpNorm<Eigen::Infinity>());
   }
-  // The same problem once more: already solved.
+  // The same problem again: already solved.
   solution = solver.solve(problem);
   EXPECT_TRUE(solution.solved());
   EXPECT_EQ(solution.newton_steps, 0);
@@ -75,7 +75,7 @@ TEST(FrictionInTime, ResumesFromItsWarmStartWithTheSameBits) {
   }
 }
 
-/// Many unknowns: factors in single precision that last for several steps are part of what is resumed.
+/// Many unknowns: single-precision factors that last for several steps are part of the resumed state.
 TEST(FrictionInTime, ResumesWithTheFactorOfAnEarlierStep) {
   FrictionProblem problem = half_space_problem(14, 0.3);
   ContactRun solver;
@@ -108,7 +108,7 @@ TEST(FrictionInTime, ForgetsAnotherProblem) {
   EXPECT_EQ(solution.reaction, solve(second).reaction);
 }
 
-/// Every point twice: W has half its rank, u stays what it was.
+/// Every point occurs twice: W has half its rank, u is unchanged.
 TEST(FrictionSingular, FindsTheMotionOfPointsThatAreThereTwice) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     for (const double friction : {0.0, 0.3, 1.0}) {
@@ -190,8 +190,8 @@ TEST(FrictionFailure, DoesNotSpoilTheNextProblem) {
   expect_law(problem, solution);
 }
 
-/// Nodes in corners of three planes, whose gaps are known to `rounding` and whose slips are known much better: where a
-/// node sticks to one plane the slip there is the gap to another one, and the two disagree by what is rounding.
+/// Nodes in corners of three planes, whose gaps have the error `rounding` and whose slips are much more accurate: if a
+/// node sticks to one plane, the slip there is the gap to another one, and the two disagree by that rounding.
 FrictionProblem corners(Index nodes, double friction, double rounding, double digits, unsigned seed) {
   std::mt19937 random(seed);
   const Matrix w = test::random_operator(3 * nodes, digits, random);

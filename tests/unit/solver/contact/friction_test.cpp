@@ -36,7 +36,7 @@ TEST(Friction, SolvesRandomProblemsOfManySizes) {
   }
 }
 
-/// Beyond uniqueness; the seeds are all that were tried.
+/// Beyond uniqueness; these are all seeds that were tried.
 TEST(Friction, SolvesProblemsWithStrongFriction) {
   for (const Index dimension : {2, 3}) {
     for (const double friction : {2.0, 5.0}) {
@@ -146,7 +146,7 @@ TEST(Friction, AgreesWithTheActiveSetWithoutFriction) {
 TEST(Friction, GivesTheSameBitsInUnitsThatArePowersOfTwoApart) {
   FrictionProblem problem = random_problem(60, 3, 0.7, 3);
   problem.bound.tail(10).setConstant(0.25);
-  // Rows of very different size, as from points with areas of their own.
+  // Rows of very different size, as from points with different areas.
   for (Index i = 0; i < 30; ++i) {
     const double factor = std::pow(3.0, 0.2 * static_cast<double>(i));
     for (Index row = problem.row_offset[static_cast<std::size_t>(i)];
@@ -198,7 +198,7 @@ TEST(Friction, LeavesIneligiblePointsAlone) {
   FrictionProblem problem = random_problem(50, 3, 0.4, 21);
   for (std::size_t i = 0; i < problem.eligible.size(); i += 3) problem.eligible[i] = 0;
   expect_law(problem, solve(problem));
-  // What is not asked for may be anything.
+  // Data of ineligible points may be anything.
   problem.q[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(solve(problem).solved());
 }
@@ -265,7 +265,7 @@ TEST(Friction, SolvesTrescasLawAndSaysWhereItDoesNot) {
   EXPECT_LE(unsolved, 1);
 }
 
-/// Away from the jump Tresca's law has one solution: that of a convex problem.
+/// Away from the jump Tresca's law has one solution, that of a convex problem.
 TEST(Friction, SolvesTrescasLawWherePointsStayPressed) {
   for (const double bound : {1e-3, 0.03, 0.3, 3.0}) {
     FrictionProblem problem = half_space_problem(8, 0.0);

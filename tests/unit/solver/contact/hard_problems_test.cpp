@@ -37,7 +37,7 @@ ContactSolution solve(const ContactProblem& problem, double tolerance) {
   return solution;
 }
 
-/// Expects that the reported outcome and residual are true, solved or not. Half of the rounding floor is for the
+/// Expects that the reported result and residual are true, solved or not. Half of the rounding floor is for the
 /// rounding of u in the solver, which is in its residual and not in the judge's. `problem` has the entries of W.
 Judgement expect_truth(const ContactProblem& problem, const ContactSolution& solution, double tolerance) {
   EXPECT_TRUE(solution.reaction.allFinite());

@@ -7,15 +7,15 @@
 #include "support/contact_problems.hpp"
 #include "support/hard_contact_problems.hpp"
 
-/// @file Nodes that meet several planes which are parallel but for a tiny angle.
+/// @file Nodes that meet several planes, parallel up to a tiny angle.
 namespace ricochet {
 namespace {
 
 using test::FrictionProblem;
 using test::uniform;
 
-/// Each node with `planes` of them, inclined by multiples of `angle`, each as far away as its inclination makes it at
-/// the node's place: gaps differ by the angle times a length.
+/// Each node meets `planes` planes, inclined by multiples of `angle`, at distances that follow from the inclination at
+/// its position: gaps differ by the angle times a length.
 FrictionProblem inclined_planes(Index nodes, Index dimension, Index planes, double angle, double friction,
                                 unsigned seed) {
   std::mt19937 random(seed);
@@ -66,7 +66,7 @@ TEST(TwinPoints, OneOfNearlyParallelPlanesPresses) {
   EXPECT_GT(closed, 0);
 }
 
-/// The free motion decides where there is no way to tell points apart by W; others are left alone.
+/// If W cannot distinguish points, the free motion decides; other points are left alone.
 TEST(TwinPoints, AreFoundByW) {
   TwinPoints twins;
   FrictionProblem apart = test::random_problem(12, 3, 0.3, 1);
@@ -83,7 +83,7 @@ TEST(TwinPoints, AreFoundByW) {
   EXPECT_EQ(wanted[1], 1);
   EXPECT_EQ(std::count(wanted.begin(), wanted.end(), 1), 4);
   EXPECT_EQ(reaction.segment(0, 6), (Vector(6) << 0, 0, 0, 2, 2, 2).finished());
-  // The other one is deeper now: it takes the place and the reaction.
+  // The other one is deeper now: it replaces the first and receives its reaction.
   motion[0] = -2.0;
   motion[3] = -1.0;
   EXPECT_TRUE(twins.exchange(problem, motion, wanted, reaction));
@@ -91,7 +91,7 @@ TEST(TwinPoints, AreFoundByW) {
   EXPECT_EQ(wanted[1], 0);
   EXPECT_EQ(reaction.segment(0, 6), (Vector(6) << 2, 2, 2, 0, 0, 0).finished());
   EXPECT_FALSE(twins.exchange(problem, motion, wanted, reaction));
-  // Not inclined, but under another law: not the same.
+  // Parallel, but under another law, hence distinct.
   ContactProblem other = problem;
   other.friction_coefficient[0] = 0.0;
   wanted.assign(8, 1);

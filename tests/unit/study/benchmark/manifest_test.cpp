@@ -48,9 +48,10 @@ TEST_F(BenchmarkManifest, TellsAllThatIsWrong) {
   const std::string problem = problem_of(
       "[[benchmark]]\nname = \"a\"\ncase = \"b.toml\"\n[[benchmark]]\nname = \"a\"\nfile = \"a.toml\"\n"
       "[[benchmark]]\nname = \"a/b\"\ncase = 3\ndescripton = \"c\"\n[benchmarks]\n");
-  for (const char* part : {"benchmarks.toml:3:", "there is no file", "two benchmarks \"a\"", "unknown key \"file\"",
-                           "needs a \"case\"", "letters, digits", "must be a text, not the integer 3",
-                           "is \"description\" meant?", "unknown key \"benchmarks\""})
+  for (const char* part :
+       {"benchmarks.toml:3:", "there is no file", "two benchmarks have the name \"a\"", "unknown key \"file\"",
+        "needs a \"case\"", "letters, digits", "must be a text; found the integer 3", "did you mean \"description\"?",
+        "unknown key \"benchmarks\""})
     EXPECT_NE(problem.find(part), std::string::npos) << part << " in\n" << problem;
   EXPECT_NE(problem_of("").find("lists no benchmark"), std::string::npos);
 }
@@ -67,7 +68,8 @@ TEST_F(BenchmarkManifest, ChoosesByNameInItsOwnOrder) {
     ADD_FAILURE();
   } catch (const Error& problem) {
     EXPECT_EQ(problem.kind(), ErrorKind::usage);
-    EXPECT_STREQ(problem.what(), "benchmark: there is no \"layr\" (is \"layer\" meant?); there are rod, bar and layer");
+    EXPECT_STREQ(problem.what(),
+                 "benchmark: there is no \"layr\" (did you mean \"layer\"?); available: rod, bar and layer");
   }
 }
 

@@ -60,7 +60,7 @@ struct Example {
     BenchmarkRunResult failed = outcome_of("failed", 0.0, 0.0, {unknown});
     failed.state.exit_status = 3;
     failed.message = "step 31 did not converge";
-    results.run_results = {outcome_of("done", 0.12, 0.034, {right, wrong}), refused("takes no friction"),
+    results.run_results = {outcome_of("done", 0.12, 0.034, {right, wrong}), refused("does not support friction"),
                            outcome_of("done", 1e-5, 0.0, {right}), failed};
   }
 };
@@ -90,7 +90,7 @@ TEST(Scorecard, CountsByMethodAndBenchmark) {
   const Example example;
   const ScorecardMatrix matrix = scorecard_matrix(example.plan, example.results);
   EXPECT_EQ(to_markdown(matrix.totals),
-            "| scheme | mass | benchmarks | all right | failed | refused | values | most created | most lost |\n"
+            "| scheme | mass | benchmarks | all values hold | failed | refused | values | max. created | max. lost |\n"
             "|---|---|---:|---:|---:|---:|---|---|---|\n"
             "| kane | lumped | 1 | 0 | 0 | 1 | 1/2 | 12 % | 3.4 % |\n"
             "| bathe | equivalent or consistent | 2 | 1 | 1 | 0 | 1/2 | 0 % | 0 % |\n");
@@ -102,7 +102,7 @@ TEST(Scorecard, CountsByMethodAndBenchmark) {
   EXPECT_EQ(to_markdown(matrix.parts[1].table),
             "| scheme | mass | slope |\n|---|---|---|\n"
             "| kane | lumped | refused (1) |\n| bathe | equivalent or consistent | failed at t = 0.3 |\n");
-  EXPECT_EQ(matrix.reasons, std::vector<std::string>{"takes no friction"});
+  EXPECT_EQ(matrix.reasons, std::vector<std::string>{"does not support friction"});
 }
 
 TEST(Scorecard, IsExactForPrograms) {
@@ -113,7 +113,7 @@ TEST(Scorecard, IsExactForPrograms) {
   EXPECT_EQ(number_of(table.rows[0][table.find("holds")]), 1.0);
   EXPECT_EQ(text_of(table.rows[1][table.find("applies")]), "");
   EXPECT_EQ(text_of(table.rows[1][table.find("status")]), "refused");
-  EXPECT_EQ(text_of(table.rows[1][table.find("message")]), "takes no friction");
+  EXPECT_EQ(text_of(table.rows[1][table.find("message")]), "does not support friction");
   EXPECT_EQ(text_of(table.rows[3][table.find("status")]), "failed at t = 0.3");
 }
 
