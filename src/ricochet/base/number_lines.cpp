@@ -34,9 +34,11 @@ bool is_letter(char c) {
 std::string shown_word(std::string_view word) {
   if (word.empty()) return "the end of the file";
   constexpr std::size_t most = 40;
+  std::size_t size = std::min(word.size(), most);
+  while (size < word.size() && (static_cast<unsigned char>(word[size]) & 0xC0U) == 0x80U) --size;  // inside a character
   std::string text;
-  for (const char c : word.substr(0, most)) text += (static_cast<unsigned char>(c) < ' ' || c == '\x7f') ? '?' : c;
-  return word.size() > most ? text + "…" : text;
+  for (const char c : word.substr(0, size)) text += (static_cast<unsigned char>(c) < ' ' || c == '\x7f') ? '?' : c;
+  return word.size() > size ? text + "…" : text;
 }
 
 TextWords::TextWords(const std::string& file, std::string_view text)
@@ -89,6 +91,8 @@ bool NumberLines::next() {
     header_line_ = line_;
     return true;
   }
+  if (decimal_comma_ > 0)
+    fail_at(decimal_comma_, "commas and blanks in one line: use decimal points and one kind of separator");
   for (const Word& word : words_) {
     const std::optional<double> value = number_in(word.text);
     if (!value) refuse(word);
@@ -104,20 +108,25 @@ void NumberLines::split(std::string_view line) {
   if (line.find(',') != std::string_view::npos && line.find(';') != std::string_view::npos)
     fail_at(line.find(',') + 1, "commas and semicolons in one line: use decimal points and one kind of separator");
   bool wants_word = true;  // a separator here would have nothing before it
+  bool has_blanks = false;
+  std::size_t tight_comma = 0;  // column of a comma between two characters that are not blanks
   for (std::size_t at = 0; at < line.size();) {
     if (is_one_of(line[at], blanks)) {
       ++at;
     } else if (is_one_of(line[at], ",;")) {
       if (wants_word) fail_at(at + 1, fmt::format("a number is missing before this \"{}\"", line[at]));
       wants_word = true;
-      ++at;
+      if (line[at++] == ',' && at < line.size() && !is_one_of(line[at], blanks) && !is_one_of(line[at - 2], blanks))
+        tight_comma = at;
     } else {
       const std::size_t end = std::min(line.find_first_of(" \t\r\v\f,;", at), line.size());
+      has_blanks |= !wants_word;
       words_.push_back({line.substr(at, end - at), at + 1});
       wants_word = false;
       at = end;
     }
   }
+  decimal_comma_ = has_blanks ? tight_comma : 0;
 }
 
 /// Returns whether the words form a header: the first begins with a letter and may be quoted, and none is a number

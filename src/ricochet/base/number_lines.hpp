@@ -40,7 +40,8 @@ class NumberLines {
   NumberLines(const std::string& file, std::string_view text, Header header);
 
   /// Advances to the next line; returns false if there is none. Throws Error(invalid_input) with file, line and column
-  /// if a word is not a finite number, if nothing stands between two separators, and if commas may be decimal ones.
+  /// if a word is not a finite number, if nothing stands between two separators, and if commas may be decimal ones, as
+  /// blanks or semicolons separate numbers, too.
   [[nodiscard]] bool next();
   /// Numbers of this line; none if it is blank, a comment or the header.
   [[nodiscard]] const std::vector<double>& numbers() const { return numbers_; }
@@ -64,9 +65,10 @@ class NumberLines {
 
   const std::string& file_;
   std::string_view rest_;
-  bool may_be_header_, has_header_ = false;
+  bool may_be_header_;
   long line_ = 0, header_line_ = 0;
   std::vector<Word> words_;
+  std::size_t decimal_comma_ = 0;  ///< column of a comma of this line that may be a decimal one; 0 if there is none
   std::vector<double> numbers_;
   std::vector<std::string> header_;
 };

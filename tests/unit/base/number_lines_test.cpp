@@ -41,6 +41,21 @@ TEST(NumberLines, SeparateNumbersByBlanksCommasOrSemicolons) {
     EXPECT_EQ(rows_of(text), expected) << text;
 }
 
+TEST(NumberLines, RefuseCommasThatMayBeDecimalOnes) {
+  EXPECT_EQ(problem_of("0,5 1,0\n").find("f:1:6: commas and blanks in one line: use decimal points"), 0U);
+  EXPECT_EQ(problem_of("1 2\n0,5\t1\n").find("f:2:2: commas and blanks"), 0U);
+  EXPECT_EQ(problem_of("0,5;1,0\n").find("f:1:2: commas and semicolons"), 0U);
+  EXPECT_EQ(problem_of("0.5, 1.0,\n"), "none");
+  EXPECT_EQ(problem_of("0.5 ,1.0\n"), "none");
+}
+
+TEST(NumberLines, ShowWholeCharacters) {
+  const std::string ascii(39, 'a');
+  EXPECT_EQ(shown_word(ascii + "\xC3\xA9\xC3\xA9"), ascii + "…") << "the fortieth byte is half of a character";
+  EXPECT_EQ(shown_word(ascii + "b"), ascii + "b");
+  EXPECT_EQ(shown_word(ascii + "bc"), ascii + "b…");
+}
+
 /// Each of these words was once mistaken for a header on the first line.
 TEST(NumberLines, TakeNoMisspeltNumberForAHeader) {
   for (const std::string word : {"0.0m", "nan", "NaN", "inf", "-Infinity", "1.5.2", "1e", "0x10", "+-1", "--1", "1d3",
