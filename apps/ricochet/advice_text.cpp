@@ -128,14 +128,14 @@ std::string meeting_text(double time, const Case& input, const std::string& woul
 /// Returns true if no support holds a body along the direction of contact of one of the pair's points.
 bool is_free_along_normals(const Case& input, const Model& model, int pair) {
   const ContactBoundary& contact = model.problem.contact;
-  std::array<bool, 3> held{};
+  std::array<bool, 3> is_supported{};
   for (const SupportSection& support : input.supports) {
-    for (const int component : support.components) held[static_cast<std::size_t>(component)] = true;
+    for (const int component : support.components) is_supported[static_cast<std::size_t>(component)] = true;
   }
   for (Index point = 0; point < contact.size(); ++point) {
     if (contact.pair[static_cast<std::size_t>(point)] != pair) continue;
     for (Index k = 0; k < contact.dimension; ++k) {
-      if (held[static_cast<std::size_t>(k)] && std::abs(contact.rows->normals(k, point)) > 1e-9) return false;
+      if (is_supported[static_cast<std::size_t>(k)] && std::abs(contact.rows->normals(k, point)) > 1e-9) return false;
     }
   }
   return true;

@@ -20,19 +20,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-double number(std::string_view text, const std::string& option, const char* wanted) {
+double number(std::string_view text, const std::string& option, const char* hint) {
   const std::optional<double> value = number_in(text);
-  if (!value) throw Error(ErrorKind::usage, fmt::format("{}: not a number in \"{}\"; {}", text, option, wanted));
+  if (!value) throw Error(ErrorKind::usage, fmt::format("{}: not a number in \"{}\"; {}", text, option, hint));
   return *value;
 }
 
 /// Parses "A:B" and "WxH".
-std::pair<double, double> two_numbers(const std::string& text, char separator, const char* wanted) {
+std::pair<double, double> two_numbers(const std::string& text, char separator, const char* hint) {
   const std::size_t at = text.find(separator);
-  if (at == std::string::npos) throw Error(ErrorKind::usage, fmt::format("\"{}\": {}", text, wanted));
-  const std::string_view whole(text);
-  const std::pair<double, double> result{number(whole.substr(0, at), text, wanted),
-                                         number(whole.substr(at + 1), text, wanted)};
+  if (at == std::string::npos) throw Error(ErrorKind::usage, fmt::format("\"{}\": {}", text, hint));
+  const std::string_view view(text);
+  const std::pair<double, double> result{number(view.substr(0, at), text, hint),
+                                         number(view.substr(at + 1), text, hint)};
   return result;
 }
 
@@ -41,25 +41,25 @@ std::string format_of(const std::string& output, std::initializer_list<const cha
   std::string extension = fs::path(output).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const char* const known : formats) {
-    if (extension == std::string(".") + known) return known;
+  for (const char* const supported : formats) {
+    if (extension == std::string(".") + supported) return supported;
   }
   throw Error(ErrorKind::usage, fmt::format("{}: {}", output, what));
 }
 
 std::pair<double, double> interval_of(const std::string& text) {
-  const char* const wanted = "--time requires the first and the last time to show, for example 0.02:0.05";
-  const std::pair<double, double> interval = two_numbers(text, ':', wanted);
-  if (!(interval.first < interval.second)) throw Error(ErrorKind::usage, wanted);
+  const char* const hint = "--time requires the first and the last time to show, for example 0.02:0.05";
+  const std::pair<double, double> interval = two_numbers(text, ':', hint);
+  if (!(interval.first < interval.second)) throw Error(ErrorKind::usage, hint);
   return interval;
 }
 
 std::pair<double, double> size_of(const std::string& text) {
-  const char* const wanted = "--size requires width and height in cm, for example 17x6";
-  const std::pair<double, double> size = two_numbers(text, 'x', wanted);
+  const char* const hint = "--size requires width and height in cm, for example 17x6";
+  const std::pair<double, double> size = two_numbers(text, 'x', hint);
   for (const double side : {size.first, size.second}) {
     if (!(side >= 2.0 && side <= 200.0))
-      throw Error(ErrorKind::usage, fmt::format("{}; each must be from 2 to 200", wanted));
+      throw Error(ErrorKind::usage, fmt::format("{}; each must be from 2 to 200", hint));
   }
   return size;
 }

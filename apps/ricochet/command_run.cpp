@@ -156,7 +156,7 @@ int run(const RunArguments& given) {
     for (const ExpectationResult& e : summary.expectations) {
       if (e.checked && !e.holds) {
         throw Error(ErrorKind::expectation,
-                    fmt::format("{}: expected {} to be {}, {}", e.location, e.label(), e.wanted, found_text(e)));
+                    fmt::format("{}: expected {} to be {}, {}", e.location, e.label(), e.expected, found_text(e)));
       }
     }
   });

@@ -138,10 +138,10 @@ void print_run_results(const std::vector<Run>& runs, int width) {
   fmt::print("\n{:<{}} {:>12} {:>14} {:>14} {:>16}\n", "run", width, "impacts", "restitution", "largest force",
              "largest stress");
   for (const auto& [directory, summary] : runs) {
-    const ResultCells outcome(summary, marks);
+    const ResultCells cells(summary, marks);
     const std::size_t impacts = summary.impacts.size() + static_cast<std::size_t>(summary.impacts_left_out);
-    fmt::print("{:<{}} {:>12} {:>14} {:>14} {:>16}\n", directory, width, impacts, outcome.restitution(),
-               outcome.largest_force(), outcome.peak_stress());
+    fmt::print("{:<{}} {:>12} {:>14} {:>14} {:>16}\n", directory, width, impacts, cells.restitution(),
+               cells.largest_force(), cells.peak_stress());
   }
   for (const auto& [mark, meaning] : meanings) {
     if (marks.contains(mark)) fmt::print("  {} {}\n", mark, meaning);

@@ -54,10 +54,10 @@ Candidates entries(const std::string& typed, const std::function<bool(const fs::
 }
 
 Candidates files(const std::string& typed, const std::vector<std::string>& extensions) {
-  const auto wanted = [&](const fs::path& path) {
+  const auto is_candidate = [&](const fs::path& path) {
     return extensions.empty() || std::ranges::find(extensions, path.extension().string()) != extensions.end();
   };
-  return entries(typed, wanted, [](const std::string&) { return false; });
+  return entries(typed, is_candidate, [](const std::string&) { return false; });
 }
 
 /// Returns folders. One that holds a run or a study is complete, as nothing inside it can follow.
@@ -121,7 +121,7 @@ struct Typed {
   std::vector<std::string> positionals;
 };
 
-Typed taken(const DescribedCommand& command, const std::vector<std::string>& words) {
+Typed parsed(const DescribedCommand& command, const std::vector<std::string>& words) {
   Typed result;
   for (std::size_t i = 0; i + 1 < words.size(); ++i) {
     if (result.open != nullptr) {
@@ -137,7 +137,7 @@ Typed taken(const DescribedCommand& command, const std::vector<std::string>& wor
 
 Candidates of_command(const DescribedCommand& command, const std::vector<std::string>& words) {
   const std::string& typed = words.back();
-  const Typed before = taken(command, words);
+  const Typed before = parsed(command, words);
   const std::string case_file = before.positionals.empty() ? "" : before.positionals.front();
   if (before.open != nullptr) return values_of(*before.open, typed, case_file);
   // "--set=KEY": the value is a part of the word.

@@ -41,10 +41,10 @@ std::string facing_text(const PairingDescription& facing) {
 }
 
 void print_contacts(const std::vector<ContactDescription>& contacts) {
-  std::string told;
+  std::string last_group;
   for (const ContactDescription& c : contacts) {
-    if (!c.all_pairs_group.empty() && c.all_pairs_group == told) continue;
-    told = c.all_pairs_group;
+    if (!c.all_pairs_group.empty() && c.all_pairs_group == last_group) continue;
+    last_group = c.all_pairs_group;
     if (c.tied) {
       fmt::print("  \"{}\" tied to \"{}\"\n", c.group, c.opponent);
       continue;

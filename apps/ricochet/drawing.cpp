@@ -30,24 +30,24 @@ void draw_figure(const std::string& description, const std::string& format, cons
   child.input = workspace.file("description.json");
   child.output = workspace.file("messages");
   std::ofstream(child.input) << description;
-  const ChildResult outcome = run_child(child);
-  if (outcome.is_absent())
+  const ChildResult result = run_child(child);
+  if (result.is_absent())
     throw Error(ErrorKind::file_access,
                 "figures require Python, which is not installed: apt-get install python3-matplotlib");
-  if (outcome.exit_status() == 3) {
+  if (result.exit_status() == 3) {
     throw Error(
         ErrorKind::file_access,
         fmt::format(
             "figures require Python's matplotlib, which is not installed ({}): apt-get install python3-matplotlib",
             python_program()));
   }
-  if (outcome.exit_status() == 5) {
+  if (result.exit_status() == 5) {
     throw Error(ErrorKind::file_access,
                 "an .mp4 file requires ffmpeg, which is not installed: apt-get install ffmpeg, or write a .gif");
   }
-  if (!outcome.succeeded()) {
+  if (!result.succeeded()) {
     throw Error(ErrorKind::file_access, fmt::format("the figure could not be drawn: {} {}:\n{}", python_program(),
-                                                    outcome.description(), read_file(workspace.file("messages"))));
+                                                    result.description(), read_file(workspace.file("messages"))));
   }
   // Written under a temporary name first: the old file stays until the new one is complete.
   const std::string part = output + ".part";

@@ -15,7 +15,7 @@ std::string found_text(const ExpectationResult& expectation) {
 
 void print_expectations(const std::vector<ExpectationResult>& expectations) {
   if (expectations.empty()) return;
-  const auto hold =
+  const auto met =
       std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return e.checked && e.holds; });
   const auto left_out =
       std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return !e.checked; });
@@ -25,12 +25,12 @@ void print_expectations(const std::vector<ExpectationResult>& expectations) {
   if (checked == 0) {
     fmt::print("  expectations: {}\n", others);
   } else {
-    fmt::print("  {} of {}{}\n", hold, counted(checked, "expectation") + (checked == 1 ? " holds" : " hold"),
+    fmt::print("  {} of {}{}\n", met, counted(checked, "expectation") + (checked == 1 ? " holds" : " hold"),
                left_out > 0 ? "; " + others : "");
   }
   for (const ExpectationResult& e : expectations) {
     if (!e.checked || e.holds) continue;
-    fmt::print("  DOES NOT HOLD: {} (expected {}, {})\n", e.label(), e.wanted, found_text(e));
+    fmt::print("  DOES NOT HOLD: {} (expected {}, {})\n", e.label(), e.expected, found_text(e));
     if (!e.published.empty()) fmt::print("    published: {}\n", e.published);
   }
 }

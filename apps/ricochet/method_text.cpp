@@ -70,8 +70,8 @@ void print_method(const RunSummary& summary) {
   const double heat = summary.digest("viscous_dissipation").last, energy = summary.energy_scale();
   if (heat > 0.0 && energy > 0.0)
     fmt::print("  relaxation dissipated {} of the largest energy as heat\n", percent(heat / energy));
-  const double rounds = summary.digest("newton_rounds").maximum;
-  if (rounds > 0.0) fmt::print("  Newton's method required up to {:.0f} iterations in a step\n", rounds);
+  const double iterations = summary.digest("newton_rounds").maximum;
+  if (iterations > 0.0) fmt::print("  Newton's method required up to {:.0f} iterations in a step\n", iterations);
 }
 
 std::string steps_text(const RunSummary& summary) {

@@ -24,8 +24,8 @@ Points starting_positions(const Model& model) {
 std::string placement_text(const BodyFile& mesh) {
   std::string text;
   if (mesh.scale != 1.0) text += fmt::format(", scaled by {:g}", mesh.scale);
-  for (const Turn& turn : mesh.placement.turns) {
-    if (turn.angle != 0.0) text += fmt::format(", rotated by {:g}°", turn.angle);
+  for (const MeshRotation& rotation : mesh.placement.rotations) {
+    if (rotation.angle != 0.0) text += fmt::format(", rotated by {:g}°", rotation.angle);
   }
   if (!mesh.placement.move.empty()) text += fmt::format(", moved");
   if (!mesh.rest_on.empty()) {

@@ -35,7 +35,7 @@ std::vector<ProbeNodes> probes_of(const RunSummary& summary) {
   return result;
 }
 
-std::string place_text(const RunSummary& summary, std::size_t probe) {
+std::string probe_position_text(const RunSummary& summary, std::size_t probe) {
   const std::vector<double>& at = summary.probe_positions[probe];
   return vector_text(Eigen::Map<const Vector>(at.data(), static_cast<Index>(at.size())));
 }
@@ -52,7 +52,7 @@ void print_probes(const RunSummary& summary) {
   for (const ProbeNodes& probe : probes_of(summary)) {
     if (probe.is_segment) {
       fmt::print("  probe \"{}\": {} from {} to {}", probe.name, counted(probe.last - probe.first, "node"),
-                 place_text(summary, probe.first), place_text(summary, probe.last - 1));
+                 probe_position_text(summary, probe.first), probe_position_text(summary, probe.last - 1));
     } else {
       fmt::print("  probe \"{}\": its node is {:.3g} from the requested position", probe.name,
                  summary.probes[probe.first].distance);

@@ -19,9 +19,9 @@ void restart_without_blas_threads(char** argv) {
 
 void keep_memory() {
 #ifdef __GLIBC__
-  constexpr int kept = 1 << 30;
-  mallopt(M_MMAP_THRESHOLD, kept);
-  mallopt(M_TRIM_THRESHOLD, kept);
+  constexpr int threshold = 1 << 30;
+  mallopt(M_MMAP_THRESHOLD, threshold);
+  mallopt(M_TRIM_THRESHOLD, threshold);
 #endif
 }
 

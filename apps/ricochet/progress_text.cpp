@@ -106,9 +106,9 @@ void describe_checkpoint(const std::string& path) {
              (reaction.array() > 0.0).count(), largest(reaction));
   const Snapshot::Texts& keys = snapshot.texts("identity.case.keys");
   const Snapshot::Texts& values = snapshot.texts("identity.case.values");
-  for (const char* wanted : {"time.scheme", "mass.type", "time.step", "time.end"}) {
-    const auto at = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), wanted) - keys.begin());
-    if (at < std::min(keys.size(), values.size())) fmt::print("  {} = {}\n", wanted, values[at]);
+  for (const char* key : {"time.scheme", "mass.type", "time.step", "time.end"}) {
+    const auto at = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
+    if (at < std::min(keys.size(), values.size())) fmt::print("  {} = {}\n", key, values[at]);
   }
 }
 

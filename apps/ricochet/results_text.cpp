@@ -22,10 +22,10 @@ double radius_of(const BodyDescription& body) {
 }
 
 /// Returns a position of the mesh in its reference configuration.
-std::string position_text(const std::vector<double>& place, const RunSummary& summary) {
+std::string position_text(const std::vector<double>& point, const RunSummary& summary) {
   double size = 0.0;
   for (const BodyDescription& body : summary.bodies) size = std::max(size, body.rigid.centre.norm() + radius_of(body));
-  return vector_text(Eigen::Map<const Vector>(place.data(), static_cast<Index>(place.size())), size, 5);
+  return vector_text(Eigen::Map<const Vector>(point.data(), static_cast<Index>(point.size())), size, 5);
 }
 
 /// Returns a spin; in the plane it is a single number. Components smaller than `least` are 0.
@@ -88,8 +88,8 @@ std::string parties_text(const Impact& impact, const RunSummary& summary) {
 /// Returns the impulse of the normal contact forces, and the total impulse if friction makes it differ.
 std::string impulse_text(const Impact& impact) {
   const std::string normal = fmt::format("{:.4g}", impact.normal_impulse.norm());
-  const std::string whole = fmt::format("{:.4g}", impact.impulse.norm());
-  return "normal impulse " + normal + (whole == normal ? "" : " (with friction " + whole + ")");
+  const std::string total = fmt::format("{:.4g}", impact.impulse.norm());
+  return "normal impulse " + normal + (total == normal ? "" : " (with friction " + total + ")");
 }
 
 /// Returns how much of the mesh took part in the impact.
@@ -121,7 +121,7 @@ std::string restitution_error_text(const Impact& impact) {
 }
 
 /// Returns a note if the linear law has changed the restitution through the rotation of a body.
-std::string turning_text(const Impact& impact) {
+std::string rotational_text(const Impact& impact) {
   if (!is_distorted_by_rotation(impact)) return "";
   const double error = restitution_excess(impact);
   return fmt::format(
@@ -145,7 +145,7 @@ std::string impact_text(std::size_t number, const RunSummary& summary) {
     const char* const inward = impact.other ? " (their centres still approach each other after the last force)"
                                             : " (its centre still approaches the obstacle after the last force)";
     text += fmt::format(", restitution {:.4g}{}{}{}", *restitution, *restitution < 0.0 ? inward : "",
-                        restitution_error_text(impact), turning_text(impact));
+                        restitution_error_text(impact), rotational_text(impact));
   } else if (impact.ended) {
     text += fmt::format(", no restitution ({})", why_no_restitution(impact));
   }

@@ -28,7 +28,7 @@ std::atomic<int> received = 0;
 std::atomic<const char*> message_prefix = nullptr;  ///< null: no messages
 std::atomic<bool> steps_end = false;
 
-void say(const std::string& what) {
+void print_message(const std::string& what) {
   if (const char* name = message_prefix) interruption::write_to_stderr(fmt::format("\n{}: {}\n", name, what).c_str());
 }
 
@@ -37,13 +37,13 @@ constexpr int stop_signals[] = {SIGINT, SIGTERM, SIGHUP};
 
 /// Blocks these signals in all threads, so that one thread can wait for them: threads that libraries start before
 /// main() (OpenBLAS does) inherit the mask.
-void hold_signals(int, char**, char**) {
-  sigset_t held;
-  sigemptyset(&held);
-  for (const int signal : stop_signals) sigaddset(&held, signal);
-  sigprocmask(SIG_BLOCK, &held, nullptr);
+void block_signals(int, char**, char**) {
+  sigset_t blocked;
+  sigemptyset(&blocked);
+  for (const int signal : stop_signals) sigaddset(&blocked, signal);
+  sigprocmask(SIG_BLOCK, &blocked, nullptr);
 }
-__attribute__((section(".preinit_array"), used)) void (*const hold_signals_first)(int, char**, char**) = hold_signals;
+__attribute__((section(".preinit_array"), used)) void (*const block_signals_first)(int, char**, char**) = block_signals;
 
 /// Returns the next signal, or 0 after so many milliseconds (−1: no limit).
 int next_signal(const sigset_t& awaited, int milliseconds) {
@@ -88,11 +88,11 @@ void wait(const sigset_t& awaited) {
   if (const int second = next_request(awaited, first, instant, 0); second != 0) _exit(128 + second);
   received = first;
   if (interruption::has_stopping_points()) {
-    say("stopping at the end of this step; another signal stops at once");
+    print_message("stopping at the end of this step; another signal stops at once");
     if (const int second = next_request(awaited, first, instant, steps_end ? -1 : patience); second != 0)
       _exit(128 + second);
   } else {
-    say(fmt::format("stopped by SIG{}", sigabbrev_np(first)));
+    print_message(fmt::format("stopped by SIG{}", sigabbrev_np(first)));
   }
   end_process(first);
   const int second = next_request(awaited, first, instant, -1);

@@ -120,8 +120,8 @@ class Archive {
       position_ += length;
     } else {
       const char* const begin = reinterpret_cast<const char*>(values);
-      if (sink_ && bytes_.size() + length > most_kept) finish();
-      if (sink_ && length > most_kept) {
+      if (sink_ && bytes_.size() + length > most_buffered) finish();
+      if (sink_ && length > most_buffered) {
         sink_({begin, length});
       } else {
         bytes_.insert(bytes_.end(), begin, begin + length);
@@ -129,7 +129,7 @@ class Archive {
     }
   }
 
-  static constexpr std::size_t most_kept = std::size_t{1} << 22;
+  static constexpr std::size_t most_buffered = std::size_t{1} << 22;
 
   std::vector<char> bytes_;
   Sink sink_;

@@ -61,7 +61,7 @@ bool other_threads_run() {
   return std::distance(begin(threads), end(threads)) > std::max(expected, 1);
 }
 
-void take_core(const char* name) {
+void select_core(const char* name) {
   if (name != nullptr) setenv(core_variable, name, 1);
   gotoblas_dynamic_quit();
   gotoblas_dynamic_init();
@@ -159,9 +159,9 @@ void choose_blas_kernels() {
                     core_variable, core));
   }
   if (!has_memory()) return stays("the memory limit (ulimit -v) leaves no memory to check other kernels");
-  take_core(core.c_str());
+  select_core(core.c_str());
   if (same_name(openblas_get_corename(), core) && computes_rightly_alone()) return;
-  take_core(nullptr);
+  select_core(nullptr);
   stays("this OpenBLAS does not have them, or they compute wrong results here");
 }
 

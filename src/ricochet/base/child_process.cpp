@@ -121,14 +121,14 @@ RunningChild::RunningChild(ChildProcess child) : error_(std::make_unique<SharedE
   std::vector<std::string> variables = environment(child.variables);
   const std::vector<char*> arguments = pointers(child.arguments), all_variables = pointers(variables);
   if (!error_->exists()) {
-    outcome_.spawn_error = errno;
+    result_.spawn_error = errno;
     return;
   }
   const auto start = [&] {
     const pid_t parent = getpid();
     process_ = _Fork();  // skips the fork handlers of libraries, which are not called in the child
     if (process_ == 0) become(child, parent, arguments.data(), all_variables.data(), error_->value());
-    if (process_ < 0) outcome_.spawn_error = errno;
+    if (process_ < 0) result_.spawn_error = errno;
     if (process_ > 0) setpgid(process_, process_);  // done in parent and child, whichever is first
   };
   kill_when_interrupted_.emplace(start, [this] {
@@ -145,14 +145,14 @@ RunningChild::~RunningChild() {
 
 bool RunningChild::has_ended() {
   if (process_ < 0) return true;
-  if (!query_exit(process_, WNOHANG, outcome_.spawn_error)) return false;
+  if (!query_exit(process_, WNOHANG, result_.spawn_error)) return false;
   collect();
   return true;
 }
 
 void RunningChild::wait() {
   if (process_ < 0) return;
-  query_exit(process_, 0, outcome_.spawn_error);
+  query_exit(process_, 0, result_.spawn_error);
   collect();
 }
 
@@ -162,17 +162,17 @@ void RunningChild::send(int signal) {
 
 void RunningChild::collect() {
   kill_when_interrupted_.reset();  // before its process id may be reused
-  while (outcome_.spawn_error == 0 && waitpid(process_, &outcome_.status, 0) < 0) {
-    if (errno != EINTR) outcome_.spawn_error = errno;
+  while (result_.spawn_error == 0 && waitpid(process_, &result_.status, 0) < 0) {
+    if (errno != EINTR) result_.spawn_error = errno;
   }
-  if (outcome_.spawn_error == 0) outcome_.spawn_error = error_->value();
+  if (result_.spawn_error == 0) result_.spawn_error = error_->value();
   process_ = -1;
 }
 
 ChildResult run_child(ChildProcess child) {
   RunningChild running(std::move(child));
   running.wait();
-  return running.outcome();
+  return running.result();
 }
 
 }  // namespace ricochet

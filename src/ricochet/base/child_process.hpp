@@ -50,16 +50,16 @@ class RunningChild {
   /// Sends a signal to the child and to all processes that it has started; has no effect after its end.
   void send(int signal);
   /// Outcome of a child that has ended.
-  [[nodiscard]] const ChildResult& outcome() const { return outcome_; }
+  [[nodiscard]] const ChildResult& result() const { return result_; }
 
  private:
   class SharedErrno;
   /// Reaps the child and stores how it ended.
   void collect();
 
-  DefaultSigchldGuard kept_;
+  DefaultSigchldGuard sigchld_guard_;
   pid_t process_ = -1;
-  ChildResult outcome_;
+  ChildResult result_;
   std::unique_ptr<SharedErrno> error_;
   std::optional<AtInterruption> kill_when_interrupted_;
 };

@@ -33,7 +33,7 @@ void pause_between_looks() {
 void remove_ended(std::list<NumberedChild>& running, const PoolWork& work) {
   for (auto child = running.begin(); child != running.end();) {
     if (child->process.has_ended()) {
-      work.ended(child->number, child->process.outcome());
+      work.ended(child->number, child->process.result());
       child = running.erase(child);
     } else {
       ++child;

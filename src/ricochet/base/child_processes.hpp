@@ -16,7 +16,7 @@ struct PoolWork {
   /// Makes child number i when it is about to start.
   std::function<ChildProcess(std::size_t i)> make;
   /// Reports that a child has ended, by itself or because the pool was stopped.
-  std::function<void(std::size_t i, const ChildResult& outcome)> ended;
+  std::function<void(std::size_t i, const ChildResult& result)> ended;
   /// Is called some ten times a second; may be empty.
   std::function<void()> watch = {};
   /// Returns the number of the signal that ends the work, or 0; may be empty.

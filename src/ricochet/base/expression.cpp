@@ -62,12 +62,12 @@ void Expression::Implementation::compile() {
       uses_z = uses_z || name == "z";
       uses_position = uses_position || name == "x" || name == "y" || name == "z";
       if (address == nullptr) {
-        std::vector<std::string> known{"x", "y", "z", "t", "pi"};
-        for (const auto& [parameter, value] : parameters) known.push_back(parameter);
-        const std::string near = nearest_name(name, known);
+        std::vector<std::string> names{"x", "y", "z", "t", "pi"};
+        for (const auto& [parameter, value] : parameters) names.push_back(parameter);
+        const std::string near = nearest_name(name, names);
         throw Error(ErrorKind::invalid_input,
                     fmt::format("in the expression \"{}\": unknown name \"{}\"{}; known names are {}", text, name,
-                                near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near), join_names(known)));
+                                near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near), join_names(names)));
       }
     }
     number = !uses_time && !uses_position;

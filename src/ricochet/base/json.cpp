@@ -190,8 +190,8 @@ void Json::get(int& result) const {
 void Json::get(double& result) const {
   if (const auto* value = std::get_if<double>(&value_)) {
     result = *value;
-  } else if (const auto* whole = std::get_if<std::int64_t>(&value_)) {
-    result = static_cast<double>(*whole);
+  } else if (const auto* integer = std::get_if<std::int64_t>(&value_)) {
+    result = static_cast<double>(*integer);
   } else {
     throw Exception("expected a number instead of " + dump());
   }

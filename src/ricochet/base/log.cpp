@@ -23,9 +23,10 @@ constexpr std::array<std::pair<const char*, Level>, 6> level_names{{{"trace", Le
 
 spdlog::logger& logger() {
   static const std::shared_ptr<spdlog::logger> instance = [] {
-    auto made = std::make_shared<spdlog::logger>("ricochet", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
-    made->set_pattern("%^%l%$: %v");
-    return made;
+    auto created =
+        std::make_shared<spdlog::logger>("ricochet", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+    created->set_pattern("%^%l%$: %v");
+    return created;
   }();
   return *instance;
 }
@@ -63,7 +64,7 @@ spdlog::level::level_enum spdlog_level(Level level) {
   return spdlog::level::info;
 }
 
-void say(Level level, const std::string& message) {
+void write_message(Level level, const std::string& message) {
   if (!enabled(level)) return;
   if (other_sink()) return other_sink()(level, message);
   logger().log(spdlog_level(level), "{}", message);
@@ -91,26 +92,26 @@ bool enabled(Level level) {
 }
 
 void debug(const std::string& message) {
-  say(Level::debug, message);
+  write_message(Level::debug, message);
 }
 void info(const std::string& message) {
-  say(Level::info, message);
+  write_message(Level::info, message);
 }
 void warning(const std::string& message) {
   if (collected_warnings() != nullptr) collected_warnings()->push_back(message);
-  say(Level::warning, with_run_name(message));
+  write_message(Level::warning, with_run_name(message));
 }
 void error(const std::string& message) {
-  say(Level::error, with_run_name(message));
+  write_message(Level::error, with_run_name(message));
 }
 
 void set_run_name(std::string name) {
   run_name() = std::move(name);
 }
 std::string with_run_name(const std::string& message) {
-  const bool says =
+  const bool has_run_name =
       run_name().empty() || message.starts_with(run_name() + ":") || message.starts_with(run_name() + "/");
-  return says ? message : run_name() + ": " + message;
+  return has_run_name ? message : run_name() + ": " + message;
 }
 
 CollectWarnings::CollectWarnings(std::vector<std::string>& list) : before_(collected_warnings()) {

@@ -77,7 +77,7 @@ class Pool {
     ticket_.store(std::uint64_t{call} << 32 | static_cast<std::uint64_t>(parts) << 16, std::memory_order_release);
     call_.store(call, std::memory_order_release);
     call_.notify_all();
-    take_parts();
+    run_parts();
     if (!spin_until([&] { return unfinished_.load(std::memory_order_acquire) == 0; })) {
       for (int left = unfinished_.load(); left != 0; left = unfinished_.load()) unfinished_.wait(left);
     }
@@ -92,7 +92,7 @@ class Pool {
 
   /// Processes parts of the current call until none is left. The number of the call, its number of parts and the next
   /// part form one atomic number: a thread that draws an existing part keeps the call alive until that part is done.
-  void take_parts() {
+  void run_parts() {
     while (true) {
       const std::uint64_t ticket = ticket_.fetch_add(1, std::memory_order_acq_rel);
       const auto part = static_cast<Index>(ticket & 0xffff);
@@ -114,13 +114,13 @@ class Pool {
   }
 
   void serve() {
-    std::uint32_t seen = 0;
+    std::uint32_t last_call = 0;
     while (true) {
-      const auto called = [&] { return call_.load(std::memory_order_acquire) != seen; };
-      if (!spin_until(called)) call_.wait(seen, std::memory_order_acquire);
-      seen = call_.load(std::memory_order_acquire);
+      const auto called = [&] { return call_.load(std::memory_order_acquire) != last_call; };
+      if (!spin_until(called)) call_.wait(last_call, std::memory_order_acquire);
+      last_call = call_.load(std::memory_order_acquire);
       if (ending_.load()) return;
-      take_parts();
+      run_parts();
     }
   }
 
@@ -153,15 +153,15 @@ void detail::run_ranges(Index count, const RangeWork& work) {
   if (count <= 0) return;
   static std::mutex in_use;
   std::unique_lock<std::mutex> lock(in_use, std::defer_lock);
-  const int wanted = configured_thread_count;
-  if (wanted == 1 || count == 1 || inside_range || !lock.try_lock()) {
+  const int requested = configured_thread_count;
+  if (requested == 1 || count == 1 || inside_range || !lock.try_lock()) {
     work.call(work.object, 0, count);
     return;
   }
   static std::unique_ptr<Pool> pool;
-  if (!pool || pool->count() != wanted) {
+  if (!pool || pool->count() != requested) {
     pool.reset();
-    pool = std::make_unique<Pool>(wanted);
+    pool = std::make_unique<Pool>(requested);
   }
   pool->run(count, work);
 }

@@ -13,12 +13,12 @@ namespace ricochet {
 
 namespace {
 
-template <class Wanted>
-const Wanted& value_of(const std::map<std::string, Parameters::Value>& values, const std::string& name) {
+template <class Type>
+const Type& value_of(const std::map<std::string, Parameters::Value>& values, const std::string& name) {
   const auto found = values.find(name);
   if (found == values.end())
     throw Error(ErrorKind::invalid_input, fmt::format("the parameter \"{}\" is missing", name));
-  const Wanted* const value = std::get_if<Wanted>(&found->second);
+  const Type* const value = std::get_if<Type>(&found->second);
   if (value == nullptr) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("the parameter \"{}\" has a value of the wrong type: {}", name, as_text(found->second)));

@@ -14,24 +14,25 @@ void Ranks::run_collectively(const std::function<void()>& work) const {
     own = problem;
   }
   if (!any(own.has_value())) return;
-  ForEach<std::int64_t> told(static_cast<std::size_t>(size()));
+  ForEach<std::int64_t> messages(static_cast<std::size_t>(size()));
   if (own) {
     const std::string text = own->what();
     std::vector<std::int64_t> message{static_cast<std::int64_t>(own->kind())};
     message.insert(message.end(), text.begin(), text.end());
-    std::fill(told.begin(), told.end(), message);
+    std::fill(messages.begin(), messages.end(), message);
   }
-  for (const std::vector<std::int64_t>& message : exchange(std::move(told))) {
+  for (const std::vector<std::int64_t>& message : exchange(std::move(messages))) {
     if (message.empty()) continue;
     throw Error(static_cast<ErrorKind>(message.front()), std::string(message.begin() + 1, message.end()));
   }
 }
 
 std::vector<std::string> Ranks::gather_texts(const std::string& own) const {
-  ForEach<std::int64_t> told(static_cast<std::size_t>(size()));
-  told.front().assign(own.begin(), own.end());
+  ForEach<std::int64_t> messages(static_cast<std::size_t>(size()));
+  messages.front().assign(own.begin(), own.end());
   std::vector<std::string> result;
-  for (const std::vector<std::int64_t>& text : exchange(std::move(told))) result.emplace_back(text.begin(), text.end());
+  for (const std::vector<std::int64_t>& text : exchange(std::move(messages)))
+    result.emplace_back(text.begin(), text.end());
   return is_first() ? result : std::vector<std::string>{};
 }
 

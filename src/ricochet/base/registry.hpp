@@ -36,7 +36,8 @@ template <class Type>
 class Registry {
  public:
   /// `noun` names the kind of type in messages ("scheme").
-  Registry(std::string noun, std::vector<Registration<Type>> known) : noun_(std::move(noun)), all_(std::move(known)) {
+  Registry(std::string noun, std::vector<Registration<Type>> entries)
+      : noun_(std::move(noun)), all_(std::move(entries)) {
     for (const Registration<Type>& entry : all_) check_parameter_keys(entry.keys, quoted(entry.name));
   }
 

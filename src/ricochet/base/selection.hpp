@@ -9,18 +9,18 @@
 namespace ricochet {
 
 template <class Value>
-[[nodiscard]] std::vector<Value> chosen(const std::vector<Value>& values, const std::vector<Index>& taken) {
+[[nodiscard]] std::vector<Value> chosen(const std::vector<Value>& values, const std::vector<Index>& indices) {
   std::vector<Value> result;
   if (values.empty()) return result;
-  result.reserve(taken.size());
-  for (const Index i : taken) result.push_back(values[static_cast<std::size_t>(i)]);
+  result.reserve(indices.size());
+  for (const Index i : indices) result.push_back(values[static_cast<std::size_t>(i)]);
   return result;
 }
-[[nodiscard]] inline Vector chosen(const Vector& values, const std::vector<Index>& taken) {
-  return values(taken);
+[[nodiscard]] inline Vector chosen(const Vector& values, const std::vector<Index>& indices) {
+  return values(indices);
 }
-[[nodiscard]] inline Points chosen_columns(const Points& values, const std::vector<Index>& taken) {
-  return values(Eigen::all, taken);
+[[nodiscard]] inline Points chosen_columns(const Points& values, const std::vector<Index>& indices) {
+  return values(Eigen::all, indices);
 }
 
 /// Position of a number in an ascending list, or −1.

@@ -46,7 +46,7 @@ std::string TrialResult::description() const {
 }
 
 TrialResult try_in_child(const std::function<bool()>& work, double processor_seconds) {
-  const DefaultSigchldGuard kept;
+  const DefaultSigchldGuard sigchld_guard;
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0) throw Error(ErrorKind::file_access, fmt::format("cannot start a process: {}", std::strerror(errno)));
@@ -64,11 +64,11 @@ TrialResult try_in_child(const std::function<bool()>& work, double processor_sec
     if (errno != EINTR)
       throw Error(ErrorKind::file_access, fmt::format("cannot wait for a process: {}", std::strerror(errno)));
   }
-  TrialResult outcome;
-  outcome.succeeded = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
-  outcome.endless = outcome.signal == SIGXCPU;
-  return outcome;
+  TrialResult result;
+  result.succeeded = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
+  result.endless = result.signal == SIGXCPU;
+  return result;
 }
 
 }  // namespace ricochet

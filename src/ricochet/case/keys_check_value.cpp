@@ -99,24 +99,24 @@ void check_numbers(const Key& key, TomlNode& value, Problems& problems) {
   }
 }
 
-void check_axial(const Key& key, TomlNode& value, bool takes_expressions, Problems& problems) {
+void check_axial(const Key& key, TomlNode& value, bool allows_expressions, Problems& problems) {
   if (value.kind == Kind::list && value.children.size() == 3)
-    return check_vector(key, value, takes_expressions, problems);
-  if (takes_expressions && value.kind == Kind::text) return;
+    return check_vector(key, value, allows_expressions, problems);
+  if (allows_expressions && value.kind == Kind::text) return;
   if (!value.is_number() || !make_finite_number(value)) refuse_type(key, value, problems);
 }
 
 void check_directions(const Key& key, TomlNode& value, Problems& problems) {
   if (value.kind != Kind::list || value.children.empty()) return refuse_type(key, value, problems);
-  std::vector<std::string> seen;
+  std::vector<std::string> accepted;
   for (const TomlNode& name : value.children) {
     std::string reason;
     if (name.kind != Kind::text || !is_choice(name.text, key.choices)) {
       reason = fmt::format("must be {}; found {}", join_names(key.choices, " or "), describe(name));
-    } else if (is_choice(name.text, seen)) {
+    } else if (is_choice(name.text, accepted)) {
       reason = fmt::format("repeats \"{}\"", name.text);
     }
-    seen.push_back(name.text);
+    accepted.push_back(name.text);
     if (reason.empty()) continue;
     value.is_refused = true;
     problems.add(name.location, fmt::format("an entry of \"{}\" {}", key.name, reason));
@@ -126,15 +126,15 @@ void check_directions(const Key& key, TomlNode& value, Problems& problems) {
 void check_groups(const Key& key, TomlNode& value, Problems& problems) {
   if (value.kind == Kind::text && !value.text.empty()) return;
   if (value.kind != Kind::list || value.children.empty()) return refuse_type(key, value, problems);
-  std::vector<std::string> seen;
+  std::vector<std::string> accepted;
   for (const TomlNode& name : value.children) {
     std::string reason;
     if (name.kind != Kind::text || name.text.empty()) {
       reason = fmt::format("must be the name of a group; found {}", describe(name));
-    } else if (is_choice(name.text, seen)) {
+    } else if (is_choice(name.text, accepted)) {
       reason = fmt::format("repeats \"{}\"", name.text);
     }
-    seen.push_back(name.text);
+    accepted.push_back(name.text);
     if (reason.empty()) continue;
     value.is_refused = true;
     problems.add(name.location, fmt::format("an entry of \"{}\" {}", key.name, reason));

@@ -37,10 +37,10 @@ TomlNode parse_value(const std::string& text, const SourceLocation& location) {
 // Returns the table of that name, created if absent.
 TomlNode& enter_table(TomlNode& parent, const std::string& name, const SourceLocation& location) {
   if (TomlNode* found = parent.find(name)) return *found;
-  TomlNode& made = parent.children.emplace_back();
-  made.key = name;
-  made.location = made.key_location = location;
-  return made;
+  TomlNode& child = parent.children.emplace_back();
+  child.key = name;
+  child.location = child.key_location = location;
+  return child;
 }
 
 // Returns a sub-table, or the one that the path names in a list of sub-tables.

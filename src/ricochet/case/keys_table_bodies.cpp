@@ -10,7 +10,7 @@ namespace ricochet {
 
 namespace {
 
-Key turn_key() {
+Key rotation_key() {
   return {
       .name = "turn",
       .type = KeyType::tables,
@@ -59,7 +59,7 @@ std::vector<Key> file_keys() {
        .doc = "Number of uniform refinements of the mesh after it is read; each divides every cell into four cells, in "
               "three dimensions into eight. New nodes lie on the edges of straight cells, even where these approximate "
               "a curve, and on the curved geometry of a second-order mesh."},
-      turn_key(),
+      rotation_key(),
       {.name = "move",
        .type = KeyType::vector,
        .unit = "length",

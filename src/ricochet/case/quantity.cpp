@@ -106,12 +106,12 @@ double read_number(const std::string& text, std::string_view what, std::string_v
 }
 
 Quantity::Kind function_kind(const std::string& text, const std::string& name) {
-  std::vector<std::string> known;
+  std::vector<std::string> function_names;
   for (const auto& [function, kind] : functions) {
     if (function == name) return kind;
-    known.push_back(function);
+    function_names.push_back(function);
   }
-  const std::string near = nearest_name(name, known);
+  const std::string near = nearest_name(name, function_names);
   refuse(text, fmt::format("unknown function \"{}\"{}", name,
                            near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near)));
 }

@@ -10,17 +10,18 @@ namespace ricochet {
 
 namespace {
 
-Turn read_turn(const SectionReader& reader) {
-  const Turn turn{reader.number("angle"), reader.vector("axis"), reader.vector("about")};
-  if (reader.is_usable("axis") && std::all_of(turn.axis.begin(), turn.axis.end(), [](double a) { return a == 0.0; }))
+MeshRotation read_rotation(const SectionReader& reader) {
+  const MeshRotation rotation{reader.number("angle"), reader.vector("axis"), reader.vector("about")};
+  if (reader.is_usable("axis") &&
+      std::all_of(rotation.axis.begin(), rotation.axis.end(), [](double a) { return a == 0.0; }))
     reader.add_problem("axis", "\"axis\" must not be zero: it is the direction of the axis of rotation");
-  return turn;
+  return rotation;
 }
 
 /// Reads rotations and translation.
 Placement read_placement(const SectionReader& reader) {
   Placement placement;
-  for (const SectionReader& turn : reader.tables("turn")) placement.turns.push_back(read_turn(turn));
+  for (const SectionReader& entry : reader.tables("turn")) placement.rotations.push_back(read_rotation(entry));
   placement.move = reader.vector("move");
   return placement;
 }

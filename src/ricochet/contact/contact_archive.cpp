@@ -5,9 +5,9 @@ namespace ricochet {
 void transfer(Archive& archive, ContactRows& rows) {
   archive.all(rows.normals, rows.tangents, rows.slips, rows.gap_rounding, rows.gap_operator, rows.tangential_trace,
               rows.gap, rows.revision, rows.sliding_state);
-  bool turns = rows.rotating_trace != nullptr;
-  archive(turns);
-  if (!turns) return;
+  bool rotates = rows.rotating_trace != nullptr;
+  archive(rotates);
+  if (!rotates) return;
   SparseRowMatrix trace = archive.reads() ? SparseRowMatrix() : *rows.rotating_trace;
   archive(trace);
   if (archive.reads()) rows.rotating_trace = std::make_shared<const SparseRowMatrix>(std::move(trace));

@@ -11,11 +11,11 @@ namespace {
 
 /// Extracts rows of a matrix, in this order, with its columns renumbered: those with number −1 are omitted.
 SparseRowMatrix cut_matrix(const SparseRowMatrix& whole, const std::vector<Index>& rows, Index columns,
-                           const std::function<Index(Index)>& place) {
+                           const std::function<Index(Index)>& new_column) {
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (SparseRowMatrix::InnerIterator entry(whole, rows[i]); entry; ++entry) {
-      const Index at = place(entry.col());
+      const Index at = new_column(entry.col());
       if (at >= 0) entries.emplace_back(static_cast<int>(i), static_cast<int>(at), entry.value());
     }
   }
@@ -44,7 +44,7 @@ namespace {
 
 ContactRows cut_rows(const ContactRows& whole, const ContactCut& part) {
   const Index d = whole.dimension();
-  const auto place_of_dof = [&](Index dof) {
+  const auto number_of_dof = [&](Index dof) {
     const Index node = part.node_number[static_cast<std::size_t>(dof / d)];
     return node < 0 ? -1 : node * d + dof % d;
   };
@@ -54,8 +54,8 @@ ContactRows cut_rows(const ContactRows& whole, const ContactCut& part) {
   rows.tangents = chosen(whole.tangents, part.points);
   rows.slips = chosen(whole.slips, slip_rows);
   rows.gap_rounding = chosen(whole.gap_rounding, part.points);
-  rows.gap_operator = cut_matrix(whole.gap_operator, part.points, part.nodes * d, place_of_dof);
-  rows.tangential_trace = cut_matrix(whole.tangential_trace, slip_rows, part.nodes * d, place_of_dof);
+  rows.gap_operator = cut_matrix(whole.gap_operator, part.points, part.nodes * d, number_of_dof);
+  rows.tangential_trace = cut_matrix(whole.tangential_trace, slip_rows, part.nodes * d, number_of_dof);
   if (whole.gap.size() > 0) rows.gap = chosen(whole.gap, part.points);
   rows.revision = chosen(whole.revision, part.points);
   if (whole.rotating_trace)
@@ -68,13 +68,13 @@ ContactRows cut_rows(const ContactRows& whole, const ContactCut& part) {
 ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part) {
   if (whole.net.size() > 0 && whole.net.minCoeff() == 0.0)
     throw Error(ErrorKind::invalid_input, "contact between bodies cannot be divided");
-  const auto place_of_node = [&](Index node) { return part.node_number[static_cast<std::size_t>(node)]; };
-  const std::vector<Index> point_place = inverse_indices(part.points, whole.size());
+  const auto number_of_node = [&](Index node) { return part.node_number[static_cast<std::size_t>(node)]; };
+  const std::vector<Index> point_index = inverse_indices(part.points, whole.size());
   ContactBoundary own;
   own.dimension = whole.dimension;
   for (const Index facet : whole.facets) {
-    const Index place = part.facet_number.empty() ? -1 : part.facet_number[static_cast<std::size_t>(facet)];
-    if (place >= 0) own.facets.push_back(place);
+    const Index number = part.facet_number.empty() ? -1 : part.facet_number[static_cast<std::size_t>(facet)];
+    if (number >= 0) own.facets.push_back(number);
   }
   std::sort(own.facets.begin(), own.facets.end());
   own.pair = chosen(whole.pair, part.points);
@@ -90,10 +90,10 @@ ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part
   own.opposite_node = whole.opposite_node;
   for (const Index entry : part.entries) {
     const auto at = static_cast<std::size_t>(entry);
-    own.nodes.push_back(place_of_node(whole.nodes[at]));
+    own.nodes.push_back(number_of_node(whole.nodes[at]));
     const Index point = whole.own_point[at];
-    const Index place = point < 0 ? -1 : point_place[static_cast<std::size_t>(point)];
-    own.own_point.push_back(point >= 0 && place < 0 ? -2 : place);
+    const Index number = point < 0 ? -1 : point_index[static_cast<std::size_t>(point)];
+    own.own_point.push_back(point >= 0 && number < 0 ? -2 : number);
   }
   own.node_pair = chosen(whole.node_pair, part.entries);
   own.is_opposite = chosen(whole.is_opposite, part.entries);
@@ -101,7 +101,7 @@ ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part
   own.node_initial_gap = chosen(whole.node_initial_gap, part.entries);
   own.opposite_projection.resize(0, 0);
   own.pressure_recovery = cut_matrix(whole.pressure_recovery, part.entries, static_cast<Index>(part.points.size()),
-                                     [&](Index point) { return point_place[static_cast<std::size_t>(point)]; });
+                                     [&](Index point) { return point_index[static_cast<std::size_t>(point)]; });
   own.rows = std::make_shared<const ContactRows>(cut_rows(*whole.rows, part));
   if (whole.follows_motion()) {
     own.geometry = whole.geometry->cut(part);

@@ -38,16 +38,16 @@ bool has_free_part(Index node, const Vector& normal, const FreeComponent& is_fre
 
 ContactTangents tangents_at(Index node, const Vector& normal, const FreeComponent& is_free) {
   ContactTangents result{tangents_of(normal), {false, false}};
-  int held = 0;
+  int supported = 0;
   int axis = 0;
   for (int k = 0; k < normal.size(); ++k) {
     if (is_free(node, k)) continue;
-    ++held;
+    ++supported;
     axis = k;
   }
-  if (held == 0) {
+  if (supported == 0) {
     result.slips = {true, true};
-  } else if (held == 1 && normal.size() == 3) {
+  } else if (supported == 1 && normal.size() == 3) {
     const Eigen::Vector3d n = normal;
     const Eigen::Vector3d slip = n.cross(Eigen::Vector3d::Unit(axis));
     // A normal along the constrained axis belongs to a constrained node, which is no contact point.

@@ -48,9 +48,9 @@ class CombinedGeometry final : public ContactGeometry {
   void deactivate_points(std::vector<char>& eligible) const override {
     for (const auto& part : parts_) part->deactivate_points(eligible);
   }
-  void add_couples(const Vector& place, const ContactRows& rows, const Vector& normal, const Vector& tangential,
+  void add_couples(const Vector& displacement, const ContactRows& rows, const Vector& normal, const Vector& tangential,
                    Vector& force) const override {
-    for (const auto& part : parts_) part->add_couples(place, rows, normal, tangential, force);
+    for (const auto& part : parts_) part->add_couples(displacement, rows, normal, tangential, force);
   }
   [[nodiscard]] Index row_value_count() const override {
     Index count = 0;

@@ -50,7 +50,7 @@ class ContactGeometry {
   /// Adds the difference between the forces of reactions at a displacement and those of the rows, if these are rows of
   /// a step: couples that cancel their moment about the positions there, on the nodes of bodies in contact with each
   /// other, and on free rigid bodies. Does nothing for other obstacles. `tangential` may be empty.
-  virtual void add_couples(const Vector& /*place*/, const ContactRows& /*rows*/, const Vector& /*normal*/,
+  virtual void add_couples(const Vector& /*displacement*/, const ContactRows& /*rows*/, const Vector& /*normal*/,
                            const Vector& /*tangential*/, Vector& /*force*/) const {}
   /// Whether node_normal() of a node differs from the initial normal.
   [[nodiscard]] virtual bool has_node(Index entry) const = 0;

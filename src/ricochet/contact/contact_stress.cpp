@@ -76,9 +76,9 @@ class StressRows {
         entries.emplace_back(point, other * d + component, weight);
     };
     for (const auto& [cell, all] : of_cells) {
-      const IndexInBlocks place = locate_cell(*body_.space, cell);
-      const Index* nodes = body_.space->cells[place.block].cell(place.local);
-      const double largest = largest_of_cell(place, cell, all);
+      const IndexInBlocks location = locate_cell(*body_.space, cell);
+      const Index* nodes = body_.space->cells[location.block].cell(location.local);
+      const double largest = largest_of_cell(location, cell, all);
       for (const Share& each : all) {
         shares[each.point] += std::abs(each.share);
         result.stiffness[each.point] = std::max(result.stiffness[each.point], largest);
@@ -167,13 +167,13 @@ class StressRows {
   }
 
   /// Largest Σ |share| s² over displacements of the cell with uᵀK_cell u = 1.
-  double largest_of_cell(const IndexInBlocks& place, Index cell, const std::vector<Share>& all) const {
+  double largest_of_cell(const IndexInBlocks& location, Index cell, const std::vector<Share>& all) const {
     if (all.empty()) return 0.0;
-    const CellBlock& geometry = body_.mesh->cells[place.block];
-    const BlockIntegration& integration = cells_[place.block].stiffness;
+    const CellBlock& geometry = body_.mesh->cells[location.block];
+    const BlockIntegration& integration = cells_[location.block].stiffness;
     const int count = static_cast<int>(integration.displacement.values.rows());
     std::vector<double> pairs(static_cast<std::size_t>(pair_number(0, count)) * d * d);
-    element_stiffness<d>(integration, body_.mesh->nodes, geometry.cell(place.local),
+    element_stiffness<d>(integration, body_.mesh->nodes, geometry.cell(location.local),
                          linear_law(body_, material_of(body_, cell)), pairs.data());
     Matrix stiffness(count * d, count * d);
     for (int j = 0; j < count; ++j) {

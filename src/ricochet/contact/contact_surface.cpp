@@ -78,9 +78,9 @@ class ContactSurface::Builder {
   }
 
   std::size_t slot_of(Index node) {
-    const auto [known, added] = slot_of_.try_emplace(node, surface_.slots_.size());
+    const auto [entry, added] = slot_of_.try_emplace(node, surface_.slots_.size());
     if (added) surface_.slots_.push_back({node, 0.0});
-    return known->second;
+    return entry->second;
   }
 
   [[nodiscard]] std::vector<Entry> entries_of(int patch) const {
@@ -104,14 +104,14 @@ class ContactSurface::Builder {
     for (const double modulus : plate_moduli(body_, contact.opposite_facets))
       compliance += 1.0 / (modulus * static_cast<double>(contact.opposite_facets.size()));
     for (std::size_t i = 0; i < contact.facets.size(); ++i) {
-      const IndexInBlocks place = locate_facet(*body_.space, contact.facets[i]);
-      const CellBlock& geometry = body_.mesh->facets[place.block];
-      const CellBlock& block = body_.space->facets[place.block];
-      Facet facet{place.block, surface_.slots_of_facets_.size(), place_of_node_.size(), 0.0,
+      const IndexInBlocks location = locate_facet(*body_.space, contact.facets[i]);
+      const CellBlock& geometry = body_.mesh->facets[location.block];
+      const CellBlock& block = body_.space->facets[location.block];
+      Facet facet{location.block, surface_.slots_of_facets_.size(), geometry_nodes_.size(), 0.0,
                   1.0 / (1.0 / own[i] + compliance)};
       for (int k = 0; k < block.nodes_per_cell; ++k)
-        surface_.slots_of_facets_.push_back(slot_of(block.cell(place.local)[k]));
-      for (int k = 0; k < geometry.nodes_per_cell; ++k) place_of_node_.push_back(geometry.cell(place.local)[k]);
+        surface_.slots_of_facets_.push_back(slot_of(block.cell(location.local)[k]));
+      for (int k = 0; k < geometry.nodes_per_cell; ++k) geometry_nodes_.push_back(geometry.cell(location.local)[k]);
       result.push_back(facet);
     }
   }
@@ -129,12 +129,12 @@ class ContactSurface::Builder {
   }
 
   void finish(const std::vector<std::vector<Facet>>& facets) {
-    surface_.places_.resize(surface_.dimension_, static_cast<Index>(place_of_node_.size()));
-    for (std::size_t k = 0; k < place_of_node_.size(); ++k)
-      surface_.places_.col(static_cast<Index>(k)) = body_.mesh->nodes.col(place_of_node_[k]);
-    surface_.node_places_.resize(surface_.dimension_, static_cast<Index>(surface_.slots_.size()));
+    surface_.positions_.resize(surface_.dimension_, static_cast<Index>(geometry_nodes_.size()));
+    for (std::size_t k = 0; k < geometry_nodes_.size(); ++k)
+      surface_.positions_.col(static_cast<Index>(k)) = body_.mesh->nodes.col(geometry_nodes_[k]);
+    surface_.node_positions_.resize(surface_.dimension_, static_cast<Index>(surface_.slots_.size()));
     for (std::size_t k = 0; k < surface_.slots_.size(); ++k)
-      surface_.node_places_.col(static_cast<Index>(k)) = body_.space->nodes.col(surface_.slots_[k].node);
+      surface_.node_positions_.col(static_cast<Index>(k)) = body_.space->nodes.col(surface_.slots_[k].node);
     for (const std::vector<Facet>& of_pair : facets) {
       surface_.first_facet_.push_back(surface_.facets_.size());
       for (Facet facet : of_pair) {
@@ -157,7 +157,7 @@ class ContactSurface::Builder {
   ContactSurface& surface_;
   int patches_ = 0;
   std::map<Index, std::size_t> slot_of_;  ///< of the current patch
-  std::vector<Index> place_of_node_;      ///< nodes of the mesh
+  std::vector<Index> geometry_nodes_;     ///< nodes of the mesh
   std::vector<Eigen::Triplet<double>> of_points_;
 };
 
@@ -172,14 +172,14 @@ ContactSurface::ContactSurface(const Body& body, const std::vector<ContactPair>&
 FacetArea ContactSurface::measure(const Facet& facet, const Vector* displacement) const {
   using Places = FacetArea::Places;
   const FacetShape& shape = shapes_[facet.shape];
-  Places places = Places::Zero(), motions = Places::Zero();
+  Places positions = Places::Zero(), motions = Places::Zero();
   for (Index k = 0; k < shape.geometry.node_count(); ++k)
-    places.col(k).head(dimension_) = places_.col(static_cast<Index>(facet.first_place) + k);
+    positions.col(k).head(dimension_) = positions_.col(static_cast<Index>(facet.first_position) + k);
   for (Index k = 0; displacement != nullptr && k < shape.displacement.node_count(); ++k) {
     const std::size_t slot = slots_of_facets_[facet.first_slot + static_cast<std::size_t>(k)];
     motions.col(k).head(dimension_) = displacement->segment(slots_[slot].node * dimension_, dimension_);
   }
-  return {shape, places, motions, axisymmetric_};
+  return {shape, positions, motions, axisymmetric_};
 }
 
 void ContactSurface::find_stretch(const Vector& displacement, Vector& area_of_slots, Vector& stretch) const {
@@ -209,13 +209,13 @@ void ContactSurface::find_states(int pair, const ContactView& view, Work& work) 
   constexpr Index numbers = 5;  // pressure, number of open points, number of points, sum of the gaps, number of gaps
   // Ranks sum their numbers per node.
   const bool several = view.ranks.are_several();
-  const auto place = [&](std::size_t slot) {
+  const auto offset = [&](std::size_t slot) {
     return numbers * (several ? slots_[slot].node : static_cast<Index>(slot - first));
   };
   work.exchanged.setZero(numbers * (several ? nodes_ : static_cast<Index>(last - first)));
   for (const auto& [entry, node, slot] : entries_of_patch_[patch]) {
     if (slot < 0 && !several) continue;
-    double* const sums = work.exchanged.data() + (several ? numbers * node : place(static_cast<std::size_t>(slot)));
+    double* const sums = work.exchanged.data() + (several ? numbers * node : offset(static_cast<std::size_t>(slot)));
     sums[0] = view.nominal_pressure[entry];
     sums[3] = view.gap[entry];
     sums[4] = 1.0;
@@ -238,7 +238,7 @@ void ContactSurface::find_states(int pair, const ContactView& view, Work& work) 
   work.pressure.resize(static_cast<Index>(slots_.size()));
   work.gap.resize(static_cast<Index>(slots_.size()));
   for (std::size_t slot = first; slot < last; ++slot) {
-    const double* const sums = work.exchanged.data() + place(slot);
+    const double* const sums = work.exchanged.data() + offset(slot);
     const auto at = static_cast<Index>(slot);
     work.pressure[at] = sums[0];
     work.gap[at] = sums[3] / sums[4];  // NaN if no rank has it
@@ -252,7 +252,7 @@ double ContactSurface::covered(const Facet& facet, std::size_t from, std::size_t
   const double gap = work.gap[outer];
   if (std::isnan(gap) || work.state[to] == node_unknown) return 0.0;
   if (!(gap > 0.0)) return 1.0;
-  const double edge = (node_places_.col(inner) - node_places_.col(outer)).norm();
+  const double edge = (node_positions_.col(inner) - node_positions_.col(outer)).norm();
   return pressed_part_of_edge(work.pressure[inner] * edge / (facet.modulus * gap));
 }
 

@@ -61,8 +61,8 @@ class ContactSurface {
  private:
   struct Facet {
     std::size_t shape;
-    std::size_t first_slot, first_place;  ///< of its nodes in slots_of_facets_, and of its geometry in places_
-    double area, modulus;                 ///< E*
+    std::size_t first_slot, first_position;  ///< of its nodes in slots_of_facets_, and of its geometry in positions_
+    double area, modulus;                    ///< E*
   };
   /// Node of a patch of facets whose pairs share their contact points.
   struct Slot {
@@ -97,7 +97,7 @@ class ContactSurface {
   std::vector<Slot> slots_;
   std::vector<std::vector<Entry>> entries_of_patch_;
   std::vector<std::size_t> slots_of_facets_;
-  Points places_, node_places_;  ///< positions of the nodes of the geometry, and per slot
+  Points positions_, node_positions_;  ///< positions of the nodes of the geometry, and per slot
   Index nodes_;
   /// Points × slots: c.
   SparseRowMatrix slots_of_points_;

@@ -17,9 +17,9 @@ namespace {
 constexpr double ahead = 4.0;
 
 /// Obstacles at their positions at an instant.
-class Placing {
+class PosedObstacles {
  public:
-  Placing(const std::vector<const Obstacle*>& obstacles, double time, const Vector& displacement) {
+  PosedObstacles(const std::vector<const Obstacle*>& obstacles, double time, const Vector& displacement) {
     for (std::size_t k = 0; k < std::min(obstacles.size(), few_.size()); ++k)
       few_[k].emplace(obstacles[k]->at(time, displacement));
     for (std::size_t k = few_.size(); k < obstacles.size(); ++k)
@@ -39,15 +39,15 @@ class CurvedContact final : public ContactGeometry {
   explicit CurvedContact(CurvedContactData data) : data_(std::move(data)) {}
 
   void gaps(const Vector& displacement, double time, Vector& gap) const override {
-    const Placing placing(data_.obstacles, time, displacement);
+    const PosedObstacles posed(data_.obstacles, time, displacement);
     for (const CurvedContactData::Point& point : data_.points)
-      gap[point.number] = placing[point.obstacle].gap(position(point, displacement));
+      gap[point.number] = posed[point.obstacle].gap(position(point, displacement));
   }
 
   void node_gaps(const Vector& displacement, double time, Vector& gap) const override {
-    const Placing placing(data_.obstacles, time, displacement);
+    const PosedObstacles posed(data_.obstacles, time, displacement);
     for (const CurvedContactData::Node& node : data_.nodes)
-      gap[node.entry] = placing[node.obstacle].gap(node_position(node.node, displacement));
+      gap[node.entry] = posed[node.obstacle].gap(node_position(node.node, displacement));
   }
 
   [[nodiscard]] SpaceVector node_normal(Index entry, const Vector& displacement, double time) const override {
@@ -61,12 +61,12 @@ class CurvedContact final : public ContactGeometry {
   void update(const Vector& displacement, double time, const StepStart* start, ContactRows& rows) const override {
     ++revision_;
     gap_ = rows.gap;
-    const Placing placing(data_.obstacles, time, displacement);
-    const Placing at_start(data_.obstacles, start != nullptr ? start->time : time,
-                           start != nullptr ? start->displacement : displacement);
+    const PosedObstacles posed(data_.obstacles, time, displacement);
+    const PosedObstacles at_start(data_.obstacles, start != nullptr ? start->time : time,
+                                  start != nullptr ? start->displacement : displacement);
     double change = 0.0;
     for (const CurvedContactData::Point& point : data_.points) {
-      rows.gap[point.number] = placing[point.obstacle].gap(position(point, displacement));
+      rows.gap[point.number] = posed[point.obstacle].gap(position(point, displacement));
       change = std::max(change, std::abs(rows.gap[point.number] - gap_[point.number]));
     }
     const double reach = ahead * change;
@@ -75,8 +75,8 @@ class CurvedContact final : public ContactGeometry {
       const SpaceVector at = position(point, displacement);
       const SpaceVector from = start != nullptr ? position(point, start->displacement) : at;
       const SpaceVector normal = start == nullptr
-                                     ? placing[point.obstacle].normal(at)
-                                     : normal_of_step(at_start[point.obstacle], from, placing[point.obstacle], at);
+                                     ? posed[point.obstacle].normal(at)
+                                     : normal_of_step(at_start[point.obstacle], from, posed[point.obstacle], at);
       write_rows(point, normal, rows);
       const FreeMotion* const body = data_.obstacles[point.obstacle]->free_motion();
       if (body == nullptr) continue;
@@ -89,7 +89,7 @@ class CurvedContact final : public ContactGeometry {
   }
 
   /// The torque on a rigid body is that of the force at the position of the point.
-  void add_couples(const Vector& place, const ContactRows& rows, const Vector& normal, const Vector& tangential,
+  void add_couples(const Vector& displacement, const ContactRows& rows, const Vector& normal, const Vector& tangential,
                    Vector& force) const override {
     const Index d = dimension();
     for (const CurvedContactData::Point& point : data_.points) {
@@ -97,16 +97,17 @@ class CurvedContact final : public ContactGeometry {
       if (body == nullptr) continue;
       const SpaceVector on_point = rows.force(point.number, normal, tangential);
       if (on_point.isZero(0.0)) continue;
-      std::array<double, 6> wanted{};
-      body->write_row(-on_point, position(point, place) - body->centre(place), body->axes_at_start(), wanted.data());
+      std::array<double, 6> correction{};
+      body->write_row(-on_point, position(point, displacement) - body->centre(displacement), body->axes_at_start(),
+                      correction.data());
       const auto add = [&](const SparseRowMatrix& matrix, Index row, double reaction) {
         const double* const has = matrix.valuePtr() + matrix.outerIndexPtr()[row + 1] - d;
-        for (Index k = 0; k < d; ++k) wanted[static_cast<std::size_t>(d + k)] -= reaction * has[k];
+        for (Index k = 0; k < d; ++k) correction[static_cast<std::size_t>(d + k)] -= reaction * has[k];
       };
       add(rows.gap_operator, point.number, normal[point.number]);
       for (Index row = point.number * (d - 1); tangential.size() > 0 && row < (point.number + 1) * (d - 1); ++row)
         add(rows.tangential_trace, row, -tangential[row]);
-      for (Index k = 0; k < d; ++k) force[body->rotation_node() * d + k] += wanted[static_cast<std::size_t>(d + k)];
+      for (Index k = 0; k < d; ++k) force[body->rotation_node() * d + k] += correction[static_cast<std::size_t>(d + k)];
     }
   }
 

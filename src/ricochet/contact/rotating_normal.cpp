@@ -31,20 +31,20 @@ RotatingNormal::RotatingNormal(const Vector& direction) {
 
 RotatingNormal::RotatingNormal(const DisplacementSpace& space, const std::vector<Index>& facets,
                                const Vector& direction) {
-  Vector3 wanted = Vector3::Zero();
-  wanted.head(direction.size()) = direction;
-  for (const Index facet : facets) add_facet(space, facet, wanted);
+  Vector3 reference = Vector3::Zero();
+  reference.head(direction.size()) = direction;
+  for (const Index facet : facets) add_facet(space, facet, reference);
   if (crosses_.empty()) {
-    constant_ = wanted;
+    constant_ = reference;
   } else {
-    fit(space, wanted);
+    fit(space, reference);
   }
 }
 
 void RotatingNormal::add_facet(const DisplacementSpace& space, Index facet, const Vector3& direction) {
-  const IndexInBlocks place = locate_facet(space, facet);
-  const CellBlock& block = space.facets[place.block];
-  const Index* const nodes = block.cell(place.local);
+  const IndexInBlocks location = locate_facet(space, facet);
+  const CellBlock& block = space.facets[location.block];
+  const Index* const nodes = block.cell(location.local);
   Cross area;
   if (space.dimension == 2) {
     area = {{nodes[0], nodes[1]}, {}, 1.0};

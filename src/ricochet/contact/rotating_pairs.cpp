@@ -58,7 +58,7 @@ class RotatingPairs final : public ContactGeometry {
     }
   }
 
-  void add_couples(const Vector& place, const ContactRows& rows, const Vector& normal, const Vector& tangential,
+  void add_couples(const Vector& displacement, const ContactRows& rows, const Vector& normal, const Vector& tangential,
                    Vector& force) const override {
     const Index d = dimension();
     const auto add = [&](Index node, const Vector3& value) { force.segment(node * d, d) += value.head(d); };
@@ -67,13 +67,14 @@ class RotatingPairs final : public ContactGeometry {
       if (reaction == 0.0 && (tangential.size() == 0 || tangential.segment(point.number * (d - 1), d - 1).isZero(0.0)))
         continue;
       if (!point.normal.rotates()) continue;
-      const Vector3 turning = point.normal.at(data_.node_positions, place);
-      Vector3 along = reaction * turning.normalized();
+      const Vector3 area_normal = point.normal.at(data_.node_positions, displacement);
+      Vector3 along = reaction * area_normal.normalized();
       along.head(d) += rows.force(point.number, normal, tangential) - reaction * rows.normal(point.number);
       for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry)
         add(entry.col(), entry.value() * along);
-      const Vector3 moment = across(point, place).cross(along);
-      point.normal.visit_derivative(data_.node_positions, place, turning.cross(moment) / turning.squaredNorm(), add);
+      const Vector3 moment = across(point, displacement).cross(along);
+      point.normal.visit_derivative(data_.node_positions, displacement,
+                                    area_normal.cross(moment) / area_normal.squaredNorm(), add);
       rows.visit_normal(point.number, [&](Index dof, double value) { force[dof] -= value * reaction; });
       if (tangential.size() == 0) continue;
       for (Index row = point.number * (d - 1); row < (point.number + 1) * (d - 1); ++row)
@@ -130,9 +131,9 @@ class RotatingPairs final : public ContactGeometry {
       result += entry.value() * position(entry.col(), displacement);
     return result;
   }
-  template <class Place>
-  [[nodiscard]] Vector3 normal(const Place& place, const Vector& displacement) const {
-    return place.normal.at(data_.node_positions, displacement).normalized();
+  template <class Item>
+  [[nodiscard]] Vector3 normal(const Item& item, const Vector& displacement) const {
+    return item.normal.at(data_.node_positions, displacement).normalized();
   }
   [[nodiscard]] static double* row_begin(const Point& point, ContactRows& rows) {
     return rows.gap_operator.valuePtr() + rows.gap_operator.outerIndexPtr()[point.number];

@@ -119,8 +119,8 @@ std::vector<std::vector<Number>> Communicator::exchange_any(const std::vector<st
                  &requests.emplace_back(MPI_REQUEST_NULL));
     }
   }
-  MPI_Request all_taken = MPI_REQUEST_NULL;
-  for (int are_taken = 0, is_end = 0; is_end == 0;) {
+  MPI_Request all_received = MPI_REQUEST_NULL;
+  for (int are_received = 0, is_end = 0; is_end == 0;) {
     MPI_Status status;
     int is_there = 0;
     MPI_Iprobe(MPI_ANY_SOURCE, tag, handle_->ranks, &is_there, &status);
@@ -131,11 +131,11 @@ std::vector<std::vector<Number>> Communicator::exchange_any(const std::vector<st
       const std::size_t before = numbers.size();
       numbers.resize(before + static_cast<std::size_t>(count));
       MPI_Recv(numbers.data() + before, count, type, status.MPI_SOURCE, tag, handle_->ranks, MPI_STATUS_IGNORE);
-    } else if (are_taken == 0) {
-      MPI_Testall(static_cast<int>(requests.size()), requests.data(), &are_taken, MPI_STATUSES_IGNORE);
-      if (are_taken != 0) MPI_Ibarrier(handle_->ranks, &all_taken);
+    } else if (are_received == 0) {
+      MPI_Testall(static_cast<int>(requests.size()), requests.data(), &are_received, MPI_STATUSES_IGNORE);
+      if (are_received != 0) MPI_Ibarrier(handle_->ranks, &all_received);
     } else {
-      MPI_Test(&all_taken, &is_end, MPI_STATUS_IGNORE);
+      MPI_Test(&all_received, &is_end, MPI_STATUS_IGNORE);
     }
   }
   return result;

@@ -43,8 +43,8 @@ void transfer(Archive& archive, Probe& probe) {
 void transfer(Archive& archive, Column& column) {
   archive.all(column.name, column.by);
 }
-void transfer(Archive& archive, ProbeTargets& places) {
-  archive.all(places.probes, places.positions, places.columns, places.nodes, places.sums);
+void transfer(Archive& archive, ProbeTargets& targets) {
+  archive.all(targets.probes, targets.positions, targets.columns, targets.nodes, targets.sums);
 }
 void transfer(Archive& archive, ModelSizes& sizes) {
   archive.all(sizes.nodes, sizes.cells, sizes.dofs, sizes.contact_points, sizes.supported_dofs, sizes.diameter);
@@ -60,9 +60,9 @@ void transfer(Archive& archive, InitialConditions& initial) {
 }
 void transfer(Archive& archive, NodeMatrix& matrix) {
   int d = matrix.dimension();
-  SparseMatrix whole = archive.reads() ? SparseMatrix() : matrix.to_sparse();
-  archive.all(d, whole);
-  if (archive.reads()) matrix = NodeMatrix(whole, d);
+  SparseMatrix sparse = archive.reads() ? SparseMatrix() : matrix.to_sparse();
+  archive.all(d, sparse);
+  if (archive.reads()) matrix = NodeMatrix(sparse, d);
 }
 
 namespace {

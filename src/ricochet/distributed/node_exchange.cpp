@@ -15,27 +15,27 @@ std::map<int, std::vector<std::int64_t>> find_sharers(const Communicator& ranks,
                                                       const std::vector<std::int64_t>& numbers, std::int64_t count) {
   const auto size = static_cast<std::size_t>(ranks.size());
   const std::int64_t range = std::max<std::int64_t>(1, (count + ranks.size() - 1) / ranks.size());
-  std::vector<std::vector<std::int64_t>> asked(size);
-  for (const std::int64_t number : numbers) asked.at(static_cast<std::size_t>(number / range)).push_back(number);
-  const std::vector<std::vector<std::int64_t>> known = ranks.exchange(asked);
+  std::vector<std::vector<std::int64_t>> requests(size);
+  for (const std::int64_t number : numbers) requests.at(static_cast<std::size_t>(number / range)).push_back(number);
+  const std::vector<std::vector<std::int64_t>> received = ranks.exchange(requests);
   std::unordered_map<std::int64_t, std::vector<int>> sharers;
   for (std::size_t rank = 0; rank < size; ++rank) {
-    for (const std::int64_t number : known[rank]) sharers[number].push_back(static_cast<int>(rank));
+    for (const std::int64_t number : received[rank]) sharers[number].push_back(static_cast<int>(rank));
   }
   // Answers to each rank: pairs of a number and another rank that has it.
-  std::vector<std::vector<std::int64_t>> answers(size);
+  std::vector<std::vector<std::int64_t>> replies(size);
   for (std::size_t rank = 0; rank < size; ++rank) {
-    for (const std::int64_t number : known[rank]) {
+    for (const std::int64_t number : received[rank]) {
       for (const int other : sharers.at(number)) {
         if (other == static_cast<int>(rank)) continue;
-        answers[rank].push_back(number);
-        answers[rank].push_back(other);
+        replies[rank].push_back(number);
+        replies[rank].push_back(other);
       }
     }
   }
   std::map<int, std::vector<std::int64_t>> result;
-  for (const std::vector<std::int64_t>& told : ranks.exchange(answers)) {
-    for (std::size_t i = 0; i < told.size(); i += 2) result[static_cast<int>(told[i + 1])].push_back(told[i]);
+  for (const std::vector<std::int64_t>& reply : ranks.exchange(replies)) {
+    for (std::size_t i = 0; i < reply.size(); i += 2) result[static_cast<int>(reply[i + 1])].push_back(reply[i]);
   }
   for (auto& [rank, shared] : result) std::sort(shared.begin(), shared.end());
   return result;
@@ -95,9 +95,9 @@ void NodeExchange::accumulate_any(Values& values) const {
   const Index per_node = values.size() / std::max<Index>(1, nodes_);
   send_all(values, per_node);
   own_.resize(shared_.size() * static_cast<std::size_t>(per_node));
-  auto kept = own_.begin();
+  auto target = own_.begin();
   for (const Index node : shared_) {
-    kept = std::copy_n(values.data() + node * per_node, per_node, kept);
+    target = std::copy_n(values.data() + node * per_node, per_node, target);
     values.segment(node * per_node, per_node).setZero();
   }
   const auto add_own = [&] {

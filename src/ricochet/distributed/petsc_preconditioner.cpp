@@ -87,10 +87,10 @@ class PetscPreconditioner final : public Preconditioner {
   [[nodiscard]] Entries entries_of(const SparseMatrix& part, const std::vector<char>& solved) const {
     Entries entries;
     constexpr double small = 1e-4;
-    const double held = small * ranks_.maximum(part.cols() > 0 ? part.diagonal().maxCoeff() : 0.0);
+    const double shift = small * ranks_.maximum(part.cols() > 0 ? part.diagonal().maxCoeff() : 0.0);
     for (Index column = 0; column < part.cols(); ++column) {
       if (solved[static_cast<std::size_t>(column)] == 0) {
-        if (ranks_.is_owned(column / d_)) entries.add(number_of(column), number_of(column), held);
+        if (ranks_.is_owned(column / d_)) entries.add(number_of(column), number_of(column), shift);
         continue;
       }
       for (SparseMatrix::InnerIterator entry(part, column); entry; ++entry) {
@@ -154,20 +154,20 @@ class PetscPreconditioner final : public Preconditioner {
 
   PetscErrorCode set_rigid_motions(const Points& nodes) {
     PetscFunctionBeginUser;
-    Vec places = nullptr;
-    PetscCall(VecDuplicate(residual_, &places));
-    PetscCall(VecSetBlockSize(places, d_));
+    Vec coordinates = nullptr;
+    PetscCall(VecDuplicate(residual_, &coordinates));
+    PetscCall(VecSetBlockSize(coordinates, d_));
     PetscScalar* values = nullptr;
-    PetscCall(VecGetArray(places, &values));
+    PetscCall(VecGetArray(coordinates, &values));
     for (const Index node : numbering_.own) {
       for (int k = 0; k < d_; ++k) *values++ = nodes(k, node);
     }
-    PetscCall(VecRestoreArray(places, &values));
+    PetscCall(VecRestoreArray(coordinates, &values));
     MatNullSpace motions = nullptr;
-    PetscCall(MatNullSpaceCreateRigidBody(places, &motions));
+    PetscCall(MatNullSpaceCreateRigidBody(coordinates, &motions));
     PetscCall(MatSetNearNullSpace(matrix_, motions));
     PetscCall(MatNullSpaceDestroy(&motions));
-    PetscCall(VecDestroy(&places));
+    PetscCall(VecDestroy(&coordinates));
     PetscFunctionReturn(0);
   }
 

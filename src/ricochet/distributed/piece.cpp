@@ -16,19 +16,19 @@ struct Cut {
   std::vector<Index> numbers;
 };
 
-Cut cut_blocks(const std::vector<CellBlock>& blocks, const std::vector<char>& wanted) {
+Cut cut_blocks(const std::vector<CellBlock>& blocks, const std::vector<char>& is_selected) {
   Cut result;
   Index number = 0;
   for (const CellBlock& block : blocks) {
     // Empty blocks are kept: blocks of mesh and space correspond to each other, and elements are numbered through them.
-    CellBlock& taken = result.blocks.emplace_back();
-    taken.shape = block.shape;
-    taken.nodes_per_cell = block.nodes_per_cell;
+    CellBlock& cut_block = result.blocks.emplace_back();
+    cut_block.shape = block.shape;
+    cut_block.nodes_per_cell = block.nodes_per_cell;
     for (Index i = 0; i < block.size(); ++i, ++number) {
-      if (wanted[static_cast<std::size_t>(number)] == 0) continue;
+      if (is_selected[static_cast<std::size_t>(number)] == 0) continue;
       result.numbers.push_back(number);
-      taken.nodes.insert(taken.nodes.end(), block.cell(i), block.cell(i) + block.nodes_per_cell);
-      taken.tags.push_back(block.tags[static_cast<std::size_t>(i)]);
+      cut_block.nodes.insert(cut_block.nodes.end(), block.cell(i), block.cell(i) + block.nodes_per_cell);
+      cut_block.tags.push_back(block.tags[static_cast<std::size_t>(i)]);
     }
   }
   return result;
@@ -39,12 +39,12 @@ class Renumbering {
  public:
   explicit Renumbering(Index count) : index_(static_cast<std::size_t>(count), -1) {}
 
-  void want(const std::vector<CellBlock>& blocks) {
+  void mark(const std::vector<CellBlock>& blocks) {
     for (const CellBlock& block : blocks) {
       for (const Index node : block.nodes) index_[static_cast<std::size_t>(node)] = 0;
     }
   }
-  void want(Index node) { index_[static_cast<std::size_t>(node)] = 0; }
+  void mark(Index node) { index_[static_cast<std::size_t>(node)] = 0; }
   /// Returns the selected nodes, ascending.
   std::vector<Index> finish() {
     std::vector<Index> nodes;
@@ -74,15 +74,15 @@ std::vector<char> facets_of_rank(const Mesh& mesh, const std::vector<int>& rank_
   return result;
 }
 
-void cut_mesh_nodes(const Mesh& whole, Mesh& mesh) {
-  Renumbering places(whole.node_count());
-  places.want(mesh.cells);
-  const std::vector<Index> nodes = places.finish();
-  places.apply(mesh.cells);
-  places.apply(mesh.facets);
-  mesh.nodes = chosen_columns(whole.nodes, nodes);
-  for (const Index node : nodes) mesh.node_tags.push_back(whole.node_tags[static_cast<std::size_t>(node)]);
-  for (const MeshPart& part : whole.parts) {
+void cut_mesh_nodes(const Mesh& global, Mesh& mesh) {
+  Renumbering renumbering(global.node_count());
+  renumbering.mark(mesh.cells);
+  const std::vector<Index> nodes = renumbering.finish();
+  renumbering.apply(mesh.cells);
+  renumbering.apply(mesh.facets);
+  mesh.nodes = chosen_columns(global.nodes, nodes);
+  for (const Index node : nodes) mesh.node_tags.push_back(global.node_tags[static_cast<std::size_t>(node)]);
+  for (const MeshPart& part : global.parts) {
     MeshPart& own = mesh.parts.emplace_back();
     own.name = part.name;
     const auto begin = std::lower_bound(nodes.begin(), nodes.end(), part.first_node);
@@ -123,12 +123,12 @@ Piece cut_piece(const Mesh& mesh, const DisplacementSpace& space, const std::vec
   piece.space.degree = space.degree;
   piece.space.cells = cut_blocks(space.cells, cells).blocks;
   piece.space.facets = cut_blocks(space.facets, facets).blocks;
-  Renumbering places(space.node_count());
-  places.want(piece.space.cells);
-  for (const Index node : more_nodes) places.want(node);
-  const std::vector<Index> nodes = places.finish();
-  places.apply(piece.space.cells);
-  places.apply(piece.space.facets);
+  Renumbering renumbering(space.node_count());
+  renumbering.mark(piece.space.cells);
+  for (const Index node : more_nodes) renumbering.mark(node);
+  const std::vector<Index> nodes = renumbering.finish();
+  renumbering.apply(piece.space.cells);
+  renumbering.apply(piece.space.facets);
   piece.space.nodes = chosen_columns(space.nodes, nodes);
   for (const Index node : nodes) piece.space.number.push_back(space.number[static_cast<std::size_t>(node)]);
   piece.node_number.assign(nodes.begin(), nodes.end());

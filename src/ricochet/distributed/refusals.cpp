@@ -41,14 +41,14 @@ void refuse_undividable_case(const Case& input) {
     refuse_several(input, "time.scheme", fmt::format("scheme \"{}\"", input.time.scheme));
 }
 
-void refuse_undividable_model(const Case& input, const Model& whole, int processes) {
-  if (has_finite_strain(whole.body)) refuse_several(input, "material", "a body at finite strain");
-  if (whole.bodies.connected.count > 1) {
+void refuse_undividable_model(const Case& input, const Model& global, int processes) {
+  if (has_finite_strain(global.body)) refuse_several(input, "material", "a body at finite strain");
+  if (global.bodies.connected.count > 1) {
     refuse_several(input, input.parts.empty() ? "mesh.file" : "part",
                    fmt::format("{} bodies, which nothing would keep from passing through each other,",
-                               whole.bodies.connected.count));
+                               global.bodies.connected.count));
   }
-  if (const Index cells = whole.mesh.cell_count(); cells < processes)
+  if (const Index cells = global.mesh.cell_count(); cells < processes)
     refuse(input, "mesh.file",
            fmt::format("the mesh has {}, too few for {}: use fewer", counted(cells, "cell"),
                        counted(processes, "process", "processes")));

@@ -7,6 +7,6 @@ namespace ricochet {
 
 /// Throws Error(invalid_input) at the location in the case, and states a remedy.
 void refuse_undividable_case(const Case& input);
-void refuse_undividable_model(const Case& input, const Model& whole, int processes);
+void refuse_undividable_model(const Case& input, const Model& global, int processes);
 
 }  // namespace ricochet

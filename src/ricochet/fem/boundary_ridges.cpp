@@ -30,7 +30,7 @@ class RidgeSides {
   void add(std::size_t number, const CellFacet& facet) {
     const CellBlock& block = body_.space->cells[facet.block];
     const std::vector<int>& corners = outward_facet_vertices(block.shape)[facet.local];
-    const PolynomialMap<3> map(shapes_[facet.block], places(facet));
+    const PolynomialMap<3> map(shapes_[facet.block], positions(facet));
     const std::size_t count = corners.size();
     for (std::size_t k = 0; k < count; ++k) {
       const int first = corners[k], second = count == 2 ? first : corners[(k + 1) % count];
@@ -53,7 +53,7 @@ class RidgeSides {
     result.head(body_.mesh->dimension) = body_.mesh->nodes.col(body_.mesh->cells[facet.block].cell(facet.cell)[node]);
     return result;
   }
-  [[nodiscard]] PolynomialMap<3>::NodePositions places(const CellFacet& facet) const {
+  [[nodiscard]] PolynomialMap<3>::NodePositions positions(const CellFacet& facet) const {
     const CellShape shape = body_.space->cells[facet.block].shape;
     PolynomialMap<3>::NodePositions result = PolynomialMap<3>::NodePositions::Zero();
     Index k = 0;

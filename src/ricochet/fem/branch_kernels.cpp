@@ -29,12 +29,12 @@ struct BranchPack {
     return {deviator_at(points.middle), deviator_at(points.start), deviator_at(points.end), deviator_at(points.at)};
   }
   /// Index of a branch of this point in the internal strains of a cell.
-  [[nodiscard]] RICOCHET_PART_OF_CALLER std::size_t place(std::size_t branch) const {
+  [[nodiscard]] RICOCHET_PART_OF_CALLER std::size_t offset(std::size_t branch) const {
     return (static_cast<std::size_t>(point) * points.branches.size() + branch) * internal_components;
   }
   RICOCHET_PART_OF_CALLER Strain internal(std::size_t branch) const {
     const double* const* lanes = points.internal + pack * W;
-    const std::size_t from = place(branch);
+    const std::size_t from = offset(branch);
     Pack<4> parts[2][8];  // of four cells each: six components and padding
     for (int k = 0; k < W / 4; ++k, lanes += 4) {
       Pack<4>* const own = parts[k];
@@ -55,7 +55,7 @@ struct BranchPack {
   }
   RICOCHET_PART_OF_CALLER void write(const Strain& from, std::size_t branch, double* const* next) const {
     double* const* lanes = next + pack * W;
-    const std::size_t to = place(branch);
+    const std::size_t to = offset(branch);
     Strain value = from;
     Number components[8] = {};
     for_each_component(value,

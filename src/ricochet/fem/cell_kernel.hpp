@@ -25,7 +25,7 @@ class CellKernel {
     pack_ = lane / block.width;
     lane_ = lane % block.width;
     for (int q = 0; q < block.points; ++q)
-      weights_[static_cast<std::size_t>(q)] = block.weight[static_cast<std::size_t>(block.place(pack_, q) + lane_)];
+      weights_[static_cast<std::size_t>(q)] = block.weight[static_cast<std::size_t>(block.index(pack_, q) + lane_)];
     if (mean_dilatation && law.volumetric_modulus() > 0.0 && block.dilatation_functions.size() > 0) {
       volume_.modulus = law.volumetric_modulus();
       dilatation_.start(block.dilatation_functions, weights_.data(), block.points);
@@ -55,7 +55,7 @@ class CellKernel {
       }
     }
     if (!block_.is_axisymmetric()) return;
-    const double radius = block_.radius[static_cast<std::size_t>(block_.place(pack_, q) + lane_)];
+    const double radius = block_.radius[static_cast<std::size_t>(block_.index(pack_, q) + lane_)];
     for (int i = 0; i < block_.nodes; ++i)
       hoop_[static_cast<std::size_t>(i)] = block_.integration.displacement.values(i, q) / radius;
   }

@@ -99,12 +99,12 @@ void CellPacks::number_nodes(const Body& body, const NodeGraph* graph) {
       }
     }
   };
-  std::vector<int> place(static_cast<std::size_t>(node_count_), -1), nodes;
+  std::vector<int> local_number(static_cast<std::size_t>(node_count_), -1), nodes;
   for (std::size_t part = 0; part < parts; ++part) {
     nodes.clear();
     each_lane(part, [&](Index node, int&) {
-      if (node < 0 || place[static_cast<std::size_t>(node)] >= 0) return;
-      place[static_cast<std::size_t>(node)] = 0;
+      if (node < 0 || local_number[static_cast<std::size_t>(node)] >= 0) return;
+      local_number[static_cast<std::size_t>(node)] = 0;
       nodes.push_back(static_cast<int>(node));
     });
     const auto is_own = [&](int node) {
@@ -113,13 +113,15 @@ void CellPacks::number_nodes(const Body& body, const NodeGraph* graph) {
     std::sort(nodes.begin(), nodes.end());
     const auto foreign = std::stable_partition(nodes.begin(), nodes.end(), is_own);
     own_.push_back(foreign - nodes.begin());
-    for (std::size_t k = 0; k < nodes.size(); ++k) place[static_cast<std::size_t>(nodes[k])] = static_cast<int>(k);
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      local_number[static_cast<std::size_t>(nodes[k])] = static_cast<int>(k);
     const auto none = static_cast<int>(nodes.size());
-    each_lane(part, [&](Index node, int& slot) { slot = node < 0 ? none : place[static_cast<std::size_t>(node)]; });
+    each_lane(part,
+              [&](Index node, int& slot) { slot = node < 0 ? none : local_number[static_cast<std::size_t>(node)]; });
     for (auto node = foreign; node != nodes.end(); ++node)
       imports_[static_cast<std::size_t>(part_of_node(*graph, *node))].push_back(
-          {*node, static_cast<int>(nodes_.size()) + place[static_cast<std::size_t>(*node)]});
-    for (const int node : nodes) place[static_cast<std::size_t>(node)] = -1;
+          {*node, static_cast<int>(nodes_.size()) + local_number[static_cast<std::size_t>(*node)]});
+    for (const int node : nodes) local_number[static_cast<std::size_t>(node)] = -1;
     nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
     nodes_.push_back(-1);
     begins_.push_back(static_cast<Index>(nodes_.size()));
@@ -155,7 +157,7 @@ void CellPacks::add_up(const std::vector<double>& room, Vector& result) const {
       }
       for (const Import& import : imports_[part]) {
         double* const to = result.data() + static_cast<Index>(import.node) * d;
-        const auto from = static_cast<std::size_t>(import.place) * node_stride<d>;
+        const auto from = static_cast<std::size_t>(import.slot) * node_stride<d>;
         for (int a = 0; a < d; ++a) to[a] += room[from + static_cast<std::size_t>(a)];
       }
     }

@@ -60,7 +60,7 @@ class CellPacks {
  private:
   struct Import {
     int node;  ///< of the body
-    int place;
+    int slot;
   };
   void share_out(const Body& body, const NodeGraph* graph, const std::vector<int>& cells);
   void number_nodes(const Body& body, const NodeGraph* graph);

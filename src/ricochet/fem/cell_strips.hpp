@@ -19,12 +19,12 @@ class ElasticCells::CellStrips {
   CellStrips(const Body& body, const Blocks<d>& blocks) : body_(body), blocks_(blocks) {}
 
   /// Calls work(strip) for the strips of all runs with wanted(material).
-  template <class Wanted, class Work>
-  void for_each_strip(Index part, const Wanted& wanted, const Work& work) {
+  template <class Selected, class Work>
+  void for_each_strip(Index part, const Selected& is_selected, const Work& work) {
     for (const PackRun& run : blocks_.packs.runs(part)) {
       const KernelBlock<d>& block = blocks_.all[run.block];
       run_ = &run;
-      if (!wanted(material())) continue;
+      if (!is_selected(material())) continue;
       const Index size = std::max<Index>(1, points_at_once / block.points);
       for (Index begin = run.begin; begin < run.end; begin += size)
         work(PackStrip<d>{block, blocks_.packs.slots(run.block).data(), begin, std::min(run.end, begin + size)});
@@ -57,7 +57,7 @@ class ElasticCells::CellStrips {
     double sum = 0.0;
     for_each_lane(strip, [&](Index pack, int lane, Index first, int) {
       for (int q = 0; q < block.points; ++q)
-        sum += block.weight[static_cast<std::size_t>(block.place(pack, q) + lane)] *
+        sum += block.weight[static_cast<std::size_t>(block.index(pack, q) + lane)] *
                values[(first + q) * block.width + lane];
     });
     return sum;

@@ -39,28 +39,28 @@ std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies
   };
   std::vector<std::size_t> cells(count, 0);
   for (const int body : bodies.of_cell) ++cells[static_cast<std::size_t>(body)];
-  std::vector<std::string> whole(count);               // a group that is exactly this body
+  std::vector<std::string> equal_group(count);         // a group that is exactly this body
   std::vector<std::vector<std::string>> parts(count);  // groups that lie entirely within this body
-  const auto look_at = [&](const std::string& name, const std::vector<Index>& members) {
+  const auto compare = [&](const std::string& name, const std::vector<Index>& members) {
     if (members.empty()) return;
     const std::size_t body = body_of(members.front());
     if (!std::all_of(members.begin(), members.end(), [&](Index cell) { return body_of(cell) == body; })) return;
     parts[body].push_back(name);
-    if (whole[body].empty() && members.size() == cells[body]) whole[body] = name;
+    if (equal_group[body].empty() && members.size() == cells[body]) equal_group[body] = name;
   };
   std::vector<std::size_t> in_parts(count, 0);
   for (const MeshPart& part : mesh.parts) {  // a body from one or several mesh files of its own is named after them
-    look_at(part.name, part.cells);
+    compare(part.name, part.cells);
     if (!part.cells.empty()) in_parts[body_of(part.cells.front())] += part.cells.size();
   }
   const std::vector<std::vector<std::string>> files = parts;
   for (const Group& group : mesh.groups) {
-    if (group.dimension == mesh.dimension) look_at(group.name, group.members);
+    if (group.dimension == mesh.dimension) compare(group.name, group.members);
   }
   std::vector<std::string> result;
   for (std::size_t body = 0; body < count; ++body) {
-    if (!whole[body].empty()) {
-      parts[body] = {whole[body]};
+    if (!equal_group[body].empty()) {
+      parts[body] = {equal_group[body]};
     } else if (!files[body].empty() && in_parts[body] == cells[body]) {
       parts[body] = files[body];
     }

@@ -34,7 +34,7 @@ struct MeanDilatation {
     for (Index pack = strip.begin; pack < strip.end; ++pack, point += block.points) {
       for (int q = 0; q < block.points; ++q) {
         const auto at = static_cast<std::size_t>(q);
-        weights[at] = load<W>(block.weight.data() + block.place(pack, q));
+        weights[at] = load<W>(block.weight.data() + block.index(pack, q));
         values[at] = volume_change_of(measures_of(strain<W>(point + q)).volume_change);
       }
       dilatation.start(block.dilatation_functions, weights.data(), block.points);

@@ -117,16 +117,16 @@ DisplacementSpace in_order_of_mesh(const Mesh& mesh, int degree) {
 void renumber(DisplacementSpace& space) {
   const std::vector<int> order = order_nodes(space.nodes);
   space.number.assign(order.begin(), order.end());
-  std::vector<Index> place(order.size());
+  std::vector<Index> new_number(order.size());
   const Points nodes = std::move(space.nodes);
   space.nodes.resize(nodes.rows(), nodes.cols());
   for (std::size_t i = 0; i < order.size(); ++i) {
-    place[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
+    new_number[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
     space.nodes.col(static_cast<Index>(i)) = nodes.col(order[i]);
   }
   for (std::vector<CellBlock>* blocks : {&space.cells, &space.facets}) {
     for (CellBlock& block : *blocks) {
-      for (Index& node : block.nodes) node = place[static_cast<std::size_t>(node)];
+      for (Index& node : block.nodes) node = new_number[static_cast<std::size_t>(node)];
     }
   }
 }
@@ -146,9 +146,9 @@ double extent(const Points& nodes) {
 std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
   std::vector<Index> nodes;
   for (const Index facet : facets) {
-    const IndexInBlocks place = locate_facet(space, facet);
-    const CellBlock& block = space.facets[place.block];
-    nodes.insert(nodes.end(), block.cell(place.local), block.cell(place.local) + block.nodes_per_cell);
+    const IndexInBlocks location = locate_facet(space, facet);
+    const CellBlock& block = space.facets[location.block];
+    nodes.insert(nodes.end(), block.cell(location.local), block.cell(location.local) + block.nodes_per_cell);
   }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());

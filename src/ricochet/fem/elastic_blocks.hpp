@@ -67,10 +67,10 @@ struct ElasticCells::Blocks {
     block.lane.assign(static_cast<std::size_t>(cells.size()), -1);
     for (std::size_t pack = 0; pack < packs_of_block; ++pack) {
       for (int k = 0; k < block.width; ++k) {
-        const std::size_t place = pack * static_cast<std::size_t>(block.width) + static_cast<std::size_t>(k);
+        const std::size_t index = pack * static_cast<std::size_t>(block.width) + static_cast<std::size_t>(k);
         // An unused lane has the geometry of the first lane's cell.
-        const Index cell = lanes[lanes[place] < 0 ? pack * static_cast<std::size_t>(block.width) : place];
-        if (lanes[place] >= 0) block.lane[static_cast<std::size_t>(cell)] = static_cast<int>(place);
+        const Index cell = lanes[lanes[index] < 0 ? pack * static_cast<std::size_t>(block.width) : index];
+        if (lanes[index] >= 0) block.lane[static_cast<std::size_t>(cell)] = static_cast<int>(index);
         measure(cells.cell(cell), static_cast<Index>(pack), k, block);
       }
     }
@@ -82,10 +82,10 @@ struct ElasticCells::Blocks {
     for (int q = 0; q < block.points; ++q) {
       const auto map =
           jacobian<d>(body.mesh->nodes, nodes, block.integration.geometry.gradients[static_cast<std::size_t>(q)]);
-      const auto place = static_cast<std::size_t>(block.place(pack, q) + lane);
-      block.weight[place] =
+      const auto index = static_cast<std::size_t>(block.index(pack, q) + lane);
+      block.weight[index] =
           block.integration.rule.weights[q] * map.determinant() * block.integration.ring(body.mesh->nodes, nodes, q);
-      if (is_axisymmetric(body)) block.radius[place] = block.integration.radius(body.mesh->nodes, nodes, q);
+      if (is_axisymmetric(body)) block.radius[index] = block.integration.radius(body.mesh->nodes, nodes, q);
       if (block.affine && q > 0) continue;
       const Eigen::Matrix<double, d, d> inverse = map.inverse();
       auto at = static_cast<std::size_t>(block.inverse_of_pack(pack, q) - block.inverse.data() + lane);

@@ -111,9 +111,9 @@ class ElasticCells {
   void find_internal_offsets();
   struct BranchDisplacements;
   template <int d, class Find>
-  void add_up_branches(const BranchDisplacements& places, const Find& find, Vector& result) const;
+  void add_up_branches(const BranchDisplacements& displacements, const Find& find, Vector& result) const;
   template <int d, class Find>
-  double sum_branches(const BranchDisplacements& places, const Find& find) const;
+  double sum_branches(const BranchDisplacements& displacements, const Find& find) const;
 
   const Body& body_;
   const NodeGraph* graph_;

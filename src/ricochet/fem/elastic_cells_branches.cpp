@@ -36,17 +36,17 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
 
   /// Calls work(strip) for the strips of a part whose cells have branches, after computing their strains.
   template <class Work>
-  void for_each_strip(Index part, Index begin, const BranchDisplacements& places,
+  void for_each_strip(Index part, Index begin, const BranchDisplacements& displacements,
                       const std::vector<Index>& internal_begin, const Work& work) {
-    read(part, places);
+    read(part, displacements);
     const auto has_branches = [](const Material& material) { return !material.relaxation.empty(); };
     CellStrips<d>::for_each_strip(part, has_branches, [&](const PackStrip<d>& strip) {
-      internal_.fill(places.internal.data());
+      internal_.fill(displacements.internal.data());
       this->for_each_lane(strip, [&](Index pack, int lane, Index, int cell) {
         internal_[lane_number(strip, pack, lane)] =
-            places.internal.data() + internal_begin[static_cast<std::size_t>(cell + this->first_cell())];
+            displacements.internal.data() + internal_begin[static_cast<std::size_t>(cell + this->first_cell())];
       });
-      find_all_strains(strip, begin, places);
+      find_all_strains(strip, begin, displacements);
       work(strip);
     });
   }
@@ -61,13 +61,13 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
     return this->integral(strip, result_.data());
   }
   /// Writes A₁ to a vector in the order of A; returns the dissipation.
-  [[nodiscard]] double advance(const PackStrip<d>& strip, const BranchDisplacements& places, Vector& next) {
-    find_next(strip, places, next);
+  [[nodiscard]] double advance(const PackStrip<d>& strip, const BranchDisplacements& displacements, Vector& next) {
+    find_next(strip, displacements, next);
     find_branch_works(BranchWork::dissipation, points(strip), next_.data(), result_.data());
     return this->integral(strip, result_.data());
   }
-  void relax(const PackStrip<d>& strip, const BranchDisplacements& places, Vector& next) {
-    find_next(strip, places, next);
+  void relax(const PackStrip<d>& strip, const BranchDisplacements& displacements, Vector& next) {
+    find_next(strip, displacements, next);
     relax_branches(points(strip), next_.data());
   }
 
@@ -76,26 +76,27 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
   static std::size_t lane_number(const PackStrip<d>& strip, Index pack, int lane) {
     return static_cast<std::size_t>((pack - strip.begin) * strip.block.width + lane);
   }
-  void find_next(const PackStrip<d>& strip, const BranchDisplacements& places, Vector& next) {
+  void find_next(const PackStrip<d>& strip, const BranchDisplacements& displacements, Vector& next) {
     next_.fill(nullptr);
     this->for_each_lane(strip, [&](Index pack, int lane, Index, int) {
       const std::size_t number = lane_number(strip, pack, lane);
-      next_[number] = next.data() + (internal_[number] - places.internal.data());
+      next_[number] = next.data() + (internal_[number] - displacements.internal.data());
     });
   }
-  void read(Index part, const BranchDisplacements& places) {
-    if (places.step != nullptr) {
-      blocks_.packs.template read<d>(part, places.step->middle, blocks_.displacement);
-      blocks_.packs.template read<d>(part, places.step->increment, blocks_.increment);
-      blocks_.packs.template read<d>(part, places.step->end, blocks_.end);
+  void read(Index part, const BranchDisplacements& displacements) {
+    if (displacements.step != nullptr) {
+      blocks_.packs.template read<d>(part, displacements.step->middle, blocks_.displacement);
+      blocks_.packs.template read<d>(part, displacements.step->increment, blocks_.increment);
+      blocks_.packs.template read<d>(part, displacements.step->end, blocks_.end);
     }
-    if (places.displacement != nullptr) blocks_.packs.template read<d>(part, *places.displacement, blocks_.at);
+    if (displacements.displacement != nullptr)
+      blocks_.packs.template read<d>(part, *displacements.displacement, blocks_.at);
   }
   /// Computes E₀ from the gradient of u₁ minus that of the increment; or E at the displacement if no E₀ is needed.
-  void find_all_strains(const PackStrip<d>& strip, Index begin, const BranchDisplacements& places) {
+  void find_all_strains(const PackStrip<d>& strip, Index begin, const BranchDisplacements& displacements) {
     const Index count = strip.points();
-    has_step_ = places.step != nullptr;
-    has_displacement_ = places.displacement != nullptr;
+    has_step_ = displacements.step != nullptr;
+    has_displacement_ = displacements.displacement != nullptr;
     if (has_step_) {
       find_gradients(strip, blocks_.displacement.data() + begin, gradients_.data());
       find_gradients(strip, blocks_.increment.data() + begin, others_.data());
@@ -133,12 +134,12 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
 
 /// Sums forces over the branches: find(strips, strip, forces) adds those of a strip.
 template <int d, class Find>
-void ElasticCells::add_up_branches(const BranchDisplacements& places, const Find& find, Vector& result) const {
+void ElasticCells::add_up_branches(const BranchDisplacements& displacements, const Find& find, Vector& result) const {
   const Blocks<d>& all = blocks<d>();
-  all.set_branches(places.step != nullptr ? places.step->step : 0.0);
+  all.set_branches(displacements.step != nullptr ? displacements.step->step : 0.0);
   for_each_part<d, BranchStrips>([&](Index part, Index begin, BranchStrips<d>& strips) {
     all.packs.template clear<d>(part, all.force);
-    strips.for_each_strip(part, begin, places, internal_begin_,
+    strips.for_each_strip(part, begin, displacements, internal_begin_,
                           [&](const PackStrip<d>& strip) { find(strips, strip, all.force.data() + begin); });
   });
   all.packs.template add_up<d>(all.force, result);
@@ -146,13 +147,13 @@ void ElasticCells::add_up_branches(const BranchDisplacements& places, const Find
 
 /// Sums find(strips, strip), the contribution of a strip.
 template <int d, class Find>
-double ElasticCells::sum_branches(const BranchDisplacements& places, const Find& find) const {
+double ElasticCells::sum_branches(const BranchDisplacements& displacements, const Find& find) const {
   const Blocks<d>& all = blocks<d>();
-  all.set_branches(places.step != nullptr ? places.step->step : 0.0);
+  all.set_branches(displacements.step != nullptr ? displacements.step->step : 0.0);
   std::array<double, most_node_parts> sums{};
   for_each_part<d, BranchStrips>([&](Index part, Index begin, BranchStrips<d>& strips) {
     double& sum = sums[static_cast<std::size_t>(part)];
-    strips.for_each_strip(part, begin, places, internal_begin_,
+    strips.for_each_strip(part, begin, displacements, internal_begin_,
                           [&](const PackStrip<d>& strip) { sum += find(strips, strip); });
   });
   double total = 0.0;
@@ -164,9 +165,9 @@ void ElasticCells::relax(const Vector& displacement, Vector& internal) const {
   internal.setZero(internal_size());
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
-    const BranchDisplacements places{nullptr, &displacement, internal};
-    sum_branches<d>(places, [&](BranchStrips<d>& strips, const PackStrip<d>& strip) {
-      strips.relax(strip, places, internal);
+    const BranchDisplacements displacements{nullptr, &displacement, internal};
+    sum_branches<d>(displacements, [&](BranchStrips<d>& strips, const PackStrip<d>& strip) {
+      strips.relax(strip, displacements, internal);
       return 0.0;
     });
   });
@@ -225,9 +226,9 @@ double ElasticCells::advance_internal(const BranchStep& step, Vector& internal) 
   internal.resize(internal_size());
   return with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
-    const BranchDisplacements places{&step, nullptr, step.internal};
-    return sum_branches<d>(places, [&](BranchStrips<d>& strips, const PackStrip<d>& strip) {
-      return strips.advance(strip, places, internal);
+    const BranchDisplacements displacements{&step, nullptr, step.internal};
+    return sum_branches<d>(displacements, [&](BranchStrips<d>& strips, const PackStrip<d>& strip) {
+      return strips.advance(strip, displacements, internal);
     });
   });
 }

@@ -21,16 +21,16 @@ std::span<const Index> vertices_of(const Mesh& mesh, Index facet) {
 std::vector<std::vector<Index>> cells_of_facets(const Mesh& mesh, const std::vector<Index>& facets) {
   // Cells that contain all vertices of a facet.
   std::vector<std::vector<Index>> cells_of_vertex(static_cast<std::size_t>(mesh.node_count()));
-  std::vector<char> wanted(static_cast<std::size_t>(mesh.node_count()), 0);
+  std::vector<char> is_selected(static_cast<std::size_t>(mesh.node_count()), 0);
   for (const Index facet : facets) {
-    for (const Index node : vertices_of(mesh, facet)) wanted[static_cast<std::size_t>(node)] = 1;
+    for (const Index node : vertices_of(mesh, facet)) is_selected[static_cast<std::size_t>(node)] = 1;
   }
   Index number = 0;
   for (const CellBlock& block : mesh.cells) {
     for (Index cell = 0; cell < block.size(); ++cell, ++number) {
       for (int v = 0; v < vertex_count(block.shape); ++v) {
         const auto node = static_cast<std::size_t>(block.cell(cell)[v]);
-        if (wanted[node] != 0) cells_of_vertex[node].push_back(number);
+        if (is_selected[node] != 0) cells_of_vertex[node].push_back(number);
       }
     }
   }

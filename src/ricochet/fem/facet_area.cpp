@@ -44,10 +44,10 @@ FacetShape make_facet_shape(CellShape shape, int geometry_degree, int displaceme
   return result;
 }
 
-FacetArea::FacetArea(const FacetShape& shape, const Places& places, const Places& motions, bool axisymmetric)
+FacetArea::FacetArea(const FacetShape& shape, const Places& positions, const Places& motions, bool axisymmetric)
     : shape_(shape),
       axisymmetric_(axisymmetric),
-      geometry_(shape.geometry, places),
+      geometry_(shape.geometry, positions),
       motion_(shape.displacement, motions) {}
 
 double FacetArea::density(const double* point) const {

@@ -24,9 +24,9 @@ struct FacetShape {
 class FacetArea {
  public:
   using Places = PolynomialMap<3>::NodePositions;
-  /// Keeps a reference to the shape. `places`: X at the nodes of the geometry; `motions`: u at
+  /// Keeps a reference to the shape. `positions`: X at the nodes of the geometry; `motions`: u at
   /// the nodes of the displacement.
-  FacetArea(const FacetShape& shape, const Places& places, const Places& motions, bool axisymmetric);
+  FacetArea(const FacetShape& shape, const Places& positions, const Places& motions, bool axisymmetric);
 
   [[nodiscard]] double whole() const;
   /// Area between two reference coordinates of a segment.

@@ -41,9 +41,9 @@ class FacetIntegration {
 
   /// Evaluates a facet numbered through all blocks. Pointers in `result` are valid for the lifetime of this object.
   void evaluate(Index facet, FacetQuadrature& result) const {
-    const IndexInBlocks place = locate_facet(*body_->space, facet);
-    const std::size_t b = place.block;
-    const Index local = place.local;
+    const IndexInBlocks location = locate_facet(*body_->space, facet);
+    const std::size_t b = location.block;
+    const Index local = location.local;
     const CellBlock& geometry = body_->mesh->facets[b];
     const BlockIntegration& integration = rules_[b];
     result.facet = facet;

@@ -14,19 +14,19 @@ constexpr double settled = 1e-9;
 /// Step size below which it has converged if two successive steps confirm the quadratic rate.
 constexpr double nearly_settled = 1e-7;
 /// Distance outside of a facet, in reference coordinates, beyond which points do not belong to it.
-constexpr double far_outside = 3.0;
+constexpr double largest_coordinate = 3.0;
 
 /// Finds the reference coordinates of successive points on a facet projected onto a plane: Newton's method starts from
 /// an extrapolation of the last point by its derivative, or else from the centre.
-class PlaceFinder {
+class PointInversion {
  public:
-  PlaceFinder(const PolynomialMap<2>& seen, bool is_segment, const Eigen::Vector2d& centre)
-      : seen_(seen), is_segment_(is_segment), centre_(centre) {}
+  PointInversion(const PolynomialMap<2>& projection, bool is_segment, const Eigen::Vector2d& centre)
+      : projection_(projection), is_segment_(is_segment), centre_(centre) {}
 
   /// Returns false if there is no such point.
-  [[nodiscard]] bool find(const Eigen::Vector2d& wanted) {
-    if (is_known_ && settle(at_ + solve(wanted - wanted_), wanted)) return true;
-    return settle(centre_, wanted);
+  [[nodiscard]] bool find(const Eigen::Vector2d& target) {
+    if (is_solved_ && settle(at_ + solve(target - target_), target)) return true;
+    return settle(centre_, target);
   }
   [[nodiscard]] const Eigen::Vector2d& at() const { return at_; }
 
@@ -39,30 +39,30 @@ class PlaceFinder {
            (along[0] * across[1] - across[0] * along[1]);
   }
 
-  bool settle(const Eigen::Vector2d& from, const Eigen::Vector2d& wanted) {
+  bool settle(const Eigen::Vector2d& from, const Eigen::Vector2d& target) {
     at_ = from;
-    wanted_ = wanted;
-    is_known_ = false;
+    target_ = target;
+    is_solved_ = false;
     double last = 0.0;
-    for (int k = 0; k < most_iterations && !is_known_; ++k) {
-      here_ = seen_.evaluate(at_.data());
-      const Eigen::Vector2d step = solve(here_.at - wanted);
+    for (int k = 0; k < most_iterations && !is_solved_; ++k) {
+      here_ = projection_.evaluate(at_.data());
+      const Eigen::Vector2d step = solve(here_.at - target);
       at_ -= step;
-      if (!(at_.lpNorm<Eigen::Infinity>() <= far_outside)) return false;
+      if (!(at_.lpNorm<Eigen::Infinity>() <= largest_coordinate)) return false;
       // Steps decrease quadratically, s₂ = c s₁²; the error after the second one is therefore c s₂².
       const double size = step.lpNorm<Eigen::Infinity>();
-      is_known_ = size <= settled || (size <= nearly_settled &&
-                                      size * size * size <= std::numeric_limits<double>::epsilon() * last * last);
+      is_solved_ = size <= settled || (size <= nearly_settled &&
+                                       size * size * size <= std::numeric_limits<double>::epsilon() * last * last);
       last = size;
     }
-    return is_known_;
+    return is_solved_;
   }
 
-  const PolynomialMap<2>& seen_;
+  const PolynomialMap<2>& projection_;
   bool is_segment_;
-  Eigen::Vector2d centre_, at_, wanted_;
+  Eigen::Vector2d centre_, at_, target_;
   PolynomialMap<2>::Evaluation here_;
-  bool is_known_ = false;  ///< whether `at_` is the solution for `wanted_`
+  bool is_solved_ = false;  ///< whether `at_` is the solution for `target_`
 };
 
 void tabulate(const PolynomialShape& shape, const Points& local, Matrix& values) {
@@ -87,13 +87,13 @@ FacetMap::FacetMap(const Body& body) : body_(body) {
   }
 }
 
-PolynomialMap<3> FacetMap::geometry(const IndexInBlocks& place) const {
-  const PolynomialShape& shape = shapes_[place.block].geometry;
-  const Index* const nodes = body_.mesh->facets[place.block].cell(place.local);
-  PolynomialMap<3>::NodePositions places = PolynomialMap<3>::NodePositions::Zero();
+PolynomialMap<3> FacetMap::geometry(const IndexInBlocks& location) const {
+  const PolynomialShape& shape = shapes_[location.block].geometry;
+  const Index* const nodes = body_.mesh->facets[location.block].cell(location.local);
+  PolynomialMap<3>::NodePositions node_positions = PolynomialMap<3>::NodePositions::Zero();
   for (Index k = 0; k < shape.node_count(); ++k)
-    places.col(k).head(body_.mesh->dimension) = body_.mesh->nodes.col(nodes[k]);
-  return {shape, places};
+    node_positions.col(k).head(body_.mesh->dimension) = body_.mesh->nodes.col(nodes[k]);
+  return {shape, node_positions};
 }
 
 void FacetMap::positions(Index facet, const Points& local, Points& result) const {
@@ -104,42 +104,42 @@ void FacetMap::positions(Index facet, const Points& local, Points& result) const
 }
 
 bool FacetMap::invert(Index facet, const Points& axes, const Points& plane, Points& local) const {
-  const IndexInBlocks place = locate_facet(*body_.space, facet);
-  const CellBlock& block = body_.mesh->facets[place.block];
-  const Index* const nodes = block.cell(place.local);
-  PolynomialMap<2>::NodePositions places = PolynomialMap<2>::NodePositions::Zero();
+  const IndexInBlocks location = locate_facet(*body_.space, facet);
+  const CellBlock& block = body_.mesh->facets[location.block];
+  const Index* const nodes = block.cell(location.local);
+  PolynomialMap<2>::NodePositions node_positions = PolynomialMap<2>::NodePositions::Zero();
   for (Index k = 0; k < block.nodes_per_cell; ++k)
-    places.col(k).head(axes.cols()) = axes.transpose() * body_.mesh->nodes.col(nodes[k]);
-  const PolynomialMap<2> seen(shapes_[place.block].geometry, places);
+    node_positions.col(k).head(axes.cols()) = axes.transpose() * body_.mesh->nodes.col(nodes[k]);
+  const PolynomialMap<2> projection(shapes_[location.block].geometry, node_positions);
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   centre.head(axes.cols()) = reference_centre(block.shape);
-  PlaceFinder finder(seen, axes.cols() == 1, centre);
+  PointInversion finder(projection, axes.cols() == 1, centre);
   local.resize(axes.cols(), plane.cols());
-  Eigen::Vector2d wanted = Eigen::Vector2d::Zero();
+  Eigen::Vector2d target = Eigen::Vector2d::Zero();
   for (Index q = 0; q < plane.cols(); ++q) {
-    wanted.head(axes.cols()) = plane.col(q);
-    if (!finder.find(wanted)) return false;
+    target.head(axes.cols()) = plane.col(q);
+    if (!finder.find(target)) return false;
     local.col(q) = finder.at().head(axes.cols());
   }
   return true;
 }
 
 void FacetMap::evaluate(Index facet, const Points& axes, const Vector& weights, FacetPoints& points) const {
-  const IndexInBlocks place = locate_facet(*body_.space, facet);
+  const IndexInBlocks location = locate_facet(*body_.space, facet);
   const Index d = axes.rows(), count = points.local.cols();
-  tabulate(shapes_[place.block].displacement, points.local, points.displacement);
-  tabulate(shapes_[place.block].hats, points.local, points.hats);
+  tabulate(shapes_[location.block].displacement, points.local, points.displacement);
+  tabulate(shapes_[location.block].hats, points.local, points.hats);
   FacetQuadrature& result = points.quadrature;
   result.facet = facet;
-  result.shape = body_.mesh->facets[place.block].shape;
-  result.nodes = body_.space->facets[place.block].cell(place.local);
+  result.shape = body_.mesh->facets[location.block].shape;
+  result.nodes = body_.space->facets[location.block].cell(location.local);
   result.displacement = &points.displacement;
   result.hats = &points.hats;
   result.positions.resize(d, count);
   result.measure.resize(count);
   Eigen::Matrix<double, 3, 2> all_axes = Eigen::Matrix<double, 3, 2>::Zero();
   all_axes.topLeftCorner(d, d - 1) = axes;
-  const PolynomialMap<3> map = geometry(place);
+  const PolynomialMap<3> map = geometry(location);
   for (Index q = 0; q < count; ++q) {
     const PolynomialMap<3>::Evaluation at = map.evaluate(points.local.col(q).data());
     result.positions.col(q) = at.at.head(d);

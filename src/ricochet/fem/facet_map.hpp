@@ -42,7 +42,7 @@ class FacetMap {
   struct Shapes {
     PolynomialShape geometry, displacement, hats;
   };
-  [[nodiscard]] PolynomialMap<3> geometry(const IndexInBlocks& place) const;
+  [[nodiscard]] PolynomialMap<3> geometry(const IndexInBlocks& location) const;
 
   const Body& body_;
   std::vector<Shapes> shapes_;  ///< per block of facets

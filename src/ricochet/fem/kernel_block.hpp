@@ -33,7 +33,7 @@ struct KernelBlock {
     return inverse.data() + d * d * width * (affine ? pack : pack * points + q);
   }
   /// Index of a point of a pack in `weight` and `radius`.
-  [[nodiscard]] Index place(Index pack, int q) const { return (pack * points + q) * width; }
+  [[nodiscard]] Index index(Index pack, int q) const { return (pack * points + q) * width; }
 };
 
 }  // namespace ricochet

@@ -62,16 +62,16 @@ Integral integrate(const Mesh& mesh, const BlockIntegration& rule, const CellBlo
 class CellsOfFacets {
  public:
   explicit CellsOfFacets(const Mesh& mesh) : mesh_(mesh), around_(static_cast<std::size_t>(mesh.node_count())) {
-    std::vector<char> wanted(around_.size(), 0);
+    std::vector<char> is_selected(around_.size(), 0);
     for (const CellBlock& block : mesh.facets) {
-      for (const Index node : block.nodes) wanted[static_cast<std::size_t>(node)] = 1;
+      for (const Index node : block.nodes) is_selected[static_cast<std::size_t>(node)] = 1;
     }
     for (std::size_t b = 0; b < mesh.cells.size(); ++b) {
       const CellBlock& block = mesh.cells[b];
       for (Index cell = 0; cell < block.size(); ++cell) {
         for (int v = 0; v < vertex_count(block.shape); ++v) {
           const auto node = static_cast<std::size_t>(block.cell(cell)[v]);
-          if (wanted[node] != 0) around_[node].push_back({b, cell});
+          if (is_selected[node] != 0) around_[node].push_back({b, cell});
         }
       }
     }
@@ -81,9 +81,9 @@ class CellsOfFacets {
   [[nodiscard]] std::pair<int, Eigen::Vector3d> find(const CellBlock& facets, Index facet) const {
     const Index* const nodes = facets.cell(facet);
     std::pair<int, Eigen::Vector3d> result{0, Eigen::Vector3d::Zero()};
-    for (const Place& place : around_[static_cast<std::size_t>(nodes[0])]) {
-      const CellBlock& block = mesh_.cells[place.block];
-      const Index *const first = block.cell(place.cell), *const last = first + vertex_count(block.shape);
+    for (const CellIndex& location : around_[static_cast<std::size_t>(nodes[0])]) {
+      const CellBlock& block = mesh_.cells[location.block];
+      const Index *const first = block.cell(location.cell), *const last = first + vertex_count(block.shape);
       const bool has_all = std::all_of(nodes, nodes + vertex_count(facets.shape),
                                        [&](Index node) { return std::find(first, last, node) != last; });
       if (!has_all) continue;
@@ -93,12 +93,12 @@ class CellsOfFacets {
   }
 
  private:
-  struct Place {
+  struct CellIndex {
     std::size_t block;
     Index cell;
   };
   const Mesh& mesh_;
-  std::vector<std::vector<Place>> around_;
+  std::vector<std::vector<CellIndex>> around_;
 };
 
 /// Calls visit(block, rule, cell in it) for some cells or facets, numbered through all blocks, ascending.
@@ -173,14 +173,14 @@ class CellHeights {
                           product_quadrature_degree(block.shape, mesh.degree, 1));
     }
   }
-  [[nodiscard]] double of(const IndexInBlocks& place) const {
-    const CellBlock& block = mesh_.cells[place.block];
+  [[nodiscard]] double of(const IndexInBlocks& location) const {
+    const CellBlock& block = mesh_.cells[location.block];
     const CellShape shape = facet_shape(block.shape);
     const bool is_simplex = block.shape == CellShape::triangle || block.shape == CellShape::tetrahedron;
     double largest = 0.0;
     for (const std::vector<int>& vertices : facet_nodes(block.shape, 1))
-      largest = std::max(largest, facet_size(mesh_, shape, block.cell(place.local), vertices));
-    const double size = integrate(mesh_, rules_[place.block], block, place.local).size;
+      largest = std::max(largest, facet_size(mesh_, shape, block.cell(location.local), vertices));
+    const double size = integrate(mesh_, rules_[location.block], block, location.local).size;
     return (is_simplex ? mesh_.dimension : 1.0) * size / largest;
   }
 
@@ -208,9 +208,9 @@ std::vector<double> cell_heights(const Mesh& mesh, const std::vector<Index>& cel
 }
 
 double facet_diameter(const Mesh& mesh, Index facet) {
-  const IndexInBlocks place = locate_in_blocks(mesh.facets, facet);
-  const CellBlock& block = mesh.facets[place.block];
-  const Index* const nodes = block.cell(place.local);
+  const IndexInBlocks location = locate_in_blocks(mesh.facets, facet);
+  const CellBlock& block = mesh.facets[location.block];
+  const Index* const nodes = block.cell(location.local);
   double largest = 0.0;
   for (int i = 0; i < vertex_count(block.shape); ++i) {
     for (int k = 0; k < i; ++k)

@@ -52,8 +52,9 @@ struct PartRows {
   std::vector<int> neighbours;
 };
 
-/// Computes the rows of a part. `seen` is work space, −1 for every node: the row in which a node last occurred.
-PartRows rows_of_part(const DisplacementSpace& space, const NodeGraph& graph, Index part, std::vector<int>& seen) {
+/// Computes the rows of a part. `visited_by` is work space, −1 for every node: the row in which a node last occurred.
+PartRows rows_of_part(const DisplacementSpace& space, const NodeGraph& graph, Index part,
+                      std::vector<int>& visited_by) {
   const Index begin = graph.part_begins[static_cast<std::size_t>(part)];
   const Index end = graph.part_begins[static_cast<std::size_t>(part) + 1];
   const auto first_cell = graph.cells.begin() + graph.cell_begins[static_cast<std::size_t>(part)];
@@ -85,8 +86,8 @@ PartRows rows_of_part(const DisplacementSpace& space, const NodeGraph& graph, In
     const auto row_begin = static_cast<std::ptrdiff_t>(rows.neighbours.size());
     for (Index k = offsets[local]; k < offsets[local + 1]; ++k) {
       const int neighbour = around[static_cast<std::size_t>(k)];
-      if (seen[static_cast<std::size_t>(neighbour)] == node) continue;
-      seen[static_cast<std::size_t>(neighbour)] = node;
+      if (visited_by[static_cast<std::size_t>(neighbour)] == node) continue;
+      visited_by[static_cast<std::size_t>(neighbour)] = node;
       rows.neighbours.push_back(neighbour);
     }
     std::sort(rows.neighbours.begin() + row_begin, rows.neighbours.end());
@@ -103,9 +104,9 @@ NodeGraph node_graph(const DisplacementSpace& space) {
   list_cells_of_parts(space, graph);
   std::vector<PartRows> rows(static_cast<std::size_t>(graph.parts()));
   parallel_ranges(graph.parts(), [&](Index first, Index last) {
-    std::vector<int> seen(static_cast<std::size_t>(space.node_count()), -1);
+    std::vector<int> visited_by(static_cast<std::size_t>(space.node_count()), -1);
     for (Index part = first; part < last; ++part)
-      rows[static_cast<std::size_t>(part)] = rows_of_part(space, graph, part, seen);
+      rows[static_cast<std::size_t>(part)] = rows_of_part(space, graph, part, visited_by);
   });
   graph.offsets.reserve(static_cast<std::size_t>(space.node_count()) + 1);
   graph.offsets.push_back(0);
@@ -118,7 +119,7 @@ NodeGraph node_graph(const DisplacementSpace& space) {
   return graph;
 }
 
-NodeGraph cells_at_nodes(const NodeGraph& graph, const DisplacementSpace& space, const std::vector<char>& wanted) {
+NodeGraph cells_at_nodes(const NodeGraph& graph, const DisplacementSpace& space, const std::vector<char>& is_selected) {
   NodeGraph result = graph;
   result.cells.clear();
   result.cell_begins.assign(1, 0);
@@ -129,7 +130,7 @@ NodeGraph cells_at_nodes(const NodeGraph& graph, const DisplacementSpace& space,
       walk.go_to(cell);
       const Index* const nodes = walk.nodes();
       if (std::any_of(nodes, nodes + walk.node_count(),
-                      [&](Index node) { return wanted[static_cast<std::size_t>(node)] != 0; }))
+                      [&](Index node) { return is_selected[static_cast<std::size_t>(node)] != 0; }))
         result.cells.push_back(cell);
     }
     result.cell_begins.push_back(static_cast<Index>(result.cells.size()));

@@ -27,7 +27,7 @@ struct NodeGraph {
 [[nodiscard]] NodeGraph node_graph(const DisplacementSpace& space);
 /// Restricts the graph to the cells with at least one wanted node.
 [[nodiscard]] NodeGraph cells_at_nodes(const NodeGraph& graph, const DisplacementSpace& space,
-                                       const std::vector<char>& wanted);
+                                       const std::vector<char>& is_selected);
 
 /// Iterator over cells in ascending order of their number through all blocks.
 class CellWalk {

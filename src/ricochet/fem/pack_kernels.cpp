@@ -103,7 +103,7 @@ struct Gradients {
     const double* values = block.integration.displacement.values.col(q).data();
     Pack<W> sum{};
     for (int i = 0; i < block.nodes; ++i) sum += u[i * d] * values[i];
-    return sum / load<W>(block.radius.data() + block.place(pack, q));
+    return sum / load<W>(block.radius.data() + block.index(pack, q));
   }
 };
 
@@ -262,7 +262,7 @@ struct Forces {
       for (int i = 0; i < nodes * d; ++i) force[i] = Pack<W>{};
       for (int q = 0; q < block.points; ++q, ++point) {
         Pack<W> zz;
-        const PackMatrix<d, W> first = first_stress<W>(point, load<W>(block.weight.data() + block.place(pack, q)), zz);
+        const PackMatrix<d, W> first = first_stress<W>(point, load<W>(block.weight.data() + block.index(pack, q)), zz);
         const PackMatrix<d, W> reference = product_transposed(first, load_matrix<d, W>(block.inverse_of_pack(pack, q)));
         linear_simplex ? add_of_simplex<W>(reference, force)
                        : add<W>(reference, nodes, block.gradients.data() + q * nodes * d, force);
@@ -293,7 +293,7 @@ struct Forces {
   RICOCHET_PART_OF_CALLER static void add_hoop(const KernelBlock<d>& block, const Pack<W>& zz, Index pack, int q,
                                                Pack<W>* force) {
     const double* values = block.integration.displacement.values.col(q).data();
-    const Pack<W> per_radius = zz / load<W>(block.radius.data() + block.place(pack, q));
+    const Pack<W> per_radius = zz / load<W>(block.radius.data() + block.index(pack, q));
     for (int i = 0; i < block.nodes; ++i) force[i * d] += per_radius * values[i];
   }
 };

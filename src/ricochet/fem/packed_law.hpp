@@ -56,10 +56,10 @@ RICOCHET_PART_OF_CALLER Number logarithm_rest(const Number& of) {
     Number series = Number{} + 1.0 / 17.0;
     for (int k = 15; k >= 3; k -= 2) series = 1.0 / k + square * series;
     sum += factor * (x * t - 2.0 * t * square * series);
-    const auto far = !((x <= near) & (x >= -near));
-    if (any_of(far)) {
+    const auto outside = !((x <= near) & (x >= -near));
+    if (any_of(outside)) {
       for (int i = 0; i < lane_count<Number>; ++i) {
-        if (far[i] != 0) sum[i] = of[i] - std::log1p(of[i]);
+        if (outside[i] != 0) sum[i] = of[i] - std::log1p(of[i]);
       }
     }
     return sum;
@@ -72,13 +72,13 @@ RICOCHET_PART_OF_CALLER Number inverse_cube_root(const Number& x) {
   if constexpr (std::is_same_v<Number, double>) {
     return std::cbrt(1.0 / (1.0 + x));
   } else {
-    const auto far = !((x >= -0.5) & (x <= 1.5));
+    const auto outside = !((x >= -0.5) & (x <= 1.5));
     const Number volume = 1.0 + x;
     Number root = (1.0 + x * (1.0 / 3.0)) / (1.0 + x * (2.0 / 3.0));
     for (int step = 0; step < 4; ++step) root += root * (1.0 - volume * (root * root * root)) * (1.0 / 3.0);
-    if (any_of(far)) {
+    if (any_of(outside)) {
       for (int i = 0; i < lane_count<Number>; ++i) {
-        if (far[i] != 0) root[i] = std::cbrt(1.0 / volume[i]);
+        if (outside[i] != 0) root[i] = std::cbrt(1.0 / volume[i]);
       }
     }
     return root;

@@ -45,12 +45,12 @@ void PolynomialShape::values(const double* point, double* values) const {
 }
 
 template <int components>
-PolynomialMap<components>::PolynomialMap(const PolynomialShape& shape, const NodePositions& places)
-    : shape_(shape), origin_(places.col(0)) {
+PolynomialMap<components>::PolynomialMap(const PolynomialShape& shape, const NodePositions& positions)
+    : shape_(shape), origin_(positions.col(0)) {
   for (int t = 0; t < shape.terms_; ++t) {
     At& sum = coefficients_[static_cast<std::size_t>(t)];
     sum.setZero();
-    for (Index k = 1; k < shape.node_count(); ++k) sum += shape.coefficients_(k, t) * (places.col(k) - origin_);
+    for (Index k = 1; k < shape.node_count(); ++k) sum += shape.coefficients_(k, t) * (positions.col(k) - origin_);
   }
 }
 

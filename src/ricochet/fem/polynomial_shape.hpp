@@ -38,7 +38,7 @@ class PolynomialMap {
   /// x_k in the columns; components and nodes that a cell does not have are ignored.
   using NodePositions = Eigen::Matrix<double, components, PolynomialShape::most_nodes>;
   /// Keeps a reference to the shape.
-  PolynomialMap(const PolynomialShape& shape, const NodePositions& places);
+  PolynomialMap(const PolynomialShape& shape, const NodePositions& positions);
 
   struct Evaluation {
     At at;                     ///< x

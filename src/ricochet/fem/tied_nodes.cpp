@@ -14,7 +14,7 @@ TiedNodes::TiedNodes(std::vector<Tie> ties, Index node_count)
     tie_of_node_[static_cast<std::size_t>(ties_[i].node)] = static_cast<int>(i);
   // Each pass replaces nodes that are themselves tied; a chain is at most as long as there are contacts.
   constexpr int longest_chain = 16;
-  for (int round = 0;; ++round) {
+  for (int iteration = 0;; ++iteration) {
     bool changed = false;
     for (Tie& tie : ties_) {
       const bool follows_tied = std::any_of(tie.weights.begin(), tie.weights.end(),
@@ -24,7 +24,7 @@ TiedNodes::TiedNodes(std::vector<Tie> ties, Index node_count)
       changed = true;
     }
     if (!changed) return;
-    if (round == longest_chain) {
+    if (iteration == longest_chain) {
       throw Error(ErrorKind::invalid_input,
                   "tied surfaces follow each other in a cycle: exchange \"group\" and \"against\" of one of them, and "
                   "set multipliers_on = \"group\" in all");

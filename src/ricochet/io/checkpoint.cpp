@@ -25,7 +25,7 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr std::string_view magic = "RICOCHET";
 constexpr std::uint32_t format = 11;
-constexpr std::size_t kept_checkpoints = 2;
+constexpr std::size_t retained_checkpoints = 2;
 constexpr std::size_t head_size = magic.size() + sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
 std::uint32_t checksum(std::string_view text) {
@@ -170,7 +170,7 @@ std::vector<CheckpointFile> checkpoint_files(const std::string& directory) {
 void write_checkpoint(const std::string& directory, long step, const Snapshot& snapshot) {
   write_durably((fs::path(directory) / fmt::format("checkpoint-{:09}.ckpt", step)).string(), encode_snapshot(snapshot));
   const std::vector<CheckpointFile> files = checkpoint_files(directory);
-  for (std::size_t i = 0; i + kept_checkpoints < files.size(); ++i) {
+  for (std::size_t i = 0; i + retained_checkpoints < files.size(); ++i) {
     std::error_code problem;
     fs::remove(files[i].path, problem);
     if (problem) log::warning(fmt::format("{}: cannot be removed: {}", files[i].path, problem.message()));

@@ -36,7 +36,7 @@ long parse_step(const std::string& text, const std::string& part, const std::str
 }
 
 /// Converts r and W to the units of the case. The scales are powers of two, so no bits are lost.
-void take_out_scale(FclibProblem& problem, double scale) {
+void remove_scale(FclibProblem& problem, double scale) {
   problem.w *= scale;
   if (problem.solution) problem.solution->reaction /= scale;
   for (FclibSolution& guess : problem.guesses) guess.reaction /= scale;
@@ -97,7 +97,7 @@ void write_contact_problem(const std::string& path, const ContactProblem& proble
                            const ContactProvenance& provenance, long step, const std::string& remark, int stage) {
   const double time = static_cast<double>(step) * provenance.step_size;
   FclibProblem file = make_fclib(problem, provenance.dimension, &solution);
-  take_out_scale(file, problem.reaction_scale);
+  remove_scale(file, problem.reaction_scale);
   file.title = fmt::format("{}: step {}{}, t = {:.9g}", provenance.title, step,
                            stage > 1 ? fmt::format(", stage {}", stage) : "", time);
   file.description = describe_problem(problem, provenance, step, time) + (remark.empty() ? "" : "\n" + remark) +
@@ -116,20 +116,20 @@ ContactExport::ContactExport(std::vector<StepRange> steps, std::string directory
   }
 }
 
-bool ContactExport::asked_for(long step) const {
+bool ContactExport::is_requested(long step) const {
   return std::any_of(steps_.begin(), steps_.end(),
                      [&](const StepRange& range) { return range.first <= step && step <= range.last; });
 }
 
 void ContactExport::begin_step(long step) {
   step_ = step;
-  wanted_ = asked_for(step);
+  is_requested_ = is_requested(step);
   written_in_step_ = 0;
-  if (wanted_) ++steps_seen_;
+  if (is_requested_) ++steps_requested_;
 }
 
 void ContactExport::write(const ContactProblem& problem, const ContactSolution& solution) {
-  if (!wanted_) return;
+  if (!is_requested_) return;
   const int stage = written_in_step_ + 1;
   const std::string suffix = stage > 1 ? fmt::format("-stage-{}", stage) : "";
   write_contact_problem((fs::path(directory_) / fmt::format("step-{:06d}{}.hdf5", step_, suffix)).string(), problem,
@@ -143,8 +143,8 @@ std::string ContactExport::report() const {
   for (const StepRange& range : steps_) last = std::max(last, range.last);
   std::string result = fmt::format("contact problems of {} in {}", counted(steps_written_, "step"), directory_);
   if (files_ > steps_written_) result += fmt::format(" ({})", counted(files_, "file"));
-  if (steps_seen_ > steps_written_)
-    result += fmt::format("; {} had none (no point could touch)", steps_seen_ - steps_written_);
+  if (steps_requested_ > steps_written_)
+    result += fmt::format("; {} had none (no point could touch)", steps_requested_ - steps_written_);
   if (last > step_) result += fmt::format("; steps after {} were not reached", step_);
   return result;
 }

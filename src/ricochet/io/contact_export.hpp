@@ -47,15 +47,15 @@ class ContactExport {
   [[nodiscard]] std::string report() const;
 
  private:
-  [[nodiscard]] bool asked_for(long step) const;
+  [[nodiscard]] bool is_requested(long step) const;
 
   std::vector<StepRange> steps_;
   std::string directory_;
   ContactProvenance provenance_;
   long step_ = 0;
-  bool wanted_ = false;
+  bool is_requested_ = false;
   int written_in_step_ = 0;
-  long files_ = 0, steps_seen_ = 0, steps_written_ = 0;
+  long files_ = 0, steps_requested_ = 0, steps_written_ = 0;
 };
 
 }  // namespace ricochet

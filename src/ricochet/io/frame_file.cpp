@@ -254,25 +254,25 @@ void FrameFile::repair(const std::vector<FixedDataset>& fixed, Repair repair) co
   };
   try {
     create(pattern, fixed);
-    std::vector<FrameExtent> kept;
+    std::vector<FrameExtent> retained;
     for (long frame = 0; frame < frames_; ++frame) {
       const std::int64_t* sizes =
           options_.compression > 0 ? stored_sizes_.data() + static_cast<std::size_t>(frame) * layout_.size() : nullptr;
       const double time = times_.empty() ? 0.0 : times_[static_cast<std::size_t>(frame)];
       const std::vector<FrameExtent> extents = write_frame(pattern, {frame, time, nullptr, sizes});
-      kept.insert(kept.end(), extents.begin(), extents.end());
+      retained.insert(retained.end(), extents.begin(), extents.end());
     }
     const auto size = static_cast<std::int64_t>(std::filesystem::file_size(pattern));
     require_length(path_, size);
-    require_same(kept);
+    require_same(retained);
     if (repair == Repair::verify) {
       remove_pattern();
       return;
     }
-    std::sort(kept.begin(), kept.end(),
+    std::sort(retained.begin(), retained.end(),
               [](const FrameExtent& a, const FrameExtent& b) { return a.address < b.address; });
-    kept.push_back({size, 0});
-    copy_gaps(pattern, path_, kept, count_extent(pattern));
+    retained.push_back({size, 0});
+    copy_gaps(pattern, path_, retained, count_extent(pattern));
     // Truncation is last: if it is interrupted, the file is longer than recorded, which HDF5 can open, unlike a shorter
     // one.
     truncate_file(path_, size);

@@ -29,11 +29,12 @@ GatheredFields::GatheredFields(const Ranks& ranks, std::vector<Field> own, const
   }
 }
 
-GatheredFields::Rows GatheredFields::rows_of(const std::vector<Index>& own, const std::vector<Index>& places) const {
+GatheredFields::Rows GatheredFields::rows_of(const std::vector<Index>& own,
+                                             const std::vector<Index>& global_rows) const {
   Rows rows{own, {}};
-  Ranks::ForEach<std::int64_t> told(static_cast<std::size_t>(ranks_.size()));
-  for (const Index row : own) told.front().push_back(places[static_cast<std::size_t>(row)]);
-  for (std::vector<std::int64_t>& from : ranks_.exchange(std::move(told)))
+  Ranks::ForEach<std::int64_t> messages(static_cast<std::size_t>(ranks_.size()));
+  for (const Index row : own) messages.front().push_back(global_rows[static_cast<std::size_t>(row)]);
+  for (std::vector<std::int64_t>& from : ranks_.exchange(std::move(messages)))
     rows.all.emplace_back(from.begin(), from.end());
   return rows;
 }
@@ -43,17 +44,17 @@ void GatheredFields::gather() {
     const Field& field = own_[i];
     const Rows& rows = rows_of(field);
     const Index n = field.components;
-    Ranks::ForEach<double> told(static_cast<std::size_t>(ranks_.size()));
-    std::vector<double>& message = told.front();
+    Ranks::ForEach<double> messages(static_cast<std::size_t>(ranks_.size()));
+    std::vector<double>& message = messages.front();
     for (const Index row : rows.own) {
       for (Index k = row * n; k < (row + 1) * n; ++k)
         message.push_back(field.is_integer ? static_cast<double>(static_cast<const int*>(field.values)[k])
                                            : static_cast<const double*>(field.values)[k]);
     }
-    const Ranks::ForEach<double> known = ranks_.exchange(std::move(told));
+    const Ranks::ForEach<double> received = ranks_.exchange(std::move(messages));
     if (!ranks_.is_first()) continue;
-    for (std::size_t rank = 0; rank < known.size(); ++rank) {
-      const double* from = known[rank].data();
+    for (std::size_t rank = 0; rank < received.size(); ++rank) {
+      const double* from = received[rank].data();
       for (const Index row : rows.all[rank]) {
         for (Index k = row * n; k < (row + 1) * n; ++k, ++from) {
           if (field.is_integer) {

@@ -26,7 +26,7 @@ class GatheredFields {
     std::vector<Index> own;               ///< that this rank contributes
     std::vector<std::vector<Index>> all;  ///< on the first rank: target rows of each rank
   };
-  [[nodiscard]] Rows rows_of(const std::vector<Index>& own, const std::vector<Index>& places) const;
+  [[nodiscard]] Rows rows_of(const std::vector<Index>& own, const std::vector<Index>& global_rows) const;
   [[nodiscard]] const Rows& rows_of(const Field& field) const {
     return field.location == FieldLocation::nodes ? nodes_ : cells_;
   }

@@ -10,21 +10,24 @@
 #include "ricochet/io/file_change_detector.hpp"
 #include "ricochet/io/line_checksums.hpp"
 
-/// @file history.csv: a header row, then one row per step, numbers as %.17g, never an empty field.
+/// @file history.csv and probes-N.csv: a header, then a row every so many steps, numbers as %.17g, never an empty
+/// field.
 namespace ricochet {
 
+/// Writes a history row by row. Every function that writes throws Error(file_access) if the file cannot be written, or
+/// if another program has changed it.
 class HistoryWriter {
  public:
-  /// Throws Error(file_access) if the file cannot be opened or written (now or later), or if another program has
-  /// changed it before a write.
+  /// Begins a new file.
   HistoryWriter(const std::string& path, const std::vector<std::string>& columns);
-  /// Continues after the rows that existed when save() was called. Throws Error(file_access) if it is not that file.
+  /// Continues after the rows that existed when save() was called under this name. Throws Error(file_access) if the
+  /// file is missing or shorter; require_same_files() compares its content.
   HistoryWriter(const std::string& path, const Snapshot& snapshot, const std::string& name);
   /// Writes the buffered rest, if possible.
   ~HistoryWriter();
   HistoryWriter(const HistoryWriter&) = delete;
   HistoryWriter& operator=(const HistoryWriter&) = delete;
-  /// Saves the state after the last flush.
+  /// Saves the state after the last row; a snapshot of it is valid for the file only after sync().
   void save(Snapshot& snapshot, const std::string& name) const;
   void write(const std::vector<double>& row);
   /// Writes everything to the operating system, so that others can read it. Checks the file even if nothing is
@@ -53,8 +56,8 @@ struct HistoryTable {
 /// Step of the last complete row of a file that may still be written to; 0 without rows.
 [[nodiscard]] long last_history_step(const std::string& path);
 
-/// `may_grow`: for a run in progress or stopped, whose last row is ignored if it is incomplete. Throws
-/// Error(file_access) or Error(invalid_input) with the line.
+/// Reads a history. `may_grow`: for a run in progress or stopped, whose last row is ignored if no end of line follows
+/// it; otherwise such a row counts. Throws Error(file_access) or Error(invalid_input) with the line.
 [[nodiscard]] HistoryTable read_history(const std::string& path, bool may_grow = false);
 
 }  // namespace ricochet

@@ -63,10 +63,10 @@ FixedDataset element_numbers(const DisplacementSpace& space) {
 FixedDataset contact_facets_of(const DisplacementSpace& space, const ContactBoundary& contact) {
   std::vector<Part> parts;
   for (const Index facet : contact.facets) {
-    const IndexInBlocks place = locate_facet(space, facet);
-    const CellBlock* block = &space.facets[place.block];
+    const IndexInBlocks location = locate_facet(space, facet);
+    const CellBlock* block = &space.facets[location.block];
     if (parts.empty() || parts.back().block != block) parts.push_back({block, {}});
-    parts.back().members.push_back(place.local);
+    parts.back().members.push_back(location.local);
   }
   return connectivity(space, "/mesh/contact_facets", parts);
 }

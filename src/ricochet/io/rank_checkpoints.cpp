@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kept_manifests = 2;
+constexpr std::size_t retained_manifests = 2;
 
 struct Manifest {
   std::string path;
@@ -70,9 +70,9 @@ Manifest read_manifest(const std::string& path, long step) {
   if (lines.size() < 4) return manifest;
   for (std::size_t i = 3; i < lines.size(); ++i)
     manifest.checksums.push_back(lines[i].substr(std::min<std::size_t>(5, lines[i].size())));
-  std::ostringstream whole;
-  for (const std::string& each : lines) whole << each << '\n';
-  if (whole.str() != text_of(manifest)) manifest.checksums.clear();
+  std::ostringstream rewritten;
+  for (const std::string& each : lines) rewritten << each << '\n';
+  if (rewritten.str() != text_of(manifest)) manifest.checksums.clear();
   return manifest;
 }
 
@@ -111,7 +111,7 @@ void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, lon
     const Manifest manifest{manifest_path(directory, step), step, checksums};
     write_durably(manifest.path, text_of(manifest));
     const std::vector<Manifest> all = manifests(directory);
-    for (std::size_t i = kept_manifests; i < all.size(); ++i) {
+    for (std::size_t i = retained_manifests; i < all.size(); ++i) {
       std::error_code problem;
       fs::remove(all[i].path, problem);
     }
@@ -124,8 +124,8 @@ std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::st
   for (const Manifest& manifest : ranks.is_first() ? manifests(directory) : std::vector<Manifest>{}) {
     for (std::vector<std::int64_t>& to : steps) to.push_back(manifest.step);
   }
-  const Ranks::ForEach<std::int64_t> told = ranks.exchange(std::move(steps));
-  for (const std::int64_t step : told.front()) {
+  const Ranks::ForEach<std::int64_t> received = ranks.exchange(std::move(steps));
+  for (const std::int64_t step : received.front()) {
     const Manifest manifest = read_manifest(manifest_path(directory, step), step);
     std::optional<Snapshot> snapshot;
     std::string why = "the manifest is damaged, or belongs to another run";

@@ -34,7 +34,7 @@ class LockedFrames {
 struct ResultsWriter::Implementation {
   Implementation(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
                  const ResultsOptions& options, const Snapshot* snapshot, const std::string& name,
-                 const WholeBody& whole);
+                 const GlobalBody& global_body);
   void open(const FrameOutputContext& context, ResultsFormat format);
 
   const Ranks& ranks;
@@ -49,7 +49,8 @@ struct ResultsWriter::Implementation {
 
 ResultsWriter::Implementation::Implementation(const std::string& directory, const Body& body,
                                               const SemidiscreteProblem& problem, const ResultsOptions& options,
-                                              const Snapshot* snapshot, const std::string& name, const WholeBody& whole)
+                                              const Snapshot* snapshot, const std::string& name,
+                                              const GlobalBody& global_body)
     : ranks(*problem.ranks),
       sources(make_field_sources({body, problem, wanted_fields(options.fields)})),
       lock_path(directory + "/" + lock_of_results(options.format)) {
@@ -61,11 +62,12 @@ ResultsWriter::Implementation::Implementation(const std::string& directory, cons
     return;
   }
   if (snapshot != nullptr) frame_count = snapshot->integer(name + ".frame_count");
-  gathered =
-      std::make_unique<GatheredFields>(ranks, fields, whole.node_rows, whole.cell_rows, whole.nodes, whole.cells);
+  gathered = std::make_unique<GatheredFields>(ranks, fields, global_body.node_rows, global_body.cell_rows,
+                                              global_body.nodes, global_body.cells);
   ranks.run_collectively([&] {
     if (!ranks.is_first()) return;
-    open({directory, *whole.body, *whole.problem, gathered->fields(), options.file, snapshot, name}, options.format);
+    open({directory, *global_body.body, *global_body.problem, gathered->fields(), options.file, snapshot, name},
+         options.format);
   });
 }
 
@@ -83,13 +85,14 @@ void ResultsWriter::Implementation::open(const FrameOutputContext& context, Resu
 }
 
 ResultsWriter::ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
-                             const ResultsOptions& options, const WholeBody& whole)
-    : implementation_(std::make_unique<Implementation>(directory, body, problem, options, nullptr, "", whole)) {}
+                             const ResultsOptions& options, const GlobalBody& global_body)
+    : implementation_(std::make_unique<Implementation>(directory, body, problem, options, nullptr, "", global_body)) {}
 
 ResultsWriter::ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
                              const ResultsOptions& options, const Snapshot& snapshot, const std::string& name,
-                             const WholeBody& whole)
-    : implementation_(std::make_unique<Implementation>(directory, body, problem, options, &snapshot, name, whole)) {}
+                             const GlobalBody& global_body)
+    : implementation_(
+          std::make_unique<Implementation>(directory, body, problem, options, &snapshot, name, global_body)) {}
 
 ResultsWriter::~ResultsWriter() = default;
 

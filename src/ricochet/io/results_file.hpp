@@ -24,7 +24,7 @@ struct ResultsOptions {
 };
 
 /// Whole body of which each rank has a part: the first rank writes it.
-struct WholeBody {
+struct GlobalBody {
   const Body* body = nullptr;  ///< on the first rank: space and mesh of the whole
   const SemidiscreteProblem* problem = nullptr;
   std::vector<Index> node_rows, cell_rows;  ///< rows of this rank
@@ -36,12 +36,12 @@ class ResultsWriter {
   /// Opens the files in the directory. Keeps references to body and problem. Throws Error(file_access). `to_sparse`: on
   /// several ranks, which all write together.
   ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
-                const ResultsOptions& options, const WholeBody& whole = {});
+                const ResultsOptions& options, const GlobalBody& global_body = {});
   /// Continues after the frames that existed when save() was called; the files will have the bytes of an uninterrupted
   /// run. Throws Error(file_access) if they are not those files.
   ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
                 const ResultsOptions& options, const Snapshot& snapshot, const std::string& name,
-                const WholeBody& whole = {});
+                const GlobalBody& global_body = {});
   ~ResultsWriter();
   ResultsWriter(const ResultsWriter&) = delete;
   ResultsWriter& operator=(const ResultsWriter&) = delete;

@@ -21,12 +21,12 @@ namespace ricochet {
 
 /// Result of one [[expect]] entry.
 struct ExpectationResult {
-  std::string name = {};                                    ///< the quantity in words; may be empty
-  std::string quantity = {};                                ///< as in the case, with its factor and its divisor
-  std::string published = {};                               ///< published value, in words; may be empty
-  double value = 0.0;                                       ///< computed; 0 if it was not or could not be checked
-  std::string wanted = {};                                  ///< in words, and in numbers:
-  std::optional<double> wanted_value = {}, tolerance = {};  ///< absolute; both or none
+  std::string name = {};                                      ///< the quantity in words; may be empty
+  std::string quantity = {};                                  ///< as in the case, with its factor and its divisor
+  std::string published = {};                                 ///< published value, in words; may be empty
+  double value = 0.0;                                         ///< computed; 0 if it was not or could not be checked
+  std::string expected = {};                                  ///< in words, and in numbers:
+  std::optional<double> expected_value = {}, tolerance = {};  ///< absolute; both or none
   std::optional<double> minimum = {}, maximum = {};
   std::string location = {};  ///< in the case file
   bool checked = true;        ///< false: does not apply to this run, see `note`

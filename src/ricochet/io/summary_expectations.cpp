@@ -10,7 +10,7 @@ namespace {
 
 /// Entries that exist only if the case specifies them.
 const std::array<std::pair<std::string, std::optional<double> ExpectationResult::*>, 4> optional_numbers{
-    {{"wanted_value", &ExpectationResult::wanted_value},
+    {{"wanted_value", &ExpectationResult::expected_value},
      {"tolerance", &ExpectationResult::tolerance},
      {"minimum", &ExpectationResult::minimum},
      {"maximum", &ExpectationResult::maximum}}};
@@ -24,7 +24,7 @@ Json expectations_to_json(const std::vector<ExpectationResult>& expectations) {
                   {"quantity", e.quantity},
                   {"published", e.published},
                   {"value", Json::number(e.value)},
-                  {"wanted", e.wanted}};
+                  {"wanted", e.expected}};
     for (const auto& [name, member] : optional_numbers) {
       if (const std::optional<double> number = e.*member) entry[name] = *number;
     }
@@ -42,7 +42,7 @@ std::vector<ExpectationResult> read_expectations(const Json& summary) {
                         .quantity = entry.at("quantity"),
                         .published = entry.value("published", ""),
                         .value = entry.at("value").to_number(),
-                        .wanted = entry.at("wanted"),
+                        .expected = entry.at("wanted"),
                         .location = entry.at("location"),
                         .checked = entry.at("checked"),
                         .holds = entry.at("holds"),

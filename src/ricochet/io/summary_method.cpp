@@ -94,15 +94,15 @@ Json iterations_to_json(const RunSummary& summary) {
 Json unsettled_contacts_to_json(const RunSummary& summary) {
   Json result = Json::array();
   for (const UnsettledContact& contact : summary.unsettled) {
-    Json place = Json::array();
-    for (const double coordinate : contact.position) place.push_back(Json::number(coordinate));
+    Json coordinates = Json::array();
+    for (const double coordinate : contact.position) coordinates.push_back(Json::number(coordinate));
     result.push_back({{"contact", contact.contact},
                       {"share_of_force", Json::number(contact.share)},
                       {"steps", contact.steps},
                       {"first_time", Json::number(contact.first_time)},
                       {"time", Json::number(contact.time)},
                       {"gap", Json::number(contact.gap)},
-                      {"place", place}});
+                      {"place", coordinates}});
   }
   return result;
 }
@@ -110,15 +110,15 @@ Json unsettled_contacts_to_json(const RunSummary& summary) {
 namespace {
 
 UnsettledContact unsettled_from(const Json& json) {
-  std::vector<double> place;
-  for (const Json& coordinate : json.at("place")) place.push_back(coordinate.to_number());
+  std::vector<double> coordinates;
+  for (const Json& coordinate : json.at("place")) coordinates.push_back(coordinate.to_number());
   return {json.at("contact"),
           json.at("share_of_force").to_number(),
           json.at("steps"),
           json.at("first_time").to_number(),
           json.at("time").to_number(),
           json.at("gap").to_number(),
-          place};
+          coordinates};
 }
 
 }  // namespace

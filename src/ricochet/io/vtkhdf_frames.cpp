@@ -168,8 +168,8 @@ class VtkHdfFrames : public FrameArrangement {
     }
     // HDF5 searches all chunks for one, so the address is determined only if required.
     FrameExtent extent{0, entries_of(layout) * (layout.is_integer || options_.single ? 4 : 8)};
-    const bool is_wanted = frame.values == nullptr || !is_as_in_memory(layout, options_);
-    if (layout.rows > 0 && is_wanted) extent = hdf5_chunk_extent(set, first, good);
+    const bool is_requested = frame.values == nullptr || !is_as_in_memory(layout, options_);
+    if (layout.rows > 0 && is_requested) extent = hdf5_chunk_extent(set, first, good);
     check_written(path, good, name(frame.number) + "/" + layout.name);
     return extent;
   }

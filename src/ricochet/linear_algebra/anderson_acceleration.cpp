@@ -29,16 +29,16 @@ void AndersonAcceleration::advance(const Vector& point, const Vector& image, Vec
   }
   std::swap(residual_, last_residual_);
   residual_ = image - point;
-  if (kept_ >= 0) keep_changes(image);
-  kept_ = std::max<Index>(kept_, 0);
+  if (stored_ >= 0) store_changes(image);
+  stored_ = std::max<Index>(stored_, 0);
   image_ = image;
   next = image;
   combine(next);
 }
 
-void AndersonAcceleration::keep_changes(const Vector& image) {
+void AndersonAcceleration::store_changes(const Vector& image) {
   newest_ = (newest_ + 1) % depth_;
-  kept_ = std::min(kept_ + 1, depth_);
+  stored_ = std::min(stored_ + 1, depth_);
   image_changes_.col(newest_) = image - image_;
   residual_changes_.col(newest_) = residual_ - last_residual_;
 }
@@ -47,9 +47,9 @@ void AndersonAcceleration::keep_changes(const Vector& image) {
 /// orders of magnitude, so each is normalized, and one that newer ones nearly span is left out.
 void AndersonAcceleration::combine(Vector& next) {
   constexpr double same_direction = 1e-10;
-  left_ = residual_;
+  remaining_ = residual_;
   Index count = 0;
-  for (Index age = 0; age < kept_; ++age) {
+  for (Index age = 0; age < stored_; ++age) {
     const Index column = (newest_ - age + depth_) % depth_;
     const double length = norm(residual_changes_.col(column));
     if (length == 0.0) continue;
@@ -67,8 +67,8 @@ void AndersonAcceleration::combine(Vector& next) {
     if (own <= same_direction) continue;
     direction /= own;
     move /= own;
-    const double weight = dot(direction, left_);
-    left_ -= weight * direction;
+    const double weight = dot(direction, remaining_);
+    remaining_ -= weight * direction;
     next -= weight * move;
     ++count;
   }

@@ -15,7 +15,7 @@ class AndersonAcceleration {
   /// Distributes the vectors over several ranks, each of which has some of the entries. `is_counted` is 1 for an entry
   /// on one of the ranks that have it and 0 on the others. All ranks then call advance() together.
   void distribute(const Ranks& ranks, Vector is_counted);
-  void restart() { kept_ = -1; }
+  void restart() { stored_ = -1; }
   /// Sets `next` to the next point; after a restart this is F(x). `next` may be `image`, F(x).
   void advance(const Vector& point, const Vector& image, Vector& next);
 
@@ -24,18 +24,18 @@ class AndersonAcceleration {
   [[nodiscard]] double dot(const One& one, const Other& other) const;
   template <class Values>
   [[nodiscard]] double norm(const Values& values) const;
-  void keep_changes(const Vector& image);
+  void store_changes(const Vector& image);
   void combine(Vector& next);
 
   const Ranks* ranks_ = &one_rank();
   Vector is_counted_;  ///< empty: all are
   Index depth_;
-  Index kept_ = -1, newest_ = 0;             ///< number of stored changes, and column of the newest; −1: no point yet
+  Index stored_ = -1, newest_ = 0;           ///< number of stored changes, and column of the newest; −1: no point yet
   Vector image_, residual_, last_residual_;  ///< of the last point
   Matrix image_changes_, residual_changes_;  ///< columns used cyclically
   Matrix directions_, moves_;  ///< orthonormal combinations of residual changes, newest first, and the same
                                ///< combinations of image changes
-  Vector left_;                ///< remainder of the residual
+  Vector remaining_;           ///< remainder of the residual
 };
 
 }  // namespace ricochet

@@ -89,12 +89,12 @@ double improve_largest_eigenvalue(const std::function<void(const Vector&, Vector
     basis.col(count) = current;
     ++count;
     multiply(current, next);
-    const auto known = basis.leftCols(count);
-    const Vector along = known.transpose() * next;
+    const auto previous = basis.leftCols(count);
+    const Vector along = previous.transpose() * next;
     projected.row(count - 1).head(count) = along.transpose();
     const double before = next.norm();
-    next -= known * along;
-    next -= known * (known.transpose() * next).eval();
+    next -= previous * along;
+    next -= previous * (previous.transpose() * next).eval();
     const double length = next.norm();
     if (count == products || !(length > 64.0 * std::numeric_limits<double>::epsilon() * before)) break;
     current = next / length;

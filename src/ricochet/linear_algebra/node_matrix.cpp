@@ -56,16 +56,16 @@ void NodeMatrix::read_values(const SparseMatrix& matrix) {
       const int* middle = begin + group.two_sided;
       const int* end = middle + group.one_sided;
       for (int a = 0; a < (is_scalar() ? 1 : d); ++a) {
-        int last_seen = -1;
+        int last_other = -1;
         const int* at = end;
         // Columns equal rows, since the matrix is symmetric.
         for (SparseMatrix::InnerIterator entry(matrix, Index{node} * d + a); entry; ++entry) {
           const int other = static_cast<int>(entry.row()) / d;
-          if (other != last_seen) {
+          if (other != last_other) {
             at = std::lower_bound(begin, middle, other);
             if (at == middle || *at != other) at = std::lower_bound(middle, end, other);
             if (at != end && *at != other) at = end;
-            last_seen = other;
+            last_other = other;
           }
           if (at == end) continue;
           const Index in_block = is_scalar() ? 0 : (entry.row() - Index{other} * d) * d + a;
@@ -214,60 +214,62 @@ SparseMatrix NodeMatrix::to_sparse() const {
 
 namespace {
 
-/// Position of each node in `taken`; −1 if it is not in it.
-std::vector<int> places_of(const std::vector<Index>& taken, std::size_t nodes) {
-  std::vector<int> place(nodes, -1);
-  for (std::size_t i = 0; i < taken.size(); ++i) place[static_cast<std::size_t>(taken[i])] = static_cast<int>(i);
-  return place;
+/// Position of each node in `selected`; −1 if it is not in it.
+std::vector<int> positions_of(const std::vector<Index>& selected, std::size_t nodes) {
+  std::vector<int> position(nodes, -1);
+  for (std::size_t i = 0; i < selected.size(); ++i)
+    position[static_cast<std::size_t>(selected[i])] = static_cast<int>(i);
+  return position;
 }
 
 }  // namespace
 
-SparseMatrix NodeMatrix::principal(const std::vector<Index>& taken) const {
-  const std::vector<int> place = places_of(taken, pattern_.node.size());
-  const auto count = static_cast<Index>(taken.size());
-  return extract(place, count, place, count);
+SparseMatrix NodeMatrix::principal(const std::vector<Index>& selected) const {
+  const std::vector<int> position = positions_of(selected, pattern_.node.size());
+  const auto count = static_cast<Index>(selected.size());
+  return extract(position, count, position, count);
 }
 
-SparseMatrix NodeMatrix::columns(const std::vector<Index>& taken) const {
+SparseMatrix NodeMatrix::columns(const std::vector<Index>& selected) const {
   std::vector<int> all(pattern_.node.size());
   std::iota(all.begin(), all.end(), 0);
-  return extract(all, static_cast<Index>(all.size()), places_of(taken, all.size()), static_cast<Index>(taken.size()));
+  return extract(all, static_cast<Index>(all.size()), positions_of(selected, all.size()),
+                 static_cast<Index>(selected.size()));
 }
 
 /// Extracts block rows and columns, numbered by `row_of` and `column_of` per node; −1 omits a node.
 SparseMatrix NodeMatrix::extract(const std::vector<int>& row_of, Index rows, const std::vector<int>& column_of,
                                  Index columns) const {
   const int d = dimension_;
-  struct Place {
+  struct BlockPosition {
     int row;
     Index block;
     bool transposed;
   };
   const auto each_block = [&](const auto& enter) {
-    const auto enter_taken = [&](int row, int column, Index block, bool transposed) {
+    const auto enter_selected = [&](int row, int column, Index block, bool transposed) {
       if (row_of[static_cast<std::size_t>(row)] >= 0 && column_of[static_cast<std::size_t>(column)] >= 0)
         enter(column_of[static_cast<std::size_t>(column)],
-              Place{row_of[static_cast<std::size_t>(row)], block, transposed});
+              BlockPosition{row_of[static_cast<std::size_t>(row)], block, transposed});
     };
     // A block stored in a row belongs, transposed, to its column; a two-sided block also belongs to the other column.
     pattern_.visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
       if (row_of[static_cast<std::size_t>(node)] < 0 && column_of[static_cast<std::size_t>(node)] < 0) return;
       for (Index k = 0; k < group.blocks_per_row(); ++k) {
         const int other = pattern_.column[static_cast<std::size_t>(first_block + k)];
-        enter_taken(other, node, first_block + k, true);
-        if (k < group.two_sided) enter_taken(node, other, first_block + k, false);
+        enter_selected(other, node, first_block + k, true);
+        if (k < group.two_sided) enter_selected(node, other, first_block + k, false);
       }
     });
   };
   std::vector<Index> begins(static_cast<std::size_t>(columns) + 1, 0);  // of the blocks of each column
-  each_block([&](int column, const Place&) { ++begins[static_cast<std::size_t>(column) + 1]; });
+  each_block([&](int column, const BlockPosition&) { ++begins[static_cast<std::size_t>(column) + 1]; });
   for (std::size_t i = 1; i < begins.size(); ++i) begins[i] += begins[i - 1];
-  std::vector<Place> places(static_cast<std::size_t>(begins.back()));
+  std::vector<BlockPosition> positions(static_cast<std::size_t>(begins.back()));
   {
     std::vector<Index> next(begins.begin(), begins.end() - 1);
-    each_block([&](int column, const Place& place) {
-      places[static_cast<std::size_t>(next[static_cast<std::size_t>(column)]++)] = place;
+    each_block([&](int column, const BlockPosition& position) {
+      positions[static_cast<std::size_t>(next[static_cast<std::size_t>(column)]++)] = position;
     });
   }
   const Index per_block = is_scalar() ? 1 : d;  // entries of a block in one column of the matrix
@@ -278,17 +280,17 @@ SparseMatrix NodeMatrix::extract(const std::vector<int>& row_of, Index rows, con
   outer[columns * d] = static_cast<int>(entries);
   parallel_ranges(columns, [&](Index first, Index last) {
     for (Index column = first; column < last; ++column) {
-      const auto begin = places.begin() + begins[static_cast<std::size_t>(column)];
-      const auto end = places.begin() + begins[static_cast<std::size_t>(column) + 1];
-      std::sort(begin, end, [](const Place& a, const Place& b) { return a.row < b.row; });
+      const auto begin = positions.begin() + begins[static_cast<std::size_t>(column)];
+      const auto end = positions.begin() + begins[static_cast<std::size_t>(column) + 1];
+      std::sort(begin, end, [](const BlockPosition& a, const BlockPosition& b) { return a.row < b.row; });
       for (int a = 0; a < d; ++a) {
         Index at = (begins[static_cast<std::size_t>(column)] * d + a * (end - begin)) * per_block;
         outer[column * d + a] = static_cast<int>(at);
-        for (auto place = begin; place != end; ++place) {
-          const double* block = values_.data() + place->block * stride_;
+        for (auto position = begin; position != end; ++position) {
+          const double* block = values_.data() + position->block * stride_;
           for (Index c = 0; c < per_block; ++c, ++at) {
-            result.innerIndexPtr()[at] = static_cast<int>(place->row * d + (is_scalar() ? a : c));
-            result.valuePtr()[at] = block[is_scalar() ? 0 : place->transposed ? c * d + a : a * d + c];
+            result.innerIndexPtr()[at] = static_cast<int>(position->row * d + (is_scalar() ? a : c));
+            result.valuePtr()[at] = block[is_scalar() ? 0 : position->transposed ? c * d + a : a * d + c];
           }
         }
       }

@@ -21,14 +21,14 @@ class RowOfMatrix {
     nodes_.clear();
     for (int a = 0; a < columns_; ++a) {
       // The columns of a node mostly have the same rows, ascending; the second one then adds nothing.
-      std::size_t known = 0;
+      std::size_t matched = 0;
       int last = -1;
       for (SparseMatrix::InnerIterator entry(matrix_, node * d_ + a); entry; ++entry) {
         const int other = static_cast<int>(entry.row()) / d_;
         if (other == last) continue;
         last = other;
-        if (a > 0 && known < nodes_.size() && nodes_[known] == other) {
-          ++known;
+        if (a > 0 && matched < nodes_.size() && nodes_[matched] == other) {
+          ++matched;
         } else {
           nodes_.push_back(other);
         }

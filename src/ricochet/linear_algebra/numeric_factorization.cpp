@@ -41,9 +41,9 @@ NumericFactorization::NumericFactorization(SupernodalFactor& factor) : factor_(f
 void NumericFactorization::plan_panels() {
   for (Index s = 0; s < factor_.supernode_count(); ++s) {
     const SupernodalFactor::Supernode& node = factor_.supernode(s);
-    most_rows_ = std::max<Index>(most_rows_, node.columns + node.below);
+    max_rows_ = std::max<Index>(max_rows_, node.columns + node.below);
     const Index head = node.columns % 8, blocks = node.columns / 8;
-    const Index count = std::max<Index>(1, (8 * blocks + most_panel_columns - 1) / most_panel_columns);
+    const Index count = std::max<Index>(1, (8 * blocks + max_panel_columns - 1) / max_panel_columns);
     first_panel_.push_back(static_cast<int>(panels_.size()));
     for (Index i = 0; i < count; ++i) {
       const Index begin = i == 0 ? 0 : head + 8 * (blocks * i / count), end = head + 8 * (blocks * (i + 1) / count);
@@ -60,7 +60,7 @@ void NumericFactorization::plan_updates() {
     std::fill(panel_of.begin() + first + panels_[p].begin, panel_of.begin() + first + panels_[p].end,
               static_cast<int>(p));
   }
-  const auto visit = [&](const auto& take) {
+  const auto visit = [&](const auto& enter) {
     for (Index s = 0; s < factor_.supernode_count(); ++s) {
       const SupernodalFactor::Supernode& node = factor_.supernode(s);
       const int size = node.columns + node.below;
@@ -68,7 +68,7 @@ void NumericFactorization::plan_updates() {
       for (int begin = node.columns; begin < size;) {
         int end = begin + 1;
         while (end < size && panel(end) == panel(begin)) ++end;
-        take(static_cast<std::size_t>(panel(begin)), PanelUpdate{static_cast<int>(s), begin, end});
+        enter(static_cast<std::size_t>(panel(begin)), PanelUpdate{static_cast<int>(s), begin, end});
         begin = end;
       }
     }
@@ -110,7 +110,7 @@ void NumericFactorization::plan_tasks() {
 void NumericFactorization::prepare_workspaces() {
   while (workspaces_.size() < static_cast<std::size_t>(thread_count()) + 1) {
     workspaces_.push_back(std::make_unique<PanelWorkspace>());
-    workspaces_.back()->allocate(factor_.size(), most_rows_);
+    workspaces_.back()->allocate(factor_.size(), max_rows_);
   }
 }
 
@@ -144,7 +144,7 @@ Index NumericFactorization::factorize(int supernode, const LowerColumns& matrix,
     const Index rows = panel.rows();
     const auto assemble = [&](Index begin, Index end, PanelWorkspace& own) {
       panel.assemble(matrix, scale, updates_.data() + first_update_[p], updates_.data() + first_update_[p + 1], begin,
-                     end, own.row_places);
+                     end, own.relative_rows);
     };
     if (divided && thread_count() > 1) {
       parallel_items((rows + rows_per_tile - 1) / rows_per_tile, [&](Index tile) {

@@ -44,7 +44,7 @@ class NumericFactorization {
   std::vector<int> first_panel_;      ///< per supernode, and the end
   std::vector<PanelUpdate> updates_;  ///< by panel, then by source
   std::vector<Index> first_update_;   ///< per panel, and the end
-  Index most_rows_ = 0;
+  Index max_rows_ = 0;
   double all_operations_ = 0.0;
 
   /// A task: supernodes [begin, end).

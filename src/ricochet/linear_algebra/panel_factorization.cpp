@@ -12,7 +12,7 @@ namespace {
 constexpr Index blocks_at_once = 32;
 /// Number of panels of eight rows that are multiplied by one panel after the other while they are in the cache.
 constexpr Index panels_at_once = 24;
-constexpr Index most_columns_at_once = 8 * blocks_at_once + 8;
+constexpr Index max_columns_at_once = 8 * blocks_at_once + 8;
 /// Entries before and behind a range may be pointed to, but are not read.
 constexpr Index margin = 8;
 
@@ -61,18 +61,18 @@ class Remainder {
     return from + 8 * columns;
   }
 
-  std::array<double, 8 * most_columns_at_once> values_;
+  std::array<double, 8 * max_columns_at_once> values_;
   Index head_;
 };
 
 }  // namespace
 
-void PanelWorkspace::allocate(Index size, Index most_rows) {
+void PanelWorkspace::allocate(Index size, Index max_rows) {
   // Not initialized here: a thread that processes parts of other threads' panels never touches these pages.
   values = std::make_unique_for_overwrite<double[]>(
-      static_cast<std::size_t>((most_rows + 2 * margin) * (most_panel_columns + 8)));
+      static_cast<std::size_t>((max_rows + 2 * margin) * (max_panel_columns + 8)));
   local.resize(static_cast<std::size_t>(size));
-  row_places.resize(static_cast<std::size_t>(most_rows + 2 * margin));
+  relative_rows.resize(static_cast<std::size_t>(max_rows + 2 * margin));
 }
 
 PanelFactorization::PanelFactorization(SupernodalFactor& factor, const FactorPanel& panel, PanelWorkspace& workspace)
@@ -92,7 +92,7 @@ PanelFactorization::PanelFactorization(SupernodalFactor& factor, const FactorPan
 }
 
 void PanelFactorization::assemble(const LowerColumns& matrix, double scale, const PanelUpdate* first,
-                                  const PanelUpdate* last, Index begin, Index end, std::vector<int>& places) {
+                                  const PanelUpdate* last, Index begin, Index end, std::vector<int>& row_storage) {
   const Index columns = panel_.end - panel_.begin;
   for (Index j = 0; j < columns; ++j) {
     double* const column = values_ + j * stride_;
@@ -106,25 +106,25 @@ void PanelFactorization::assemble(const LowerColumns& matrix, double scale, cons
       if (row >= begin && row < end) column[row] = scale * matrix.values[k];
     }
   }
-  int* const row_places = places.data() + margin;
-  std::array<int, most_panel_columns + 8 + 2 * margin> column_storage;
-  int* const column_places = column_storage.data() + margin;
+  int* const relative_rows = row_storage.data() + margin;
+  std::array<int, max_panel_columns + 8 + 2 * margin> column_storage;
+  int* const relative_columns = column_storage.data() + margin;
   if (panel_.begin > 0) {
-    for (Index i = begin; i < end; ++i) row_places[i - begin] = static_cast<int>(i);
-    for (Index j = 0; j < columns; ++j) column_places[j] = static_cast<int>(j);
-    subtract({layout_, base_, first_block_}, panel_.begin + begin, panel_.begin + end, row_places, panel_.begin,
-             panel_.end, column_places);
+    for (Index i = begin; i < end; ++i) relative_rows[i - begin] = static_cast<int>(i);
+    for (Index j = 0; j < columns; ++j) relative_columns[j] = static_cast<int>(j);
+    subtract({layout_, base_, first_block_}, panel_.begin + begin, panel_.begin + end, relative_rows, panel_.begin,
+             panel_.end, relative_columns);
   }
   for (; first != last; ++first) {
     const PanelUpdate& update = *first;
     const SupernodalFactor::Supernode& node = factor_.supernode(update.source);
     const Index size = node.columns + node.below;
-    const auto place = [&](Index row) { return local_[factor_.row(node, row)]; };
-    const auto first_at = [&](Index wanted, Index from) {
+    const auto relative_index = [&](Index row) { return local_[factor_.row(node, row)]; };
+    const auto first_at = [&](Index target, Index from) {
       Index low = from, high = size;
       while (low < high) {
         const Index middle = (low + high) / 2;
-        if (place(middle) < wanted) {
+        if (relative_index(middle) < target) {
           low = middle + 1;
         } else {
           high = middle;
@@ -135,16 +135,16 @@ void PanelFactorization::assemble(const LowerColumns& matrix, double scale, cons
     const Index row_begin = begin == 0 ? update.begin : first_at(begin, update.begin);
     const Index row_end = end == rows_ ? size : first_at(end, row_begin);
     if (row_begin == row_end) continue;
-    for (Index i = row_begin; i < row_end; ++i) row_places[i - row_begin] = place(i);
-    for (Index j = update.begin; j < update.end; ++j) column_places[j - update.begin] = place(j);
+    for (Index i = row_begin; i < row_end; ++i) relative_rows[i - row_begin] = relative_index(i);
+    for (Index j = update.begin; j < update.end; ++j) relative_columns[j - update.begin] = relative_index(j);
     const SupernodeLayout layout(node.columns, size);
-    subtract({layout, factor_.numbers(node), layout.blocks}, row_begin, row_end, row_places, update.begin, update.end,
-             column_places);
+    subtract({layout, factor_.numbers(node), layout.blocks}, row_begin, row_end, relative_rows, update.begin,
+             update.end, relative_columns);
   }
 }
 
-void PanelFactorization::subtract(const Source& source, Index row_begin, Index row_end, const int* row_places,
-                                  Index column_begin, Index column_end, const int* column_places) {
+void PanelFactorization::subtract(const Source& source, Index row_begin, Index row_end, const int* relative_rows,
+                                  Index column_begin, Index column_end, const int* relative_columns) {
   const SupernodeLayout& layout = source.layout;
   const Index head = layout.head, panels = layout.panels();
   const Index first = (row_begin - head) / 8, last = std::min((row_end - head + 7) / 8, panels);
@@ -162,15 +162,15 @@ void PanelFactorization::subtract(const Source& source, Index row_begin, Index r
       return PanelRows{source.base + layout.head_panel(panel), source.base + layout.panel(block, panel),
                        layout.stride(block), 64};
     };
-    const auto places = [head](Index panel, Index begin, Index end, const int* all) {
+    const auto target_of = [head](Index panel, Index begin, Index end, const int* all) {
       const Index at = head + 8 * panel;
       return PanelTarget{std::max<Index>(0, begin - at), std::min<Index>(8, end - at), all + (at - begin)};
     };
     const auto multiply = [&](Index panel, Index many, Index column) {
       multiply_panels(many, rows_of(panel), rows_of(column), columns, product);
-      const PanelTarget column_range = places(column, column_begin, column_end, column_places);
+      const PanelTarget column_range = target_of(column, column_begin, column_end, relative_columns);
       for (Index p = 0; p < many; ++p) {
-        subtract_panel(product + 64 * p, places(panel + p, row_begin, row_end, row_places), column_range, values_,
+        subtract_panel(product + 64 * p, target_of(panel + p, row_begin, row_end, relative_rows), column_range, values_,
                        stride_);
       }
     };

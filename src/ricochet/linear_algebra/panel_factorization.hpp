@@ -17,7 +17,7 @@ struct LowerColumns {
 };
 
 /// Largest number of columns of a panel. Products of a panel with itself have few columns, so it must not be wide.
-constexpr Index most_panel_columns = 128;
+constexpr Index max_panel_columns = 128;
 
 /// Columns [begin, end) of a supernode, with its rows from `begin` on. The first panel of a supernode contains its
 /// head, and the others begin where a block begins (linear_algebra/supernode_layout.hpp).
@@ -36,9 +36,9 @@ struct PanelUpdate {
 struct PanelWorkspace {
   std::unique_ptr<double[]> values;  ///< of the panel, column by column
   std::vector<int> local;            ///< per row of the factor: its index in the panel
-  std::vector<int> row_places;       ///< of an update
-  /// Allocates for factors with `size` rows, whose supernodes have at most `most_rows`.
-  void allocate(Index size, Index most_rows);
+  std::vector<int> relative_rows;    ///< of an update
+  /// Allocates for factors with `size` rows, whose supernodes have at most `max_rows`.
+  void allocate(Index size, Index max_rows);
 };
 
 class PanelFactorization {
@@ -50,9 +50,9 @@ class PanelFactorization {
   [[nodiscard]] Index rows() const { return rows_; }
   /// Assembles rows [begin, end), before they are divided by the triangle: A's entries minus the contributions of
   /// earlier columns, in the order of `updates` [first, last). Parts of the rows may be assembled in parallel, each
-  /// with its own `places`. Throws std::logic_error if A has an entry outside the rows of the factor.
+  /// with its own `row_storage`. Throws std::logic_error if A has an entry outside the rows of the factor.
   void assemble(const LowerColumns& matrix, double scale, const PanelUpdate* first, const PanelUpdate* last,
-                Index begin, Index end, std::vector<int>& places);
+                Index begin, Index end, std::vector<int>& row_storage);
   /// Factorizes the triangle of the panel's own columns. Returns the first whose pivot is not positive, or −1.
   Index factorize_triangle();
   /// Number of groups of the rows below.
@@ -70,8 +70,8 @@ class PanelFactorization {
     const double* base;
     Index end_block;
   };
-  void subtract(const Source& source, Index row_begin, Index row_end, const int* row_places, Index column_begin,
-                Index column_end, const int* column_places);
+  void subtract(const Source& source, Index row_begin, Index row_end, const int* relative_rows, Index column_begin,
+                Index column_end, const int* relative_columns);
   [[nodiscard]] PanelRows own_rows(Index panel) const {
     return {base_ + layout_.head_panel(panel), base_ + layout_.panel(first_block_, panel), layout_.stride(first_block_),
             64};

@@ -104,17 +104,17 @@ RICOCHET_EACH_INSTRUCTION_SET(void, subtract_panel,
                               (const double* c, const PanelTarget& rows, const PanelTarget& columns, double* matrix,
                                Index stride),
                               (c, rows, columns, matrix, stride)) {
-  const int* const places = rows.places;
-  if (rows.begin == 0 && rows.end == 8 && places[7] - places[0] == 7) {
+  const int* const indices = rows.indices;
+  if (rows.begin == 0 && rows.end == 8 && indices[7] - indices[0] == 7) {
     for (Index j = columns.begin; j < columns.end; ++j) {
-      double* const to = matrix + columns.places[j] * stride + places[0];
+      double* const to = matrix + columns.indices[j] * stride + indices[0];
       store<8>(to, load<8>(to) - load<8>(c + 8 * j));
     }
     return;
   }
   for (Index j = columns.begin; j < columns.end; ++j) {
-    double* const to = matrix + columns.places[j] * stride;
-    for (Index i = rows.begin; i < rows.end; ++i) to[places[i]] -= c[8 * j + i];
+    double* const to = matrix + columns.indices[j] * stride;
+    for (Index i = rows.begin; i < rows.end; ++i) to[indices[i]] -= c[8 * j + i];
   }
 }
 

@@ -28,7 +28,7 @@ void multiply_panels(Index count, const PanelRows& a, const PanelRows& b, PanelC
 /// Target of a product of two panels in a matrix: rows or columns [begin, end) of the eight, and their indices.
 struct PanelTarget {
   Index begin = 0, end = 8;
-  const int* places = nullptr;  ///< eight, ascending; those outside of [begin, end) are not read
+  const int* indices = nullptr;  ///< eight, ascending; those outside of [begin, end) are not read
 };
 /// Subtracts C, 8 × 8 in column-major order, from a matrix in column-major order.
 void subtract_panel(const double* c, const PanelTarget& rows, const PanelTarget& columns, double* matrix, Index stride);

@@ -34,9 +34,9 @@ bool PrincipalFactor::set_base(const Matrix& w, const std::vector<Index>& indice
   base_ = indices_ = indices;
   added_.clear();
   removed_.clear();
-  kept_a_.resize(indices.size());
-  for (std::size_t k = 0; k < indices.size(); ++k) kept_a_[k] = static_cast<Index>(k);
-  kept_b_ = kept_a_;
+  common_a_.resize(indices.size());
+  for (std::size_t k = 0; k < indices.size(); ++k) common_a_[k] = static_cast<Index>(k);
+  common_b_ = common_a_;
   if (indices.empty()) return true;
   const auto count = static_cast<Index>(indices.size());
   Matrix block(count, count);
@@ -73,8 +73,8 @@ bool PrincipalFactor::border(const Matrix& w, const std::vector<Index>& indices)
   indices_ = indices;
   added_.clear();
   removed_.clear();
-  kept_a_.clear();
-  kept_b_.clear();
+  common_a_.clear();
+  common_b_.clear();
   std::size_t a = 0, b = 0;
   while (a < indices.size() || b < base_.size()) {
     if (b == base_.size() || (a < indices.size() && indices[a] < base_[b])) {
@@ -82,8 +82,8 @@ bool PrincipalFactor::border(const Matrix& w, const std::vector<Index>& indices)
     } else if (a == indices.size() || base_[b] < indices[a]) {
       removed_.push_back(static_cast<Index>(b++));
     } else {
-      kept_a_.push_back(static_cast<Index>(a++));
-      kept_b_.push_back(static_cast<Index>(b++));
+      common_a_.push_back(static_cast<Index>(a++));
+      common_b_.push_back(static_cast<Index>(b++));
     }
   }
   const auto size = static_cast<Index>(base_.size());
@@ -111,7 +111,7 @@ bool PrincipalFactor::border(const Matrix& w, const std::vector<Index>& indices)
 
 void PrincipalFactor::solve(const Vector& right, Vector& x) const {
   base_right_.setZero(static_cast<Index>(base_.size()));
-  for (std::size_t k = 0; k < kept_a_.size(); ++k) base_right_[kept_b_[k]] = scale_ * right[kept_a_[k]];
+  for (std::size_t k = 0; k < common_a_.size(); ++k) base_right_[common_b_[k]] = scale_ * right[common_a_[k]];
   if (base_right_.size() > 0) factor_.solveInPlace(base_right_);
   const auto arrivals = static_cast<Index>(added_.size());
   const auto changes = arrivals + static_cast<Index>(removed_.size());
@@ -125,7 +125,7 @@ void PrincipalFactor::solve(const Vector& right, Vector& x) const {
     base_right_.noalias() -= solved_ * border_solution_;
     for (Index k = 0; k < arrivals; ++k) x[added_[static_cast<std::size_t>(k)]] = border_solution_[k];
   }
-  for (std::size_t k = 0; k < kept_a_.size(); ++k) x[kept_a_[k]] = base_right_[kept_b_[k]];
+  for (std::size_t k = 0; k < common_a_.size(); ++k) x[common_a_[k]] = base_right_[common_b_[k]];
 }
 
 }  // namespace ricochet

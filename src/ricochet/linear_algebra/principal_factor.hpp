@@ -38,10 +38,10 @@ class PrincipalFactor {
 
   std::vector<Index> base_, indices_;
   Eigen::LLT<Matrix> factor_;
-  double scale_ = 1.0;                  ///< power of two that brings the base's largest diagonal entry near one
-  std::vector<Index> added_, removed_;  ///< positions of added indices in A, of removed ones in B
-  std::vector<Index> kept_a_, kept_b_;  ///< positions of A∩B in A and in B
-  Matrix border_, solved_;              ///< (W_BD E_R) and its solve with W_BB
+  double scale_ = 1.0;                      ///< power of two that brings the base's largest diagonal entry near one
+  std::vector<Index> added_, removed_;      ///< positions of added indices in A, of removed ones in B
+  std::vector<Index> common_a_, common_b_;  ///< positions of A∩B in A and in B
+  Matrix border_, solved_;                  ///< (W_BD E_R) and its solve with W_BB
   Eigen::PartialPivLU<Matrix> schur_;
   mutable Vector base_right_, border_right_, border_solution_;
   bool has_factored_ = false;

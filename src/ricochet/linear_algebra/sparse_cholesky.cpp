@@ -45,9 +45,9 @@ struct SparseCholesky::Implementation {
   };
   cholmod_common common{};
   cholmod_factor* factor = nullptr;
-  LowerTriangle ordered;         ///< of P A Pᵀ, from the analysis to the factorization
-  std::vector<int> permutation;  ///< index in the factor → unknown
-  std::vector<int> places;       ///< unknown → index in the factor
+  LowerTriangle ordered;            ///< of P A Pᵀ, from the analysis to the factorization
+  std::vector<int> permutation;     ///< index in the factor → unknown
+  std::vector<int> factor_indices;  ///< unknown → index in the factor
   double scale = 1.0;
   Arithmetic arithmetic = Arithmetic::own;
   SupernodalFactor supernodal;
@@ -79,12 +79,12 @@ struct SparseCholesky::Implementation {
   }
 
   void order(const SparseMatrix& matrix);
-  void take_ordered(const SparseMatrix& matrix);
+  void store_ordered(const SparseMatrix& matrix);
   [[nodiscard]] cholmod_sparse ordered_view() const;
   void analyse();
   void require_possible() const;
   void find_scale();
-  void take_shape();
+  void copy_structure();
   void factorize();
   void factorize_by_library();
   void library_solve(int system, Vector& values);
@@ -93,16 +93,16 @@ struct SparseCholesky::Implementation {
 namespace {
 
 /// Restores the signal handlers: METIS puts back those it finds, but for one signal only.
-class KeptHandlers {
+class SavedHandlers {
  public:
-  KeptHandlers() {
+  SavedHandlers() {
     for (std::size_t i = 0; i < before_.size(); ++i) sigaction(signals[i], nullptr, &before_[i]);
   }
-  ~KeptHandlers() {
+  ~SavedHandlers() {
     for (std::size_t i = 0; i < before_.size(); ++i) sigaction(signals[i], &before_[i], nullptr);
   }
-  KeptHandlers(const KeptHandlers&) = delete;
-  KeptHandlers& operator=(const KeptHandlers&) = delete;
+  SavedHandlers(const SavedHandlers&) = delete;
+  SavedHandlers& operator=(const SavedHandlers&) = delete;
 
  private:
   static constexpr std::array<int, 2> signals{SIGTERM, SIGABRT};
@@ -118,29 +118,30 @@ void SparseCholesky::Implementation::order(const SparseMatrix& matrix) {
   upper.sorted = 1;
   // METIS catches SIGTERM while it works, and jumps out of its own work half done.
   const BlockedSignals until_ordered;
-  const KeptHandlers kept;
+  const SavedHandlers saved;
   if (cholmod_metis(&upper, nullptr, 0, 1, permutation.data(), &common) == 0)
     throw std::runtime_error("ordering the matrix failed (METIS)");
-  places.resize(permutation.size());
+  factor_indices.resize(permutation.size());
   for (std::size_t i = 0; i < permutation.size(); ++i)
-    places[static_cast<std::size_t>(permutation[i])] = static_cast<int>(i);
-  take_ordered(matrix);
+    factor_indices[static_cast<std::size_t>(permutation[i])] = static_cast<int>(i);
+  store_ordered(matrix);
 }
 
 /// Stores the lower triangle of P A Pᵀ. Its storage grows only once.
-void SparseCholesky::Implementation::take_ordered(const SparseMatrix& matrix) {
+void SparseCholesky::Implementation::store_ordered(const SparseMatrix& matrix) {
   const int size = static_cast<int>(matrix.cols());
-  const auto visit = [&](const auto& take) {
-    for (int place = 0; place < size; ++place) {
-      for (SparseMatrix::InnerIterator entry(matrix, permutation[static_cast<std::size_t>(place)]); entry; ++entry) {
-        const int row = places[static_cast<std::size_t>(entry.row())];
-        if (row >= place) take(place, row, entry.value());
+  const auto visit = [&](const auto& enter) {
+    for (int column = 0; column < size; ++column) {
+      for (SparseMatrix::InnerIterator entry(matrix, permutation[static_cast<std::size_t>(column)]); entry; ++entry) {
+        const int row = factor_indices[static_cast<std::size_t>(entry.row())];
+        if (row >= column) enter(column, row, entry.value());
       }
     }
   };
   ordered.begin.assign(static_cast<std::size_t>(size) + 1, 0);
-  visit([&](int place, int, double) { ++ordered.begin[static_cast<std::size_t>(place) + 1]; });
-  for (std::size_t place = 0; place < permutation.size(); ++place) ordered.begin[place + 1] += ordered.begin[place];
+  visit([&](int column, int, double) { ++ordered.begin[static_cast<std::size_t>(column) + 1]; });
+  for (std::size_t column = 0; column < permutation.size(); ++column)
+    ordered.begin[column + 1] += ordered.begin[column];
   ordered.rows.resize(static_cast<std::size_t>(ordered.begin.back()));
   ordered.values.resize(ordered.rows.size());
   std::size_t at = 0;
@@ -193,7 +194,7 @@ void SparseCholesky::Implementation::find_scale() {
 }
 
 /// Copies the structure of the factor, which is all that is used of CHOLMOD's result.
-void SparseCholesky::Implementation::take_shape() {
+void SparseCholesky::Implementation::copy_structure() {
   numeric.reset();
   supernodal = SupernodalFactor({static_cast<Index>(factor->nsuper), static_cast<const int*>(factor->super),
                                  static_cast<const int*>(factor->pi), static_cast<const int*>(factor->s)});
@@ -205,7 +206,7 @@ void SparseCholesky::Implementation::factorize() {
   find_scale();
   if (factor != nullptr) {
     release_freed_memory();  // memory peaks here
-    take_shape();
+    copy_structure();
   }
   if (!numeric) numeric = std::make_unique<NumericFactorization>(supernodal);
   const Index column = numeric->run({ordered.begin.data(), ordered.rows.data(), ordered.values.data()}, scale);
@@ -278,7 +279,7 @@ void SparseCholesky::factorize(Arithmetic arithmetic) {
 void SparseCholesky::refactorize(const SparseMatrix& matrix) {
   Implementation& own = *implementation_;
   if (size() == 0) return;
-  own.take_ordered(matrix);
+  own.store_ordered(matrix);
   if (own.arithmetic == Arithmetic::library) {
     own.factorize_by_library();
   } else {
@@ -315,7 +316,7 @@ const std::vector<int>& SparseCholesky::permutation() const {
   return implementation_->permutation;
 }
 Index SparseCholesky::factor_index(Index unknown) const {
-  return implementation_->places[static_cast<std::size_t>(unknown)];
+  return implementation_->factor_indices[static_cast<std::size_t>(unknown)];
 }
 const SupernodalFactor& SparseCholesky::supernodal() const {
   return implementation_->supernodal;

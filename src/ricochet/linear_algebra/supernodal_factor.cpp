@@ -22,7 +22,7 @@ constexpr double parts_per_factor = 16.0;
 SupernodalFactor::SupernodalFactor(const SupernodalStructure& shape) {
   read_shape(shape);
   partition();
-  place_numbers(shape);
+  allocate_numbers(shape);
 }
 
 void SupernodalFactor::read_shape(const SupernodalStructure& shape) {
@@ -100,7 +100,7 @@ void SupernodalFactor::partition() {
     position_[static_cast<std::size_t>(supernodes_[k].number)] = static_cast<int>(k);
 }
 
-void SupernodalFactor::place_numbers(const SupernodalStructure& shape) {
+void SupernodalFactor::allocate_numbers(const SupernodalStructure& shape) {
   Index stream_size = 0, row_count = 0;
   for (Supernode& node : supernodes_) {
     node.stream = stream_size;
@@ -125,10 +125,10 @@ void SupernodalFactor::place_numbers(const SupernodalStructure& shape) {
 
 /// Replaces rows beyond a part's own columns by indices in the work space of y.
 void SupernodalFactor::number_boundary(Part& part) {
-  Index most_rows = 0;
+  Index max_rows = 0;
   for (std::size_t k = part.begin; k < part.end; ++k)
-    most_rows = std::max<Index>(most_rows, supernodes_[k].columns + supernodes_[k].below);
-  part.work.assign(static_cast<std::size_t>(most_rows) + 1, 0.0);
+    max_rows = std::max<Index>(max_rows, supernodes_[k].columns + supernodes_[k].below);
+  part.work.assign(static_cast<std::size_t>(max_rows) + 1, 0.0);
   part.boundary_start = work_size_;
   if (&part == &parts_.back()) return;
   // The rows of a descendant beyond the root are among those of the root.
@@ -225,7 +225,7 @@ FactorPath SupernodalFactor::path(const std::vector<Index>& rows) const {
   const auto first_beyond = [&](Index row) {
     // Columns ascend with the supernode's number.
     return std::partition_point(position_.begin(), position_.end(),
-                                [&](int place) { return supernodes_[static_cast<std::size_t>(place)].first <= row; });
+                                [&](int index) { return supernodes_[static_cast<std::size_t>(index)].first <= row; });
   };
   for (const Index row : rows) {
     auto s = static_cast<int>(first_beyond(row) - position_.begin()) - 1;
@@ -250,7 +250,7 @@ void SupernodalFactor::forward_on_path(const FactorPath& path, Matrix& columns) 
     for (Index i = path.offsets[k]; i < path.offsets[k + 1]; ++i)
       position[static_cast<std::size_t>(path.first[k] + i - path.offsets[k])] = static_cast<int>(i);
   }
-  const auto place_on_path = [&](int row) {
+  const auto path_index = [&](int row) {
     const int in_factor = row < size_ ? row : row_of_work_[static_cast<std::size_t>(row - size_)];
     return position[static_cast<std::size_t>(in_factor)];
   };
@@ -267,10 +267,10 @@ void SupernodalFactor::forward_on_path(const FactorPath& path, Matrix& columns) 
       const int* rows = rows_.data() + node.rows;
       w.setZero(8, node.columns + node.below + 1);
       w.leftCols(node.columns) = eight.middleCols(path.offsets[k], node.columns);
-      for (int i = 0; i < node.below; ++i) w.col(node.columns + i) = eight.col(place_on_path(rows[i]));
+      for (int i = 0; i < node.below; ++i) w.col(node.columns + i) = eight.col(path_index(rows[i]));
       supernode_forward_eight(stream_.data() + node.stream, node.columns, node.columns + node.below, w.data());
       eight.middleCols(path.offsets[k], node.columns) = w.leftCols(node.columns);
-      for (int i = 0; i < node.below; ++i) eight.col(place_on_path(rows[i])) = w.col(node.columns + i);
+      for (int i = 0; i < node.below; ++i) eight.col(path_index(rows[i])) = w.col(node.columns + i);
     }
     columns.middleCols(first, count) = eight.topRows(count).transpose();
   }

@@ -86,7 +86,7 @@ class SupernodalFactor {
 
   void read_shape(const SupernodalStructure& shape);
   void partition();
-  void place_numbers(const SupernodalStructure& shape);
+  void allocate_numbers(const SupernodalStructure& shape);
   void number_boundary(Part& part);
   void gather(const Supernode& node, const double* y, double* w) const;
   bool is_shared(const Part& part, const Supernode& node) const;

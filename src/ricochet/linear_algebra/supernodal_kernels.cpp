@@ -196,10 +196,11 @@ RICOCHET_PART_OF_CALLER const double* forward_blocks(const double* stream, Index
 }
 
 RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_forward,
-                              (const double* stream, Index columns, Index rows, double* w, StreamCount places),
-                              (stream, columns, rows, w, places)) {
-  return places == StreamCount::one ? forward_blocks<StreamCount::one>(stream, columns, rows, w)
-                                    : forward_blocks<StreamCount::four>(stream, columns, rows, w);
+                              (const double* stream, Index columns, Index rows, double* w,
+                               StreamCount parallel_streams),
+                              (stream, columns, rows, w, parallel_streams)) {
+  return parallel_streams == StreamCount::one ? forward_blocks<StreamCount::one>(stream, columns, rows, w)
+                                              : forward_blocks<StreamCount::four>(stream, columns, rows, w);
 }
 
 template <StreamCount P>
@@ -215,10 +216,11 @@ RICOCHET_PART_OF_CALLER const double* backward_blocks(const double* stream_end, 
 }
 
 RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_backward,
-                              (const double* stream_end, Index columns, Index rows, double* w, StreamCount places),
-                              (stream_end, columns, rows, w, places)) {
-  return places == StreamCount::one ? backward_blocks<StreamCount::one>(stream_end, columns, rows, w)
-                                    : backward_blocks<StreamCount::four>(stream_end, columns, rows, w);
+                              (const double* stream_end, Index columns, Index rows, double* w,
+                               StreamCount parallel_streams),
+                              (stream_end, columns, rows, w, parallel_streams)) {
+  return parallel_streams == StreamCount::one ? backward_blocks<StreamCount::one>(stream_end, columns, rows, w)
+                                              : backward_blocks<StreamCount::four>(stream_end, columns, rows, w);
 }
 
 RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_forward_eight,
@@ -250,11 +252,11 @@ RICOCHET_PART_OF_CALLER void forward_panels(Index count, const double* stream, c
 
 RICOCHET_EACH_INSTRUCTION_SET(void, panels_forward,
                               (Index columns, Index count, const double* stream, const double* x, double* w,
-                               StreamCount places),
-                              (columns, count, stream, x, w, places)) {
+                               StreamCount parallel_streams),
+                              (columns, count, stream, x, w, parallel_streams)) {
   with_constant<8>(columns, [&](auto c) RICOCHET_LAMBDA_OF_CALLER {
-    places == StreamCount::one ? forward_panels<StreamCount::one, c>(count, stream, x, w)
-                               : forward_panels<StreamCount::four, c>(count, stream, x, w);
+    parallel_streams == StreamCount::one ? forward_panels<StreamCount::one, c>(count, stream, x, w)
+                                         : forward_panels<StreamCount::four, c>(count, stream, x, w);
   });
 }
 
@@ -272,11 +274,11 @@ RICOCHET_PART_OF_CALLER void backward_panels(Index count, const double* stream, 
 
 RICOCHET_EACH_INSTRUCTION_SET(void, panels_backward,
                               (Index columns, Index count, const double* stream, const double* w, double* sums,
-                               StreamCount places),
-                              (columns, count, stream, w, sums, places)) {
+                               StreamCount parallel_streams),
+                              (columns, count, stream, w, sums, parallel_streams)) {
   with_constant<8>(columns, [&](auto c) RICOCHET_LAMBDA_OF_CALLER {
-    places == StreamCount::one ? backward_panels<StreamCount::one, c>(count, stream, w, sums)
-                               : backward_panels<StreamCount::four, c>(count, stream, w, sums);
+    parallel_streams == StreamCount::one ? backward_panels<StreamCount::one, c>(count, stream, w, sums)
+                                         : backward_panels<StreamCount::four, c>(count, stream, w, sums);
   });
 }
 

@@ -20,10 +20,10 @@ enum class StreamCount { one, four };
 /// Computes, for w = (w₁, w₂) with k and m−k numbers followed by one scratch number, w₁ ← L₁₁⁻¹ w₁, w₂ ← w₂ − L₂₁ w₁.
 /// Returns the end of the supernode in the stream.
 const double* supernode_forward(const double* stream, Index columns, Index rows, double* w,
-                                StreamCount places = stream_count());
+                                StreamCount parallel_streams = stream_count());
 /// Computes w₁ ← L₁₁⁻ᵀ (w₁ − L₂₁ᵀ w₂); w₂ is followed by a zero. Returns the beginning of the supernode, given its end.
 const double* supernode_backward(const double* stream_end, Index columns, Index rows, double* w,
-                                 StreamCount places = stream_count());
+                                 StreamCount parallel_streams = stream_count());
 /// Applies supernode_forward to eight right-hand sides at once; w is 8 × (m + 1), in column-major order. Each has the
 /// bits of its own separate solve.
 const double* supernode_forward_eight(const double* stream, Index columns, Index rows, double* w);
@@ -34,9 +34,9 @@ const double* supernode_forward_eight(const double* stream, Index columns, Index
 void supernode_forward_rows(Index columns, Index rows_below, const double* stream, double* w);
 /// Compute w ← w − L x, and per column eight sums of Lᵀ w, for `count` consecutive panels.
 void panels_forward(Index columns, Index count, const double* stream, const double* x, double* w,
-                    StreamCount places = stream_count());
+                    StreamCount parallel_streams = stream_count());
 void panels_backward(Index columns, Index count, const double* stream, const double* w, double* sums,
-                     StreamCount places = stream_count());
+                     StreamCount parallel_streams = stream_count());
 /// Versions for the remaining rows, fewer than eight.
 void remainder_forward(Index columns, Index rows, const double* stream, const double* x, double* w);
 void remainder_backward(Index columns, Index rows, const double* stream, const double* w, double* sums);

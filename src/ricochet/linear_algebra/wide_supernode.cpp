@@ -13,18 +13,18 @@ namespace {
 constexpr Index strip_blocks = 16;
 constexpr Index strip_columns = 8 * strip_blocks + 8;
 /// Bounds for the parts below a strip.
-constexpr Index most_parts = 16, least_part_panels = 8;
+constexpr Index max_parts = 16, min_part_panels = 8;
 /// Number of parts that a thread reads concurrently if that is faster, and number of panels read from each in turn.
-constexpr Index most_places = 4, panels_in_turn = 8;
+constexpr Index max_streams = 4, panels_in_turn = 8;
 /// A supernode with at least so many numbers is wide: half a megabyte takes longer to read than threads to synchronize.
-constexpr Index least_size = Index{1} << 16;
+constexpr Index min_size = Index{1} << 16;
 
 /// Calls visit(part, panel, count) for the panels of parts [first, last), so that a few parts take turns.
 template <class Parts, class Visit>
 void in_turns(const Parts& parts, Index first, Index last, const Visit& visit) {
-  const Index places = stream_count() == StreamCount::one ? 1 : most_places;
-  for (Index group = first; group < last; group += places) {
-    const Index group_end = std::min(group + places, last);
+  const Index streams = stream_count() == StreamCount::one ? 1 : max_streams;
+  for (Index group = first; group < last; group += streams) {
+    const Index group_end = std::min(group + streams, last);
     bool more = true;
     for (Index done = 0; more; done += panels_in_turn) {
       more = false;
@@ -41,11 +41,11 @@ void in_turns(const Parts& parts, Index first, Index last, const Visit& visit) {
 }  // namespace
 
 bool WideSupernode::is_wide(Index columns, Index rows) {
-  return columns >= 32 && SupernodeLayout(columns, rows).size() >= least_size;
+  return columns >= 32 && SupernodeLayout(columns, rows).size() >= min_size;
 }
 
 Index WideSupernode::sums_size() {
-  return 8 * strip_columns * most_parts;
+  return 8 * strip_columns * max_parts;
 }
 
 Index WideSupernode::strips() const {
@@ -59,7 +59,7 @@ WideSupernode::Strip WideSupernode::strip(Index number) const {
 
 WideSupernode::Parts WideSupernode::parts(const Strip& strip) const {
   const Index below = layout_.panels() - strip.end;
-  return {strip.end, layout_.panels(), std::clamp<Index>(below / least_part_panels, 1, most_parts)};
+  return {strip.end, layout_.panels(), std::clamp<Index>(below / min_part_panels, 1, max_parts)};
 }
 
 void WideSupernode::forward_rows(const Strip& strip, const Parts& parts, Index first, Index last, double* w) const {

@@ -38,13 +38,13 @@ void solve(const AffineFrame& frame, int dimension, const double* x, double* xi)
 }
 
 /// Moves the origin of the frame to the centre of gravity and normalizes the second moments to the identity.
-bool normalize(const Points& nodes, const int* of, int count, const Vector& trust, AffineFrame& frame) {
+bool normalize(const Points& nodes, const int* of, int count, const Vector& node_weights, AffineFrame& frame) {
   const int d = static_cast<int>(nodes.rows());
   double mean[3] = {}, second[3][3] = {}, xi[3];
   for (int pass = 0; pass < 2; ++pass) {
     for (int j = 0; j < count; ++j) {
       affine_coordinates(frame, d, nodes.col(of[j]).data(), xi);
-      const double share = trust[of[j]] / frame.trust;
+      const double share = node_weights[of[j]] / frame.total_weight;
       for (int a = 0; a < d; ++a) {
         if (pass == 0) mean[a] += share * xi[a];
         for (int b = 0; pass == 1 && b <= a; ++b) second[a][b] += share * (xi[a] - mean[a]) * (xi[b] - mean[b]);
@@ -65,13 +65,13 @@ bool normalize(const Points& nodes, const int* of, int count, const Vector& trus
 }
 
 /// Computes 2 − G, the inverse of a G that is the identity up to rounding.
-void invert_gram(const Points& nodes, const int* of, int count, const Vector& trust, AffineFrame& frame) {
+void invert_gram(const Points& nodes, const int* of, int count, const Vector& node_weights, AffineFrame& frame) {
   const int d = static_cast<int>(nodes.rows());
   for (int a = 0; a <= d; ++a) frame.inverse_gram[a][a] = 2.0;
   for (int j = 0; j < count; ++j) {
     double p[4] = {1.0};
     affine_coordinates(frame, d, nodes.col(of[j]).data(), p + 1);
-    const double share = trust[of[j]] / frame.trust;
+    const double share = node_weights[of[j]] / frame.total_weight;
     for (int a = 0; a <= d; ++a) {
       for (int b = 0; b <= d; ++b) frame.inverse_gram[a][b] -= share * p[a] * p[b];
     }
@@ -86,36 +86,37 @@ void affine_coordinates(const AffineFrame& frame, int dimension, const double* p
   solve(frame, dimension, relative, xi);
 }
 
-void affine_weight(const AffineFrame& frame, int dimension, const double* point, double trust, double (&weight)[4]) {
+void affine_weight(const AffineFrame& frame, int dimension, const double* point, double node_weight,
+                   double (&weight)[4]) {
   double p[4] = {1.0};
   affine_coordinates(frame, dimension, point, p + 1);
   for (int a = 0; a < 4; ++a) {
     weight[a] = 0.0;
     for (int b = 0; b <= dimension; ++b) weight[a] += frame.inverse_gram[a][b] * p[b];
-    weight[a] *= trust / frame.trust;
+    weight[a] *= node_weight / frame.total_weight;
   }
 }
 
 void affine_change(const AffineFrame& from, const AffineFrame& to, int dimension, double (&shift)[3],
-                   double (&turn)[3][3]) {
+                   double (&linear)[3][3]) {
   double relative[3], column[3], solved[3];
   for (int k = 0; k < dimension; ++k) relative[k] = (from.base[k] - to.base[k]) + (from.offset[k] - to.offset[k]);
   solve(to, dimension, relative, shift);
   for (int j = 0; j < dimension; ++j) {
     for (int i = 0; i < dimension; ++i) column[i] = from.axes[i][j];
     solve(to, dimension, column, solved);
-    for (int i = 0; i < dimension; ++i) turn[i][j] = solved[i];
+    for (int i = 0; i < dimension; ++i) linear[i][j] = solved[i];
   }
 }
 
-bool make_affine_frame(const Points& nodes, const int* of, int count, const Vector& trust, AffineFrame& frame) {
+bool make_affine_frame(const Points& nodes, const int* of, int count, const Vector& node_weights, AffineFrame& frame) {
   const int d = static_cast<int>(nodes.rows());
   if (count <= d) return false;
   frame = {};
   double size[3] = {}, largest[3] = {};
   for (int k = 0; k < d; ++k) frame.base[k] = nodes(k, of[0]);
   for (int j = 0; j < count; ++j) {
-    frame.trust += trust[of[j]];
+    frame.total_weight += node_weights[of[j]];
     for (int k = 0; k < d; ++k) {
       size[k] = std::max(size[k], std::abs(nodes(k, of[j]) - frame.base[k]));
       largest[k] = std::max(largest[k], std::abs(nodes(k, of[j])));
@@ -128,10 +129,10 @@ bool make_affine_frame(const Points& nodes, const int* of, int count, const Vect
     frame.axes[k][k] = size[k];
   }
   // The second pass removes the rounding error of the first in flat cells: squares lose twice as many digits.
-  for (int round = 0; round < 2; ++round) {
-    if (!normalize(nodes, of, count, trust, frame)) return false;
+  for (int pass = 0; pass < 2; ++pass) {
+    if (!normalize(nodes, of, count, node_weights, frame)) return false;
   }
-  invert_gram(nodes, of, count, trust, frame);
+  invert_gram(nodes, of, count, node_weights, frame);
   return true;
 }
 

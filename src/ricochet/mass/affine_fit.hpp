@@ -14,23 +14,24 @@ namespace ricochet {
 struct AffineFrame {
   double base[3] = {}, offset[3] = {};  ///< the centre of gravity is base + offset; base is a node
   double axes[3][3] = {};               ///< x = base + offset + axes ξ, lower triangular
-  double trust = 0.0;                   ///< t
+  double total_weight = 0.0;            ///< t
   /// Inverse of Σ_j (t_j/t) p_j p_jᵀ, p = (1, ξ), which is the identity up to rounding: with it the weights reproduce
   /// the positions of the nodes to rounding of the positions, however flat the cells are.
   double inverse_gram[4][4] = {};
 };
 
 /// Returns false if the nodes, up to rounding, do not span space affinely: collinear in 2D; coplanar or collinear in
-/// 3D. `trust` has one value per node of the mesh.
-[[nodiscard]] bool make_affine_frame(const Points& nodes, const int* of, int count, const Vector& trust,
+/// 3D. `node_weights` has one value per node of the mesh.
+[[nodiscard]] bool make_affine_frame(const Points& nodes, const int* of, int count, const Vector& node_weights,
                                      AffineFrame& frame);
 /// Computes ξ of a point.
 void affine_coordinates(const AffineFrame& frame, int dimension, const double* point, double* xi);
 /// Computes the weight of a node of the frame, with its t_j: Σ_j weight_j v_j are the value of the fit at the centre
 /// and its gradient in ξ, and weight · (1, ξ) is w_j(ξ).
-void affine_weight(const AffineFrame& frame, int dimension, const double* point, double trust, double (&weight)[4]);
-/// Computes the change of coordinates ξ = shift + turn η, with η the coordinates in frame `from`.
+void affine_weight(const AffineFrame& frame, int dimension, const double* point, double node_weight,
+                   double (&weight)[4]);
+/// Computes the change of coordinates ξ = shift + linear η, with η the coordinates in frame `from`.
 void affine_change(const AffineFrame& from, const AffineFrame& to, int dimension, double (&shift)[3],
-                   double (&turn)[3][3]);
+                   double (&linear)[3][3]);
 
 }  // namespace ricochet

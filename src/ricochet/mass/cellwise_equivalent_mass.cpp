@@ -67,22 +67,23 @@ class CellwiseBuilder {
   int donor_of(int cell);
   void share_out();
   void update_costs(const Vector& lengths);
-  void update_parts(const ContactCell& giver, std::size_t end, bool first);
-  void receive(const ContactCell& giver, std::size_t end, double weight);
+  void update_parts(const ContactCell& contact_cell, std::size_t end, bool first);
+  void receive(const ContactCell& contact_cell, std::size_t end, double weight);
   [[nodiscard]] Vector diagonal() const;
   void hand_over();
   template <class Visit>
   void for_each_weight(const Donor& donor, const Visit& visit) const;
-  [[nodiscard]] bool see(const Donor& donor, const ContactCell& giver, AffineInertia& inertia) const;
-  [[noreturn]] void refuse(const ContactCell& giver);
+  [[nodiscard]] bool transform_inertia(const Donor& donor, const ContactCell& contact_cell,
+                                       AffineInertia& inertia) const;
+  [[noreturn]] void refuse(const ContactCell& contact_cell);
 
   const MassInput& input_;
   const int d_;
   std::vector<char> is_contact_;
-  Vector trust_;         ///< D
-  Vector kept_;          ///< diagonal of the inertia that cells keep
-  SparseMatrix result_;  ///< on the pattern of M
-  Matrix remains_;       ///< work space: S_T, with zero rows for contact nodes
+  Vector inertia_diagonal_;   ///< D
+  Vector retained_diagonal_;  ///< diagonal of the inertia that cells keep
+  SparseMatrix result_;       ///< on the pattern of M
+  Matrix remains_;            ///< work space: S_T, with zero rows for contact nodes
   CellRings rings_;
   std::vector<ContactCell> contact_cells_;
   std::vector<Donor> donors_;
@@ -99,7 +100,7 @@ double& entry_of(SparseMatrix& matrix, Index row, Index column) {
 
 /// Number of donors that share the inertia of a cell: always whole rings of them, so that the order of cells does not
 /// matter.
-constexpr std::size_t wanted_donors = 3;
+constexpr std::size_t required_donors = 3;
 /// Number of updates of θ with the diagonal of the resulting mass.
 constexpr int sweeps = 3;
 
@@ -107,8 +108,8 @@ CellwiseBuilder::CellwiseBuilder(const MassInput& input)
     : input_(input),
       d_(static_cast<int>(input.nodes->rows())),
       is_contact_(input.marked_contact_nodes()),
-      trust_(input.inertia_matrix().diagonal()),
-      kept_(Vector::Zero(trust_.size())),
+      inertia_diagonal_(input.inertia_matrix().diagonal()),
+      retained_diagonal_(Vector::Zero(inertia_diagonal_.size())),
       result_(zeros_without(input.inertia_matrix(), is_contact_)),
       rings_(*input.cells, input.nodes->cols()),
       donor_number_(static_cast<std::size_t>(rings_.count()), -2) {}
@@ -131,11 +132,12 @@ void CellwiseBuilder::add_cell(int cell, const std::vector<Index>& nodes, const 
   const auto count = static_cast<Index>(nodes.size());
   if (std::none_of(nodes.begin(), nodes.end(), [this](Index node) { return is_contact(node); }))
     return keep_inertia(nodes, inertia, weight);
-  ContactCell giver;
-  giver.cell = cell;
-  giver.weight = weight;
-  if (!make_affine_frame(*input_.nodes, rings_.nodes(cell), static_cast<int>(count), trust_, giver.frame))
-    refuse(giver);
+  ContactCell contact_cell;
+  contact_cell.cell = cell;
+  contact_cell.weight = weight;
+  if (!make_affine_frame(*input_.nodes, rings_.nodes(cell), static_cast<int>(count), inertia_diagonal_,
+                         contact_cell.frame))
+    refuse(contact_cell);
   remains_ = inertia;
   for (Index c = 0; c < count; ++c) {
     if (!is_contact(nodes[static_cast<std::size_t>(c)])) continue;
@@ -143,11 +145,11 @@ void CellwiseBuilder::add_cell(int cell, const std::vector<Index>& nodes, const 
     double moments[4] = {};
     for (Index i = 0; i < count; ++i) {
       double p[4] = {1.0};
-      affine_coordinates(giver.frame, d_, input_.nodes->col(nodes[static_cast<std::size_t>(i)]).data(), p + 1);
+      affine_coordinates(contact_cell.frame, d_, input_.nodes->col(nodes[static_cast<std::size_t>(i)]).data(), p + 1);
       for (int a = 0; a <= d_; ++a) moments[a] += remains_(i, c) * p[a];
     }
     for (std::size_t a = 0; a < 4; ++a) {
-      for (std::size_t b = 0; b < 4; ++b) giver.inertia[a][b] += moments[a] * moments[b] / pivot;
+      for (std::size_t b = 0; b < 4; ++b) contact_cell.inertia[a][b] += moments[a] * moments[b] / pivot;
     }
     for (Index j = 0; j < count; ++j) {
       const double factor = remains_(j, c) / pivot;
@@ -156,7 +158,7 @@ void CellwiseBuilder::add_cell(int cell, const std::vector<Index>& nodes, const 
     remains_.col(c).setZero();
   }
   keep_inertia(nodes, remains_, weight);
-  contact_cells_.push_back(giver);
+  contact_cells_.push_back(contact_cell);
 }
 
 /// Adds the inertia that a cell keeps. Only the lower triangle of `inertia` is used.
@@ -165,7 +167,7 @@ void CellwiseBuilder::keep_inertia(const std::vector<Index>& nodes, const Matrix
   for (Index j = 0; j < count; ++j) {
     const Index column = nodes[static_cast<std::size_t>(j)];
     if (is_contact(column)) continue;
-    kept_[column] += inertia(j, j);
+    retained_diagonal_[column] += inertia(j, j);
     for (Index i = j; i < count; ++i) {
       const Index row = nodes[static_cast<std::size_t>(i)];
       if (is_contact(row)) continue;
@@ -185,7 +187,8 @@ int CellwiseBuilder::donor_of(int cell) {
   Donor donor;
   donor.cell = cell;
   number = -1;
-  if (!make_affine_frame(*input_.nodes, free.data(), static_cast<int>(free.size()), trust_, donor.frame)) return number;
+  if (!make_affine_frame(*input_.nodes, free.data(), static_cast<int>(free.size()), inertia_diagonal_, donor.frame))
+    return number;
   donors_.push_back(donor);
   return number = static_cast<int>(donors_.size()) - 1;
 }
@@ -194,37 +197,39 @@ int CellwiseBuilder::donor_of(int cell) {
 /// the first ring with one, and beyond `many_cells`: from so far away inertia is amplified more than any user would
 /// accept, and searching a whole body for donors, cell after cell, would take minutes.
 void CellwiseBuilder::find_donors() {
-  for (ContactCell& giver : contact_cells_) {
-    giver.first_share = shares_.size();
-    rings_.start(giver.cell);
-    std::size_t seen = 0, ring = 0, nearest = 0;
+  for (ContactCell& contact_cell : contact_cells_) {
+    contact_cell.first_share = shares_.size();
+    rings_.start(contact_cell.cell);
+    std::size_t visited = 0, ring = 0, nearest = 0;
     do {
-      for (; seen < rings_.cells().size(); ++seen) {
-        Share share{donor_of(rings_.cells()[seen]), 0.0, 0.0, {}};
-        if (share.donor >= 0 && see(donors_[static_cast<std::size_t>(share.donor)], giver, share.inertia))
+      for (; visited < rings_.cells().size(); ++visited) {
+        Share share{donor_of(rings_.cells()[visited]), 0.0, 0.0, {}};
+        if (share.donor >= 0 &&
+            transform_inertia(donors_[static_cast<std::size_t>(share.donor)], contact_cell, share.inertia))
           shares_.push_back(share);
       }
-      if (shares_.size() == giver.first_share)
+      if (shares_.size() == contact_cell.first_share)
         nearest = ++ring;
-      else if (shares_.size() - giver.first_share >= wanted_donors || ++ring > 2 * nearest + 2)
+      else if (shares_.size() - contact_cell.first_share >= required_donors || ++ring > 2 * nearest + 2)
         break;
     } while (rings_.cells().size() < CellRings::many_cells && rings_.grow());
-    if (shares_.size() == giver.first_share) refuse(giver);
+    if (shares_.size() == contact_cell.first_share) refuse(contact_cell);
   }
 }
 
 /// Computes PᵀRP with P = (1, ξ) in the frame of the donor. Returns false if the donor's free nodes barely span space:
 /// if the root mean square distance of the contact cell's nodes exceeds a hundred times their spread in some direction.
-bool CellwiseBuilder::see(const Donor& donor, const ContactCell& giver, AffineInertia& inertia) const {
+bool CellwiseBuilder::transform_inertia(const Donor& donor, const ContactCell& contact_cell,
+                                        AffineInertia& inertia) const {
   constexpr double largest_distance = 100.0;
-  double change[4][4] = {{1.0}}, shift[3], turn[3][3], square = 0.0;
-  affine_change(giver.frame, donor.frame, d_, shift, turn);
+  double change[4][4] = {{1.0}}, shift[3], linear[3][3], square = 0.0;
+  affine_change(contact_cell.frame, donor.frame, d_, shift, linear);
   for (int i = 0; i < d_; ++i) {
     change[i + 1][0] = shift[i];
     square += shift[i] * shift[i];
     for (int j = 0; j < d_; ++j) {
-      change[i + 1][j + 1] = turn[i][j];
-      square += turn[i][j] * turn[i][j];
+      change[i + 1][j + 1] = linear[i][j];
+      square += linear[i][j] * linear[i][j];
     }
   }
   if (!(square <= largest_distance * largest_distance)) return false;
@@ -232,7 +237,7 @@ bool CellwiseBuilder::see(const Donor& donor, const ContactCell& giver, AffineIn
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) {
       half[i][j] = 0.0;
-      for (std::size_t k = 0; k < 4; ++k) half[i][j] += change[i][k] * giver.inertia[k][j];
+      for (std::size_t k = 0; k < 4; ++k) half[i][j] += change[i][k] * contact_cell.inertia[k][j];
     }
   }
   for (std::size_t i = 0; i < 4; ++i) {
@@ -252,7 +257,7 @@ void CellwiseBuilder::for_each_weight(const Donor& donor, const Visit& visit) co
     const int node = rings_.nodes(donor.cell)[k];
     if (is_contact(node)) continue;
     double weight[4];
-    affine_weight(donor.frame, d_, input_.nodes->col(node).data(), trust_[node], weight);
+    affine_weight(donor.frame, d_, input_.nodes->col(node).data(), inertia_diagonal_[node], weight);
     visit(node, weight);
   }
 }
@@ -271,7 +276,7 @@ void CellwiseBuilder::update_costs(const Vector& lengths) {
     for_each_weight(donor, [&](int node, const double* weight) {
       for (std::size_t a = 0; a < 4; ++a) {
         for (std::size_t b = 0; b < 4; ++b)
-          donor.cost[a][b] += weight[a] * weight[b] * lengths[node] * lengths[node] / trust_[node];
+          donor.cost[a][b] += weight[a] * weight[b] * lengths[node] * lengths[node] / inertia_diagonal_[node];
       }
     });
   }
@@ -279,27 +284,27 @@ void CellwiseBuilder::update_costs(const Vector& lengths) {
 
 /// Sets θ_Tq in proportion to 1/c², with c_Tq the trace of the inertia that q would receive relative to D, with the
 /// weights L².
-void CellwiseBuilder::update_parts(const ContactCell& giver, std::size_t end, bool first) {
+void CellwiseBuilder::update_parts(const ContactCell& contact_cell, std::size_t end, bool first) {
   double sum = 0.0, least = 0.0;
-  for (std::size_t s = giver.first_share; s < end; ++s) {
+  for (std::size_t s = contact_cell.first_share; s < end; ++s) {
     Share& share = shares_[s];
     const AffineInertia& costs = donors_[static_cast<std::size_t>(share.donor)].cost;
     share.cost = 0.0;
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = 0; b < 4; ++b) share.cost += share.inertia[a][b] * costs[a][b];
     }
-    least = s == giver.first_share ? share.cost : std::min(least, share.cost);
+    least = s == contact_cell.first_share ? share.cost : std::min(least, share.cost);
   }
-  const auto wanted = [&](std::size_t s) { return (least / shares_[s].cost) * (least / shares_[s].cost); };
-  for (std::size_t s = giver.first_share; s < end; ++s) sum += wanted(s);
-  for (std::size_t s = giver.first_share; s < end; ++s) {
-    const double part = wanted(s) / sum;
+  const auto relative_weight = [&](std::size_t s) { return (least / shares_[s].cost) * (least / shares_[s].cost); };
+  for (std::size_t s = contact_cell.first_share; s < end; ++s) sum += relative_weight(s);
+  for (std::size_t s = contact_cell.first_share; s < end; ++s) {
+    const double part = relative_weight(s) / sum;
     shares_[s].part = first ? part : 0.5 * (shares_[s].part + part);
   }
 }
 
-void CellwiseBuilder::receive(const ContactCell& giver, std::size_t end, double weight) {
-  for (std::size_t s = giver.first_share; s < end; ++s) {
+void CellwiseBuilder::receive(const ContactCell& contact_cell, std::size_t end, double weight) {
+  for (std::size_t s = contact_cell.first_share; s < end; ++s) {
     add_inertia(donors_[static_cast<std::size_t>(shares_[s].donor)].received, weight * shares_[s].part,
                 shares_[s].inertia);
   }
@@ -307,7 +312,7 @@ void CellwiseBuilder::receive(const ContactCell& giver, std::size_t end, double 
 
 /// Diagonal of the inertia after redistribution.
 Vector CellwiseBuilder::diagonal() const {
-  Vector result = kept_;
+  Vector result = retained_diagonal_;
   for (const Donor& donor : donors_) {
     for_each_weight(
         donor, [&](int node, const double* weight) { result[node] += quadratic_form(donor.received, weight, weight); });
@@ -318,9 +323,9 @@ Vector CellwiseBuilder::diagonal() const {
 /// Iterates on the shares with L = 1 at first, then M₀_ii/D_i. The shares are those of the inertia even if the mass
 /// being built is damping, so that damping with a uniform rate equals that rate times the mass.
 void CellwiseBuilder::share_out() {
-  Vector lengths = Vector::Ones(trust_.size());
+  Vector lengths = Vector::Ones(inertia_diagonal_.size());
   for (int sweep = 0; sweep <= sweeps; ++sweep) {
-    if (sweep > 0) lengths = diagonal().cwiseQuotient(trust_);
+    if (sweep > 0) lengths = diagonal().cwiseQuotient(inertia_diagonal_);
     update_costs(lengths);
     for (Donor& donor : donors_) donor.received = {};
     for (std::size_t g = 0; g < contact_cells_.size(); ++g) {
@@ -345,15 +350,15 @@ void CellwiseBuilder::hand_over() {
 }
 
 /// Throws an error that describes the free nodes of the cell's body.
-void CellwiseBuilder::refuse(const ContactCell& giver) {
-  rings_.start(giver.cell);
+void CellwiseBuilder::refuse(const ContactCell& contact_cell) {
+  rings_.start(contact_cell.cell);
   while (rings_.grow()) continue;
   const std::vector<Index> body = rings_.nodes();
   std::vector<Index> free;
   std::copy_if(body.begin(), body.end(), std::back_inserter(free), [this](Index n) { return !is_contact(n); });
-  const int* const nodes = rings_.nodes(giver.cell);
+  const int* const nodes = rings_.nodes(contact_cell.cell);
   const Index node =
-      *std::find_if(nodes, nodes + rings_.node_count(giver.cell), [this](Index n) { return is_contact(n); });
+      *std::find_if(nodes, nodes + rings_.node_count(contact_cell.cell), [this](Index n) { return is_contact(n); });
   throw Error(
       ErrorKind::invalid_input,
       fmt::format("mass type \"equivalent-cellwise\": the inertia of the contact node at {} cannot be moved to other "

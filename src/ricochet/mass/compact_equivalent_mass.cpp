@@ -57,17 +57,17 @@ class Builder {
 
   const MassInput& input_;
   std::vector<char> is_contact_;
-  Vector trust_;  ///< m_jj
+  Vector inertia_diagonal_;  ///< m_jj
   std::unique_ptr<CellRings> rings_;
   std::vector<char> is_checked_;                ///< per cell: whether the free nodes of its body have been checked
-  std::vector<int> seen_from_;                  ///< per node: the last cell that used it as a donor
+  std::vector<int> visited_by_;                 ///< per node: the last cell that used it as a donor
   SparseMatrix result_;                         ///< on the pattern of M
   std::vector<Eigen::Triplet<double>> beyond_;  ///< entries outside that pattern
   int number_ = 0;                              ///< of the current cell, from 1
 };
 
 Builder::Builder(const MassInput& input)
-    : input_(input), is_contact_(input.marked_contact_nodes()), trust_(input.inertia_matrix().diagonal()) {}
+    : input_(input), is_contact_(input.marked_contact_nodes()), inertia_diagonal_(input.inertia_matrix().diagonal()) {}
 
 void Builder::add_value(Index row, Index column, double value) {
   if (double* const entry = stored_entry(result_, row, column); entry != nullptr) {
@@ -118,9 +118,9 @@ CellExtension Builder::extend(const std::vector<Index>& nodes) {
   if (!rings_) start_rings();
   require_free_nodes_of_body(nodes);
   rings_->start(number_ - 1);
-  for (const Index donor : donors) seen_from_[static_cast<std::size_t>(donor)] = number_;
-  for (std::size_t ring = 1, seen = 1, tried = donors.size(); rings_->grow(); ++ring) {
-    for (; seen < rings_->cells().size(); ++seen) add_free_nodes(rings_->cells()[seen], donors);
+  for (const Index donor : donors) visited_by_[static_cast<std::size_t>(donor)] = number_;
+  for (std::size_t ring = 1, visited = 1, tried = donors.size(); rings_->grow(); ++ring) {
+    for (; visited < rings_->cells().size(); ++visited) add_free_nodes(rings_->cells()[visited], donors);
     // Far away, a few additional donors make no difference.
     if (donors.size() > (ring <= many_rings ? tried : tried + tried / 4)) {
       tried = donors.size();
@@ -138,14 +138,14 @@ CellExtension Builder::extend(const std::vector<Index>& nodes) {
 void Builder::start_rings() {
   rings_ = std::make_unique<CellRings>(*input_.cells, input_.consistent->cols());
   is_checked_.assign(static_cast<std::size_t>(rings_->count()), 0);
-  seen_from_.assign(is_contact_.size(), 0);
+  visited_by_.assign(is_contact_.size(), 0);
 }
 
 void Builder::add_free_nodes(int cell, std::vector<Index>& donors) {
   for (int k = 0; k < rings_->node_count(cell); ++k) {
     const auto node = static_cast<std::size_t>(rings_->nodes(cell)[k]);
-    if (is_contact_[node] != 0 || seen_from_[node] == number_) continue;
-    seen_from_[node] = number_;
+    if (is_contact_[node] != 0 || visited_by_[node] == number_) continue;
+    visited_by_[node] = number_;
     donors.push_back(static_cast<Index>(node));
   }
 }
@@ -188,7 +188,7 @@ void Builder::extrapolate(const std::vector<Index>& nodes, CellExtension& extens
   for (Index k = 0; k < count; ++k) {
     const Index donor = extension.donors[static_cast<std::size_t>(k)];
     centre += input_.nodes->col(donor) / static_cast<double>(count);
-    scale[k] = trust_[donor];
+    scale[k] = inertia_diagonal_[donor];
   }
   scale = (scale / scale.maxCoeff()).cwiseSqrt();
   Matrix conditions(dimension + 1, count);
@@ -201,8 +201,8 @@ void Builder::extrapolate(const std::vector<Index>& nodes, CellExtension& extens
   const LeastNormSolver solver(conditions * scale.asDiagonal());
   if (solver.rank() <= dimension) return;
   extension.rows.setZero(static_cast<Index>(nodes.size()), count);
-  Vector wanted(dimension + 1);
-  wanted[0] = 1.0;
+  Vector target(dimension + 1);
+  target[0] = 1.0;
   double largest = 0.0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (!is_contact(nodes[i])) {
@@ -210,10 +210,10 @@ void Builder::extrapolate(const std::vector<Index>& nodes, CellExtension& extens
       extension.rows(static_cast<Index>(i), own - extension.donors.begin()) = 1.0;
       continue;
     }
-    wanted.tail(dimension) = (input_.nodes->col(nodes[i]) - centre) / size;
-    Vector weights = scale.cwiseProduct(solver.solve(wanted));
+    target.tail(dimension) = (input_.nodes->col(nodes[i]) - centre) / size;
+    Vector weights = scale.cwiseProduct(solver.solve(target));
     // One step of iterative refinement, for flat cells.
-    weights += scale.cwiseProduct(solver.solve(wanted - conditions * weights));
+    weights += scale.cwiseProduct(solver.solve(target - conditions * weights));
     largest = std::max(largest, weights.lpNorm<1>());
     extension.rows.row(static_cast<Index>(i)) = weights.transpose();
   }

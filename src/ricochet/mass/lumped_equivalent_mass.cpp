@@ -36,7 +36,7 @@ double factor_of(Index a, Index b) {
 /// Moments that the masses of one body must reproduce, in the frame of the body.
 struct Moments {
   Matrix functions;  ///< 1, ξ, η[, ζ], ξ², √2 ξη, η² and so on at the body's nodes, nodes × (6 or 10)
-  Vector wanted;     ///< PᵃᵀMPᵇ in the same order
+  Vector target;     ///< PᵃᵀMPᵇ in the same order
   Index affine = 0;  ///< number of the affine functions 1, ξ, η[, ζ], which come first
 };
 
@@ -49,13 +49,13 @@ Moments moments_of(const MassInput& input, const MassFrames& frames, const MassB
   for (Index i = 0; i < count; ++i)
     result.functions.row(i).head(d + 1) = frames.monomials.col(body.nodes[static_cast<std::size_t>(i)]).transpose();
   const Matrix all = mass_moments(*input.consistent, frames, body);
-  result.wanted.resize(result.functions.cols());
-  result.wanted.head(d + 1) = all.col(0);
+  result.target.resize(result.functions.cols());
+  result.target.head(d + 1) = all.col(0);
   Index column = d + 1;
   for (Index a = 1; a <= d; ++a) {
     for (Index b = a; b <= d; ++b) {
       result.functions.col(column) = factor_of(a, b) * result.functions.col(a).cwiseProduct(result.functions.col(b));
-      result.wanted[column++] = factor_of(a, b) * all(a, b);
+      result.target[column++] = factor_of(a, b) * all(a, b);
     }
   }
   return result;
@@ -63,7 +63,7 @@ Moments moments_of(const MassInput& input, const MassFrames& frames, const MassB
 
 /// Defect of the moments Σ_i m_i f(x_i), relative to the total mass.
 Vector defect(const Moments& moments, const Vector& mass) {
-  return (moments.wanted - moments.functions.transpose() * mass) / mass.sum();
+  return (moments.target - moments.functions.transpose() * mass) / mass.sum();
 }
 
 /// Applies m ← m (1 + θ p). Returns θ, the largest value up to 1 with which every node keeps half of its mass.
@@ -90,14 +90,14 @@ double correct_inertia(const Moments& moments, Vector& mass) {
   const auto affine = moments.functions.leftCols(moments.affine);
   const Vector weight = mass / mass.sum();
   const PivotedCholesky gram(affine.transpose() * weight.asDiagonal() * affine);
-  Matrix part = moments.functions.rightCols(moments.wanted.size() - moments.affine);
-  const Vector lacking = defect(moments, mass).tail(part.cols());
+  Matrix part = moments.functions.rightCols(moments.target.size() - moments.affine);
+  const Vector deficit = defect(moments, mass).tail(part.cols());
   // Twice because of rounding.
-  for (int round = 0; round < 2; ++round)
+  for (int pass = 0; pass < 2; ++pass)
     part -= affine * gram.solve(Matrix(affine.transpose() * weight.asDiagonal() * part));
   // Rank-revealing: if all nodes lie at two values of x, x² is an affine function on them and cannot be corrected.
   const LeastNormSolver factor(part.transpose() * weight.asDiagonal() * part, 1e-10);
-  return apply(part * factor.solve(lacking), mass);
+  return apply(part * factor.solve(deficit), mass);
 }
 
 /// Tensor of inertia tr(S) I − S of the second moments S; in 2D the single moment tr(S).
@@ -110,7 +110,7 @@ Matrix inertia_tensor(const Matrix& second) {
 /// Accuracy of the moments of inertia that the masses of a body yield.
 struct InertiaCheck {
   double least = 1.0;    ///< the least moment of inertia about an axis through the centre, relative to the exact one
-  double lacking = 0.0;  ///< the largest relative error of these and, relative to the largest, of the second moments
+  double deficit = 0.0;  ///< the largest relative error of these and, relative to the largest, of the second moments
 };
 
 InertiaCheck check_inertia(const MassBody& body, const Moments& moments, const Vector& mass) {
@@ -124,13 +124,13 @@ InertiaCheck check_inertia(const MassBody& body, const Moments& moments, const V
     }
     return Matrix(body.axes * result * body.axes.transpose());
   };
-  const Matrix own = second(found), wanted = second(moments.wanted);
+  const Matrix own = second(found), target = second(moments.target);
   // (1 + ratio) J_wanted ω = J_own ω
-  const SmallCholesky factor(inertia_tensor(wanted));
-  const Matrix half = factor.solve_lower(inertia_tensor(own - wanted));
+  const SmallCholesky factor(inertia_tensor(target));
+  const Matrix half = factor.solve_lower(inertia_tensor(own - target));
   const Vector ratios = symmetric_eigenvalues(factor.solve_lower(half.transpose()));
   return {1.0 + ratios.minCoeff(),
-          std::max(ratios.cwiseAbs().maxCoeff(), (own - wanted).cwiseAbs().maxCoeff() / wanted.cwiseAbs().maxCoeff())};
+          std::max(ratios.cwiseAbs().maxCoeff(), (own - target).cwiseAbs().maxCoeff() / target.cwiseAbs().maxCoeff())};
 }
 
 /// Returns l with the mass of each contact node distributed among the free nodes nearest to it in the graph, in
@@ -139,12 +139,12 @@ Vector share_contact_mass(const MassInput& input, const Vector& lumped) {
   const SparseMatrix& graph = *input.consistent;
   const std::vector<char> is_contact = input.marked_contact_nodes();
   Vector result = lumped;
-  std::vector<Index> seen_from(static_cast<std::size_t>(graph.cols()), -1);
+  std::vector<Index> visited_by(static_cast<std::size_t>(graph.cols()), -1);
   std::vector<Index> front, next, free;
   for (const Index node : input.contact_nodes) {
     result[node] = 0.0;
     front.assign(1, node);
-    seen_from[static_cast<std::size_t>(node)] = node;
+    visited_by[static_cast<std::size_t>(node)] = node;
     free.clear();
     double sum = 0.0;
     while (free.empty() && !front.empty()) {
@@ -152,8 +152,8 @@ Vector share_contact_mass(const MassInput& input, const Vector& lumped) {
       for (const Index from : front) {
         for (SparseMatrix::InnerIterator entry(graph, from); entry; ++entry) {
           const auto neighbour = static_cast<Index>(entry.row());
-          if (seen_from[static_cast<std::size_t>(neighbour)] == node) continue;
-          seen_from[static_cast<std::size_t>(neighbour)] = node;
+          if (visited_by[static_cast<std::size_t>(neighbour)] == node) continue;
+          visited_by[static_cast<std::size_t>(neighbour)] = node;
           next.push_back(neighbour);
           if (is_contact[static_cast<std::size_t>(neighbour)] != 0) continue;
           free.push_back(neighbour);
@@ -202,24 +202,24 @@ class LumpedEquivalentMass final : public MassConstruction {
   static Vector build_diagonal(const MassInput& input, bool warns) {
     Vector diagonal = share_contact_mass(input, lumped_diagonal(*input.consistent));
     const MassFrames frames = mass_frames(*input.consistent, *input.nodes);
-    double lacking = 0.0;
+    double deficit = 0.0;
     const MassBody* worst = nullptr;
     for (const MassBody& body : frames.bodies) {
       const double own = balance(input, frames, body, diagonal);
-      if (own <= lacking) continue;
-      lacking = own;
+      if (own <= deficit) continue;
+      deficit = own;
       worst = &body;
     }
-    if (warns && lacking > 1e-10) warn(input, *worst, lacking);
+    if (warns && deficit > 1e-10) warn(input, *worst, deficit);
     return diagonal;
   }
 
-  static void warn(const MassInput& input, const MassBody& body, double lacking) {
+  static void warn(const MassInput& input, const MassBody& body, double deficit) {
     log::warning(
         fmt::format("mass type \"equivalent-lumped\" preserves the mass and the centre of gravity of {}, but its "
                     "moments of inertia only within {:.2g} %: the nodes off the contact boundary are too few, or too "
                     "close together, to carry them with positive masses; refine the mesh where rotation matters",
-                    name_of(input, body), 100.0 * lacking));
+                    name_of(input, body), 100.0 * deficit));
   }
 
   /// Fraction of a moment of inertia below which the mass is no longer an approximation.
@@ -264,7 +264,7 @@ class LumpedEquivalentMass final : public MassConstruction {
                          std::max(100.0 * inertia.least, 0.0)));
     }
     for (Index i = 0; i < mass.size(); ++i) diagonal[body.nodes[static_cast<std::size_t>(i)]] = mass[i];
-    return inertia.lacking;
+    return inertia.deficit;
   }
 
   /// Diagonal matrix without entries for contact nodes.

@@ -51,8 +51,8 @@ void MassInput::require_cells(const std::string& name) const {
   throw Error(ErrorKind::invalid_input, fmt::format("mass type \"{}\" needs the mass matrices of single cells", name));
 }
 
-MassChoice mass_to_build(const std::string& asked, const Parameters& parameters, const MassInput& input) {
-  return make_mass(asked, parameters)->choose(input).value_or(MassChoice{asked, {}, {}, parameters});
+MassChoice mass_to_build(const std::string& requested, const Parameters& parameters, const MassInput& input) {
+  return make_mass(requested, parameters)->choose(input).value_or(MassChoice{requested, {}, {}, parameters});
 }
 
 bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes) {

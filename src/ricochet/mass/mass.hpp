@@ -66,7 +66,8 @@ using MassRegistration = Registration<MassConstructor>;
 /// Error(invalid_input) that lists the names.
 [[nodiscard]] std::unique_ptr<MassConstruction> make_mass(const std::string& name, Parameters parameters = {});
 /// Mass to be built for the requested type, with the values of its keys.
-[[nodiscard]] MassChoice mass_to_build(const std::string& asked, const Parameters& parameters, const MassInput& input);
+[[nodiscard]] MassChoice mass_to_build(const std::string& requested, const Parameters& parameters,
+                                       const MassInput& input);
 
 /// Diagonal mass: the row sums if all are positive (degree 1: total mass and centre of gravity are preserved), else the
 /// diagonal of the consistent mass scaled to the same total.

@@ -70,7 +70,7 @@ MassFrames mass_frames(const SparseMatrix& mass, const Points& nodes) {
     body.nodes = std::move(members);
     start_frame(nodes, frames, body);
     // The second pass removes the rounding error of the first in flat bodies.
-    for (int round = 0; round < 2; ++round) normalize(mass, frames, body);
+    for (int pass = 0; pass < 2; ++pass) normalize(mass, frames, body);
     frames.bodies.push_back(std::move(body));
   }
   return frames;
@@ -96,9 +96,9 @@ Matrix mass_moments(const SparseMatrix& mass, const MassFrames& frames, const Ma
   return result;
 }
 
-double moment_defect(const SparseMatrix& found, const SparseMatrix& wanted, const MassFrames& frames,
+double moment_defect(const SparseMatrix& found, const SparseMatrix& target, const MassFrames& frames,
                      const MassBody& body) {
-  const Matrix right = mass_moments(wanted, frames, body);
+  const Matrix right = mass_moments(target, frames, body);
   const double difference = (mass_moments(found, frames, body) - right).cwiseAbs().maxCoeff();
   return difference == 0.0 ? 0.0 : difference / right.cwiseAbs().maxCoeff();
 }

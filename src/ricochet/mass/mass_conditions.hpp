@@ -30,7 +30,7 @@ struct MassFrames {
 
 /// Largest difference between the moments of two masses in a body, relative to the largest moment; infinite
 /// if the wanted moments are zero.
-[[nodiscard]] double moment_defect(const SparseMatrix& found, const SparseMatrix& wanted, const MassFrames& frames,
+[[nodiscard]] double moment_defect(const SparseMatrix& found, const SparseMatrix& target, const MassFrames& frames,
                                    const MassBody& body);
 struct MassInput;
 /// Throws Error(invalid_input) if the moments of a body differ from those of `input` by more than rounding: that of the

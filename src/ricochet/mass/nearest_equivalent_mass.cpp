@@ -102,7 +102,7 @@ class NearestEquivalentMass final : public MassConstruction {
     }
     const PivotedCholesky factor(gram);
     // The second pass removes the rounding error of the first.
-    for (int round = 0; round < 2; ++round) {
+    for (int pass = 0; pass < 2; ++pass) {
       const Matrix missing = mass_moments(consistent, frames, body) - mass_moments(mass, frames, body);
       Vector defect(count);
       for (Index k = 0; k < count; ++k) {

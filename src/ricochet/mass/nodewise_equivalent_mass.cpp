@@ -183,17 +183,17 @@ SparseMatrix congruence(const SparseMatrix& mass, const std::vector<char>& is_co
 ///   Σ t_j Σ w_j²/t_j = 1 + |ξ|²,  t_j = m_jj,
 /// where |ξ| is the distance of the point from the centre of gravity of the nodes, in units of their root mean square
 /// spread in that direction, and measures how far the weights extrapolate.
-bool extrapolation_weights(const Points& nodes, const Vector& trust, const std::vector<int>& of, Index point,
+bool extrapolation_weights(const Points& nodes, const Vector& node_weights, const std::vector<int>& of, Index point,
                            Vector& weights) {
   constexpr double largest_distance = 100.0;
   const int d = static_cast<int>(nodes.rows());
   AffineFrame frame;
-  if (!make_affine_frame(nodes, of.data(), static_cast<int>(of.size()), trust, frame)) return false;
+  if (!make_affine_frame(nodes, of.data(), static_cast<int>(of.size()), node_weights, frame)) return false;
   double to[4] = {1.0}, weight[4];
   affine_coordinates(frame, d, nodes.col(point).data(), to + 1);
   weights.setZero(static_cast<Index>(of.size()));
   for (std::size_t j = 0; j < of.size(); ++j) {
-    affine_weight(frame, d, nodes.col(of[j]).data(), trust[of[j]], weight);
+    affine_weight(frame, d, nodes.col(of[j]).data(), node_weights[of[j]], weight);
     for (int k = 0; k <= d; ++k) weights[static_cast<Index>(j)] += weight[k] * to[k];
   }
   const double square = to[1] * to[1] + to[2] * to[2] + to[3] * to[3];
@@ -204,7 +204,7 @@ bool extrapolation_weights(const Points& nodes, const Vector& trust, const std::
 /// reproduce affine functions with the least norm Σ w_j²/m_jj. Hence PᵃᵀM₀Pᵇ = PᵃᵀMPᵇ exactly, M₀ is by construction
 /// positive semi-definite with the contact dofs as its null space, and wᵀ(m_cc)w measures the mass added to the free
 /// nodes relative to their own: the choice of the norm and of many neighbours keeps the top eigenvalue low.
-/// docs/equivalent-mass.md has the measurements behind `wanted_neighbours`.
+/// docs/equivalent-mass.md has the measurements behind `required_neighbours`.
 class NodewiseEquivalentMass final : public MassConstruction {
  public:
   [[nodiscard]] bool removes_contact_inertia() const override { return true; }
@@ -215,9 +215,9 @@ class NodewiseEquivalentMass final : public MassConstruction {
     const std::vector<char> is_contact = input.marked_contact_nodes();
     const Vector diagonal = input.inertia_matrix().diagonal();
     ExtensionRows extension(count);
-    std::vector<Index> seen_from(static_cast<std::size_t>(count), -1);
+    std::vector<Index> visited_by(static_cast<std::size_t>(count), -1);
     for (const Index node : input.contact_nodes) {
-      extension.set(node, extrapolate(input, is_contact, diagonal, node, seen_from));
+      extension.set(node, extrapolate(input, is_contact, diagonal, node, visited_by));
     }
     SparseMatrix result = congruence(consistent, is_contact, extension);
     check_moments(input, result, "equivalent-nodewise");
@@ -226,37 +226,37 @@ class NodewiseEquivalentMass final : public MassConstruction {
 
  private:
   /// Computes weights on the rings of free nodes around a contact node: enough rings for the wanted
-  /// number of neighbours and to span space affinely. `seen_from` is work space: the contact node from
+  /// number of neighbours and to span space affinely. `visited_by` is work space: the contact node from
   /// which a node was last reached.
   static Extrapolation extrapolate(const MassInput& input, const std::vector<char>& is_contact, const Vector& diagonal,
-                                   Index node, std::vector<Index>& seen_from) {
+                                   Index node, std::vector<Index>& visited_by) {
     const Index dimension = input.nodes->rows();
-    const std::size_t wanted_neighbours = dimension == 2 ? 20 : 40;
+    const std::size_t required_neighbours = dimension == 2 ? 20 : 40;
     std::vector<Index> front{node}, next;
     std::vector<int> free;
-    seen_from[static_cast<std::size_t>(node)] = node;
+    visited_by[static_cast<std::size_t>(node)] = node;
     Extrapolation result;
     while (!front.empty()) {
       next.clear();
       for (const Index from : front) {
         for (SparseMatrix::InnerIterator entry(*input.consistent, from); entry; ++entry) {
           const auto neighbour = static_cast<Index>(entry.row());
-          if (seen_from[static_cast<std::size_t>(neighbour)] == node) continue;
-          seen_from[static_cast<std::size_t>(neighbour)] = node;
+          if (visited_by[static_cast<std::size_t>(neighbour)] == node) continue;
+          visited_by[static_cast<std::size_t>(neighbour)] = node;
           next.push_back(neighbour);
           if (is_contact[static_cast<std::size_t>(neighbour)] == 0) free.push_back(static_cast<int>(neighbour));
         }
       }
       std::swap(front, next);
-      const bool enough = free.size() >= wanted_neighbours || front.empty();
+      const bool enough = free.size() >= required_neighbours || front.empty();
       if (enough && extrapolation_weights(*input.nodes, diagonal, free, node, result.weights)) {
         result.nodes = std::move(free);
         return result;
       }
     }
     std::vector<Index> body;
-    for (std::size_t k = 0; k < seen_from.size(); ++k) {
-      if (seen_from[k] == node) body.push_back(static_cast<Index>(k));
+    for (std::size_t k = 0; k < visited_by.size(); ++k) {
+      if (visited_by[k] == node) body.push_back(static_cast<Index>(k));
     }
     refuse(input, node, body, {free.begin(), free.end()});
   }

@@ -86,15 +86,15 @@ void for_each_distinct_facet(const std::vector<CellBlock>& cells, const Visit& v
 
 /// Returns whether two cells lie on opposite sides of the facet they share: they traverse it in opposite directions.
 bool are_opposite(const std::vector<CellBlock>& cells, const CellFacet& one, const CellFacet& other) {
-  const auto round = [&](const CellFacet& facet) {
+  const auto outward_vertices = [&](const CellFacet& facet) {
     const CellBlock& block = cells[facet.block];
     std::vector<Index> vertices;
     for (const int local : outward_facet_vertices(block.shape)[facet.local])
       vertices.push_back(block.cell(facet.cell)[local]);
     return vertices;
   };
-  std::vector<Index> first = round(one);
-  std::vector<Index> second = round(other);
+  std::vector<Index> first = outward_vertices(one);
+  std::vector<Index> second = outward_vertices(other);
   if (first.size() == 2) return first[0] == second[1];
   std::reverse(second.begin(), second.end());
   std::rotate(first.begin(), std::min_element(first.begin(), first.end()), first.end());

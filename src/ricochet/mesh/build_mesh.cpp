@@ -133,9 +133,9 @@ NodeNumbering::NodeNumbering(std::span<const std::int64_t> tags, const std::stri
   if (largest / 4 <= static_cast<std::int64_t>(tags.size())) {
     dense_.assign(static_cast<std::size_t>(largest) + 1, -1);
     for (std::size_t i = 0; i < tags.size(); ++i) {
-      Index& place = dense_[static_cast<std::size_t>(tags[i])];
-      if (place >= 0) repeated.add(tags[i]);
-      place = static_cast<Index>(i);
+      Index& index = dense_[static_cast<std::size_t>(tags[i])];
+      if (index >= 0) repeated.add(tags[i]);
+      index = static_cast<Index>(i);
     }
   } else {
     sorted_.reserve(tags.size());

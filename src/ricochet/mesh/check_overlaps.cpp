@@ -81,20 +81,20 @@ std::vector<double> sums_of_angles(const Mesh& mesh) {
 }  // namespace
 
 void warn_of_overlaps(const Mesh& mesh) {
-  const double whole = (mesh.dimension == 2 ? 2.0 : 4.0) * std::numbers::pi;
+  const double full_angle = (mesh.dimension == 2 ? 2.0 : 4.0) * std::numbers::pi;
   const std::vector<double> sums = sums_of_angles(mesh);
   std::size_t count = 0, worst = 0;
   for (std::size_t node = 0; node < sums.size(); ++node) {
-    if (!(sums[node] > (1.0 + tolerance) * whole)) continue;
+    if (!(sums[node] > (1.0 + tolerance) * full_angle)) continue;
     ++count;
     if (count == 1 || sums[node] > sums[worst]) worst = node;
   }
   if (count == 0) return;
-  const auto place = mesh.nodes.col(static_cast<Index>(worst));
+  const auto position = mesh.nodes.col(static_cast<Index>(worst));
   log::warning(fmt::format(
       "{}: cells overlap: around node {} at ({:.6g}) they fill {:.3g} times the full angle{}; the mass and the "
       "stiffness of the body are counted twice there: remesh the part",
-      mesh.source, mesh.node_tags[worst], fmt::join(place.begin(), place.end(), ", "), sums[worst] / whole,
+      mesh.source, mesh.node_tags[worst], fmt::join(position.begin(), position.end(), ", "), sums[worst] / full_angle,
       count > 1 ? fmt::format(" ({} affected, too)", counted(count - 1, "other node is", "other nodes are")) : ""));
 }
 

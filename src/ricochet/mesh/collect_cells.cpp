@@ -38,7 +38,7 @@ class BlockCollector {
     }
   }
 
-  CellBlock take(const std::string& source) {
+  CellBlock release(const std::string& source) {
     if (elements_at_fault_.any()) {
       fail_mesh(source,
                 fmt::format("{} refer{} to nodes that are not in $Nodes: {}", elements_at_fault_.text("element"),
@@ -69,8 +69,8 @@ class BlockCollector {
   }
 
   Index add_cell(const std::vector<Index>& nodes, std::int64_t tag, bool in_group) {
-    const Index known = table_.find_or_add(nodes.data());
-    if (known < 0) {
+    const Index existing = table_.find_or_add(nodes.data());
+    if (existing < 0) {
       block_.nodes.insert(block_.nodes.end(), nodes.begin(), nodes.end());
       block_.tags.push_back(tag);
       in_group_.push_back(in_group);
@@ -78,9 +78,9 @@ class BlockCollector {
     }
     // Gmsh's format 2.2 repeats an element for each group it is in. Any other repetition means two cells at one
     // position.
-    const bool once_per_group = in_group && in_group_[static_cast<std::size_t>(known)];
-    if (!once_per_group || !same_nodes(block_.cell(known), nodes.data(), block_.nodes_per_cell)) repeated_.add(tag);
-    return known;
+    const bool once_per_group = in_group && in_group_[static_cast<std::size_t>(existing)];
+    if (!once_per_group || !same_nodes(block_.cell(existing), nodes.data(), block_.nodes_per_cell)) repeated_.add(tag);
+    return existing;
   }
 
   const std::vector<int>& order_;
@@ -136,7 +136,7 @@ std::vector<CellBlock> collect_cells(std::span<const RawElements* const> element
       }
       collector.add(*part, members, first);
     }
-    blocks.push_back(collector.take(mesh.source));
+    blocks.push_back(collector.release(mesh.source));
     first += blocks.back().size();
   }
   for (Group& group : mesh.groups) sort_members(blocks, mesh.source, group);

@@ -21,14 +21,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Answer {
-  ChildResult outcome;
+struct Response {
+  ChildResult result;
   std::deque<std::string> last_lines;
 
   [[nodiscard]] std::string last_line() const { return last_lines.empty() ? "" : last_lines.back(); }
 };
 
-Answer run(const std::vector<std::string>& arguments, const fs::path& workspace) {
+Response run(const std::vector<std::string>& arguments, const fs::path& workspace) {
   const fs::path script = workspace / "convert_mesh.py";
   for (const ConverterFile& file : converter_files())
     std::ofstream(workspace / file.name, std::ios::binary) << file.text;
@@ -37,16 +37,16 @@ Answer run(const std::vector<std::string>& arguments, const fs::path& workspace)
   python.arguments.insert(python.arguments.end(), arguments.begin(), arguments.end());
   python.variables = {"PYTHONIOENCODING=utf-8:surrogateescape"};
   python.output = (workspace / "convert.log").string();
-  Answer answer;
-  answer.outcome = run_child(python);
+  Response response;
+  response.result = run_child(python);
   constexpr std::size_t shown = 6;
   std::ifstream log(python.output);
   for (std::string line; std::getline(log, line);) {
     if (line.find_first_not_of(" \t") == std::string::npos) continue;
-    answer.last_lines.push_back(line);
-    if (answer.last_lines.size() > shown) answer.last_lines.pop_front();
+    response.last_lines.push_back(line);
+    if (response.last_lines.size() > shown) response.last_lines.pop_front();
   }
-  return answer;
+  return response;
 }
 
 [[noreturn]] void fail(const std::string& message) {
@@ -56,18 +56,18 @@ Answer run(const std::vector<std::string>& arguments, const fs::path& workspace)
 /// Exit statuses of convert_mesh.py.
 constexpr int refused = 2, package_missing = 3;
 
-void check(const Answer& answer, const std::string& source) {
-  if (answer.outcome.succeeded()) return;
-  if (answer.outcome.is_absent() || answer.outcome.exit_status() == package_missing) {
+void check(const Response& response, const std::string& source) {
+  if (response.result.succeeded()) return;
+  if (response.result.is_absent() || response.result.exit_status() == package_missing) {
     fail(
         fmt::format("{}: files of this format are read with Python's meshio, and a package is missing: apt-get install "
                     "{} (or convert the file to .msh on a machine that has it)",
-                    source, answer.outcome.is_absent() ? "python3-meshio" : answer.last_line()));
+                    source, response.result.is_absent() ? "python3-meshio" : response.last_line()));
   }
-  if (answer.outcome.exit_status() == refused) fail(answer.last_line());
+  if (response.result.exit_status() == refused) fail(response.last_line());
   std::string text;
-  for (const std::string& line : answer.last_lines) text += "\n  " + line;
-  fail(fmt::format("{}: the file could not be read: {} {}{}", source, python_program(), answer.outcome.description(),
+  for (const std::string& line : response.last_lines) text += "\n  " + line;
+  fail(fmt::format("{}: the file could not be read: {} {}{}", source, python_program(), response.result.description(),
                    text.empty() ? " without any output" : ":" + text));
 }
 
@@ -75,11 +75,11 @@ void check(const Answer& answer, const std::string& source) {
 
 std::string converter_version(const std::string& source) {
   const TemporaryFolder workspace(fs::temp_directory_path(), "ricochet-converter");
-  const Answer answer = run({"--version"}, workspace.path());
-  check(answer, source);
+  const Response response = run({"--version"}, workspace.path());
+  check(response, source);
   std::string program;
   for (const ConverterFile& file : converter_files()) program += file.name + "\n" + file.text;
-  return answer.last_line() + "\n" + fnv1a_128(program);
+  return response.last_line() + "\n" + fnv1a_128(program);
 }
 
 void convert_mesh(const std::string& input, const fs::path& workspace, const fs::path& output) {

@@ -32,10 +32,10 @@ std::vector<Index> numbers_up_to(Index count) {
 std::size_t block_of(Mesh& mesh, CellShape shape) {
   const auto found = std::find_if(mesh.facets.begin(), mesh.facets.end(),
                                   [shape](const CellBlock& block) { return block.shape >= shape; });
-  const auto place = static_cast<std::size_t>(found - mesh.facets.begin());
+  const auto index = static_cast<std::size_t>(found - mesh.facets.begin());
   if (found == mesh.facets.end() || found->shape != shape)
     mesh.facets.insert(found, CellBlock{shape, node_count(shape, mesh.degree), {}, {}});
-  return place;
+  return index;
 }
 
 std::vector<Index> first_numbers(const std::vector<CellBlock>& blocks) {
@@ -53,10 +53,10 @@ std::vector<Index> add_facets(const Mesh& mesh, const std::vector<CellFacet>& fa
     const std::vector<Index> nodes = nodes_of_facet(mesh.cells, facet);
     const auto size = static_cast<std::ptrdiff_t>(block.nodes.size());
     block.nodes.insert(block.nodes.end(), nodes.begin(), nodes.end());
-    const Index known = table.find_or_add(block.nodes.data() + size);
-    if (known >= 0) {
+    const Index existing = table.find_or_add(block.nodes.data() + size);
+    if (existing >= 0) {
       block.nodes.resize(static_cast<std::size_t>(size));
-      members.push_back(known);
+      members.push_back(existing);
     } else {
       members.push_back(block.size());
       block.tags.push_back(0);
@@ -78,12 +78,12 @@ void renumber(const std::vector<Index>& before, const std::vector<Index>& after,
   }
 }
 
-/// Adds a group of the boundary facets that satisfy `takes(facet)`.
-template <class Takes>
-void add_boundary(Mesh& mesh, const std::string& name, const Takes& takes) {
+/// Adds a group of the boundary facets that satisfy `selects(facet)`.
+template <class Selects>
+void add_boundary(Mesh& mesh, const std::string& name, const Selects& selects) {
   std::map<CellShape, std::vector<CellFacet>> by_shape;
   for (const CellFacet& facet : boundary_facets(mesh.cells)) {
-    if (takes(facet)) by_shape[facet_shape(mesh.cells[facet.block].shape)].push_back(facet);
+    if (selects(facet)) by_shape[facet_shape(mesh.cells[facet.block].shape)].push_back(facet);
   }
   Group boundary{name, free_tag(mesh, mesh.dimension - 1), mesh.dimension - 1, {}};
   for (const auto& [shape, facets] : by_shape) (void)block_of(mesh, shape);

@@ -137,7 +137,7 @@ std::vector<int> make_node_order(CellShape shape, int degree) {
 const ElementType* find_element_type(int number) {
   const std::vector<ElementType>& types = element_types();
   const auto found = std::lower_bound(types.begin(), types.end(), number,
-                                      [](const ElementType& type, int wanted) { return type.number < wanted; });
+                                      [](const ElementType& type, int target) { return type.number < target; });
   return found != types.end() && found->number == number ? &*found : nullptr;
 }
 

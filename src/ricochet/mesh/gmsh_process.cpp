@@ -51,11 +51,11 @@ std::string last_lines(const std::filesystem::path& log) {
   return text.empty() ? " (no output)" : text;
 }
 
-void check_spawned(const ChildResult& outcome, const std::string& source) {
-  if (outcome.is_absent()) fail_absent(source);
-  if (outcome.spawn_error != 0) {
+void check_spawned(const ChildResult& result, const std::string& source) {
+  if (result.is_absent()) fail_absent(source);
+  if (result.spawn_error != 0) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("{}: the gmsh program, needed to mesh this file, {}", source, outcome.description()));
+                fmt::format("{}: the gmsh program, needed to mesh this file, {}", source, result.description()));
   }
 }
 
@@ -64,11 +64,11 @@ void check_spawned(const ChildResult& outcome, const std::string& source) {
 std::string program_version(const std::string& source) {
   const TemporaryFolder workspace(std::filesystem::temp_directory_path(), "ricochet-gmsh-version");
   const std::filesystem::path log = workspace.path() / "log";
-  const ChildResult outcome = run({"-version"}, workspace.path(), log);
+  const ChildResult result = run({"-version"}, workspace.path(), log);
   std::string version;
   std::string line;
   for (std::ifstream stream(log); std::getline(stream, line);) version += line;
-  check_spawned(outcome, source);
+  check_spawned(result, source);
   return version;
 }
 
@@ -80,14 +80,14 @@ void run_program(const std::string& input, const std::string& options, const std
   std::ofstream(options_file) << options;
   const std::filesystem::path log = workspace / "gmsh.log";
   const std::string absolute = std::filesystem::absolute(input).string();
-  const ChildResult outcome =
+  const ChildResult result =
       run({absolute, options_file.string(), "-3", "-v", "2", "-nt", "1", "-o", output.string()}, workspace, log);
-  check_spawned(outcome, input);
+  check_spawned(result, input);
   std::error_code ignored;
   const bool written = std::filesystem::file_size(output, ignored) > 0 && !ignored;
-  if (!outcome.succeeded() || !written) {
+  if (!result.succeeded() || !written) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("{}: gmsh could not mesh this file: it {}{}:{}", input, outcome.description(),
+                fmt::format("{}: gmsh could not mesh this file: it {}{}:{}", input, result.description(),
                             written ? "" : " and wrote no mesh", last_lines(log)));
   }
 }

@@ -26,12 +26,12 @@ std::string source_of(const std::vector<NamedMesh>& parts) {
 
 std::int64_t largest_tag(const Mesh& mesh) {
   std::int64_t largest = 0;
-  const auto look = [&](const std::vector<std::int64_t>& tags) {
+  const auto include_tags = [&](const std::vector<std::int64_t>& tags) {
     for (const std::int64_t tag : tags) largest = std::max(largest, tag);
   };
-  look(mesh.node_tags);
-  for (const CellBlock& block : mesh.cells) look(block.tags);
-  for (const CellBlock& block : mesh.facets) look(block.tags);
+  include_tags(mesh.node_tags);
+  for (const CellBlock& block : mesh.cells) include_tags(block.tags);
+  for (const CellBlock& block : mesh.facets) include_tags(block.tags);
   return largest;
 }
 
@@ -60,28 +60,28 @@ class BlockMerger {
       for (const CellBlock& block : part.mesh.*of_) shapes.insert(block.shape);
     }
     for (const CellShape shape : shapes) merged_.push_back({shape, 0, {}, {}});
-    place_all();
+    number_all();
   }
 
   /// Appends the blocks of the next part.
   void append(std::size_t part, Index first_node, std::int64_t more) {
     for (const CellBlock& block : parts_[part].mesh.*of_) {
-      CellBlock& whole = merged_[block_of(block.shape)];
-      whole.nodes_per_cell = block.nodes_per_cell;
-      for (const Index node : block.nodes) whole.nodes.push_back(node + first_node);
+      CellBlock& merged_block = merged_[block_of(block.shape)];
+      merged_block.nodes_per_cell = block.nodes_per_cell;
+      for (const Index node : block.nodes) merged_block.nodes.push_back(node + first_node);
       // Facets that the file does not contain have the tag 0.
-      for (const std::int64_t tag : block.tags) whole.tags.push_back(tag == 0 ? 0 : tag + more);
+      for (const std::int64_t tag : block.tags) merged_block.tags.push_back(tag == 0 ? 0 : tag + more);
     }
   }
 
   /// Number, through all blocks, of a cell or facet given by its number in its part.
   [[nodiscard]] Index number(std::size_t part, Index in_part) const {
     const std::vector<CellBlock>& blocks = parts_[part].mesh.*of_;
-    const IndexInBlocks place = locate_in_blocks(blocks, in_part);
-    return first_[part][block_of(blocks[place.block].shape)] + place.local;
+    const IndexInBlocks location = locate_in_blocks(blocks, in_part);
+    return first_[part][block_of(blocks[location.block].shape)] + location.local;
   }
 
-  [[nodiscard]] std::vector<CellBlock> take() { return std::move(merged_); }
+  [[nodiscard]] std::vector<CellBlock> release() { return std::move(merged_); }
 
  private:
   [[nodiscard]] std::size_t block_of(CellShape shape) const {
@@ -90,7 +90,7 @@ class BlockMerger {
     return static_cast<std::size_t>(found - merged_.begin());
   }
 
-  void place_all() {
+  void number_all() {
     first_.assign(parts_.size(), std::vector<Index>(merged_.size(), 0));
     Index next = 0;
     for (std::size_t k = 0; k < merged_.size(); ++k) {
@@ -179,8 +179,8 @@ Mesh merge_parts(const std::vector<NamedMesh>& parts) {
     add_groups(parts[i], cells, facets, i, mesh);
     nodes += part.node_count();
   }
-  mesh.cells = cells.take();
-  mesh.facets = facets.take();
+  mesh.cells = cells.release();
+  mesh.facets = facets.release();
   note_numbers(parts, step);
   return mesh;
 }

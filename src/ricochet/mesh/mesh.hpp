@@ -27,9 +27,9 @@ struct IndexInBlocks {
   Index local = 0;
 };
 [[nodiscard]] inline IndexInBlocks locate_in_blocks(const std::vector<CellBlock>& blocks, Index number) {
-  IndexInBlocks place{0, number};
-  while (place.local >= blocks[place.block].size()) place.local -= blocks[place.block++].size();
-  return place;
+  IndexInBlocks location{0, number};
+  while (location.local >= blocks[location.block].size()) location.local -= blocks[location.block++].size();
+  return location;
 }
 
 /// Calls visit(number, its nodes) for the elements of all blocks, numbered through them.

@@ -53,13 +53,13 @@ std::vector<fs::path> companions(const fs::path& path, const std::string& conten
   return found;
 }
 
-void append_companions(const fs::path& path, std::set<fs::path>& seen, std::string& key) {
+void append_companions(const fs::path& path, std::set<fs::path>& visited, std::string& key) {
   std::error_code error;
   const fs::path canonical = fs::weakly_canonical(path, error);
-  if (error || !fs::is_regular_file(canonical, error) || !seen.insert(canonical).second) return;
+  if (error || !fs::is_regular_file(canonical, error) || !visited.insert(canonical).second) return;
   const std::string content = read_whole_file(canonical);
   key += fmt::format("{} {}\n", path.filename().string(), content.size()) + content;
-  for (const fs::path& companion : companions(path, content)) append_companions(companion, seen, key);
+  for (const fs::path& companion : companions(path, content)) append_companions(companion, visited, key);
 }
 
 bool is_script(const std::string& path) {
@@ -74,13 +74,13 @@ fs::path options_file(const fs::path& path) {
 /// Appends the contents on which the mesh depends: the file, the options that Gmsh reads beside it, and every file that
 /// a .geo file names in quotes, such as those it merges. Names that a .geo file computes and effects of its SystemCall
 /// are not covered.
-void append_sources(const fs::path& path, std::set<fs::path>& seen, std::string& key) {
+void append_sources(const fs::path& path, std::set<fs::path>& visited, std::string& key) {
   std::error_code error;
   const fs::path canonical = fs::weakly_canonical(path, error);
-  if (error || !fs::is_regular_file(canonical, error) || !seen.insert(canonical).second) return;
+  if (error || !fs::is_regular_file(canonical, error) || !visited.insert(canonical).second) return;
   const std::string content = read_whole_file(canonical);
   key += fmt::format("{} {}\n", path.filename().string(), content.size()) + content;
-  append_sources(options_file(path), seen, key);
+  append_sources(options_file(path), visited, key);
   if (!is_script(path.string())) return;
   constexpr const char* quotes = "\"'";
   std::size_t quote = content.find_first_of(quotes);
@@ -89,7 +89,7 @@ void append_sources(const fs::path& path, std::set<fs::path>& seen, std::string&
     if (next == std::string::npos) break;
     const std::string name = content.substr(quote + 1, next - quote - 1);
     if (!name.empty() && name.find('\n') == std::string::npos) {
-      append_sources(path.parent_path() / name, seen, key);
+      append_sources(path.parent_path() / name, visited, key);
     }
     quote = next;  // also the text between two strings is tried, so that a stray quote in a comment does no harm
   }
@@ -139,8 +139,8 @@ fs::path cache_path(const std::string& source, const std::string& key) {
 }
 
 /// Returns the file that `make` writes, or wrote earlier with the same key.
-fs::path kept(const std::string& source, const std::string& key, const char* doing,
-              const std::function<void(const fs::path& workspace, const fs::path& output)>& make) {
+fs::path cached_mesh(const std::string& source, const std::string& key, const char* doing,
+                     const std::function<void(const fs::path& workspace, const fs::path& output)>& make) {
   const fs::path result = cache_path(source, key);
   if (fs::exists(result)) {
     log::debug(fmt::format("{}: using the cached mesh {}", source, result.string()));
@@ -159,8 +159,8 @@ fs::path kept(const std::string& source, const std::string& key, const char* doi
 /// Returns the key of a mesh: everything that determines it.
 std::string key_of(const MeshFile& file, const std::string& options) {
   std::string key = "gmsh " + program_version(file.path) + "\n" + options;
-  std::set<fs::path> seen;
-  append_sources(file.path, seen, key);
+  std::set<fs::path> visited;
+  append_sources(file.path, visited, key);
   return key;
 }
 
@@ -186,7 +186,7 @@ std::string extension_of(const std::string& path) {
 
 fs::path meshed_file(const MeshFile& file) {
   const std::string options = gmsh_options(file);
-  return kept(
+  return cached_mesh(
       file.path, key_of(file, options), "meshing with the gmsh program",
       [&](const fs::path& workspace, const fs::path& output) { run_program(file.path, options, workspace, output); });
 }
@@ -198,10 +198,10 @@ std::optional<fs::path> meshed_before(const MeshFile& file) {
 
 fs::path converted_file(const std::string& path) {
   std::string key = "converter " + converter_version(path) + "\n";
-  std::set<fs::path> seen;
-  append_companions(path, seen, key);
-  return kept(path, key, "converting to .msh",
-              [&](const fs::path& workspace, const fs::path& output) { convert_mesh(path, workspace, output); });
+  std::set<fs::path> visited;
+  append_companions(path, visited, key);
+  return cached_mesh(path, key, "converting to .msh",
+                     [&](const fs::path& workspace, const fs::path& output) { convert_mesh(path, workspace, output); });
 }
 
 }  // namespace ricochet::gmsh

@@ -35,15 +35,15 @@ Eigen::Map<const Vector> vector_of(const std::vector<double>& values) {
   return {values.data(), static_cast<Index>(values.size())};
 }
 
-Matrix rotation(const Turn& turn, int dimension) {
-  const auto [cosine, sine] = of_degrees(turn.angle);
+Matrix rotation_matrix(const MeshRotation& rotation, int dimension) {
+  const auto [cosine, sine] = of_degrees(rotation.angle);
   Matrix result = cosine * Matrix::Identity(dimension, dimension);
   if (dimension == 2) {
     result(0, 1) = -sine;
     result(1, 0) = sine;
     return result;
   }
-  const Eigen::Vector3d axis = vector_of(turn.axis).stableNormalized();
+  const Eigen::Vector3d axis = vector_of(rotation.axis).stableNormalized();
   Eigen::Matrix3d across;
   across << 0.0, -axis.z(), axis.y(), axis.z(), 0.0, -axis.x(), -axis.y(), axis.x(), 0.0;
   result += sine * across + (1.0 - cosine) * axis * axis.transpose();
@@ -53,10 +53,10 @@ Matrix rotation(const Turn& turn, int dimension) {
 }  // namespace
 
 void place_mesh(Mesh& mesh, const Placement& placement) {
-  for (const Turn& turn : placement.turns) {
-    if (turn.angle == 0.0) continue;
-    const Vector centre = turn.about.empty() ? Vector(Vector::Zero(mesh.dimension)) : vector_of(turn.about);
-    const Matrix matrix = rotation(turn, mesh.dimension);
+  for (const MeshRotation& rotation : placement.rotations) {
+    if (rotation.angle == 0.0) continue;
+    const Vector centre = rotation.about.empty() ? Vector(Vector::Zero(mesh.dimension)) : vector_of(rotation.about);
+    const Matrix matrix = rotation_matrix(rotation, mesh.dimension);
     for (Index node = 0; node < mesh.node_count(); ++node) {
       const Vector arm = mesh.nodes.col(node) - centre;
       mesh.nodes.col(node) = centre + matrix * arm;

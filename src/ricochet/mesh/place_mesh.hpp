@@ -7,7 +7,7 @@
 /// @file Positioning a body independently of its position in the file.
 namespace ricochet {
 
-struct Turn {
+struct MeshRotation {
   double angle = 0.0;         ///< degrees, right-handed about the axis; in two dimensions counter-clockwise
   std::vector<double> axis;   ///< in three dimensions only, not zero, of any length; required if the angle is not zero
   std::vector<double> about;  ///< a point of the axis; empty: the origin
@@ -15,7 +15,7 @@ struct Turn {
 
 /// Rotations, applied one after the other, followed by a translation.
 struct Placement {
-  std::vector<Turn> turns;
+  std::vector<MeshRotation> rotations;
   std::vector<double> move;  ///< empty: none
 };
 

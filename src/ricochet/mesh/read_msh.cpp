@@ -75,7 +75,7 @@ class Reader {
     check_start();
     for (cursor_.skip_space(); cursor_.remaining() > 0; cursor_.skip_space()) read_section();
     for (const char* needed : {"MeshFormat", "Nodes", "Elements"}) {
-      if (!seen_.contains(needed))
+      if (!read_sections_.contains(needed))
         cursor_.fail(fmt::format("the file ends without a ${} section; it is truncated", needed));
     }
     return std::move(mesh_);
@@ -118,7 +118,7 @@ class Reader {
     if (!known) return false;
     const char* content = cursor_.position();
     cursor_.move_to(start);
-    if (!seen_.insert(name).second) cursor_.fail(fmt::format("the section ${} occurs twice", name));
+    if (!read_sections_.insert(name).second) cursor_.fail(fmt::format("the section ${} occurs twice", name));
     if (name != "MeshFormat" && version_ == Version::unknown) {
       cursor_.fail(fmt::format("${} precedes $MeshFormat", name));
     }
@@ -127,7 +127,8 @@ class Reader {
     }
     if (name == "ParametricNodes")
       cursor_.fail("nodes with parametric coordinates are not supported; save the mesh with Mesh.SaveParametric = 0");
-    if (name == "Entities" && seen_.contains("Elements")) cursor_.fail("$Entities should come before $Elements");
+    if (name == "Entities" && read_sections_.contains("Elements"))
+      cursor_.fail("$Entities should come before $Elements");
     cursor_.move_to(content);
     read_content(name);
     return true;
@@ -145,22 +146,22 @@ class Reader {
   void expect_end(const std::string& name) {
     cursor_.skip_space();
     const char* start = cursor_.position();
-    const std::string wanted = "$End" + name;
+    const std::string end_marker = "$End" + name;
     std::string_view line = cursor_.line();
     while (line.ends_with(' ') || line.ends_with('\t')) line.remove_suffix(1);
-    if (line == wanted) return;
+    if (line == end_marker) return;
     cursor_.move_to(start);
-    if (cursor_.remaining() == 0) cursor_.fail(fmt::format("the file ends before {}; it is truncated", wanted));
-    cursor_.fail(fmt::format("{} should be here; the content of the section does not match its counts", wanted));
+    if (cursor_.remaining() == 0) cursor_.fail(fmt::format("the file ends before {}; it is truncated", end_marker));
+    cursor_.fail(fmt::format("{} should be here; the content of the section does not match its counts", end_marker));
   }
 
   /// Skips sections (results, comments, periodicity and others) that do not describe the mesh itself.
   void skip_section(const std::string& name, const char* start) {
-    const std::string wanted = "$End" + name;
-    const std::size_t found = cursor_.rest().find(wanted);
+    const std::string end_marker = "$End" + name;
+    const std::size_t found = cursor_.rest().find(end_marker);
     if (found == std::string_view::npos) {
       cursor_.move_to(start);
-      cursor_.fail(fmt::format("${} is not followed by {}; the file is truncated", name, wanted));
+      cursor_.fail(fmt::format("${} is not followed by {}; the file is truncated", name, end_marker));
     }
     cursor_.move_to(cursor_.position() + found);
     expect_end(name);
@@ -168,7 +169,7 @@ class Reader {
 
   Cursor cursor_;
   Version version_ = Version::unknown;
-  std::set<std::string> seen_;
+  std::set<std::string> read_sections_;
   Entities entities_;
   RawMesh mesh_;
 };

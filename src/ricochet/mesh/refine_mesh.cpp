@@ -35,12 +35,12 @@ Children children_of_tensor(CellShape shape) {
     for (int vertex = 0; vertex < corners; ++vertex) {
       VertexSet& mean = vertices.emplace_back();
       for (int of_parent = 0; of_parent < corners; ++of_parent) {
-        bool takes_part = true;
+        bool is_included = true;
         for (int axis = 0; axis < d; ++axis) {
-          const int place = (child >> axis & 1) + (vertex >> axis & 1);  // 0, 1 or 2 halves of the edge
-          takes_part = takes_part && (place == 1 || place == 2 * (of_parent >> axis & 1));
+          const int position = (child >> axis & 1) + (vertex >> axis & 1);  // 0, 1 or 2 halves of the edge
+          is_included = is_included && (position == 1 || position == 2 * (of_parent >> axis & 1));
         }
-        if (takes_part) mean.push_back(of_parent);
+        if (is_included) mean.push_back(of_parent);
       }
     }
   }
@@ -62,7 +62,7 @@ Children corners_of_simplex(int d) {
   return result;
 }
 
-Eigen::Vector3d reference_place(CellShape shape, const VertexSet& mean) {
+Eigen::Vector3d reference_position(CellShape shape, const VertexSet& mean) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const int vertex : mean) {
     for (int axis = 0; axis < dimension(shape); ++axis) sum[axis] += vertex_coordinate(shape, vertex, axis);
@@ -82,8 +82,8 @@ Children around_diagonal(const std::array<int, 4>& abcd) {
     Child child{pair_of(a, b), pair_of(c, d), ring[i], ring[(i + 1) % 4]};
     Eigen::Matrix3d edges;
     for (int k = 0; k < 3; ++k)
-      edges.col(k) = reference_place(CellShape::tetrahedron, child[static_cast<std::size_t>(k) + 1]) -
-                     reference_place(CellShape::tetrahedron, child[0]);
+      edges.col(k) = reference_position(CellShape::tetrahedron, child[static_cast<std::size_t>(k) + 1]) -
+                     reference_position(CellShape::tetrahedron, child[0]);
     if (edges.determinant() < 0.0) std::swap(child[2], child[3]);
     result.push_back(std::move(child));
   }
@@ -111,8 +111,10 @@ double quadratic_function(CellShape shape, const VertexSet& node, const Eigen::V
   double result = 1.0;
   if (is_tensor(shape)) {
     for (int axis = 0; axis < dimension(shape); ++axis) {
-      const double t = at[axis], place = 2.0 * reference_place(shape, node)[axis];
-      result *= place == 0.0 ? (1.0 - t) * (1.0 - 2.0 * t) : place == 1.0 ? 4.0 * t * (1.0 - t) : t * (2.0 * t - 1.0);
+      const double t = at[axis], coordinate = 2.0 * reference_position(shape, node)[axis];
+      result *= coordinate == 0.0   ? (1.0 - t) * (1.0 - 2.0 * t)
+                : coordinate == 1.0 ? 4.0 * t * (1.0 - t)
+                                    : t * (2.0 * t - 1.0);
     }
     return result;
   }
@@ -132,19 +134,19 @@ struct Bounds {
 class NewNodes {
  public:
   NewNodes(Mesh& mesh, const Bounds& most)
-      : mesh_(mesh), known_{table(2, most.edges), table(4, most.faces), table(8, most.middles)} {}
+      : mesh_(mesh), node_tables_{table(2, most.edges), table(4, most.faces), table(8, most.middles)} {}
 
-  /// Returns the node at the mean of some vertices of the mesh; if missing, creates it at the position place().
-  template <class Place>
-  Index at_mean(const std::vector<Index>& vertices, const Place& place) {
+  /// Returns the node at the mean of some vertices of the mesh; if missing, creates it at position().
+  template <class Position>
+  Index at_mean(const std::vector<Index>& vertices, const Position& position) {
     if (vertices.size() == 1) return vertices.front();
     const std::size_t kind = vertices.size() == 2 ? 0 : vertices.size() == 4 ? 1 : 2;
-    Known& known = known_[kind];
-    const Index found = known.table.find_or_add(vertices.data());
-    if (found >= 0) return known.nodes[static_cast<std::size_t>(found)];
-    positions_.push_back(place());
-    known.nodes.push_back(mesh_.node_count() + static_cast<Index>(positions_.size()) - 1);
-    return known.nodes.back();
+    NodeTable& entry = node_tables_[kind];
+    const Index found = entry.table.find_or_add(vertices.data());
+    if (found >= 0) return entry.nodes[static_cast<std::size_t>(found)];
+    positions_.push_back(position());
+    entry.nodes.push_back(mesh_.node_count() + static_cast<Index>(positions_.size()) - 1);
+    return entry.nodes.back();
   }
   /// Position of a node of the mesh or of a new one.
   [[nodiscard]] Eigen::Vector3d position_of(Index node) const {
@@ -163,14 +165,14 @@ class NewNodes {
   }
 
  private:
-  struct Known {
+  struct NodeTable {
     VertexSetTable table;
     std::vector<Index> nodes;
   };
-  static Known table(int vertices, std::size_t most) { return {VertexSetTable(vertices, most), {}}; }
+  static NodeTable table(int vertices, std::size_t most) { return {VertexSetTable(vertices, most), {}}; }
 
   Mesh& mesh_;
-  std::array<Known, 3> known_;
+  std::array<NodeTable, 3> node_tables_;
   std::vector<Eigen::Vector3d> positions_;
 };
 
@@ -222,7 +224,7 @@ class Cutter {
   }
 
   /// Position of a reference point on the second-order geometry.
-  [[nodiscard]] Eigen::Vector3d place_in_cell(const Eigen::Vector3d& at) const {
+  [[nodiscard]] Eigen::Vector3d position_in_cell(const Eigen::Vector3d& at) const {
     Eigen::Vector3d result = Eigen::Vector3d::Zero();
     const std::vector<std::vector<int>>& nodes = node_vertices(shape_, 2);
     for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -238,9 +240,10 @@ class Cutter {
       Eigen::Vector3d at = Eigen::Vector3d::Zero();
       for (const int vertex : local) {
         of_mesh.push_back(vertices[static_cast<std::size_t>(vertex)]);
-        at += reference_place(shape_, child[static_cast<std::size_t>(vertex)]);
+        at += reference_position(shape_, child[static_cast<std::size_t>(vertex)]);
       }
-      result.push_back(nodes_.at_mean(of_mesh, [&] { return place_in_cell(at / static_cast<double>(local.size())); }));
+      result.push_back(
+          nodes_.at_mean(of_mesh, [&] { return position_in_cell(at / static_cast<double>(local.size())); }));
     }
   }
 
@@ -258,12 +261,12 @@ Index parts_of(CellShape shape) {
 std::vector<Index> numbers_of_parts(const std::vector<CellBlock>& blocks, const std::vector<Index>& members) {
   std::vector<Index> result;
   for (const Index member : members) {
-    const IndexInBlocks place = locate_in_blocks(blocks, member);
+    const IndexInBlocks location = locate_in_blocks(blocks, member);
     Index before = 0;
-    for (std::size_t block = 0; block < place.block; ++block)
+    for (std::size_t block = 0; block < location.block; ++block)
       before += blocks[block].size() * parts_of(blocks[block].shape);
-    const Index parts = parts_of(blocks[place.block].shape);
-    for (Index part = 0; part < parts; ++part) result.push_back(before + place.local * parts + part);
+    const Index parts = parts_of(blocks[location.block].shape);
+    for (Index part = 0; part < parts; ++part) result.push_back(before + location.local * parts + part);
   }
   return result;
 }

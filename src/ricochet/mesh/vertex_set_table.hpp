@@ -46,9 +46,9 @@ class VertexSetTable {
   Key sorted(const Index* vertices) const {
     Key key{};
     for (std::size_t i = 0; i < vertex_count_; ++i) {  // insertion sort: there are at most eight
-      std::size_t place = i;
-      for (; place > 0 && key[place - 1] > vertices[i]; --place) key[place] = key[place - 1];
-      key[place] = vertices[i];
+      std::size_t slot = i;
+      for (; slot > 0 && key[slot - 1] > vertices[i]; --slot) key[slot] = key[slot - 1];
+      key[slot] = vertices[i];
     }
     return key;
   }

@@ -85,15 +85,15 @@ std::vector<std::pair<std::string, const Expression*>> functions_of_time(const C
 
 void warn_of_brief_changes(const Case& input, const Vector& centre) {
   const double longest = input.time.step;
-  std::string told;
+  std::string last_key;
   for (const auto& [key, function] : functions_of_time(input)) {
-    if (key == told) continue;
+    if (key == last_key) continue;
     const auto value = [&](double time) {
       return (*function)(centre[0], centre[1], centre.size() > 2 ? centre[2] : 0.0, time);
     };
     const std::optional<Brief> brief = find_brief_change(value, longest, input.time.end);
     if (!brief) continue;
-    told = key;
+    last_key = key;
     log::warning(fmt::format(
         "{}: this value changes and returns at t = {:.6g}, within {:.2g}, but steps may be as long as {:g}: adaptive "
         "steps evaluate it at their ends and may miss the change; set time.largest = {:.1g} or less",

@@ -58,14 +58,14 @@ void check_obstacle_motion(const Case& input, const ObstacleSection& obstacle, i
   check_length(input, key + ".force", obstacle.force.size(), dimension);
   check_length(input, key + ".spring", obstacle.spring.size(), dimension);
   check_length(input, key + ".damper", obstacle.damper.size(), dimension);
-  const std::size_t turns = dimension == 2 ? 1 : 3;
+  const std::size_t spin_size = dimension == 2 ? 1 : 3;
   for (const auto& [name, size] :
        {std::pair{"inertia", obstacle.inertia.size()}, std::pair{"spin", obstacle.spin.size()},
         std::pair{"torque", obstacle.torque.size()}}) {
-    if (size != 0 && size != turns)
+    if (size != 0 && size != spin_size)
       refuse(input, key + "." + name,
              fmt::format("\"{}\" has {}, but the mesh has dimension {}, where it must have {}", name,
-                         counted(size, "entry", "entries"), dimension, turns));
+                         counted(size, "entry", "entries"), dimension, spin_size));
   }
   const std::size_t entries = obstacle.rotation.size();
   if (entries == 0 || entries == (dimension == 2 ? 1U : 3U)) return;
@@ -146,12 +146,12 @@ void report_supports_at_ties(const Model& model, const std::map<Index, Expressio
     for (int k = 0; k < d; ++k) {
       const auto own = dofs.find(tie.node * d + k);
       if (own == dofs.end()) continue;
-      const bool held = std::all_of(tie.weights.begin(), tie.weights.end(), [&](const auto& entry) {
+      const bool is_supported = std::all_of(tie.weights.begin(), tie.weights.end(), [&](const auto& entry) {
         const Index dof = entry.first * d + k;
         return std::abs(entry.second) < 1e-12 ||
                (model.problem.supports.contains(dof) && model.problem.supports.expression(dof) == own->second);
       });
-      (held ? follow : lost).insert(tie.node);
+      (is_supported ? follow : lost).insert(tie.node);
     }
   }
   if (!follow.empty()) {
@@ -194,7 +194,7 @@ void add_supports(const Case& input, Model& model) {
     }
   }
   add_axis_supports(input, model);
-  hold_free_bodies(input, model);
+  support_free_bodies(input, model);
   supports.finish();
   report_supports_at_ties(model, tied);
 }

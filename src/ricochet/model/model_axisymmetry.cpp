@@ -42,8 +42,8 @@ void check_axisymmetry(const Case& input, int dimension) {
            "\"axisymmetric\" requires a mesh in the plane of a section, but this mesh has dimension 3");
   if (!input.load.gravity.empty()) refuse_radial(input, "load.gravity", input.load.gravity[0], "gravity");
   for (std::size_t i = 0; i < input.contacts.size(); ++i) {
-    const std::vector<double>& place = input.contacts[i].pair_at;
-    if (!place.empty()) refuse_radial(input, fmt::format("contact.{}.pair_at", i), place[0], "\"pair_at\"");
+    const std::vector<double>& position = input.contacts[i].pair_at;
+    if (!position.empty()) refuse_radial(input, fmt::format("contact.{}.pair_at", i), position[0], "\"pair_at\"");
   }
   for (const MotionSection& motion : input.motions) {
     if (!motion.velocity.empty())
@@ -113,20 +113,20 @@ std::vector<Index> facets_off_axis(const Case& input, const std::string& key_pat
 void add_axis_supports(const Case& input, Model& model) {
   if (!is_axisymmetric(model.body)) return;
   const Expression at_rest;
-  Index held = 0;
+  Index supported = 0;
   for (Index node = 0; node < model.space.node_count(); ++node) {
     if (!is_on_axis(model.body, node) || model.tied.is_tied(node)) continue;
     const Index dof = node * model.space.dimension;
-    ++held;
+    ++supported;
     if (model.problem.supports.add(dof, at_rest) || model.problem.supports.expression(dof) == at_rest) continue;
     refuse(input, "support",
            fmt::format("a support prescribes x of the node at (0, {:.6g}) as \"{}\": a node on the axis of an "
                        "axisymmetric body cannot leave the axis",
                        model.space.nodes(1, node), model.problem.supports.expression(dof).text()));
   }
-  log::info(held > 0 ? fmt::format("axisymmetric about the axis x = 0: {} held there in the radial direction",
-                                   counted(held, "node is", "nodes are"))
-                     : std::string("axisymmetric about the axis x = 0, where the mesh has no node"));
+  log::info(supported > 0 ? fmt::format("axisymmetric about the axis x = 0: {} held there in the radial direction",
+                                        counted(supported, "node is", "nodes are"))
+                          : std::string("axisymmetric about the axis x = 0, where the mesh has no node"));
 }
 
 }  // namespace ricochet

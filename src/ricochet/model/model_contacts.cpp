@@ -129,9 +129,10 @@ void add_contacts(const Case& input, Model& model) {
   const auto is_free = [&](Index node, int component) {
     return !model.problem.supports.contains(node * d + component);
   };
-  Index held = 0;
+  Index supported = 0;
   try {
-    model.problem.contact = make_contact_boundary(model.body, model.contact_pairs, is_free, &held, &model.pair_facings);
+    model.problem.contact =
+        make_contact_boundary(model.body, model.contact_pairs, is_free, &supported, &model.pair_facings);
   } catch (const Error& problem) {
     refuse(input, "contact", problem.what());
   }
@@ -140,11 +141,11 @@ void add_contacts(const Case& input, Model& model) {
   }
   model.problem.contact_stress = [&model] { return make_contact_stress(model.body, model.problem.contact); };
   warn_of_bounds_without_area(model);
-  if (held > 0) {
+  if (supported > 0) {
     log::warning(
         fmt::format("{} held by supports in the direction of the obstacle's normal: no contact {} created there",
-                    counted(held, "node of contact boundaries is", "nodes of contact boundaries are"),
-                    held == 1 ? "point is" : "points are"));
+                    counted(supported, "node of contact boundaries is", "nodes of contact boundaries are"),
+                    supported == 1 ? "point is" : "points are"));
   }
 }
 

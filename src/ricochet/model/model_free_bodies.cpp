@@ -30,8 +30,8 @@ void require_ground(const Case& input, const ObstacleSection& section, const std
     if (!is_rotation && static_cast<Index>(k) >= dimension) continue;
     const bool has_spring =
         is_rotation ? section.rotation_spring > 0.0 : k < section.spring.size() && section.spring[k] > 0.0;
-    const bool is_held = std::find(section.hold.begin(), section.hold.end(), motions[k]) != section.hold.end();
-    if (has_spring || is_held) continue;
+    const bool is_supported = std::find(section.hold.begin(), section.hold.end(), motions[k]) != section.hold.end();
+    if (has_spring || is_supported) continue;
     refuse(input, key,
            fmt::format("initial.displacement = \"static\" requires a restraint of \"{}\" against {}, because contact "
                        "alone holds no rigid body in a static start: add a {}, however weak, or add \"{}\" to \"hold\"",
@@ -113,13 +113,13 @@ void add_free_bodies(const Case& input, Model& model) {
   }
 }
 
-void hold_free_bodies(const Case& input, Model& model) {
+void support_free_bodies(const Case& input, Model& model) {
   const Index d = model.mesh.dimension;
   const Expression still(0.0);
   for_each_free_body(input, model, [&](const ObstacleSection& section, const FreeMotion& body, const std::string& key) {
     const std::vector<std::string> axes{"x", "y", "z"};
-    for (const std::string& held : section.hold) {
-      const auto axis = static_cast<Index>(std::find(axes.begin(), axes.end(), held) - axes.begin());
+    for (const std::string& direction : section.hold) {
+      const auto axis = static_cast<Index>(std::find(axes.begin(), axes.end(), direction) - axes.begin());
       if (axis < 3 && axis >= d) refuse(input, key + ".hold", "there is no direction \"z\" in two dimensions");
       if (axis < 3) model.problem.supports.add(body.centre_node() * d + axis, still);
       for (Index k = 0; axis == 3 && k < d; ++k) model.problem.supports.add(body.rotation_node() * d + k, still);
@@ -196,9 +196,9 @@ void start_free_bodies(const Case& input, Model& model) {
     centre.setZero();
     if (!section.velocity.empty()) centre = vector_of(section.velocity);
     model.initial.displacement.segment(body.centre_node() * d, 2 * d).setZero();
-    auto turning = model.initial.velocity.segment(body.rotation_node() * d, d);
-    turning.setZero();
-    if (!section.spin.empty()) turning = body.rotational_velocity(vector_of(section.spin), undeformed);
+    auto spin_velocity = model.initial.velocity.segment(body.rotation_node() * d, d);
+    spin_velocity.setZero();
+    if (!section.spin.empty()) spin_velocity = body.rotational_velocity(vector_of(section.spin), undeformed);
   });
 }
 

@@ -87,16 +87,16 @@ class GroupCompleter {
     if (mesh_.find_group(name, facets) != nullptr || is_built_in_group(mesh_, name, facets)) return;
     std::vector<char> cells(static_cast<std::size_t>(mesh_.cell_count()), name == all_cells_name ? 1 : 0);
     std::vector<std::string> fitting;
-    const auto take = [&](const std::vector<Index>& members) {
+    const auto add_cells = [&](const std::vector<Index>& members) {
       for (const Index cell : members) cells[static_cast<std::size_t>(cell)] = 1;
     };
     for (const Group& group : mesh_.groups) {
       if (!fits_pattern(group.name, name)) continue;
       if (group.dimension == facets) fitting.push_back(group.name);
-      if (group.dimension == mesh_.dimension) take(group.members);
+      if (group.dimension == mesh_.dimension) add_cells(group.members);
     }
     for (const MeshPart& part : mesh_.parts) {
-      if (fits_pattern(part.name, name)) take(part.cells);
+      if (fits_pattern(part.name, name)) add_cells(part.cells);
     }
     if (!fitting.empty()) {
       add_union_of_groups(mesh_, name, fitting, facets);

@@ -11,14 +11,14 @@
 namespace ricochet {
 
 std::vector<CaseMeshFile> mesh_files(const Case& input) {
-  const auto made = [&](const std::string& section, const std::string& part, const BodyFile& body) {
+  const auto make_file = [&](const std::string& section, const std::string& part, const BodyFile& body) {
     return CaseMeshFile{section,          part,           {body.file, body.size, body.scale, input.mesh.degree},
                         body.refinements, body.placement, body.rest_on,
                         body.rest_gap};
   };
-  if (input.parts.empty()) return {made("mesh", "", input.mesh)};
+  if (input.parts.empty()) return {make_file("mesh", "", input.mesh)};
   std::vector<CaseMeshFile> files;
-  for (const PartSection& part : input.parts) files.push_back(made("part." + part.name, part.name, part));
+  for (const PartSection& part : input.parts) files.push_back(make_file("part." + part.name, part.name, part));
   return files;
 }
 
@@ -37,10 +37,10 @@ namespace {
 Mesh read_part(const Case& input, const CaseMeshFile& file) {
   const bool bodies_touch = std::any_of(input.contacts.begin(), input.contacts.end(),
                                         [](const ContactSection& contact) { return contact.between_bodies(); });
-  MeshFile wanted = file.file;
-  wanted.bodies_may_touch = bodies_touch;
+  MeshFile requested = file.file;
+  requested.bodies_may_touch = bodies_touch;
   const auto read = [&] {
-    Mesh mesh = read_mesh(wanted);
+    Mesh mesh = read_mesh(requested);
     refine(mesh, file.refinements);
     return mesh;
   };
@@ -68,24 +68,24 @@ std::vector<NamedMesh> read_mesh_files(const Case& input) {
 void check_placement(const Case& input, const CaseMeshFile& file, int dimension) {
   const Placement& placement = file.placement;
   check_length(input, file.section + ".move", placement.move.size(), dimension);
-  for (std::size_t i = 0; i < placement.turns.size(); ++i) {
-    const Turn& turn = placement.turns[i];
+  for (std::size_t i = 0; i < placement.rotations.size(); ++i) {
+    const MeshRotation& rotation = placement.rotations[i];
     std::string key = file.section + ".turn";
     if (input.locations.contains(fmt::format("{}.{}", key, i))) key += fmt::format(".{}", i);
-    check_length(input, key + ".about", turn.about.size(), dimension);
-    if (dimension == 2 && !turn.axis.empty())
+    check_length(input, key + ".about", rotation.about.size(), dimension);
+    if (dimension == 2 && !rotation.axis.empty())
       refuse(input, key + ".axis", "the mesh has dimension 2, where it rotates about a point: remove the axis");
-    check_length(input, key + ".axis", turn.axis.size(), dimension);
-    if (dimension == 3 && turn.axis.empty() && turn.angle != 0.0)
+    check_length(input, key + ".axis", rotation.axis.size(), dimension);
+    if (dimension == 3 && rotation.axis.empty() && rotation.angle != 0.0)
       refuse(input, key, "the mesh has dimension 3: add an axis to \"turn\", as in axis = [0, 0, 1]");
   }
 }
 
 Mesh merge_meshes(const Case& input, const Model& model, std::vector<NamedMesh> files) {
-  const std::vector<CaseMeshFile> places = mesh_files(input);
+  const std::vector<CaseMeshFile> case_files = mesh_files(input);
   for (std::size_t i = 0; i < files.size(); ++i) {
-    place_mesh(files[i].mesh, places[i].placement);
-    if (!places[i].rest_on.empty()) rest_on_obstacle(input, places[i], model, files[i].mesh);
+    place_mesh(files[i].mesh, case_files[i].placement);
+    if (!case_files[i].rest_on.empty()) rest_on_obstacle(input, case_files[i], model, files[i].mesh);
   }
   return input.parts.empty() ? std::move(files.front().mesh) : merge_parts(files);
 }

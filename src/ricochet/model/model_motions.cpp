@@ -112,8 +112,8 @@ void check_motions(const Case& input, int dimension) {
   for (const MotionSection& motion : input.motions) {
     check_length(input, motion.section + ".velocity", motion.velocity.size(), dimension);
     check_length(input, motion.section + ".about", motion.about.size(), dimension);
-    const std::size_t entries = motion.spin.size(), wanted = dimension == 2 ? 1 : 3;
-    if (entries == 0 || entries == wanted) continue;
+    const std::size_t entries = motion.spin.size(), required = dimension == 2 ? 1 : 3;
+    if (entries == 0 || entries == required) continue;
     refuse(input, motion.section + ".spin",
            dimension == 2
                ? fmt::format(

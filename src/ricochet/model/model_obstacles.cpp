@@ -52,26 +52,26 @@ std::unique_ptr<Obstacle> make_obstacle(const Case& input, const ObstacleSection
     if (!section.is_steered)
       return std::make_unique<Obstacle>(std::move(shape), std::move(path), section.rotation_rate, about,
                                         input.time.step);
-    auto made = std::make_unique<Obstacle>(std::move(shape), nullptr, section.rotation_rate, about, input.time.step);
-    made->set_steered(std::make_unique<SteeredPath>(std::move(path), dimension));
-    return made;
+    auto steered = std::make_unique<Obstacle>(std::move(shape), nullptr, section.rotation_rate, about, input.time.step);
+    steered->set_steered(std::make_unique<SteeredPath>(std::move(path), dimension));
+    return steered;
   } catch (const Error& problem) {
     if (problem.kind() != ErrorKind::invalid_input) throw;
-    const std::string place = input.where(key).text();
-    if (std::string(problem.what()).starts_with(place.substr(0, place.find(':')))) throw;
+    const std::string location = input.where(key).text();
+    if (std::string(problem.what()).starts_with(location.substr(0, location.find(':')))) throw;
     refuse(input, key, problem.what());
   }
 }
 
 void fit_obstacles(const Case& input, Model& model) {
-  const bool are_known = !model.contact_scales.empty();  // scales of the whole body if this rank holds a part of it
+  const bool has_scales = !model.contact_scales.empty();  // scales of the whole body if this rank holds a part of it
   for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
     ContactScale scale{extent(model.mesh.nodes), 0.0};
     for (const ContactPair& pair : model.contact_pairs) {
       if (pair.obstacle == model.obstacles[k].get())
         scale.spacing = std::max(scale.spacing, node_spacing(model.space, pair.facets));
     }
-    if (!are_known) model.contact_scales.push_back(scale);
+    if (!has_scales) model.contact_scales.push_back(scale);
     model.obstacles[k]->fit(model.contact_scales[k]);
     const std::string remarks = model.obstacles[k]->shape().remarks();
     if (!remarks.empty()) log::info(fmt::format("obstacle \"{}\": {}", input.obstacles[k].name, remarks));

@@ -94,9 +94,9 @@ void add_sensors(const Case& input, Model& model);
 [[nodiscard]] std::unique_ptr<Obstacle> make_obstacle(const Case& input, const ObstacleSection& section, int dimension);
 /// Returns the largest distance between neighbouring nodes of these facets; halved if there are midside nodes.
 [[nodiscard]] double node_spacing(const DisplacementSpace& space, const std::vector<Index>& facets);
-/// Gives obstacles with a mass their two nodes; hold_free_bodies supports the motions that are held.
+/// Gives obstacles with a mass their two nodes; support_free_bodies supports the motions that are held.
 void add_free_bodies(const Case& input, Model& model);
-void hold_free_bodies(const Case& input, Model& model);
+void support_free_bodies(const Case& input, Model& model);
 /// Returns the matrix enlarged to dofs × dofs by zeros.
 [[nodiscard]] SparseMatrix resized(SparseMatrix matrix, Index dofs);
 /// Returns the mass including that of rigid bodies.

@@ -172,8 +172,8 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
     return result;
   };
   const SparseMatrix consistent = scalar_mass({});
-  const Points own_places = model.space.nodes.leftCols(own_nodes);
-  MassInput mass_input{&consistent, &own_places, model.problem.contact.unique_nodes(), &consistent};
+  const Points own_positions = model.space.nodes.leftCols(own_nodes);
+  MassInput mass_input{&consistent, &own_positions, model.problem.contact.unique_nodes(), &consistent};
   MassChoice choice;
   const auto with_cells = [&](const SparseMatrix& from, const std::vector<double>& weight, const auto& make) {
     const CellMasses cells(model.body, weight);
@@ -330,8 +330,8 @@ void add_loads(const Case& input, Model& model) {
     // therefore stays undeformed with every mass construction, and weight and its moments are those of the body.
     Vector acceleration(dofs);
     for (Index i = 0; i < dofs; ++i) {
-      const bool turns = model.problem.is_rotation_node(i / d);
-      acceleration[i] = turns ? 0.0 : input.load.gravity[static_cast<std::size_t>(i % d)];
+      const bool is_rotation = model.problem.is_rotation_node(i / d);
+      acceleration[i] = is_rotation ? 0.0 : input.load.gravity[static_cast<std::size_t>(i % d)];
     }
     Vector weight;
     model.problem.mass.multiply(acceleration, weight);

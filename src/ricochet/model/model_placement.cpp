@@ -21,7 +21,7 @@ namespace ricochet {
 namespace {
 
 /// A body that passes an obstacle comes no nearer: s then doubles with each iteration.
-constexpr int most_rounds = 10'000;
+constexpr int most_iterations = 10'000;
 /// In body sizes plus the initial gap: beyond this distance the body has missed the obstacle.
 constexpr double out_of_reach = 1e3;
 
@@ -81,11 +81,12 @@ void rest_on_obstacle(const Case& input, const CaseMeshFile& file, const Model& 
   const Vector sides = nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff();
   const double limit = out_of_reach * (sides.norm() + std::abs(nearest.gap) + file.rest_gap);
   double way = 0.0;
-  for (int round = 0; std::abs(nearest.gap - file.rest_gap) > obstacle.gap_rounding(nearest.position); ++round) {
+  for (int iteration = 0; std::abs(nearest.gap - file.rest_gap) > obstacle.gap_rounding(nearest.position);
+       ++iteration) {
     const double before = way;
     way -= nearest.gap - file.rest_gap;
     if (way == before) break;
-    if (!(std::abs(way) < limit) || round > most_rounds) {
+    if (!(std::abs(way) < limit) || iteration > most_iterations) {
       refuse(input, key,
              fmt::format("the body does not come to rest on obstacle \"{}\": moved along ({:.4g}) it misses the "
                          "obstacle; use \"move\" to set where it comes down",

@@ -17,7 +17,7 @@ namespace ricochet {
 namespace {
 
 /// Distances, relative to the size of the body, within which a node lies on a segment and two nodes coincide.
-constexpr double on_segment = 1e-6, in_one_place = 1e-9;
+constexpr double on_segment = 1e-6, coincident = 1e-9;
 /// Number of bodies above which their momenta have no columns: history.csv would consist of little else.
 constexpr int most_bodies = 20;
 /// Number of pairs of one [[contact]] above which their forces have no columns.
@@ -80,7 +80,7 @@ class ProbeFinder {
   [[nodiscard]] Index with_multipliers(Index nearest) const {
     const ContactBoundary& contact = model_.problem.contact;
     const Points& positions = model_.space.nodes;
-    const double limit = in_one_place * enclosing_diameter(positions);
+    const double limit = coincident * enclosing_diameter(positions);
     bool is_watched = false;
     Index best = -1;
     for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
@@ -175,13 +175,15 @@ class ProbeFinder {
     const SemidiscreteProblem& problem = model_.problem;
     const auto among = [&nodes](Index node) { return std::binary_search(nodes.begin(), nodes.end(), node); };
     const std::vector<Index>& dofs = problem.supports.dofs();
-    const bool held = std::any_of(dofs.begin(), dofs.end(), [&](Index dof) { return among(dof / problem.dimension); });
+    const bool is_supported =
+        std::any_of(dofs.begin(), dofs.end(), [&](Index dof) { return among(dof / problem.dimension); });
     const std::vector<Index> touching = problem.contact.unique_nodes();
     const auto shared = std::count_if(touching.begin(), touching.end(), among);
-    if (!held && shared == 0)
+    if (!is_supported && shared == 0)
       return "neither a support nor a contact acts at its nodes, and its force is zero (loads are not counted)";
     if (shared == 0) return "its force is that of the supports at its nodes (loads are not counted)";
-    if (!held) return "its force is that of the contacts at its nodes, which no support holds (loads are not counted)";
+    if (!is_supported)
+      return "its force is that of the contacts at its nodes, which no support holds (loads are not counted)";
     return fmt::format(
         "its force and moment are the sum of supports and of contacts, which share {} with it; support and "
         "support_moment are those of the supports alone (loads are not counted)",
@@ -233,15 +235,15 @@ class SensorMaker {
 
   void make(std::size_t number) {
     const ProbeSection& section = input_.probes[number];
-    const ProbeTargets& places = model_.probe_targets[number];
-    for (std::size_t i = 0; i < places.probes.size(); ++i) {
-      const Probe& probe = places.probes[i];
-      add(section, probe.node < 0 ? make_absent_sensor(places.columns[i]) : make_point_sensor(model_.problem, probe));
+    const ProbeTargets& targets = model_.probe_targets[number];
+    for (std::size_t i = 0; i < targets.probes.size(); ++i) {
+      const Probe& probe = targets.probes[i];
+      add(section, probe.node < 0 ? make_absent_sensor(targets.columns[i]) : make_point_sensor(model_.problem, probe));
     }
     if (!section.boundary.empty()) {
       const Vector about =
           section.about.empty() ? Vector(Vector::Zero(model_.mesh.dimension)) : vector_of(section.about);
-      add(section, make_boundary_sensor(section.name, model_.problem, places.nodes, about));
+      add(section, make_boundary_sensor(section.name, model_.problem, targets.nodes, about));
     }
     if (!section.group.empty()) add_group(section, fmt::format("probe.{}", number));
     if (section.contact) add(section, make_contact_sensor(section.name, model_.problem, pairs_of(*section.contact)));
@@ -291,12 +293,12 @@ HistoryBodies bodies_of_history(const Model& model) {
   if (bodies.count < 2 || bodies.count > most_bodies) return {};
   HistoryBodies result;
   const std::vector<std::string>& names = model.bodies.names;
-  std::set<std::string> taken;
-  for (const MeshPart& part : model.mesh.parts) taken.insert(part.name);
+  std::set<std::string> used_names;
+  for (const MeshPart& part : model.mesh.parts) used_names.insert(part.name);
   for (int body = 0; body < bodies.count; ++body) {
     std::string label = label_of(names[static_cast<std::size_t>(body)], body);
     // The name of a part may be a number; no other body may then use it.
-    if (label == std::to_string(body) && taken.contains(label)) label = "body_" + label;
+    if (label == std::to_string(body) && used_names.contains(label)) label = "body_" + label;
     while (std::find(result.labels.begin(), result.labels.end(), label) != result.labels.end()) label += "_";
     result.labels.push_back(std::move(label));
   }

@@ -22,7 +22,7 @@ constexpr double farthest_apart = 0.5;
 /// Displacement of nodes, in heights of a cell, from which it is reported.
 constexpr double moved = 1e-6;
 /// Displacement of nodes, in heights of a cell, from which it is warned of.
-constexpr double moved_far = 0.1;
+constexpr double large_displacement = 0.1;
 
 void check_tie(const Case& input, std::size_t number, const ContactPair& pair, const TiedSurface& surface) {
   const std::string key = fmt::format("contact.{}.against", number);
@@ -40,7 +40,7 @@ void check_tie(const Case& input, std::size_t number, const ContactPair& pair, c
                        fmt::join(surface.farthest_position, ", ")));
   }
   if (surface.farthest_in_heights > moved) {
-    (surface.farthest_in_heights > moved_far ? log::warning : log::info)(
+    (surface.farthest_in_heights > large_displacement ? log::warning : log::info)(
         fmt::format("nodes of \"{}\" are moved by up to {:.2g} cell heights onto the surface of \"{}\", so that "
                     "rotations cause no strain",
                     pair.group, surface.farthest_in_heights, pair.opposite_group));
@@ -68,17 +68,17 @@ class TieCollection {
   void add(std::size_t contact) {
     const ContactPair& pair = model_.contact_pairs[contact];
     TiedSurface surface = tie(contact, {});
-    std::set<Index> taken;
+    std::set<Index> excluded;
     for (const TiedNodes::Tie& tie : surface.ties) {
-      if (is_tied(tie.node) || leads_to(tie.weights, tie.node)) taken.insert(tie.node);
+      if (is_tied(tie.node) || leads_to(tie.weights, tie.node)) excluded.insert(tie.node);
     }
-    if (2 * taken.size() > surface.ties.size()) refuse_second_tie(contact, *taken.begin());
-    if (!taken.empty()) {
-      surface = tie(contact, taken);
+    if (2 * excluded.size() > surface.ties.size()) refuse_second_tie(contact, *excluded.begin());
+    if (!excluded.empty()) {
+      surface = tie(contact, excluded);
       log::info(fmt::format("tied groups \"{}\" and \"{}\": {} another tied surface, too, and {} that surface",
                             pair.group, pair.opposite_group,
-                            counted(taken.size(), "node is at the rim of", "nodes are at the rim of"),
-                            taken.size() == 1 ? "follows" : "follow"));
+                            counted(excluded.size(), "node is at the rim of", "nodes are at the rim of"),
+                            excluded.size() == 1 ? "follows" : "follow"));
     }
     check_tie(input_, model_.contacts[contact].entry, pair, surface);
     for (TiedNodes::Tie& tie : surface.ties) {
@@ -98,10 +98,10 @@ class TieCollection {
       return entry.first == node || (at != tie_index_.end() && leads_to(ties_[at->second].weights, node));
     });
   }
-  [[nodiscard]] TiedSurface tie(std::size_t contact, const std::set<Index>& taken) const {
+  [[nodiscard]] TiedSurface tie(std::size_t contact, const std::set<Index>& excluded) const {
     try {
       return tie_surfaces(model_.body, model_.contact_pairs[contact],
-                          [&taken](Index node) { return taken.contains(node); });
+                          [&excluded](Index node) { return excluded.contains(node); });
     } catch (const Error& problem) {
       refuse(input_, fmt::format("contact.{}.group", model_.contacts[contact].entry), problem.what());
     }

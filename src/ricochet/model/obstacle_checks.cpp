@@ -67,35 +67,35 @@ void warn_of_long_step(const Case& input, const ContactPair& pair, const Model& 
 
 /// Returns the largest rotation within a step, in rad, from a few hundred samples. It is summed over parts of a step,
 /// as a full turn would otherwise count as rest.
-double largest_turn(const Obstacle& obstacle, Index dimension, const Case& input) {
+double largest_rotation(const Obstacle& obstacle, Index dimension, const Case& input) {
   constexpr int most_steps = 500, parts = 16;
   const double h = input.time.step, steps = std::min(std::ceil(input.time.end / h), static_cast<double>(most_steps));
   double largest = 0.0;
   for (int k = 0; k < static_cast<int>(steps); ++k) {
     const double start = k * input.time.end / steps;
-    double turn = 0.0;
+    double angle = 0.0;
     for (int part = 0; part < parts; ++part)
-      turn += rotation_angle_between(obstacle.pose(start + part * h / parts),
-                                     obstacle.pose(start + (part + 1) * h / parts), dimension);
-    largest = std::max(largest, turn);
+      angle += rotation_angle_between(obstacle.pose(start + part * h / parts),
+                                      obstacle.pose(start + (part + 1) * h / parts), dimension);
+    largest = std::max(largest, angle);
   }
   return largest;
 }
 
 /// Warns of fast rotation. Friction uses the motion of the material at the end of a step relative to the chord of the
 /// step (motion_at), and its speed is tan(θ/2)/(θ/2) times the true one.
-void warn_of_fast_turn(const Case& input, const ContactPair& pair, Index dimension) {
+void warn_of_fast_rotation(const Case& input, const ContactPair& pair, Index dimension) {
   if (!pair.obstacle->turns() || pair.obstacle->free_motion() != nullptr) return;
   constexpr double most = 0.3, advised = 0.25;
-  const double turn = largest_turn(*pair.obstacle, dimension, input);
-  if (!(turn > most)) return;
+  const double angle = largest_rotation(*pair.obstacle, dimension, input);
+  if (!(angle > most)) return;
   const std::string wrong =
-      turn < 3.0 ? fmt::format("too large by {:.2g} %", 100.0 * (std::tan(0.5 * turn) / (0.5 * turn) - 1.0))
-                 : "meaningless";
+      angle < 3.0 ? fmt::format("too large by {:.2g} %", 100.0 * (std::tan(0.5 * angle) / (0.5 * angle) - 1.0))
+                  : "meaningless";
   log::warning(
       fmt::format("contact of group \"{}\": obstacle \"{}\" rotates by up to {:.3g} rad in a step, and the surface "
                   "speed that the step uses is {}; set time.step = {:.1g} or less{}",
-                  pair.group, pair.obstacle_name, turn, wrong, rounded_down(advised / turn * input.time.step, 1),
+                  pair.group, pair.obstacle_name, angle, wrong, rounded_down(advised / angle * input.time.step, 1),
                   pair.obstacle->shape().symmetry_axis().exists
                       ? ", or, if it rotates about its own axis, use rotation_rate instead of rotation"
                       : ""));
@@ -125,7 +125,7 @@ void check_obstacles(const Case& input, const Model& model) {
     refuse_lost_digits(input, pair, model);
     warn_of_sharp_obstacle(pair, model.space);
     warn_of_long_step(input, pair, model);
-    warn_of_fast_turn(input, pair, model.space.nodes.rows());
+    warn_of_fast_rotation(input, pair, model.space.nodes.rows());
   }
 }
 

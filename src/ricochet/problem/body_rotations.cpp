@@ -16,12 +16,13 @@ BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
     if (members.size() == 1 && problem.is_tied_dof(members.front() * d)) continue;
     if (problem.is_of_free_body(members.front())) continue;
     Body body;
-    std::array<bool, 3> held{};
+    std::array<bool, 3> supported{};
     for (const Index node : members) {
-      for (int k = 0; k < d; ++k) held[static_cast<std::size_t>(k)] |= problem.supports.contains(node * d + k);
+      for (int k = 0; k < d; ++k) supported[static_cast<std::size_t>(k)] |= problem.supports.contains(node * d + k);
     }
-    const auto count = std::count(held.begin(), held.end(), true);
-    if (count == 1 && d == 3) body.axis = static_cast<int>(std::find(held.begin(), held.end(), true) - held.begin());
+    const auto count = std::count(supported.begin(), supported.end(), true);
+    if (count == 1 && d == 3)
+      body.axis = static_cast<int>(std::find(supported.begin(), supported.end(), true) - supported.begin());
     for (const Index node : members) body_of_node_[static_cast<std::size_t>(node)] = static_cast<int>(bodies_.size());
     if (!problem.axisymmetric && (count == 0 || body.axis >= 0)) {
       const auto size = static_cast<Index>(members.size());
@@ -34,19 +35,19 @@ BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
 
 template <int d>
 Tensor BodyRotations::fit_body(const Body& body, const Vector& displacement) const {
-  using Place = Eigen::Matrix<double, d, 1>;
-  Place centre = Place::Zero(), now = Place::Zero();
+  using Position = Eigen::Matrix<double, d, 1>;
+  Position centre = Position::Zero(), now = Position::Zero();
   for (const Index node : body.fitted) {
-    const Place place = problem_.nodes.col(node);
-    centre += place;
-    now += place + displacement.segment<d>(node * d);
+    const Position position = problem_.nodes.col(node);
+    centre += position;
+    now += position + displacement.segment<d>(node * d);
   }
   centre /= static_cast<double>(body.fitted.size());
   now /= static_cast<double>(body.fitted.size());
   Eigen::Matrix<double, d, d> sum = Eigen::Matrix<double, d, d>::Zero();
   for (const Index node : body.fitted) {
-    const Place place = problem_.nodes.col(node);
-    sum += (place + displacement.segment<d>(node * d) - now) * (place - centre).transpose();
+    const Position position = problem_.nodes.col(node);
+    sum += (position + displacement.segment<d>(node * d) - now) * (position - centre).transpose();
   }
   Tensor rotation = Tensor::Identity();
   if (d == 2 || body.axis >= 0) {

@@ -16,15 +16,16 @@ FiniteElasticity::FiniteElasticity(const Body& body, NodeGraph graph, std::vecto
 
 /// Includes the nodes that are tied to the requested ones.
 std::shared_ptr<const InternalForce> FiniteElasticity::restricted_to(const std::vector<char>& nodes) const {
-  std::vector<char> wanted = nodes;
+  std::vector<char> selected = nodes;
   if (body_.tied != nullptr) {
     for (const TiedNodes::Tie& tie : body_.tied->ties()) {
       for (const auto& [node, weight] : tie.weights) {
-        if (weight != 0.0 && nodes[static_cast<std::size_t>(node)] != 0) wanted[static_cast<std::size_t>(tie.node)] = 1;
+        if (weight != 0.0 && nodes[static_cast<std::size_t>(node)] != 0)
+          selected[static_cast<std::size_t>(tie.node)] = 1;
       }
     }
   }
-  NodeGraph graph = cells_at_nodes(graph_, *body_.space, wanted);
+  NodeGraph graph = cells_at_nodes(graph_, *body_.space, selected);
   std::vector<int> cells = graph.cells;
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
@@ -44,10 +45,10 @@ void FiniteElasticity::condense(Vector& force) const {
 
 void FiniteElasticity::require_positive_volume(const InvertedCell& inverted) const {
   if (inverted.cell < 0) return;
-  const CellLocation place = location_of_cell(*body_.mesh, inverted.cell);
+  const CellLocation location = location_of_cell(*body_.mesh, inverted.cell);
   throw Error(ErrorKind::not_converged,
               fmt::format("cell {} at ({:.6g}) is inverted: somewhere in it the volume is {:.3g} times that at rest",
-                          place.tag, fmt::join(place.centre, ", "), inverted.volume_ratio));
+                          location.tag, fmt::join(location.centre, ", "), inverted.volume_ratio));
 }
 
 void FiniteElasticity::evaluate(const Vector& displacement, Vector& force) const {

@@ -8,9 +8,9 @@ namespace ricochet {
 
 FlightPrediction::FlightPrediction(const SemidiscreteProblem& problem) : problem_(problem), bodies_(problem) {
   const Index d = problem.dimension;
-  place_.setZero(problem.dof_count());
-  for (Index node = 0; node < problem.nodes.cols(); ++node) place_[node * d] = 1.0;
-  problem.mass.multiply(place_, momentum_);
+  positions_.setZero(problem.dof_count());
+  for (Index node = 0; node < problem.nodes.cols(); ++node) positions_[node * d] = 1.0;
+  problem.mass.multiply(positions_, momentum_);
   node_mass_.resize(problem.nodes.cols());
   for (Index node = 0; node < problem.nodes.cols(); ++node) node_mass_[node] = momentum_[node * d];
 }
@@ -39,8 +39,8 @@ void FlightPrediction::visit_nodes(const Visit& visit) const {
 }
 
 void FlightPrediction::fit(const Vector& displacement, const Vector& velocity, double step) {
-  place_ = displacement + problem_.nodes.reshaped();
-  problem_.mass.multiply(place_, first_moment_);
+  positions_ = displacement + problem_.nodes.reshaped();
+  problem_.mass.multiply(positions_, first_moment_);
   problem_.mass.multiply(velocity, momentum_);
   flights_.assign(bodies_.count(), {});
   visit_nodes([&](Index node, std::size_t body) {
@@ -55,7 +55,7 @@ void FlightPrediction::fit(const Vector& displacement, const Vector& velocity, d
   }
   visit_nodes([&](Index node, std::size_t body) {
     Flight& flight = flights_[body];
-    const Eigen::Vector3d arm = at(place_, node) - flight.centre;
+    const Eigen::Vector3d arm = at(positions_, node) - flight.centre;
     flight.spread += arm * (at(first_moment_, node) - node_mass_[node] * flight.centre).transpose();
     flight.momentum += arm.cross(at(momentum_, node));
   });
@@ -84,7 +84,7 @@ void FlightPrediction::predict(const Vector& displacement, const Vector& velocit
   visit_nodes([&](Index node, std::size_t body) {
     const Flight& flight = flights_[body];
     if (flight.spin.isZero(0.0)) return;
-    const Eigen::Vector3d arm = at(place_, node) - flight.centre;
+    const Eigen::Vector3d arm = at(positions_, node) - flight.centre;
     Eigen::Vector3d straight = Eigen::Vector3d::Zero();  // w
     if (has_inertia(node)) straight = at(velocity, node) - flight.velocity - flight.spin.cross(arm);
     const Eigen::Vector3d change = flight.rotation * (arm + step * straight) - arm + step * flight.velocity;

@@ -41,7 +41,7 @@ class FlightPrediction {
   BodyRotations bodies_;
   Vector node_mass_;
   std::vector<Flight> flights_;
-  Vector place_, first_moment_, momentum_;  ///< x, M x, M v
+  Vector positions_, first_moment_, momentum_;  ///< x, M x, M v
 };
 
 }  // namespace ricochet

@@ -37,8 +37,8 @@ void FollowerPressure::add(const std::vector<Index>& facets, Expression pressure
   Surface surface{{}, std::move(pressure)};
   const std::vector<std::vector<Index>> cells = cells_of_facets(*body_.mesh, facets);
   for (std::size_t i = 0; i < facets.size(); ++i) {
-    const IndexInBlocks place = locate_in_blocks(body_.mesh->facets, facets[i]);
-    Facet facet{place.block, place.local, 1.0};
+    const IndexInBlocks location = locate_in_blocks(body_.mesh->facets, facets[i]);
+    Facet facet{location.block, location.local, 1.0};
     facet.side = outward_side(facet, cells[i].front());
     surface.facets.push_back(facet);
   }

@@ -41,13 +41,13 @@ double InternalForce::energy_terms(const Vector&) const {
 }
 
 Vector InternalForce::stiffness_diagonal() const {
-  const NodeMatrix* const kept = constant_tangent();
-  return kept != nullptr ? kept->diagonal() : Vector(tangent().diagonal());
+  const NodeMatrix* const constant = constant_tangent();
+  return constant != nullptr ? constant->diagonal() : Vector(tangent().diagonal());
 }
 
 MatrixGraph InternalForce::graph(int d) const {
-  const NodeMatrix* const kept = constant_tangent();
-  return kept != nullptr ? MatrixGraph(kept->pattern()) : MatrixGraph(tangent(), d);
+  const NodeMatrix* const constant = constant_tangent();
+  return constant != nullptr ? MatrixGraph(constant->pattern()) : MatrixGraph(tangent(), d);
 }
 
 LinearElasticity::LinearElasticity(const SparseMatrix& stiffness, const Points& nodes)

@@ -24,13 +24,13 @@ std::vector<double> message_of(const SemidiscreteProblem& problem, const Vector&
   const Index deepest = *std::min_element(points.begin(), points.end(), [&](Index a, Index b) {
     return gap[a] != gap[b] ? gap[a] < gap[b] : number_of(problem, a) < number_of(problem, b);
   });
-  Vector place = Vector::Zero(problem.dimension);
+  Vector position = Vector::Zero(problem.dimension);
   problem.contact.visit_own_nodes(deepest,
-                                  [&](Index node, double weight) { place += weight * problem.nodes.col(node); });
-  std::vector<double> told{static_cast<double>(points.size()), -gap[deepest], number_of(problem, deepest),
-                           static_cast<double>(problem.contact.pair[static_cast<std::size_t>(deepest)])};
-  told.insert(told.end(), place.begin(), place.end());
-  return told;
+                                  [&](Index node, double weight) { position += weight * problem.nodes.col(node); });
+  std::vector<double> message{static_cast<double>(points.size()), -gap[deepest], number_of(problem, deepest),
+                              static_cast<double>(problem.contact.pair[static_cast<std::size_t>(deepest)])};
+  message.insert(message.end(), position.begin(), position.end());
+  return message;
 }
 
 }  // namespace
@@ -44,14 +44,14 @@ PenetratingPoints penetrating_points(const SemidiscreteProblem& problem, const V
     if (gap[i] < -std::max(depth, contact.rows->gap_rounding[i])) inside.points.push_back(i);
   }
   double number = 0.0;
-  for (const std::vector<double>& told : problem.ranks->all_gather(message_of(problem, gap, inside.points))) {
-    inside.count += static_cast<Index>(told[0]);
-    if (told.size() == 1 || told[1] < inside.deepest) continue;
-    if (told[1] == inside.deepest && told[2] > number) continue;
-    inside.deepest = told[1];
-    number = told[2];
-    inside.pair = static_cast<int>(told[3]);
-    inside.position = Eigen::Map<const Vector>(told.data() + 4, problem.dimension);
+  for (const std::vector<double>& message : problem.ranks->all_gather(message_of(problem, gap, inside.points))) {
+    inside.count += static_cast<Index>(message[0]);
+    if (message.size() == 1 || message[1] < inside.deepest) continue;
+    if (message[1] == inside.deepest && message[2] > number) continue;
+    inside.deepest = message[1];
+    number = message[2];
+    inside.pair = static_cast<int>(message[3]);
+    inside.position = Eigen::Map<const Vector>(message.data() + 4, problem.dimension);
   }
   return inside;
 }

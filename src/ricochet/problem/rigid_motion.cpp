@@ -50,8 +50,8 @@ Vector rotation_about(Index axis, const Points& positions) {
 RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness)
     : dimension_(static_cast<int>(nodes.rows())), positions_(nodes.rows(), nodes.cols()) {
   find_bodies(nodes, stiffness);
-  keep_rotations_that_strain(stiffness);
-  if (dimension_ == 2) keep_translations_that_strain(stiffness);
+  select_rotations_that_strain(stiffness);
+  if (dimension_ == 2) select_translations_that_strain(stiffness);
   motions_.resize(bodies_.size());
 }
 
@@ -116,7 +116,7 @@ std::vector<char> RigidMotion::strained_by(const Vector& motion, const SparseMat
 }
 
 /// Linear functions on curved cells do not contain rotations: K R is not zero for them, and removing R would alter K U.
-void RigidMotion::keep_rotations_that_strain(const SparseMatrix& stiffness) {
+void RigidMotion::select_rotations_that_strain(const SparseMatrix& stiffness) {
   for (Index axis = dimension_ == 2 ? 2 : 0; axis < 3; ++axis) {
     const std::vector<char> strained = strained_by(rotation_about(axis, positions_), stiffness);
     for (std::size_t node = 0; node < strained.size(); ++node) {
@@ -126,7 +126,7 @@ void RigidMotion::keep_rotations_that_strain(const SparseMatrix& stiffness) {
 }
 
 /// An axisymmetric body is strained by a translation away from its axis.
-void RigidMotion::keep_translations_that_strain(const SparseMatrix& stiffness) {
+void RigidMotion::select_translations_that_strain(const SparseMatrix& stiffness) {
   Vector across = Vector::Zero(positions_.size());
   for (Index node = 0; node < positions_.cols(); ++node) across[node * dimension_] = 1.0;
   const std::vector<char> strained = strained_by(across, stiffness);
@@ -167,13 +167,13 @@ template <int d>
 Eigen::Matrix<double, d, 1> RigidMotion::rigid_part(Index node) const {
   const Motion& motion = motions_[body_of(static_cast<std::size_t>(node))];
   const Eigen::Matrix<double, d, 1> x = positions_.col(node).template head<d>();
-  Eigen::Matrix<double, d, 1> turned;
+  Eigen::Matrix<double, d, 1> rotational;
   if constexpr (d == 2) {
-    turned << -motion.rotation[2] * x[1], motion.rotation[2] * x[0];
+    rotational << -motion.rotation[2] * x[1], motion.rotation[2] * x[0];
   } else {
-    turned = motion.rotation.cross(x);
+    rotational = motion.rotation.cross(x);
   }
-  return motion.translation.template head<d>() + turned;
+  return motion.translation.template head<d>() + rotational;
 }
 
 template <int d>

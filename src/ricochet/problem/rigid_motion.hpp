@@ -45,8 +45,8 @@ class RigidMotion {
   /// Marks the nodes at which the stiffness force of a motion exceeds rounding.
   [[nodiscard]] std::vector<char> strained_by(const Vector& motion, const SparseMatrix& stiffness) const;
   [[nodiscard]] std::size_t body_of(std::size_t node) const;
-  void keep_rotations_that_strain(const SparseMatrix& stiffness);
-  void keep_translations_that_strain(const SparseMatrix& stiffness);
+  void select_rotations_that_strain(const SparseMatrix& stiffness);
+  void select_translations_that_strain(const SparseMatrix& stiffness);
   static Body make_body(const Points& nodes, const std::vector<Index>& members);
   template <int d>
   Motion fit(const Body& body, const Vector& displacement) const;

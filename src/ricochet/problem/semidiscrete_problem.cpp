@@ -112,9 +112,9 @@ void SemidiscreteProblem::scatter_contact(const Eigen::Ref<const Vector>& on_con
 
 std::shared_ptr<const InternalForce> SemidiscreteProblem::internal_force_at_contact() const {
   if (contact_dofs.empty()) return nullptr;
-  std::vector<char> wanted(static_cast<std::size_t>(nodes.cols()), 0);
-  for (const Index dof : contact_dofs) wanted[static_cast<std::size_t>(dof / dimension)] = 1;
-  return internal_force->restricted_to(wanted);
+  std::vector<char> selected(static_cast<std::size_t>(nodes.cols()), 0);
+  for (const Index dof : contact_dofs) selected[static_cast<std::size_t>(dof / dimension)] = 1;
+  return internal_force->restricted_to(selected);
 }
 
 std::vector<Index> contact_node_dofs(const SemidiscreteProblem& problem) {

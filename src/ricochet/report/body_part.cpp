@@ -40,11 +40,11 @@ float magnitude(const std::vector<float>& values, int components, Index i) {
 
 BodyFrames::Part::Part(std::vector<Index> its_nodes, const std::vector<int>& cells_of_pieces)
     : nodes(std::move(its_nodes)) {
-  std::map<int, int> places;
+  std::map<int, int> numbers_of_cells;
   for (const int cell : cells_of_pieces) {
-    const auto [place, is_new] = places.try_emplace(cell, static_cast<int>(cells.size()));
+    const auto [entry, is_new] = numbers_of_cells.try_emplace(cell, static_cast<int>(cells.size()));
     if (is_new) cells.push_back(cell);
-    numbers.push_back(place->second);
+    numbers.push_back(entry->second);
   }
 }
 
@@ -148,7 +148,7 @@ void BodyFrames::store_field(const ResultField& field, const std::vector<float>&
   }
 }
 
-std::vector<std::size_t> BodyFrames::kept(std::size_t stride) const {
+std::vector<std::size_t> BodyFrames::selected_rows(std::size_t stride) const {
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     if (i % stride == 0 || i + 1 == frames_.size()) rows.push_back(i);
@@ -237,7 +237,7 @@ ContactPart BodyFrames::pack_contact(std::size_t most_bytes, PackedArrays& array
   constexpr std::array<std::pair<int, std::size_t>, 7> qualities{
       {{16, 1}, {12, 1}, {10, 1}, {10, 2}, {8, 4}, {8, 10}, {8, 30}}};
   for (const auto& [bits, stride] : qualities) {
-    const std::vector<std::size_t> rows = kept(stride);
+    const std::vector<std::size_t> rows = selected_rows(stride);
     PackedArrays attempt = arrays;
     std::vector<ContactQuantity> quantities;
     for (const Values& values : contact_) quantities.push_back({values.name, pack(values, rows, bits, attempt)});
@@ -281,7 +281,7 @@ BodyPart BodyFrames::pack_body(std::size_t most_bytes, PackedArrays& arrays) con
                                                {10, 6, 30},
                                                {10, 6, 100}}};
   for (const Quality& quality : qualities) {
-    const std::vector<std::size_t> rows = kept(quality.stride);
+    const std::vector<std::size_t> rows = selected_rows(quality.stride);
     const bool is_last = quality.stride == qualities.back().stride;
     // A few frames from the middle show approximately how much all will take.
     if (!is_last && rows.size() > 24) {

@@ -103,7 +103,7 @@ class BodyFrames {
   void store_contact(const ResultField& field, const std::vector<float>& values);
   void store_field(const ResultField& field, const std::vector<float>& values);
   /// Returns the rows of the frames that a stride leaves, always including the last.
-  [[nodiscard]] std::vector<std::size_t> kept(std::size_t stride) const;
+  [[nodiscard]] std::vector<std::size_t> selected_rows(std::size_t stride) const;
   [[nodiscard]] std::vector<int> frames_of(const std::vector<std::size_t>& rows) const;
   void pack_frames(const Quality& quality, const std::vector<std::size_t>& rows, PackedArrays& arrays,
                    BodyPart& part) const;

@@ -73,17 +73,17 @@ ContactLine make_contact_line(const Points& nodes, const std::vector<CellBlock>&
     }
   }
   // The pieces follow one another.
-  double whole = 0.0;
+  double total_length = 0.0;
   for (std::size_t k = 0; k < line.pieces.size(); ++k) {
     const auto end = k + 1 < line.pieces.size() ? static_cast<std::size_t>(line.pieces[k + 1]) : line.nodes.size();
-    whole += line.position[end - 1];
+    total_length += line.position[end - 1];
   }
   double offset = 0.0;
   for (std::size_t k = 0; k < line.pieces.size(); ++k) {
     const auto end = k + 1 < line.pieces.size() ? static_cast<std::size_t>(line.pieces[k + 1]) : line.nodes.size();
     const double length = line.position[end - 1];
     for (auto i = static_cast<std::size_t>(line.pieces[k]); i < end; ++i) line.position[i] += offset;
-    offset += length + 0.05 * whole;
+    offset += length + 0.05 * total_length;
   }
   return line;
 }

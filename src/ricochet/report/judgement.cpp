@@ -59,9 +59,9 @@ std::optional<double> broken_at(const RunData& run, const std::vector<std::strin
 /// Returns the energy that the time discretization has added, row by row.
 std::vector<double> energy_of_method(const RunData& run) {
   std::vector<double> result = run.column("contact_work");
-  const std::vector<double>& taken = run.column("numerical_dissipation");
+  const std::vector<double>& dissipated = run.column("numerical_dissipation");
   const std::vector<double>& algorithmic = run.column("algorithmic_energy");
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] -= taken[i] + (algorithmic[i] - algorithmic.front());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] -= dissipated[i] + (algorithmic[i] - algorithmic.front());
   return result;
 }
 
@@ -204,8 +204,9 @@ Judgement judge(const RunData& run) {
   result.force_broken_at = broken_at(run, forces);
   result.penetration_broken_at = broken_at(run, {"max_penetration"});
   judge_penetration(run, result);
-  const bool turned = !broken_at(run, {"max_rotation"});
-  result.rotation = turned ? largest_magnitude(run.column("max_rotation")) : std::numeric_limits<double>::quiet_NaN();
+  const bool has_rotation = !broken_at(run, {"max_rotation"});
+  result.rotation =
+      has_rotation ? largest_magnitude(run.column("max_rotation")) : std::numeric_limits<double>::quiet_NaN();
   result.rotation_limit = run.summary.largest_rotation();
   for (std::size_t i = 0; i < run.summary.impacts.size(); ++i)
     result.rotation_limit = std::min(result.rotation_limit, rotation_limit_of(i, run.summary));

@@ -44,7 +44,7 @@ std::vector<Index> spatially_sorted(const Points& nodes, const std::vector<Index
   std::sort(order.begin(), order.end());
   std::vector<Index> result;
   result.reserve(order.size());
-  for (const auto& [place, node] : order) result.push_back(node);
+  for (const auto& [position, node] : order) result.push_back(node);
   return result;
 }
 

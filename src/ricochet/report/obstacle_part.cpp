@@ -9,7 +9,7 @@ namespace ricochet {
 namespace {
 
 /// Smallest visible distance, relative to the extent of the picture.
-constexpr double smallest_seen = 1e-6;
+constexpr double smallest_visible = 1e-6;
 /// Rounding of coordinates in the file, which have nine digits.
 constexpr double file_rounding = 1e-9;
 
@@ -22,7 +22,7 @@ class Translations {
  public:
   explicit Translations(const ObstacleFrame& first)
       : first_(points_of(first)), obstacle_(first.positions.size() / 3, 0) {
-    visible_distance_ = smallest_seen * (first_.rowwise().maxCoeff() - first_.rowwise().minCoeff()).maxCoeff();
+    visible_distance_ = smallest_visible * (first_.rowwise().maxCoeff() - first_.rowwise().minCoeff()).maxCoeff();
     const auto corners = static_cast<std::size_t>(first.corners);
     for (std::size_t k = 0; k < first.cells.size(); ++k)
       obstacle_[static_cast<std::size_t>(first.cells[k])] = first.obstacle[k / corners];

@@ -278,15 +278,15 @@ std::string PageBuilder::data() {
 
 Report make_report(const std::vector<std::string>& directories, const ReportOptions& options) {
   const std::string viewer = read_file(options.viewer);
-  const std::size_t place = viewer.find(data_mark);
-  if (place == std::string::npos ||
+  const std::size_t mark_position = viewer.find(data_mark);
+  if (mark_position == std::string::npos ||
       viewer.find(fmt::format("<!-- data format {} -->", data_format)) == std::string::npos) {
     throw Error(ErrorKind::file_access,
                 fmt::format("{}: is not the viewer of this version: build or install Ricochet again", options.viewer));
   }
   PageBuilder builder(read_runs(directories, true), options.most_bytes - std::min(options.most_bytes, viewer.size()));
   Report report;
-  report.html = viewer.substr(0, place) + builder.data() + viewer.substr(place + data_mark.size());
+  report.html = viewer.substr(0, mark_position) + builder.data() + viewer.substr(mark_position + data_mark.size());
   report.thinned = builder.thinned();
   return report;
 }
@@ -302,15 +302,15 @@ bool is_report_of(const std::string& path, const std::vector<std::string>& direc
   } catch (const Json::Exception&) {
     return false;
   }
-  const auto whole = [](const std::string& directory) {
+  const auto absolute_path = [](const std::string& directory) {
     return (std::filesystem::absolute(directory) / "").lexically_normal();
   };
-  std::set<std::filesystem::path> shown, wanted;
+  std::set<std::filesystem::path> shown, requested;
   if (page.is_object() && page.contains("runs")) {
-    for (const Json& run : page.at("runs")) shown.insert(whole(run.value("directory", "")));
+    for (const Json& run : page.at("runs")) shown.insert(absolute_path(run.value("directory", "")));
   }
-  for (const std::string& directory : directories) wanted.insert(whole(directory));
-  return shown == wanted;
+  for (const std::string& directory : directories) requested.insert(absolute_path(directory));
+  return shown == requested;
 }
 
 bool is_report(const std::string& path) {

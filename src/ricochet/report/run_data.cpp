@@ -164,9 +164,9 @@ const Probe* RunData::contact_probe() const {
 
 std::vector<RunData> read_runs(const std::vector<std::string>& directories, bool with_results) {
   std::vector<RunData> runs;
-  std::set<fs::path> seen;
+  std::set<fs::path> visited;
   for (const std::string& directory : directories) {
-    if (!seen.insert(whole_path(directory)).second)
+    if (!visited.insert(whole_path(directory)).second)
       throw Error(ErrorKind::usage, fmt::format("{}: this directory is named twice", directory));
     runs.push_back(read_run(directory, with_results));
   }

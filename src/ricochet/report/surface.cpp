@@ -96,12 +96,12 @@ std::vector<Triangle> merged(const Points& nodes, const std::vector<Triangle>& t
   for (const Index node : used_nodes(triangles))
     representative[static_cast<std::size_t>(node)] = first.try_emplace(grid.box(nodes, node), node).first->second;
   std::vector<Triangle> result;
-  std::map<std::array<Index, 3>, bool> seen;
+  std::map<std::array<Index, 3>, bool> added;
   for (Triangle t : triangles) {
     for (Index& corner : t.corners) corner = representative[static_cast<std::size_t>(corner)];
     std::array<Index, 3> key = t.corners;
     std::sort(key.begin(), key.end());
-    if (key[0] == key[1] || key[1] == key[2] || !seen.try_emplace(key, true).second) continue;
+    if (key[0] == key[1] || key[1] == key[2] || !added.try_emplace(key, true).second) continue;
     t.edges = 0b111;
     result.push_back(t);
   }

@@ -54,12 +54,12 @@ void add_box(const std::array<int, 3>& first, int degree, std::vector<std::array
     // On each axis a lattice node is either at the vertices with bit 0 or those with bit 1, or midway between them.
     std::vector<int> vertices;
     for (int v = 0; v < 8; ++v) {
-      bool takes_part = true;
+      bool is_included = true;
       for (std::size_t k = 0; k < 3; ++k) {
-        const int bit = v >> k & 1, place = first[k] + at[k];
-        takes_part = takes_part && (degree == 2 && place == 1 ? true : bit == place / degree);
+        const int bit = v >> k & 1, coordinate = first[k] + at[k];
+        is_included = is_included && (degree == 2 && coordinate == 1 ? true : bit == coordinate / degree);
       }
-      if (takes_part) vertices.push_back(v);
+      if (is_included) vertices.push_back(v);
     }
     return degree == 1 ? vertices.front() : node_at_mean(CellShape::hexahedron, vertices);
   };

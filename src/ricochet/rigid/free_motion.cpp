@@ -16,10 +16,10 @@ SpaceVector cross(const SpaceVector& a, const SpaceVector& b) {
 }
 
 /// Rotates a vector from the principal axes to space; in the plane torques and rotations are unchanged.
-SpaceVector turned(const Pose::Rotation& axes, const SpaceVector& about_axes) {
+SpaceVector to_space(const Pose::Rotation& axes, const SpaceVector& about_axes) {
   return about_axes.size() == 3 ? SpaceVector(axes * about_axes) : about_axes;
 }
-SpaceVector turned_back(const Pose::Rotation& axes, const SpaceVector& in_space) {
+SpaceVector to_axes(const Pose::Rotation& axes, const SpaceVector& in_space) {
   return in_space.size() == 3 ? SpaceVector(axes.transpose() * in_space) : in_space;
 }
 
@@ -95,32 +95,32 @@ Pose FreeMotion::pose(const Vector& displacement) const {
 void FreeMotion::write_row(const SpaceVector& direction, const SpaceVector& arm, const Pose::Rotation& axes,
                            double* row) const {
   for (const double n : direction) *row++ = n;
-  const SpaceVector lever = turned_back(axes, cross(arm, direction)).cwiseQuotient(gyration_);
+  const SpaceVector lever = to_axes(axes, cross(arm, direction)).cwiseQuotient(gyration_);
   for (const double l : lever) *row++ = l;
   if (dimension() == 2) *row = 0.0;
 }
 
 SpaceVector FreeMotion::torque(const Vector& force) const {
   const SpaceVector own = force.segment(rotation_node() * dimension(), gyration_.size());
-  return turned(axes_, own.cwiseProduct(gyration_));
+  return to_space(axes_, own.cwiseProduct(gyration_));
 }
 
 void FreeMotion::add_torque(const SpaceVector& torque, Vector& force) const {
-  force.segment(rotation_node() * dimension(), gyration_.size()) += turned_back(axes_, torque).cwiseQuotient(gyration_);
+  force.segment(rotation_node() * dimension(), gyration_.size()) += to_axes(axes_, torque).cwiseQuotient(gyration_);
 }
 
 SpaceVector FreeMotion::angular_momentum(const Vector& displacement, const Vector& velocity) const {
   const SpaceVector own = velocity.segment(rotation_node() * dimension(), gyration_.size());
-  return turned(axes(displacement), inertia_.mass * own.cwiseProduct(gyration_));
+  return to_space(axes(displacement), inertia_.mass * own.cwiseProduct(gyration_));
 }
 
 SpaceVector FreeMotion::angular_velocity(const Vector& displacement, const Vector& velocity) const {
   const SpaceVector own = velocity.segment(rotation_node() * dimension(), gyration_.size());
-  return turned(axes(displacement), own.cwiseQuotient(gyration_));
+  return to_space(axes(displacement), own.cwiseQuotient(gyration_));
 }
 
 SpaceVector FreeMotion::rotational_velocity(const SpaceVector& spin, const Vector& displacement) const {
-  const SpaceVector own = turned_back(axes(displacement), spin).cwiseProduct(gyration_);
+  const SpaceVector own = to_axes(axes(displacement), spin).cwiseProduct(gyration_);
   SpaceVector result = SpaceVector::Zero(dimension());
   result.head(own.size()) = own;
   return result;

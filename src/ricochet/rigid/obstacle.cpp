@@ -66,14 +66,14 @@ SpaceVector motion_at(const Pose& start, const Pose& end, const SpaceVector& mid
 SpaceVector normal_of_step(const PosedObstacle& start, const SpaceVector& from, const PosedObstacle& end,
                            const SpaceVector& to) {
   const ObstacleShape& shape = *end.shape_;
-  const SpaceVector seen_before = start.pose_.to_body_frame(from), seen_after = end.pose_.to_body_frame(to);
-  if (!end.pose_.turns() && !start.pose_.turns()) return shape.normal_of_step(seen_before, seen_after);
+  const SpaceVector reference_before = start.pose_.to_body_frame(from), reference_after = end.pose_.to_body_frame(to);
+  if (!end.pose_.turns() && !start.pose_.turns()) return shape.normal_of_step(reference_before, reference_after);
   const Pose::Rotation first = rotation_of(start.pose_, to.size()), last = rotation_of(end.pose_, to.size());
-  const SpaceVector at_start = first * shape.normal(seen_before), at_end = last * shape.normal(seen_after);
-  const SpaceVector middle = shape.gradient(0.5 * (seen_before + seen_after));
+  const SpaceVector at_start = first * shape.normal(reference_before), at_end = last * shape.normal(reference_after);
+  const SpaceVector middle = shape.gradient(0.5 * (reference_before + reference_after));
   const SpaceVector own = middle.norm() * ((first + last) * middle).normalized();
   const SpaceVector relative_step = to - from - motion_at(start.pose_, end.pose_, 0.5 * (from + to));
-  const double change = shape.gap(seen_after) - shape.gap(seen_before);
+  const double change = shape.gap(reference_after) - shape.gap(reference_before);
   const double rounding = start.gap_rounding(from) + end.gap_rounding(to);
   return corrected_normal(own, relative_step, change, rounding, at_start, at_end);
 }
@@ -156,8 +156,8 @@ Points Obstacle::surface_points(const Points& at_start, double time, const Vecto
     const SpaceVector lift = translation(time).dot(up) * up;
     if (spin_ != 0.0 && axis_.size() == 3) {
       const Eigen::Vector3d middle = at_start.rowwise().mean();
-      const Eigen::Matrix3d turn = Eigen::AngleAxisd(spin_ * time, Eigen::Vector3d(axis_)).toRotationMatrix();
-      result = (turn * (at_start.colwise() - middle)).colwise() + middle;
+      const Eigen::Matrix3d rotation = Eigen::AngleAxisd(spin_ * time, Eigen::Vector3d(axis_)).toRotationMatrix();
+      result = (rotation * (at_start.colwise() - middle)).colwise() + middle;
     }
     return result.colwise() + Vector(lift);
   }

@@ -119,7 +119,7 @@ std::unique_ptr<ObstaclePath> make_path(std::vector<Expression> displacement, st
 
 std::unique_ptr<ObstaclePath> read_path(const std::string& file, Index dimension) {
   const std::string text = contents_of(file);
-  const std::size_t still = static_cast<std::size_t>(dimension) + 1, turning = dimension == 2 ? 4 : 7;
+  const std::size_t still = static_cast<std::size_t>(dimension) + 1, with_rotation = dimension == 2 ? 4 : 7;
   std::vector<double> times, values;
   std::size_t columns = 0;
   NumberLines lines(file, text, NumberLines::Header::allowed);
@@ -127,11 +127,11 @@ std::unique_ptr<ObstaclePath> read_path(const std::string& file, Index dimension
     const std::vector<double>& numbers = lines.numbers();
     if (numbers.empty()) continue;
     if (columns == 0) columns = numbers.size();
-    if (numbers.size() != columns || (columns != still && columns != turning)) {
+    if (numbers.size() != columns || (columns != still && columns != with_rotation)) {
       lines.fail(
           fmt::format("{} numbers; each line of a motion in {}D must have {} (t and the displacement), or {} with the "
                       "rotation in rad",
-                      numbers.size(), dimension, still, turning));
+                      numbers.size(), dimension, still, with_rotation));
     }
     if (!times.empty() && !(numbers.front() > times.back()))
       lines.fail(fmt::format("the time {} is not after {}", numbers.front(), times.back()));
@@ -139,7 +139,7 @@ std::unique_ptr<ObstaclePath> read_path(const std::string& file, Index dimension
     values.insert(values.end(), numbers.begin() + 1, numbers.end());
   }
   if (times.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: the motion contains no numbers", file));
-  if (dimension == 2 && columns == turning) look_at_angle(lines, file);
+  if (dimension == 2 && columns == with_rotation) look_at_angle(lines, file);
   const auto rows = static_cast<Index>(columns) - 1, count = static_cast<Index>(times.size());
   return std::make_unique<TablePath>(std::move(times), Eigen::Map<const Points>(values.data(), rows, count), dimension);
 }

@@ -11,10 +11,10 @@ namespace {
 /// A step evaluates an obstacle at its ends and in the previous step, so older legs are never needed.
 constexpr std::size_t most_legs = 8;
 
-void check_rates(const char* what, const SpaceVector& rates, Index wanted) {
-  if (rates.size() != wanted)
+void check_rates(const char* what, const SpaceVector& rates, Index count) {
+  if (rates.size() != count)
     throw Error(ErrorKind::invalid_input,
-                fmt::format("its {} has {} numbers, but {} are required", what, rates.size(), wanted));
+                fmt::format("its {} has {} numbers, but {} are required", what, rates.size(), count));
   if (!rates.allFinite()) throw Error(ErrorKind::invalid_input, fmt::format("its {} is not finite", what));
 }
 
@@ -75,12 +75,12 @@ void SteeredPath::load(const Snapshot& snapshot, const std::string& name) {
   legs_.clear();
   for (Index first = 0; first < numbers.size(); first += width) {
     Index at = first;
-    const auto take = [&](Index count) -> SpaceVector { return numbers.segment((at += count) - count, count); };
+    const auto read = [&](Index count) -> SpaceVector { return numbers.segment((at += count) - count, count); };
     Leg leg{.start = numbers[at++], .displacement = {}, .rotation = {}, .velocity = {}, .rotation_rate = {}};
-    leg.displacement = take(dimension_);
-    leg.rotation = take(rotations_);
-    leg.velocity = take(dimension_);
-    leg.rotation_rate = take(rotations_);
+    leg.displacement = read(dimension_);
+    leg.rotation = read(rotations_);
+    leg.velocity = read(dimension_);
+    leg.rotation_rate = read(rotations_);
     legs_.push_back(std::move(leg));
   }
 }

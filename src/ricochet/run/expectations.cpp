@@ -16,9 +16,9 @@ namespace {
 
 /// Returns the reason why an expectation does not apply to this run, or "".
 std::string reason_not_to_check(const Case& input, const ExpectSection& expect, ExpectationScope scope) {
-  for (const auto& [key, wanted] : expect.when) {
+  for (const auto& [key, required] : expect.when) {
     const auto found = input.values.find(key);
-    if (found == input.values.end() || found->second != wanted) return fmt::format("only for {} = {}", key, wanted);
+    if (found == input.values.end() || found->second != required) return fmt::format("only for {} = {}", key, required);
   }
   if (scope == ExpectationScope::any_settings) return "";
   for (const std::string& key : input.overridden) {
@@ -28,7 +28,7 @@ std::string reason_not_to_check(const Case& input, const ExpectSection& expect, 
   return "";
 }
 
-std::string wanted_in_words(const ExpectSection& expect) {
+std::string expected_text(const ExpectSection& expect) {
   if (expect.minimum || expect.maximum) {
     std::string text;
     if (expect.minimum) text = fmt::format("≥ {:g}", *expect.minimum);
@@ -72,12 +72,12 @@ ExpectationResult described(const ExpectSection& expect) {
       .name = expect.name,
       .quantity = quantity_in_words(expect),
       .published = expect.published,
-      .wanted = wanted_in_words(expect),
+      .expected = expected_text(expect),
       .minimum = expect.minimum,
       .maximum = expect.maximum,
   };
   if (!expect.minimum && !expect.maximum) {
-    result.wanted_value = expect.value;
+    result.expected_value = expect.value;
     result.tolerance = tolerance_of(expect);
   }
   return result;

@@ -34,11 +34,11 @@ std::vector<std::string> input_files(const Case& input) {
 }  // namespace
 
 void refuse_overwriting_inputs(const RunDirectory& directory, const RunOptions& options, const Case& input) {
-  std::vector<std::string> taken = directory.results();
-  for (const std::string& file : directory.leftover_files(-1)) taken.push_back(file);
-  for (const std::string& file : exported_contact_problems(export_directory(options))) taken.push_back(file);
+  std::vector<std::string> existing = directory.results();
+  for (const std::string& file : directory.leftover_files(-1)) existing.push_back(file);
+  for (const std::string& file : exported_contact_problems(export_directory(options))) existing.push_back(file);
   for (const std::string& file : input_files(input)) {
-    for (const std::string& other : taken) {
+    for (const std::string& other : existing) {
       std::error_code ignored;
       if (!std::filesystem::equivalent(file, other, ignored)) continue;
       throw Error(ErrorKind::file_access,

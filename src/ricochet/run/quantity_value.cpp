@@ -70,18 +70,19 @@ TimePosition locate_time(const TimeSeries& course, double time, const std::strin
                   column, time, times.front(), times.back()));
 }
 
-double value_at(const TimeSeries& course, TimePosition place) {
-  const double value = course.values[place.point];
-  return place.fraction == 0.0 ? value : value + place.fraction * (course.values[place.point + 1] - value);
+double value_at(const TimeSeries& course, TimePosition position) {
+  const double value = course.values[position.point];
+  return position.fraction == 0.0 ? value : value + position.fraction * (course.values[position.point + 1] - value);
 }
 
-TimeSeries part_of(const TimeSeries& whole, const TimeInterval& interval, const std::string& column) {
-  const TimePosition begin = locate_time(whole, interval.begin, column), end = locate_time(whole, interval.end, column);
+TimeSeries part_of(const TimeSeries& series, const TimeInterval& interval, const std::string& column) {
+  const TimePosition begin = locate_time(series, interval.begin, column),
+                     end = locate_time(series, interval.end, column);
   TimeSeries part;
-  part.add(interval.begin, value_at(whole, begin));
+  part.add(interval.begin, value_at(series, begin));
   const std::size_t last = end.point + (end.fraction > 0.0 ? 1 : 0);
-  for (std::size_t i = begin.point + 1; i < last; ++i) part.add(whole.times[i], whole.values[i]);
-  part.add(interval.end, value_at(whole, end));
+  for (std::size_t i = begin.point + 1; i < last; ++i) part.add(series.times[i], series.values[i]);
+  part.add(interval.end, value_at(series, end));
   return part;
 }
 
@@ -183,8 +184,8 @@ double value_of(const Quantity& quantity, const HistoryTable& history, const std
   if (quantity.kind == Quantity::Kind::summary_value) return summary_value(summary_json, quantity.name);
   const std::vector<double>& column = column_of(history, quantity.name);
   if (quantity.kind == Quantity::Kind::history_value) return value_in_row(column, quantity);
-  const TimeSeries whole{column_of(history, "time"), column};
-  return value_of_course(quantity, quantity.interval ? part_of(whole, *quantity.interval, quantity.name) : whole);
+  const TimeSeries series{column_of(history, "time"), column};
+  return value_of_course(quantity, quantity.interval ? part_of(series, *quantity.interval, quantity.name) : series);
 }
 
 }  // namespace ricochet

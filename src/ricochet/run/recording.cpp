@@ -50,17 +50,18 @@ ImpactRecorder make_impact_recorder(const Model& model, const Scheme& scheme, co
 std::unique_ptr<ResultsWriter> open_results(const OutputSection& output, const Model& model,
                                             const std::string& directory, const Snapshot* snapshot) {
   const ResultsOptions options = results_options(output);
-  WholeBody whole;
+  GlobalBody global_body;
   if (model.global_output)
-    whole = {&model.global_output->body,
-             &model.global_output->problem,
-             model.global_output->node_rows,
-             model.global_output->cell_rows,
-             model.sizes.nodes,
-             model.sizes.cells};
+    global_body = {&model.global_output->body,
+                   &model.global_output->problem,
+                   model.global_output->node_rows,
+                   model.global_output->cell_rows,
+                   model.sizes.nodes,
+                   model.sizes.cells};
   if (snapshot != nullptr)
-    return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, *snapshot, "results", whole);
-  return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, whole);
+    return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, *snapshot, "results",
+                                           global_body);
+  return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, global_body);
 }
 
 /// Makes the watch of penetration. Steps at finite strain compute stresses and tangents of all cells and refactorize,
@@ -254,12 +255,14 @@ void Recording::describe_peak_stress(RunSummary& summary) const {
   const PeakStressResult& peak = peak_stress_.result();
   if (peak.cell < 0) return;
   const Body& body = model_.body;
-  const CellLocation place = location_of_cell(*body.mesh, peak.cell);
+  const CellLocation location = location_of_cell(*body.mesh, peak.cell);
   const auto material = static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(peak.cell)]);
-  PeakStressResult told = peak;
-  if (model_.global_output) told.cell = model_.global_output->cell_rows[static_cast<std::size_t>(peak.cell)];
-  summary.peak_stress = PeakStressDescription{
-      told, {place.centre.data(), place.centre.data() + place.centre.size()}, place.tag, body.materials[material].name};
+  PeakStressResult reported = peak;
+  if (model_.global_output) reported.cell = model_.global_output->cell_rows[static_cast<std::size_t>(peak.cell)];
+  summary.peak_stress = PeakStressDescription{reported,
+                                              {location.centre.data(), location.centre.data() + location.centre.size()},
+                                              location.tag,
+                                              body.materials[material].name};
 }
 
 /// Throws if the motion has diverged. Energies are squares: they overflow long before the displacement does.

@@ -43,9 +43,10 @@ void check_export(const Case& input, const RunOptions& options, long steps) {
             "{}: contact problems with a friction_bound cannot be exported: FCLib files support Coulomb's law only",
             input.where(fmt::format("contact.{}.friction_bound", i)).text()));
   }
-  const auto& asked = options.export_contact;
-  const bool some = std::any_of(asked.begin(), asked.end(), [&](const StepRange& r) { return r.first <= steps; });
-  const bool all = std::all_of(asked.begin(), asked.end(), [&](const StepRange& r) { return r.last <= steps; });
+  const auto& requested = options.export_contact;
+  const bool some =
+      std::any_of(requested.begin(), requested.end(), [&](const StepRange& r) { return r.first <= steps; });
+  const bool all = std::all_of(requested.begin(), requested.end(), [&](const StepRange& r) { return r.last <= steps; });
   if (!some)
     throw Error(ErrorKind::usage, fmt::format("--export-contact: the run has only {}", counted(steps, "step")));
   if (!all)
@@ -191,8 +192,8 @@ void Run::begin_session() {
   begin_simulation();
   times_.add_start(timer.seconds(), session_.simulation().methods());
   summary_ = describe_run(input_, session_.model(), session_.scheme(), session_.simulation());
-  const std::string& kept_at = options_.case_path.empty() ? input_.path : options_.case_path;
-  summary_.case_path = std::filesystem::absolute(kept_at).lexically_normal().string();
+  const std::string& saved_path = options_.case_path.empty() ? input_.path : options_.case_path;
+  summary_.case_path = std::filesystem::absolute(saved_path).lexically_normal().string();
   summary_.settings = options_.settings;
   stopping_points_.emplace();  // the steps are about to begin
   if (snapshot_) {
@@ -201,8 +202,8 @@ void Run::begin_session() {
     warnings.insert(warnings.end(), resume_warnings.begin(), resume_warnings.end());
     // The end may have been moved since.
     std::erase_if(warnings, [](const std::string& warning) { return warning.starts_with(end_warning); });
-    for (auto said = session_.warnings().begin() + built; said != session_.warnings().end(); ++said) {
-      if (std::find(warnings.begin(), warnings.end(), *said) == warnings.end()) warnings.push_back(*said);
+    for (auto warning = session_.warnings().begin() + built; warning != session_.warnings().end(); ++warning) {
+      if (std::find(warnings.begin(), warnings.end(), *warning) == warnings.end()) warnings.push_back(*warning);
     }
     session_.warnings_ = std::move(warnings);
     const Snapshot::Integers& resumed_at = snapshot_->integers("run.resumed_at");
@@ -353,8 +354,8 @@ bool Run::is_near_end() {
 
 /// Writes the checkpoint from which the run can go on to a later end: the steps up to it do not depend on the end.
 void Run::write_end_checkpoint() {
-  const bool wanted = input_.output.checkpoint_every > 0 || input_.output.checkpoint_seconds > 0.0;
-  if (!wanted || has_end_checkpoint_) return;
+  const bool is_required = input_.output.checkpoint_every > 0 || input_.output.checkpoint_seconds > 0.0;
+  if (!is_required || has_end_checkpoint_) return;
   const std::lock_guard files(files_);
   if (summary_.checkpoint_step != session_.state().step) write_checkpoint();
   has_end_checkpoint_ = true;

@@ -70,11 +70,11 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
   angular_.result.largest = numbers[11];
   has_start_ = numbers[12] != 0.0;
   work_scale_ = numbers[13];
-  const Snapshot::Integers& told = snapshot->integers("checks.told", 0, 1);
-  if (told.size() != 3) return;
-  energy_.warned = told[0] != 0;
-  linear_.warned = told[1] != 0;
-  angular_.warned = told[2] != 0;
+  const Snapshot::Integers& was_warned = snapshot->integers("checks.told", 0, 1);
+  if (was_warned.size() != 3) return;
+  energy_.warned = was_warned[0] != 0;
+  linear_.warned = was_warned[1] != 0;
+  angular_.warned = was_warned[2] != 0;
 }
 
 void RunChecks::save(Snapshot& snapshot, const std::string& name) const {

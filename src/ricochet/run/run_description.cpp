@@ -88,12 +88,12 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
     summary.contacts.push_back(describe_contact(input, contact, contact.all_pairs_group));
   for (std::size_t i = 0; i < summary.contacts.size(); ++i) summary.contacts[i].facing = describe_facing(model, i);
   for (std::size_t number = 0; number < model.probe_targets.size(); ++number) {
-    const ProbeTargets& places = model.probe_targets[number];
-    if (!places.sums.empty()) summary.probe_sums.emplace_back(input.probes[number].name, places.sums);
-    for (std::size_t i = 0; i < places.probes.size(); ++i) {
-      Probe& probe = summary.probes.emplace_back(places.probes[i]);
+    const ProbeTargets& targets = model.probe_targets[number];
+    if (!targets.sums.empty()) summary.probe_sums.emplace_back(input.probes[number].name, targets.sums);
+    for (std::size_t i = 0; i < targets.probes.size(); ++i) {
+      Probe& probe = summary.probes.emplace_back(targets.probes[i]);
       probe.node = probe.number;
-      const Vector& at = places.positions[i];
+      const Vector& at = targets.positions[i];
       summary.probe_positions.emplace_back(at.data(), at.data() + at.size());
     }
   }

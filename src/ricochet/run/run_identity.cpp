@@ -134,18 +134,18 @@ void require_same_case(const Case& input, const Snapshot& snapshot, const std::s
 
 std::string compare_model(const Case& input, const Model& model, const Snapshot& snapshot) {
   const std::map<std::string, std::string> before = read_map(snapshot, "identity.mesh.parts", "identity.mesh.sums");
-  std::string differences, place = input.parts.empty() ? "mesh.file" : "part";
+  std::string differences, file_key = input.parts.empty() ? "mesh.file" : "part";
   for (const MeshChecksum& checksum : mesh_checksums(model.mesh)) {
     const auto found = before.find(checksum.of);
     if (found != before.end() && found->second == checksum.sum) continue;
-    if (differences.empty() && !checksum.part.empty()) place = "part." + checksum.part + ".file";
+    if (differences.empty() && !checksum.part.empty()) file_key = "part." + checksum.part + ".file";
     differences += (differences.empty() ? "" : ", ") + checksum.of;
   }
   if (!differences.empty()) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: the run cannot be resumed: the mesh has changed since it began (differences in: {}); "
                             "restore the mesh, start anew in another directory (-o), or overwrite the run (--force)",
-                            input.where(place).text(), differences));
+                            input.where(file_key).text(), differences));
   }
   const std::map<std::string, std::string> obstacles =
       read_map(snapshot, "identity.obstacles", "identity.obstacles.sums");

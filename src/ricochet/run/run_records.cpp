@@ -88,11 +88,11 @@ void Run::end_on_interruption() {
 /// of that state can then be written at any time.
 void Run::keep_state_before_step() {
   if (ranks_.are_several()) return;
-  const bool wanted = step_seconds_ >= long_step && snapshot_seconds_ <= snapshot_share * step_seconds_;
-  if (!wanted && !before_step_) return;
+  const bool is_due = step_seconds_ >= long_step && snapshot_seconds_ <= snapshot_share * step_seconds_;
+  if (!is_due && !before_step_) return;
   const std::lock_guard files(files_);
   before_step_.reset();
-  if (!wanted) return;
+  if (!is_due) return;
   const Timer timer;
   before_step_ = take_snapshot();
   snapshot_seconds_ = timer.seconds();
@@ -201,10 +201,11 @@ void Run::gather_from_ranks(RunSummary& summary) {
     const RunSummary other = summary_from_json(text, "the summary of another process");
     merge_findings(other, summary);
     for (const std::string& warning : other.warnings) {
-      const std::vector<std::string>& said = session_.warnings();
-      if (std::none_of(said.begin(), said.end(), [&, form = message_pattern(warning)](const std::string& before) {
-            return message_pattern(before) == form;
-          }))
+      const std::vector<std::string>& reported = session_.warnings();
+      if (std::none_of(reported.begin(), reported.end(),
+                       [&, form = message_pattern(warning)](const std::string& before) {
+                         return message_pattern(before) == form;
+                       }))
         log::warning(warning);
     }
   }

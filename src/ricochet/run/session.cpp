@@ -200,9 +200,9 @@ void Session::set_obstacle_velocity(const std::string& obstacle, const Vector& v
   try {
     SteeredPath& path = steered_path(obstacle);
     const double now = simulation_ != nullptr ? time() : 0.0;
-    const bool is_turning = path.turns() && path.rotation(now + input_.time.step) != path.rotation(now);
+    const bool is_rotating = path.turns() && path.rotation(now + input_.time.step) != path.rotation(now);
     path.steer(now, velocity, rotation_rate);
-    if (is_turning && rotation_rate.size() == 0) {
+    if (is_rotating && rotation_rate.size() == 0) {
       log::warning(
           fmt::format("session: obstacle \"{}\" was rotating and stops rotating, since its velocity is set without a "
                       "rotation rate: set that, too (zero if it should stop)",

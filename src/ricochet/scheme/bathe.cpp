@@ -50,7 +50,7 @@ class Bathe final : public Scheme {
     rate_ += (3.0 / h) * solution.increment;  // V₁
     dissipate(problem, state);
     increment = 3.0 * second_ - first_;
-    take_first_forces(problem, state, stages);
+    store_initial_forces(problem, state, stages);
     state.displacement = middle_ + second_;
     state.velocity = rate_;
     state.acceleration = (9.0 / (h * h)) * solution.increment;
@@ -97,7 +97,7 @@ class Bathe final : public Scheme {
   }
 
   /// Stores the forces of the start and the middle, before the state receives those of the end.
-  void take_first_forces(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {
+  void store_initial_forces(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {
     StepPart &start = parts_[0], &middle = parts_[1];
     start.forces = state.forces;
     start.weight = middle.weight = 1.0 / 3.0;

@@ -41,14 +41,14 @@ void StepEquations::observe_step(const SemidiscreteProblem& problem, const Vecto
   evaluate_obstacle_velocity(problem, middle_, {start_time + 0.5 * step, step, 0.5 * stage.gap_factor}, stage);
 }
 
-void StepEquations::require_impact_law(const SemidiscreteProblem& problem, const Vector& place, double time,
+void StepEquations::require_impact_law(const SemidiscreteProblem& problem, const Vector& displacement, double time,
                                        const Vector& after, const Vector& before, double restitution, double step,
                                        Stage& stage) {
   impact_ = stage.obstacle;
   impact_.normal *= 1.0 + restitution;
   impact_.in_space *= 1.0 + restitution;
   rate_ = after + restitution * before;
-  require_no_approach(problem, place, time, rate_, impact_, step, stage);
+  require_no_approach(problem, displacement, time, rate_, impact_, step, stage);
 }
 
 void StepEquations::require_friction_beside_rates(const SemidiscreteProblem& problem, const Vector& velocity,
@@ -71,22 +71,22 @@ void StepEquations::require_friction_over_step(const SemidiscreteProblem& proble
 void StepEquations::store_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
                                  double step, const Vector& motion, double rate, State& state) const {
   store_contact(stage, solution, step, state);
-  take_loads(problem, solution, motion, rate, state.forces);
+  store_loads(problem, solution, motion, rate, state.forces);
 }
 
 void StepEquations::store_contact(const Stage& stage, const StageSolution& solution, double step, State& state) {
-  take_reactions(stage, solution, step, state.forces, state.obstacle_increment);
+  store_reactions(stage, solution, step, state.forces, state.obstacle_increment);
   state.contact_status = solution.contact_status;
 }
 
 void StepEquations::store_part(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
                                double step, const Vector& motion, double rate, StepPart& part) const {
-  take_reactions(stage, solution, step, part.forces, part.obstacle_increment);
-  take_loads(problem, solution, motion, rate, part.forces);
+  store_reactions(stage, solution, step, part.forces, part.obstacle_increment);
+  store_loads(problem, solution, motion, rate, part.forces);
 }
 
-void StepEquations::take_loads(const SemidiscreteProblem& problem, const StageSolution& solution, const Vector& motion,
-                               double rate, StepForces& forces) const {
+void StepEquations::store_loads(const SemidiscreteProblem& problem, const StageSolution& solution, const Vector& motion,
+                                double rate, StepForces& forces) const {
   if (problem.loads.varies() || problem.pressure) problem.loads.varying(time_, forces.varying_load);
   if (problem.pressure) forces.varying_load += solution.follower_load;
   if (!problem.has_damping()) return;
@@ -94,8 +94,8 @@ void StepEquations::take_loads(const SemidiscreteProblem& problem, const StageSo
   forces.damping_force *= rate;
 }
 
-void StepEquations::take_reactions(const Stage& stage, const StageSolution& solution, double step, StepForces& forces,
-                                   ObstacleMotion& travel) {
+void StepEquations::store_reactions(const Stage& stage, const StageSolution& solution, double step, StepForces& forces,
+                                    ObstacleMotion& travel) {
   if (forces.rows != stage.rows) forces.rows = stage.rows;
   forces.normal_reaction = solution.normal_reaction;
   forces.tangential_reaction = solution.tangential_reaction;

@@ -41,18 +41,18 @@ class StepEquations {
   /// Sets δ on supported dofs such that they reach their prescribed displacements at `time` from the base.
   void prescribe_from(const SemidiscreteProblem& problem, double time, const Vector& base, Stage& stage) {
     prescribe(
-        problem, time, [&](Index dof, double place) { return place - base[dof]; }, stage);
+        problem, time, [&](Index dof, double value) { return value - base[dof]; }, stage);
   }
 
   /// Observes the obstacles' mean velocities over a step from one displacement to another, with the points half way. A
   /// stage whose gaps are those of the end follows the points there. See also evaluate_obstacle_velocity().
   void observe_step(const SemidiscreteProblem& problem, const Vector& start, double start_time, const Vector& end,
                     double step, Stage& stage);
-  /// Imposes Newton's impact law at the points that touch at `place` and `time`, with the obstacles observed and one
-  /// coefficient of restitution e: y = G (after + s δ) + e G before, for velocities relative to the obstacles.
+  /// Imposes Newton's impact law at the points that touch at `displacement` and `time`, with the obstacles observed and
+  /// one coefficient of restitution e: y = G (after + s δ) + e G before, for velocities relative to the obstacles.
   /// Velocities are differences of displacements over `step`. The caller sets s.
-  void require_impact_law(const SemidiscreteProblem& problem, const Vector& place, double time, const Vector& after,
-                          const Vector& before, double restitution, double step, Stage& stage);
+  void require_impact_law(const SemidiscreteProblem& problem, const Vector& displacement, double time,
+                          const Vector& after, const Vector& before, double restitution, double step, Stage& stage);
   /// Imposes Coulomb's law on the slip rate B_T (velocity + slip_factor δ) relative to the observed obstacles, in
   /// stages in which y is a velocity, too: both have the rounding of displacements over a step.
   static void require_friction_beside_rates(const SemidiscreteProblem& problem, const Vector& velocity,
@@ -74,10 +74,10 @@ class StepEquations {
  private:
   /// Subtracts the damping force C v from the right-hand side.
   void resist(const SemidiscreteProblem& problem, const Vector& velocity, Stage& stage);
-  void take_loads(const SemidiscreteProblem& problem, const StageSolution& solution, const Vector& motion, double rate,
-                  StepForces& forces) const;
-  static void take_reactions(const Stage& stage, const StageSolution& solution, double step, StepForces& forces,
-                             ObstacleMotion& travel);
+  void store_loads(const SemidiscreteProblem& problem, const StageSolution& solution, const Vector& motion, double rate,
+                   StepForces& forces) const;
+  static void store_reactions(const Stage& stage, const StageSolution& solution, double step, StepForces& forces,
+                              ObstacleMotion& travel);
 
   double time_ = 0.0;
   Vector force_, damping_force_, middle_, rate_;

@@ -10,7 +10,7 @@ namespace ricochet {
 namespace {
 
 /// Level of the shortest trial step.
-constexpr int shortest_look_ahead = 4;
+constexpr int shortest_trial_level = 4;
 
 }  // namespace
 
@@ -42,7 +42,7 @@ double Simulation::take_controlled_step() {
 /// errors relative to the algorithmic energy of the longest step.
 void Simulation::take_trial_step() {
   const EnergyAccount account = *account_;
-  const int shortest = std::min(shortest_look_ahead, control_->deepest());
+  const int shortest = std::min(shortest_trial_level, control_->deepest());
   double energy = 0.0;
   int level = 0;
   for (bool is_solved = false; !is_solved && level <= shortest; level += is_solved ? 0 : 1) {

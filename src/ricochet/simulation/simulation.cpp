@@ -85,9 +85,9 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
     if (scheme_.step() != length_of(number)) scheme_.change_step(problem_, length_of(number));
     const std::string name = level_name(number);
     // The saved methods are kept even if others would now be chosen for the remaining steps: they change the bits.
-    StepSolverOptions kept = options;
-    kept.chosen = saved_methods(snapshot, name, scheme_.operators(problem_).size());
-    make_level(number, kept).solver->load(snapshot, name);
+    StepSolverOptions stored = options;
+    stored.chosen = saved_methods(snapshot, name, scheme_.operators(problem_).size());
+    make_level(number, stored).solver->load(snapshot, name);
   }
   if (!levels_.contains(first)) Snapshot::refuse("level", "is none of the saved step lengths");
   if (scheme_.step() != length_of(first)) scheme_.change_step(problem_, length_of(first));
@@ -177,9 +177,9 @@ void Simulation::set_up_tunnelling_watches() {
   for (Index point = 0; point < contact.size(); ++point) {
     const Obstacle* const obstacle = problem_.obstacle_of_point(point);
     if (obstacle == nullptr || obstacle->shape().is_flat()) continue;
-    int seen = 0;
-    contact.visit_own_nodes(point, [&seen](Index, double) { ++seen; });
-    if (seen > 1) points[obstacle].push_back(point);
+    int node_count = 0;
+    contact.visit_own_nodes(point, [&node_count](Index, double) { ++node_count; });
+    if (node_count > 1) points[obstacle].push_back(point);
   }
   for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
     const Obstacle* const obstacle = problem_.obstacles[static_cast<std::size_t>(contact.node_pair[i])];

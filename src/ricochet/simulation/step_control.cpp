@@ -79,7 +79,7 @@ double StepControl::step_of(int level) const {
 
 void StepControl::start(const State& state) {
   ticks_ = 0;
-  level_ = wanted_ = last_level_ = finest_ = std::min(deepest_, first_level);
+  level_ = required_level_ = last_level_ = finest_ = std::min(deepest_, first_level);
   acceleration_before_ = state.acceleration;
   // This acceleration is that at t = 0, while those of steps are at their midpoints.
   step_before_ = 0.0;
@@ -108,8 +108,8 @@ bool StepControl::accept(const State& before, const State& after, double energy)
     if (level_ < deepest_) {
       ++counts_.refused;
       const double halvings = std::isfinite(error_) ? std::ceil(std::log2(error_ / aim) / order) : 3.0;
-      level_ = wanted_ = std::min(deepest_, level_ + std::clamp(static_cast<int>(halvings), 1, 3));
-      finest_ = std::max(finest_, wanted_);
+      level_ = required_level_ = std::min(deepest_, level_ + std::clamp(static_cast<int>(halvings), 1, 3));
+      finest_ = std::max(finest_, required_level_);
       // Growth that fails is retried ever more rarely.
       backoff_ = grown ? std::min(2 * backoff_, most_patience) : least_patience;
       patience_ = backoff_;
@@ -133,8 +133,8 @@ bool StepControl::accept(const State& before, const State& after, double energy)
   // Vibrations that no step of this size resolves have a smaller error with a longer step, so that growth is tried now
   // and then. They usually dominate the error, which then grows by less than the factor of four of a smooth motion.
   const bool may_grow = error_ <= aim ? patience_ < 0 : patience_ < -most_patience;
-  if (may_grow && level_ == wanted_ && wanted_ > 0) --wanted_;
-  level_ = wanted_;
+  if (may_grow && level_ == required_level_ && required_level_ > 0) --required_level_;
+  level_ = required_level_;
   fit_to_end();
   return true;
 }
@@ -185,8 +185,8 @@ void StepControl::count_step() {
 bool StepControl::shorten() {
   if (level_ == deepest_) return false;
   ++counts_.unsolved;
-  wanted_ = ++level_;
-  finest_ = std::max(finest_, wanted_);
+  required_level_ = ++level_;
+  finest_ = std::max(finest_, required_level_);
   patience_ = backoff_ = least_patience;
   return true;
 }
@@ -198,7 +198,7 @@ void StepControl::fit_to_end() {
 
 void StepControl::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".ticks", Snapshot::Integers{ticks_, energy_ahead_ticks_, stretch_ticks_, stretch_steps_});
-  snapshot.save(name + ".levels", Snapshot::Integers{level_, wanted_, last_level_, deepest_});
+  snapshot.save(name + ".levels", Snapshot::Integers{level_, required_level_, last_level_, deepest_});
   snapshot.save(name + ".steps", Snapshot::Integers{finest_, patience_, backoff_});
   snapshot.save(name + ".counts", Snapshot::Integers{counts_.refused, counts_.unsolved, counts_.tolerated});
   Vector numbers(8);
@@ -218,7 +218,7 @@ void StepControl::load(const Snapshot& snapshot, const std::string& name) {
   const Snapshot::Integers& levels = snapshot.integers(name + ".levels", 0, deepest_);
   if (levels.size() != 4 || levels[3] != deepest_) Snapshot::refuse(name + ".levels", "belongs to other step lengths");
   level_ = static_cast<int>(levels[0]);
-  wanted_ = static_cast<int>(levels[1]);
+  required_level_ = static_cast<int>(levels[1]);
   last_level_ = static_cast<int>(levels[2]);
   const Snapshot::Integers& steps =
       snapshot.integers(name + ".steps", std::numeric_limits<int>::min() / 2, most_levels * most_patience);
@@ -245,7 +245,7 @@ void StepControl::load(const Snapshot& snapshot, const std::string& name) {
   energy_ahead_ = numbers[7];
   acceleration_before_ = snapshot.reals(name + ".acceleration", problem_.dof_count());
   // The end may differ from the one that the saved length was fitted to.
-  level_ = wanted_;
+  level_ = required_level_;
   fit_to_end();
 }
 

@@ -61,7 +61,7 @@ class StepControl {
 
   [[nodiscard]] bool at_end() const { return ticks_ >= end_ticks_; }
   /// Returns whether the next step is shorter only because the run ends.
-  [[nodiscard]] bool is_shortened_by_end() const { return !at_end() && level_ > wanted_; }
+  [[nodiscard]] bool is_shortened_by_end() const { return !at_end() && level_ > required_level_; }
   [[nodiscard]] double time() const { return static_cast<double>(ticks_) * step_of(deepest_); }
   /// Level k of the next step, and its length.
   [[nodiscard]] int level() const { return level_; }
@@ -103,7 +103,7 @@ class StepControl {
   int deepest_ = 0;
   std::int64_t ticks_ = 0, end_ticks_ = 0;
   int level_ = 0;                   ///< of the next step
-  int wanted_ = 0;                  ///< likewise, before it is fitted to the end
+  int required_level_ = 0;          ///< likewise, before it is fitted to the end
   int last_level_ = 0;              ///< of the last accepted step
   int finest_ = 0;                  ///< level of the shortest length required so far
   int patience_ = 0, backoff_ = 2;  ///< steps until lengths may grow again: left, and after the last refusal

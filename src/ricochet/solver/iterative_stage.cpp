@@ -20,8 +20,8 @@ namespace ricochet {
 namespace {
 
 /// Reduction of the residual by conjugate gradients before the subdomains are solved again.
-constexpr double round_reduction = 1e-2;
-constexpr int round_limit = 60;
+constexpr double outer_reduction = 1e-2;
+constexpr int outer_iteration_limit = 60;
 constexpr int iteration_limit = 5000;
 /// Reduction requested from iterations in single precision at once; their rounding is a hundredth of it.
 constexpr double single_reduction = 1e-5;
@@ -58,7 +58,7 @@ class IterativeStage final : public StageSolver {
   bool switch_to_multigrid();
   void begin(const Stage& stage, StageSolution& solution);
   [[nodiscard]] bool are_outside(const std::vector<Index>& points) const;
-  void make_subdomains(const Stage& stage, const std::vector<Index>& points);
+  void make_subdomains(const Stage& stage, const std::vector<Index>& required);
   void keep_columns() { moved_.make(product_, subdomains_->nodes(), problem_.nodes.cols(), problem_.dimension); }
   void find_residual();
   void solve_subdomains(const Stage& stage, StageSolution& solution);
@@ -177,8 +177,8 @@ bool IterativeStage::are_outside(const std::vector<Index>& points) const {
 
 /// Makes subdomains for these points and those near them, and for those of the last subdomains unless there are too
 /// many: a body that rolls leaves them behind.
-void IterativeStage::make_subdomains(const Stage& stage, const std::vector<Index>& wanted) {
-  std::vector<Index> points = wanted;
+void IterativeStage::make_subdomains(const Stage& stage, const std::vector<Index>& required) {
+  std::vector<Index> points = required;
   if (problem_.ranks->any(candidates_.are_too_many())) {
     const std::vector<Index> nearest = candidates_.nearest(stage);
     points.insert(points.end(), nearest.begin(), nearest.end());
@@ -334,7 +334,7 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
   reactions_.setZero(problem_.dof_count());
   double target = 0.0;
   bool must_touch = false;  // points have penetrated where none was expected to touch
-  for (int round = 0; round < round_limit; ++round) {
+  for (int outer_iteration = 0; outer_iteration < outer_iteration_limit; ++outer_iteration) {
     ++counts_.schwarz_iterations;
     find_residual();
     watch_single_precision();
@@ -360,14 +360,14 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
       target = 0.0;
       continue;
     }
-    solve_linear(norm, touches ? std::max(0.3 * target, round_reduction * norm) : 0.9 * target);
+    solve_linear(norm, touches ? std::max(0.3 * target, outer_reduction * norm) : 0.9 * target);
   }
   throw Error(
       ErrorKind::not_converged,
       fmt::format(
           "contact and conjugate gradients did not converge in {} iterations; the time step is long compared with the "
           "time in which a wave crosses a cell: set solver.method = \"direct\" or use a smaller time.step",
-          round_limit));
+          outer_iteration_limit));
 }
 
 void IterativeStage::end(const Stage& stage, StageSolution& solution) {

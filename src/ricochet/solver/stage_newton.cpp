@@ -7,11 +7,11 @@
 
 namespace ricochet {
 
-void StageNewton::keep(const Stage& stage) {
+void StageNewton::store_stage(const Stage& stage) {
   base_ = stage.force_base;
   pressure_time_ = stage.pressure_time;
   pressure_part_ = stage.pressure_part;
-  evaluate(base_, force_at_place_);
+  evaluate(base_, force_at_base_);
   right_hand_side_ = stage.right_hand_side;
   prescribed_ = stage.prescribed;
   gap_offset_ = stage.gap_offset;
@@ -38,15 +38,15 @@ void StageNewton::correct(const Vector& correction) {
 }
 
 /// Evaluates f(p + κδ). If a correction inverts a cell, half of it is taken, then half of that.
-void StageNewton::take_internal_force(double factor) {
-  constexpr int most_halvings = 5;
+void StageNewton::update_internal_force(double factor) {
+  constexpr int max_halvings = 5;
   for (int halving = 0;; ++halving) {
     displacement_ = base_ + factor * total_;
     try {
       evaluate(displacement_, force_);
       return;
     } catch (const Error& problem) {
-      if (problem.kind() != ErrorKind::not_converged || halving == most_halvings) throw;
+      if (problem.kind() != ErrorKind::not_converged || halving == max_halvings) throw;
     }
     total_ = 0.5 * (total_ + before_);
   }
@@ -55,7 +55,7 @@ void StageNewton::take_internal_force(double factor) {
 /// Sets the stage for a correction of δ = total.
 void StageNewton::linearize(const OperatorCoefficients& coefficients, Stage& stage) {
   problem_.mass.multiply(total_, inertial_force_);
-  stage.right_hand_side = right_hand_side_ - coefficients.mass * inertial_force_ - (force_ - force_at_place_);
+  stage.right_hand_side = right_hand_side_ - coefficients.mass * inertial_force_ - (force_ - force_at_base_);
   if (problem_.has_damping()) {
     problem_.damping.evaluate(total_, damping_force_);
     stage.right_hand_side -= coefficients.damping * damping_force_;
@@ -81,7 +81,7 @@ void StageNewton::linearize(const OperatorCoefficients& coefficients, Stage& sta
 
 void StageNewton::solve(const OperatorCoefficients& coefficients, const SolveLinear& solve_linear, const Renew& renew,
                         Stage& stage, StageSolution& solution) {
-  keep(stage);
+  store_stage(stage);
   total_.setZero(problem_.dof_count());
   const double size = problem_.nodes.cwiseAbs().maxCoeff() + base_.lpNorm<Eigen::Infinity>();
   progress_.start(4.0 * std::numeric_limits<double>::epsilon() * size);
@@ -101,7 +101,7 @@ void StageNewton::solve(const OperatorCoefficients& coefficients, const SolveLin
     }
     if (advice == NewtonProgress::Advice::failed) throw progress_.failure(correction);
     if (std::isfinite(correction)) correct(solution.increment);
-    take_internal_force(coefficients.stiffness);
+    update_internal_force(coefficients.stiffness);
     if (advice == NewtonProgress::Advice::renew) {
       renew(displacement_);
       progress_.count_renewal();

@@ -25,10 +25,10 @@ class StageNewton {
              Stage& stage, StageSolution& solution);
 
  private:
-  void keep(const Stage& stage);
+  void store_stage(const Stage& stage);
   void linearize(const OperatorCoefficients& coefficients, Stage& stage);
   void correct(const Vector& correction);
-  void take_internal_force(double factor);
+  void update_internal_force(double factor);
   /// Evaluates f less the follower loads.
   void evaluate(const Vector& displacement, Vector& force);
 
@@ -38,8 +38,7 @@ class StageNewton {
   Vector total_, before_, displacement_, force_, inertial_force_, damping_force_, zero_motion_, follower_load_;
   // Data of the stage at δ = 0:
   double pressure_time_ = 0.0, pressure_part_ = 1.0;
-  Vector base_, force_at_place_, right_hand_side_, prescribed_, gap_offset_, slip_offset_, motion_, velocity_,
-      observed_;
+  Vector base_, force_at_base_, right_hand_side_, prescribed_, gap_offset_, slip_offset_, motion_, velocity_, observed_;
 };
 
 }  // namespace ricochet

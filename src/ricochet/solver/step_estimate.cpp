@@ -25,21 +25,21 @@ PathsToRoots find_paths(const SparseMatrix& matrix, const SparseCholesky& factor
   const auto count = static_cast<std::size_t>(matrix.cols());
   std::vector<int> parent(count, -1), ancestor(count, -1);
   PathsToRoots paths{std::vector<int>(count, 1), std::vector<int>(count)};
-  for (std::size_t place = 0; place < count; ++place) {
-    for (SparseMatrix::InnerIterator entry(matrix, factor.permutation()[place]); entry; ++entry) {
+  for (std::size_t column = 0; column < count; ++column) {
+    for (SparseMatrix::InnerIterator entry(matrix, factor.permutation()[column]); entry; ++entry) {
       auto row = static_cast<int>(factor.factor_index(entry.row()));
-      while (row >= 0 && row < static_cast<int>(place)) {
+      while (row >= 0 && row < static_cast<int>(column)) {
         const int next = ancestor[static_cast<std::size_t>(row)];
-        ancestor[static_cast<std::size_t>(row)] = static_cast<int>(place);
-        if (next < 0) parent[static_cast<std::size_t>(row)] = static_cast<int>(place);
+        ancestor[static_cast<std::size_t>(row)] = static_cast<int>(column);
+        if (next < 0) parent[static_cast<std::size_t>(row)] = static_cast<int>(column);
         row = next;
       }
     }
   }
-  for (std::size_t place = count; place-- > 0;) {
-    const auto above = static_cast<std::size_t>(std::max(parent[place], 0));
-    if (parent[place] >= 0) paths.length[place] = paths.length[above] + 1;
-    paths.root[place] = parent[place] >= 0 ? paths.root[above] : static_cast<int>(place);
+  for (std::size_t column = count; column-- > 0;) {
+    const auto above = static_cast<std::size_t>(std::max(parent[column], 0));
+    if (parent[column] >= 0) paths.length[column] = paths.length[above] + 1;
+    paths.root[column] = parent[column] >= 0 ? paths.root[above] : static_cast<int>(column);
   }
   return paths;
 }
@@ -59,9 +59,9 @@ double column_entries(const SemidiscreteProblem& problem, const AnalysedOperator
     problem.contact.rows->visit_normal(k * points / samples, [&](Index dof, double) {
       const int unknown = number[static_cast<std::size_t>(dof)];
       if (unknown < 0) return;
-      const auto place = static_cast<std::size_t>(analysed.factor.factor_index(unknown));
-      int& of_tree = longest[paths.root[place]];
-      of_tree = std::max(of_tree, paths.length[place]);
+      const auto column = static_cast<std::size_t>(analysed.factor.factor_index(unknown));
+      int& of_tree = longest[paths.root[column]];
+      of_tree = std::max(of_tree, paths.length[column]);
     });
     for (const auto& [root, length] : longest) sum += rows * length;
   }

@@ -14,21 +14,21 @@ namespace ricochet {
 namespace {
 
 /// Iterations that settle by themselves take fewer.
-constexpr int plain_rounds = 6;
-constexpr int most_rounds = 400;
+constexpr int plain_iterations = 6;
+constexpr int max_iterations = 400;
 /// Iterations without progress after which the acceleration is restarted, since points that touch and separate change
 /// the map; and after which the step fails.
-constexpr int patience_of_acceleration = 20, patience_of_rounds = 60;
+constexpr int patience_of_acceleration = 20, patience_of_iterations = 60;
 /// Iterations without progress after which pairs of facets are held.
 constexpr int patience_of_pairs = 25;
 /// After so many iterations, if the last ones brought no progress, the error may be a multiple of the rounding of the
 /// gaps: forces that turn with large surfaces keep it.
-constexpr int patient_rounds = 40, patience_of_rounding = 5;
-constexpr double rounding_left = 100.0;
+constexpr int patient_iterations = 40, patience_of_rounding = 5;
+constexpr double remaining_rounding = 100.0;
 /// Largest error before a step fails: gaps have the rounding of everything that moves the points, and in narrow corners
 /// more than once.
-constexpr double most_rounding_left = 1e4;
-constexpr int last_rounds = 60;
+constexpr double max_remaining_rounding = 1e4;
+constexpr int last_iterations = 60;
 
 }  // namespace
 
@@ -44,28 +44,31 @@ TangentIterations::TangentIterations(const SemidiscreteProblem& problem) : probl
 
 void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution) {
   int iterations = solution.iterations, last_progress = 0, last_start = 0;
-  double least = std::numeric_limits<double>::infinity();
+  double best_error = std::numeric_limits<double>::infinity();
   linearized_at_.setZero(problem_.dof_count());  // no motion before the first iteration
-  for (int round = 0;; ++round) {
-    const LinearizationError left = linearization_error(problem_, solution, stage, gap_);
+  for (int iteration = 0;; ++iteration) {
+    const LinearizationError remaining = linearization_error(problem_, solution, stage, gap_);
     // Iterations that settle by themselves do so to the rounding of the gaps.
-    const double error = round <= plain_rounds ? left.beyond_rounding : left.beyond_all_rounding;
+    const double error = iteration <= plain_iterations ? remaining.beyond_rounding : remaining.beyond_all_rounding;
     if (error <= 0.0) break;
-    if (error < 0.9 * least) {
-      least = error;
-      last_progress = round;
+    if (error < 0.9 * best_error) {
+      best_error = error;
+      last_progress = iteration;
     }
-    const bool is_last = round == most_rounds || round - last_progress > patience_of_rounds;
+    const bool is_last = iteration == max_iterations || iteration - last_progress > patience_of_iterations;
     const Vector& rounding = stage.gap_offset_rounding;
     const double of_rounding = error / problem_.ranks->maximum(rounding.size() > 0 ? rounding.maxCoeff() : 0.0);
-    if (round >= patient_rounds && round - last_progress >= patience_of_rounding && of_rounding <= rounding_left) break;
-    if (round >= last_rounds && of_rounding <= most_rounding_left) break;
+    if (iteration >= patient_iterations && iteration - last_progress >= patience_of_rounding &&
+        of_rounding <= remaining_rounding)
+      break;
+    if (iteration >= last_iterations && of_rounding <= max_remaining_rounding) break;
     // Pairs change from iteration to iteration: they are held, and the next iteration solves the then linear
     // conditions.
-    const bool is_stuck = round - last_progress > patience_of_pairs || !std::isfinite(error) || round == most_rounds;
+    const bool is_stuck =
+        iteration - last_progress > patience_of_pairs || !std::isfinite(error) || iteration == max_iterations;
     if (is_stuck && problem_.contact.follows_motion() && problem_.contact.geometry->freeze()) {
-      least = std::numeric_limits<double>::infinity();
-      last_progress = last_start = round;
+      best_error = std::numeric_limits<double>::infinity();
+      last_progress = last_start = iteration;
       acceleration_.restart();
       linearize_contact(problem_, linearized_at_, stage);
       solver.solve(stage, solution);
@@ -76,13 +79,13 @@ void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSo
       throw Error(ErrorKind::not_converged,
                   fmt::format("the contact forces, which rotate with the surfaces that the bodies touch, did not "
                               "converge in {} iterations (the gaps are still wrong by {:.3g})",
-                              round, least));
+                              iteration, best_error));
     }
-    if (round == plain_rounds || round - std::max(last_progress, last_start) > patience_of_acceleration) {
+    if (iteration == plain_iterations || iteration - std::max(last_progress, last_start) > patience_of_acceleration) {
       acceleration_.restart();
-      last_start = round;
+      last_start = iteration;
     }
-    linearize_at(solution.contact_motion(), round > plain_rounds);
+    linearize_at(solution.contact_motion(), iteration > plain_iterations);
     linearize_contact(problem_, linearized_at_, stage);
     solver.solve(stage, solution);
     iterations += solution.iterations;

@@ -35,14 +35,14 @@ class TimeFunction {
 
   /// Interpolates linearly between rows. A time that rounding puts beyond the first or last row counts as that row.
   [[nodiscard]] std::optional<double> at(double time) const {
-    const double wanted = time - delay_;
+    const double shifted_time = time - delay_;
     const double slack = 1e-9 * std::max(std::abs(times_.front()), std::abs(times_.back()));
-    if (wanted < times_.front() - slack || wanted > times_.back() + slack) return std::nullopt;
-    const auto above = std::upper_bound(times_.begin(), times_.end(), wanted);
+    if (shifted_time < times_.front() - slack || shifted_time > times_.back() + slack) return std::nullopt;
+    const auto above = std::upper_bound(times_.begin(), times_.end(), shifted_time);
     if (above == times_.begin()) return values_.front();
     if (above == times_.end()) return values_.back();
     const auto i = static_cast<std::size_t>(above - times_.begin());
-    const double part = (wanted - times_[i - 1]) / (times_[i] - times_[i - 1]);
+    const double part = (shifted_time - times_[i - 1]) / (times_[i] - times_[i - 1]);
     return (1.0 - part) * values_[i - 1] + part * values_[i];
   }
 

@@ -58,16 +58,16 @@ Texts kinds_along(const StudyAxis& axis, const std::string& shown) {
     if (axis.keys.size() == 1 || axis.keys[key] == shown) continue;
     if (Texts kinds = kinds_of_key(axis, key); !kinds.empty()) by_key.push_back(std::move(kinds));
   }
-  Texts whole(axis.values.size());
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    for (const Texts& kinds : by_key) whole[i] += (whole[i].empty() ? "" : ", ") + kinds[i];
+  Texts full_labels(axis.values.size());
+  for (std::size_t i = 0; i < full_labels.size(); ++i) {
+    for (const Texts& kinds : by_key) full_labels[i] += (full_labels[i].empty() ? "" : ", ") + kinds[i];
   }
   // A single key if it suffices to distinguish the lines.
-  const std::size_t distinct = std::set<std::string>(whole.begin(), whole.end()).size();
+  const std::size_t distinct = std::set<std::string>(full_labels.begin(), full_labels.end()).size();
   for (const Texts& kinds : by_key) {
     if (std::set<std::string>(kinds.begin(), kinds.end()).size() == distinct) return kinds;
   }
-  return whole;
+  return full_labels;
 }
 
 Texts labels_in_study(const Texts& directories) {

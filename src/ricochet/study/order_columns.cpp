@@ -28,14 +28,15 @@ std::optional<std::size_t> run_before(const Study& study, std::size_t run, std::
 
 /// Returns the orders for column c of errors, run by run.
 std::vector<std::optional<double>> orders_of(const Study& study, const ResultTable& table, std::size_t c) {
-  const KeyPosition place = find_varied(study.plan, study.questions.order_key, "--order");
+  const KeyPosition position = find_varied(study.plan, study.questions.order_key, "--order");
   const auto step = [&](std::size_t run) {
-    const std::size_t at = study.runs[run].planned.at[place.axis];
-    return step_of(study.questions.order_key, number_in(study.plan.axes[place.axis].values[at][place.key]).value());
+    const std::size_t at = study.runs[run].planned.at[position.axis];
+    return step_of(study.questions.order_key,
+                   number_in(study.plan.axes[position.axis].values[at][position.key]).value());
   };
   std::vector<std::optional<double>> orders(table.rows.size());
   for (std::size_t run = 0; run < orders.size(); ++run) {
-    const auto before = run_before(study, run, place.axis);
+    const auto before = run_before(study, run, position.axis);
     if (!before) continue;
     orders[run] =
         observed_order(number_of(table.rows[*before][c]), number_of(table.rows[run][c]), step(*before), step(run));

@@ -36,7 +36,7 @@ std::string trimmed_value(std::string_view text) {
 }
 
 /// Splits a text at separators outside brackets and quotes.
-std::vector<std::string> split(const std::string& text, char separator, const std::string& whole) {
+std::vector<std::string> split(const std::string& text, char separator, const std::string& list) {
   std::vector<std::string> parts;
   std::string part;
   int depth = 0;
@@ -58,7 +58,7 @@ std::vector<std::string> split(const std::string& text, char separator, const st
       part += c;
     }
   }
-  if (depth != 0 || quote != '\0') refuse_axis(whole, "a bracket or a quote is not closed");
+  if (depth != 0 || quote != '\0') refuse_axis(list, "a bracket or a quote is not closed");
   parts.push_back(trimmed_value(part));
   return parts;
 }
@@ -101,7 +101,7 @@ StudyAxis parse_axis(const std::string& text) {
       throw Error(ErrorKind::usage, fmt::format("--vary {}: {}", text, problem.what()));
     }
   }
-  std::map<std::vector<std::string>, std::string> seen;  // entries by meaning, not by spelling
+  std::map<std::vector<std::string>, std::string> spellings;  // entries by meaning, not by spelling
   for (const std::string& entry : split(text.substr(equals + 1), ',', text)) {
     axis.values.push_back(axis.keys.size() > 1 ? split(entry, '/', text) : std::vector{entry});
     const std::vector<std::string>& values = axis.values.back();
@@ -112,7 +112,7 @@ StudyAxis parse_axis(const std::string& text) {
     if (std::count(values.begin(), values.end(), "") > 0) refuse_axis(text, "a value is empty");
     std::vector<std::string> meant;
     for (const std::string& value : values) meant.push_back(override_value_text(value));
-    const auto [same, is_new] = seen.emplace(meant, entry);
+    const auto [same, is_new] = spellings.emplace(meant, entry);
     if (is_new) continue;
     refuse_axis(text, same->second == entry
                           ? fmt::format("\"{}\" appears twice", entry)
@@ -187,10 +187,11 @@ KeyPosition find_varied(const StudyPlan& plan, const std::string& key, const std
               fmt::format("{}: \"{}\" does not vary; keys that vary: {}", option, key, join_names(varied_keys(plan))));
 }
 
-bool is_numeric(const StudyPlan& plan, KeyPosition place) {
-  const auto& values = plan.axes[place.axis].values;
-  return values.size() > 1 && std::all_of(values.begin(), values.end(),
-                                          [&](const auto& entry) { return number_in(entry[place.key]).has_value(); });
+bool is_numeric(const StudyPlan& plan, KeyPosition position) {
+  const auto& values = plan.axes[position.axis].values;
+  return values.size() > 1 && std::all_of(values.begin(), values.end(), [&](const auto& entry) {
+           return number_in(entry[position.key]).has_value();
+         });
 }
 
 }  // namespace ricochet

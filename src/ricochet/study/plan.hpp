@@ -54,6 +54,6 @@ struct KeyPosition {
 [[nodiscard]] double step_of(const std::string& key, double value);
 
 /// Returns true if all values of the key are numbers, and there are at least two.
-[[nodiscard]] bool is_numeric(const StudyPlan& plan, KeyPosition place);
+[[nodiscard]] bool is_numeric(const StudyPlan& plan, KeyPosition position);
 
 }  // namespace ricochet

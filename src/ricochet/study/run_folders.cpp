@@ -59,10 +59,10 @@ void refuse_damaged_plan(const std::string& path, const std::string& why, const 
 }
 
 void require_run_folder_names(const std::vector<std::string>& names, const std::string& file) {
-  std::set<std::string> seen;
+  std::set<std::string> unique;
   for (const std::string& name : names) {
     const bool is_name = is_run_folder_name(name);
-    if (is_name && seen.insert(name).second) continue;
+    if (is_name && unique.insert(name).second) continue;
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: \"{}\" {}", file, name,
                             is_name ? "is the folder of two runs" : "is not a valid name for the folder of a run"));

@@ -28,7 +28,7 @@ class RunPool {
 
  private:
   [[nodiscard]] ChildProcess start(std::size_t i);
-  void end(std::size_t i, const ChildResult& outcome);
+  void end(std::size_t i, const ChildResult& result);
   [[nodiscard]] const PooledRun& run_at(std::size_t i) const { return runs_[pending_[i]]; }
 
   const std::vector<PooledRun>& runs_;
@@ -39,19 +39,19 @@ class RunPool {
 };
 
 RunPool::RunPool(const std::vector<PooledRun>& runs, const RunPoolOptions& options) : runs_(runs), options_(options) {
-  std::size_t kept = 0;
+  std::size_t skipped = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunState state = read_run_state(runs[i].directory);
     const NextAction action = next_action(state);
-    kept += action == NextAction::nothing && state.status_text() != "done";
+    skipped += action == NextAction::nothing && state.status_text() != "done";
     if (action == NextAction::nothing) continue;
     pending_.push_back(i);
     actions_.push_back(action);
   }
-  if (kept > 0) {
+  if (skipped > 0) {
     log::info(fmt::format(
         "{} skipped (refused or failed earlier): see the directory of each for the reason, and remove it to try again",
-        counted(kept, "run")));
+        counted(skipped, "run")));
   }
   progress_.emplace(runs.size(), runs.size() - pending_.size(), options.quiet);
 }
@@ -59,7 +59,7 @@ RunPool::RunPool(const std::vector<PooledRun>& runs, const RunPoolOptions& optio
 int RunPool::run() {
   PoolWork work;
   work.make = [this](std::size_t i) { return start(i); };
-  work.ended = [this](std::size_t i, const ChildResult& outcome) { end(i, outcome); };
+  work.ended = [this](std::size_t i, const ChildResult& result) { end(i, result); };
   work.watch = [this] { progress_->watch(); };
   work.stop_signal = options_.stop_signal;
   const int signal = run_children(pending_.size(), options_.jobs, work);
@@ -89,12 +89,12 @@ ChildProcess RunPool::start(std::size_t i) {
   return child;
 }
 
-void RunPool::end(std::size_t i, const ChildResult& outcome) {
+void RunPool::end(std::size_t i, const ChildResult& result) {
   const std::string& directory = run_at(i).directory;
   // As shells report it if a signal has killed the process.
-  const int status = WIFSIGNALED(outcome.status) ? 128 + WTERMSIG(outcome.status) : outcome.exit_status();
+  const int status = WIFSIGNALED(result.status) ? 128 + WTERMSIG(result.status) : result.exit_status();
   std::string message = last_error(read_file(directory + "/" + messages_file), directory);
-  if (message.empty()) message = fmt::format("its process {}", outcome.description());
+  if (message.empty()) message = fmt::format("its process {}", result.description());
   const bool was_stopped = status >= 128 && options_.stop_signal && options_.stop_signal() != 0;
   if (!was_stopped) record_exit_status(directory, status, message);
   progress_->end(directory, was_stopped ? "interrupted" : status == 0 ? "done" : message);

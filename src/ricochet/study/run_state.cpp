@@ -45,8 +45,8 @@ std::optional<int> RunState::final_status() const {
   const bool ended_well = !exit_status || exit_status == unexpected_status;
   if (is_done(*this) && ended_well) {
     const auto& all = summary->expectations;
-    const bool hold = std::all_of(all.begin(), all.end(), [](const auto& e) { return !e.checked || e.holds; });
-    return hold ? 0 : unexpected_status;
+    const bool all_hold = std::all_of(all.begin(), all.end(), [](const auto& e) { return !e.checked || e.holds; });
+    return all_hold ? 0 : unexpected_status;
   }
   return exit_status;
 }
@@ -98,8 +98,8 @@ void record_exit_status(const std::string& directory, int exit_status, const std
   std::error_code ignored;
   std::filesystem::remove(exit_status_path(directory), ignored);
   if (exit_status == 0) return;
-  const Json outcome{{"exit_status", exit_status}, {"message", message}, {"summary", summary_checksum(directory)}};
-  write_durably(exit_status_path(directory), outcome.dump(2) + "\n");
+  const Json record{{"exit_status", exit_status}, {"message", message}, {"summary", summary_checksum(directory)}};
+  write_durably(exit_status_path(directory), record.dump(2) + "\n");
 }
 
 std::string last_error(const std::string& messages, const std::string& run_name) {

@@ -96,10 +96,10 @@ int run_study(const Study& study, const StudyOptions& options) {
 
 }  // namespace
 
-StudyResults conduct_study(const std::string& directory, const StudyPlan& plan, const StudyQuestions& asked,
+StudyResults conduct_study(const std::string& directory, const StudyPlan& plan, const StudyQuestions& requested,
                            const StudyOptions& options, int& signal) {
   check_plan(plan);
-  const StudyQuestions questions = checked_questions(asked, plan);
+  const StudyQuestions questions = checked_questions(requested, plan);
   refuse_other_results(directory, options);
   const RunDirectory lock(directory);
   const Study study = prepare_study(directory, plan, questions, options);

@@ -85,13 +85,13 @@ std::vector<std::vector<double>> vectors_of(const ResultTable& table, std::size_
 void select_component(const ResultTable& table, StudyPanel& panel) {
   const std::size_t dot = panel.x.rfind('.');
   if (dot == std::string::npos || table.find(panel.x) < table.columns.size()) return;
-  const std::string whole = panel.x.substr(0, dot), part = panel.x.substr(dot + 1);
-  const std::size_t column = table.find(whole);
+  const std::string full_name = panel.x.substr(0, dot), part = panel.x.substr(dot + 1);
+  const std::size_t column = table.find(full_name);
   if (column >= table.columns.size() || vectors_of(table, column).empty()) return;
   const std::size_t dimension = vectors_of(table, column).front().size();
   const std::size_t number = std::string("xyz").find(part);
   if (part != "length" && (part.size() != 1 || number >= dimension)) return;
-  panel.x = whole;
+  panel.x = full_name;
   panel.part = part;
 }
 
@@ -257,17 +257,17 @@ bool spans_much(const std::vector<StudyLine>& lines) {
 std::vector<double> axis_positions(const ResultTable& table, StudyPanel& panel, std::vector<std::string>& categories) {
   const std::size_t column = table.find(panel.x);
   if (const auto vectors = vectors_of(table, column); !vectors.empty()) return numbers_of(vectors, panel.part);
-  std::vector<double> numbers, places;
+  std::vector<double> numbers, indices;
   bool all_numbers = true;
   for (const auto& row : table.rows) {
     const std::string text = text_of(row[column]);
     all_numbers = all_numbers && (text.empty() || number_in(text));
-    const auto known = std::find(categories.begin(), categories.end(), text);
-    places.push_back(static_cast<double>(known - categories.begin()));
+    const auto category = std::find(categories.begin(), categories.end(), text);
+    indices.push_back(static_cast<double>(category - categories.begin()));
     numbers.push_back(number_of(row[column]));
-    if (known == categories.end()) categories.push_back(text);
+    if (category == categories.end()) categories.push_back(text);
   }
-  if (!all_numbers) return places;
+  if (!all_numbers) return indices;
   categories.clear();
   return numbers;
 }

@@ -46,9 +46,9 @@ Json questions_to_json(const StudyQuestions& questions) {
 StudyPlan plan_from(const Json& json) {
   StudyPlan plan{json.at("case"), json.at("settings").get<Texts>(), {}};
   for (const Json& axis : json.at("axes")) {
-    StudyAxis& made = plan.axes.emplace_back();
-    made.keys = axis.at("keys").get<Texts>();
-    for (const Json& entry : axis.at("values")) made.values.push_back(entry.get<Texts>());
+    StudyAxis& parsed = plan.axes.emplace_back();
+    parsed.keys = axis.at("keys").get<Texts>();
+    for (const Json& entry : axis.at("values")) parsed.values.push_back(entry.get<Texts>());
   }
   return plan;
 }
@@ -97,8 +97,8 @@ std::string checked_reference(const std::string& reference, const StudyPlan& pla
     }
     if (!reference.starts_with(kind + ":")) continue;
     const std::string key = reference.substr(kind.size() + 1);
-    const KeyPosition place = find_varied(plan, key, option);
-    if (kind == "finest" && !is_numeric(plan, place))
+    const KeyPosition position = find_varied(plan, key, option);
+    if (kind == "finest" && !is_numeric(plan, position))
       throw Error(ErrorKind::usage,
                   fmt::format("{}: the key {} must have at least two values, all of them numbers", option, key));
     return reference;

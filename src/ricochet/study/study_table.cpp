@@ -167,21 +167,21 @@ TableCell StudyTableMaker::value_of(const std::string& quantity, std::size_t run
 
 /// Adds the quantities; those of the case's expectations, often numerous, are for programs only.
 void StudyTableMaker::add_quantities() {
-  std::vector<std::string> seen;
-  const auto add = [&](const std::string& quantity, bool is_asked) {
-    if (std::count(seen.begin(), seen.end(), quantity) > 0) return;
-    seen.push_back(quantity);
-    const std::string option = is_asked ? "--quantity" : "";
-    add_column({quantity, is_asked, 5, 1}, [=, this](std::size_t run) { return value_of(quantity, run, option); });
+  std::vector<std::string> added;
+  const auto add = [&](const std::string& quantity, bool is_requested) {
+    if (std::count(added.begin(), added.end(), quantity) > 0) return;
+    added.push_back(quantity);
+    const std::string option = is_requested ? "--quantity" : "";
+    add_column({quantity, is_requested, 5, 1}, [=, this](std::size_t run) { return value_of(quantity, run, option); });
   };
   for (const std::string& quantity : questions_.quantities) add(quantity, true);
   for (const std::string& quantity : expected_quantities(study_)) add(quantity, false);
 }
 
 void StudyTableMaker::add_exact_errors() {
-  for (const auto& asked : questions_.exact) {
-    const std::string& quantity = asked.first;
-    const double exact = asked.second;
+  for (const auto& requested : questions_.exact) {
+    const std::string& quantity = requested.first;
+    const double exact = requested.second;
     add_column({error_prefix + quantity, true, 3, 2}, [&quantity, exact, this](std::size_t run) -> TableCell {
       const TableCell value = value_of(quantity, run, "--exact");
       if (std::holds_alternative<std::monostate>(value)) return {};
@@ -200,17 +200,17 @@ std::string StudyTableMaker::reference_of(std::size_t run) const {
   const std::string kind = questions_.reference.substr(0, colon);
   if (colon == std::string::npos || (kind != "last" && kind != "finest")) return questions_.reference;
   const std::string key = questions_.reference.substr(colon + 1);
-  const KeyPosition place = find_varied(study_.plan, key, "--reference");
-  const auto& values = study_.plan.axes[place.axis].values;
+  const KeyPosition position = find_varied(study_.plan, key, "--reference");
+  const auto& values = study_.plan.axes[position.axis].values;
   std::size_t chosen = values.size() - 1;
   if (kind == "finest") {
-    const auto step = [&](const auto& value) { return step_of(key, number_in(value[place.key]).value_or(0.0)); };
+    const auto step = [&](const auto& value) { return step_of(key, number_in(value[position.key]).value_or(0.0)); };
     const auto finest =
         std::min_element(values.begin(), values.end(), [&](const auto& a, const auto& b) { return step(a) < step(b); });
     chosen = static_cast<std::size_t>(finest - values.begin());
   }
   std::vector<std::size_t> at = study_.runs[run].planned.at;
-  at[place.axis] = chosen;
+  at[position.axis] = chosen;
   const auto found = std::find_if(study_.runs.begin(), study_.runs.end(),
                                   [&](const StudyRun& other) { return other.planned.at == at; });
   return study_.path(*found);
@@ -272,7 +272,7 @@ void StudyTableMaker::add_messages() {
     if (status == static_cast<int>(ErrorKind::expectation)) {
       std::vector<std::string> broken;
       for (const ExpectationResult& e : state.summary->expectations) {
-        if (e.checked && !e.holds) broken.push_back(fmt::format("{} is not {}", e.quantity, e.wanted));
+        if (e.checked && !e.holds) broken.push_back(fmt::format("{} is not {}", e.quantity, e.expected));
       }
       return fmt::format("{}", fmt::join(broken, "; "));
     }

@@ -37,10 +37,10 @@ TEST(ReadParts, EveryKeyInTheOrderOfTheFile) {
   EXPECT_EQ(ball.size, 0.5);
   EXPECT_EQ(ball.scale, 2.0);
   EXPECT_EQ(ball.placement.move, (std::vector<double>{0.0, 0.0, 12.0}));
-  ASSERT_EQ(ball.placement.turns.size(), 1U);
-  EXPECT_EQ(ball.placement.turns[0].axis, (std::vector<double>{0.0, 0.0, 1.0}));
-  EXPECT_EQ(ball.placement.turns[0].about, (std::vector<double>{1.0, 2.0, 3.0}));
-  EXPECT_EQ(ball.placement.turns[0].angle, 30.0);
+  ASSERT_EQ(ball.placement.rotations.size(), 1U);
+  EXPECT_EQ(ball.placement.rotations[0].axis, (std::vector<double>{0.0, 0.0, 1.0}));
+  EXPECT_EQ(ball.placement.rotations[0].about, (std::vector<double>{1.0, 2.0, 3.0}));
+  EXPECT_EQ(ball.placement.rotations[0].angle, 30.0);
   ASSERT_EQ(read.motions.size(), 1U);  // the wall has none
   EXPECT_EQ(read.motions[0].section, "part.ball");
   EXPECT_EQ(read.motions[0].part, "ball");
@@ -58,7 +58,7 @@ TEST(ReadParts, SeveralTurns) {
       "[1, 0, 0] }]\n" +
       rest_of_case;
   const Case read = read_text(text, {"part.ball.turn.1.angle=50"});
-  const std::vector<Turn>& turns = read.parts.at(0).placement.turns;
+  const std::vector<MeshRotation>& turns = read.parts.at(0).placement.rotations;
   ASSERT_EQ(turns.size(), 2U);
   EXPECT_EQ(turns[0].angle, 30.0);
   EXPECT_EQ(turns[1].angle, 50.0);

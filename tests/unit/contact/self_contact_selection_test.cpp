@@ -78,7 +78,7 @@ TEST(SelfContactSelection, HaveIndependentRowsAndLeaveOutThoseOfTheOtherSide) {
         displacement[node * d + d - 1] = 0.01;
       }
       std::vector<SlidingView> views;
-      pair.compute_views(displacement, SlidingPair::Wanted::row, {}, {}, views);
+      pair.compute_views(displacement, SlidingPair::Content::row, {}, {}, views);
       std::vector<const SlidingView*> seen;
       std::vector<std::size_t> all, some;
       std::array<std::vector<std::size_t>, 2> faces_alone;  // as a pair of surfaces would choose them

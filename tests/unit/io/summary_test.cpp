@@ -309,12 +309,12 @@ TEST_F(SummaryTest, ReadsWhatBecameOfExpectations) {
        .quantity = "max(history.force)",
        .published = "elsewhere: 5",
        .value = INFINITY,
-       .wanted = "5 within 0.5",
-       .wanted_value = 5.0,
+       .expected = "5 within 0.5",
+       .expected_value = 5.0,
        .tolerance = 0.5,
        .location = "a.toml:1:2",
        .holds = false},
-      {.quantity = "summary.steps", .wanted = "≤ 3", .maximum = 3.0, .checked = false, .note = "no"}};
+      {.quantity = "summary.steps", .expected = "≤ 3", .maximum = 3.0, .checked = false, .note = "no"}};
   const RunSummary back = read_back(summary);
   ASSERT_EQ(back.expectations.size(), 2U);
   const ExpectationResult &first = back.expectations[0], &second = back.expectations[1];
@@ -322,15 +322,15 @@ TEST_F(SummaryTest, ReadsWhatBecameOfExpectations) {
   EXPECT_EQ(first.quantity, "max(history.force)");
   EXPECT_EQ(first.published, "elsewhere: 5");
   EXPECT_EQ(first.value, INFINITY);
-  EXPECT_EQ(first.wanted, "5 within 0.5");
-  EXPECT_EQ(first.wanted_value, 5.0);
+  EXPECT_EQ(first.expected, "5 within 0.5");
+  EXPECT_EQ(first.expected_value, 5.0);
   EXPECT_EQ(first.tolerance, 0.5);
   EXPECT_EQ(first.location, "a.toml:1:2");
   EXPECT_TRUE(first.checked);
   EXPECT_FALSE(first.holds);
   EXPECT_FALSE(first.minimum.has_value() || first.maximum.has_value());
   EXPECT_EQ(second.maximum, 3.0);
-  EXPECT_FALSE(second.wanted_value.has_value() || second.checked);
+  EXPECT_FALSE(second.expected_value.has_value() || second.checked);
   EXPECT_EQ(second.note, "no");
   const std::string text = to_json(summary);
   EXPECT_EQ(summary_value(text, "expectations.0.wanted_value"), 5.0);
@@ -340,7 +340,7 @@ TEST_F(SummaryTest, ReadsWhatBecameOfExpectations) {
 /// Results from before names and numbers were recorded.
 TEST_F(SummaryTest, ReadsOlderExpectations) {
   RunSummary summary;
-  summary.expectations = {{.quantity = "summary.steps", .value = 3.0, .wanted = "≤ 3"}};
+  summary.expectations = {{.quantity = "summary.steps", .value = 3.0, .expected = "≤ 3"}};
   std::string text = to_json(summary);
   for (const std::string entry : {"      \"name\": \"\",\n", "      \"published\": \"\",\n"}) {
     ASSERT_NE(text.find(entry), std::string::npos) << text;

@@ -37,7 +37,7 @@ TEST(PlaceMesh, TurnsAboutAnAxisThroughAPointThenMoves) {
   expected << 1.0, 1.0, 5.0, 2.0, 1.0, 1.0, 1.0, 2.0, 1.0;
   expected.colwise() += Eigen::Vector3d(10.0, 20.0, 30.0);
   Mesh mesh = points(nodes);
-  place_mesh(mesh, {.turns = {{.angle = 120.0, .axis = {7.0, 7.0, 7.0}, .about = {1.0, 1.0, 1.0}}},
+  place_mesh(mesh, {.rotations = {{.angle = 120.0, .axis = {7.0, 7.0, 7.0}, .about = {1.0, 1.0, 1.0}}},
                     .move = {10.0, 20.0, 30.0}});
   EXPECT_LT((mesh.nodes - expected).cwiseAbs().maxCoeff(), 40 * 2.3e-16) << mesh.nodes;
 }
@@ -56,7 +56,7 @@ TEST(PlaceMesh, AgreesWithQuaternions) {
 
 /// Rotations do not commute: the first maps x to y and the second that to z; the other order leaves it at y.
 TEST(PlaceMesh, TurnsOneAfterTheOther) {
-  const Turn about_z{90.0, {0.0, 0.0, 1.0}, {}}, about_x{90.0, {1.0, 0.0, 0.0}, {}};
+  const MeshRotation about_z{90.0, {0.0, 0.0, 1.0}, {}}, about_x{90.0, {1.0, 0.0, 0.0}, {}};
   for (const auto& [turns, expected] : {std::pair{std::vector{about_z, about_x}, Eigen::Vector3d(0.0, 0.0, 1.0)},
                                         std::pair{std::vector{about_x, about_z}, Eigen::Vector3d(0.0, 1.0, 0.0)}}) {
     Mesh mesh = points(Eigen::Vector3d(1.0, 0.0, 0.0));

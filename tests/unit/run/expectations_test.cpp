@@ -38,7 +38,7 @@ TEST_F(ExpectationsTest, TellWhatWasWantedInNumbers) {
   EXPECT_EQ(result.quantity, "max(history.force)");
   EXPECT_EQ(result.published, "somebody: 5.0");
   EXPECT_EQ(result.value, 6.0);
-  EXPECT_EQ(result.wanted_value, 5.0);
+  EXPECT_EQ(result.expected_value, 5.0);
   EXPECT_EQ(result.tolerance, 0.5) << "the larger one counts";
   EXPECT_FALSE(result.minimum.has_value());
   EXPECT_FALSE(result.holds);
@@ -50,7 +50,7 @@ TEST_F(ExpectationsTest, TellTheirBounds) {
   EXPECT_EQ(result.label(), "integral(history.force)");
   EXPECT_EQ(result.minimum, 3.75);
   EXPECT_FALSE(result.maximum.has_value());
-  EXPECT_FALSE(result.wanted_value.has_value());
+  EXPECT_FALSE(result.expected_value.has_value());
   EXPECT_FALSE(result.tolerance.has_value());
   EXPECT_TRUE(result.holds);
 }

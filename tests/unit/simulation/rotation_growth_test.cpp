@@ -33,13 +33,13 @@ TEST(TurnGrowth, OfASteadySpinIsThatOfTheRadius) {
 /// A rotation about the normal moves no point along it, and a point on the axis not at all.
 TEST(TurnGrowth, IsThatAcrossTheAxis) {
   RotatingBody top = disc(1.0, 0.0, 0.0, 0.0);
-  top.turn = 0.1 * up;
+  top.rotation = 0.1 * up;
   top.spin_before = top.spin_after = 2.0 * up;
   EXPECT_EQ(rotation_growth(top, down, 0.25), 0.0);
   top.arm = {0.5, -1.0, 0.0};
   EXPECT_NEAR(rotation_growth(top, down, 0.25), 0.0, 1e-16);
   RotatingBody aslant = top;
-  aslant.turn = {0.0, 0.1, 0.1};
+  aslant.rotation = {0.0, 0.1, 0.1};
   aslant.spin_before = aslant.spin_after = {0.0, 0.0, 0.0};
   EXPECT_EQ(rotation_growth(aslant, down, 0.25), 0.0) << "it does not turn any more";
 }

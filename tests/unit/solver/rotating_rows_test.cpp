@@ -94,7 +94,7 @@ TEST(RotatingRows, AreThoseOfConstantColumnsInOtherDirections) {
   for (int turn = 0; turn < 3; ++turn) {
     std::vector<Matrix> h_parts, e_parts;
     for (Index i = 0; i < TurningPoints::points; ++i) {
-      turned.take(points.rows, i, static_cast<std::size_t>(i));
+      turned.read_directions(points.rows, i, static_cast<std::size_t>(i));
       h_parts.push_back(points.rows_of(i, has_friction(i)));
       e_parts.push_back(points.columns_of(i, has_friction(i)));
     }

@@ -63,7 +63,7 @@ TEST(RunState, IsReadFromItsDirectory) {
   record_exit_status(directory, 0, "");
   EXPECT_FALSE(read_run_state(directory).exit_status.has_value());
   RunSummary summary;
-  summary.expectations.push_back({.quantity = "q", .wanted = "≤ 1", .holds = false});
+  summary.expectations.push_back({.quantity = "q", .expected = "≤ 1", .holds = false});
   write_summary(folder.file("summary.json"), summary);
   EXPECT_EQ(read_run_state(directory).final_status(), 5);
   record_exit_status(directory, 139, "its process was killed by signal 11");

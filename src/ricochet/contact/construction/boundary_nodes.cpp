@@ -16,7 +16,7 @@ namespace ricochet {
 namespace {
 
 /// Checks that multipliers that share a node agree in their properties.
-void check_agreement(const ContactPair& first, const ContactPair& second, bool held) {
+void check_agreement(const ContactPair& first, const ContactPair& second, bool supported) {
   if (first.multipliers != second.multipliers) {
     throw Error(
         ErrorKind::invalid_input,
@@ -24,7 +24,7 @@ void check_agreement(const ContactPair& first, const ContactPair& second, bool h
                     "(\"{}\" and \"{}\"); separate them by at least one facet or use the same for both",
                     first.group, second.group, first.obstacle_name, first.multipliers, second.multipliers));
   }
-  if (held || first.friction == second.friction) return;
+  if (supported || first.friction == second.friction) return;
   if (anchor_of(first.multipliers) == MultiplierAnchor::facet) return;  // each facet has its own
   throw Error(ErrorKind::invalid_input,
               fmt::format("contact groups \"{}\" and \"{}\" share a node against obstacle \"{}\" with different "
@@ -60,21 +60,21 @@ BoundaryNodes::BoundaryNodes(const Body& body, const std::vector<ContactPair>& p
                                   ? Vector(pairs[k].obstacle->normal(body.space->nodes.col(node)))
                                   : Vector(Vector::Constant(d, 1.0 / std::sqrt(d)));
         entry->second = {static_cast<int>(k), !has_free_part(node, normal, is_free)};
-        held_count_ += entry->second.held ? 1 : 0;
+        supported_count_ += entry->second.supported ? 1 : 0;
       }
-      check_agreement(pairs[static_cast<std::size_t>(entry->second.first_pair)], pairs[k], entry->second.held);
+      check_agreement(pairs[static_cast<std::size_t>(entry->second.first_pair)], pairs[k], entry->second.supported);
     }
   }
   check_coincidence(body, pairs);
 }
 
 bool BoundaryNodes::is_supported(Index node, const Obstacle* obstacle) const {
-  return nodes_.at({node, obstacle}).held;
+  return nodes_.at({node, obstacle}).supported;
 }
 
 int BoundaryNodes::first_pair(Index node, const Obstacle* obstacle) const {
-  const auto known = nodes_.find({node, obstacle});
-  return known != nodes_.end() ? known->second.first_pair : -1;
+  const auto entry = nodes_.find({node, obstacle});
+  return entry != nodes_.end() ? entry->second.first_pair : -1;
 }
 
 /// Conditions at a node may be linearly dependent: the step still has a unique motion. But if two surfaces coincide, it
@@ -82,19 +82,20 @@ int BoundaryNodes::first_pair(Index node, const Obstacle* obstacle) const {
 void BoundaryNodes::check_coincidence(const Body& body, const std::vector<ContactPair>& pairs) const {
   for (auto one = nodes_.begin(); one != nodes_.end(); ++one) {
     for (auto other = std::next(one); other != nodes_.end() && other->first.first == one->first.first; ++other) {
-      if (one->second.held || other->second.held) continue;
+      if (one->second.supported || other->second.supported) continue;
       const ContactPair& first = pairs[static_cast<std::size_t>(one->second.first_pair)];
       const ContactPair& second = pairs[static_cast<std::size_t>(other->second.first_pair)];
       const Vector at = body.space->nodes.col(one->first.first);
       if (carry_alike(first, second) || !coincide(*first.obstacle, *second.obstacle, at)) continue;
-      std::string place;
-      for (const double coordinate : at) place += fmt::format("{}{}", place.empty() ? "" : ", ", coordinate);
+      std::string coordinates;
+      for (const double coordinate : at)
+        coordinates += fmt::format("{}{}", coordinates.empty() ? "" : ", ", coordinate);
       throw Error(ErrorKind::invalid_input,
                   fmt::format("obstacles \"{}\" and \"{}\" are the same surface at the node at ({}), with different "
                               "friction or motion: which of them carries the node is undetermined; remove one of these "
                               "contacts or move one of the obstacles",
                               std::min(first.obstacle_name, second.obstacle_name),
-                              std::max(first.obstacle_name, second.obstacle_name), place));
+                              std::max(first.obstacle_name, second.obstacle_name), coordinates));
     }
   }
 }

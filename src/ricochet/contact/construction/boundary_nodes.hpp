@@ -19,21 +19,21 @@ class BoundaryNodes {
 
   /// Whether supports constrain the node along the obstacle's normal.
   [[nodiscard]] bool is_supported(Index node, const Obstacle* obstacle) const;
-  [[nodiscard]] Index held_count() const { return held_count_; }
+  [[nodiscard]] Index supported_count() const { return supported_count_; }
   /// Number of the first pair of this obstacle that contains the node; −1 if none does.
   [[nodiscard]] int first_pair(Index node, const Obstacle* obstacle) const;
 
  private:
   struct Entry {
     int first_pair = 0;
-    bool held = false;
+    bool supported = false;
   };
   using Key = std::pair<Index, const Obstacle*>;
 
   void check_coincidence(const Body& body, const std::vector<ContactPair>& pairs) const;
 
   std::map<Key, Entry> nodes_;
-  Index held_count_ = 0;
+  Index supported_count_ = 0;
 };
 
 }  // namespace ricochet

@@ -40,9 +40,9 @@ void make_obstacle_patch(const Body& body, const BoundaryNodes& nodes, BoundaryP
   const Obstacle* const obstacle = patch.obstacle;
   patch.facets.is_supported = [&nodes, obstacle](Index node) { return nodes.is_supported(node, obstacle); };
   patch.space = make_multiplier_space(patch.multipliers, patch.facets);
-  patch.kept = patch.space->multipliers();
+  patch.retained = patch.space->multipliers();
   // Multipliers that can only act on supports are omitted.
-  std::erase_if(patch.kept,
+  std::erase_if(patch.retained,
                 [&](const Multiplier& multiplier) { return only_presses_supports(multiplier, patch.facets); });
   compute_obstacle_conditions(body, patch);
 }
@@ -54,7 +54,7 @@ void make_body_patch(const Body& body, const ContactPair& pair, const FreeCompon
   patch.space = make_multiplier_space(patch.multipliers, patch.facets);
   if (pairing.facing_facets().empty()) return;
   BodyContact bodies = pairing.make(*patch.space, is_free);
-  patch.kept = std::move(bodies.multipliers);
+  patch.retained = std::move(bodies.multipliers);
   patch.conditions = std::move(bodies.conditions);
   patch.nodes = std::move(bodies.nodes);
   patch.opposite_recovery = std::move(bodies.opposite_recovery);
@@ -66,31 +66,31 @@ void make_body_patch(const Body& body, const ContactPair& pair, const FreeCompon
 /// pressure p still has the forces p D' and is recovered from them: of r' at the remaining nodes, a node had D/D' r',
 /// and a tied one Σ P D_s/D' r'. Nodes of the tie inside the seam carry no contact.
 void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
-  std::vector<Multiplier> kept;
+  std::vector<Multiplier> retained;
   std::vector<PointConditions> conditions;
   std::map<Index, int> number;
-  for (std::size_t i = 0; i < patch.kept.size(); ++i) {
-    if (tied.is_tied(patch.kept[i].node)) continue;
-    number[patch.kept[i].node] = static_cast<int>(kept.size());
-    kept.push_back(patch.kept[i]);
+  for (std::size_t i = 0; i < patch.retained.size(); ++i) {
+    if (tied.is_tied(patch.retained[i].node)) continue;
+    number[patch.retained[i].node] = static_cast<int>(retained.size());
+    retained.push_back(patch.retained[i]);
     conditions.push_back(patch.conditions[i]);
   }
   std::vector<Index> lost;
-  std::vector<TiedNodes::Weights> areas(patch.kept.size());  // of each: (remaining multiplier, area assigned to it)
-  for (std::size_t i = 0; i < patch.kept.size(); ++i) {
-    const Multiplier& multiplier = patch.kept[i];
-    double known = 0.0;
+  std::vector<TiedNodes::Weights> areas(patch.retained.size());  // of each: (remaining multiplier, area assigned to it)
+  for (std::size_t i = 0; i < patch.retained.size(); ++i) {
+    const Multiplier& multiplier = patch.retained[i];
+    double total = 0.0;
     for (const auto& [node, weight] : tied.spread({{multiplier.node, 1.0}})) {
       const auto at = number.find(node);
       if (at == number.end()) continue;
       areas[i].emplace_back(at->second, weight * multiplier.weight);
-      known += weight;
+      total += weight;
     }
     if (!tied.is_tied(multiplier.node)) continue;
     if (areas[i].empty()) lost.push_back(multiplier.node);
     for (auto& [to, area] : areas[i]) {
-      area = known > 0.0 ? area / known : 0.0;
-      kept[static_cast<std::size_t>(to)].weight += area;
+      area = total > 0.0 ? area / total : 0.0;
+      retained[static_cast<std::size_t>(to)].weight += area;
     }
   }
   if (!lost.empty()) {
@@ -101,20 +101,20 @@ void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
                     counted(lost.size(), "contact point lies", "contact points lie"), fmt::join(at, ", "),
                     lost.size() == 1 ? "is" : "are"));
   }
-  const auto hand_on = [&](std::vector<Eigen::Triplet<double>>& recovery) {
+  const auto redistribute = [&](std::vector<Eigen::Triplet<double>>& recovery) {
     std::vector<Eigen::Triplet<double>> result;
     for (const auto& entry : recovery) {
       for (const auto& [to, area] : areas[static_cast<std::size_t>(entry.col())]) {
-        const double whole = kept[static_cast<std::size_t>(to)].weight;
+        const double whole = retained[static_cast<std::size_t>(to)].weight;
         const double part = whole != 0.0 ? area / whole : 1.0;
         result.emplace_back(entry.row(), static_cast<int>(to), part * entry.value());
       }
     }
     recovery = std::move(result);
   };
-  hand_on(patch.recovery);
-  hand_on(patch.opposite_recovery);
-  patch.kept = std::move(kept);
+  redistribute(patch.recovery);
+  redistribute(patch.opposite_recovery);
+  patch.retained = std::move(retained);
   patch.conditions = std::move(conditions);
 }
 
@@ -122,11 +122,11 @@ void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
 void follow_ties(const TiedNodes& tied, BoundaryPatch& patch) {
   if (!patch.space->has_functions()) leave_out_tied_forces(tied, patch);
   for (PointConditions& conditions : patch.conditions) conditions.opposite = tied.spread(conditions.opposite);
-  for (const Multiplier& multiplier : patch.kept) patch.free_traces.push_back(tied.spread(multiplier.trace));
+  for (const Multiplier& multiplier : patch.retained) patch.free_traces.push_back(tied.spread(multiplier.trace));
 }
 
 void find_reached_nodes(BoundaryPatch& patch) {
-  for (const Multiplier& multiplier : patch.kept) {
+  for (const Multiplier& multiplier : patch.retained) {
     for (const auto& [node, weight] : multiplier.trace) patch.reached.push_back(node);
   }
 }
@@ -135,9 +135,9 @@ void number_points(const Patches& patches) {
   using Order = std::tuple<Index, int, std::size_t, std::size_t>;
   std::vector<Order> order;
   for (std::size_t p = 0; p < patches.size(); ++p) {
-    patches[p]->numbers.resize(patches[p]->kept.size());
-    for (std::size_t i = 0; i < patches[p]->kept.size(); ++i) {
-      const Multiplier& multiplier = patches[p]->kept[i];
+    patches[p]->numbers.resize(patches[p]->retained.size());
+    for (std::size_t i = 0; i < patches[p]->retained.size(); ++i) {
+      const Multiplier& multiplier = patches[p]->retained[i];
       order.emplace_back(multiplier.node >= 0 ? multiplier.node : multiplier.trace.front().first, multiplier.pair, p,
                          i);
     }
@@ -165,7 +165,7 @@ Patches make_patches(const Body& body, const std::vector<ContactPair>& pairs, co
     } else {
       make_body_patch(body, pairs[first], is_free, *patch, facings[first]);
     }
-    if (!patch->kept.empty()) patch->recovery = patch->space->pressure_recovery(patch->kept);
+    if (!patch->retained.empty()) patch->recovery = patch->space->pressure_recovery(patch->retained);
     find_reached_nodes(*patch);
     follow_ties(body.tied != nullptr ? *body.tied : none, *patch);
   }

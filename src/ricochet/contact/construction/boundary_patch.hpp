@@ -17,17 +17,17 @@ struct BoundaryPatch {
   std::string multipliers;
   ContactPatch facets;
   std::unique_ptr<MultiplierSpace> space;
-  std::vector<Multiplier> kept;
-  std::vector<PointConditions> conditions;  ///< per kept multiplier
-  /// Per kept multiplier: its trace on untied nodes.
+  std::vector<Multiplier> retained;
+  std::vector<PointConditions> conditions;  ///< per retained multiplier
+  /// Per retained multiplier: its trace on untied nodes.
   std::vector<TiedNodes::Weights> free_traces;
-  std::vector<int> numbers;              ///< of the kept multipliers among all contact points
+  std::vector<int> numbers;              ///< of the retained multipliers among all contact points
   std::vector<BodyContact::Node> nodes;  ///< of both sides of a pair of bodies
   bool slides = false;                   ///< whether it is a pair of bodies with unlimited sliding
-  /// Per kept multiplier its direction, between bodies of finite strain, and between those that slide.
+  /// Per retained multiplier its direction, between bodies of finite strain, and between those that slide.
   std::vector<RotatingNormal> rotating_normals;
   std::vector<Index> reached;  ///< nodes in the traces, including tied ones
-  /// Pressure recovery at the nodes of the group, and of the other side: entries (node, kept multiplier, value).
+  /// Pressure recovery at the nodes of the group, and of the other side: entries (node, retained multiplier, value).
   std::vector<Eigen::Triplet<double>> recovery, opposite_recovery;
 
   [[nodiscard]] int first_pair() const { return facets.parts.front().pair; }
@@ -46,7 +46,7 @@ struct BoundaryPatch {
                                                                        const FreeComponent& is_free,
                                                                        std::vector<PairingSummary>& facings);
 
-/// Computes normals and gaps of the kept multipliers of a patch at an obstacle.
+/// Computes normals and gaps of the retained multipliers of a patch at an obstacle.
 void compute_obstacle_conditions(const Body& body, BoundaryPatch& patch);
 
 /// Creates the multipliers of a pair of bodies with unlimited sliding. Throws Error(invalid_input) if
@@ -59,7 +59,7 @@ void make_sliding_patch(const Body& body, const ContactPair& pair, const FreeCom
     const Body& body, const std::vector<ContactPair>& pairs, const std::vector<std::unique_ptr<BoundaryPatch>>& patches,
     const FreeComponent& is_free, ContactBoundary& boundary);
 
-/// Finds the directions of the kept multipliers between bodies of finite strain, from the facets around them whose
+/// Finds the directions of the retained multipliers between bodies of finite strain, from the facets around them whose
 /// vertices are untied contact nodes: own ones, or, if there are none, those of the other side. Multipliers without
 /// such facets, and those on an axis, keep their initial direction; the number of the former is logged.
 void find_rotating_normals(const Body& body, const std::vector<ContactPair>& pairs,
@@ -71,7 +71,7 @@ void find_rotating_normals(const Body& body, const std::vector<ContactPair>& pai
     const FreeComponent& is_free, const ContactBoundary& boundary);
 
 /// Node whose supports determine along which tangents there is friction; between bodies it may be on either side.
-[[nodiscard]] Index freest_node(const BoundaryPatch& patch, std::size_t kept, int dimension,
+[[nodiscard]] Index freest_node(const BoundaryPatch& patch, std::size_t index, int dimension,
                                 const FreeComponent& is_free);
 
 /// Fills in the nodes of the traces, and their nodal output.

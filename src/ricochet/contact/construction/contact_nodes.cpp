@@ -29,7 +29,7 @@ class NodeTable {
     const auto count = static_cast<Index>(rows_.size());
     boundary.node_normals.resize(boundary.dimension, count);
     boundary.node_initial_gap.resize(count);
-    std::vector<Eigen::Triplet<double>> places;
+    std::vector<Eigen::Triplet<double>> projections;
     for (auto& [key, row] : rows_) {
       const auto& [node, pair, is_opposite] = key;
       row.number = static_cast<int>(boundary.nodes.size());
@@ -40,7 +40,7 @@ class NodeTable {
         boundary.node_normals.col(row.number) = row.between_bodies->normal;
         boundary.node_initial_gap[row.number] = row.between_bodies->gap;
         for (const auto& [other, weight] : row.between_bodies->opposite)
-          places.emplace_back(row.number, static_cast<int>(other), weight);
+          projections.emplace_back(row.number, static_cast<int>(other), weight);
         continue;
       }
       const Obstacle& obstacle = *pairs_[static_cast<std::size_t>(pair)].obstacle;
@@ -49,15 +49,15 @@ class NodeTable {
       boundary.node_initial_gap[row.number] = obstacle.gap(position);
     }
     boundary.own_point.assign(static_cast<std::size_t>(count), -1);
-    if (places.empty()) return;
+    if (projections.empty()) return;
     boundary.opposite_projection.resize(count, body_.space->node_count());
-    boundary.opposite_projection.setFromTriplets(places.begin(), places.end());
+    boundary.opposite_projection.setFromTriplets(projections.begin(), projections.end());
   }
 
   /// Registers points that are anchored at nodes, and pressure recovery.
   void recover(const BoundaryPatch& patch, ContactBoundary& boundary, std::vector<Eigen::Triplet<double>>& recovery) {
-    for (std::size_t i = 0; i < patch.kept.size(); ++i) {
-      const Index node = patch.kept[i].node;
+    for (std::size_t i = 0; i < patch.retained.size(); ++i) {
+      const Index node = patch.retained[i].node;
       if (node < 0) continue;
       const auto row = rows_.find(key(patch, node));
       if (row != rows_.end()) boundary.own_point[static_cast<std::size_t>(row->second.number)] = patch.numbers[i];
@@ -77,8 +77,8 @@ class NodeTable {
     const BodyContact::Node* between_bodies = nullptr;
   };
   [[nodiscard]] NodeKey key(const BoundaryPatch& patch, Index node) const {
-    const int known = patch.obstacle == nullptr ? -1 : all_.first_pair(node, patch.obstacle);
-    return {node, known < 0 ? patch.first_pair() : known, 0};
+    const int first = patch.obstacle == nullptr ? -1 : all_.first_pair(node, patch.obstacle);
+    return {node, first < 0 ? patch.first_pair() : first, 0};
   }
 
   const BoundaryNodes& all_;

@@ -47,8 +47,8 @@ void resize(ContactBoundary& boundary, ContactRows& rows, Index count) {
 void check_weights(const BoundaryPatch& patch, const std::vector<ContactPair>& pairs) {
   if (patch.obstacle == nullptr) return;  // points that are hardly covered are already omitted
   double largest = 0.0;
-  for (const Multiplier& multiplier : patch.kept) largest = std::max(largest, multiplier.weight);
-  for (const Multiplier& multiplier : patch.kept) {
+  for (const Multiplier& multiplier : patch.retained) largest = std::max(largest, multiplier.weight);
+  for (const Multiplier& multiplier : patch.retained) {
     const ContactPair& pair = pairs[static_cast<std::size_t>(multiplier.pair)];
     if (patch.space->has_functions() && multiplier.weight <= 1e-10 * largest) {
       throw Error(ErrorKind::invalid_input,
@@ -66,14 +66,14 @@ void check_weights(const BoundaryPatch& patch, const std::vector<ContactPair>& p
 }
 
 void fill_friction(const BoundaryPatch& patch, const std::vector<ContactPair>& pairs, ContactBoundary& boundary) {
-  for (std::size_t i = 0; i < patch.kept.size(); ++i) {
-    const FrictionLaw& law = pairs[static_cast<std::size_t>(patch.kept[i].pair)].friction;
+  for (std::size_t i = 0; i < patch.retained.size(); ++i) {
+    const FrictionLaw& law = pairs[static_cast<std::size_t>(patch.retained[i].pair)].friction;
     boundary.friction_coefficient[patch.numbers[i]] = law.coefficient;
     boundary.friction_bound[patch.numbers[i]] = 0.0;
     if (law.bound == 0.0) continue;
     // Weights of nodal forces at the vertices of flat triangles of degree 2 vanish: a negative rounding error counts as
     // zero, and with it the friction that the bound admits.
-    const double bound = law.bound * std::max(patch.kept[i].weight, 0.0);
+    const double bound = law.bound * std::max(patch.retained[i].weight, 0.0);
     boundary.friction_bound[patch.numbers[i]] = bound;
     if (bound == 0.0) boundary.friction_coefficient[patch.numbers[i]] = 0.0;
   }
@@ -141,8 +141,8 @@ Index nodes_of_body(const BoundaryPatch& patch) {
 
 void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, ContactBoundary& boundary, ContactRows& rows,
                  Operators& operators) {
-  for (std::size_t i = 0; i < patch.kept.size(); ++i) {
-    const Multiplier& multiplier = patch.kept[i];
+  for (std::size_t i = 0; i < patch.retained.size(); ++i) {
+    const Multiplier& multiplier = patch.retained[i];
     const PointConditions& conditions = patch.conditions[i];
     const int number = patch.numbers[i];
     const ContactTangents tangents =
@@ -167,12 +167,12 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
 
 /// Returns the trace of the points whose directions rotate, at obstacles that are not free rigid bodies.
 std::shared_ptr<const SparseRowMatrix> rotating_trace(const CurvedContactData& data) {
-  std::vector<char> turns(static_cast<std::size_t>(data.trace.rows()), 0);
+  std::vector<char> rotates(static_cast<std::size_t>(data.trace.rows()), 0);
   for (const CurvedContactData::Point& point : data.points)
-    turns[static_cast<std::size_t>(point.number)] = data.obstacles[point.obstacle]->free_motion() == nullptr ? 1 : 0;
-  if (std::find(turns.begin(), turns.end(), 1) == turns.end()) return nullptr;
+    rotates[static_cast<std::size_t>(point.number)] = data.obstacles[point.obstacle]->free_motion() == nullptr ? 1 : 0;
+  if (std::find(rotates.begin(), rotates.end(), 1) == rotates.end()) return nullptr;
   auto result = std::make_shared<SparseRowMatrix>(data.trace);
-  result->prune([&](Index row, Index, double) { return turns[static_cast<std::size_t>(row)] != 0; });
+  result->prune([&](Index row, Index, double) { return rotates[static_cast<std::size_t>(row)] != 0; });
   return result;
 }
 
@@ -183,14 +183,14 @@ std::unique_ptr<ContactGeometry> make_curved_geometry(const Body& body, const Pa
                                                       ContactRows& rows) {
   CurvedContactData data;
   const auto number_of = [&data](const Obstacle* obstacle) {
-    const auto known = std::find(data.obstacles.begin(), data.obstacles.end(), obstacle);
-    const auto number = static_cast<std::size_t>(known - data.obstacles.begin());
-    if (known == data.obstacles.end()) data.obstacles.push_back(obstacle);
+    const auto found = std::find(data.obstacles.begin(), data.obstacles.end(), obstacle);
+    const auto number = static_cast<std::size_t>(found - data.obstacles.begin());
+    if (found == data.obstacles.end()) data.obstacles.push_back(obstacle);
     return number;
   };
   for (const auto& patch : patches) {
     if (patch->obstacle == nullptr || patch->obstacle->has_constant_normals()) continue;
-    for (std::size_t i = 0; i < patch->kept.size(); ++i) {
+    for (std::size_t i = 0; i < patch->retained.size(); ++i) {
       const Index node = freest_node(*patch, i, boundary.dimension, is_free);
       CurvedContactData::Point point{patch->numbers[i], number_of(patch->obstacle), {}};
       for (int k = 0; k < boundary.dimension; ++k) point.is_free[static_cast<std::size_t>(k)] = is_free(node, k);
@@ -238,12 +238,12 @@ void follow_motion(const Body& body, const Patches& patches, const std::vector<C
 
 }  // namespace
 
-Index freest_node(const BoundaryPatch& patch, std::size_t kept, int dimension, const FreeComponent& is_free) {
-  const PointConditions& conditions = patch.conditions[kept];
-  if (patch.kept[kept].node >= 0 && conditions.opposite.empty()) return patch.kept[kept].node;
+Index freest_node(const BoundaryPatch& patch, std::size_t index, int dimension, const FreeComponent& is_free) {
+  const PointConditions& conditions = patch.conditions[index];
+  if (patch.retained[index].node >= 0 && conditions.opposite.empty()) return patch.retained[index].node;
   Index freest = -1;
   int most = -1;
-  for (const auto* const nodes : {&patch.free_traces[kept], &conditions.opposite}) {
+  for (const auto* const nodes : {&patch.free_traces[index], &conditions.opposite}) {
     for (const auto& [node, weight] : *nodes) {
       int free = 0;
       for (int k = 0; k < dimension; ++k) free += is_free(node, k) ? 1 : 0;
@@ -257,10 +257,10 @@ Index freest_node(const BoundaryPatch& patch, std::size_t kept, int dimension, c
 }
 
 ContactBoundary make_contact_boundary(const Body& body, const std::vector<ContactPair>& pairs,
-                                      const FreeComponent& is_free, Index* held_nodes,
+                                      const FreeComponent& is_free, Index* supported_nodes,
                                       std::vector<PairingSummary>* facings) {
   const BoundaryNodes nodes(body, pairs, is_free);
-  if (held_nodes != nullptr) *held_nodes = nodes.held_count();
+  if (supported_nodes != nullptr) *supported_nodes = nodes.supported_count();
   std::vector<PairingSummary> found;
   const Patches patches = make_patches(body, pairs, nodes, is_free, facings != nullptr ? *facings : found);
   if (has_finite_strain(body)) find_rotating_normals(body, pairs, patches);
@@ -268,7 +268,7 @@ ContactBoundary make_contact_boundary(const Body& body, const std::vector<Contac
   boundary.dimension = body.space->dimension;
   boundary.facets = facets_of(pairs);
   Index count = 0;
-  for (const auto& patch : patches) count += static_cast<Index>(patch->kept.size());
+  for (const auto& patch : patches) count += static_cast<Index>(patch->retained.size());
   const auto rows = std::make_shared<ContactRows>();
   resize(boundary, *rows, count);
   Operators operators(boundary.dimension);

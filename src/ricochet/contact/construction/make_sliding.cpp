@@ -84,12 +84,12 @@ double area_of(const Body& body, const std::vector<Index>& facets) {
   return area;
 }
 
-SlidingPair::Point sliding_point(const BoundaryPatch& patch, std::size_t kept, int dimension,
+SlidingPair::Point sliding_point(const BoundaryPatch& patch, std::size_t index, int dimension,
                                  const FreeComponent& is_free) {
-  SlidingPair::Point point{.number = patch.numbers[kept],
-                           .multiplier = patch.kept[kept],
-                           .normal = patch.rotating_normals[kept],
-                           .offset = patch.conditions[kept].gap};
+  SlidingPair::Point point{.number = patch.numbers[index],
+                           .multiplier = patch.retained[index],
+                           .normal = patch.rotating_normals[index],
+                           .offset = patch.conditions[index].gap};
   for (int k = 0; k < dimension; ++k) {
     point.is_free[static_cast<std::size_t>(k)] =
         std::any_of(point.multiplier.trace.begin(), point.multiplier.trace.end(),
@@ -101,7 +101,7 @@ SlidingPair::Point sliding_point(const BoundaryPatch& patch, std::size_t kept, i
 SlidingPair::Data data_of(const Body& body, const ContactPair& pair, const BoundaryPatch& patch,
                           const FreeComponent& is_free) {
   SlidingPair::Data data{body, pair.multipliers, pair.facets, pair.opposite_facets, {}, pair.is_one_of_many};
-  for (std::size_t i = 0; i < patch.kept.size(); ++i)
+  for (std::size_t i = 0; i < patch.retained.size(); ++i)
     data.points.push_back(sliding_point(patch, i, body.space->dimension, is_free));
   return data;
 }
@@ -109,10 +109,10 @@ SlidingPair::Data data_of(const Body& body, const ContactPair& pair, const Bound
 /// Evaluates the pairing at the initial positions, and sets offsets that close gaps there.
 void look_at_the_start(const Body& body, const ContactPair& pair, const FreeComponent& is_free, BoundaryPatch& patch,
                        PairingSummary& facing) {
-  patch.numbers.assign(patch.kept.size(), 0);
+  patch.numbers.assign(patch.retained.size(), 0);
   const SlidingPair sliding(data_of(body, pair, patch, is_free));
   std::vector<SlidingView> views;
-  sliding.compute_views(Vector::Zero(body.space->dof_count()), SlidingPair::Wanted::gap, {}, {}, views);
+  sliding.compute_views(Vector::Zero(body.space->dof_count()), SlidingPair::Content::gap, {}, {}, views);
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (!views[i].faces) {
       ++facing.uncovered;
@@ -150,9 +150,9 @@ void make_sliding_patch(const Body& body, const ContactPair& pair, const FreeCom
     const Eigen::Vector3d direction = normal.at(body.space->nodes, {});
     patch.conditions.push_back({direction.normalized().head(body.space->dimension), {}, 0.0, 0.0});
     patch.rotating_normals.push_back(std::move(normal));
-    patch.kept.push_back(std::move(multiplier));
+    patch.retained.push_back(std::move(multiplier));
   }
-  facing.points = static_cast<Index>(patch.kept.size());
+  facing.points = static_cast<Index>(patch.retained.size());
   facing.area = facing.covered = area_of(body, pair.facets);
   const double rounding = extent(body.space->nodes) * std::numeric_limits<double>::epsilon();
   for (PointConditions& conditions : patch.conditions) conditions.gap_rounding = 64.0 * rounding;

@@ -51,7 +51,7 @@ void compute_obstacle_conditions(const Body& body, BoundaryPatch& patch) {
   const double body_rounding = 8.0 * std::numeric_limits<double>::epsilon() * body_size;
   const bool by_quadrature = patch.space->has_functions() && body.mesh->degree > body.space->degree;
   const std::map<Index, double> means = by_quadrature ? mean_gaps(patch) : std::map<Index, double>{};
-  for (const Multiplier& multiplier : patch.kept) {
+  for (const Multiplier& multiplier : patch.retained) {
     PointConditions conditions{patch.obstacle->normal(anchor_position(*body.space, multiplier)), {}, 0.0, 0.0};
     for (const auto& [node, weight] : multiplier.trace) {
       const Vector position = body.space->nodes.col(node);

@@ -49,9 +49,9 @@ std::vector<Index> around(const FacetsAround& facets, Index node) {
 }
 
 /// Returns the facets of the other side in the trace of a multiplier.
-std::vector<Index> facets_seen(const FacetsAround& facets, const TiedNodes::Weights& seen) {
+std::vector<Index> facets_in_trace(const FacetsAround& facets, const TiedNodes::Weights& trace) {
   std::vector<Index> result;
-  for (const auto& [node, weight] : seen) {
+  for (const auto& [node, weight] : trace) {
     if (weight == 0.0) continue;
     const std::vector<Index> here = around(facets, node);
     result.insert(result.end(), here.begin(), here.end());
@@ -69,16 +69,16 @@ double gap_at_start(const Body& body, const Vector& normal, const TiedNodes::Wei
   return gap;
 }
 
-RotatingPairsData::Point turning_point(const Body& body, const BoundaryPatch& patch, std::size_t kept,
-                                       const FreeComponent& is_free) {
-  const PointConditions& conditions = patch.conditions[kept];
-  RotatingPairsData::Point point{.number = patch.numbers[kept], .normal = patch.rotating_normals[kept]};
-  point.offset = conditions.gap - gap_at_start(body, conditions.normal, patch.free_traces[kept], conditions.opposite);
+RotatingPairsData::Point rotating_point(const Body& body, const BoundaryPatch& patch, std::size_t index,
+                                        const FreeComponent& is_free) {
+  const PointConditions& conditions = patch.conditions[index];
+  RotatingPairsData::Point point{.number = patch.numbers[index], .normal = patch.rotating_normals[index]};
+  point.offset = conditions.gap - gap_at_start(body, conditions.normal, patch.free_traces[index], conditions.opposite);
   const int d = body.space->dimension;
-  const Index freest = freest_node(patch, kept, d, is_free);
+  const Index freest = freest_node(patch, index, d, is_free);
   for (int k = 0; k < d; ++k) point.is_free[static_cast<std::size_t>(k)] = is_free(freest, k);
   point.nodes = point.normal.nodes();
-  for (const auto* const weights : {&patch.free_traces[kept], &conditions.opposite}) {
+  for (const auto* const weights : {&patch.free_traces[index], &conditions.opposite}) {
     for (const auto& [node, weight] : *weights) point.nodes.push_back(node);
   }
   std::sort(point.nodes.begin(), point.nodes.end());
@@ -96,19 +96,19 @@ void add_nodes(const Body& body, const std::vector<ContactPair>& pairs, const Co
     if (!pair.has_two_sides() || pair.large_sliding || std::isnan(boundary.node_initial_gap[static_cast<Index>(i)]))
       continue;
     const bool opposite = boundary.is_opposite[i] != 0;
-    auto known = around_nodes.find({number, opposite});
-    if (known == around_nodes.end()) {
+    auto found = around_nodes.find({number, opposite});
+    if (found == around_nodes.end()) {
       const auto& facets = opposite ? pair.opposite_facets : pair.facets;
-      known = around_nodes.emplace(std::pair{number, opposite}, facets_around_nodes(*body.space, facets)).first;
+      found = around_nodes.emplace(std::pair{number, opposite}, facets_around_nodes(*body.space, facets)).first;
     }
     const auto entry = static_cast<Index>(i);
     const Index node = boundary.nodes[i];
     const Vector normal = boundary.node_normals.col(entry);
-    TiedNodes::Weights seen;
+    TiedNodes::Weights projection;
     for (SparseRowMatrix::InnerIterator at(boundary.opposite_projection, entry); at; ++at)
-      seen.emplace_back(at.col(), at.value());
-    const double offset = boundary.node_initial_gap[entry] - gap_at_start(body, normal, {{node, 1.0}}, seen);
-    data.nodes.push_back({entry, node, RotatingNormal(*body.space, around(known->second, node), normal), offset});
+      projection.emplace_back(at.col(), at.value());
+    const double offset = boundary.node_initial_gap[entry] - gap_at_start(body, normal, {{node, 1.0}}, projection);
+    data.nodes.push_back({entry, node, RotatingNormal(*body.space, around(found->second, node), normal), offset});
   }
 }
 
@@ -127,8 +127,8 @@ void find_rotating_normals(const Body& body, const std::vector<ContactPair>& pai
     const FacetsAround opposite =
         facets_around_nodes(*body.space, of_marked_nodes(*body.space, pair.opposite_facets, marked));
     Index constant = 0;
-    for (std::size_t i = 0; i < patch->kept.size(); ++i) {
-      const Multiplier& multiplier = patch->kept[i];
+    for (std::size_t i = 0; i < patch->retained.size(); ++i) {
+      const Multiplier& multiplier = patch->retained[i];
       const Vector& normal = patch->conditions[i].normal;
       if (multiplier.node >= 0 && is_on_axis(body, multiplier.node)) {
         patch->rotating_normals.emplace_back(normal);
@@ -138,7 +138,7 @@ void find_rotating_normals(const Body& body, const std::vector<ContactPair>& pai
           multiplier.facet >= 0 ? std::vector{multiplier.facet} : around(own, multiplier.node);
       RotatingNormal rotating_normals = RotatingNormal::mean(
           RotatingNormal(*body.space, of_marked_nodes(*body.space, facets, marked), normal),
-          RotatingNormal(*body.space, facets_seen(opposite, patch->conditions[i].opposite), normal));
+          RotatingNormal(*body.space, facets_in_trace(opposite, patch->conditions[i].opposite), normal));
       if (!rotating_normals.rotates()) ++constant;
       patch->rotating_normals.push_back(std::move(rotating_normals));
     }
@@ -156,7 +156,8 @@ std::unique_ptr<ContactGeometry> make_rotating_geometry(const Body& body, const 
   RotatingPairsData data;
   for (const auto& patch : patches) {
     if (patch->rotating_normals.empty() || patch->slides) continue;
-    for (std::size_t i = 0; i < patch->kept.size(); ++i) data.points.push_back(turning_point(body, *patch, i, is_free));
+    for (std::size_t i = 0; i < patch->retained.size(); ++i)
+      data.points.push_back(rotating_point(body, *patch, i, is_free));
   }
   if (data.points.empty()) return nullptr;
   add_nodes(body, pairs, boundary, data);

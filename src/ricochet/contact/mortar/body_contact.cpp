@@ -61,7 +61,7 @@ struct BodyPairing::Implementation {
     for (const FacetSurface::Facet& facet : opposite.facets())
       opposite_normal[facet.number] = facet.area_vector.normalized();
     for (std::size_t k = 0; k < own.facets().size(); ++k) {
-      normals.push_back(known_normal(own.facets()[k].area_vector.normalized()));
+      normals.push_back(reused_normal(own.facets()[k].area_vector.normalized()));
       direct.push_back(finder.find(static_cast<int>(k), -normal_of(k)));
       if (!direct.back().segments.empty()) facing.push_back(own.facets()[k].number);
     }
@@ -69,7 +69,7 @@ struct BodyPairing::Implementation {
 
   [[nodiscard]] const Vector3& normal_of(std::size_t facet) const { return normals[facet]; }
   /// Reuses a recent normal that differs by no more than rounding: all facets of a plane have an identical normal.
-  [[nodiscard]] Vector3 known_normal(const Vector3& normal) const {
+  [[nodiscard]] Vector3 reused_normal(const Vector3& normal) const {
     constexpr std::size_t memory = 16;
     for (std::size_t k = normals.size(); k > 0 && k + memory > normals.size(); --k) {
       if ((normals[k - 1] - normal).norm() <= same_direction) return normals[k - 1];
@@ -80,16 +80,16 @@ struct BodyPairing::Implementation {
   [[nodiscard]] Vector in_mesh(const Vector3& values) const { return values.head(body.mesh->dimension); }
 
   AnchorDirections find_directions(bool at_facets, PairingSummary& found) const;
-  [[nodiscard]] AnchorDirections normals_seen(bool at_facets) const;
+  [[nodiscard]] AnchorDirections faced_normals(bool at_facets) const;
   [[nodiscard]] Vector3 normal_between_nodes(const SegmentFinder::Hit& hit,
                                              const std::map<Index, AreaSum>& areas) const;
   [[nodiscard]] std::vector<std::pair<Index, Vector3>> normals_at_nodes(Index facet,
                                                                         const std::map<Index, AreaSum>& areas) const;
-  [[nodiscard]] Vector3 middle_direction(const Vector3& at, const Vector3& own_direction, const Vector3& seen,
+  [[nodiscard]] Vector3 middle_direction(const Vector3& at, const Vector3& own_direction, const Vector3& faced_normal,
                                          double height, const std::map<Index, AreaSum>* faced) const;
   void make_mortar_points(const MultiplierSpace& space, const AnchorDirections& directions, BodyContact& result) const;
   void make_nodal_points(const MultiplierSpace& space, const AnchorDirections& directions, BodyContact& result) const;
-  void leave_out_held(const FreeComponent& is_free, BodyContact& result) const;
+  void remove_supported(const FreeComponent& is_free, BodyContact& result) const;
   void summarize(bool has_gaps, BodyContact& result) const;
 };
 
@@ -100,18 +100,18 @@ struct BodyPairing::Implementation {
 AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, PairingSummary& found) const {
   AnchorDirections directions;
   const std::map<Index, AreaSum> faced = areas_around_faced_nodes(surfaces, direct);
-  const AnchorDirections seen = normals_seen(at_facets);
+  const AnchorDirections faced_directions = faced_normals(at_facets);
   const std::set<Index> own_facing(facing.begin(), facing.end());
   const std::map<Index, AreaSum> own_areas = areas_around_nodes(body, own, &own_facing);
-  const auto near = [](const Vector3& known, const Vector3& found) {
-    return (found - known).norm() > same_direction ? found : known;
+  const auto near = [](const Vector3& reference, const Vector3& found) {
+    return (found - reference).norm() > same_direction ? found : reference;
   };
   if (at_facets) {
     for (std::size_t k = 0; k < own.facets().size(); ++k) {
       if (!faces(k)) continue;
       const FacetSurface::Facet& facet = own.facets()[k];
       directions[facet.number] =
-          middle_direction(facet.centre, -normal_of(k), seen.at(facet.number), facet.height, nullptr);
+          middle_direction(facet.centre, -normal_of(k), faced_directions.at(facet.number), facet.height, nullptr);
     }
     return directions;
   }
@@ -131,7 +131,7 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
   for (auto& [node, direction] : directions) {
     Vector3 at = surfaces.position(node);
     at.head(body.mesh->dimension) += own.shift();
-    direction = middle_direction(at, direction, seen.at(node), own.height_at(node), &faced);
+    direction = middle_direction(at, direction, faced_directions.at(node), own.height_at(node), &faced);
   }
   return directions;
 }
@@ -140,19 +140,19 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
 /// opposite side.
 std::vector<std::pair<Index, Vector3>> BodyPairing::Implementation::normals_at_nodes(
     Index facet, const std::map<Index, AreaSum>& areas) const {
-  const IndexInBlocks place = locate_facet(*body.space, facet);
-  const CellBlock& block = body.space->facets[place.block];
+  const IndexInBlocks location = locate_facet(*body.space, facet);
+  const CellBlock& block = body.space->facets[location.block];
   std::vector<std::pair<Index, Vector3>> result;
   for (const std::vector<int>& vertices : node_vertices(block.shape, body.space->degree)) {
     Vector3 sum = Vector3::Zero();
-    for (const int v : vertices) sum += areas.at(block.cell(place.local)[v]).vector.normalized();
-    result.emplace_back(block.cell(place.local)[result.size()], sum.normalized());
+    for (const int v : vertices) sum += areas.at(block.cell(location.local)[v]).vector.normalized();
+    result.emplace_back(block.cell(location.local)[result.size()], sum.normalized());
   }
   return result;
 }
 
 /// Returns for each anchor the mean normal of the facets onto which its facets project along their own normals.
-AnchorDirections BodyPairing::Implementation::normals_seen(bool at_facets) const {
+AnchorDirections BodyPairing::Implementation::faced_normals(bool at_facets) const {
   AnchorDirections result;
   for (std::size_t k = 0; k < own.facets().size(); ++k) {
     if (!faces(k)) continue;
@@ -175,8 +175,8 @@ Vector3 BodyPairing::Implementation::normal_between_nodes(const SegmentFinder::H
                                                           const std::map<Index, AreaSum>& areas) const {
   Matrix values;
   map.hats(hit.facet, hit.local, values);
-  const IndexInBlocks place = locate_facet(*body.space, hit.facet);
-  const Index* const nodes = body.space->facets[place.block].cell(place.local);
+  const IndexInBlocks location = locate_facet(*body.space, hit.facet);
+  const Index* const nodes = body.space->facets[location.block].cell(location.local);
   Vector3 normal = Vector3::Zero();
   for (Index k = 0; k < values.rows(); ++k) {
     const auto around = areas.find(nodes[k]);
@@ -190,7 +190,7 @@ Vector3 BodyPairing::Implementation::normal_between_nodes(const SegmentFinder::H
 /// mirror, at any gap; along the own direction another point would be hit, shifted by the gap times its slope. If the
 /// iterations find no such point, the point hit along the own direction is used, or that direction alone.
 Vector3 BodyPairing::Implementation::middle_direction(const Vector3& at, const Vector3& own_direction,
-                                                      const Vector3& seen, double height,
+                                                      const Vector3& faced_normal, double height,
                                                       const std::map<Index, AreaSum>* faced) const {
   constexpr int max_iterations = 30;
   const auto from = [&](const Vector3& direction) -> std::optional<Vector3> {
@@ -201,8 +201,8 @@ Vector3 BodyPairing::Implementation::middle_direction(const Vector3& at, const V
     if (!(normal.dot(own_direction) > 0.0)) return {};
     return (own_direction + normal.normalized()).normalized();
   };
-  std::optional<Vector3> direction = (own_direction + seen).normalized();
-  for (int round = 0; round < max_iterations && direction; ++round) {
+  std::optional<Vector3> direction = (own_direction + faced_normal).normalized();
+  for (int iteration = 0; iteration < max_iterations && direction; ++iteration) {
     const std::optional<Vector3> next = from(*direction);
     if (next && (*next - *direction).norm() <= same_direction)
       return (*next - own_direction).norm() > same_direction ? *next : own_direction;
@@ -253,7 +253,7 @@ void BodyPairing::Implementation::make_nodal_points(const MultiplierSpace& space
 }
 
 /// Removes points that can only act on supports, on both sides.
-void BodyPairing::Implementation::leave_out_held(const FreeComponent& is_free, BodyContact& result) const {
+void BodyPairing::Implementation::remove_supported(const FreeComponent& is_free, BodyContact& result) const {
   result.facing.held = result.keep([&](const Multiplier& multiplier, const PointConditions& conditions) {
     const auto is_free_here = [&](const auto& entry) { return has_free_part(entry.first, conditions.normal, is_free); };
     return std::any_of(multiplier.trace.begin(), multiplier.trace.end(), is_free_here) ||
@@ -325,7 +325,7 @@ BodyContact BodyPairing::make(const MultiplierSpace& space, const FreeComponent&
   } else {
     own.make_nodal_points(space, directions, result);
   }
-  own.leave_out_held(is_free, result);
+  own.remove_supported(is_free, result);
   result.nodes = nodes_of_points(own.surfaces, own.direct, at_facets ? AnchorDirections{} : directions, result);
   result.opposite_recovery = opposite_pressure(own.surfaces, own.direct, space, result.multipliers);
   own.summarize(space.has_functions() && own.body.mesh->degree > own.body.space->degree, result);

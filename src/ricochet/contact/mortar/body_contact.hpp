@@ -66,18 +66,18 @@ struct BodyContact {
   /// number. The order is preserved.
   template <class Keeps>
   Index keep(const Keeps& keeps) {
-    std::size_t kept = 0;
+    std::size_t retained = 0;
     for (std::size_t i = 0; i < multipliers.size(); ++i) {
       if (!keeps(std::as_const(multipliers[i]), std::as_const(conditions[i]))) continue;
-      if (kept != i) {
-        multipliers[kept] = std::move(multipliers[i]);
-        conditions[kept] = std::move(conditions[i]);
+      if (retained != i) {
+        multipliers[retained] = std::move(multipliers[i]);
+        conditions[retained] = std::move(conditions[i]);
       }
-      ++kept;
+      ++retained;
     }
-    const auto left_out = static_cast<Index>(multipliers.size() - kept);
-    multipliers.resize(kept);
-    conditions.resize(kept);
+    const auto left_out = static_cast<Index>(multipliers.size() - retained);
+    multipliers.resize(retained);
+    conditions.resize(retained);
     return left_out;
   }
 };

@@ -19,7 +19,7 @@ constexpr double alike = 1.1;
 
 /// Ratio above which variations of normals differ, and the variation above which forces are in error by more than some
 /// per cent: both measured (docs/sliding.md).
-constexpr double alike_turns = 1.25, doubtful_turn = 0.25;
+constexpr double similar_variation = 1.25, doubtful_variation = 0.25;
 
 /// Variation below which sides count as flat, in rad.
 constexpr double flat = 1e-3;
@@ -42,9 +42,9 @@ constexpr double largest_bend = 0.26 * 3.14159265358979323846;
 double curvature_of(const Body& body, const FacetSurface& surface, double most) {
   std::map<Index, std::vector<std::size_t>> around;
   for (std::size_t k = 0; k < surface.facets().size(); ++k) {
-    const IndexInBlocks place = locate_in_blocks(body.mesh->facets, surface.facets()[k].number);
-    const CellBlock& block = body.mesh->facets[place.block];
-    for (int v = 0; v < vertex_count(block.shape); ++v) around[block.cell(place.local)[v]].push_back(k);
+    const IndexInBlocks location = locate_in_blocks(body.mesh->facets, surface.facets()[k].number);
+    const CellBlock& block = body.mesh->facets[location.block];
+    for (int v = 0; v < vertex_count(block.shape); ++v) around[block.cell(location.local)[v]].push_back(k);
   }
   constexpr double rounding = 1e-6;
   double sum = 0.0;
@@ -95,11 +95,12 @@ double distance_from_curved(const Body& body, const ContactPair& pair) {
 
 std::optional<SideDoubt> doubt_side(const Body& body, const ContactPair& pair) {
   if (pair.tied || pair.is_self()) return std::nullopt;
-  const NormalVariation turns = normal_variation(body, pair.facets, pair.opposite_facets);
-  if (!(turns.own_of_bends > doubtful_turn)) return std::nullopt;
-  const double least = std::min(turns.own_of_bends, turns.opposite_of_bends);
-  return SideDoubt{turns.own_of_bends, turns.opposite_of_bends,
-                   turns.own_of_bends > alike_turns * turns.opposite_of_bends, std::min(doubtful_turn / least, 1.0)};
+  const NormalVariation variation = normal_variation(body, pair.facets, pair.opposite_facets);
+  if (!(variation.own_of_bends > doubtful_variation)) return std::nullopt;
+  const double least = std::min(variation.own_of_bends, variation.opposite_of_bends);
+  return SideDoubt{variation.own_of_bends, variation.opposite_of_bends,
+                   variation.own_of_bends > similar_variation * variation.opposite_of_bends,
+                   std::min(doubtful_variation / least, 1.0)};
 }
 
 SideChoice choose_side(const Body& body, const ContactPair& pair) {
@@ -109,14 +110,14 @@ SideChoice choose_side(const Body& body, const ContactPair& pair) {
     return SideChoice{
         opposite, fmt::format("{} ({:.3g} against {:.3g})", what, opposite ? others : own, opposite ? own : others)};
   };
-  const NormalVariation turns =
+  const NormalVariation variation =
       pair.tied ? NormalVariation{} : normal_variation(body, pair.facets, pair.opposite_facets);
   // Normals vary most at edges, and it is not known beforehand which edges come into contact: edges are excluded if the
   // forces would be inaccurate even without them.
-  const bool by_bends = std::max(turns.own_of_bends, turns.opposite_of_bends) > doubtful_turn;
-  const double own = by_bends ? turns.own_of_bends : turns.own,
-               others = by_bends ? turns.opposite_of_bends : turns.opposite;
-  if (std::max(own, others) > std::max(flat, alike_turns * std::min(own, others)))
+  const bool by_bends = std::max(variation.own_of_bends, variation.opposite_of_bends) > doubtful_variation;
+  const double own = by_bends ? variation.own_of_bends : variation.own,
+               others = by_bends ? variation.opposite_of_bends : variation.opposite;
+  if (std::max(own, others) > std::max(flat, similar_variation * std::min(own, others)))
     return choice(others < own, "normals vary less within its facets", own, others);
   if (pair.large_sliding && smaller_from * std::min(one.area, other.area) < std::max(one.area, other.area)) {
     const bool is_other = other.area < one.area;

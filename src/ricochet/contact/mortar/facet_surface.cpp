@@ -61,10 +61,10 @@ FacetSurface::FacetSurface(const Body& body, const std::vector<Index>& facets, c
   for (std::size_t k = 0; k < facets.size(); ++k) {
     add_facet(body, facets[k], cells_[k]);
     const double height = facets_.back().height = heights[k];
-    const IndexInBlocks place = locate_facet(*body.space, facets[k]);
-    const CellBlock& block = body.space->facets[place.block];
+    const IndexInBlocks location = locate_facet(*body.space, facets[k]);
+    const CellBlock& block = body.space->facets[location.block];
     for (int i = 0; i < block.nodes_per_cell; ++i) {
-      double& least = node_height_.try_emplace(block.cell(place.local)[i], height).first->second;
+      double& least = node_height_.try_emplace(block.cell(location.local)[i], height).first->second;
       least = std::min(least, height);
     }
   }
@@ -84,12 +84,12 @@ void FacetSurface::move(const Points& nodes) {
       boxes_[p].extend(piece.corners[k]);
     }
   }
-  for (Facet& facet : facets_) place(facet);
+  for (Facet& facet : facets_) update_geometry(facet);
   if (!boxes_.empty()) tree_.refit(boxes_);
 }
 
-/// Computes areas, normals and the centre from the positions of the pieces.
-void FacetSurface::place(Facet& facet) {
+/// Computes the area and its vector, and the normals of the pieces, from their corners.
+void FacetSurface::update_geometry(Facet& facet) {
   facet.area = 0.0;
   facet.area_vector.setZero();
   for (int p = facet.first_piece; p < facet.first_piece + facet.piece_count; ++p) {
@@ -103,8 +103,8 @@ void FacetSurface::place(Facet& facet) {
 
 void FacetSurface::add_facet(const Body& body, Index number, Index cell) {
   const Mesh& mesh = *body.mesh;
-  const IndexInBlocks place = locate_in_blocks(mesh.facets, number), behind = locate_in_blocks(mesh.cells, cell);
-  const CellBlock& block = mesh.facets[place.block];
+  const IndexInBlocks location = locate_in_blocks(mesh.facets, number), behind = locate_in_blocks(mesh.cells, cell);
+  const CellBlock& block = mesh.facets[location.block];
   Vector3 moved = Vector3::Zero(), inside = Vector3::Zero();
   moved.head(mesh.dimension) = shift_;
   const CellBlock& cells = mesh.cells[behind.block];
@@ -112,7 +112,7 @@ void FacetSurface::add_facet(const Body& body, Index number, Index cell) {
     inside += (in_space(mesh.nodes, cells.cell(behind.local)[v]) + moved) / vertex_count(cells.shape);
   std::vector<Vector3> nodes;
   for (int k = 0; k < block.nodes_per_cell; ++k)
-    nodes.push_back(in_space(mesh.nodes, block.cell(place.local)[k]) + moved);
+    nodes.push_back(in_space(mesh.nodes, block.cell(location.local)[k]) + moved);
   Facet facet{number, static_cast<int>(pieces_.size())};
   facet.size = facet_diameter(mesh, number);
   const bool as_straight = mesh.degree == 1 || (!moves_ && is_straight(block.shape, nodes, facet.size));
@@ -121,7 +121,7 @@ void FacetSurface::add_facet(const Body& body, Index number, Index cell) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto node = static_cast<std::size_t>(local[k] >= 0 ? local[k] : local[1]);
       piece.corners[k] = nodes[node];
-      piece.nodes[k] = block.cell(place.local)[node];
+      piece.nodes[k] = block.cell(location.local)[node];
     }
     if (area_vector(piece.corners, plane_).dot(inside - piece.corners[0]) > 0.0) {
       std::swap(piece.corners[0], piece.corners[1]);
@@ -134,7 +134,7 @@ void FacetSurface::add_facet(const Body& body, Index number, Index cell) {
     pieces_.push_back(piece);
   }
   facet.piece_count = static_cast<int>(pieces_.size()) - facet.first_piece;
-  this->place(facet);
+  update_geometry(facet);
   for (int v = 0; v < vertex_count(block.shape); ++v)
     facet.centre += nodes[static_cast<std::size_t>(v)] / vertex_count(block.shape);
   facets_.push_back(facet);

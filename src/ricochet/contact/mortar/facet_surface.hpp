@@ -56,7 +56,7 @@ class FacetSurface {
  private:
   FacetSurface(const Body& body, const std::vector<Index>& facets, const Vector& shift, bool moves);
   void add_facet(const Body& body, Index facet, Index cell);
-  void place(Facet& facet);
+  void update_geometry(Facet& facet);
 
   std::vector<Facet> facets_;
   std::vector<Index> cells_;

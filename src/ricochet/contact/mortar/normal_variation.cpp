@@ -46,9 +46,9 @@ struct Bend {
 };
 
 /// One surface, searchable by its normals.
-class TurningSurface {
+class SurfaceNormals {
  public:
-  TurningSurface(const Body& body, const std::vector<Index>& facets) : surface_(body, facets) {
+  SurfaceNormals(const Body& body, const std::vector<Index>& facets) : surface_(body, facets) {
     for (const FacetSurface::Facet& facet : surface_.facets()) normals_.push_back(facet.area_vector.normalized());
     find_joints(*body.mesh);
     find_planes();
@@ -107,18 +107,18 @@ class TurningSurface {
   }
 
   /// Whether the facet is the end of a line in 2D: it has one neighbour.
-  [[nodiscard]] bool is_last(std::size_t facet) const { return turns_[facet].weight == 1.0; }
+  [[nodiscard]] bool is_last(std::size_t facet) const { return facet_bends_[facet].weight == 1.0; }
 
   void find_joints(const Mesh& mesh) {
     const std::vector<FacetSurface::Facet>& facets = surface_.facets();
     std::map<Index, std::vector<std::size_t>> around;
     for (std::size_t k = 0; k < facets.size(); ++k) {
-      const IndexInBlocks place = locate_in_blocks(mesh.facets, facets[k].number);
-      const CellBlock& block = mesh.facets[place.block];
-      for (int v = 0; v < vertex_count(block.shape); ++v) around[block.cell(place.local)[v]].push_back(k);
+      const IndexInBlocks location = locate_in_blocks(mesh.facets, facets[k].number);
+      const CellBlock& block = mesh.facets[location.block];
+      for (int v = 0; v < vertex_count(block.shape); ++v) around[block.cell(location.local)[v]].push_back(k);
     }
     sets_ = DisjointSets(static_cast<Index>(facets.size()));
-    turns_.resize(facets.size());
+    facet_bends_.resize(facets.size());
     for (const auto& [node, here] : around) {
       for (std::size_t i = 0; i < here.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) join(here[j], here[i]);
@@ -140,7 +140,7 @@ class TurningSurface {
     Bend bend{bends ? angle / distance : 0.0, 0.0, 0.5 * (a.size + b.size)};
     bend.smooth = angle > edge ? 0.0 : bend.curvature;
     bend.bulge = (b.centre - a.centre).dot(normals_[one]) > 0.0 ? -bend.curvature : bend.curvature;
-    for (const std::size_t facet : {one, other}) turns_[facet].add(bend, 1.0);
+    for (const std::size_t facet : {one, other}) facet_bends_[facet].add(bend, 1.0);
     if (bends) joints_.push_back({one, other, angle, bend});
     if (!bends) sets_.join(static_cast<Index>(one), static_cast<Index>(other));
   }
@@ -153,9 +153,9 @@ class TurningSurface {
       if (added) planes_.emplace_back();
       Plane& plane = planes_[at->second];
       plane.normal += facet.area_vector;
-      Bend turn = turns_[k].weight > 0.0 ? turns_[k].mean() : Bend{};
-      turn.size = facet.size;
-      plane.bend.add(turn, facet.area);
+      Bend bend = facet_bends_[k].weight > 0.0 ? facet_bends_[k].mean() : Bend{};
+      bend.size = facet.size;
+      plane.bend.add(bend, facet.area);
     }
     std::vector<BoxTree::Box> boxes;
     for (Plane& plane : planes_) {
@@ -168,7 +168,7 @@ class TurningSurface {
 
   FacetSurface surface_;
   std::vector<Vector3> normals_;
-  std::vector<Bend> turns_;  ///< per facet, towards its neighbours: sums
+  std::vector<Bend> facet_bends_;  ///< per facet, towards its neighbours: sums
   std::vector<Joint> joints_;
   DisjointSets sets_{0};
   std::vector<Plane> planes_;
@@ -176,11 +176,11 @@ class TurningSurface {
 };
 
 /// Sums over locations; `first`: the surface over whose facets the sum runs.
-struct TurnSums {
+struct VariationSums {
   double first = 0.0, second = 0.0, first_of_bends = 0.0, second_of_bends = 0.0, area = 0.0, area_of_bends = 0.0;
 };
 
-double turn_of(const Bend& carrier, const Bend& other, bool is_straight, double Bend::*curvature) {
+double variation_of(const Bend& carrier, const Bend& other, bool is_straight, double Bend::*curvature) {
   const double window = is_straight ? std::max(carrier.size, other.size) : carrier.size;
   return carrier.size * (carrier.*curvature) + 2.0 * window * (other.*curvature);
 }
@@ -191,19 +191,19 @@ bool are_parted(const Bend& one, const Bend& other) {
   return one.bulge + other.bulge < -fitting * (one.curvature + other.curvature);
 }
 
-TurnSums sums_over(const TurningSurface& first, const TurningSurface& second, bool is_straight) {
-  TurnSums sums;
-  for (const TurningSurface::Plane& plane : first.planes()) {
-    const TurningSurface::Sight seen = second.look(-plane.normal);
-    if (!(seen.bend.weight > 0.0) || (!seen.is_level && are_parted(plane.bend, seen.bend))) continue;
+VariationSums sums_over(const SurfaceNormals& first, const SurfaceNormals& second, bool is_straight) {
+  VariationSums sums;
+  for (const SurfaceNormals::Plane& plane : first.planes()) {
+    const SurfaceNormals::Sight opposite = second.look(-plane.normal);
+    if (!(opposite.bend.weight > 0.0) || (!opposite.is_level && are_parted(plane.bend, opposite.bend))) continue;
     const double area = plane.bend.weight;
     sums.area += area;
-    sums.first += area * turn_of(plane.bend, seen.bend, is_straight, &Bend::curvature);
-    sums.second += area * turn_of(seen.bend, plane.bend, is_straight, &Bend::curvature);
-    if (!(plane.bend.smooth + seen.bend.smooth > 0.0)) continue;
+    sums.first += area * variation_of(plane.bend, opposite.bend, is_straight, &Bend::curvature);
+    sums.second += area * variation_of(opposite.bend, plane.bend, is_straight, &Bend::curvature);
+    if (!(plane.bend.smooth + opposite.bend.smooth > 0.0)) continue;
     sums.area_of_bends += area;
-    sums.first_of_bends += area * turn_of(plane.bend, seen.bend, is_straight, &Bend::smooth);
-    sums.second_of_bends += area * turn_of(seen.bend, plane.bend, is_straight, &Bend::smooth);
+    sums.first_of_bends += area * variation_of(plane.bend, opposite.bend, is_straight, &Bend::smooth);
+    sums.second_of_bends += area * variation_of(opposite.bend, plane.bend, is_straight, &Bend::smooth);
   }
   return sums;
 }
@@ -212,9 +212,9 @@ TurnSums sums_over(const TurningSurface& first, const TurningSurface& second, bo
 
 NormalVariation normal_variation(const Body& body, const std::vector<Index>& facets,
                                  const std::vector<Index>& opposite_facets) {
-  const TurningSurface own(body, facets), opposite(body, opposite_facets);
+  const SurfaceNormals own(body, facets), opposite(body, opposite_facets);
   const bool is_straight = body.mesh->degree == 1;
-  const TurnSums one = sums_over(own, opposite, is_straight), other = sums_over(opposite, own, is_straight);
+  const VariationSums one = sums_over(own, opposite, is_straight), other = sums_over(opposite, own, is_straight);
   const double area = one.area + other.area, of_bends = one.area_of_bends + other.area_of_bends;
   NormalVariation result;
   result.touch = area > 0.0;

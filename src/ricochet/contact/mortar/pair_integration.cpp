@@ -28,23 +28,23 @@ void PairIntegration::add_facet(int facet, const Eigen::Vector3d& normal, const 
   const std::vector<Index> anchors = functions_.anchors;
   for (std::size_t k = 0; k < anchors.size(); ++k)
     sums_[anchors[k]].whole += functions_.values.row(static_cast<Index>(k)).dot(quadrature_.measure);
-  std::vector<char> done(anchors.size(), 0), takes_part(anchors.size(), 0);
+  std::vector<char> done(anchors.size(), 0), included(anchors.size(), 0);
   for (std::size_t k = 0; k < anchors.size(); ++k) {
     if (done[k] != 0) continue;
     const Eigen::Vector3d& direction = directions_.at(anchors[k]);
     for (std::size_t i = 0; i < anchors.size(); ++i) {
-      takes_part[i] = directions_.at(anchors[i]) == direction ? 1 : 0;
-      done[i] = static_cast<char>(done[i] | takes_part[i]);
+      included[i] = directions_.at(anchors[i]) == direction ? 1 : 0;
+      done[i] = static_cast<char>(done[i] | included[i]);
     }
     if (direction == -normal) {
-      add_segments(facet, direct, takes_part);
+      add_segments(facet, direct, included);
     } else {
-      add_segments(facet, finder_.find(facet, direction), takes_part);
+      add_segments(facet, finder_.find(facet, direction), included);
     }
   }
 }
 
-void PairIntegration::add_segments(int facet, const FacetSegments& segments, const std::vector<char>& takes_part) {
+void PairIntegration::add_segments(int facet, const FacetSegments& segments, const std::vector<char>& included) {
   lost_ += segments.lost;
   if (segments.segments.empty()) return;
   const Index number = own_.facets()[static_cast<std::size_t>(facet)].number;
@@ -53,8 +53,8 @@ void PairIntegration::add_segments(int facet, const FacetSegments& segments, con
   space_.evaluate(at, functions_);
   const Matrix weighted = functions_.values * at.measure.asDiagonal();
   const Matrix own = weighted * points_.displacement.transpose();
-  for (std::size_t k = 0; k < takes_part.size(); ++k) {
-    if (takes_part[k] == 0) continue;
+  for (std::size_t k = 0; k < included.size(); ++k) {
+    if (included[k] == 0) continue;
     MultiplierSums& sums = sums_[functions_.anchors[k]];
     const auto row = static_cast<Index>(k);
     sums.weight += weighted.row(row).sum();
@@ -67,12 +67,12 @@ void PairIntegration::add_segments(int facet, const FacetSegments& segments, con
     const Index count = segment.weights.size();
     map_.displacement(segment.opposite, segment.opposite_local, values);
     map_.positions(segment.opposite, segment.opposite_local, positions);
-    const IndexInBlocks place = locate_facet(*body_.space, segment.opposite);
-    const Index* const nodes = body_.space->facets[place.block].cell(place.local);
+    const IndexInBlocks location = locate_facet(*body_.space, segment.opposite);
+    const Index* const nodes = body_.space->facets[location.block].cell(location.local);
     const Matrix opposite = weighted.middleCols(begin, count) * values.transpose();
     const Points apart = at.positions.middleCols(begin, count) - positions;
-    for (std::size_t k = 0; k < takes_part.size(); ++k) {
-      if (takes_part[k] == 0) continue;
+    for (std::size_t k = 0; k < included.size(); ++k) {
+      if (included[k] == 0) continue;
       MultiplierSums& sums = sums_[functions_.anchors[k]];
       const auto row = static_cast<Index>(k);
       for (Index j = 0; j < opposite.cols(); ++j) sums.opposite[nodes[j]] += opposite(row, j);
@@ -91,8 +91,8 @@ void PressureTransfer::add_facet(Index facet, const FacetSegments& direct) {
   for (const SurfaceSegment& segment : direct.segments) {
     const Index count = segment.weights.size();
     map_.hats(segment.opposite, segment.opposite_local, hats_);
-    const IndexInBlocks place = locate_facet(*body_.space, segment.opposite);
-    const Index* const nodes = body_.space->facets[place.block].cell(place.local);
+    const IndexInBlocks location = locate_facet(*body_.space, segment.opposite);
+    const Index* const nodes = body_.space->facets[location.block].cell(location.local);
     const Matrix weighted = hats_ * points_.quadrature.measure.segment(begin, count).asDiagonal();
     const Matrix products = weighted * points_.hats.middleCols(begin, count).transpose();
     for (Index a = 0; a < products.rows(); ++a) {

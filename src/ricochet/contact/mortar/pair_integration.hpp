@@ -32,7 +32,7 @@ class PairIntegration {
   [[nodiscard]] Index lost() const { return lost_; }
 
  private:
-  void add_segments(int facet, const FacetSegments& segments, const std::vector<char>& takes_part);
+  void add_segments(int facet, const FacetSegments& segments, const std::vector<char>& included);
 
   const FacetMap& map_;
   const FacetSurface& own_;

@@ -14,19 +14,20 @@ PressureRows rows_between_vertices(const PairedSurfaces& surfaces, const Pressur
   PressureRows middles;
   const DisplacementSpace& space = *surfaces.body.space;
   for (const FacetSurface::Facet& facet : surfaces.opposite.facets()) {
-    const IndexInBlocks place = locate_facet(space, facet.number);
-    const CellBlock& block = space.facets[place.block];
+    const IndexInBlocks location = locate_facet(space, facet.number);
+    const CellBlock& block = space.facets[location.block];
     const auto& vertices_of = node_vertices(block.shape, space.degree);
     for (std::size_t k = 0; k < vertices_of.size(); ++k) {
-      const Index node = block.cell(place.local)[k];
+      const Index node = block.cell(location.local)[k];
       if (vertices_of[k].size() == 1 || middles.contains(node)) continue;
-      std::vector<const std::map<int, double>*> known;
+      std::vector<const std::map<int, double>*> vertex_rows;
       for (const int v : vertices_of[k]) {
-        const auto row = rows.find(block.cell(place.local)[v]);
-        if (row != rows.end()) known.push_back(&row->second);
+        const auto row = rows.find(block.cell(location.local)[v]);
+        if (row != rows.end()) vertex_rows.push_back(&row->second);
       }
-      for (const auto* row : known) {
-        for (const auto& [number, value] : *row) middles[node][number] += value / static_cast<double>(known.size());
+      for (const auto* row : vertex_rows) {
+        for (const auto& [number, value] : *row)
+          middles[node][number] += value / static_cast<double>(vertex_rows.size());
       }
     }
   }
@@ -68,9 +69,9 @@ std::vector<BodyContact::Node> nodes_of_points(const PairedSurfaces& surfaces, c
       with_others(areas_around_faced_nodes(surfaces, direct), surfaces, surfaces.opposite);
   std::vector<BodyContact::Node> result;
   for (const Index node : own_nodes) {
-    const auto known = directions.find(node);
+    const auto found = directions.find(node);
     const Eigen::Vector3d direction =
-        known != directions.end() ? known->second : Eigen::Vector3d(-own_areas.at(node).vector.normalized());
+        found != directions.end() ? found->second : Eigen::Vector3d(-own_areas.at(node).vector.normalized());
     result.push_back(surfaces.node_facing(node, true, direction));
   }
   for (const Index node : opposite_nodes)

@@ -50,10 +50,10 @@ std::map<Index, AreaSum> areas_around_nodes(const Body& body, const FacetSurface
   std::map<Index, AreaSum> result;
   for (const FacetSurface::Facet& facet : surface.facets()) {
     if (only != nullptr && !only->contains(facet.number)) continue;
-    const IndexInBlocks place = locate_facet(*body.space, facet.number);
-    const CellBlock& block = body.space->facets[place.block];
+    const IndexInBlocks location = locate_facet(*body.space, facet.number);
+    const CellBlock& block = body.space->facets[location.block];
     for (int k = 0; k < block.nodes_per_cell; ++k) {
-      AreaSum& sum = result[block.cell(place.local)[k]];
+      AreaSum& sum = result[block.cell(location.local)[k]];
       sum.vector += facet.area_vector;
       sum.size += facet.area;
     }
@@ -87,14 +87,14 @@ BodyContact::Node PairedSurfaces::node_facing(Index node, bool is_own, const Vec
   if (hit.facet < 0) return result;
   Matrix values;
   map.displacement(hit.facet, hit.local, values);
-  const IndexInBlocks place = locate_facet(*body.space, hit.facet);
-  const Index* const nodes = body.space->facets[place.block].cell(place.local);
-  Vector seen = body.space->nodes.col(node);
+  const IndexInBlocks location = locate_facet(*body.space, hit.facet);
+  const Index* const nodes = body.space->facets[location.block].cell(location.local);
+  Vector gap_vector = body.space->nodes.col(node);
   std::map<Index, double> sums;
   for (Index k = 0; k < values.rows(); ++k) sums[nodes[k]] += values(k, 0);
   result.opposite = fractions(sums, 1.0);
-  for (const auto& [other, weight] : result.opposite) seen -= weight * body.space->nodes.col(other);
-  result.gap = result.normal.dot(seen);
+  for (const auto& [other, weight] : result.opposite) gap_vector -= weight * body.space->nodes.col(other);
+  result.gap = result.normal.dot(gap_vector);
   return result;
 }
 

@@ -44,13 +44,13 @@ struct SegmentFinder::View {
     if (!plane) result.col(1) = second;
     return result;
   }
-  [[nodiscard]] PlanePoint seen(const Vector3& point) const { return {first.dot(point), second.dot(point)}; }
+  [[nodiscard]] PlanePoint project(const Vector3& point) const { return {first.dot(point), second.dot(point)}; }
 
   [[nodiscard]] ProjectedPiece flatten(const FacetSurface::Piece& piece) const {
     ProjectedPiece flat;
     std::array<double, 3> heights{};
     for (std::size_t k = 0; k < 3; ++k) {
-      flat.corners[k] = seen(piece.corners[k]);
+      flat.corners[k] = project(piece.corners[k]);
       heights[k] = direction.dot(piece.corners[k]);
     }
     const PlanePoint a = flat.corners[1] - flat.corners[0], b = flat.corners[2] - flat.corners[0];
@@ -83,8 +83,8 @@ struct SegmentFinder::Cut {
 
 namespace {
 
-bool is_among(const std::vector<int>& places, int facet) {
-  return std::binary_search(places.begin(), places.end(), facet);
+bool is_among(const std::vector<int>& facets, int facet) {
+  return std::binary_search(facets.begin(), facets.end(), facet);
 }
 
 /// Whether the extent of a box along a unit vector overlaps the interval.
@@ -107,17 +107,17 @@ void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std:
   const FacetSurface::Piece& piece = own_.pieces()[static_cast<std::size_t>(number)];
   if (-view.direction.dot(piece.normal) < edge_on) return;
   const ProjectedPiece own = view.flatten(piece);
-  BoxTree::Box seen;  // plane coordinates and height
+  BoxTree::Box view_box;  // plane coordinates and height
   for (const Vector3& corner : piece.corners) {
-    const PlanePoint at = view.seen(corner);
-    seen.extend(Vector3(at[0], at[1], view.direction.dot(corner)));
+    const PlanePoint at = view.project(corner);
+    view_box.extend(Vector3(at[0], at[1], view.direction.dot(corner)));
   }
   constexpr double infinite = std::numeric_limits<double>::infinity();
   const double own_height = any_depth ? infinite : own_.facets()[static_cast<std::size_t>(piece.facet)].height;
   const auto may_face = [&](const BoxTree::Box& box) {
-    return overlaps(box, view.first, seen.min()[0], seen.max()[0]) &&
-           (view.plane || overlaps(box, view.second, seen.min()[1], seen.max()[1])) &&
-           overlaps(box, view.direction, -infinite, seen.max()[2] + own_height);
+    return overlaps(box, view.first, view_box.min()[0], view_box.max()[0]) &&
+           (view.plane || overlaps(box, view.second, view_box.min()[1], view_box.max()[1])) &&
+           overlaps(box, view.direction, -infinite, view_box.max()[2] + own_height);
   };
   opposite_.tree().visit(may_face, [&](int other) {
     const FacetSurface::Piece& candidate = opposite_.pieces()[static_cast<std::size_t>(other)];
@@ -189,9 +189,9 @@ void SegmentFinder::add_points(const View& view, const std::vector<Cut>& cuts,
 /// is so curved that it is seen edge-on.
 bool SegmentFinder::find_coordinates(Index facet, const Points& axes, SurfaceSegment& segment) const {
   const Points plane = segment.own_local;
-  const auto seen_at = [&](const Vector& shift) { return Points(plane.colwise() - axes.transpose() * shift); };
-  return map_.invert(facet, axes, seen_at(own_.shift()), segment.own_local) &&
-         map_.invert(segment.opposite, axes, seen_at(opposite_.shift()), segment.opposite_local);
+  const auto in_plane = [&](const Vector& shift) { return Points(plane.colwise() - axes.transpose() * shift); };
+  return map_.invert(facet, axes, in_plane(own_.shift()), segment.own_local) &&
+         map_.invert(segment.opposite, axes, in_plane(opposite_.shift()), segment.opposite_local);
 }
 
 FacetSegments SegmentFinder::find(int facet, const Vector3& direction, bool any_depth) const {
@@ -199,12 +199,12 @@ FacetSegments SegmentFinder::find(int facet, const Vector3& direction, bool any_
   FacetSegments result;
   result.axes = view.axes();
   const FacetSurface::Facet& own = own_.facets()[static_cast<std::size_t>(facet)];
-  double seen = 0.0;
+  double projected_area = 0.0;
   std::vector<Cut> cuts;
   for (int piece = own.first_piece; piece < own.first_piece + own.piece_count; ++piece) {
     cuts.clear();
     cut_piece(view, piece, any_depth, cuts);
-    seen += view.flatten(own_.pieces()[static_cast<std::size_t>(piece)]).area;
+    projected_area += view.flatten(own_.pieces()[static_cast<std::size_t>(piece)]).area;
     add_points(view, cuts, result.segments);
   }
   std::erase_if(result.segments, [](const SurfaceSegment& segment) { return segment.weights.size() == 0; });
@@ -212,7 +212,7 @@ FacetSegments SegmentFinder::find(int facet, const Vector3& direction, bool any_
       result.segments, [&](SurfaceSegment& segment) { return !find_coordinates(own.number, result.axes, segment); }));
   double faced = 0.0;
   for (const SurfaceSegment& segment : result.segments) faced += segment.weights.sum();
-  result.covered = seen > 0.0 ? faced / seen : 0.0;
+  result.covered = projected_area > 0.0 ? faced / projected_area : 0.0;
   return result;
 }
 
@@ -231,15 +231,15 @@ void SegmentFinder::visit_pieces_at(const View& view, const PlanePoint& at, doub
 }
 
 SegmentFinder::Hit SegmentFinder::find_point(const Vector3& point, const Vector3& direction, double reach,
-                                             double beyond, const std::vector<int>& unseen) const {
+                                             double beyond, const std::vector<int>& ignored_facets) const {
   const View view(static_cast<int>(own_.shift().size()), direction);
-  const PlanePoint at = view.seen(point);
+  const PlanePoint at = view.project(point);
   const double height = direction.dot(point);
   Hit best;
   int best_piece = -1;
   visit_pieces_at(view, at, beyond, [&](int number, const FacetSurface::Piece& piece, const ProjectedPiece& flat) {
     const double gap = height - flat.height_at(at);
-    if (gap < -reach || is_among(unseen, piece.facet) || !flat.covers(at, view.plane, beyond)) return;
+    if (gap < -reach || is_among(ignored_facets, piece.facet) || !flat.covers(at, view.plane, beyond)) return;
     const bool is_nearer = best_piece < 0 || std::abs(gap) < std::abs(best.gap) ||
                            (std::abs(gap) == std::abs(best.gap) && number < best_piece);
     if (!is_nearer) return;
@@ -260,7 +260,7 @@ double SegmentFinder::thickness_behind(int facet) const {
   const FacetSurface::Facet& own = own_.facets()[static_cast<std::size_t>(facet)];
   const Vector3 direction = -own.area_vector.normalized();
   const View view(static_cast<int>(own_.shift().size()), direction);
-  const PlanePoint at = view.seen(own.centre);
+  const PlanePoint at = view.project(own.centre);
   const double height = direction.dot(own.centre);
   double nearest = std::numeric_limits<double>::infinity();
   visit_pieces_at(view, at, on_rim, [&](int, const FacetSurface::Piece&, const ProjectedPiece& flat) {

@@ -40,7 +40,7 @@ class SegmentFinder {
 
   /// Sets for each own facet the opposite facets to be ignored, by their indices in facets(), ascending: those in its
   /// neighbourhood if both surfaces are one.
-  void set_ignored_facets(std::vector<std::vector<int>> unseen) { ignored_facets_ = std::move(unseen); }
+  void set_ignored_facets(std::vector<std::vector<int>> facets) { ignored_facets_ = std::move(facets); }
 
   /// Finds the segments of own facet number `facet` in own.facets(). `direction`: unit, out of the opposite surface.
   /// Pieces that are seen nearly edge-on, or do not face each other, are ignored, and so are those that overlap by more
@@ -57,10 +57,10 @@ class SegmentFinder {
     double gap = 0.0;  ///< along the direction
   };
   /// Projects a point. `reach`: admissible depth inside the opposite surface. `beyond`: admissible distance outside
-  /// the surface's boundary, in sizes of a facet, over which it is extrapolated. `unseen`: opposite facets to be
-  /// ignored, by index, ascending.
+  /// the surface's boundary, in sizes of a facet, over which it is extrapolated. `ignored_facets`: opposite facets to
+  /// be ignored, by index, ascending.
   [[nodiscard]] Hit find_point(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, double reach,
-                               double beyond = on_rim, const std::vector<int>& unseen = {}) const;
+                               double beyond = on_rim, const std::vector<int>& ignored_facets = {}) const;
   /// Thickness of the body behind an own facet: from its centre against its normal to the nearest opposite
   /// piece. Infinite if there is none.
   [[nodiscard]] double thickness_behind(int facet) const;

@@ -54,9 +54,9 @@ std::vector<TiedNodes::Tie> solve_ties(const BodyContact& contact) {
     const auto row = static_cast<int>(i);
     for (const auto& [node, weight] : contact.multipliers[i].trace) {
       if (weight == 0.0) continue;
-      const auto known = number.find(node);
-      if (known != number.end()) {
-        own.emplace_back(row, known->second, weight);
+      const auto found = number.find(node);
+      if (found != number.end()) {
+        own.emplace_back(row, found->second, weight);
       } else {
         others.emplace_back(row, column_of(node), -weight);
       }
@@ -100,8 +100,8 @@ double distance_from_geometry(const TiedNodes& tied, const Mesh& mesh, const Dis
   double largest = 0.0;
   for (std::size_t b = 0; b < space.facets.size(); ++b) {
     const CellBlock &nodes = space.facets[b], &geometry = mesh.facets[b];
-    const Points& places = ReferenceElement::get(nodes.shape, space.degree).nodes();
-    const Tabulation map = ReferenceElement::get(nodes.shape, mesh.degree).tabulate(places);
+    const Points& points = ReferenceElement::get(nodes.shape, space.degree).nodes();
+    const Tabulation map = ReferenceElement::get(nodes.shape, mesh.degree).tabulate(points);
     for (Index facet = 0; facet < nodes.size(); ++facet) {
       Points corners(mesh.dimension, geometry.nodes_per_cell);
       for (int k = 0; k < geometry.nodes_per_cell; ++k) corners.col(k) = mesh.nodes.col(geometry.cell(facet)[k]);

@@ -53,11 +53,11 @@ class MultiplierSpace {
 
   /// All multipliers of the patch, by ascending anchor. Those that can only act on supports may be omitted.
   [[nodiscard]] virtual std::vector<Multiplier> multipliers() const = 0;
-  /// Recovers the pressure at nodes from reactions: entries (node, number of the multiplier in `kept`, value) of
-  /// the matrix P in p = P r. `kept` are the multipliers in use: the others are zero. Between bodies D_i and c_ij
+  /// Recovers the pressure at nodes from reactions: entries (node, number of the multiplier in `retained`, value) of
+  /// the matrix P in p = P r. `retained` are the multipliers in use: the others are zero. Between bodies D_i and c_ij
   /// are those of the covered part.
   [[nodiscard]] virtual std::vector<Eigen::Triplet<double>> pressure_recovery(
-      const std::vector<Multiplier>& kept) const = 0;
+      const std::vector<Multiplier>& retained) const = 0;
   /// Whether multipliers are functions; false for nodal forces, which are conditions at nodes. `evaluate` then returns
   /// a basis of their L² representatives.
   [[nodiscard]] virtual bool has_functions() const { return true; }

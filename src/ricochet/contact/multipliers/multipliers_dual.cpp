@@ -35,9 +35,9 @@ class DualMultipliers final : public MultiplierSpace {
     if (space.degree == 1) return;
     for (const ContactPatch::Part& part : patch.parts) {
       for (const Index facet : part.facets) {
-        const IndexInBlocks place = locate_facet(space, facet);
-        const CellBlock& block = space.facets[place.block];
-        const Index* nodes = block.cell(place.local);
+        const IndexInBlocks location = locate_facet(space, facet);
+        const CellBlock& block = space.facets[location.block];
+        const Index* nodes = block.cell(location.local);
         if (block.shape != CellShape::triangle && !ends_on_axis(nodes)) continue;
         const auto& vertices_of = node_vertices(block.shape, 2);
         for (std::size_t k = 0; k < vertices_of.size(); ++k) {
@@ -71,11 +71,11 @@ class DualMultipliers final : public MultiplierSpace {
   /// Recovers the continuous field Σ λ_i φ̃_i at the nodes; if supports have removed a vertex,
   /// the mean of the remaining ones.
   [[nodiscard]] std::vector<Eigen::Triplet<double>> pressure_recovery(
-      const std::vector<Multiplier>& kept) const override {
+      const std::vector<Multiplier>& retained) const override {
     std::map<Index, int> number;
-    for (std::size_t i = 0; i < kept.size(); ++i) number[kept[i].node] = static_cast<int>(i);
+    for (std::size_t i = 0; i < retained.size(); ++i) number[retained[i].node] = static_cast<int>(i);
     std::vector<Eigen::Triplet<double>> result;
-    for (const Multiplier& multiplier : kept) {
+    for (const Multiplier& multiplier : retained) {
       std::vector<std::pair<Index, double>> shares{{multiplier.node, 1.0}};
       const auto middle = transformed_.find(multiplier.node);
       if (middle != transformed_.end()) {
@@ -88,7 +88,7 @@ class DualMultipliers final : public MultiplierSpace {
       for (const auto& [anchor, share] : shares) {
         const int at = number.at(anchor);
         result.emplace_back(static_cast<int>(multiplier.node), at,
-                            share / (sum * kept[static_cast<std::size_t>(at)].weight));
+                            share / (sum * retained[static_cast<std::size_t>(at)].weight));
       }
     }
     return result;

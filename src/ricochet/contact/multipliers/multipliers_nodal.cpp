@@ -27,9 +27,9 @@ Vector nodal_weights(const Body& body, const std::vector<Index>& facets) {
 std::map<Index, std::vector<Index>> middle_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
   std::map<Index, std::vector<Index>> middles;
   for (const Index facet : facets) {
-    const IndexInBlocks place = locate_facet(space, facet);
-    const CellBlock& block = space.facets[place.block];
-    const Index* nodes = block.cell(place.local);
+    const IndexInBlocks location = locate_facet(space, facet);
+    const CellBlock& block = space.facets[location.block];
+    const Index* nodes = block.cell(location.local);
     const auto& support = node_vertices(block.shape, space.degree);
     for (std::size_t k = 0; k < support.size(); ++k) {
       if (support[k].size() == 1) continue;
@@ -69,13 +69,13 @@ class NodalMultipliers final : public MultiplierSpace {
   }
 
   [[nodiscard]] std::vector<Eigen::Triplet<double>> pressure_recovery(
-      const std::vector<Multiplier>& kept) const override {
-    const auto count = static_cast<Index>(kept.size());
+      const std::vector<Multiplier>& retained) const override {
+    const auto count = static_cast<Index>(retained.size());
     std::map<Index, Index> number;
     Vector own_weights(count);
     for (Index i = 0; i < count; ++i) {
-      number[kept[static_cast<std::size_t>(i)].node] = i;
-      own_weights[i] = kept[static_cast<std::size_t>(i)].weight;
+      number[retained[static_cast<std::size_t>(i)].node] = i;
+      own_weights[i] = retained[static_cast<std::size_t>(i)].weight;
     }
     // gathering(a, j) = ψ_a(x_j): the identity with degree 1.
     SparseRowMatrix gathering(count, count), spreading(count, count);
@@ -88,8 +88,8 @@ class NodalMultipliers final : public MultiplierSpace {
     std::vector<Eigen::Triplet<double>> result;
     for (Index row = 0; row < count; ++row) {
       for (SparseRowMatrix::InnerIterator entry(recovery, row); entry; ++entry) {
-        result.emplace_back(static_cast<int>(kept[static_cast<std::size_t>(row)].node), static_cast<int>(entry.col()),
-                            entry.value());
+        result.emplace_back(static_cast<int>(retained[static_cast<std::size_t>(row)].node),
+                            static_cast<int>(entry.col()), entry.value());
       }
     }
     return result;
@@ -111,15 +111,15 @@ class NodalMultipliers final : public MultiplierSpace {
       for (const auto& [node, vertices] : middle_nodes(*patch().body->space, part.facets)) {
         const auto point = number.find(node);
         if (point == number.end() || is_middle[static_cast<std::size_t>(point->second)] != 0) continue;
-        std::vector<Index> known;
+        std::vector<Index> retained_vertices;
         for (const Index vertex : vertices) {
           const auto found = number.find(vertex);
-          if (found != number.end()) known.push_back(found->second);
+          if (found != number.end()) retained_vertices.push_back(found->second);
         }
         // If supports have removed the vertices, the mid-side node keeps its own force.
-        is_middle[static_cast<std::size_t>(point->second)] = known.empty() ? 0 : 1;
-        for (const Index vertex : known) {
-          const double share = 1.0 / static_cast<double>(known.size());
+        is_middle[static_cast<std::size_t>(point->second)] = retained_vertices.empty() ? 0 : 1;
+        for (const Index vertex : retained_vertices) {
+          const double share = 1.0 / static_cast<double>(retained_vertices.size());
           gather.emplace_back(static_cast<int>(vertex), static_cast<int>(point->second), share);
           spread.emplace_back(static_cast<int>(point->second), static_cast<int>(vertex), share);
         }

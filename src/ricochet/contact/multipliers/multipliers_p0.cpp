@@ -17,14 +17,14 @@ class P0Multipliers final : public MultiplierSpace {
   }
 
   [[nodiscard]] std::vector<Eigen::Triplet<double>> pressure_recovery(
-      const std::vector<Multiplier>& kept) const override {
+      const std::vector<Multiplier>& retained) const override {
     std::map<Index, double> area;  // of the facets at a node
-    for (const Multiplier& multiplier : kept) {
+    for (const Multiplier& multiplier : retained) {
       for (const auto& [node, weight] : multiplier.trace) area[node] += multiplier.weight;
     }
     std::vector<Eigen::Triplet<double>> result;
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      for (const auto& [node, weight] : kept[i].trace) {
+    for (std::size_t i = 0; i < retained.size(); ++i) {
+      for (const auto& [node, weight] : retained[i].trace) {
         result.emplace_back(static_cast<int>(node), static_cast<int>(i), 1.0 / area.at(node));
       }
     }

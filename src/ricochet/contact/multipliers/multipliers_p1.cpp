@@ -21,29 +21,30 @@ class P1Multipliers final : public MultiplierSpace {
   }
 
   [[nodiscard]] std::vector<Eigen::Triplet<double>> pressure_recovery(
-      const std::vector<Multiplier>& kept) const override {
+      const std::vector<Multiplier>& retained) const override {
     std::map<Index, int> number;
-    for (std::size_t i = 0; i < kept.size(); ++i) number[kept[i].node] = static_cast<int>(i);
+    for (std::size_t i = 0; i < retained.size(); ++i) number[retained[i].node] = static_cast<int>(i);
     const DisplacementSpace& space = *patch().body->space;
     std::set<Index> done;
     std::vector<Eigen::Triplet<double>> result;
     for (const ContactPatch::Part& part : patch().parts) {
       for (const Index facet : part.facets) {
-        const IndexInBlocks place = locate_facet(space, facet);
-        const CellBlock& block = space.facets[place.block];
-        const Index* nodes = block.cell(place.local);
+        const IndexInBlocks location = locate_facet(space, facet);
+        const CellBlock& block = space.facets[location.block];
+        const Index* nodes = block.cell(location.local);
         const auto& vertices_of = node_vertices(block.shape, space.degree);
         for (std::size_t k = 0; k < vertices_of.size(); ++k) {
           const Index node = nodes[k];
           if (!done.insert(node).second) continue;
-          std::vector<int> known;
+          std::vector<int> retained_vertices;
           for (const int v : vertices_of[k]) {
             const auto vertex = number.find(nodes[v]);
-            if (vertex != number.end()) known.push_back(vertex->second);
+            if (vertex != number.end()) retained_vertices.push_back(vertex->second);
           }
-          for (const int vertex : known) {
-            const double weight = kept[static_cast<std::size_t>(vertex)].weight;
-            result.emplace_back(static_cast<int>(node), vertex, 1.0 / (weight * static_cast<double>(known.size())));
+          for (const int vertex : retained_vertices) {
+            const double weight = retained[static_cast<std::size_t>(vertex)].weight;
+            result.emplace_back(static_cast<int>(node), vertex,
+                                1.0 / (weight * static_cast<double>(retained_vertices.size())));
           }
         }
       }
@@ -54,10 +55,10 @@ class P1Multipliers final : public MultiplierSpace {
   void evaluate(const FacetQuadrature& facet, FacetMultipliers& result) const override {
     result.anchors.clear();
     std::vector<Index> free;
-    Eigen::RowVectorXd held = Eigen::RowVectorXd::Zero(facet.measure.size());
+    Eigen::RowVectorXd supported = Eigen::RowVectorXd::Zero(facet.measure.size());
     for (Index v = 0; v < facet.vertex_count(); ++v) {
       if (is_supported(facet.nodes[v])) {
-        held += facet.hats->row(v);
+        supported += facet.hats->row(v);
         continue;
       }
       free.push_back(v);
@@ -65,7 +66,8 @@ class P1Multipliers final : public MultiplierSpace {
     }
     result.values.resize(static_cast<Index>(free.size()), facet.measure.size());
     for (std::size_t k = 0; k < free.size(); ++k) {
-      result.values.row(static_cast<Index>(k)) = facet.hats->row(free[k]) + held / static_cast<double>(free.size());
+      result.values.row(static_cast<Index>(k)) =
+          facet.hats->row(free[k]) + supported / static_cast<double>(free.size());
     }
   }
 };

@@ -6,9 +6,9 @@
 namespace ricochet {
 
 BroadPhase::BroadPhase(const std::vector<std::unique_ptr<SlidingPair>>& pairs, const Points& nodes) : nodes_(nodes) {
-  std::map<std::vector<Index>, int> known;
+  std::map<std::vector<Index>, int> numbers;
   const auto surface_of = [&](const SlidingPair& pair, const std::vector<Index>& facets) {
-    const auto [entry, is_new] = known.try_emplace(facets, static_cast<int>(surfaces_.size()));
+    const auto [entry, is_new] = numbers.try_emplace(facets, static_cast<int>(surfaces_.size()));
     if (is_new) surfaces_.push_back({facet_nodes(*pair.data().body.space, facets), {}, 0.0});
     return entry->second;
   };
@@ -25,12 +25,12 @@ void BroadPhase::move(const Vector& displacement, const Vector* start) {
     surface.box.setEmpty();
     surface.way = 0.0;
     for (const Index node : surface.nodes) {
-      const SlidingVector place = place_of(nodes_, node, displacement);
-      surface.box.extend(place);
+      const SlidingVector position = current_position(nodes_, node, displacement);
+      surface.box.extend(position);
       if (start == nullptr) continue;
-      const SlidingVector before = place_of(nodes_, node, *start);
+      const SlidingVector before = current_position(nodes_, node, *start);
       surface.box.extend(before);
-      surface.way = std::max(surface.way, (place - before).norm());
+      surface.way = std::max(surface.way, (position - before).norm());
     }
   }
 }

@@ -72,17 +72,17 @@ void MovingSurfaces::enable_self_contact() {
     result.erase(std::unique(result.begin(), result.end()), result.end());
     return result;
   };
-  std::vector<std::vector<int>> unseen;
+  std::vector<std::vector<int>> ignored_facets;
   std::vector<double> depths;
   for (int facet = 0; facet < static_cast<int>(nodes_of.size()); ++facet) {
-    unseen.push_back(widen(widen({facet})));
+    ignored_facets.push_back(widen(widen({facet})));
     const double height = own_.facets()[static_cast<std::size_t>(facet)].height;
     const double through = finder_.thickness_behind(facet);
     depths.push_back(std::isfinite(through) ? squeezed * through : height);
   }
   for (const auto& [node, facets] : at_node) ignored_facets_of_[node] = widen(facets);
   facets_at_ = std::move(at_node);
-  finder_.set_ignored_facets(std::move(unseen));
+  finder_.set_ignored_facets(std::move(ignored_facets));
   own_.set_depths(depths);
   opposite_.set_depths(depths);
 }
@@ -97,8 +97,8 @@ double MovingSurfaces::depth_at(Index node) const {
 
 const std::vector<int>& MovingSurfaces::ignored_facets_of(Index node) const {
   static const std::vector<int> none;
-  const auto known = ignored_facets_of_.find(node);
-  return known != ignored_facets_of_.end() ? known->second : none;
+  const auto found = ignored_facets_of_.find(node);
+  return found != ignored_facets_of_.end() ? found->second : none;
 }
 
 void MovingSurfaces::move(const Vector& displacement) {

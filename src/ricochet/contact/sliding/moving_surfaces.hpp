@@ -18,8 +18,8 @@ class MovingSurfaces {
   /// Moves the surfaces to X + U. Does nothing if they are there already.
   void move(const Vector& displacement);
 
-  /// Prepares a surface for contact with itself: facets ignore those within two rings around them, and
-  /// those on the far side of the body.
+  /// Prepares a surface for contact with itself: facets ignore those within two rings around them, and accept a depth
+  /// of at most half the thickness of the body, so that its far side is not taken for a surface that was passed.
   void enable_self_contact();
 
   [[nodiscard]] const FacetMap& map() const { return map_; }
@@ -28,6 +28,7 @@ class MovingSurfaces {
   [[nodiscard]] const SegmentFinder& finder() const { return finder_; }
   /// Nodes of both surfaces, ascending.
   [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
+  /// Current position of one of these nodes.
   [[nodiscard]] Eigen::Vector3d position(Index node) const;
   /// Least depth of the body behind the facets around a node of the own surface.
   [[nodiscard]] double depth_at(Index node) const;
@@ -38,7 +39,7 @@ class MovingSurfaces {
 
  private:
   const Body& reference_body_;
-  Mesh mesh_;  ///< of the displacement's nodes, at their current positions
+  Mesh mesh_;  ///< of the displacement's nodes; those in nodes() at their current positions
   Body body_;
   FacetMap reference_, map_;
   FacetSurface own_, opposite_;

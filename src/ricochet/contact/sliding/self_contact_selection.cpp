@@ -13,9 +13,9 @@ namespace {
 constexpr double at_the_rim = 1e-3;
 
 template <class Visit>
-void visit_seen(const SlidingView& view, double sees, const Visit& visit) {
+void visit_faced_nodes(const SlidingView& view, double least_weight, const Visit& visit) {
   for (const auto& [node, weight] : view.opposite) {
-    if (std::abs(weight) >= sees) visit(node);
+    if (std::abs(weight) >= least_weight) visit(node);
   }
 }
 
@@ -23,9 +23,9 @@ void visit_seen(const SlidingView& view, double sees, const Visit& visit) {
 
 SelfContactSelection::SelfContactSelection(const SlidingPair& pair, Index nodes, int degree)
     : choices_(pair.points().size(), Choice::none),
-      is_seen_(static_cast<std::size_t>(nodes)),
+      is_faced_(static_cast<std::size_t>(nodes)),
       is_anchor_(static_cast<std::size_t>(nodes)),
-      sees_(degree == 1 ? at_the_rim : 0.0) {
+      least_weight_(degree == 1 ? at_the_rim : 0.0) {
   std::map<Index, std::vector<std::size_t>> at_node;
   for (std::size_t i = 0; i < pair.points().size(); ++i) {
     const Multiplier& multiplier = pair.points()[i].multiplier;
@@ -49,42 +49,43 @@ bool SelfContactSelection::is_free(std::size_t point) const {
   const SlidingView* const view = views_[point];
   if (view == nullptr || !view->faces) return false;
   bool result = std::none_of(anchors_[point].begin(), anchors_[point].end(),
-                             [&](Index node) { return is_seen_[static_cast<std::size_t>(node)] != 0; });
-  visit_seen(*view, sees_, [&](Index node) { result = result && is_anchor_[static_cast<std::size_t>(node)] == 0; });
+                             [&](Index node) { return is_faced_[static_cast<std::size_t>(node)] != 0; });
+  visit_faced_nodes(*view, least_weight_,
+                    [&](Index node) { result = result && is_anchor_[static_cast<std::size_t>(node)] == 0; });
   return result;
 }
 
-void SelfContactSelection::take(std::size_t point) {
+void SelfContactSelection::select(std::size_t point) {
   choices_[point] = Choice::chosen;
-  taken_.push_back(point);
+  selected_.push_back(point);
   for (const Index node : anchors_[point]) is_anchor_[static_cast<std::size_t>(node)] = 1;
-  visit_seen(*views_[point], sees_, [&](Index node) { is_seen_[static_cast<std::size_t>(node)] = 1; });
+  visit_faced_nodes(*views_[point], least_weight_, [&](Index node) { is_faced_[static_cast<std::size_t>(node)] = 1; });
 }
 
 /// Extends the selection to neighbours of selected points, recursively.
 void SelfContactSelection::grow() {
-  for (; grown_ < taken_.size(); ++grown_) {
-    for (const std::size_t next : neighbours_[taken_[grown_]]) {
-      if (choices_[next] == Choice::none && is_free(next)) take(next);
+  for (; grown_ < selected_.size(); ++grown_) {
+    for (const std::size_t next : neighbours_[selected_[grown_]]) {
+      if (choices_[next] == Choice::none && is_free(next)) select(next);
     }
   }
 }
 
 void SelfContactSelection::choose(const std::vector<const SlidingView*>& views) {
   views_ = views;
-  std::fill(is_seen_.begin(), is_seen_.end(), char{0});
+  std::fill(is_faced_.begin(), is_faced_.end(), char{0});
   std::fill(is_anchor_.begin(), is_anchor_.end(), char{0});
-  taken_.clear();
+  selected_.clear();
   grown_ = 0;
   for (std::size_t i = 0; i < choices_.size(); ++i) {
     const bool was_chosen = choices_[i] == Choice::chosen;
     choices_[i] = Choice::none;
-    if (was_chosen && is_free(i)) take(i);
+    if (was_chosen && is_free(i)) select(i);
   }
   grow();
   for (std::size_t i = 0; i < choices_.size(); ++i) {
     if (choices_[i] != Choice::none || !is_free(i)) continue;
-    take(i);
+    select(i);
     grow();
   }
   for (std::size_t i = 0; i < choices_.size(); ++i) {

@@ -30,17 +30,17 @@ class SelfContactSelection {
 
  private:
   [[nodiscard]] bool is_free(std::size_t point) const;
-  void take(std::size_t point);
+  void select(std::size_t point);
   void grow();
 
   std::vector<std::vector<Index>> anchors_;           ///< nodes, of each point
   std::vector<std::vector<std::size_t>> neighbours_;  ///< points whose traces share a node
   std::vector<Choice> choices_;
   std::vector<const SlidingView*> views_;
-  std::vector<char> is_seen_, is_anchor_;  ///< per node: whether it belongs to selected points
-  std::vector<std::size_t> taken_;         ///< in order of selection
+  std::vector<char> is_faced_, is_anchor_;  ///< per node: whether it belongs to selected points
+  std::vector<std::size_t> selected_;       ///< in order of selection
   std::size_t grown_ = 0;
-  double sees_;  ///< least weight on the opposite side with which a point counts as facing a node
+  double least_weight_;  ///< least weight on the opposite side with which a point counts as facing a node
 };
 
 }  // namespace ricochet

@@ -15,7 +15,6 @@ namespace ricochet {
 
 namespace {
 
-using Seen = PairViews;
 using SlidingNode = SlidingContactData::Node;
 using Choice = SelfContactSelection::Choice;
 
@@ -30,7 +29,7 @@ class SlidingContact final : public ContactGeometry {
         at_rest_(Vector::Zero(data_.node_positions.size())),
         pair_views_(data_.pairs.size()),
         apart_(data_.pairs, data_.node_positions),
-        places_(data_.pairs, data_.node_positions.rows()),
+        displacements_(data_.pairs, data_.node_positions.rows()),
         writer_(data_.node_positions),
         couples_(data_.node_positions) {
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
@@ -54,7 +53,7 @@ class SlidingContact final : public ContactGeometry {
       if (pair_views_[k].is_apart && start != nullptr) update_start_views(k, *start);
       // Forces may move points farther in the step than predicted when the rows were computed.
       if (is_step_ && pair_views_[k].has_start)
-        find_far(k, largest_motion(*data_.pairs[k], displacement, pair_views_[k].start_at));
+        find_out_of_reach(k, largest_motion(*data_.pairs[k], displacement, pair_views_[k].start_at));
       update_gap_views(k, displacement);
       for (std::size_t i = 0; i < data_.pairs[k]->points().size(); ++i) gap[number(k, i)] = gap_of(pair_views_[k], i);
     }
@@ -106,19 +105,19 @@ class SlidingContact final : public ContactGeometry {
   }
   void end_step() const override {
     is_frozen_ = false;
-    if (is_step_ && !has_told_) warn_of_long_step();
+    if (is_step_ && !has_warned_) warn_of_long_step();
   }
   [[nodiscard]] bool has_frozen() const override { return has_frozen_; }
 
   void allow_overlap(Vector& gap) const override {
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
-      const Seen& seen = pair_views_[k];
-      if (seen.is_apart) continue;
-      for (std::size_t i = 0; i < seen.at_start.size(); ++i) {
-        const double before = seen.at_start[i].faces ? seen.at_start[i].gap : 0.0;
+      const PairViews& views = pair_views_[k];
+      if (views.is_apart) continue;
+      for (std::size_t i = 0; i < views.at_start.size(); ++i) {
+        const double before = views.at_start[i].faces ? views.at_start[i].gap : 0.0;
         // Held gaps of points that enter already include it.
-        const bool has_it = is_frozen_ && seen.enters(i);
-        if (before < -least_overlap * extent_ && !seen.is_far(i) && !has_it) gap[number(k, i)] -= before;
+        const bool has_it = is_frozen_ && views.enters(i);
+        if (before < -least_overlap * extent_ && !views.is_out_of_reach(i) && !has_it) gap[number(k, i)] -= before;
       }
     }
   }
@@ -133,25 +132,27 @@ class SlidingContact final : public ContactGeometry {
     }
   }
 
-  void add_couples(const Vector& place, const ContactRows& rows, const Vector& normal, const Vector& tangential,
+  void add_couples(const Vector& displacement, const ContactRows& rows, const Vector& normal, const Vector& tangential,
                    Vector& force) const override {
     if (was_frozen_) return;  // forces are those of the rows
-    for (std::size_t k = 0; k < data_.pairs.size(); ++k) add_couples_of(k, place, rows, normal, tangential, force);
+    for (std::size_t k = 0; k < data_.pairs.size(); ++k)
+      add_couples_of(k, displacement, rows, normal, tangential, force);
   }
 
   /// Displacements from which rows were computed, at the end of a step and then at its start, followed by the selected
   /// points and the pairs that were skipped.
   [[nodiscard]] Index row_value_count() const override {
     Index points = 0;
-    for (const Seen& seen : pair_views_) points += seen.chosen ? static_cast<Index>(seen.chosen->choices().size()) : 0;
-    return places_.count() + points + apart_.count();
+    for (const PairViews& views : pair_views_)
+      points += views.chosen ? static_cast<Index>(views.chosen->choices().size()) : 0;
+    return displacements_.count() + points + apart_.count();
   }
   [[nodiscard]] Vector row_values(const ContactRows& rows) const override {
     return rows.sliding_state.size() > 0 ? rows.sliding_state : Vector(Vector::Zero(row_value_count()));
   }
   void restore(const Points&, const Vector&, const Vector& row_values, ContactRows& rows) const override {
     Vector end = Vector::Zero(data_.node_positions.size()), before = end;
-    const bool is_step = places_.read(row_values, end, before);
+    const bool is_step = displacements_.read(row_values, end, before);
     rows.sliding_state = row_values;
     rows.sliding_state.tail(apart_.count()).setZero();  // forces their rows to be written
     const StepStart start{before, 0.0};
@@ -163,8 +164,8 @@ class SlidingContact final : public ContactGeometry {
   [[nodiscard]] Index number(std::size_t pair, std::size_t point) const {
     return data_.pairs[pair]->points()[point].number;
   }
-  [[nodiscard]] double gap_of(const Seen& seen, std::size_t point) const {
-    const SlidingView& view = seen.is_far(point) ? seen.at_start[point] : seen.gaps[point];
+  [[nodiscard]] double gap_of(const PairViews& views, std::size_t point) const {
+    const SlidingView& view = views.is_out_of_reach(point) ? views.at_start[point] : views.gaps[point];
     return view.faces ? view.gap : data_.unpaired_gap;
   }
   [[nodiscard]] const SlidingNode* find_node(Index entry) const {
@@ -177,23 +178,23 @@ class SlidingContact final : public ContactGeometry {
   }
 
   /// Continues the selection from that of the rows, even if other rows were computed in between.
-  void restore_selection(const Vector& places) const {
-    Index at = places_.count();
-    for (Seen& seen : pair_views_) {
-      if (!seen.chosen || places.size() == 0) continue;
-      std::vector<Choice> choices(seen.chosen->choices().size());
-      for (Choice& choice : choices) choice = static_cast<Choice>(std::lround(std::clamp(places[at++], 0.0, 2.0)));
-      seen.chosen->restore(std::move(choices));
+  void restore_selection(const Vector& values) const {
+    Index at = displacements_.count();
+    for (PairViews& views : pair_views_) {
+      if (!views.chosen || values.size() == 0) continue;
+      std::vector<Choice> choices(views.chosen->choices().size());
+      for (Choice& choice : choices) choice = static_cast<Choice>(std::lround(std::clamp(values[at++], 0.0, 2.0)));
+      views.chosen->restore(std::move(choices));
     }
   }
 
   void remember(const Vector& displacement, const StepStart* start, ContactRows& rows) const {
     rows.sliding_state.setZero(row_value_count());
-    places_.write(displacement, start != nullptr ? &start->displacement : nullptr, rows.sliding_state);
-    Index at = places_.count();
-    for (const Seen& seen : pair_views_) {
-      if (!seen.chosen) continue;
-      for (const Choice choice : seen.chosen->choices()) rows.sliding_state[at++] = static_cast<double>(choice);
+    displacements_.write(displacement, start != nullptr ? &start->displacement : nullptr, rows.sliding_state);
+    Index at = displacements_.count();
+    for (const PairViews& views : pair_views_) {
+      if (!views.chosen) continue;
+      for (const Choice choice : views.chosen->choices()) rows.sliding_state[at++] = static_cast<double>(choice);
     }
     for (std::size_t k = 0; k < pair_views_.size(); ++k) {
       if (apart_.may_be_apart(k)) rows.sliding_state[at++] = pair_views_[k].is_apart ? 1.0 : 0.0;
@@ -202,62 +203,63 @@ class SlidingContact final : public ContactGeometry {
 
   /// Computes gaps linearized about the last update.
   void compute_frozen_gaps(std::size_t k, const Vector& displacement, Vector& gap) const {
-    const Seen& seen = pair_views_[k];
+    const PairViews& views = pair_views_[k];
     const Index d = dimension();
-    for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
+    for (std::size_t i = 0; i < views.gaps.size(); ++i) {
       const Index point = number(k, i);
       gap[point] = gap_at_update_[point];
-      if (seen.left_out[i] != 0) continue;
+      if (views.left_out[i] != 0) continue;
       double along_step = 0.0;
-      for (const auto& [node, value] : (seen.enters(i) ? seen.entering[i] : seen.middle[i]).row) {
+      for (const auto& [node, value] : (views.enters(i) ? views.entering[i] : views.middle[i]).row) {
         gap[point] += value.head(d).dot(displacement.segment(node * d, d) - at_update_.segment(node * d, d));
         along_step += value.head(d).dot(writer_.step().segment(node * d, d));
       }
       // As seen from the end of the step such a point starts with penetration: removing it would create energy.
-      if (seen.enters(i)) gap[point] -= std::min(gap_at_update_[point] - along_step, 0.0);
+      if (views.enters(i)) gap[point] -= std::min(gap_at_update_[point] - along_step, 0.0);
     }
   }
 
   void update_gap_views(std::size_t k, const Vector& displacement) const {
-    Seen& seen = pair_views_[k];
-    if (seen.has_gaps && seen.gaps_at == displacement) return;
-    data_.pairs[k]->compute_views(displacement, SlidingPair::Wanted::gap, seen.far, seen.any_depth, seen.gaps);
-    seen.gaps_at = displacement;
-    seen.has_gaps = true;
+    PairViews& views = pair_views_[k];
+    if (views.has_gaps && views.gaps_at == displacement) return;
+    data_.pairs[k]->compute_views(displacement, SlidingPair::Content::gap, views.out_of_reach, views.any_depth,
+                                  views.gaps);
+    views.gaps_at = displacement;
+    views.has_gaps = true;
   }
 
   /// Records which points face something at the start of the step: these admit any depth wherever the step ends.
   void update_start_views(std::size_t k, const Vector& displacement) const {
-    Seen& seen = pair_views_[k];
-    if (seen.has_start && seen.start_at == displacement) return;
-    data_.pairs[k]->compute_views(displacement, SlidingPair::Wanted::gap, {}, {}, seen.at_start);
-    seen.start_at = displacement;
-    seen.has_start = true;
-    seen.any_depth.resize(seen.at_start.size());
-    for (std::size_t i = 0; i < seen.any_depth.size(); ++i) seen.any_depth[i] = seen.at_start[i].faces ? 1 : 0;
-    seen.has_gaps = false;
+    PairViews& views = pair_views_[k];
+    if (views.has_start && views.start_at == displacement) return;
+    data_.pairs[k]->compute_views(displacement, SlidingPair::Content::gap, {}, {}, views.at_start);
+    views.start_at = displacement;
+    views.has_start = true;
+    views.any_depth.resize(views.at_start.size());
+    for (std::size_t i = 0; i < views.any_depth.size(); ++i) views.any_depth[i] = views.at_start[i].faces ? 1 : 0;
+    views.has_gaps = false;
   }
 
   /// Finds the points that cannot come into contact in a step with the given largest
   /// displacement. Infinite: none is far.
-  void find_far(std::size_t k, double way) const {
+  void find_out_of_reach(std::size_t k, double way) const {
     const SlidingPair& pair = *data_.pairs[k];
-    Seen& seen = pair_views_[k];
-    std::vector<char>& far = left_out_;
-    far.assign(pair.points().size(), 0);
+    PairViews& views = pair_views_[k];
+    std::vector<char>& out_of_reach = left_out_;
+    out_of_reach.assign(pair.points().size(), 0);
     if (std::isfinite(way)) {
       const double reach = reach_of_sliding(way, pair.height());
-      for (std::size_t i = 0; i < far.size(); ++i)
-        far[i] = seen.at_start[i].faces && seen.at_start[i].gap > reach ? 1 : 0;
+      for (std::size_t i = 0; i < out_of_reach.size(); ++i)
+        out_of_reach[i] = views.at_start[i].faces && views.at_start[i].gap > reach ? 1 : 0;
     }
-    if (far == seen.far) return;
-    seen.far = far;
-    seen.has_gaps = false;
+    if (out_of_reach == views.out_of_reach) return;
+    views.out_of_reach = out_of_reach;
+    views.has_gaps = false;
   }
 
   void warn_of_long_step() const {
     for (const auto& pair : data_.pairs)
-      has_told_ = has_told_ || warn_of_undetected_contact(*pair, at_update_, start_at_update_);
+      has_warned_ = has_warned_ || warn_of_undetected_contact(*pair, at_update_, start_at_update_);
   }
 
   /// Rows of surfaces that are far apart are those of planes perpendicular to the initial normals, at any displacement.
@@ -275,81 +277,81 @@ class SlidingContact final : public ContactGeometry {
 
   void update_pair(std::size_t k, const Vector& displacement, const StepStart* start, ContactRows& rows) const {
     const SlidingPair& pair = *data_.pairs[k];
-    Seen& seen = pair_views_[k];
-    seen.is_apart = false;
+    PairViews& views = pair_views_[k];
+    views.is_apart = false;
     if (start != nullptr) {
       update_start_views(k, start->displacement);
-      find_far(k, largest_motion(pair, displacement, start->displacement));
+      find_out_of_reach(k, largest_motion(pair, displacement, start->displacement));
     } else {
-      seen.any_depth.clear();
-      seen.has_start = seen.has_gaps = false;
-      find_far(k, std::numeric_limits<double>::infinity());
+      views.any_depth.clear();
+      views.has_start = views.has_gaps = false;
+      find_out_of_reach(k, std::numeric_limits<double>::infinity());
     }
     update_gap_views(k, displacement);
-    seen.left_out.assign(seen.gaps.size(), 0);
+    views.left_out.assign(views.gaps.size(), 0);
     bool any_near = false;
-    for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
+    for (std::size_t i = 0; i < views.gaps.size(); ++i) {
       const Index point = number(k, i);
-      rows.gap[point] = gap_of(seen, i);
+      rows.gap[point] = gap_of(views, i);
       rows.gap_rounding[point] = rounding(pair.points()[i], displacement);
-      seen.left_out[i] = seen.is_far(i) || !seen.gaps[i].faces ? 1 : 0;
-      any_near = any_near || seen.left_out[i] == 0;
+      views.left_out[i] = views.is_out_of_reach(i) || !views.gaps[i].faces ? 1 : 0;
+      any_near = any_near || views.left_out[i] == 0;
     }
     if (any_near)
-      pair.compute_views(writer_.middle(), SlidingPair::Wanted::row, seen.left_out, seen.any_depth, seen.middle);
-    if (any_near && start != nullptr) look_at_entering(pair, displacement, seen);
-    if (seen.chosen) choose(start != nullptr, seen);
-    for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
+      pair.compute_views(writer_.middle(), SlidingPair::Content::row, views.left_out, views.any_depth, views.middle);
+    if (any_near && start != nullptr) look_at_entering(pair, displacement, views);
+    if (views.chosen) choose(start != nullptr, views);
+    for (std::size_t i = 0; i < views.gaps.size(); ++i) {
       const double gap_rounding = rows.gap_rounding[number(k, i)];
-      if (seen.left_out[i] != 0) {
+      if (views.left_out[i] != 0) {
         writer_.write_plane(pair.points()[i], pair.normal(i, writer_.middle()), rows);
       } else if (start == nullptr) {
-        writer_.write(pair.points()[i], seen.middle[i], rows);
-      } else if (seen.enters(i)) {
-        SlidingView& view = seen.entering[i];
+        writer_.write(pair.points()[i], views.middle[i], rows);
+      } else if (views.enters(i)) {
+        SlidingView& view = views.entering[i];
         writer_.correct(view, {}, gap_rounding);
         writer_.write(pair.points()[i], view, rows);
       } else {
-        SlidingView& view = seen.middle[i];
-        writer_.correct(view, seen.gaps[i].gap - seen.at_start[i].gap, gap_rounding);
+        SlidingView& view = views.middle[i];
+        writer_.correct(view, views.gaps[i].gap - views.at_start[i].gap, gap_rounding);
         writer_.write(pair.points()[i], view, rows);
       }
     }
   }
 
   /// Selects among the points that may come into contact in the step.
-  void choose(bool is_step, Seen& seen) const {
-    views_.assign(seen.gaps.size(), nullptr);
+  void choose(bool is_step, PairViews& views) const {
+    views_.assign(views.gaps.size(), nullptr);
     for (std::size_t i = 0; i < views_.size(); ++i) {
-      if (seen.left_out[i] == 0) views_[i] = is_step && seen.enters(i) ? &seen.entering[i] : &seen.middle[i];
+      if (views.left_out[i] == 0) views_[i] = is_step && views.enters(i) ? &views.entering[i] : &views.middle[i];
     }
-    seen.chosen->choose(views_);
+    views.chosen->choose(views_);
   }
 
   /// Computes the views at the end, from which points that enter have their rows.
-  void look_at_entering(const SlidingPair& pair, const Vector& displacement, Seen& seen) const {
+  void look_at_entering(const SlidingPair& pair, const Vector& displacement, PairViews& views) const {
     bool any = false;
-    left_out_.assign(seen.gaps.size(), 1);
-    for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
-      if (seen.enters(i)) left_out_[i] = 0;
-      any = any || seen.enters(i);
+    left_out_.assign(views.gaps.size(), 1);
+    for (std::size_t i = 0; i < views.gaps.size(); ++i) {
+      if (views.enters(i)) left_out_[i] = 0;
+      any = any || views.enters(i);
     }
-    if (any) pair.compute_views(displacement, SlidingPair::Wanted::row, left_out_, seen.any_depth, seen.entering);
+    if (any) pair.compute_views(displacement, SlidingPair::Content::row, left_out_, views.any_depth, views.entering);
   }
 
   /// Rounding error of sums over segments of differences of positions.
   [[nodiscard]] double rounding(const SlidingPair::Point& point, const Vector& displacement) const {
     double size = extent_;
     for (const auto& [node, weight] : point.multiplier.trace)
-      size = std::max(size, place_of(data_.node_positions, node, displacement).lpNorm<1>());
+      size = std::max(size, current_position(data_.node_positions, node, displacement).lpNorm<1>());
     return 64.0 * std::numeric_limits<double>::epsilon() * size;
   }
 
-  void add_couples_of(std::size_t k, const Vector& place, const ContactRows& rows, const Vector& normal,
+  void add_couples_of(std::size_t k, const Vector& displacement, const ContactRows& rows, const Vector& normal,
                       const Vector& tangential, Vector& force) const {
     const SlidingPair& pair = *data_.pairs[k];
-    Seen& seen = pair_views_[k];
-    if (seen.is_apart) return;
+    PairViews& views = pair_views_[k];
+    if (views.is_apart) return;
     const Index tangents = dimension() - 1;
     left_out_.assign(pair.points().size(), 0);
     bool any = false;
@@ -361,25 +363,25 @@ class SlidingContact final : public ContactGeometry {
       any = any || acts;
     }
     if (!any) return;
-    pair.compute_views(place, SlidingPair::Wanted::row, left_out_, seen.any_depth, seen.other);
+    pair.compute_views(displacement, SlidingPair::Content::row, left_out_, views.any_depth, views.other);
     for (std::size_t i = 0; i < left_out_.size(); ++i) {
-      if (left_out_[i] == 0 && seen.other[i].faces)
-        couples_.add(number(k, i), seen.other[i], place, rows, normal, tangential, force);
+      if (left_out_[i] == 0 && views.other[i].faces)
+        couples_.add(number(k, i), views.other[i], displacement, rows, normal, tangential, force);
     }
   }
 
   SlidingContactData data_;
   double extent_;
-  Vector at_rest_;                        ///< zero displacement
-  mutable std::vector<Seen> pair_views_;  ///< per pair
+  Vector at_rest_;                             ///< zero displacement
+  mutable std::vector<PairViews> pair_views_;  ///< per pair
   mutable BroadPhase apart_;
-  SurfaceDisplacements places_;
+  SurfaceDisplacements displacements_;
   mutable SlidingRows writer_;
   mutable Vector at_update_, start_at_update_, gap_at_update_;  ///< of the last update
   mutable bool is_frozen_ = false, was_frozen_ = false;         ///< the latter until the next step begins
   mutable bool has_frozen_ = false;                             ///< in the run so far
   mutable bool is_step_ = false;                                ///< whether the last update was of a step
-  mutable bool has_told_ = false;                               ///< whether the warning of too long steps was logged
+  mutable bool has_warned_ = false;                             ///< whether the warning of too long steps was logged
   mutable std::vector<char> left_out_;
   mutable std::vector<const SlidingView*> views_;
   mutable SlidingCouples couples_;

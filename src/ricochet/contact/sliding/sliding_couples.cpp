@@ -4,7 +4,7 @@
 
 namespace ricochet {
 
-void SlidingCouples::add(Index point, const SlidingView& view, const Vector& place, const ContactRows& rows,
+void SlidingCouples::add(Index point, const SlidingView& view, const Vector& displacement, const ContactRows& rows,
                          const Vector& normal, const Vector& tangential, Vector& force) {
   const Index d = nodes_.rows(), tangents = d - 1;
   const auto add = [&](Index node, const SlidingVector& value) { force.segment(node * d, d) += value.head(d); };
@@ -15,13 +15,13 @@ void SlidingCouples::add(Index point, const SlidingView& view, const Vector& pla
   friction.head(d) = rows.force(point, normal, tangential) - normal[point] * rows.normal(point);
   const auto act = [&](Index node, double weight) {
     add(node, weight * friction);
-    across += weight * place_of(nodes_, node, place);
+    across += weight * current_position(nodes_, node, displacement);
   };
   for (const auto& [node, weight] : view.own) act(node, weight);
   for (const auto& [node, weight] : view.opposite) act(node, -weight);
-  places_.clear();
-  for (const auto& [node, weight] : view.own) places_.push_back(place_of(nodes_, node, place));
-  forces_of_couple(places_, d == 2, -across.cross(friction), motions_);
+  positions_.clear();
+  for (const auto& [node, weight] : view.own) positions_.push_back(current_position(nodes_, node, displacement));
+  forces_of_couple(positions_, d == 2, -across.cross(friction), motions_);
   for (std::size_t j = 0; j < motions_.size(); ++j) add(view.own[j].first, motions_[j]);
   for (Index row = point * tangents; row < (point + 1) * tangents; ++row)
     rows.visit_tangential(row, [&](Index dof, double value) { force[dof] += value * tangential[row]; });

@@ -15,14 +15,14 @@ class SlidingCouples {
   /// `nodes`: reference positions of all nodes, d × count; kept by reference.
   explicit SlidingCouples(const Points& nodes) : nodes_(nodes) {}
 
-  /// Adds the difference between the forces of a point at displacement `place` and those of its rows.
+  /// Adds the difference between the forces of a point at `displacement` and those of its rows.
   /// `view`: its view there, with rows.
-  void add(Index point, const SlidingView& view, const Vector& place, const ContactRows& rows, const Vector& normal,
-           const Vector& tangential, Vector& force);
+  void add(Index point, const SlidingView& view, const Vector& displacement, const ContactRows& rows,
+           const Vector& normal, const Vector& tangential, Vector& force);
 
  private:
   const Points& nodes_;
-  std::vector<SlidingVector> places_, motions_;
+  std::vector<SlidingVector> positions_, motions_;
 };
 
 }  // namespace ricochet

@@ -21,8 +21,8 @@ constexpr double least_sliding_cover = 1e-3;
 /// Entry of a node, created if there is none.
 template <class Value>
 Value& entry_of(std::vector<std::pair<Index, Value>>& entries, Index node, const Value& nothing) {
-  for (auto& [known, value] : entries) {
-    if (known == node) return value;
+  for (auto& [entry, value] : entries) {
+    if (entry == node) return value;
   }
   return entries.emplace_back(node, nothing).second;
 }
@@ -33,7 +33,7 @@ void sort_by_node(std::vector<std::pair<Index, Value>>& entries) {
 }
 
 /// n·ν from which a point counts fully, and up to which it is ignored.
-constexpr double seen_well = 0.7, seen_badly = 0.15;
+constexpr double full_weight_cosine = 0.7, zero_weight_cosine = 0.15;
 
 /// Projection onto a point of the opposite surface.
 struct Sight {
@@ -44,7 +44,8 @@ Sight sight_of(const PolynomialMap<3>::Evaluation& at, bool plane, const Sliding
   const auto& [along, across] = at.slopes;
   const SlidingVector normal = plane ? SlidingVector(along[1], -along[0], 0.0) : SlidingVector(along.cross(across));
   const double product = n.dot(normal);
-  const double well = std::clamp((std::abs(product) / normal.norm() - seen_badly) / (seen_well - seen_badly), 0.0, 1.0);
+  const double well = std::clamp(
+      (std::abs(product) / normal.norm() - zero_weight_cosine) / (full_weight_cosine - zero_weight_cosine), 0.0, 1.0);
   return {normal / product, well * well * (3.0 - 2.0 * well)};
 }
 
@@ -72,8 +73,8 @@ struct SlidingPair::Implementation {
   // State of the current evaluation.
   mutable Vector looked_at;
   mutable std::vector<Sums> sums;
-  mutable std::vector<SlidingVector> turning;  ///< N of each own facet
-  mutable std::vector<char> takes_part;        ///< per anchor of the current own facet
+  mutable std::vector<SlidingVector> current_normals;  ///< N of each own facet
+  mutable std::vector<char> included;                  ///< per anchor of the current own facet
   mutable FacetPoints points;
   mutable FacetMultipliers functions;
   mutable Matrix shapes, weighted;
@@ -97,7 +98,7 @@ struct SlidingPair::Implementation {
       normals.emplace_back(*data.body.space, std::vector{facet.number}, direction);
     }
     sums.resize(data.points.size());
-    turning.resize(normals.size());
+    current_normals.resize(normals.size());
   }
 
   void find_points_of_facets() {
@@ -113,43 +114,43 @@ struct SlidingPair::Implementation {
       space->evaluate(quadrature, functions);
       std::vector<int>& here = points_of.emplace_back();
       for (const Index anchor : functions.anchors) {
-        const auto known = by_anchor.find(anchor);
-        here.push_back(known != by_anchor.end() ? known->second : -1);
+        const auto found = by_anchor.find(anchor);
+        here.push_back(found != by_anchor.end() ? found->second : -1);
       }
     }
   }
 
-  void integrate_from(int facet, Wanted wanted, const std::vector<char>& left_out, const std::vector<char>& any_depth,
+  void integrate_from(int facet, Content content, const std::vector<char>& left_out, const std::vector<char>& any_depth,
                       std::vector<SlidingView>& views) const;
-  void integrate(int facet, const FacetSegments& segments, const SlidingVector& n, Wanted wanted,
+  void integrate(int facet, const FacetSegments& segments, const SlidingVector& n, Content content,
                  std::vector<SlidingView>& views) const;
   void add_normal_derivative(int facet, const SlidingVector& n, std::vector<SlidingView>& views) const;
-  void finish(std::size_t point, Wanted wanted, SlidingView& view) const;
+  void finish(std::size_t point, Content content, SlidingView& view) const;
 };
 
 /// Integrates once for the points that do not admit deep overlaps, and once for those that do.
-void SlidingPair::Implementation::integrate_from(int facet, Wanted wanted, const std::vector<char>& left_out,
+void SlidingPair::Implementation::integrate_from(int facet, Content content, const std::vector<char>& left_out,
                                                  const std::vector<char>& any_depth,
                                                  std::vector<SlidingView>& views) const {
   const std::vector<int>& here = points_of[static_cast<std::size_t>(facet)];
   for (const bool deep : {false, true}) {
-    takes_part.assign(here.size(), 0);
+    included.assign(here.size(), 0);
     for (std::size_t k = 0; k < here.size(); ++k) {
       if (here[k] < 0) continue;
       const auto point = static_cast<std::size_t>(here[k]);
       const bool is_out = !left_out.empty() && left_out[point] != 0;
-      const bool sees_deep = !is_self && !any_depth.empty() && any_depth[point] != 0;
-      takes_part[k] = !is_out && sees_deep == deep ? 1 : 0;
+      const bool admits_depth = !is_self && !any_depth.empty() && any_depth[point] != 0;
+      included[k] = !is_out && admits_depth == deep ? 1 : 0;
     }
-    if (std::find(takes_part.begin(), takes_part.end(), 1) == takes_part.end()) continue;
-    const SlidingVector n = turning[static_cast<std::size_t>(facet)].normalized();
+    if (std::find(included.begin(), included.end(), 1) == included.end()) continue;
+    const SlidingVector n = current_normals[static_cast<std::size_t>(facet)].normalized();
     const FacetSegments segments = surfaces.finder().find(facet, n, deep);
-    if (!segments.segments.empty()) integrate(facet, segments, n, wanted, views);
+    if (!segments.segments.empty()) integrate(facet, segments, n, content, views);
   }
 }
 
 void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segments, const SlidingVector& n,
-                                            Wanted wanted, std::vector<SlidingView>& views) const {
+                                            Content content, std::vector<SlidingView>& views) const {
   const std::vector<int>& here = points_of[static_cast<std::size_t>(facet)];
   const Index number = surfaces.own().facets()[static_cast<std::size_t>(facet)].number, d = plane ? 2 : 3;
   gather_points(surfaces.map(), number, segments, points);
@@ -161,22 +162,22 @@ void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segm
   for (const SurfaceSegment& segment : segments.segments) {
     const PolynomialMap<3> map = surfaces.map().map_of(segment.opposite);
     surfaces.map().displacement(segment.opposite, segment.opposite_local, shapes);
-    const IndexInBlocks place = locate_facet(*data.body.space, segment.opposite);
-    const Index* const nodes = data.body.space->facets[place.block].cell(place.local);
+    const IndexInBlocks location = locate_facet(*data.body.space, segment.opposite);
+    const Index* const nodes = data.body.space->facets[location.block].cell(location.local);
     for (Index q = 0; q < segment.weights.size(); ++q) {
-      const PolynomialMap<3>::Evaluation seen = map.evaluate(segment.opposite_local.col(q).data());
-      const auto [normal, part_seen] = sight_of(seen, plane, n);
-      if (part_seen == 0.0) continue;
-      const double gap = n.head(d).dot(at.positions.col(begin + q) - seen.at.head(d));
+      const PolynomialMap<3>::Evaluation projection = map.evaluate(segment.opposite_local.col(q).data());
+      const auto [normal, sight_weight] = sight_of(projection, plane, n);
+      if (sight_weight == 0.0) continue;
+      const double gap = n.head(d).dot(at.positions.col(begin + q) - projection.at.head(d));
       for (std::size_t k = 0; k < here.size(); ++k) {
-        if (takes_part[k] == 0) continue;
+        if (included[k] == 0) continue;
         const auto point = static_cast<std::size_t>(here[k]);
-        const double weight = part_seen * weighted(static_cast<Index>(k), begin + q);
+        const double weight = sight_weight * weighted(static_cast<Index>(k), begin + q);
         Sums& sum = sums[point];
         sum.weight += weight;
         sum.gap += weight * gap;
         sum.force += weight * normal;
-        if (wanted == Wanted::gap) continue;
+        if (content == Content::gap) continue;
         sum.pull += weight * gap * normal;
         SlidingView& view = views[point];
         for (Index j = 0; j < at.node_count(); ++j) {
@@ -193,16 +194,16 @@ void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segm
     }
     begin += segment.weights.size();
   }
-  if (wanted == Wanted::row) add_normal_derivative(facet, n, views);
+  if (content == Content::row) add_normal_derivative(facet, n, views);
 }
 
 /// Adds −(∂n/∂x)ᵀ ∫ψ h ν/(n·ν).
 void SlidingPair::Implementation::add_normal_derivative(int facet, const SlidingVector& n,
                                                         std::vector<SlidingView>& views) const {
   const std::vector<int>& here = points_of[static_cast<std::size_t>(facet)];
-  const double length = turning[static_cast<std::size_t>(facet)].norm();
+  const double length = current_normals[static_cast<std::size_t>(facet)].norm();
   for (std::size_t k = 0; k < here.size(); ++k) {
-    if (takes_part[k] == 0) continue;
+    if (included[k] == 0) continue;
     const auto point = static_cast<std::size_t>(here[k]);
     SlidingVector& pull = sums[point].pull;
     const SlidingVector w = (n * n.dot(pull) - pull) / length;
@@ -215,7 +216,7 @@ void SlidingPair::Implementation::add_normal_derivative(int facet, const Sliding
 }
 
 /// Converts integrals to means.
-void SlidingPair::Implementation::finish(std::size_t point, Wanted wanted, SlidingView& view) const {
+void SlidingPair::Implementation::finish(std::size_t point, Content content, SlidingView& view) const {
   const Sums& sum = sums[point];
   const Point& of = data.points[point];
   view.faces = sum.weight > least_sliding_cover * of.multiplier.weight;
@@ -228,7 +229,7 @@ void SlidingPair::Implementation::finish(std::size_t point, Wanted wanted, Slidi
   const double scale = 1.0 / sum.force.norm();
   view.gap = sum.gap * scale + of.offset;
   view.direction = scale * sum.force;
-  if (wanted == Wanted::gap) return;
+  if (content == Content::gap) return;
   for (auto& [node, value] : view.own) value /= sum.weight;
   for (auto& [node, value] : view.opposite) value /= sum.weight;
   for (auto& [node, value] : view.row) value *= scale;
@@ -273,13 +274,13 @@ SlidingVector SlidingPair::normal(std::size_t point, const Vector& displacement)
   return points()[point].normal.at(implementation_->data.body.space->nodes, displacement).normalized();
 }
 
-void SlidingPair::compute_views(const Vector& displacement, Wanted wanted, const std::vector<char>& left_out,
+void SlidingPair::compute_views(const Vector& displacement, Content content, const std::vector<char>& left_out,
                                 const std::vector<char>& any_depth, std::vector<SlidingView>& views) const {
   const Implementation& own = *implementation_;
   own.surfaces.move(displacement);
   own.looked_at = displacement;
   for (std::size_t facet = 0; facet < own.normals.size(); ++facet)
-    own.turning[facet] = own.normals[facet].at(own.data.body.space->nodes, displacement);
+    own.current_normals[facet] = own.normals[facet].at(own.data.body.space->nodes, displacement);
   views.resize(points().size());
   for (std::size_t i = 0; i < views.size(); ++i) {
     own.sums[i] = {};
@@ -291,8 +292,8 @@ void SlidingPair::compute_views(const Vector& displacement, Wanted wanted, const
     view.row.clear();
   }
   for (std::size_t facet = 0; facet < own.points_of.size(); ++facet)
-    own.integrate_from(static_cast<int>(facet), wanted, left_out, any_depth, views);
-  for (std::size_t i = 0; i < views.size(); ++i) own.finish(i, wanted, views[i]);
+    own.integrate_from(static_cast<int>(facet), content, left_out, any_depth, views);
+  for (std::size_t i = 0; i < views.size(); ++i) own.finish(i, content, views[i]);
 }
 
 double SlidingPair::node_gap(Index node, const SlidingVector& direction, const Vector& displacement) const {

@@ -33,7 +33,7 @@ namespace ricochet {
 using SlidingVector = Eigen::Vector3d;
 
 /// Current position of a node; `nodes`: reference positions, d × count.
-[[nodiscard]] inline SlidingVector place_of(const Points& nodes, Index node, const Vector& displacement) {
+[[nodiscard]] inline SlidingVector current_position(const Points& nodes, Index node, const Vector& displacement) {
   const Index d = nodes.rows();
   SlidingVector result = SlidingVector::Zero();
   result.head(d) = nodes.col(node) + displacement.segment(node * d, d);
@@ -93,11 +93,11 @@ class SlidingPair {
   /// Unit normal of the facets around a point, into the body.
   [[nodiscard]] SlidingVector normal(std::size_t point, const Vector& displacement) const;
 
-  enum class Wanted { gap, row };
+  enum class Content { gap, row };
   /// Computes the views of all points that are not left out (empty: all): `views` has one for each point. Overlaps
   /// deeper than half a cell are ignored, except for points of `any_depth` (empty: none). If both surfaces are one,
   /// overlaps deeper than a quarter of the body's initial thickness are ignored for every point.
-  void compute_views(const Vector& displacement, Wanted wanted, const std::vector<char>& left_out,
+  void compute_views(const Vector& displacement, Content content, const std::vector<char>& left_out,
                      const std::vector<char>& any_depth, std::vector<SlidingView>& views) const;
 
   /// Distance of a node of the own surface along a direction (unit, into its body); NaN if it faces nothing.

@@ -30,21 +30,21 @@ void SlidingRows::begin(const Vector& displacement, const Vector* start) {
 
 void SlidingRows::correct(SlidingView& view, std::optional<double> change, double rounding) {
   const Index d = dimension();
-  places_.clear();
+  positions_.clear();
   motions_.clear();
   double product = 0.0, size = 0.0;
   for (const auto& [node, value] : view.row) {
-    SlidingVector place = SlidingVector::Zero(), motion = place;
-    place.head(d) = nodes_.col(node) + middle_.segment(node * d, d);
+    SlidingVector position = SlidingVector::Zero(), motion = position;
+    position.head(d) = nodes_.col(node) + middle_.segment(node * d, d);
     motion.head(d) = step_.segment(node * d, d);
     product += value.dot(motion);
     size += value.squaredNorm();
-    places_.push_back(place);
+    positions_.push_back(position);
     motions_.push_back(motion);
   }
   const double missing = change.value_or(std::min(product, 0.0)) - product;
   if (std::abs(missing) <= 0.25 * rounding) return;
-  remove_rigid_part(places_, d == 2, motions_);
+  remove_rigid_part(positions_, d == 2, motions_);
   double square = 0.0;
   for (const SlidingVector& motion : motions_) square += motion.squaredNorm();
   if (!(std::sqrt(square) > least_motion * std::numeric_limits<double>::epsilon() * extent_)) return;
@@ -59,7 +59,7 @@ void SlidingRows::write(const SlidingPair::Point& point, const SlidingView& view
     for (Index j = 0; j < d; ++j) entries_.emplace_back(node * d + j, value[j]);
   }
   gap_writer_.set(point.number, entries_);
-  take_directions(point, view.direction, rows);
+  set_directions(point, view.direction, rows);
   trace_.clear();
   for (const auto& [node, weight] : view.own) trace_.emplace_back(node, weight);
   for (const auto& [node, weight] : view.opposite) trace_.emplace_back(node, -weight);
@@ -76,12 +76,12 @@ void SlidingRows::write_plane(const SlidingPair::Point& point, const SlidingVect
     for (Index j = 0; j < d; ++j) entries_.emplace_back(node * d + j, weight * normal[j]);
   }
   gap_writer_.set(point.number, entries_);
-  take_directions(point, normal, rows);
+  set_directions(point, normal, rows);
   write_slips(point.number, rows);
 }
 
-void SlidingRows::take_directions(const SlidingPair::Point& point, const SlidingVector& direction,
-                                  ContactRows& rows) const {
+void SlidingRows::set_directions(const SlidingPair::Point& point, const SlidingVector& direction,
+                                 ContactRows& rows) const {
   const Index d = dimension();
   const Vector normal = direction.head(d);
   const ContactTangents tangents =

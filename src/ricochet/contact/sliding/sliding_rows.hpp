@@ -35,7 +35,7 @@ class SlidingRows {
   void finish(ContactRows& rows);
 
  private:
-  void take_directions(const SlidingPair::Point& point, const SlidingVector& direction, ContactRows& rows) const;
+  void set_directions(const SlidingPair::Point& point, const SlidingVector& direction, ContactRows& rows) const;
   void write_slips(Index point, const ContactRows& rows);
   [[nodiscard]] Index dimension() const { return nodes_.rows(); }
 
@@ -45,7 +45,7 @@ class SlidingRows {
   RowWriter gap_writer_, slip_writer_;
   RowWriter::Entries entries_, trace_;
   std::vector<char> changed_, slip_changed_;
-  std::vector<SlidingVector> places_, motions_;
+  std::vector<SlidingVector> positions_, motions_;
   long revision_ = 0;  ///< number of the last update; different rows never share it
 };
 

@@ -36,7 +36,7 @@ class ContactFields final : public FieldSource {
  private:
   struct Stresses {
     std::vector<double> pressure, traction;
-    bool wanted = false;
+    bool is_requested = false;
   };
 
   [[nodiscard]] std::size_t number(Index node) const {
@@ -46,7 +46,7 @@ class ContactFields final : public FieldSource {
     const Index nodes = space_.node_count();
     stresses.pressure.assign(static_cast<std::size_t>(nodes), 0.0);
     stresses.traction.assign(static_cast<std::size_t>(3 * nodes), 0.0);
-    stresses.wanted = context.wants_any({pressure, traction});
+    stresses.is_requested = context.wants_any({pressure, traction});
     if (context.wants(pressure))
       fields_.push_back({pressure, FieldLocation::nodes, 1, false, nodes, stresses.pressure.data()});
     if (context.wants(traction) && has_friction_)
@@ -90,16 +90,16 @@ void ContactFields::evaluate(const State& state) {
     status_[node] = std::max(status_[node], 0);
     // A node has the status of its own contact point or, without one, of the points from which its pressure is
     // recovered.
-    const auto take = [&](Index point) {
+    const auto include_status = [&](Index point) {
       const auto at = static_cast<std::size_t>(point);
       if (at < state.contact_status.size())
         status_[node] = std::max(status_[node], static_cast<int>(state.contact_status[at]));
     };
     const Index own = contact.own_point[static_cast<std::size_t>(i)];
-    if (own >= 0) take(own);
+    if (own >= 0) include_status(own);
     if (own != -1) continue;
     contact.visit_recovery(i, [&](Index point, double value) {
-      if (value != 0.0) take(point);
+      if (value != 0.0) include_status(point);
     });
   }
   agree_on_status();
@@ -116,7 +116,7 @@ void ContactFields::find_true_reactions(const State& state) {
 
 void ContactFields::evaluate(const ContactRows& rows, const Vector& normal, const Vector& tangential,
                              Stresses& stresses) {
-  if (!stresses.wanted) return;
+  if (!stresses.is_requested) return;
   const ContactBoundary& contact = problem_.contact;
   std::fill(stresses.pressure.begin(), stresses.pressure.end(), 0.0);
   contact.recover_pressure(normal, node_pressure_);
@@ -141,13 +141,13 @@ void ContactFields::add_up_pressures() {
   }
   entries_per_node_ = static_cast<Index>(ranks.maximum(static_cast<double>(most)));
   per_node_.setZero(space_.node_count() * entries_per_node_);
-  const auto place = [&](std::size_t i) {
+  const auto index = [&](std::size_t i) {
     same = i > 0 && nodes[i] == nodes[i - 1] ? same + 1 : 0;
     return nodes[i] * entries_per_node_ + same;
   };
-  for (std::size_t i = 0; i < nodes.size(); ++i) per_node_[place(i)] = node_pressure_[static_cast<Index>(i)];
+  for (std::size_t i = 0; i < nodes.size(); ++i) per_node_[index(i)] = node_pressure_[static_cast<Index>(i)];
   ranks.accumulate(per_node_);
-  for (std::size_t i = 0; i < nodes.size(); ++i) node_pressure_[static_cast<Index>(i)] = per_node_[place(i)];
+  for (std::size_t i = 0; i < nodes.size(); ++i) node_pressure_[static_cast<Index>(i)] = per_node_[index(i)];
 }
 
 /// Uses the largest status of the ranks, as for several contacts.

@@ -35,7 +35,7 @@ class FieldSource {
 struct FieldContext {
   const Body& body;
   const SemidiscreteProblem& problem;
-  std::vector<std::string> wanted;  ///< names
+  std::vector<std::string> requested;  ///< names
 
   [[nodiscard]] bool wants(const std::string& name) const;
   [[nodiscard]] bool wants_any(const std::vector<std::string>& names) const;

@@ -33,7 +33,7 @@ const std::vector<FieldRegistration>& registrations() {
 }  // namespace
 
 bool FieldContext::wants(const std::string& name) const {
-  return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  return std::find(requested.begin(), requested.end(), name) != requested.end();
 }
 
 bool FieldContext::wants_any(const std::vector<std::string>& names) const {

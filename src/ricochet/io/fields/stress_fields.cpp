@@ -13,12 +13,12 @@ class StressFields final : public FieldSource {
       : stress_of_(context.body),
         wants_nodal_(context.wants_any({"nodal_stress", "nodal_von_mises", "nodal_principal_stress"})) {
     const Index cells = context.body.mesh->cell_count(), nodes = context.body.space->node_count();
-    const auto add = [&](const char* name, FieldLocation place, int components, std::vector<double>& values) {
-      const Index rows = place == FieldLocation::cells ? cells : nodes;
-      const bool wanted = context.wants(name);
+    const auto add = [&](const char* name, FieldLocation location, int components, std::vector<double>& values) {
+      const Index rows = location == FieldLocation::cells ? cells : nodes;
+      const bool is_requested = context.wants(name);
       values.assign(static_cast<std::size_t>(components * rows), 0.0);
-      if (wanted) fields_.push_back({name, place, components, false, rows, values.data()});
-      return wanted;
+      if (is_requested) fields_.push_back({name, location, components, false, rows, values.data()});
+      return is_requested;
     };
     add("stress", FieldLocation::cells, tensor_components, stress_);
     wants_von_mises_ = add("von_mises", FieldLocation::cells, 1, von_mises_);

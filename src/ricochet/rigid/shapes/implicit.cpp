@@ -18,7 +18,7 @@ constexpr double step_of_size = 2e-4;
 constexpr double digits_of_slopes = 4e-12;
 /// Iterations of a search for the nearest point. Near the surface two to four suffice; searches that end without
 /// converging are far away, where nothing depends on digits.
-constexpr int most_rounds = 60;
+constexpr int max_iterations = 60;
 /// Halvings of a step that does not come nearer.
 constexpr int most_cuts = 30;
 constexpr double least_part = 1e-6;  ///< smallest fraction of a step along the surface
@@ -84,19 +84,19 @@ class Implicit final : public ObstacleShape {
     return slope;
   }
   [[noreturn]] void refuse(const SpaceVector& at) const {
-    std::string place;
-    for (const double x : at) place += fmt::format("{}{:.6g}", place.empty() ? "" : ", ", x);
+    std::string coordinates;
+    for (const double x : at) coordinates += fmt::format("{}{:.6g}", coordinates.empty() ? "" : ", ", x);
     throw Error(
         ErrorKind::invalid_input,
         fmt::format("the gradient of the expression \"{}\" vanishes at ({}): there is no normal there; use an "
                     "expression that changes its sign across the surface with a nonzero slope, such as a distance",
-                    value_.text(), place));
+                    value_.text(), coordinates));
   }
 
   /// Moves a point along the gradient to the surface and computes the slope there; returns false if it does not
   /// converge.
   bool project(SpaceVector& at, Slope& slope) const {
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
       slope = slope_at(at);
       const double square = slope.gradient.squaredNorm();
       constexpr double least_slope = 1e-2;
@@ -123,7 +123,7 @@ class Implicit final : public ObstacleShape {
     };
     SpaceVector along = along_surface(foot, slope);
     double part = 1.0;
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
       if (along.norm() <= std::max(rounding, digits_of_slopes * (position - foot).norm())) break;
       SpaceVector next;
       Slope there{};
@@ -134,8 +134,8 @@ class Implicit final : public ObstacleShape {
       };
       while (part > least_part && !is_nearer()) part *= 0.25;
       if (part <= least_part) break;
-      const SpaceVector way = next - foot, turned = along - along_surface(next, there);
-      const double bend = way.dot(turned);
+      const SpaceVector way = next - foot, change = along - along_surface(next, there);
+      const double bend = way.dot(change);
       part = bend > 0.0 ? std::clamp(way.squaredNorm() / bend, 1e-3, 1e3) : 1.0;
       foot = next;
       slope = there;
@@ -166,12 +166,12 @@ std::vector<Key> implicit_keys() {
           obstacle_side_key("Side of the bodies: \"outside\", where the expression is positive, or \"inside\".")};
 }
 
-void check_implicit(const ParameterCheck& place, const Parameters& values) {
-  if (!place.is_usable("expression")) return;
+void check_implicit(const ParameterCheck& check, const Parameters& values) {
+  if (!check.is_usable("expression")) return;
   try {
     static_cast<void>(Implicit(values, 1.0));
   } catch (const Error& problem) {
-    place.add_problem("expression", problem.what());
+    check.add_problem("expression", problem.what());
   }
 }
 

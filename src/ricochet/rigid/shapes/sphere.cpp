@@ -68,8 +68,8 @@ class Sphere final : public ObstacleShape {
     const Eigen::Vector2d middle = centre_;
     ObstacleSurface result{Points(2, 2 * pieces + 1), {}};
     for (int k = 0; k <= 2 * pieces; ++k) {
-      const double turned = -sign_ * angle * (static_cast<double>(k) / pieces - 1.0);
-      result.points.col(k) = middle + radius_ * (Eigen::Rotation2Dd(turned) * towards);
+      const double rotation = -sign_ * angle * (static_cast<double>(k) / pieces - 1.0);
+      result.points.col(k) = middle + radius_ * (Eigen::Rotation2Dd(rotation) * towards);
       if (k > 0) result.cells.insert(result.cells.end(), {k - 1, k});
     }
     return result;

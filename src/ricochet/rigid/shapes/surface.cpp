@@ -111,10 +111,10 @@ class Surface final : public ObstacleShape {
     const double part = t * t * (3.0 - 2.0 * t), slope = 12.0 * t * (1.0 - t) / radius_;
     const double height = side_ * mean.value;
     const double away = exact.gap < 0.0 ? -1.0 : 1.0;
-    const Vector3 turned = (1.0 - part) * side_ * mean.gradient + part * exact.gradient +
-                           slope * away * (exact.gap - height) * exact.gradient;
-    if (!(turned.norm() > least_length)) return exact;
-    return {(1.0 - part) * height + part * exact.gap, turned};
+    const Vector3 blended = (1.0 - part) * side_ * mean.gradient + part * exact.gradient +
+                            slope * away * (exact.gap - height) * exact.gradient;
+    if (!(blended.norm() > least_length)) return exact;
+    return {(1.0 - part) * height + part * exact.gap, blended};
   }
   /// Returns the distance and its derivative: the direction towards the point, or the normal of the edge if the two are
   /// too near to distinguish. Beyond a border no point is behind the surface.
@@ -146,8 +146,8 @@ ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& 
   std::vector<int> counts;
   std::map<int, int> number_of;  // of each corner
   const auto point_of = [&](int corner) {
-    const auto [known, is_new] = number_of.try_emplace(corner, 0);
-    if (!is_new) return known->second;
+    const auto [point, is_new] = number_of.try_emplace(corner, 0);
+    if (!is_new) return point->second;
     const Vector3& at = surface.corners()[static_cast<std::size_t>(corner)];
     std::array<long, 3> key{corner, -1, -1};
     if (width > 0.0) {
@@ -161,10 +161,10 @@ ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& 
     }
     sums[static_cast<std::size_t>(entry->second)] += at;
     ++counts[static_cast<std::size_t>(entry->second)];
-    return known->second = entry->second;
+    return point->second = entry->second;
   };
   ObstacleSurface result;
-  std::map<std::array<int, 3>, char> known;
+  std::map<std::array<int, 3>, char> shown;
   for (const int facet : facets) {
     std::array<int, 3> own = surface.facets()[static_cast<std::size_t>(facet)];
     for (int& corner : own) corner = point_of(corner);
@@ -172,7 +172,7 @@ ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& 
     if (own[0] == own[1]) continue;
     std::array<int, 3> key = own;  // identifies a facet independently of its first corner
     if (surface.in_space()) std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
-    if (width > 0.0 && !known.try_emplace(key, 1).second) continue;
+    if (width > 0.0 && !shown.try_emplace(key, 1).second) continue;
     if (side < 0.0) std::swap(own[0], own[1]);
     result.cells.insert(result.cells.end(), own.begin(), own.begin() + (surface.in_space() ? 3 : 2));
     if (surface.in_space()) result.cells.push_back(own[2]);
@@ -232,7 +232,7 @@ std::vector<Key> surface_keys() {
                         "surface must then be closed.")};
 }
 
-void tell_of(const RigidSurface& surface, const std::string& file) {
+void log_repairs(const RigidSurface& surface, const std::string& file) {
   const char* const noun = surface.in_space() ? "triangle" : "segment";
   if (surface.was_reversed())
     log::warning(
@@ -246,12 +246,12 @@ void tell_of(const RigidSurface& surface, const std::string& file) {
     log::info(fmt::format("{}: {} {}s without {} make contact only through their neighbours", file,
                           surface.flat_count(), noun, surface.in_space() ? "an area" : "a length"));
   if (surface.is_closed()) return;
-  const Vector3& place = surface.border_place();
+  const Vector3& position = surface.border_position();
   log::info(
       fmt::format("{}: the surface is not closed: {} {} to only one {}, one of them at ({:.4g}, {:.4g}, {:.4g}); "
                   "everything behind it counts as inside the obstacle",
-                  file, surface.border_count(), surface.in_space() ? "edges belong" : "corners belong", noun, place[0],
-                  place[1], place[2]));
+                  file, surface.border_count(), surface.in_space() ? "edges belong" : "corners belong", noun,
+                  position[0], position[1], position[2]));
 }
 
 }  // namespace
@@ -264,15 +264,15 @@ ObstacleRegistration surface_obstacle() {
     for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
     RigidSurface surface(extension == ".stl" ? read_stl(file, scale) : read_polygons(file, scale), file);
     if (side < 0.0 && !surface.is_closed()) {
-      const Vector3& place = surface.border_place();
+      const Vector3& position = surface.border_position();
       throw Error(
           ErrorKind::invalid_input,
           fmt::format("{}: bodies must be inside this surface, but it is not closed: {} of its {} belong to only "
                       "one {}, the first at ({:.6g}, {:.6g}, {:.6g}); close it, or set side = \"outside\"",
                       file, surface.border_count(), surface.in_space() ? "edges" : "corners",
-                      surface.in_space() ? "triangle" : "segment", place[0], place[1], place[2]));
+                      surface.in_space() ? "triangle" : "segment", position[0], position[1], position[2]));
     }
-    tell_of(surface, file);
+    log_repairs(surface, file);
     std::optional<double> radius;
     if (parameters.has("edge_radius")) radius = parameters.number("edge_radius");
     Checksum sum;

@@ -51,9 +51,9 @@ class Torus final : public ObstacleShape {
     const Eigen::Vector3d first = axis_.unitOrthogonal(), second = axis_.cross(first);
     constexpr int around = 96, section = 32;
     return grid_surface(section, around, true, [&](int i, int k) -> Eigen::Vector3d {
-      const double turned = 2.0 * std::numbers::pi * k / around,
+      const double around_axis = 2.0 * std::numbers::pi * k / around,
                    in_tube = -sign_ * 2.0 * std::numbers::pi * i / section;
-      const Eigen::Vector3d out = std::cos(turned) * first + std::sin(turned) * second;
+      const Eigen::Vector3d out = std::cos(around_axis) * first + std::sin(around_axis) * second;
       return centre_ + (ring_radius_ + tube_radius_ * std::cos(in_tube)) * out +
              tube_radius_ * std::sin(in_tube) * axis_;
     });

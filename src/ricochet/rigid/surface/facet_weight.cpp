@@ -32,7 +32,7 @@ struct Part {
 /// outside the circle, the figure is a sector, with θ R⁴/4 and R³/3 times the difference of the unit vectors, rotated;
 /// else it is a triangle.
 void add_sector(const Vector3& a, const Vector3& b, const Vector3& normal, double square, Part& sum) {
-  const auto turn = [&](const Vector3& from, const Vector3& to) {
+  const auto add_arc = [&](const Vector3& from, const Vector3& to) {
     const double first = from.norm(), last = to.norm();
     if (!(first > 0.0) || !(last > 0.0)) return;
     sum.weight += 0.25 * square * square * std::atan2(normal.dot(from.cross(to)), from.dot(to));
@@ -40,25 +40,26 @@ void add_sector(const Vector3& a, const Vector3& b, const Vector3& normal, doubl
   };
   double first = 0.0, last = 0.0;
   const Vector3 along = b - a;
-  if (!part_inside(a, along, square, first, last)) return turn(a, b);
+  if (!part_inside(a, along, square, first, last)) return add_arc(a, b);
   const Vector3 from = a + first * along, to = a + last * along;
   const double area = 0.5 * normal.dot(from.cross(to));
   sum.weight += area * (square - (from.squaredNorm() + from.dot(to) + to.squaredNorm()) / 6.0);
   sum.moment += area / 3.0 * (from + to);
-  if (first > 0.0) turn(a, from);
-  if (last < 1.0) turn(to, b);
+  if (first > 0.0) add_arc(a, from);
+  if (last < 1.0) add_arc(to, b);
 }
 
 /// Returns its area alone.
 double area_of_sector(const Vector3& a, const Vector3& b, const Vector3& normal, double square) {
-  const auto turn = [&](const Vector3& from, const Vector3& to) {
+  const auto arc_area = [&](const Vector3& from, const Vector3& to) {
     return 0.5 * square * std::atan2(normal.dot(from.cross(to)), from.dot(to));
   };
   double first = 0.0, last = 0.0;
   const Vector3 along = b - a;
-  if (!part_inside(a, along, square, first, last)) return turn(a, b);
+  if (!part_inside(a, along, square, first, last)) return arc_area(a, b);
   const Vector3 from = a + first * along, to = a + last * along;
-  return 0.5 * normal.dot(from.cross(to)) + (first > 0.0 ? turn(a, from) : 0.0) + (last < 1.0 ? turn(to, b) : 0.0);
+  return 0.5 * normal.dot(from.cross(to)) + (first > 0.0 ? arc_area(a, from) : 0.0) +
+         (last < 1.0 ? arc_area(to, b) : 0.0);
 }
 
 }  // namespace

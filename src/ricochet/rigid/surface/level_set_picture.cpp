@@ -20,7 +20,7 @@ class LevelSet {
         width_(2.0 * half_width / static_cast<double>(cells_)) {
     const Index wide = cells_ + 1;
     values_.resize(static_cast<std::size_t>(d_ == 2 ? wide * wide : wide * wide * wide));
-    for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = function(place(static_cast<long>(i)));
+    for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = function(position(static_cast<long>(i)));
   }
 
   [[nodiscard]] ObstacleSurface cut() {
@@ -39,7 +39,7 @@ class LevelSet {
   }
 
  private:
-  [[nodiscard]] SpaceVector place(long point) const {
+  [[nodiscard]] SpaceVector position(long point) const {
     SpaceVector result = low_;
     const long wide = cells_ + 1;
     for (Index k = 0; k < d_; ++k, point /= wide) result[k] += width_ * static_cast<double>(point % wide);
@@ -52,7 +52,7 @@ class LevelSet {
     const auto [entry, added] = crossings_.try_emplace({a, b}, static_cast<int>(points_.size()));
     if (added) {
       const double part = value(a) / (value(a) - value(b));
-      points_.push_back((1.0 - part) * place(a) + part * place(b));
+      points_.push_back((1.0 - part) * position(a) + part * position(b));
     }
     return entry->second;
   }
@@ -88,7 +88,7 @@ class LevelSet {
     std::size_t in = 0, out = 0;
     for (const long corner : corners) (is_inside(corner) ? inside[in++] : outside[out++]) = corner;
     if (in == 0 || out == 0) return;
-    const SpaceVector outwards = place(outside[0]) - place(inside[0]);
+    const SpaceVector outwards = position(outside[0]) - position(inside[0]);
     if (in == 2) {
       add_face(crossing(inside[0], outside[0]), crossing(inside[0], outside[1]), crossing(inside[1], outside[1]),
                crossing(inside[1], outside[0]), outwards);

@@ -72,8 +72,8 @@ bool RigidSurface::join_borders() {
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     if (corner_normals_[i].is_border) order.push_back(static_cast<int>(i));
   }
-  const auto places = Eigen::Map<const Points>(corners_.front().data(), 3, static_cast<Index>(corners_.size()));
-  const double reach = near * enclosing_diameter(places);
+  const auto positions = Eigen::Map<const Points>(corners_.front().data(), 3, static_cast<Index>(corners_.size()));
+  const double reach = near * enclosing_diameter(positions);
   // A direction along which few corners of usual surfaces have equal heights.
   const Vector3 direction = Vector3(0.6182, 0.5432, 0.5681).normalized();
   const auto at = [&](int corner) -> const Vector3& { return corners_[static_cast<std::size_t>(corner)]; };
@@ -112,16 +112,16 @@ void RigidSurface::find_normals(const std::string& name) {
                                                       in_space_ ? "an area" : "a length"));
 }
 
-std::string RigidSurface::place_text(const Vector3& place) const {
-  return in_space_ ? fmt::format("({:.6g}, {:.6g}, {:.6g})", place[0], place[1], place[2])
-                   : fmt::format("({:.6g}, {:.6g})", place[0], place[1]);
+std::string RigidSurface::position_text(const Vector3& position) const {
+  return in_space_ ? fmt::format("({:.6g}, {:.6g}, {:.6g})", position[0], position[1], position[2])
+                   : fmt::format("({:.6g}, {:.6g})", position[0], position[1]);
 }
 
 std::string RigidSurface::text_of(int facet) const {
   const auto i = static_cast<std::size_t>(facet);
   const Vector3 middle = in_space_ ? Vector3((corner(i, 0) + corner(i, 1) + corner(i, 2)) / 3.0)
                                    : Vector3(0.5 * (corner(i, 0) + corner(i, 1)));
-  return fmt::format("{} {} at {}", in_space_ ? "triangle" : "segment", facet + 1, place_text(middle));
+  return fmt::format("{} {} at {}", in_space_ ? "triangle" : "segment", facet + 1, position_text(middle));
 }
 
 /// Accepts one facet, or two that traverse the edge in opposite directions. In the plane corners take the role of
@@ -149,7 +149,7 @@ void RigidSurface::check_edge(std::span<const Side> sides, const std::string& na
               fmt::format("{}: {} {}s meet at the {} at {}, {} among them; where more than two meet, the surface has "
                           "no inside: separate the bodies that touch there",
                           name, sides.size(), in_space_ ? "triangle" : "segment", in_space_ ? "edge" : "corner",
-                          place_text(middle_of(sides[0])), text_of(sides[0].facet)));
+                          position_text(middle_of(sides[0])), text_of(sides[0].facet)));
 }
 
 RigidSurface::Vector3 RigidSurface::middle_of(const Side& side) const {
@@ -198,7 +198,7 @@ void RigidSurface::find_edges(const std::string& name) {
     if (!edge.is_border) {
       measure_bend(here);
     } else {
-      if (border_count_++ == 0) border_place_ = middle_of(here[0]);
+      if (border_count_++ == 0) border_position_ = middle_of(here[0]);
       corner_normals_[static_cast<std::size_t>(here[0].low)].is_border = true;
       corner_normals_[static_cast<std::size_t>(here[0].high)].is_border = true;
     }
@@ -247,7 +247,7 @@ void RigidSurface::find_corner_normals() {
 }
 
 void RigidSurface::reverse_orientation() {
-  turned_round_ = true;
+  was_reversed_ = true;
   for (std::size_t i = 0; i < facets_.size(); ++i) {
     std::array<int, 3>& facet = facets_[i];
     if (in_space_) {
@@ -356,7 +356,7 @@ FacetWeight RigidSurface::weight_near(std::size_t facet, const Vector3& at, doub
 RigidSurface::Height RigidSurface::mean_height(const Vector3& point, double radius) const {
   double heights = 0.0;
   Height sum;
-  Vector3 turned = Vector3::Zero(), weights = Vector3::Zero();  // Σ h ∇w + w N, Σ ∇w
+  Vector3 gradient_sum = Vector3::Zero(), weights = Vector3::Zero();  // Σ h ∇w + w N, Σ ∇w
   const double square = radius * radius;
   tree_.visit([&](const BoxTree::Box& box) { return box.squaredExteriorDistance(point) < square; },
               [&](int facet) {
@@ -367,12 +367,12 @@ RigidSurface::Height RigidSurface::mean_height(const Vector3& point, double radi
                 const double height = normals_[i].dot(point - corner(i, 0));
                 heights += weight.value * height;
                 sum.weight += weight.value;
-                turned += height * weight.gradient + weight.value * normals_[i];
+                gradient_sum += height * weight.gradient + weight.value * normals_[i];
                 weights += weight.gradient;
               });
   if (!(sum.weight > 0.0)) return sum;
   sum.value = heights / sum.weight;
-  sum.gradient = (turned - sum.value * weights) / sum.weight;
+  sum.gradient = (gradient_sum - sum.value * weights) / sum.weight;
   return sum;
 }
 

@@ -42,8 +42,8 @@ class RigidSurface {
   [[nodiscard]] bool is_closed() const { return border_count_ == 0; }
   /// Number of edges with one facet, and the midpoint of one of them.
   [[nodiscard]] long border_count() const { return border_count_; }
-  [[nodiscard]] const Vector3& border_place() const { return border_place_; }
-  [[nodiscard]] bool was_reversed() const { return turned_round_; }
+  [[nodiscard]] const Vector3& border_position() const { return border_position_; }
+  [[nodiscard]] bool was_reversed() const { return was_reversed_; }
   /// Number of border corners that were merged with another one closer than a millionth of the surface's size.
   [[nodiscard]] long joined_count() const { return joined_count_; }
   /// Mean width of the facets across the edges, for a smoothly curved surface that bends by at most 30 degrees at every
@@ -90,7 +90,7 @@ class RigidSurface {
   void reverse_orientation();
   [[nodiscard]] Vector3 middle_of(const Side& side) const;
   [[nodiscard]] std::string text_of(int facet) const;
-  [[nodiscard]] std::string place_text(const Vector3& place) const;
+  [[nodiscard]] std::string position_text(const Vector3& position) const;
   [[nodiscard]] int corner_count() const { return in_space_ ? 3 : 2; }
   [[nodiscard]] const Vector3& corner(std::size_t facet, int k) const {
     return corners_[static_cast<std::size_t>(facets_[facet][static_cast<std::size_t>(k)])];
@@ -106,8 +106,8 @@ class RigidSurface {
   std::vector<Edge> corner_normals_;
   long border_count_ = 0, flat_count_ = 0, joined_count_ = 0;
   double bent_width_ = 0.0, bent_count_ = 0.0, least_cosine_ = 1.0;
-  Vector3 border_place_ = Vector3::Zero();
-  bool turned_round_ = false;
+  Vector3 border_position_ = Vector3::Zero();
+  bool was_reversed_ = false;
   BoxTree tree_;
 };
 

@@ -5,12 +5,12 @@
 namespace ricochet {
 
 void EndContact::require(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
-                         const Vector& place, StepEquations& equations, Stage& stage) {
+                         const Vector& end_displacement, StepEquations& equations, Stage& stage) {
   const StepStart start{state.displacement, state.time};
-  require_no_penetration(problem, place, state.time + step, stage, &start);
+  require_no_penetration(problem, end_displacement, state.time + step, stage, &start);
   stage.gap_factor = 2.0;
-  equations.observe_step(problem, state.displacement, state.time, place, step, stage);
-  rate_ = (place - state.displacement) / step;
+  equations.observe_step(problem, state.displacement, state.time, end_displacement, step, stage);
+  rate_ = (end_displacement - state.displacement) / step;
   require_friction(problem, rate_, 2.0 / step, stage);
   stick_.require(problem, state, step, stage);
   if (mean == ReactionMean::end) return;

@@ -8,10 +8,11 @@ namespace ricochet {
 
 class EndContact {
  public:
-  /// Imposes no penetration at `place` + 2m and friction on the slip of the step and, if a mean of the reactions acts,
-  /// sets the start of its path. `place` is the displacement of contact nodes at the end, at δ = 0.
+  /// Imposes no penetration at `end_displacement` + 2m and friction on the slip of the step and, if a mean of
+  /// the reactions acts, sets the start of its path. `end_displacement` is the displacement of contact nodes at
+  /// the end, at δ = 0.
   void require(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
-               const Vector& place, StepEquations& equations, Stage& stage);
+               const Vector& end_displacement, StepEquations& equations, Stage& stage);
   /// Updates the memory of sticking points after the step. `before` is the displacement at its start.
   void update_drift(const SemidiscreteProblem& problem, const Vector& before, State& state) {
     stick_.update_drift(problem, before, state);

@@ -21,18 +21,18 @@ class EnergySecant {
   [[nodiscard]] double value() const { return sigma_; }
   [[nodiscard]] bool is_weak() const { return is_weak_; }
   /// True if several changes in a row brought no progress: σ stays as it is.
-  [[nodiscard]] bool is_settled() const { return stalled_changes_ >= most_vain; }
+  [[nodiscard]] bool is_settled() const { return stalled_changes_ >= max_stalled_changes; }
 
  private:
-  static constexpr int most_vain = 3;  ///< changes in a row that do not halve the energy defect
+  static constexpr int max_stalled_changes = 3;  ///< changes in a row that do not halve the energy defect
 
   double sigma_ = 0.0;
   /// σ of the previous iteration and the value that the balance then required; NaN before the second iteration.
-  double sigma_before_ = 0.0, asked_before_ = 0.0;
+  double sigma_before_ = 0.0, required_before_ = 0.0;
   double slope_ = 0.0;  ///< last dσ_required/dσ; not finite if none
   bool is_weak_ = false;
   int settling_ = 0, stalled_changes_ = 0;  ///< iterations with this σ; changes in a row without progress
-  double least_lacking_ = 0.0;
+  double smallest_defect_ = 0.0;
 };
 
 }  // namespace ricochet

@@ -42,7 +42,7 @@ void FiniteStrainStep::analyse(const SemidiscreteProblem& problem, double step) 
   whole_step_ = step;
   flight_ = std::make_unique<FlightPrediction>(problem);
   velocity_correction_ = std::make_unique<VelocityCorrection>(problem, flight_->bodies());
-  layer_right_.resize(static_cast<Index>(problem.contact_dofs.size()));
+  contact_right_hand_side_.resize(static_cast<Index>(problem.contact_dofs.size()));
   contact_cells_ = problem.internal_force_at_contact();
 }
 
@@ -53,9 +53,9 @@ std::vector<OperatorCoefficients> FiniteStrainStep::operators(const Semidiscrete
   if (!problem.has_contact_dofs()) return {midpoint};
   midpoint.condensed_operator = static_cast<int>(MasslessContactStep::condensed_stage);
   midpoint.mean = mean;
-  OperatorCoefficients layer{.mass = 0.0, .stiffness = 1.0, .damping = 0.0, .dofs = StageDofs::contact};
-  layer.relaxation_step = step;
-  return {layer, midpoint};
+  OperatorCoefficients contact_operator{.mass = 0.0, .stiffness = 1.0, .damping = 0.0, .dofs = StageDofs::contact};
+  contact_operator.relaxation_step = step;
+  return {contact_operator, midpoint};
 }
 
 void FiniteStrainStep::start(const SemidiscreteProblem& problem, double step, const State& state) {
@@ -64,7 +64,7 @@ void FiniteStrainStep::start(const SemidiscreteProblem& problem, double step, co
   flight_->predict(state.displacement, state.velocity, step, end_);
   middle_ = 0.5 * (state.displacement + end_);
   jumped_displacement_ = state.displacement;
-  layer_energy_start_.reset();
+  contact_energy_start_.reset();
   sigma_.start();
   kinetic_ = kinetic_start_ = 0.5 * problem.mass.quadratic_form(state.velocity);
   converged_ = corrects_velocity_ = false;
@@ -79,7 +79,7 @@ void FiniteStrainStep::start(const SemidiscreteProblem& problem, double step, co
   end_contact_force_.setZero(problem.dof_count());
   mean_contact_force_.setZero(problem.dof_count());
   energy_start_ = energy_step_ == state.step
-                      ? kept_energy_
+                      ? last_energy_
                       : stored_energy(*problem.internal_force, state.displacement, state.internal_strain);
 }
 
@@ -112,17 +112,17 @@ void FiniteStrainStep::evaluate(const SemidiscreteProblem& problem, double step,
   }
   load_work_ = contact_cells_ ? loads_.work_of_change(problem.contact_dofs, state.displacement, end_, middle_) : 0.0;
   // P(x) on contact nodes is in neither term, since the work of D contains it, too.
-  const double wanted = (energy_ - energy_start_) + viscous_dissipation_ -
-                        on_contact(problem, loads_.mean(), increment_) - load_work_ - obstacle_work_ -
-                        end_weight_ * (work_at_end_ - dissipation_);
+  const double required = (energy_ - energy_start_) + viscous_dissipation_ -
+                          on_contact(problem, loads_.mean(), increment_) - load_work_ - obstacle_work_ -
+                          end_weight_ * (work_at_end_ - dissipation_);
   mean_external_force_ = loads_.mean() + mean_contact_force_;
   const double has = force_.dot(increment_) - on_contact(problem, mean_external_force_, increment_);
   const double unit = strain_force_.dot(increment_);
-  energy_defect_ = wanted - has - sigma_.value() * unit;
+  energy_defect_ = required - has - sigma_.value() * unit;
   const double size = std::abs(energy_start_ + energy_);
   // A defect at the level of rounding carries no information, least of all if the body hardly moves.
   if (std::abs(energy_defect_) <= tolerance() * size || unit <= energy_tolerance * energy_tolerance * size) return;
-  if (sigma_.choose((wanted - has) / unit, energy_defect_, near_rounding * size, converged_))
+  if (sigma_.choose((required - has) / unit, energy_defect_, near_rounding * size, converged_))
     progress_.restart();  // the next correction is due to σ
 }
 
@@ -158,8 +158,8 @@ void FiniteStrainStep::require_contact(const SemidiscreteProblem& problem, React
                                        const State& state, StageSolve& stages, Stage& stage) {
   contact_residual_ = loads_.mean() - end_force_ - 2.0 * stage.right_hand_side + lagged_row_force_;
   if (loads_.acts_at_ends()) contact_residual_ += loads_.beside_at_end();
-  problem.gather_contact(contact_residual_, layer_right_);
-  const Vector& shift = MasslessContactStep::solve_contact_nodes(problem, layer_right_, stages);
+  problem.gather_contact(contact_residual_, contact_right_hand_side_);
+  const Vector& shift = MasslessContactStep::solve_contact_nodes(problem, contact_right_hand_side_, stages);
   for (const Index dof : problem.contact_dofs) end_[dof] += shift[dof];
   lagged_.release();
   contact_.require(problem, mean, step, state, end_, equations_, stage);
@@ -168,7 +168,7 @@ void FiniteStrainStep::require_contact(const SemidiscreteProblem& problem, React
   linearization_motion_.setZero(end_.size());
   for (const Index dof : problem.contact_dofs) linearization_motion_[dof] = 0.5 * (last_end_[dof] - end_[dof]);
   linearize_contact(problem, linearization_motion_, stage);
-  lagged_.take_over(linearization_motion_, stage);
+  lagged_.replace_rows(linearization_motion_, stage);
 }
 
 /// Updates x += δ, u₁ += 2δ, on contact nodes 2m.
@@ -193,9 +193,9 @@ FiniteStrainStep::Iteration FiniteStrainStep::correct(const SemidiscreteProblem&
 /// Accelerates corrections that hardly shrink: displacements, with the reactions that acted on them.
 void FiniteStrainStep::accelerate(const SemidiscreteProblem& problem, const State& state) {
   const auto contact = static_cast<Index>(problem.contact_dofs.size());
-  const Index middle = middle_.size(), places = middle + contact, points = reactions_.normal.size(),
+  const Index middle = middle_.size(), positions = middle + contact, points = reactions_.normal.size(),
               slips = reactions_.tangential.size();
-  image_.resize(places + 2 * (points + slips));
+  image_.resize(positions + 2 * (points + slips));
   image_.head(middle) = middle_;
   problem.gather_contact(end_, image_.segment(middle, contact));
   image_.tail(2 * (points + slips)) << reactions_.normal, reactions_.acting_normal, reactions_.tangential,
@@ -207,9 +207,9 @@ void FiniteStrainStep::accelerate(const SemidiscreteProblem& problem, const Stat
   middle_ = image_.head(middle);
   end_ = 2.0 * middle_ - state.displacement;
   problem.scatter_contact(image_.segment(middle, contact), end_);
-  reactions_.normal = image_.segment(places, points);
-  reactions_.acting_normal = image_.segment(places + points, points);
-  reactions_.tangential = image_.segment(places + 2 * points, slips);
+  reactions_.normal = image_.segment(positions, points);
+  reactions_.acting_normal = image_.segment(positions + points, points);
+  reactions_.tangential = image_.segment(positions + 2 * points, slips);
   reactions_.acting_tangential = image_.tail(slips);
 }
 
@@ -245,14 +245,14 @@ void FiniteStrainStep::update_start(const SemidiscreteProblem& problem, double s
   at_start_ = loads_.mean() + end_contact_force_;
   if (loads_.acts_at_ends()) loads_.add_at_start(at_start_);
   start_residual_ = at_start_ - jump_force_;
-  problem.gather_contact(start_residual_, layer_right_);
-  const Vector& change = MasslessContactStep::solve_contact_nodes(problem, layer_right_, stages);
+  problem.gather_contact(start_residual_, contact_right_hand_side_);
+  const Vector& change = MasslessContactStep::solve_contact_nodes(problem, contact_right_hand_side_, stages);
   for (const Index dof : problem.contact_dofs) jumped_displacement_[dof] += change[dof];
   // d: both energies are those of the cells at contact nodes, as the others are equal.
   jump_ = jumped_displacement_ - state.displacement;
-  if (!layer_energy_start_) layer_energy_start_ = contact_cells_->energy(state.displacement);
+  if (!contact_energy_start_) contact_energy_start_ = contact_cells_->energy(state.displacement);
   dissipation_ =
-      on_contact(problem, at_start_, jump_) - (contact_cells_->energy(jumped_displacement_) - *layer_energy_start_);
+      on_contact(problem, at_start_, jump_) - (contact_cells_->energy(jumped_displacement_) - *contact_energy_start_);
   if (viscous != nullptr)
     dissipation_ -=
         viscous->start_energy(branches, jumped_displacement_) - viscous->start_energy(branches, state.displacement);
@@ -285,7 +285,7 @@ void FiniteStrainStep::finish(const SemidiscreteProblem& problem, double step, S
   }
   follow_without_inertia(problem, increment, step, state);
   equations_.store_contact(stage, solution, step, state);
-  loads_.take_varying(state.forces.varying_load);
+  loads_.store_varying(state.forces.varying_load);
   if (problem.has_damping()) {
     problem.damping.evaluate(increment, state.forces.damping_force);
     state.forces.damping_force *= 1.0 / step;
@@ -293,7 +293,7 @@ void FiniteStrainStep::finish(const SemidiscreteProblem& problem, double step, S
   contact_.update_drift(problem, before_, state);
   if (problem.contact.follows_motion()) lagged_.remember(state);
   energy_step_ = state.step + 1;
-  kept_energy_ = energy_;
+  last_energy_ = energy_;
   corrections_ = {.load_work = load_work_,
                   .numerical_dissipation = end_weight_ * dissipation_,
                   .integration_error = corrects_velocity_ ? 0.0 : energy_defect_,

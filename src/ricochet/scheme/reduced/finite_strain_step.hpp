@@ -124,10 +124,10 @@ class FiniteStrainStep {
   StepEquations equations_;
   StepLoads loads_;
   StepCorrections corrections_;
-  long energy_step_ = -1;                     ///< step whose end has been evaluated
-  double kept_energy_ = 0.0;                  ///< V there
-  std::optional<double> layer_energy_start_;  ///< of the cells at contact nodes, on demand
-  double viscous_dissipation_ = 0.0;          ///< 𝒟
+  long energy_step_ = -1;                       ///< step whose end has been evaluated
+  double last_energy_ = 0.0;                    ///< V there
+  std::optional<double> contact_energy_start_;  ///< of the cells at contact nodes, on demand
+  double viscous_dissipation_ = 0.0;            ///< 𝒟
   double energy_ = 0.0, energy_start_ = 0.0, energy_defect_ = 0.0, end_weight_ = 0.0, dissipation_ = 0.0;
   bool converged_ = false;                          ///< displacements
   double kinetic_start_ = 0.0, kinetic_ = 0.0;      ///< at the start; at the end, in the previous iteration
@@ -148,7 +148,7 @@ class FiniteStrainStep {
   Vector linearization_motion_;                ///< contact motion about which conditions are linear
   Vector contact_residual_;                    ///< L₁ + P_c(u₁) − f_c(u₁) − 2 b_c
   Vector jump_, jump_force_, start_residual_;  ///< J; f(u₀ + J); L₀ + P₀ + Hᵀρ − f(u₀ + J)
-  Vector end_velocity_, next_end_, layer_right_, damping_force_, before_, last_middle_, last_end_;
+  Vector end_velocity_, next_end_, contact_right_hand_side_, damping_force_, before_, last_middle_, last_end_;
   Vector scratch_;           ///< a force that is evaluated for its error alone
   Vector point_, image_;     ///< of an accelerated iteration
   Vector lagged_row_force_;  ///< of the reactions, along rows less the lagged ones

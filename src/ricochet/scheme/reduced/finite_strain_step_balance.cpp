@@ -20,12 +20,12 @@ bool FiniteStrainStep::is_balanced(double step, const State& state, const Iterat
   const bool is_short = step <= whole_step_ / 64.0;
   const double size = std::max(kinetic_start_, kinetic_) + energy_start_ + energy_;
   const bool is_exact = std::abs(energy_defect_) <= tolerance() * size;
-  const bool is_vain = std::abs(energy_defect_) > 0.5 * energy_defect_size_;
-  stalled_iterations_ = converged_ && is_vain ? stalled_iterations_ + 1 : 0;
+  const bool is_stalled = std::abs(energy_defect_) > 0.5 * energy_defect_size_;
+  stalled_iterations_ = converged_ && is_stalled ? stalled_iterations_ + 1 : 0;
   energy_defect_size_ = std::abs(energy_defect_);
   // Far from rounding one iteration may bring little, and the next one much.
-  const int most_vain = energy_defect_size_ <= 1e-13 * size ? 1 : 2;
-  const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : stalled_iterations_ >= most_vain;
+  const int max_stalled_iterations = energy_defect_size_ <= 1e-13 * size ? 1 : 2;
+  const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : stalled_iterations_ >= max_stalled_iterations;
   if (log::enabled(log::Level::debug)) {
     log::debug(fmt::format(
         "Newton: iteration {}, correction {:.2e} of {:.2e}, sigma {:.2e}, {:.2e} of the energy is missing, weight of "

@@ -16,8 +16,8 @@ void LaggedRows::start(const State& state) {
   exact_ = nullptr;
   is_stale_ = state.forces.rows->sliding_state.size() > 0;
   if (is_stale_) return;
-  const auto known = state.memory.find(memory_of_rows);
-  if (known == state.memory.end()) {
+  const auto remembered = state.memory.find(memory_of_rows);
+  if (remembered == state.memory.end()) {
     lagged_ = nullptr;
     return;
   }
@@ -27,14 +27,14 @@ void LaggedRows::start(const State& state) {
     // Revision numbers from another count.
     std::fill(lagged_->revision.begin(), lagged_->revision.end(), ++revision_);
   }
-  if (known->second.size() != row_value_count(*lagged_))
+  if (remembered->second.size() != row_value_count(*lagged_))
     Snapshot::refuse(memory_of_rows, "has a length that does not fit this problem");
   is_new_ = false;
-  if (set_row_values(known->second, *lagged_))
+  if (set_row_values(remembered->second, *lagged_))
     std::fill(lagged_->revision.begin(), lagged_->revision.end(), ++revision_);
 }
 
-void LaggedRows::take_over(const Vector& motion, Stage& stage) {
+void LaggedRows::replace_rows(const Vector& motion, Stage& stage) {
   exact_ = stage.rows;
   renew();
   stage.rows = read_only_;

@@ -23,7 +23,7 @@ class LaggedRows {
   void start(const State& state);
   /// Replaces the rows H of a stage, whose conditions are linear about the contact motion m, by Ĥ, and keeps H. Offsets
   /// are shifted such that gaps and slips at m are unchanged. The stage does not renew its rows.
-  void take_over(const Vector& motion, Stage& stage);
+  void replace_rows(const Vector& motion, Stage& stage);
   [[nodiscard]] const std::shared_ptr<const ContactRows>& exact() const { return exact_; }
   /// Releases H, which may be overwritten from now on.
   void release() { exact_ = nullptr; }

@@ -84,12 +84,12 @@ std::vector<OperatorCoefficients> MasslessContactStep::operators(const Semidiscr
   if (finite_) return FiniteStrainStep::operators(problem, h, mean);
   OperatorCoefficients midpoint{.mass = 4.0 / (h * h), .stiffness = 1.0, .damping = 2.0 / h};
   if (!problem.has_contact_dofs()) return {midpoint};
-  const OperatorCoefficients layer{
+  const OperatorCoefficients contact_operator{
       .mass = 0.0, .stiffness = 1.0, .damping = one_damping_ ? 1.0 / h : 2.0 / h, .dofs = StageDofs::contact};
   midpoint.condensed_operator = static_cast<int>(condensed_stage);
   midpoint.condensed_weight = one_damping_ ? 1.0 / (1.0 + 2.0 * eta_ / h) : 1.0;
   midpoint.mean = mean;
-  return {layer, midpoint};
+  return {contact_operator, midpoint};
 }
 
 void MasslessContactStep::balance(const SemidiscreteProblem& problem, const State& state, Stage& stage) {
@@ -129,10 +129,10 @@ void MasslessContactStep::set_contact_force(const SemidiscreteProblem& problem, 
   stage.prescribed.setZero(problem.supports.size());
 }
 
-const Vector& MasslessContactStep::solve_contact_nodes(const SemidiscreteProblem& problem, const Vector& right,
-                                                       StageSolve& stages) {
+const Vector& MasslessContactStep::solve_contact_nodes(const SemidiscreteProblem& problem,
+                                                       const Vector& right_hand_side, StageSolve& stages) {
   Stage& stage = stages.stage(condensed_stage);
-  set_contact_force(problem, right, stage);
+  set_contact_force(problem, right_hand_side, stage);
   stage.motion.reset();
   stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 0);
   return stages.solve(condensed_stage).increment;
@@ -152,8 +152,8 @@ void MasslessContactStep::advance(const SemidiscreteProblem& problem, ReactionMe
   if (has_contact_nodes) {
     find_residual(problem, state);
     const double eta_part = one_damping_ ? eta_ / h : 0.0, weight = 1.0 / (1.0 + 2.0 * eta_part);
-    right_ = residual_ - eta_part * load_change_;
-    const Vector& shift = solve_contact_nodes(problem, right_, stages);
+    contact_right_hand_side_ = residual_ - eta_part * load_change_;
+    const Vector& shift = solve_contact_nodes(problem, contact_right_hand_side_, stages);
     for (const Index dof : problem.contact_dofs) contact_base_[dof] -= weight * shift[dof];
   }
   contact_.require(problem, mean, h, state, contact_base_, equations_, stage);
@@ -175,11 +175,11 @@ const StageSolution& MasslessContactStep::solve(const SemidiscreteProblem& probl
   const StageSolution* solution = &stages.solve(midpoint_stage(problem));
   if (problem.free_bodies.empty() || !problem.free_bodies.front()->has_gyroscopic_force()) return *solution;
   gyroscopic_force_.setZero(problem.dof_count());
-  constexpr int most_rounds = 100;
+  constexpr int max_iterations = 100;
   // Torques stop converging at the rounding of the stage; if their change is below this, they have settled.
   constexpr double near = 1e-11;
   double last = std::numeric_limits<double>::infinity();
-  for (int round = 0;; ++round) {
+  for (int iteration = 0;; ++iteration) {
     predicted_end_ = state.displacement + step_ * state.velocity + 2.0 * solution->increment;
     next_gyroscopic_force_.setZero(problem.dof_count());
     for (const auto& body : problem.free_bodies)
@@ -190,7 +190,7 @@ const StageSolution& MasslessContactStep::solve(const SemidiscreteProblem& probl
     if (change <= 4.0 * std::numeric_limits<double>::epsilon() * size) return *solution;
     if (change > 0.5 * last && change <= near * size) return *solution;
     last = change;
-    if (round == most_rounds || !std::isfinite(change))
+    if (iteration == max_iterations || !std::isfinite(change))
       throw Error(ErrorKind::not_converged,
                   "the rotation of a rigid body was not found: it rotates too far in one step");
     stage.right_hand_side += next_gyroscopic_force_ - gyroscopic_force_;
@@ -244,13 +244,13 @@ MasslessContactStep::ContactNodeWork MasslessContactStep::contact_node_work(cons
 double MasslessContactStep::load_work_of_mean(const SemidiscreteProblem& problem, double mu, double at_end,
                                               StageSolve& stages) {
   if (!problem.ranks->any(!load_change_.isZero(0.0))) return 0.0;
-  const Vector& place = solve_contact_nodes(problem, load_change_, stages);
+  const Vector& shift = solve_contact_nodes(problem, load_change_, stages);
   double of_reactions = 0.0, of_change = 0.0;
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
     const auto at = static_cast<Index>(i);
     const Index dof = problem.contact_dofs[i];
-    of_reactions += place[dof] * (excess_reaction_force_[dof] + 0.5 * residual_[at]);
-    of_change += 0.5 * place[dof] * load_change_[at];
+    of_reactions += shift[dof] * (excess_reaction_force_[dof] + 0.5 * residual_[at]);
+    of_change += 0.5 * shift[dof] * load_change_[at];
   }
   return mu * at_end - of_reactions + mu * (at_end - of_change);
 }

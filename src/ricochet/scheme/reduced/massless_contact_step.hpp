@@ -67,9 +67,10 @@ class MasslessContactStep {
   static constexpr std::size_t condensed_stage = 0;
   /// Sets the right-hand side of the stage of contact nodes: forces per contact dof, with supports at rest.
   static void set_contact_force(const SemidiscreteProblem& problem, const Vector& force, Stage& stage);
-  /// Solves with the operator of contact nodes, without contact. Returns the increment, per dof; `right` is per contact
-  /// dof.
-  static const Vector& solve_contact_nodes(const SemidiscreteProblem& problem, const Vector& right, StageSolve& stages);
+  /// Solves with the operator of contact nodes, without contact. Returns the increment, per dof; `right_hand_side` is
+  /// per contact dof.
+  static const Vector& solve_contact_nodes(const SemidiscreteProblem& problem, const Vector& right_hand_side,
+                                           StageSolve& stages);
   /// Sets u₁, v₁ from δ of the midpoint's stage and the increment of the step.
   void move(const SemidiscreteProblem& problem, const Vector& solution, const Vector& increment, State& state) const;
   /// Transfers the forces of the step to the state; loads are those of the balance.
@@ -101,7 +102,7 @@ class MasslessContactStep {
   StepEquations equations_;
   StepCorrections corrections_;
   std::optional<FiniteStrainStep> finite_;  ///< for a nonlinear internal force
-  Vector load_, base_, residual_, load_change_, right_, contact_base_;
+  Vector load_, base_, residual_, load_change_, contact_right_hand_side_, contact_base_;
   Vector previous_varying_, mean_varying_;             ///< varying load at the start; its mean over the step
   Vector start_displacement_, predicted_end_;          ///< u₀; u₁ of rigid bodies, predicted
   Vector gyroscopic_force_, next_gyroscopic_force_;    ///< contained in b; at the predicted end

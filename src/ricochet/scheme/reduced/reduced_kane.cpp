@@ -24,7 +24,7 @@ class ReducedKane final : public EndContactScheme {
     EndContactScheme::analyse(problem);
     if (weight_ == "end" || !problem.has_contact_dofs() || has_mean(problem)) return;
     if (weight_ == "automatic" && problem.contact.has_friction()) return;
-    if (std::exchange(told_, true)) return;  // `validate` analyses first, and then starts a run
+    if (std::exchange(mixed_mean_logged_, true)) return;  // `validate` analyses first, and then starts a run
     log::info(fmt::format("time.reaction_weight = \"{}\": the reactions at the end of each step act, since {}", weight_,
                           problem.contact.follows_motion() ? "contact directions follow the motion"
                           : has_finite_strain_friction(problem)
@@ -44,12 +44,12 @@ class ReducedKane final : public EndContactScheme {
   }
   [[nodiscard]] ReactionMean mean(const SemidiscreteProblem& problem) const override {
     // Sliding without damping flutters, less so under the end reactions.
-    const bool wanted = weight_ == "adaptive" || (weight_ == "automatic" && !problem.contact.has_friction());
-    return wanted && has_mean(problem) ? ReactionMean::mixed : ReactionMean::end;
+    const bool is_requested = weight_ == "adaptive" || (weight_ == "automatic" && !problem.contact.has_friction());
+    return is_requested && has_mean(problem) ? ReactionMean::mixed : ReactionMean::end;
   }
 
   std::string weight_;
-  bool told_ = false;
+  bool mixed_mean_logged_ = false;
 };
 
 }  // namespace

@@ -41,7 +41,7 @@ double StepLoads::work_of_change(const std::vector<Index>& dofs, const Vector& s
   return sum;
 }
 
-void StepLoads::take_varying(Vector& varying_load) const {
+void StepLoads::store_varying(Vector& varying_load) const {
   if (varies_) varying_load = varying_;
   if (!follows_) return;
   if (varies_) {

@@ -32,7 +32,7 @@ class StepLoads {
   [[nodiscard]] double work_of_change(const std::vector<Index>& dofs, const Vector& start, const Vector& end,
                                       const Vector& middle) const;
   /// Writes the varying part of L̄ and P(x), if any.
-  void take_varying(Vector& varying_load) const;
+  void store_varying(Vector& varying_load) const;
 
  private:
   bool varies_ = false, follows_ = false;

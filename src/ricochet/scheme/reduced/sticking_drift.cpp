@@ -8,14 +8,14 @@ constexpr const char* stick_slip = "stick_slip";
 
 /// True if sticking points have a position to return to: rows that turn with the motion have other tangents in each
 /// step.
-bool keeps_places(const SemidiscreteProblem& problem) {
+bool has_fixed_tangents(const SemidiscreteProblem& problem) {
   return problem.contact.has_friction() && !problem.contact.follows_motion();
 }
 
 }  // namespace
 
 void StickingDrift::require(const SemidiscreteProblem& problem, const State& state, double step, Stage& stage) {
-  if (!keeps_places(problem)) return;
+  if (!has_fixed_tangents(problem)) return;
   const auto memory = state.memory.find(stick_slip);
   if (memory == state.memory.end()) return;
   if (memory->second.size() != stage.slip_offset.size())
@@ -24,7 +24,7 @@ void StickingDrift::require(const SemidiscreteProblem& problem, const State& sta
 }
 
 void StickingDrift::update_drift(const SemidiscreteProblem& problem, const Vector& before, State& state) {
-  if (!keeps_places(problem)) return;
+  if (!has_fixed_tangents(problem)) return;
   motion_ = state.displacement - before;  // rounded, as in the displacement
   state.forces.rows->tangential_motion(motion_, slip_);
   if (state.obstacle_increment.tangential.size() > 0) slip_ -= state.obstacle_increment.tangential;

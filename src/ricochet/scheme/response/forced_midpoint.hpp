@@ -27,7 +27,7 @@ class ForcedMidpoint : public Kane {
   /// Step without contact forces: gaps at its start, and displacement and gaps at its end.
   struct Unforced {
     const State& start;
-    const Vector &gap_before, &place, &gap;
+    const Vector &gap_before, &displacement, &gap;
   };
   /// Computes r in `normal`, which is zero before; returns false if neither r nor f acts. May use stage 0.
   virtual bool find_forces(const SemidiscreteProblem& problem, const ContactRows& rows, const Unforced& unforced,

@@ -41,7 +41,7 @@ class Nitsche final : public ForcedMidpoint {
   bool find_forces(const SemidiscreteProblem& problem, const ContactRows& rows, const Unforced& unforced,
                    StageSolve& stages, Vector& normal) override {
     find_pressures(unforced.start.displacement, unforced.gap_before, points_.s_before, points_.p_before);
-    points_.s.noalias() = stress_.rows * unforced.place;
+    points_.s.noalias() = stress_.rows * unforced.displacement;
     points_.gap = unforced.gap;
     if (stiffness_.size() == 0) {  // no contact: no dense problem
       normal.resize(0);

@@ -14,13 +14,13 @@ namespace ricochet {
 namespace {
 
 /// Key of State::memory; its first number is the step from which on the factor may be renewed.
-constexpr const char* layer_renewal = "layer_renewal";
+constexpr const char* contact_renewal = "layer_renewal";
 /// Iterations that count as many, and steps for which a new factor is kept: it costs as much as some tens of
 /// evaluations of the internal force.
-constexpr int many_rounds = 8;
-constexpr double kept_steps = 100.0;
+constexpr int renewal_iterations = 8;
+constexpr double steps_between_renewals = 100.0;
 /// Iterations before acceleration begins.
-constexpr int plain_layer_rounds = 2;
+constexpr int plain_iterations = 2;
 
 double largest_on_contact(const SemidiscreteProblem& problem, const Vector& values) {
   double largest = 0.0;
@@ -39,22 +39,22 @@ void NonlinearContactEquilibrium::analyse(const SemidiscreteProblem& problem) {
 }
 
 void NonlinearContactEquilibrium::start(State& state) const {
-  if (contact_cells_) state.memory[layer_renewal].setZero(State::memory_numbers);
+  if (contact_cells_) state.memory[contact_renewal].setZero(State::memory_numbers);
 }
 
 void NonlinearContactEquilibrium::renew_where_slow(const SemidiscreteProblem& problem, State& state,
                                                    StageSolve& stages) {
-  if (!problem.has_contact_dofs() || progress_.iterations() <= many_rounds) return;
-  double& from = state.memory.at(layer_renewal)[0];
+  if (!problem.has_contact_dofs() || progress_.iterations() <= renewal_iterations) return;
+  double& from = state.memory.at(contact_renewal)[0];
   if (static_cast<double>(state.step) < from) return;
-  from = static_cast<double>(state.step) + kept_steps;
+  from = static_cast<double>(state.step) + steps_between_renewals;
   stages.renew(state.displacement, state.displacement);
 }
 
-/// Moves contact nodes; `place` has the increments of contact dofs.
-void NonlinearContactEquilibrium::move_to(const SemidiscreteProblem& problem, const State& state, const Vector& place,
-                                          Vector& increment, Vector& end) {
-  problem.scatter_contact(place, increment);
+/// Moves contact nodes; `contact_increment` has the increments of contact dofs.
+void NonlinearContactEquilibrium::move_to(const SemidiscreteProblem& problem, const State& state,
+                                          const Vector& contact_increment, Vector& increment, Vector& end) {
+  problem.scatter_contact(contact_increment, increment);
   for (const Index dof : problem.contact_dofs) end[dof] = state.displacement[dof] + increment[dof];
 }
 
@@ -125,7 +125,7 @@ const StageSolution* NonlinearContactEquilibrium::solve(const SemidiscreteProble
     }
     if (correction > last) acceleration_.restart();
     last = correction;
-    const bool accelerates = progress_.iterations() > plain_layer_rounds && advice != NewtonProgress::Advice::renew;
+    const bool accelerates = progress_.iterations() > plain_iterations && advice != NewtonProgress::Advice::renew;
     if (accelerates) acceleration_.advance(point_, image_, image_);
     move_ = image_ - point_;
     point_ = image_;

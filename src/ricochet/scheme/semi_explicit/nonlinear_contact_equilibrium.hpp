@@ -35,8 +35,8 @@ class NonlinearContactEquilibrium {
   void require(const SemidiscreteProblem& problem, const State& state, const Vector& load, double step,
                const Vector& increment, const Vector& end, Stage& stage);
   void evaluate(const SemidiscreteProblem& problem, const State& state, Vector& increment, Vector& end);
-  void move_to(const SemidiscreteProblem& problem, const State& state, const Vector& place, Vector& increment,
-               Vector& end);
+  void move_to(const SemidiscreteProblem& problem, const State& state, const Vector& contact_increment,
+               Vector& increment, Vector& end);
 
   std::shared_ptr<const InternalForce> contact_cells_;  ///< of the cells at contact nodes
   double reach_ = 0.0;                                  ///< largest coordinate of the nodes

@@ -26,14 +26,14 @@ constexpr const char* critical_displacement = "critical.place";  ///< displaceme
 constexpr const char* critical_mode = "critical.mode";           ///< eigenvector M^{½}x found there
 
 /// Indices of the numbers in the state's memory.
-enum CriticalNumbers : Index { last_found, smallest_found, told_near, found_at, evaluations_made };
+enum CriticalNumbers : Index { last_found, smallest_found, near_warned, found_at, evaluations_made };
 
 /// Products with K per check.
 constexpr int products = 8;
 /// Size of the random part of their starting vector, relative to the last eigenvector.
 constexpr double random_part = 0.3;
 /// Relative change of a distance that makes a check due: least and largest, and as a part of the remaining margin.
-constexpr double least_change = 0.02, part_of_room = 0.5, most_change = 0.15;
+constexpr double min_change = 0.02, part_of_room = 0.5, max_change = 0.15;
 /// Part of the energy in the highest frequencies that indicates an instability, and steps between such checks.
 constexpr double high_frequency_part = 0.5;
 constexpr double rest_between = 16.0;
@@ -84,7 +84,7 @@ void TrackedCriticalStep::start(const SemidiscreteProblem& problem, double step,
   if (check && (step >= critical || step <= near_fraction * smallest_)) check_critical_step(scheme_, step, critical);
   state.memory[critical_numbers].setZero(State::memory_numbers);
   state.memory[critical_numbers][smallest_found] = critical;
-  state.memory[critical_numbers][told_near] = check && step > near_fraction * critical ? 1.0 : 0.0;
+  state.memory[critical_numbers][near_warned] = check && step > near_fraction * critical ? 1.0 : 0.0;
   state.memory[critical_mode].setZero(problem.dof_count());
   store(critical, state);
 }
@@ -163,7 +163,7 @@ bool TrackedCriticalStep::is_due(const SemidiscreteProblem& problem, double step
   const Vector& numbers = state.memory.at(critical_numbers);
   if (!std::isfinite(numbers[last_found])) return false;  // no dof has both mass and freedom
   const double room = 1.0 - step / numbers[last_found];
-  if (change_since(problem, state) > std::clamp(part_of_room * room, least_change, most_change)) return true;
+  if (change_since(problem, state) > std::clamp(part_of_room * room, min_change, max_change)) return true;
   if (static_cast<double>(state.step) < numbers[found_at] + rest_between) return false;
   const double high = 0.125 * step * step * problem.mass.quadratic_form(state.acceleration);
   return high > high_frequency_part * (0.5 * problem.mass.quadratic_form(state.velocity) + std::abs(energy));
@@ -205,8 +205,8 @@ void TrackedCriticalStep::track(const SemidiscreteProblem& problem, double step,
         "critical step {:.6g}{}: the step is {:.3g} of it; {:.0f} evaluations of the internal force so far to find it",
         critical, location_text(problem, state), step / critical, numbers[evaluations_made]));
   }
-  if (step < near_fraction * critical || step >= critical || numbers[told_near] != 0.0) return;
-  numbers[told_near] = 1.0;
+  if (step < near_fraction * critical || step >= critical || numbers[near_warned] != 0.0) return;
+  numbers[near_warned] = 1.0;
   log::warning(fmt::format(
       "scheme \"{}\": at t = {:.6g} the bodies are deformed so much that the critical step is {:.6g} (determined{}); "
       "time.step = {:.6g} is {:.3g} of it, and the run stops when it exceeds the critical step; use {:.3g} or less",

@@ -81,10 +81,10 @@ class BoundarySensor final : public Sensor {
   }
 
   /// Vector from `about` to a position.
-  template <class Place>
-  [[nodiscard]] Eigen::Vector3d arm(const Place& place) const {
+  template <class Position>
+  [[nodiscard]] Eigen::Vector3d arm(const Position& position) const {
     Eigen::Vector3d result = Eigen::Vector3d::Zero();
-    result.head(problem_.dimension) = place - about_;
+    result.head(problem_.dimension) = position - about_;
     return result;
   }
 

@@ -18,9 +18,9 @@ class FreeBodySensor final : public Sensor {
     Columns result;
     const std::vector<std::string> axes{"x", "y", "z"};
     for (const char* const what : {"displacement", "velocity", "rotation", "spin", "contact_force"}) {
-      const bool turns = std::string(what) == "rotation" || std::string(what) == "spin";
-      for (std::size_t k = turns && problem_.dimension == 2 ? 2 : 0;
-           k < (turns ? 3 : static_cast<std::size_t>(problem_.dimension)); ++k)
+      const bool is_rotation = std::string(what) == "rotation" || std::string(what) == "spin";
+      for (std::size_t k = is_rotation && problem_.dimension == 2 ? 2 : 0;
+           k < (is_rotation ? 3 : static_cast<std::size_t>(problem_.dimension)); ++k)
         result.push_back({name_ + "." + what + "_" + axes[k], Reduction::same});
     }
     return result;
@@ -44,12 +44,12 @@ class FreeBodySensor final : public Sensor {
  private:
   /// In the plane the angle, whole turns included; in space the rotation vector, of length π at most.
   [[nodiscard]] SpaceVector rotation(const Vector& displacement) const {
-    const Pose::Rotation turned = body_.pose(displacement).rotation;
+    const Pose::Rotation matrix = body_.pose(displacement).rotation;
     if (problem_.dimension == 3) {
-      const Eigen::AngleAxisd angle{Eigen::Matrix3d(turned)};
+      const Eigen::AngleAxisd angle{Eigen::Matrix3d(matrix)};
       return angle.angle() * angle.axis();
     }
-    const double angle = std::atan2(turned(1, 0), turned(0, 0));
+    const double angle = std::atan2(matrix(1, 0), matrix(0, 0));
     const double near = displacement[body_.rotation_node() * 2] / body_.gyration()[0];
     constexpr double whole = 2.0 * std::numbers::pi;
     return SpaceVector::Constant(1, angle + whole * std::round((near - angle) / whole));

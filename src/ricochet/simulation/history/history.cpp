@@ -124,7 +124,7 @@ void HistoryRecorder::weigh_nodes() {
 }
 
 /// Sets the positions of rigid bodies to the current ones, also at small strain of the others.
-void HistoryRecorder::place_free_bodies(const State& state) {
+void HistoryRecorder::update_free_bodies(const State& state) {
   const Index d = problem_.dimension;
   for (const auto& body : problem_.free_bodies)
     position_.segment(body->centre_node() * d, d) = body->centre(state.displacement);
@@ -164,9 +164,9 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
 }
 
 double HistoryRecorder::left_out_points() {
-  takes_part_.assign(static_cast<std::size_t>(problem_.contact.size()), 1);
-  problem_.contact.geometry->deactivate_points(takes_part_);
-  return static_cast<double>(std::count(takes_part_.begin(), takes_part_.end(), 0));
+  is_active_.assign(static_cast<std::size_t>(problem_.contact.size()), 1);
+  problem_.contact.geometry->deactivate_points(is_active_);
+  return static_cast<double>(std::count(is_active_.begin(), is_active_.end(), 0));
 }
 
 void HistoryRecorder::add_contact_force(const State& state) {
@@ -181,7 +181,7 @@ void HistoryRecorder::add_momentum(const State& state, const Vector& velocity) {
     position_ = problem_.nodes.reshaped() + state.displacement;
     weigh_positions();
   } else if (!problem_.free_bodies.empty()) {
-    place_free_bodies(state);
+    update_free_bodies(state);
     weigh_positions();
   }
   if (!problem_.mass.is_scalar()) problem_.mass.multiply(velocity, product_with_mass_);

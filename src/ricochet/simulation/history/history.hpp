@@ -74,7 +74,7 @@ class HistoryRecorder {
  private:
   void weigh_nodes();
   void weigh_positions();
-  void place_free_bodies(const State& state);
+  void update_free_bodies(const State& state);
   [[nodiscard]] double left_out_points();
   void add_contact_force(const State& state);
   void add_momentum(const State& state, const Vector& velocity);
@@ -91,7 +91,7 @@ class HistoryRecorder {
   std::vector<std::string> columns_;
   std::vector<Reduction> reductions_;
   std::vector<double> row_;
-  std::vector<char> takes_part_;
+  std::vector<char> is_active_;
   /// Momentum and angular momentum are Σ node_weight_ p and Σ node_arm_ × p over the nodes. If M = m ⊗ I, as for a
   /// density, p is the velocity, and the factors are m 1 and m x with the reference positions x, which avoids a product
   /// with M. Otherwise p is M V, and they are 1 and x. At finite strain x are the current positions.

@@ -31,8 +31,8 @@ MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Schem
       rule_(scheme.work_rule()),
       finite_strain_(!problem.internal_force->is_linear()),
       positions_(problem.nodes) {
-  if (places_change()) displacement_before_ = state.displacement;
-  take_positions(state.displacement);
+  if (positions_change()) displacement_before_ = state.displacement;
+  update_positions(state.displacement);
   previous_ = resultant(state.forces);
   algorithmic_ = algorithmic(state);
   force_.setZero(problem.dof_count());
@@ -40,7 +40,7 @@ MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Schem
   has_springs_ = !force_.isZero(0.0);
 }
 
-void MomentumAccount::take_positions(const Vector& displacement) {
+void MomentumAccount::update_positions(const Vector& displacement) {
   if (finite_strain_) positions_ = problem_.nodes + displacement.reshaped(problem_.dimension, problem_.nodes.cols());
   // Rigid bodies have their current positions, also at small strain of the others.
   for (const auto& body : problem_.free_bodies) {
@@ -68,13 +68,13 @@ void MomentumAccount::save(Snapshot& snapshot, const std::string& name) const {
 
 void MomentumAccount::load(const Snapshot& snapshot, const std::string& name) {
   const Vector& numbers = snapshot.reals(name, 21);
-  const auto take = [&numbers](Index first) {
+  const auto resultant_at = [&numbers](Index first) {
     return Resultant{numbers.segment<3>(first), numbers.segment<3>(first + 3)};
   };
-  impulse_ = take(0);
+  impulse_ = resultant_at(0);
   size_ = numbers[6];
-  previous_ = {take(7), numbers[13]};
-  algorithmic_ = take(14);
+  previous_ = {resultant_at(7), numbers[13]};
+  algorithmic_ = resultant_at(14);
   arm_ = numbers[20];
 }
 
@@ -113,7 +113,7 @@ void MomentumAccount::add_up_ranks(std::span<Resultant> parts) const {
 
 /// The force of such a point has the entries of all its rows and is summed node by node: between bodies at finite
 /// strain, where it acts at the positions of the nodes (rotating_pairs.hpp), and at rigid bodies.
-bool MomentumAccount::is_taken_by_nodes(Index point) const {
+bool MomentumAccount::is_summed_by_nodes(Index point) const {
   if (problem_.contact.between_bodies(point)) return finite_strain_ || problem_.contact.slides(point);
   return !problem_.free_bodies.empty() && problem_.obstacle_of_point(point)->free_motion() != nullptr;
 }
@@ -124,7 +124,7 @@ Resultant MomentumAccount::between_bodies(const StepForces& forces) {
   tangential_ = forces.acting_tangential();
   const Index tangents = problem_.dimension - 1;
   for (Index i = 0; i < normal_.size(); ++i) {
-    if (is_taken_by_nodes(i)) continue;
+    if (is_summed_by_nodes(i)) continue;
     normal_[i] = 0.0;
     if (tangential_.size() > 0) tangential_.segment(i * tangents, tangents).setZero();
   }
@@ -153,7 +153,7 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
   for (Index i = 0; i < forces.acting_normal().size(); ++i) {
     // Under Tresca's law a point without pressure may still carry friction.
     if (!carries_acting_force(forces, i)) continue;
-    if (is_taken_by_nodes(i)) {
+    if (is_summed_by_nodes(i)) {
       presses_bodies = true;
       continue;
     }
@@ -175,7 +175,7 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
     size_of_supports += std::abs(forces.support_reaction[i]);
   }
   for (const auto& body : problem_.free_bodies)
-    supports.moment.tail(body->gyration().size()) += held_torque(*body, forces);
+    supports.moment.tail(body->gyration().size()) += support_torque(*body, forces);
   const bool varies = forces.varying_load.size() > 0, is_damped = forces.damping_force.size() > 0;
   if (varies) parts[2] = part_of_nodes(forces.varying_load);
   if (is_damped) parts[3] = part_of_nodes(forces.damping_force);
@@ -190,7 +190,7 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
 }
 
 /// Torque that holds the rotation of a rigid body.
-SpaceVector MomentumAccount::held_torque(const FreeMotion& body, const StepForces& forces) {
+SpaceVector MomentumAccount::support_torque(const FreeMotion& body, const StepForces& forces) {
   const Index first = body.rotation_node() * problem_.dimension;
   force_.setZero(problem_.dof_count());
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {
@@ -222,7 +222,7 @@ void MomentumAccount::add_impulse(double weight, const Resultant& resultant) {
 }
 
 void MomentumAccount::enter_impulse(const State& state, const Vector& impulse) {
-  if (places_change()) take_positions(state.displacement);
+  if (positions_change()) update_positions(state.displacement);
   const Resultant sum = of_nodes(impulse);
   add_impulse(1.0, sum);
   size_ += sum.force.norm();
@@ -235,7 +235,7 @@ void MomentumAccount::enter_step(const State& state) {
   };
   const Resultant load_before = constant_load_;
   bool at_both_ends = false;
-  if (places_change()) {
+  if (positions_change()) {
     if (has_springs_) mean_ = 0.5 * (displacement_before_ + state.displacement);
     const Vector* const of_scheme = scheme_.displacement_of_forces();
     at_both_ends = of_scheme != nullptr && rule_.previous_weight != 0.0;
@@ -244,7 +244,7 @@ void MomentumAccount::enter_step(const State& state) {
     } else {
       displacement_of_forces_ = 0.5 * (displacement_before_ + state.displacement);
     }
-    take_positions(displacement_of_forces_);
+    update_positions(displacement_of_forces_);
     displacement_before_ = state.displacement;
   }
   if (at_both_ends) {

@@ -47,10 +47,10 @@ class MomentumAccount {
     Resultant total;
     double size = 0.0;
   };
-  [[nodiscard]] bool is_taken_by_nodes(Index point) const;
+  [[nodiscard]] bool is_summed_by_nodes(Index point) const;
   [[nodiscard]] Resultant between_bodies(const StepForces& forces);
-  [[nodiscard]] SpaceVector held_torque(const FreeMotion& body, const StepForces& forces);
-  [[nodiscard]] bool places_change() const { return finite_strain_ || !problem_.free_bodies.empty(); }
+  [[nodiscard]] SpaceVector support_torque(const FreeMotion& body, const StepForces& forces);
+  [[nodiscard]] bool positions_change() const { return finite_strain_ || !problem_.free_bodies.empty(); }
   [[nodiscard]] Sum resultant(const StepForces& forces);
   [[nodiscard]] Sum of_springs();
   [[nodiscard]] Resultant algorithmic(const State& state);
@@ -60,7 +60,7 @@ class MomentumAccount {
   [[nodiscard]] Resultant part_of_nodes(const Vector& force) const;
   void add_up_ranks(std::span<Resultant> parts) const;
   [[nodiscard]] Resultant of_nodes(const Vector& force) const;
-  void take_positions(const Vector& displacement);
+  void update_positions(const Vector& displacement);
   void add_impulse(double weight, const Resultant& resultant);
 
   const SemidiscreteProblem& problem_;

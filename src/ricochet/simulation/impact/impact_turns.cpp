@@ -6,7 +6,7 @@ namespace ricochet {
 
 /// True for bodies of the mesh with the linear law that supports do not hold: the mean rotation of a held body is
 /// bending.
-bool ImpactRecorder::grows_as_it_turns(int body) const {
+bool ImpactRecorder::inflates_with_rotation(int body) const {
   const auto count = static_cast<int>(rigid_.bodies().size() - problem_.free_bodies.size());
   return problem_.internal_force->is_linear() && body >= 0 && body < count &&
          !rigid_.bodies()[static_cast<std::size_t>(body)].held;
@@ -22,12 +22,12 @@ void ImpactRecorder::compute_rotations(Interval& interval) {
   const auto centre = [&](int body) -> const Eigen::Vector3d& {
     return rigid_.bodies()[static_cast<std::size_t>(body)].centre;
   };
-  Eigen::Vector3d::Map(interval.turn.data()) = at(collision.body).spin;
-  if (grows_as_it_turns(collision.other)) {
+  Eigen::Vector3d::Map(interval.rotation.data()) = at(collision.body).spin;
+  if (inflates_with_rotation(collision.other)) {
     const Eigen::Vector3d arm = Eigen::Vector3d::Map(interval.first_position.data()) - centre(collision.body);
     const Eigen::Vector3d contact =
         centre(collision.body) + at(collision.body).velocity + arm + at(collision.body).spin.cross(arm);
-    Eigen::Vector3d::Map(interval.other_turn.data()) = at(collision.other).spin;
+    Eigen::Vector3d::Map(interval.other_rotation.data()) = at(collision.other).spin;
     Eigen::Vector3d::Map(interval.other_arm.data()) = contact - centre(collision.other) - at(collision.other).velocity;
   }
   motion_ = &rigid_.motion(velocity_before_, displacement_before_);
@@ -38,14 +38,14 @@ double ImpactRecorder::growth_in(const Interval& interval, const Impact& impact)
   const CollisionPair& collision = collision_pairs_[static_cast<std::size_t>(interval.collision)];
   const double duration = impact.end - impact.begin;
   double growth = 0.0;
-  if (grows_as_it_turns(collision.body)) {
+  if (inflates_with_rotation(collision.body)) {
     const Eigen::Vector3d& centre = rigid_.bodies()[static_cast<std::size_t>(collision.body)].centre;
-    growth += rotation_growth({Eigen::Vector3d::Map(interval.turn.data()), impact.before.spin, impact.after.spin,
+    growth += rotation_growth({Eigen::Vector3d::Map(interval.rotation.data()), impact.before.spin, impact.after.spin,
                                Eigen::Vector3d::Map(interval.first_position.data()) - centre},
                               -impact.normal(), duration);
   }
-  if (impact.other && grows_as_it_turns(collision.other)) {
-    growth += rotation_growth({Eigen::Vector3d::Map(interval.other_turn.data()), impact.other->before.spin,
+  if (impact.other && inflates_with_rotation(collision.other)) {
+    growth += rotation_growth({Eigen::Vector3d::Map(interval.other_rotation.data()), impact.other->before.spin,
                                impact.other->after.spin, Eigen::Vector3d::Map(interval.other_arm.data())},
                               impact.normal(), duration);
   }

@@ -38,12 +38,12 @@ ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme&
   completed_.reserve(most_impacts);
   current_.resize(collision_pairs_.size());
   find_forces(state.forces, state.obstacle_increment, previous_);
-  take_velocity(state, velocity_before_);
+  store_velocity(state, velocity_before_);
   displacement_before_ = state.displacement;
 }
 
 /// Computes the velocity with which momenta are accounted for.
-void ImpactRecorder::take_velocity(const State& state, Vector& velocity) {
+void ImpactRecorder::store_velocity(const State& state, Vector& velocity) {
   if (scheme_.energy_instant() == 0.0) {
     velocity = state.velocity;
   } else {
@@ -104,7 +104,7 @@ void ImpactRecorder::add_up_ranks(std::vector<Force>& forces) const {
       force.points += std::lround(at[11]);
       if (at[sums] > force.leading_size) {
         force.leading_size = at[sums];
-        std::copy_n(at + sums + 1, 3, force.leading_place.begin());
+        std::copy_n(at + sums + 1, 3, force.leading_position.begin());
       }
       at += numbers;
     }
@@ -133,7 +133,7 @@ void ImpactRecorder::find_other_forces() {
 }
 
 void ImpactRecorder::enter_impulse(const State& state) {
-  take_velocity(state, velocity_before_);
+  store_velocity(state, velocity_before_);
 }
 
 ImpactRecorder::Acting ImpactRecorder::acting_in(std::size_t collision) const {
@@ -160,7 +160,7 @@ void ImpactRecorder::enter_step(const State& state, double method_energy) {
     enter_collision_pair(collision, instant);
   std::swap(previous_, current_);
   method_before_ = method_energy_;
-  take_velocity(state, velocity_before_);
+  store_velocity(state, velocity_before_);
   displacement_before_ = state.displacement;
 }
 
@@ -181,7 +181,7 @@ void ImpactRecorder::enter_collision_pair(std::size_t collision, double instant)
     // The other force acts before the instant of the forces in the state.
     interval.end = instant;
     interval.contact_time += 0.5 * h;
-    take_largest(interval, *acting.other, instant);
+    update_largest(interval, *acting.other, instant);
     return;
   }
   const Force& current = *acting.current;
@@ -190,7 +190,7 @@ void ImpactRecorder::enter_collision_pair(std::size_t collision, double instant)
   interval.pressing += h * current.pressing;
   interval.travel += current.travel;
   add(interval.sliding, 1.0, current.sliding);
-  take_largest(interval, current, instant);
+  update_largest(interval, current, instant);
 }
 
 /// Returns the motion at the start of the step.
@@ -228,7 +228,7 @@ void ImpactRecorder::touch(Interval& interval, const Acting& acting, double inst
   // The force acts in the first half of the step, possibly as the only one.
   interval.end = instant - 0.5 * h;
   interval.contact_time += 0.5 * h;
-  take_largest(interval, *acting.previous, instant - h);
+  update_largest(interval, *acting.previous, instant - h);
 }
 
 void ImpactRecorder::add_impulses(Interval& interval, std::size_t collision) const {
@@ -243,7 +243,7 @@ void ImpactRecorder::add_impulses(Interval& interval, std::size_t collision) con
   for (const OtherForces& each : others_) add_impulse(each.forces[collision], each.weight);
 }
 
-void ImpactRecorder::take_largest(Interval& interval, const Force& force, double instant) {
+void ImpactRecorder::update_largest(Interval& interval, const Force& force, double instant) {
   interval.most_points = std::max(interval.most_points, static_cast<double>(force.points));
   const double size = force.size();
   if (!(size > interval.largest)) return;
@@ -273,7 +273,7 @@ void ImpactRecorder::begin(Interval& interval, double time, const Force& first) 
   interval.from_inside =
       in_first_step && collision_pairs_[static_cast<std::size_t>(collision)].begins_inside ? 1.0 : 0.0;
   interval.intervals = 1.0;
-  interval.first_position = first.leading >= 0 ? reference_position(first.leading) : first.leading_place;
+  interval.first_position = first.leading >= 0 ? reference_position(first.leading) : first.leading_position;
   const CollisionPair& at = collision_pairs_[static_cast<std::size_t>(interval.collision)];
   interval.before = motion_of(at.body);
   if (at.other >= 0) interval.other_before = motion_of(at.other);

@@ -79,8 +79,8 @@ class ImpactRecorder {
     Motion before, after;
     Motion other_before, other_after;  ///< of the other body
     double method_before, method_after;
-    Three turn, other_turn;  ///< RotatingBody::turn
-    Three other_arm;         ///< RotatingBody::arm of the other body
+    Three rotation, other_rotation;  ///< RotatingBody::rotation
+    Three other_arm;                 ///< RotatingBody::arm of the other body
   };
   /// Phases of an interval, stored as numbers too.
   static constexpr double no_contact = 0.0, touching = 1.0, apart = 2.0;
@@ -100,7 +100,7 @@ class ImpactRecorder {
     long points = 0;            ///< number of those that carry a force
     Index leading = -1;         ///< point of the largest force, the first of equals
     double leading_size = 0.0;  ///< magnitude of that force
-    Three leading_place{};      ///< reference position of that point
+    Three leading_position{};   ///< reference position of that point
     [[nodiscard]] bool any() const { return points > 0; }
     /// Magnitude by which the largest force of an impact, and the largest of several in a step, is selected.
     [[nodiscard]] double size() const { return all.norm(); }
@@ -131,7 +131,7 @@ class ImpactRecorder {
   void add_along_axis(Index point, double part, const SpaceVector& own, const StepForces& acting,
                       const ObstacleMotion& travel, Force& force) const;
   [[nodiscard]] Acting acting_in(std::size_t collision) const;
-  void take_velocity(const State& state, Vector& velocity);
+  void store_velocity(const State& state, Vector& velocity);
   void enter_collision_pair(std::size_t collision, double instant);
   [[nodiscard]] Motion motion_of(int body) const;
   [[nodiscard]] double separation_at(const Interval& interval) const;
@@ -140,10 +140,10 @@ class ImpactRecorder {
   void add_impulses(Interval& interval, std::size_t collision) const;
   void begin(Interval& interval, double time, const Force& first);
   void compute_rotations(Interval& interval);
-  [[nodiscard]] bool grows_as_it_turns(int body) const;
+  [[nodiscard]] bool inflates_with_rotation(int body) const;
   [[nodiscard]] double growth_in(const Interval& interval, const Impact& impact) const;
   [[nodiscard]] Three reference_position(Index point) const;
-  static void take_largest(Interval& interval, const Force& force, double instant);
+  static void update_largest(Interval& interval, const Force& force, double instant);
   void file(const Interval& interval);
   [[nodiscard]] Impact describe(const Interval& interval) const;
 

@@ -24,9 +24,9 @@ RigidBodies::RigidBodies(const SemidiscreteProblem& problem, std::vector<int> bo
   sum_over_ranks(origin_);
   problem.ranks->sum(nodes);
   for (std::size_t b = 0; b < nodes.size(); ++b) origin_[b] /= nodes[b];
-  find_held();
+  find_supported_bodies();
   if (problem.axisymmetric) {
-    measure_round_axis();
+    measure_axisymmetric();
   } else {
     measure();
   }
@@ -49,9 +49,9 @@ void RigidBodies::add_free_bodies() {
     }
     const std::vector<Index>& dofs = problem_.supports.dofs();
     const Index first = body->centre_node() * d, rotations = body->gyration().size();
-    const auto held =
+    const auto supported_dofs =
         std::count_if(dofs.begin(), dofs.end(), [&](Index dof) { return dof >= first && dof < first + d + rotations; });
-    added.held = held == d + rotations;
+    added.held = supported_dofs == d + rotations;
   }
   motion_.resize(bodies_.size());
 }
@@ -60,12 +60,12 @@ void RigidBodies::sum_over_ranks(std::vector<Eigen::Vector3d>& values) const {
   if (!values.empty()) problem_.ranks->sum({values.front().data(), 3 * values.size()});
 }
 
-void RigidBodies::find_held() {
+void RigidBodies::find_supported_bodies() {
   if (!problem_.ranks->any(problem_.supports.size() > 0)) return;
   std::vector<std::vector<Index>> members(bodies_.size());
   for (Index node = 0; node < problem_.cell_node_count(); ++node)
     members[static_cast<std::size_t>(body_of_node(node))].push_back(node);
-  for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].held = are_held_at_rest(problem_, members[b]);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].held = are_fixed_at_rest(problem_, members[b]);
 }
 
 Eigen::Vector3d RigidBodies::arm(Index node) const {
@@ -124,11 +124,11 @@ void RigidBodies::measure() {
 }
 
 /// Measures the whole solid, with the moments xᵀmx, yᵀmy, yᵀm1 of M = m ⊗ I, x the distance from the axis.
-void RigidBodies::measure_round_axis() {
+void RigidBodies::measure_axisymmetric() {
   for (Eigen::Vector3d& origin : origin_) origin[0] = 0.0;
-  Vector places(problem_.dof_count());
-  for (Index node = 0; node < problem_.cell_node_count(); ++node) places.segment(node * 2, 2) = arm(node).head(2);
-  problem_.mass.multiply(places, momentum_);
+  Vector positions(problem_.dof_count());
+  for (Index node = 0; node < problem_.cell_node_count(); ++node) positions.segment(node * 2, 2) = arm(node).head(2);
+  problem_.mass.multiply(positions, momentum_);
   const Vector moments = momentum_;
   problem_.mass.multiply(Vector::Ones(problem_.dof_count()), momentum_);
   std::vector<double> along(bodies_.size(), 0.0), squared(bodies_.size(), 0.0), across(bodies_.size(), 0.0);
@@ -136,8 +136,8 @@ void RigidBodies::measure_round_axis() {
     const auto b = static_cast<std::size_t>(body_of_node(node));
     bodies_[b].mass += momentum_[node * 2 + 1];
     along[b] += moments[node * 2 + 1];
-    across[b] += places[node * 2] * moments[node * 2];
-    squared[b] += places[node * 2 + 1] * moments[node * 2 + 1];
+    across[b] += positions[node * 2] * moments[node * 2];
+    squared[b] += positions[node * 2 + 1] * moments[node * 2 + 1];
   }
   for (std::vector<double>* const each : {&along, &squared, &across}) problem_.ranks->sum(*each);
   for (RigidBody& body : bodies_) body.mass = problem_.ranks->sum(body.mass);
@@ -175,15 +175,15 @@ void RigidBodies::measure_at(const Vector& displacement) {
 
 const std::vector<RigidMotionState>& RigidBodies::motion(const Vector& velocity, const Vector& displacement) {
   const int d = problem_.dimension;
-  const bool at_places = !problem_.internal_force->is_linear();
-  if (at_places) measure_at(displacement);
+  const bool uses_current_positions = !problem_.internal_force->is_linear();
+  if (uses_current_positions) measure_at(displacement);
   problem_.mass.multiply(velocity, momentum_);
   for (RigidMotionState& state : motion_) state = {};
   for (Index node = 0; node < problem_.cell_node_count(); ++node) {
     const auto b = static_cast<std::size_t>(body_of_node(node));
     Eigen::Vector3d own = Eigen::Vector3d::Zero(), from_centre = arm(node) + origin_[b] - bodies_[b].centre;
     own.head(d) = momentum_.segment(node * d, d);
-    if (at_places) from_centre.head(d) = position_.segment(node * d, d) - centre_[b].head(d);
+    if (uses_current_positions) from_centre.head(d) = position_.segment(node * d, d) - centre_[b].head(d);
     motion_[b].velocity += own;
     motion_[b].spin += from_centre.cross(own);
     motion_[b].kinetic_energy += 0.5 * momentum_.segment(node * d, d).dot(velocity.segment(node * d, d));
@@ -195,7 +195,7 @@ const std::vector<RigidMotionState>& RigidBodies::motion(const Vector& velocity,
   }
   for (std::size_t b = 0; b < origin_.size(); ++b) {
     const RigidBody& body = bodies_[b];
-    const Eigen::Matrix3d& inertia = at_places ? inertia_[b] : body.inertia;
+    const Eigen::Matrix3d& inertia = uses_current_positions ? inertia_[b] : body.inertia;
     if (problem_.axisymmetric) motion_[b].velocity[0] = 0.0;
     const Eigen::Vector3d angular_momentum = problem_.axisymmetric ? Eigen::Vector3d::Zero() : motion_[b].spin;
     motion_[b].velocity /= body.mass;

@@ -24,11 +24,11 @@ class RigidBodies {
  private:
   [[nodiscard]] Eigen::Vector3d arm(Index node) const;
   void sum_over_ranks(std::vector<Eigen::Vector3d>& values) const;
-  void find_held();
+  void find_supported_bodies();
   void add_free_bodies();
   void measure();
   void measure_at(const Vector& displacement);
-  void measure_round_axis();
+  void measure_axisymmetric();
 
   const SemidiscreteProblem& problem_;
   std::vector<int> body_of_node_;

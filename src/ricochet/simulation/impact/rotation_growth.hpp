@@ -12,7 +12,8 @@ namespace ricochet {
 
 /// Rotation of one body in an impact.
 struct RotatingBody {
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();  ///< at the start of the impact: mean rotation of the displacement
+  /// At the start of the impact: mean rotation of the displacement.
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();
   Eigen::Vector3d spin_before = Eigen::Vector3d::Zero(), spin_after = Eigen::Vector3d::Zero();
   Eigen::Vector3d arm = Eigen::Vector3d::Zero();  ///< from the centre of mass to the contact
 };

@@ -57,11 +57,11 @@ void BodySurface::move(const Points& positions, const Vector& displacement) {
     for (Index k = 0; k < d; ++k)
       positions_[i][k] = positions(k, node) + (displacement.size() > 0 ? displacement[node * d + k] : 0.0);
   }
-  place_boxes();
+  compute_boxes();
   if (!tree_.empty()) tree_.refit(boxes_);
 }
 
-void BodySurface::place_boxes() {
+void BodySurface::compute_boxes() {
   for (std::size_t piece = 0; piece < pieces_.size(); ++piece) {
     boxes_[piece].setEmpty();
     for (const int node : pieces_[piece]) {
@@ -106,10 +106,10 @@ Eigen::Vector3d BodySurface::normal_at(int node) const {
 
 /// Returns the normal of the piece if the position is inside it; at an edge the sum of those of its pieces, at a corner
 /// weighted by the pieces' angles there.
-Eigen::Vector3d BodySurface::normal_at(const Closest& place) const {
-  const Corners& corners = place.corners;
+Eigen::Vector3d BodySurface::normal_at(const Closest& nearest) const {
+  const Corners& corners = nearest.corners;
   const bool inside = corners[1] >= 0 && (plane_ || corners[2] >= 0);
-  if (inside) return normal_of(place.piece);
+  if (inside) return normal_of(nearest.piece);
   if (corners[1] < 0) return normal_at(corners[0]);
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (const int piece : around(corners[0])) {
@@ -120,10 +120,10 @@ Eigen::Vector3d BodySurface::normal_at(const Closest& place) const {
 }
 
 double BodySurface::signed_distance(const Eigen::Vector3d& point) const {
-  const Closest place = closest(point);
-  if (place.piece < 0) return std::numeric_limits<double>::infinity();  // numbers too large to be squared
-  const double distance = std::sqrt(place.squared_distance);
-  return normal_at(place).dot(point - place.position) < 0.0 ? -distance : distance;
+  const Closest nearest = closest(point);
+  if (nearest.piece < 0) return std::numeric_limits<double>::infinity();  // numbers too large to be squared
+  const double distance = std::sqrt(nearest.squared_distance);
+  return normal_at(nearest).dot(point - nearest.position) < 0.0 ? -distance : distance;
 }
 
 }  // namespace ricochet

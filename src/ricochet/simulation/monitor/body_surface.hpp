@@ -67,9 +67,9 @@ class BodySurface {
   [[nodiscard]] Eigen::Vector3d normal_at(int node) const;
 
  private:
-  void place_boxes();
+  void compute_boxes();
   [[nodiscard]] Closest closest_on_piece(const Eigen::Vector3d& point, int piece) const;
-  [[nodiscard]] Eigen::Vector3d normal_at(const Closest& place) const;
+  [[nodiscard]] Eigen::Vector3d normal_at(const Closest& nearest) const;
 
   bool plane_;
   std::vector<Index> nodes_;

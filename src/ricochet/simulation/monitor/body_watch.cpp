@@ -11,7 +11,7 @@ namespace ricochet {
 namespace {
 
 /// Relative motion between two checks, in edge lengths.
-constexpr double motion_between_looks = 0.25;
+constexpr double motion_between_checks = 0.25;
 /// Factor on this motion for bodies whose overlap has been reported: then only its depth is of interest.
 constexpr double resolution_of_found = 4.0;
 
@@ -19,7 +19,7 @@ constexpr double resolution_of_found = 4.0;
 
 BodyWatch::BodyWatch(const Points& positions, const std::vector<CellBlock>& cells,
                      const std::vector<CellFacet>& boundary, const ConnectedBodies& bodies,
-                     const std::vector<double>& size, const std::vector<ContactNodeAllowance>& kept)
+                     const std::vector<double>& size, const std::vector<ContactNodeAllowance>& node_allowances)
     : positions_(positions) {
   if (bodies.count < 2) return;
   std::vector<std::vector<CellFacet>> facets(static_cast<std::size_t>(bodies.count));
@@ -32,15 +32,16 @@ BodyWatch::BodyWatch(const Points& positions, const std::vector<CellBlock>& cell
     surfaces_.emplace_back(positions, surface_pieces(positions, cells, own));
     const std::vector<Index>& nodes = surfaces_.back().nodes();
     size_.push_back(size[static_cast<std::size_t>(nodes.front())]);
-    resolution_ = std::min(resolution_, motion_between_looks * surfaces_.back().edge_length());
+    resolution_ = std::min(resolution_, motion_between_checks * surfaces_.back().edge_length());
     nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
   }
   last_displacement_.setZero(static_cast<Index>(nodes_.size()) * positions.rows());
-  set_allowances(kept, bodies);
+  set_allowances(node_allowances, bodies);
 }
 
-void BodyWatch::set_allowances(const std::vector<ContactNodeAllowance>& kept, const ConnectedBodies& bodies) {
-  for (const ContactNodeAllowance& one : kept) {
+void BodyWatch::set_allowances(const std::vector<ContactNodeAllowance>& node_allowances,
+                               const ConnectedBodies& bodies) {
+  for (const ContactNodeAllowance& one : node_allowances) {
     const int of = bodies.of_node[static_cast<std::size_t>(one.node)];
     const std::vector<Index>& nodes = surfaces_[static_cast<std::size_t>(of)].nodes();
     const auto at = std::lower_bound(nodes.begin(), nodes.end(), one.node);
@@ -106,7 +107,7 @@ double BodyWatch::check_nodes(int of, int inside, double time) {
   const BodySurface& other = surfaces_[static_cast<std::size_t>(inside)];
   const double size = std::min(size_[static_cast<std::size_t>(of)], size_[static_cast<std::size_t>(inside)]);
   double apart = std::numeric_limits<double>::infinity();
-  const auto kept = allowances_.find({of, inside});
+  const auto found = allowances_.find({of, inside});
   for (std::size_t i = 0; i < own.nodes().size(); ++i) {
     const Eigen::Vector3d& position = own.positions()[i];
     double distance = other.box().exteriorDistance(position);
@@ -114,7 +115,7 @@ double BodyWatch::check_nodes(int of, int inside, double time) {
     apart = std::min(apart, std::abs(distance));
     const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * position.lpNorm<Eigen::Infinity>();
     if (-distance <= std::max(rounding_of_depth * size, rounding)) continue;
-    const Allowance here = kept != allowances_.end() ? kept->second[i] : Allowance{};
+    const Allowance here = found != allowances_.end() ? found->second[i] : Allowance{};
     if (here.contact >= 0 && -distance <= here.depth_allowed(*gap_)) continue;
     BodyPair& pair = pair_of(std::min(of, inside), std::max(of, inside));
     if (here.contact < 0) {

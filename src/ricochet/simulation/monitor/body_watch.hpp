@@ -30,10 +30,11 @@ struct BodyPair {
 /// contact itself has there, which some schemes let become negative: if they are deeper, their pairing is wrong.
 class BodyWatch {
  public:
-  /// `positions`: d × nodes; `size`: per node, of the body to which it belongs; `kept`: the nodes of contacts.
+  /// `positions`: d × nodes; `size`: per node, of the body to which it belongs; `node_allowances`: the nodes of
+  /// contacts.
   BodyWatch(const Points& positions, const std::vector<CellBlock>& cells, const std::vector<CellFacet>& boundary,
             const ConnectedBodies& bodies, const std::vector<double>& size,
-            const std::vector<ContactNodeAllowance>& kept = {});
+            const std::vector<ContactNodeAllowance>& node_allowances = {});
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
@@ -52,7 +53,7 @@ class BodyWatch {
   /// Returns a lower bound of the distance between two bodies; 0 if they are not separated.
   double check_pair(int first, int second, double time);
   double check_nodes(int of, int inside, double time);
-  void set_allowances(const std::vector<ContactNodeAllowance>& kept, const ConnectedBodies& bodies);
+  void set_allowances(const std::vector<ContactNodeAllowance>& node_allowances, const ConnectedBodies& bodies);
   [[nodiscard]] bool has_found(int first, int second) const;
   BodyPair& pair_of(int first, int second);
 

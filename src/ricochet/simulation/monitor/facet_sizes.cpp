@@ -52,10 +52,10 @@ void add_sliding_nodes(const Body& body, const ContactBoundary& contact, const C
   }
   const auto add = [&](const std::vector<Index>& facets, const std::set<int>& others) {
     for (const Index node : facet_nodes(*body.space, facets)) {
-      const auto known = entries.find(node);
+      const auto found = entries.find(node);
       for (const int other : others) {
         if (other != body_of_node[static_cast<std::size_t>(node)])
-          result.push_back({node, other, number, known != entries.end() ? known->second : -1, half * size});
+          result.push_back({node, other, number, found != entries.end() ? found->second : -1, half * size});
       }
     }
   };

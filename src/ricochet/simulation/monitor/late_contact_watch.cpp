@@ -25,10 +25,10 @@ LateContactWatch::LateContactWatch(const Body& body, const SemidiscreteProblem& 
     : problem_(problem), pairs_(pairs) {
   const ContactBoundary& contact = problem.contact;
   std::map<int, std::vector<Node>> nodes;
-  for (const ContactNodeAllowance& kept :
+  for (const ContactNodeAllowance& candidate :
        contact_node_allowances(body, contact, pairs, find_connected_bodies(*body.space).of_node)) {
     // Gaps are not known on the opposite side of a pair with large sliding.
-    if (kept.entry >= 0) nodes[kept.contact].push_back({kept.entry, allowed * kept.allowance});
+    if (candidate.entry >= 0) nodes[candidate.contact].push_back({candidate.entry, allowed * candidate.allowance});
   }
   for (auto& [number, of_contact] : nodes) {
     Contact watched{static_cast<std::size_t>(number), {}, std::move(of_contact)};
@@ -40,14 +40,14 @@ LateContactWatch::LateContactWatch(const Body& body, const SemidiscreteProblem& 
 }
 
 void LateContactWatch::check(const State& state) {
-  bool known = false;
+  bool gaps_evaluated = false;
   for (Contact& contact : contacts_) {
     if (contact.is_warned) continue;
     const bool acts = std::any_of(contact.points.begin(), contact.points.end(),
                                   [&](Index point) { return state.forces.normal_reaction[point] > 0.0; });
     if (acts) continue;
-    if (!known) problem_.node_gaps(state.displacement, state.time, gap_);
-    known = true;
+    if (!gaps_evaluated) problem_.node_gaps(state.displacement, state.time, gap_);
+    gaps_evaluated = true;
     const auto inside = std::find_if(contact.nodes.begin(), contact.nodes.end(),
                                      [&](const Node& node) { return gap_[node.entry] < -node.allowance; });
     if (inside == contact.nodes.end()) continue;
@@ -58,24 +58,24 @@ void LateContactWatch::check(const State& state) {
 
 void LateContactWatch::warn(const Contact& contact, Index entry, double time) const {
   const ContactPair& pair = pairs_[contact.number];
-  const Vector place = problem_.nodes.col(problem_.contact.nodes[static_cast<std::size_t>(entry)]);
+  const Vector position = problem_.nodes.col(problem_.contact.nodes[static_cast<std::size_t>(entry)]);
   log::warning(fmt::format(
       "at t = {:.6g} a node at ({:.4g}) (reference position) is {:.3g} inside the other body, but the contact of "
       "\"{}\" and \"{}\" has no force yet: gaps are means over facets of \"{}\", which carries the multipliers, and "
       "contact with a corner or a ridge, which touches only a part of such a facet, is detected late; refine the mesh "
       "of \"{}\" there",
-      time, fmt::join(place, ", "), -gap_[entry], pair.first_group(), pair.second_group(), pair.group, pair.group));
+      time, fmt::join(position, ", "), -gap_[entry], pair.first_group(), pair.second_group(), pair.group, pair.group));
 }
 
 void LateContactWatch::save(Snapshot& snapshot, const std::string& name) const {
-  Snapshot::Integers told;
-  for (const Contact& contact : contacts_) told.push_back(contact.is_warned ? 1 : 0);
-  snapshot.save(name + ".told", told);
+  Snapshot::Integers warned;
+  for (const Contact& contact : contacts_) warned.push_back(contact.is_warned ? 1 : 0);
+  snapshot.save(name + ".told", warned);
 }
 
 void LateContactWatch::load(const Snapshot& snapshot, const std::string& name) {
-  const Snapshot::Integers& told = snapshot.integers(name + ".told", 0, 1);
-  for (std::size_t i = 0; i < std::min(told.size(), contacts_.size()); ++i) contacts_[i].is_warned = told[i] != 0;
+  const Snapshot::Integers& warned = snapshot.integers(name + ".told", 0, 1);
+  for (std::size_t i = 0; i < std::min(warned.size(), contacts_.size()); ++i) contacts_[i].is_warned = warned[i] != 0;
 }
 
 }  // namespace ricochet

@@ -26,7 +26,7 @@ ObstacleWatch::ObstacleWatch(const SemidiscreteProblem& problem, const std::vect
       nodes_(obstacles.size()),
       deepest_(obstacles.size()),
       position_(problem.dimension) {
-  for (const Obstacle* obstacle : obstacles) placed_.push_back(obstacle->at(0.0));
+  for (const Obstacle* obstacle : obstacles) posed_.push_back(obstacle->at(0.0));
   for (std::size_t k = 0; k < obstacles.size(); ++k) find_nodes(cells, boundary, k);
 }
 
@@ -46,7 +46,7 @@ void ObstacleWatch::find_nodes(const std::vector<CellBlock>& cells, const std::v
       if (entry >= 0) rim.inside.push_back(entry);
       if (entry >= 0) continue;
       alone.push_back(node);
-      if (!is_held_by_supports(obstacle, node)) rim.outside.push_back(node);
+      if (!is_supported(obstacle, node)) rim.outside.push_back(node);
     }
     if (!rim.inside.empty() && !rim.outside.empty()) rim_.push_back(std::move(rim));
   }
@@ -56,7 +56,7 @@ void ObstacleWatch::find_nodes(const std::vector<CellBlock>& cells, const std::v
 
 /// Tests for supports along the obstacle's normal: they then replace contact, and such a node is no contact node
 /// although its facets belong to contact.
-bool ObstacleWatch::is_held_by_supports(std::size_t obstacle, Index node) const {
+bool ObstacleWatch::is_supported(std::size_t obstacle, Index node) const {
   const Vector normal = obstacles_[obstacle]->normal(problem_.nodes.col(node));
   for (Index k = 0; k < normal.size(); ++k) {
     if (normal[k] != 0.0 && !problem_.supports.contains(node * normal.size() + k)) return false;
@@ -67,7 +67,7 @@ bool ObstacleWatch::is_held_by_supports(std::size_t obstacle, Index node) const 
 void ObstacleWatch::check(const State& state) {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     if (obstacles_[k]->moves() || obstacles_[k]->free_motion() != nullptr)
-      placed_[k] = obstacles_[k]->at(state.time, state.displacement);
+      posed_[k] = obstacles_[k]->at(state.time, state.displacement);
     for (const Index node : nodes_[k]) check_node(k, node, state);
   }
   for (const RimFacet& facet : rim_) check_rim(facet, state);
@@ -76,7 +76,7 @@ void ObstacleWatch::check(const State& state) {
 double ObstacleWatch::gap(std::size_t obstacle, Index node, const Vector& displacement) {
   const int d = problem_.dimension;
   for (int k = 0; k < d; ++k) position_[k] = problem_.nodes(k, node) + displacement[node * d + k];
-  return placed_[obstacle].gap(position_);
+  return posed_[obstacle].gap(position_);
 }
 
 void ObstacleWatch::check_start(const State& state) {
@@ -93,12 +93,12 @@ void ObstacleWatch::check_start(const State& state) {
 void ObstacleWatch::check_node(std::size_t obstacle, Index node, const State& state) {
   const double depth = -gap(obstacle, node, state.displacement);
   if (!(depth > deepest_[obstacle].depth) || depth <= rounding_of_depth * size_[static_cast<std::size_t>(node)] ||
-      depth <= placed_[obstacle].gap_rounding(position_))
+      depth <= posed_[obstacle].gap_rounding(position_))
     return;
   deepest_[obstacle].enter(node, depth, state.time, in_space(position_));
 }
 
-bool ObstacleWatch::has_told(int pair) const {
+bool ObstacleWatch::is_warned(int pair) const {
   return std::any_of(rims_.begin(), rims_.end(), [pair](const RimContact& rim) { return rim.pair == pair; });
 }
 
@@ -115,7 +115,7 @@ void ObstacleWatch::check_rim(const RimFacet& facet, const State& state) {
   const Vector& u = state.displacement;
   for (const Index entry : facet.inside) {
     const int pair = contact.node_pair[static_cast<std::size_t>(entry)];
-    if (has_told(pair) || !is_pressed(facet.obstacle, entry, state)) continue;
+    if (is_warned(pair) || !is_pressed(facet.obstacle, entry, state)) continue;
     const Index node = contact.nodes[static_cast<std::size_t>(entry)];
     const double here = gap(facet.obstacle, node, u);
     const Eigen::Vector3d from = in_space(position_);

@@ -51,13 +51,13 @@ class ObstacleWatch {
     std::vector<Index> outside;  ///< nodes of the body
   };
   void find_nodes(const std::vector<CellBlock>& cells, const std::vector<CellFacet>& boundary, std::size_t obstacle);
-  [[nodiscard]] bool is_held_by_supports(std::size_t obstacle, Index node) const;
+  [[nodiscard]] bool is_supported(std::size_t obstacle, Index node) const;
   /// Returns the gap of a node; sets position_.
   [[nodiscard]] double gap(std::size_t obstacle, Index node, const Vector& displacement);
   void check_node(std::size_t obstacle, Index node, const State& state);
   void check_rim(const RimFacet& facet, const State& state);
   [[nodiscard]] bool is_pressed(std::size_t obstacle, Index contact_node, const State& state);
-  [[nodiscard]] bool has_told(int pair) const;
+  [[nodiscard]] bool is_warned(int pair) const;
 
   const SemidiscreteProblem& problem_;
   std::vector<const Obstacle*> obstacles_;
@@ -66,7 +66,7 @@ class ObstacleWatch {
   std::vector<RimFacet> rim_;
   std::vector<DeepestPoint> deepest_;
   std::vector<RimContact> rims_;
-  std::vector<PosedObstacle> placed_;  ///< each obstacle at the current time
+  std::vector<PosedObstacle> posed_;  ///< each obstacle at the current time
   Vector position_;
 };
 

@@ -41,17 +41,17 @@ PeakStress::PeakStress(const Body& body, double step_work, const Ranks& ranks, s
       ranks_(ranks),
       stress_(body),
       raisers_(std::move(raisers)),
-      looks_per_step_(std::min(1.0, share * step_work / ranks.sum(evaluation_work(body)))) {}
+      evaluations_per_step_(std::min(1.0, share * step_work / ranks.sum(evaluation_work(body)))) {}
 
 void PeakStress::enter(const State& state, bool is_frame) {
   ++result_.states;
   // Half of the evaluations are regular; the others are saved until the contact force exceeds its previous maximum.
-  since_look_ += looks_per_step_ < 1.0 ? 0.5 * looks_per_step_ : 1.0;
-  evaluation_budget_ += 0.5 * looks_per_step_;
+  since_evaluation_ += evaluations_per_step_ < 1.0 ? 0.5 * evaluations_per_step_ : 1.0;
+  evaluation_budget_ += 0.5 * evaluations_per_step_;
   const double press = ranks_.sum(state.forces.normal_reaction.sum());
   const bool presses_harder = press > (1.0 + harder) * hardest_press_;
-  if (is_frame || since_look_ >= 1.0) {
-    since_look_ = 0.0;
+  if (is_frame || since_evaluation_ >= 1.0) {
+    since_evaluation_ = 0.0;
   } else if (presses_harder && evaluation_budget_ >= 1.0) {
     evaluation_budget_ -= 1.0;
   } else {
@@ -62,12 +62,12 @@ void PeakStress::enter(const State& state, bool is_frame) {
 }
 
 void PeakStress::enter_frame(const State& state) {
-  if (last_look_ != state.step) evaluate(state);
+  if (last_evaluation_ != state.step) evaluate(state);
 }
 
 void PeakStress::evaluate(const State& state) {
   ++result_.evaluations;
-  last_look_ = state.step;
+  last_evaluation_ = state.step;
   const LargestOfCells largest = stress_.largest_von_mises(state.displacement, state.internal_strain);
   if (result_.cell >= 0 && !(largest.value > result_.von_mises)) return;
   result_.von_mises = std::max(0.0, largest.value);
@@ -79,17 +79,18 @@ void PeakStress::evaluate(const State& state) {
 
 void PeakStress::save(Snapshot& snapshot, const std::string& name) const {
   Vector numbers(6);
-  numbers << looks_per_step_, evaluation_budget_, since_look_, hardest_press_, result_.von_mises, result_.time;
+  numbers << evaluations_per_step_, evaluation_budget_, since_evaluation_, hardest_press_, result_.von_mises,
+      result_.time;
   snapshot.save(name, numbers);
   snapshot.save(name + ".counts", Snapshot::Integers{result_.step, result_.cell, result_.evaluations, result_.states,
-                                                     last_look_, static_cast<std::int64_t>(result_.raised_by)});
+                                                     last_evaluation_, static_cast<std::int64_t>(result_.raised_by)});
 }
 
 void PeakStress::load(const Snapshot& snapshot, const std::string& name) {
   const Vector& numbers = snapshot.reals(name, 6);
-  looks_per_step_ = numbers[0];
+  evaluations_per_step_ = numbers[0];
   evaluation_budget_ = numbers[1];
-  since_look_ = numbers[2];
+  since_evaluation_ = numbers[2];
   hardest_press_ = numbers[3];
   result_.von_mises = numbers[4];
   result_.time = numbers[5];
@@ -101,7 +102,7 @@ void PeakStress::load(const Snapshot& snapshot, const std::string& name) {
   result_.cell = counts[1];
   result_.evaluations = counts[2];
   result_.states = counts[3];
-  last_look_ = counts[4];
+  last_evaluation_ = counts[4];
   result_.raised_by = static_cast<StressRaiser>(counts[5]);
 }
 

@@ -43,11 +43,11 @@ class PeakStress {
   const Ranks& ranks_;
   CellStress stress_;
   std::unique_ptr<StressRaisers> raisers_;
-  double looks_per_step_;           ///< budget of evaluations
+  double evaluations_per_step_;     ///< budget of evaluations
   double evaluation_budget_ = 0.0;  ///< evaluations saved for larger contact forces
-  double since_look_ = 0.0;         ///< fraction of the next regular evaluation
+  double since_evaluation_ = 0.0;   ///< fraction of the next regular evaluation
   double hardest_press_ = 0.0;      ///< largest Σ r_N of the evaluated states
-  long last_look_ = -1;             ///< step of the last evaluation
+  long last_evaluation_ = -1;       ///< step of the last evaluation
   PeakStressResult result_;
 };
 

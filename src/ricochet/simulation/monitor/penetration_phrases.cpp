@@ -4,9 +4,9 @@
 
 namespace ricochet::penetration_phrases {
 
-std::string coordinates(const std::vector<double>& place) {
+std::string coordinates(const std::vector<double>& position) {
   std::string text;
-  for (const double value : place) text += fmt::format("{}{:.4g}", text.empty() ? "(" : ", ", value);
+  for (const double value : position) text += fmt::format("{}{:.4g}", text.empty() ? "(" : ", ", value);
   return text + ")";
 }
 

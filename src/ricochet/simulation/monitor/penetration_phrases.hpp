@@ -8,7 +8,7 @@
 namespace ricochet::penetration_phrases {
 
 /// "(1, 0.5)"
-[[nodiscard]] std::string coordinates(const std::vector<double>& place);
+[[nodiscard]] std::string coordinates(const std::vector<double>& position);
 /// "at the start", "at t = 0.2"
 [[nodiscard]] std::string when(double time);
 /// "3.1e-06 (0.00012 of its size)"

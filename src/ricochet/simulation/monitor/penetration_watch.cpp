@@ -19,7 +19,7 @@ namespace {
 
 /// Edge lengths that nodes may move between two checks for self-penetration: parts that pass into each other and out
 /// again undetected get hardly deeper than that.
-constexpr double most_unseen = 1.0;
+constexpr double max_ignored_motion = 1.0;
 
 std::vector<const Obstacle*> obstacles_of(const std::vector<NamedObstacle>& named) {
   std::vector<const Obstacle*> result;
@@ -191,15 +191,15 @@ void PenetrationWatch::warn_at_contact(const BodyPair& pair) const {
 
 std::vector<const ContactPair*> PenetrationWatch::contacts_between(int first, int second) const {
   std::vector<const ContactPair*> result;
-  const auto holds = [&](const std::vector<Index>& facets, int body) {
+  const auto contains_node_of = [&](const std::vector<Index>& facets, int body) {
     const std::vector<Index> nodes = facet_nodes(*body_.space, facets);
     return std::any_of(nodes.begin(), nodes.end(),
                        [&](Index node) { return bodies_.connected.of_node[static_cast<std::size_t>(node)] == body; });
   };
   for (const ContactPair& pair : pairs_) {
     if (!pair.has_two_sides()) continue;
-    if ((holds(pair.facets, first) && holds(pair.opposite_facets, second)) ||
-        (holds(pair.facets, second) && holds(pair.opposite_facets, first)))
+    if ((contains_node_of(pair.facets, first) && contains_node_of(pair.opposite_facets, second)) ||
+        (contains_node_of(pair.facets, second) && contains_node_of(pair.opposite_facets, first)))
       result.push_back(&pair);
   }
   return result;
@@ -218,11 +218,11 @@ std::string PenetrationWatch::advice(std::size_t obstacle) const {
     groups.push_back(pair.group);
   }
   const std::vector<std::string> own = groups_of(node);
-  const std::string place =
+  const std::string location =
       own.empty() ? "no boundary group of the mesh contains it; \"boundary\" is built in and names the whole boundary"
                   : fmt::format("it belongs to the boundary group{} {}", own.size() == 1 ? "" : "s", join_names(own));
-  if (groups.empty()) return fmt::format("no [[contact]] names this obstacle ({})", place);
-  return fmt::format("the [[contact]] group {} does not reach that far; extend it ({})", join_names(groups), place);
+  if (groups.empty()) return fmt::format("no [[contact]] names this obstacle ({})", location);
+  return fmt::format("the [[contact]] group {} does not reach that far; extend it ({})", join_names(groups), location);
 }
 
 bool PenetrationWatch::is_on_boundary(Index node) const {
@@ -240,8 +240,8 @@ std::vector<std::string> PenetrationWatch::groups_of(Index node) const {
   return names;
 }
 
-std::vector<double> PenetrationWatch::coordinates_of(const Eigen::Vector3d& place) const {
-  return {place.data(), place.data() + body_.mesh->dimension};
+std::vector<double> PenetrationWatch::coordinates_of(const Eigen::Vector3d& position) const {
+  return {position.data(), position.data() + body_.mesh->dimension};
 }
 
 UnwatchedPenetration PenetrationWatch::describe(const DeepestPoint& deepest, const std::vector<int>& bodies) const {
@@ -312,10 +312,10 @@ PenetrationReport PenetrationWatch::report() const {
   const auto is_free = [](const NamedObstacle& one) { return one.obstacle->free_motion() != nullptr; };
   if (named_.size() > 1 && std::any_of(named_.begin(), named_.end(), is_free))
     result.not_watched.emplace_back("rigid bodies against each other and other obstacles");
-  if (const double unseen = self_watch_.unseen_motion(); unseen > most_unseen) {
+  if (const double ignored = self_watch_.ignored_motion(); ignored > max_ignored_motion) {
     result.not_watched.push_back(
         fmt::format("{} between checks (there were {}, and nodes moved by up to {:.2g} edges in between)",
-                    bodies_in_themselves, self_watch_.checks(), unseen));
+                    bodies_in_themselves, self_watch_.checks(), ignored));
   }
   if (!self_watch_.watches())
     result.not_watched.push_back(std::string(bodies_in_themselves) + " (they are divided among several processes)");

@@ -51,7 +51,7 @@ class PenetrationWatch {
   };
   [[nodiscard]] bool is_on_boundary(Index node) const;
   [[nodiscard]] std::vector<std::string> groups_of(Index node) const;
-  [[nodiscard]] std::vector<double> coordinates_of(const Eigen::Vector3d& place) const;
+  [[nodiscard]] std::vector<double> coordinates_of(const Eigen::Vector3d& position) const;
   [[nodiscard]] UnwatchedPenetration describe(const DeepestPoint& deepest, const std::vector<int>& bodies) const;
   [[nodiscard]] UnwatchedPenetration in_obstacle(std::size_t obstacle) const;
   [[nodiscard]] UnwatchedPenetration through_obstacle(std::size_t obstacle) const;

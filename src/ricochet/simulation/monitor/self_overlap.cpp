@@ -152,8 +152,8 @@ void SelfOverlap::meet(const Vector3& from, const Vector3& along, int piece, dou
   if (!(std::abs(slope) > rounding_of_rays * area.norm())) return;
   const double distance = area.dot(a - from) / slope;
   if (!(distance >= 0.0) || distance > first.distance + same) return;
-  const Vector3 place = from + distance * along;
-  if (!(plane ? is_in_segment(place, a, b) : is_in_triangle(place, a, b, c, area))) return;
+  const Vector3 intersection = from + distance * along;
+  if (!(plane ? is_in_segment(intersection, a, b) : is_in_triangle(intersection, a, b, c, area))) return;
   const int side = slope < 0.0 ? 1 : -1;
   if (distance < first.distance - same || !std::isfinite(first.distance)) {
     first = {distance, side};

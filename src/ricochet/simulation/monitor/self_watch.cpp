@@ -15,7 +15,7 @@ namespace {
 
 /// Fractions of the mean edge that nodes may move relative to the body's mean motion between two checks, as others may
 /// approach them by as much; the second after an overlap has been reported, when only its depth is of interest.
-constexpr double motion_before_look = 0.0125, motion_once_found = 0.125;
+constexpr double motion_before_check = 0.0125, motion_once_found = 0.125;
 /// Fraction of the mean edge up to which initial overlaps are attributed to facets that approximate curved surfaces.
 constexpr double overlap_of_facets = 0.5;
 /// Minimum of SelfOverlap::opening at the start: corners of cubes have 0.58.
@@ -62,7 +62,7 @@ SelfWatch::SelfWatch(const Body& body, const SemidiscreteProblem& problem, const
   const std::vector<std::vector<CellFacet>> facets = facets_of_bodies(body, bodies);
   for (std::size_t number = 0; number < facets.size(); ++number) {
     parts_.push_back(make_part(body, facets[number], bodies.sizes[number]));
-    take_contacts(body, problem.contact, pairs, parts_.back());
+    set_contacts(body, problem.contact, pairs, parts_.back());
     found_.emplace_back().body = static_cast<int>(number);
     work_budget_ += most_saved * parts_.back().work;
   }
@@ -90,8 +90,8 @@ SelfWatch::Part SelfWatch::make_part(const Body& body, const std::vector<CellFac
 }
 
 /// Stores the contacts of the body with itself, and excludes nodes that are tied.
-void SelfWatch::take_contacts(const Body& body, const ContactBoundary& contact, const std::vector<ContactPair>& pairs,
-                              Part& part) const {
+void SelfWatch::set_contacts(const Body& body, const ContactBoundary& contact, const std::vector<ContactPair>& pairs,
+                             Part& part) const {
   const std::vector<Index>& nodes = part.surface.nodes();
   const auto number_of = [&](Index node) {
     const auto found = std::lower_bound(nodes.begin(), nodes.end(), node);
@@ -135,11 +135,11 @@ void SelfWatch::check(const Vector& displacement, double time, bool now, const N
   for (std::size_t number = 0; number < parts_.size(); ++number) {
     Part& part = parts_[number];
     const SelfPenetration& found = found_[number];
-    const bool is_known = found.deepest.found() || found.at_contact.found();
-    const double limit = (is_known ? motion_once_found : motion_before_look) * part.surface.edge_length();
+    const bool is_found = found.deepest.found() || found.at_contact.found();
+    const double limit = (is_found ? motion_once_found : motion_before_check) * part.surface.edge_length();
     const bool due = checks_ == 0 || (work_budget_ >= part.work && is_due(part, limit, displacement));
     if (!due && !now) continue;
-    if (checks_ > 0) enter_unseen(part, displacement);
+    if (checks_ > 0) enter_ignored(part, displacement);
     check_body(number, displacement, time, gaps);
     if (!due) continue;
     any = true;
@@ -178,13 +178,13 @@ double SelfWatch::strain_since(const Part& part, const Vector& displacement) con
   using Vector3 = Eigen::Vector3d;
   const Index d = positions_.rows();
   const std::vector<Index>& nodes = part.surface.nodes();
-  const auto place = [&](std::size_t i, const Vector& of, Index first) {
+  const auto position = [&](std::size_t i, const Vector& of, Index first) {
     Vector3 result = Vector3::Zero();
     result.head(d) = positions_.col(nodes[i]) + of.segment(first, d);
     return result;
   };
-  const auto before = [&](std::size_t i) { return place(i, part.last_displacement, static_cast<Index>(i) * d); };
-  const auto after = [&](std::size_t i) { return place(i, displacement, nodes[i] * d); };
+  const auto before = [&](std::size_t i) { return position(i, part.last_displacement, static_cast<Index>(i) * d); };
+  const auto after = [&](std::size_t i) { return position(i, displacement, nodes[i] * d); };
   Vector3 first = Vector3::Zero(), last = Vector3::Zero();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     first += before(i) / static_cast<double>(nodes.size());
@@ -193,28 +193,28 @@ double SelfWatch::strain_since(const Part& part, const Vector& displacement) con
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < nodes.size(); ++i) moments += (after(i) - last) * (before(i) - first).transpose();
   if (d == 2) moments(2, 2) = moments.norm();
-  const Eigen::Matrix3d turn = orthogonal_factor(moments);
+  const Eigen::Matrix3d rotation = orthogonal_factor(moments);
   double longest = 0.0;
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    longest = std::max(longest, (after(i) - last - turn * (before(i) - first)).norm());
+    longest = std::max(longest, (after(i) - last - rotation * (before(i) - first)).norm());
   return longest;
 }
 
 /// Surfaces whose distance at the last check exceeds the motion of nodes towards each other have not met since.
-void SelfWatch::enter_unseen(Part& part, const Vector& displacement) const {
+void SelfWatch::enter_ignored(Part& part, const Vector& displacement) const {
   const double way = strain_since(part, displacement);
-  if (2.0 * way > part.clearance) part.unseen = std::max(part.unseen, way / part.surface.edge_length());
+  if (2.0 * way > part.clearance) part.ignored = std::max(part.ignored, way / part.surface.edge_length());
 }
 
-double SelfWatch::unseen_motion() const {
+double SelfWatch::ignored_motion() const {
   double most = 0.0;
-  for (const Part& part : parts_) most = std::max(most, part.unseen);
+  for (const Part& part : parts_) most = std::max(most, part.ignored);
   return most;
 }
 
 void SelfWatch::check_body(std::size_t number, const Vector& displacement, double time, const NodeGaps& gaps) {
   Part& part = parts_[number];
-  SelfPenetration& known = found_[number];
+  SelfPenetration& recorded = found_[number];
   part.surface.move(positions_, displacement);
   const SelfOverlap overlap(part.surface, axisymmetric_);
   const bool at_start = checks_ == 0;
@@ -248,12 +248,12 @@ void SelfWatch::check_body(std::size_t number, const Vector& displacement, doubl
     }
     if (found->depth <= allowed) continue;
     if (side != nullptr) {
-      if (found->depth > known.at_contact.depth) known.contact = side->contact;
-      known.at_contact.enter(nodes[i], found->depth, time, position);
-    } else if (found->depth > known.deepest.depth) {
-      known.deepest.enter(nodes[i], found->depth, time, position);
-      known.own = nodes_of(part, found->own_piece);
-      known.through = nodes_of(part, found->other_piece);
+      if (found->depth > recorded.at_contact.depth) recorded.contact = side->contact;
+      recorded.at_contact.enter(nodes[i], found->depth, time, position);
+    } else if (found->depth > recorded.deepest.depth) {
+      recorded.deepest.enter(nodes[i], found->depth, time, position);
+      recorded.own = nodes_of(part, found->own_piece);
+      recorded.through = nodes_of(part, found->other_piece);
     }
   }
 }
@@ -312,7 +312,7 @@ void SelfWatch::save(Snapshot& snapshot, const std::string& name) const {
     const std::string part = name + "." + std::to_string(k);
     snapshot.save(part + ".at_start", parts_[k].at_start);
     snapshot.save(part + ".seen", parts_[k].last_displacement);
-    snapshot.save(part + ".unseen", Vector(Eigen::Vector2d(parts_[k].unseen, parts_[k].clearance)));
+    snapshot.save(part + ".unseen", Vector(Eigen::Vector2d(parts_[k].ignored, parts_[k].clearance)));
   }
   snapshot.save(name + ".found", numbers);
   snapshot.save(name + ".saved", work_budget_);
@@ -346,10 +346,10 @@ void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
     if (!parts_[k].at_start.allFinite() || !(parts_[k].at_start.array() >= 0.0).all())
       Snapshot::refuse(part + ".at_start", "has entries that are not depths");
     if (!parts_[k].last_displacement.allFinite()) Snapshot::refuse(part + ".seen", "is not finite");
-    const Vector& unseen = snapshot.reals(part + ".unseen", 2);
-    if (!(unseen[0] >= 0.0 && unseen[1] >= 0.0)) Snapshot::refuse(part + ".unseen", "has negative entries");
-    parts_[k].unseen = unseen[0];
-    parts_[k].clearance = unseen[1];
+    const Vector& ignored = snapshot.reals(part + ".unseen", 2);
+    if (!(ignored[0] >= 0.0 && ignored[1] >= 0.0)) Snapshot::refuse(part + ".unseen", "has negative entries");
+    parts_[k].ignored = ignored[0];
+    parts_[k].clearance = ignored[1];
   }
   work_budget_ = snapshot.real(name + ".saved");
   if (!(work_budget_ >= 0.0) || !std::isfinite(work_budget_))

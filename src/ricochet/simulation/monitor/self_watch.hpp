@@ -59,7 +59,7 @@ class SelfWatch {
   /// Largest distance, in mean edges, that a node has moved between two checks relative to a rigid motion of its body,
   /// counted only if parts that faced each other were near enough to meet by it: parts that pass into each other and
   /// out again within this distance are not detected.
-  [[nodiscard]] double unseen_motion() const;
+  [[nodiscard]] double ignored_motion() const;
 
  private:
   /// Contact of the body with itself at a node.
@@ -83,15 +83,15 @@ class SelfWatch {
     std::vector<char> is_left_out;         ///< likewise
     Vector at_start;                       ///< likewise, initial depth
     Vector last_displacement;              ///< displacement at the last check, d per node
-    double unseen = 0.0;                   ///< see unseen_motion()
+    double ignored = 0.0;                  ///< see ignored_motion()
     double clearance = 0.0;                ///< least distance of nodes from surfaces that they face, at the last check
     double size = 0.0, work = 0.0;         ///< `work`: of a check, relative to reading a number
   };
   [[nodiscard]] Part make_part(const Body& body, const std::vector<CellFacet>& facets, double size) const;
-  void take_contacts(const Body& body, const ContactBoundary& contact, const std::vector<ContactPair>& pairs,
-                     Part& part) const;
+  void set_contacts(const Body& body, const ContactBoundary& contact, const std::vector<ContactPair>& pairs,
+                    Part& part) const;
   [[nodiscard]] double strain_since(const Part& part, const Vector& displacement) const;
-  void enter_unseen(Part& part, const Vector& displacement) const;
+  void enter_ignored(Part& part, const Vector& displacement) const;
   [[nodiscard]] bool is_due(const Part& part, double limit, const Vector& displacement) const;
   void check_body(std::size_t number, const Vector& displacement, double time, const NodeGaps& gaps);
   /// Contact that keeps a node apart from a piece; null if none.

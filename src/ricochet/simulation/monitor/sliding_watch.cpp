@@ -37,9 +37,9 @@ void SlidingWatch::add_large_sliding_contact(int number) {
   const ContactBoundary& contact = problem_.contact;
   const Index d = problem_.dimension;
   const Vector stiffness = problem_.internal_force->stiffness_diagonal();
-  LargeSlidingContact& far = large_sliding_.emplace_back();
-  far.contact = number;
-  far.is_self = pairs_[static_cast<std::size_t>(number)].is_self();
+  LargeSlidingContact& sliding = large_sliding_.emplace_back();
+  sliding.contact = number;
+  sliding.is_self = pairs_[static_cast<std::size_t>(number)].is_self();
   for (Index point = 0; point < contact.size(); ++point) {
     if (!contact.slides(point) || contact.pair[static_cast<std::size_t>(point)] != number) continue;
     // Moves the nodes of the point along its row and holds all others, including those of the opposite side.
@@ -48,8 +48,8 @@ void SlidingWatch::add_large_sliding_contact(int number) {
       sum += weight * weight * stiffness.segment(node * d, d).maxCoeff();
       squares += weight * weight;
     });
-    far.points.push_back(point);
-    far.stiffness.push_back(squares > 0.0 ? sum / (squares * squares) : 0.0);
+    sliding.points.push_back(point);
+    sliding.stiffness.push_back(squares > 0.0 ? sum / (squares * squares) : 0.0);
   }
 }
 
@@ -66,7 +66,7 @@ double SlidingWatch::slip_of(Index point, const State& state) const {
 
 /// A held step leaves a gap, or an overlap, at points that carry a force.
 void SlidingWatch::check_large_sliding(const State& state) {
-  warn_of_held_step(state);
+  warn_of_frozen_step(state);
   if (state.step == 0) return;
   const bool has_frozen = problem_.contact.geometry->has_frozen();
   if (has_frozen) problem_.gaps(state.displacement, state.time, gap_);
@@ -120,9 +120,9 @@ void SlidingWatch::warn(const LargeSlidingContact& contact) const {
 }
 
 /// Warns of the first held step, whatever its effect.
-void SlidingWatch::warn_of_held_step(const State& state) {
-  if (held_step_warned_ || !problem_.contact.geometry->has_frozen()) return;
-  held_step_warned_ = true;
+void SlidingWatch::warn_of_frozen_step(const State& state) {
+  if (frozen_step_warned_ || !problem_.contact.geometry->has_frozen()) return;
+  frozen_step_warned_ = true;
   log::warning(
       fmt::format("at t = {:.6g} the pairing of bodies with large sliding changed from one iteration of a step to the "
                   "next and was held: the forces of such steps create no energy, but they have a moment, which shows "
@@ -153,11 +153,11 @@ void SlidingWatch::check(const State& state) {
 }
 
 std::vector<double> SlidingWatch::reference_position(Index point) const {
-  Vector place = Vector::Zero(problem_.dimension);
+  Vector position = Vector::Zero(problem_.dimension);
   if (point >= 0)
     problem_.contact.visit_own_nodes(point,
-                                     [&](Index node, double weight) { place += weight * problem_.nodes.col(node); });
-  return {place.data(), place.data() + place.size()};
+                                     [&](Index node, double weight) { position += weight * problem_.nodes.col(node); });
+  return {position.data(), position.data() + position.size()};
 }
 
 void SlidingWatch::warn(const Largest& largest) const {
@@ -189,10 +189,10 @@ std::vector<PairSliding> SlidingWatch::report() const {
 
 std::vector<UnsettledContact> SlidingWatch::unsettled() const {
   std::vector<UnsettledContact> result;
-  for (const LargeSlidingContact& far : large_sliding_) {
-    if (far.steps == 0) continue;
-    result.push_back(
-        {far.contact, far.share(), far.steps, far.first_time, far.time, far.gap, reference_position(far.point)});
+  for (const LargeSlidingContact& sliding : large_sliding_) {
+    if (sliding.steps == 0) continue;
+    result.push_back({sliding.contact, sliding.share(), sliding.steps, sliding.first_time, sliding.time, sliding.gap,
+                      reference_position(sliding.point)});
   }
   return result;
 }
@@ -205,18 +205,18 @@ void SlidingWatch::save(Snapshot& snapshot, const std::string& name) const {
         largest.time_beyond, static_cast<double>(largest.point), largest.is_beyond ? 1.0 : 0.0;
   }
   snapshot.save(name, numbers);
-  snapshot.save(name + ".has_told", std::int64_t{held_step_warned_ ? 2 : 0});
-  Vector far(9 * static_cast<Index>(large_sliding_.size()));
+  snapshot.save(name + ".has_told", std::int64_t{frozen_step_warned_ ? 2 : 0});
+  Vector sliding(9 * static_cast<Index>(large_sliding_.size()));
   for (std::size_t i = 0; i < large_sliding_.size(); ++i) {
     const LargeSlidingContact& each = large_sliding_[i];
-    far.segment<9>(9 * static_cast<Index>(i)) << each.largest_force, each.force, static_cast<double>(each.steps),
+    sliding.segment<9>(9 * static_cast<Index>(i)) << each.largest_force, each.force, static_cast<double>(each.steps),
         each.first_time, each.time, each.gap, static_cast<double>(each.point), each.is_warned ? 1.0 : 0.0, each.missing;
   }
-  snapshot.save(name + ".far", far);
+  snapshot.save(name + ".far", sliding);
 }
 
 /// Loads nothing from checkpoints of earlier versions, which contain no record of contacts with large sliding.
-void SlidingWatch::load_far(const Snapshot& snapshot, const std::string& name) {
+void SlidingWatch::load_large_sliding(const Snapshot& snapshot, const std::string& name) {
   if (!snapshot.has(name)) return;
   const Vector& numbers = snapshot.reals(name, 9 * static_cast<Index>(large_sliding_.size()));
   for (std::size_t i = 0; i < large_sliding_.size(); ++i) {
@@ -225,23 +225,23 @@ void SlidingWatch::load_far(const Snapshot& snapshot, const std::string& name) {
                       of[6] < static_cast<double>(problem_.contact.size()) && of[6] == std::floor(of[6]) &&
                       (of[7] == 0.0 || of[7] == 1.0);
     if (!fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of sliding is damaged");
-    LargeSlidingContact& far = large_sliding_[i];
-    far.largest_force = of[0];
-    far.force = of[1];
-    far.steps = static_cast<long>(of[2]);
-    far.first_time = of[3];
-    far.time = of[4];
-    far.gap = of[5];
-    far.point = static_cast<Index>(of[6]);
-    far.is_warned = of[7] != 0.0;
-    far.missing = of[8];
+    LargeSlidingContact& sliding = large_sliding_[i];
+    sliding.largest_force = of[0];
+    sliding.force = of[1];
+    sliding.steps = static_cast<long>(of[2]);
+    sliding.first_time = of[3];
+    sliding.time = of[4];
+    sliding.gap = of[5];
+    sliding.point = static_cast<Index>(of[6]);
+    sliding.is_warned = of[7] != 0.0;
+    sliding.missing = of[8];
   }
 }
 
 void SlidingWatch::load(const Snapshot& snapshot, const std::string& name) {
   const Vector& numbers = snapshot.reals(name, 7 * static_cast<Index>(largest_.size()));
-  held_step_warned_ = (snapshot.integer(name + ".has_told") & 2) != 0;
-  load_far(snapshot, name + ".far");
+  frozen_step_warned_ = (snapshot.integer(name + ".has_told") & 2) != 0;
+  load_large_sliding(snapshot, name + ".far");
   for (std::size_t i = 0; i < largest_.size(); ++i) {
     const auto of = numbers.segment<7>(7 * static_cast<Index>(i));
     const bool fits = of.allFinite() && of[5] >= -1.0 && of[5] < static_cast<double>(problem_.contact.size()) &&

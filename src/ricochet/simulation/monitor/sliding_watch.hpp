@@ -58,8 +58,8 @@ class SlidingWatch {
   void check_large_sliding(const State& state);
   void enter(LargeSlidingContact& contact, const State& state) const;
   void warn(const LargeSlidingContact& contact) const;
-  void warn_of_held_step(const State& state);
-  void load_far(const Snapshot& snapshot, const std::string& name);
+  void warn_of_frozen_step(const State& state);
+  void load_large_sliding(const Snapshot& snapshot, const std::string& name);
 
   const SemidiscreteProblem& problem_;
   const std::vector<ContactPair>& pairs_;
@@ -69,7 +69,7 @@ class SlidingWatch {
   std::vector<Largest> largest_;
   std::vector<LargeSlidingContact> large_sliding_;
   double size_ = 0.0;  ///< of the model
-  bool held_step_warned_ = false;
+  bool frozen_step_warned_ = false;
   Vector gap_;
 };
 

@@ -49,7 +49,7 @@ StressRaisers::StressRaisers(const Body& body, const SemidiscreteProblem& proble
   std::vector<std::vector<Index>> facets;
   for (const CellFacet& facet : bodies.boundary) {
     facets.push_back(nodes_of_facet(body.space->cells, facet));
-    facet_held_.push_back(held(facets.back()));
+    facet_supported_.push_back(supported_components(facets.back()));
     facet_touches_.push_back(std::all_of(facets.back().begin(), facets.back().end(),
                                          [this](Index node) { return touching_[static_cast<std::size_t>(node)] != 0; })
                                  ? 1
@@ -74,7 +74,7 @@ StressRaisers::StressRaisers(const Body& body, const SemidiscreteProblem& proble
 }
 
 /// Returns the components that supports hold at all of the nodes, one bit each.
-unsigned StressRaisers::held(Nodes nodes) const {
+unsigned StressRaisers::supported_components(Nodes nodes) const {
   const int d = problem_.dimension;
   unsigned result = (1U << static_cast<unsigned>(d)) - 1U;
   for (const Index node : nodes) {
@@ -85,43 +85,43 @@ unsigned StressRaisers::held(Nodes nodes) const {
   return result;
 }
 
-StressRaisers::Hold StressRaisers::hold_of(unsigned held, const Eigen::Vector3d& normal) const {
-  if (held == 0) return Hold::free;
+StressRaisers::SupportKind StressRaisers::support_of(unsigned components, const Eigen::Vector3d& normal) const {
+  if (components == 0) return SupportKind::free;
   int along = 0, across = 0;
   for (int k = 0; k < problem_.dimension; ++k) {
-    if ((held >> static_cast<unsigned>(k) & 1U) == 0) continue;
+    if ((components >> static_cast<unsigned>(k) & 1U) == 0) continue;
     const double part = std::abs(normal[k]);
     if (part <= nearly_across) {
       ++across;
     } else if (part * part >= 1.0 - nearly_across * nearly_across) {
       ++along;
     } else {
-      return Hold::fixed;
+      return SupportKind::fixed;
     }
   }
   const bool is_mirror = (along == 1 && across == 0) || (along == 0 && across == problem_.dimension - 1);
-  return is_mirror ? Hold::mirror : Hold::fixed;
+  return is_mirror ? SupportKind::mirror : SupportKind::fixed;
 }
 
 void StressRaisers::mark(const Ridge& ridge, StressRaiser raiser) {
   for (const Index node : ridge.nodes) {
-    StressRaiser& known = of_node_[static_cast<std::size_t>(node)];
-    known = stronger(known, raiser);
+    StressRaiser& stored = of_node_[static_cast<std::size_t>(node)];
+    stored = stronger(stored, raiser);
   }
 }
 
 void StressRaisers::judge(const Ridge& ridge) {
-  std::array<Hold, 2> hold;
-  for (std::size_t k = 0; k < 2; ++k) hold[k] = hold_of(facet_held_[ridge.facets[k]], ridge.normals[k]);
-  if (hold[0] == Hold::mirror && hold[1] == Hold::mirror) return;
-  const bool is_mirrored = hold[0] == Hold::mirror || hold[1] == Hold::mirror;
+  std::array<SupportKind, 2> support;
+  for (std::size_t k = 0; k < 2; ++k) support[k] = support_of(facet_supported_[ridge.facets[k]], ridge.normals[k]);
+  if (support[0] == SupportKind::mirror && support[1] == SupportKind::mirror) return;
+  const bool is_mirrored = support[0] == SupportKind::mirror || support[1] == SupportKind::mirror;
   // The mirror image doubles the angle of the body.
-  const double turn = is_mirrored ? 2.0 * (ridge.angle - right_angle) : ridge.angle;
-  const bool sharp = is_sharp(turn, ridge.adjacent_angle);
-  const bool is_clamp_end = !is_mirrored && hold[0] != hold[1];
-  if (is_clamp_end && std::numbers::pi - turn > clamped_angle) {
+  const double opening = is_mirrored ? 2.0 * (ridge.angle - right_angle) : ridge.angle;
+  const bool sharp = is_sharp(opening, ridge.adjacent_angle);
+  const bool is_clamp_end = !is_mirrored && support[0] != support[1];
+  if (is_clamp_end && std::numbers::pi - opening > clamped_angle) {
     mark(ridge, StressRaiser::support_edge);
-  } else if (sharp && turn < 0.0) {
+  } else if (sharp && opening < 0.0) {
     mark(ridge, is_mirrored ? StressRaiser::support_edge : StressRaiser::reentrant_edge);
   } else if (sharp && (facet_touches_[ridge.facets[0]] != 0 || facet_touches_[ridge.facets[1]] != 0)) {
     for (const Index node : ridge.nodes)
@@ -137,8 +137,8 @@ void StressRaisers::reach_neighbours() {
     StressRaiser first = StressRaiser::none;
     for (const Index node : nodes) first = stronger(first, own[static_cast<std::size_t>(node)]);
     for (const Index node : nodes) {
-      StressRaiser& known = of_node_[static_cast<std::size_t>(node)];
-      known = stronger(known, first);
+      StressRaiser& stored = of_node_[static_cast<std::size_t>(node)];
+      stored = stronger(stored, first);
     }
   });
 }
@@ -196,23 +196,23 @@ bool StressRaisers::touches_sharp_obstacle(const State& state, Nodes nodes, doub
       continue;
     const Obstacle* const obstacle = problem_.obstacles[static_cast<std::size_t>(contact.node_pair[entry])];
     if (obstacle == nullptr || obstacle->shape().is_flat()) continue;
-    const PosedObstacle placed = obstacle->at(state.time, state.displacement);
-    const SpaceVector at = position(state, node), normal = placed.normal(at);
+    const PosedObstacle posed = obstacle->at(state.time, state.displacement);
+    const SpaceVector at = position(state, node), normal = posed.normal(at);
     for (int axis = 0; axis < d; ++axis) {
       SpaceVector side = SpaceVector::Unit(d, axis);
       side -= side.dot(normal) * normal;
       if (side.norm() < 0.5) continue;
       side.normalize();
-      if ((placed.normal(at + size * side) - placed.normal(at - size * side)).dot(side) > sharp_change) return true;
+      if ((posed.normal(at + size * side) - posed.normal(at - size * side)).dot(side) > sharp_change) return true;
     }
   }
   return false;
 }
 
 StressRaiser StressRaisers::at(const State& state, Index cell) {
-  const IndexInBlocks place = locate_cell(*body_.space, cell);
-  const CellBlock& block = body_.space->cells[place.block];
-  const Nodes nodes(block.cell(place.local), static_cast<std::size_t>(block.nodes_per_cell));
+  const IndexInBlocks location = locate_cell(*body_.space, cell);
+  const CellBlock& block = body_.space->cells[location.block];
+  const Nodes nodes(block.cell(location.local), static_cast<std::size_t>(block.nodes_per_cell));
   StressRaiser first = StressRaiser::none;
   for (const Index node : nodes) first = stronger(first, of_node_[static_cast<std::size_t>(node)]);
   if (first != StressRaiser::none || state.forces.normal_reaction.size() == 0) return first;

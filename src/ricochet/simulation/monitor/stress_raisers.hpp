@@ -35,12 +35,12 @@ class StressRaisers {
   [[nodiscard]] StressRaiser at(const State& state, Index cell);
 
  private:
-  enum class Hold : char { free, mirror, fixed };
+  enum class SupportKind : char { free, mirror, fixed };
 
   using Nodes = std::span<const Index>;
 
-  [[nodiscard]] unsigned held(Nodes nodes) const;
-  [[nodiscard]] Hold hold_of(unsigned held, const Eigen::Vector3d& normal) const;
+  [[nodiscard]] unsigned supported_components(Nodes nodes) const;
+  [[nodiscard]] SupportKind support_of(unsigned components, const Eigen::Vector3d& normal) const;
   void judge(const Ridge& ridge);
   void mark(const Ridge& ridge, StressRaiser raiser);
   void reach_neighbours();
@@ -58,7 +58,7 @@ class StressRaisers {
     bool is_open_ended;         ///< of two bodies, or with friction: no mirror image continues beyond it
     std::vector<Index> beside;  ///< nodes of the adjacent contact facets
   };
-  std::vector<unsigned> facet_held_;        ///< per facet: components that supports hold at all nodes
+  std::vector<unsigned> facet_supported_;   ///< per facet: components that supports hold at all nodes
   std::vector<char> facet_touches_;         ///< per facet: all nodes belong to contact facets
   std::vector<StressRaiser> of_node_;       ///< per node: raiser there or at a neighbour, in any state
   std::vector<ContactEdge> contact_edges_;  ///< ascending

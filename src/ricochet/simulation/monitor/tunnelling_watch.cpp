@@ -46,32 +46,32 @@ void TunnellingWatch::check(const State& state) {
 
 void TunnellingWatch::check_obstacle(std::size_t obstacle, const State& state) {
   const ObstacleShape& shape = obstacles_[obstacle]->shape();
-  const PosedObstacle placed = obstacles_[obstacle]->at(state.time, state.displacement);
-  Seen& seen = previous_[obstacle];
+  const PosedObstacle posed = obstacles_[obstacle]->at(state.time, state.displacement);
+  Previous& previous = previous_[obstacle];
   const Index d = problem_.dimension;
-  const bool is_first = seen.gaps.size() == 0;
+  const bool is_first = previous.gaps.size() == 0;
   if (is_first) {
-    seen.positions.resize(d, static_cast<Index>(nodes_.size()));
-    seen.gaps.resize(seen.positions.cols());
+    previous.positions.resize(d, static_cast<Index>(nodes_.size()));
+    previous.gaps.resize(previous.positions.cols());
   }
-  for (Index i = 0; i < seen.positions.cols(); ++i) {
+  for (Index i = 0; i < previous.positions.cols(); ++i) {
     const Index node = nodes_[static_cast<std::size_t>(i)];
-    const SpaceVector place = position_of(node, state);
-    const SpaceVector now = placed.pose().to_body_frame(place);
-    const SpaceVector before = is_first ? now : SpaceVector(seen.positions.col(i));
+    const SpaceVector position = position_of(node, state);
+    const SpaceVector now = posed.pose().to_body_frame(position);
+    const SpaceVector before = is_first ? now : SpaceVector(previous.positions.col(i));
     const double way = (now - before).norm();
-    seen.positions.col(i) = now;
-    if (!is_first && seen.gaps[i] > way) {
-      seen.gaps[i] -= way;
+    previous.positions.col(i) = now;
+    if (!is_first && previous.gaps[i] > way) {
+      previous.gaps[i] -= way;
       continue;
     }
-    const double gap = shape.gap(now), gap_before = seen.gaps[i];
-    seen.gaps[i] = gap;
+    const double gap = shape.gap(now), gap_before = previous.gaps[i];
+    previous.gaps[i] = gap;
     if (is_first || passages_[obstacle].found()) continue;
     const double depth = depth_of_passage(shape, before, gap_before, now, gap);
     if (!(depth > 0.0)) continue;
     Eigen::Vector3d in_space = Eigen::Vector3d::Zero();
-    in_space.head(d) = place;
+    in_space.head(d) = position;
     passages_[obstacle].enter(node, depth, state.time, in_space);
   }
 }
@@ -89,15 +89,15 @@ SpaceVector TunnellingWatch::position_of(Index node, const State& state) const {
 
 bool TunnellingWatch::any_tunnels(const State& state, double time) const {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    const Seen& seen = previous_[k];
-    if (obstacles_[k]->shape().is_flat() || seen.gaps.size() == 0) continue;
+    const Previous& previous = previous_[k];
+    if (obstacles_[k]->shape().is_flat() || previous.gaps.size() == 0) continue;
     const ObstacleShape& shape = obstacles_[k]->shape();
-    const PosedObstacle placed = obstacles_[k]->at(time, state.displacement);
-    for (Index i = 0; i < seen.positions.cols(); ++i) {
-      const SpaceVector now = placed.pose().to_body_frame(position_of(nodes_[static_cast<std::size_t>(i)], state));
-      const SpaceVector before = seen.positions.col(i);
-      if (seen.gaps[i] > (now - before).norm()) continue;
-      if (depth_of_passage(shape, before, seen.gaps[i], now, shape.gap(now)) > 0.0) return true;
+    const PosedObstacle posed = obstacles_[k]->at(time, state.displacement);
+    for (Index i = 0; i < previous.positions.cols(); ++i) {
+      const SpaceVector now = posed.pose().to_body_frame(position_of(nodes_[static_cast<std::size_t>(i)], state));
+      const SpaceVector before = previous.positions.col(i);
+      if (previous.gaps[i] > (now - before).norm()) continue;
+      if (depth_of_passage(shape, before, previous.gaps[i], now, shape.gap(now)) > 0.0) return true;
     }
   }
   return false;

@@ -32,7 +32,7 @@ class TunnellingWatch {
 
  private:
   /// Previous state of the nodes: positions in the frame of the obstacle, and lower bounds of their gaps.
-  struct Seen {
+  struct Previous {
     Points positions;
     Vector gaps;
   };
@@ -43,7 +43,7 @@ class TunnellingWatch {
   std::vector<Index> nodes_;
   Of of_;
   std::vector<const Obstacle*> obstacles_;
-  std::vector<Seen> previous_;
+  std::vector<Previous> previous_;
   std::vector<DeepestPoint> passages_;
 };
 

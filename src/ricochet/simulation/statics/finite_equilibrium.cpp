@@ -30,7 +30,7 @@ double proximal_coefficient(const SemidiscreteProblem& problem) {
   for (Index i = 0; i < mass.size(); ++i) {
     if (mass[i] > 0.0 && stiffness[i] > 0.0) lowest = std::min(lowest, stiffness[i] / mass[i]);
   }
-  return (all_are_held_by_supports(problem) ? proximal_fraction : proximal_fraction_of_unheld) * lowest;
+  return (all_are_fixed_by_supports(problem) ? proximal_fraction : proximal_fraction_of_unheld) * lowest;
 }
 
 class LoadPath {
@@ -111,7 +111,7 @@ class LoadPath {
 
   Stage stage_at(double part, const Vector& displacement) {
     find_forces(part, displacement);
-    Stage stage = contact_stage(problem_, displacement, right_);
+    Stage stage = contact_stage(problem_, displacement, right_hand_side_);
     stage.force_base.resize(0);  // one linear stage
     for (Index i = 0; i < problem_.supports.size(); ++i)
       stage.prescribed[i] = part * supported_[i] - displacement[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
@@ -123,16 +123,16 @@ class LoadPath {
   [[nodiscard]] bool is_balanced(const StaticEquilibrium& at) {
     find_forces(1.0, at.displacement);
     const double size = largest(problem_, force_) + largest(problem_, load_);
-    rows_->add_force(solution_.normal_reaction, solution_.tangential_reaction, right_);
-    for (const Index dof : problem_.supports.dofs()) right_[dof] = 0.0;
-    return largest(problem_, right_) <= left_of_forces * size;
+    rows_->add_force(solution_.normal_reaction, solution_.tangential_reaction, right_hand_side_);
+    for (const Index dof : problem_.supports.dofs()) right_hand_side_[dof] = 0.0;
+    return largest(problem_, right_hand_side_) <= left_of_forces * size;
   }
 
   /// Computes f, and L − f with the pressure that follows the surface.
   void find_forces(double part, const Vector& displacement) {
     problem_.internal_force->evaluate(displacement, force_);
-    right_ = part * load_ - force_;
-    if (problem_.pressure) problem_.pressure->add_force(displacement, 0.0, right_, part);
+    right_hand_side_ = part * load_ - force_;
+    if (problem_.pressure) problem_.pressure->add_force(displacement, 0.0, right_hand_side_, part);
   }
 
   const SemidiscreteProblem& problem_;
@@ -143,7 +143,7 @@ class LoadPath {
   std::unique_ptr<StepSolver> solver_;
   StageSolution solution_;
   std::shared_ptr<const ContactRows> rows_;  ///< for the reactions in solution_
-  Vector origin_, load_, supported_, force_, right_;
+  Vector origin_, load_, supported_, force_, right_hand_side_;
 };
 
 }  // namespace
@@ -175,7 +175,7 @@ StaticEquilibrium finite_equilibrium(const SemidiscreteProblem& problem, const V
     reached = part;
     increment *= 2.0;
   }
-  for (int round = 0; round < max_iterations; ++round) {
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
     if (path.settle(at)) return at;
   }
   throw Error(ErrorKind::not_converged,

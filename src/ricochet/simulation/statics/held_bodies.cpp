@@ -45,21 +45,21 @@ Matrix square_of_supported_motions(const SemidiscreteProblem& problem, const std
 
 }  // namespace
 
-bool are_held_by_supports(const SemidiscreteProblem& problem, const std::vector<Index>& members) {
+bool are_fixed_by_supports(const SemidiscreteProblem& problem, const std::vector<Index>& members) {
   constexpr double negligible = 1e-8;
   const Vector sizes = symmetric_eigenvalues(square_of_supported_motions(problem, members));
   return sizes[0] > negligible * sizes[sizes.size() - 1];
 }
 
-bool all_are_held_by_supports(const SemidiscreteProblem& problem) {
+bool all_are_fixed_by_supports(const SemidiscreteProblem& problem) {
   for (const std::vector<Index>& members : graph_components(problem.internal_force->graph(problem.dimension))) {
     if (members.size() == 1 && problem.is_tied_dof(members.front() * problem.dimension)) continue;
-    if (!are_held_by_supports(problem, members)) return false;
+    if (!are_fixed_by_supports(problem, members)) return false;
   }
   return true;
 }
 
-bool are_held_at_rest(const SemidiscreteProblem& problem, const std::vector<Index>& members) {
+bool are_fixed_at_rest(const SemidiscreteProblem& problem, const std::vector<Index>& members) {
   const Index d = problem.dimension;
   bool moves = false;
   for (const Index node : members) {
@@ -67,7 +67,7 @@ bool are_held_at_rest(const SemidiscreteProblem& problem, const std::vector<Inde
       moves = moves || (problem.supports.contains(dof) && problem.supports.expression(dof).depends_on_time());
   }
   if (problem.ranks->any(moves)) return false;
-  return are_held_by_supports(problem, members);
+  return are_fixed_by_supports(problem, members);
 }
 
 }  // namespace ricochet

@@ -177,14 +177,14 @@ class NearestForce {
     while (true) {
       Matrix all(target_.size(), static_cast<Index>(columns_.size()));
       for (std::size_t k = 0; k < columns_.size(); ++k) all.col(static_cast<Index>(k)) = columns_[k];
-      const Vector wanted = PivotedQr(all).solve(target_);
+      const Vector unconstrained = PivotedQr(all).solve(target_);
       double part = 1.0;
       for (std::size_t k = 0; k < sizes_.size(); ++k) {
-        const double to = wanted[static_cast<Index>(k)];
+        const double to = unconstrained[static_cast<Index>(k)];
         if (to <= 0.0) part = std::min(part, sizes_[k] > 0.0 ? sizes_[k] / (sizes_[k] - to) : 0.0);
       }
       for (std::size_t k = sizes_.size(); k-- > 0;) {
-        const double to = wanted[static_cast<Index>(k)];
+        const double to = unconstrained[static_cast<Index>(k)];
         const bool leaves = to <= 0.0 && sizes_[k] + part * (to - sizes_[k]) <= 1e-15 * sizes_[k];
         sizes_[k] += part * (to - sizes_[k]);
         if (!leaves) continue;

@@ -34,7 +34,7 @@ void add_reactions(const StageSolution& solution, State& state) {
   }
 }
 
-void take_supports(const SemidiscreteProblem& problem, double step, State& state, Vector& support_acceleration) {
+void apply_supports(const SemidiscreteProblem& problem, double step, State& state, Vector& support_acceleration) {
   Vector values, velocities;
   problem.supports.values(0.0, values);
   problem.supports.derivatives(0.0, step, velocities, support_acceleration);
@@ -210,7 +210,7 @@ void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
 /// Warns of closed gaps between bodies: a static start moves a floating body until another one holds it. Gaps at
 /// obstacles are ignored, since closing them is the purpose of static starts.
 void warn_of_closed_gaps(const SemidiscreteProblem& problem, const Vector& pressed) {
-  constexpr double seen = 1e-3;  // of the size of the bodies
+  constexpr double negligible_gap = 1e-3;  // of the size of the bodies
   Vector gap;
   problem.gaps(Vector::Zero(problem.dof_count()), 0.0, gap);
   for (std::size_t contact = 0; contact < problem.obstacles.size(); ++contact) {
@@ -222,7 +222,7 @@ void warn_of_closed_gaps(const SemidiscreteProblem& problem, const Vector& press
       smallest = std::min(smallest, gap[i]);
       presses = presses || (i < pressed.size() && pressed[i] > 0.0);
     }
-    if (!presses || !(smallest > seen * enclosing_diameter(problem.nodes))) continue;
+    if (!presses || !(smallest > negligible_gap * enclosing_diameter(problem.nodes))) continue;
     log::warning(
         fmt::format("initial.displacement = \"static\" closes the gap of contact.{}, which is {:.3g} wide in the mesh: "
                     "it moves a body until it rests; if that body should start with a gap, omit the static start",
@@ -309,7 +309,7 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
   }
   state.contact_status.assign(static_cast<std::size_t>(problem.contact.size()), ContactStatus::open);
   Vector support_acceleration;
-  take_supports(problem, step, state, support_acceleration);
+  apply_supports(problem, step, state, support_acceleration);
   if (!initial.static_equilibrium) warn_of_overlap(problem, state);
   if (problem.has_singular_mass()) relax_contact_nodes(problem, step, options, state);
   find_acceleration(problem, support_acceleration, pressed, step, options, state);

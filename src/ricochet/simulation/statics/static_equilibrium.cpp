@@ -193,7 +193,7 @@ std::string as_text(const Vector& vector) {
   }
   const std::string force = fmt::format("({:.3g}, {:.3g}{})", resultant[0], resultant[1],
                                         resultant.size() == 3 ? fmt::format(", {:.3g}", resultant[2]) : "");
-  if (largest(problem, left_over) <= 1e-3 * largest(problem, load) || all_are_held_by_supports(problem)) {
+  if (largest(problem, left_over) <= 1e-3 * largest(problem, load) || all_are_fixed_by_supports(problem)) {
     throw Error(
         ErrorKind::not_converged,
         fmt::format("initial.displacement = \"static\": the equilibrium was not found to rounding; a force of {:.2g} "
@@ -212,9 +212,9 @@ std::string as_text(const Vector& vector) {
 /// Iterates until the test is passed. Returns false after many iterations or, with `give_up_early`, as soon as the
 /// unbalanced force no longer decreases.
 bool converges(ProximalPoint& point, const EquilibriumTest& test, bool give_up_early, StaticEquilibrium& at) {
-  constexpr int rounds = 60;
+  constexpr int max_iterations = 60;
   double before = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < rounds; ++k) {
+  for (int k = 0; k < max_iterations; ++k) {
     point.iterate(at);
     if (test.passed(at.displacement, point.residual())) return true;
     const double now = point.largest_residual();
@@ -265,17 +265,17 @@ StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const V
   StaticEquilibrium result = start;
   StaticFriction friction(problem, velocity);
   const EquilibriumTest test(problem);
-  const auto held = [&](const std::vector<char>& frictionless) -> std::optional<UnheldMotion> {
+  const auto require_balance = [&](const std::vector<char>& frictionless) -> std::optional<UnheldMotion> {
     // If normals follow the motion, those at the start do not show what holds the body in its final position.
     if (problem.contact.follows_motion()) return {};
     const std::optional<UnheldMotion> unheld = find_unheld_motion(problem, frictionless);
     if (unheld && unheld->unbalanced > clearly_unbalanced) refuse_unheld(problem, friction, *unheld);
     return unheld;
   };
-  std::optional<UnheldMotion> unheld = held({});
+  std::optional<UnheldMotion> unheld = require_balance({});
   bool found = friction.sliding_points() > 0 && find_sliding_equilibrium(problem, friction, test, options, result);
   if (!found) {
-    if (friction.sliding_points() > 0) unheld = held(friction.sliding());
+    if (friction.sliding_points() > 0) unheld = require_balance(friction.sliding());
     result = start;
     friction.leave_out_sliding();
     Vector left_over;

@@ -38,7 +38,7 @@ class PrimalDualActiveSet {
 
   /// Rows of the factor's base set, see IterativeContactSolver.
   [[nodiscard]] const std::vector<Index>& base() const { return base_; }
-  void take_base(std::vector<Index> base) {
+  void set_base(std::vector<Index> base) {
     reset();
     base_ = std::move(base);
     has_base_to_factor_ = true;
@@ -60,7 +60,7 @@ class PrimalDualActiveSet {
   PrincipalFactor factor_;
   std::vector<Index> base_;  ///< of the factor, by rows of the problem
   std::vector<Index> renumbered_;
-  bool has_base_to_factor_ = false;  ///< after take_base
+  bool has_base_to_factor_ = false;  ///< after set_base
   Vector right_, solution_;
   DualActiveSet dependent_;
   ContactIterate start_;

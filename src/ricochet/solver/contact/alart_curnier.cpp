@@ -123,11 +123,11 @@ bool AlartCurnierStep::solve_directly() {
 }
 
 /// Applies GMRES to the residual of the system and adds the correction to the solution. Returns the reduction reached.
-double AlartCurnierStep::correct(const Vector& left, double reduction, Index limit) {
+double AlartCurnierStep::correct(const Vector& residual, double reduction, Index limit) {
   const auto multiply = [this](const Vector& x, Vector& y) { multiply_dense(matrix_, x, y); };
   const auto precondition = [this](const Vector& x, Vector& y) { reused_.apply(x, y); };
-  const double reached = gmres_.solve(multiply, precondition, left, reduction, limit, correction_);
-  work_ += static_cast<double>(gmres_.iterations()) * iteration_work(static_cast<double>(left.size()));
+  const double reached = gmres_.solve(multiply, precondition, residual, reduction, limit, correction_);
+  work_ += static_cast<double>(gmres_.iterations()) * iteration_work(static_cast<double>(residual.size()));
   if (correction_.allFinite()) solution_ += correction_;
   return reached;
 }
@@ -136,28 +136,28 @@ bool AlartCurnierStep::solve_with_reused_factor(const ContactSystem& system, dou
   const auto count = static_cast<Index>(unknowns_.size());
   is_iterative_ = true;
   solution_ = present_.head(count);
-  const auto find_left = [&] {
-    multiply_dense(matrix_, solution_, left_);
-    left_ = right_ - left_;
-    return left_.norm();
+  const auto find_residual = [&] {
+    multiply_dense(matrix_, solution_, residual_);
+    residual_ = right_ - residual_;
+    return residual_.norm();
   };
-  const double start = find_left();
+  const double start = find_residual();
   if (!(start > 0.0)) return start == 0.0;
-  if (!reused_.empty() && reused_.place(system, unknowns_)) {
+  if (!reused_.empty() && reused_.map_rows(system, unknowns_)) {
     const Index limit = std::max(fewest_iterations, count / iterations_per_factor);
-    if (correct(left_, reduction, limit) <= reduction) return true;
+    if (correct(residual_, reduction, limit) <= reduction) return true;
   }
   work_ += factor_work(static_cast<double>(count));
   if (!reused_.compute(matrix_, unknowns_)) return false;
   has_factored_ = true;
-  if (!reused_.place(system, unknowns_)) return false;
-  const double left = find_left();
-  if (!std::isfinite(left)) {
+  if (!reused_.map_rows(system, unknowns_)) return false;
+  const double restarted = find_residual();
+  if (!std::isfinite(restarted)) {
     solution_ = present_.head(count);
-    find_left();
+    find_residual();
   }
-  const double wanted = std::min(1.0, reduction * start / left_.norm());
-  if (correct(left_, wanted, fresh_iterations) <= std::max(wanted, 1e-4)) return true;
+  const double remaining_reduction = std::min(1.0, reduction * start / residual_.norm());
+  if (correct(residual_, remaining_reduction, fresh_iterations) <= std::max(remaining_reduction, 1e-4)) return true;
   reused_.reset();
   return false;
 }
@@ -197,20 +197,20 @@ bool AlartCurnierStep::refine(const ContactIterate& full, Vector& reaction) {
   const auto count = static_cast<Index>(unknowns_.size());
   if (proximal_ > 0.0 || count == 0) return false;
   bool rounding_only = true;
-  left_.resize(count);
+  residual_.resize(count);
   for (Index i = 0; i < count; ++i) {
     const ContactUnknown& unknown = unknowns_[static_cast<std::size_t>(i)];
-    const double held = unknown.diagonal * solution_[i];
-    left_[i] = -(test_motion(unknown, full.motion.data()) + held);
-    double size = std::abs(held);
+    const double diagonal_term = unknown.diagonal * solution_[i];
+    residual_[i] = -(test_motion(unknown, full.motion.data()) + diagonal_term);
+    double size = std::abs(diagonal_term);
     for (Index k = 0; k < unknown.size; ++k) size += full.size[unknown.row + k];
-    rounding_only = rounding_only && std::abs(left_[i]) <= 4.0 * machine_epsilon * size;
+    rounding_only = rounding_only && std::abs(residual_[i]) <= 4.0 * machine_epsilon * size;
   }
   if (rounding_only) return false;
   if (is_iterative_) {
-    correct(left_, 1e-4, fewest_iterations);
+    correct(residual_, 1e-4, fewest_iterations);
   } else {
-    factor_.solve(left_, correction_);
+    factor_.solve(residual_, correction_);
   }
   if (!correction_.allFinite()) return false;
   expand(correction_, reaction);

@@ -66,14 +66,14 @@ class AlartCurnierStep {
   void add_proximal_term();
   bool solve_directly();
   bool solve_with_reused_factor(const ContactSystem& system, double reduction);
-  double correct(const Vector& left, double reduction, Index limit);
+  double correct(const Vector& residual, double reduction, Index limit);
   void expand(const Vector& x, Vector& reaction) const;
 
   std::vector<ContactUnknown> unknowns_, last_unknowns_, factored_;
   Vector present_;  ///< x of the r from which the step starts
   Vector fixed_;    ///< r that is not unknown: b t under Tresca's law
   bool has_fixed_ = false;
-  Vector right_, left_, solution_, correction_, fixed_motion_, column_;
+  Vector right_, residual_, solution_, correction_, fixed_motion_, column_;
   Matrix matrix_;
   DenseLu factor_;
   ReusedFactor reused_;

@@ -34,11 +34,11 @@ constexpr double affordable_newton = 1000.0;
 /// Plain sweeps between runs of Newton steps, the first time.
 constexpr int cold_sweeps = 20;
 /// Alternations of sweeps and Newton's method; the number of sweeps doubles every time.
-constexpr int round_limit = 6;
+constexpr int alternation_limit = 6;
 /// Smallest part of a point's correction that is taken.
 constexpr double smallest_damping = 0.125;
 /// Number of long runs of sweeps at the very end, and their length in entries of W.
-constexpr int last_rounds = 20;
+constexpr int last_iterations = 20;
 constexpr double last_work = 2e7;
 
 bool has_friction(const ContactSystem& system) {
@@ -125,7 +125,7 @@ void AutomaticSolver::load_memory(const std::vector<Index>& row_offset, const Sn
   const std::vector<Index>& base = snapshot.integers(name + ".active_set");
   if (!are_first_rows(row_offset, base, true))
     Snapshot::refuse(name + ".active_set", "has entries that are not points of this problem");
-  frictionless_.take_base(base);
+  frictionless_.set_base(base);
   newton_.load_memory(row_offset, snapshot, name);
 }
 
@@ -168,8 +168,8 @@ bool AutomaticSolver::accelerated(const ContactWork& work) {
     double& past = earlier[static_cast<std::size_t>(k) % outlook];
     if (k >= static_cast<int>(outlook)) {
       const double rate = std::log(past / best) / static_cast<double>(outlook);
-      const double left = rate > 0.0 ? std::log(best / target) / rate : std::numeric_limits<double>::infinity();
-      if (left > newton_cost(work, unchanged > 1)) break;
+      const double remaining = rate > 0.0 ? std::log(best / target) / rate : std::numeric_limits<double>::infinity();
+      if (remaining > newton_cost(work, unchanged > 1)) break;
     }
     past = best;
   }
@@ -217,7 +217,7 @@ bool AutomaticSolver::newton(const ContactWork& work) {
 bool AutomaticSolver::alternate(const ContactWork& work, int sweeps, double damping) {
   best_.restart(work);
   double tried = std::numeric_limits<double>::infinity();  // merit from which full steps have failed
-  for (int round = 1; round <= round_limit; ++round) {
+  for (int alternation = 1; alternation <= alternation_limit; ++alternation) {
     if (sweeps > 0 && sweep(work, sweeps, damping)) return true;
     if (newton_.run(work, true, best_)) return true;
     work.current = best_.iterate;
@@ -227,7 +227,7 @@ bool AutomaticSolver::alternate(const ContactWork& work, int sweeps, double damp
       work.current = best_.iterate;
     }
     if (work.is_loosely_solved(best_.iterate, on_law_)) return true;
-    sweeps = cold_sweeps << round;
+    sweeps = cold_sweeps << alternation;
   }
   return false;
 }
@@ -342,7 +342,7 @@ bool AutomaticSolver::fall_back(const ContactWork& work, bool was_cold) {
 bool AutomaticSolver::sweep_on(const ContactWork& work) {
   const double rows = static_cast<double>(work.system.rows());
   const int sweeps = static_cast<int>(std::clamp(last_work / (rows * rows), 100.0, 4000.0));
-  for (int k = 0; k < last_rounds; ++k) {
+  for (int k = 0; k < last_iterations; ++k) {
     best_.restart(work);
     const double before = best_.merit;
     if (sweep(work, sweeps, 1.0)) return true;

@@ -64,8 +64,8 @@ ContactSystem::Measure ContactSystem::measure(const ContactIterate& iterate) con
     result.rounding_floor = std::max(result.rounding_floor, floor);
     const bool is_finite = std::isfinite(value) && std::isfinite(floor);
     // The rounding of q excuses everything; that of the sums only so much.
-    const double known = (1.0 + point.coefficient) * of_motion.of_offset / std::sqrt(point.diagonal);
-    const bool is_hidden = is_finite && value <= floor && value > std::max(loosest_residual * data_, known);
+    const double offset_error = (1.0 + point.coefficient) * of_motion.of_offset / std::sqrt(point.diagonal);
+    const bool is_hidden = is_finite && value <= floor && value > std::max(loosest_residual * data_, offset_error);
     const bool is_steep = point.coefficient > steep_coefficient;
     const bool is_violated = (is_hidden || is_steep) && violation(point, iterate) > excused;
     if (!is_finite) {

@@ -139,11 +139,11 @@ void ContactSystem::set_data(const ContactProblem& problem) {
   data_ *= unit;
 }
 
-void ContactSystem::select(const ContactProblem& problem, const std::vector<char>& wanted) {
+void ContactSystem::select(const ContactProblem& problem, const std::vector<char>& selected) {
   chosen_.clear();
   for (Index i = 0; i < problem.points(); ++i) {
     // Sparse and product operators keep all points: a selection would cost more than they do.
-    if (mode_ != Mode::dense || wanted[static_cast<std::size_t>(i)] != 0) chosen_.push_back(i);
+    if (mode_ != Mode::dense || selected[static_cast<std::size_t>(i)] != 0) chosen_.push_back(i);
   }
   gather(problem);
   offset_.resize(static_cast<Index>(row_of_.size()));

@@ -47,7 +47,7 @@ class ContactSystem {
   void analyse(const ContactProblem& problem);
   /// Selects the points of the system out of the eligible ones, in their order, and the data of this problem. A dense W
   /// is gathered for them, unless it already is.
-  void select(const ContactProblem& problem, const std::vector<char>& wanted);
+  void select(const ContactProblem& problem, const std::vector<char>& selected);
   /// Sets q, F and bounds of the problem, and the size of the data. To be called before `select`.
   void set_data(const ContactProblem& problem);
 

@@ -85,8 +85,8 @@ void GlobalizedNewton::reset() {
 /// Reduction of the residual of the next linear system: while states change the step need not be exact.
 double GlobalizedNewton::next_reduction(const ContactWork& work) const {
   if (!step_.has_settled()) return loose_reduction;
-  const double wanted = 0.1 * work.options.tolerance * work.system.data() / work.system.residual(work.current);
-  return std::clamp(wanted, 1e-13, loose_reduction);
+  const double required = 0.1 * work.options.tolerance * work.system.data() / work.system.residual(work.current);
+  return std::clamp(required, 1e-13, loose_reduction);
 }
 
 /// Computes the full Newton step, in `trial_`.

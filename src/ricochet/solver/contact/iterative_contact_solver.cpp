@@ -87,22 +87,22 @@ bool IterativeContactSolver::is_open(const ContactProblem& problem) const {
     if (!problem.is_eligible(i)) continue;
     const Index row = problem.row_offset[static_cast<std::size_t>(i)];
     const double u = problem.offset[row];
-    const double known = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
-    if (!(u >= -(known + sum_rounding * std::abs(u)))) return false;
+    const double offset_rounding = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
+    if (!(u >= -(offset_rounding + sum_rounding * std::abs(u)))) return false;
   }
   return true;
 }
 
 void IterativeContactSolver::choose_points(const ContactProblem& problem) {
   const bool all = !works_on_candidates();
-  wanted_.assign(static_cast<std::size_t>(problem.points()), 0);
+  selected_.assign(static_cast<std::size_t>(problem.points()), 0);
   for (Index i = 0; i < problem.points(); ++i) {
     const Index row = problem.row_offset[static_cast<std::size_t>(i)];
     const bool had_reaction = warm_reaction_.size() == problem.rows() && warm_reaction_[row] != 0.0;
     const bool may_press = all || system_.is_near(problem, i, margin) || had_reaction;
-    wanted_[static_cast<std::size_t>(i)] = (may_press && problem.is_eligible(i)) || keeps_row(row) ? 1 : 0;
+    selected_[static_cast<std::size_t>(i)] = (may_press && problem.is_eligible(i)) || keeps_row(row) ? 1 : 0;
   }
-  system_.select(problem, wanted_);
+  system_.select(problem, selected_);
 }
 
 /// Restricts the last r to its admissible part.
@@ -168,16 +168,16 @@ bool IterativeContactSolver::add_penetrating(const ContactProblem& problem, cons
   bool found = false;
   for (Index i = 0; i < problem.points(); ++i) {
     const auto at = static_cast<std::size_t>(i);
-    if (wanted_[at] != 0 || !problem.is_eligible(i)) continue;
+    if (selected_[at] != 0 || !problem.is_eligible(i)) continue;
     const Index row = problem.row_offset[at];
     if (!(solution.motion[row] < 0.0)) continue;
-    const double known = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
-    if (solution.motion[row] >= -(known + sum_rounding * std::abs(problem.offset[row]))) continue;
+    const double offset_rounding = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
+    if (solution.motion[row] >= -(offset_rounding + sum_rounding * std::abs(problem.offset[row]))) continue;
     const bool steep = problem.friction_coefficient[i] > steep_coefficient;
     if (!steep &&
         system_.residual_of(problem, i, solution.reaction, solution.motion) <= options.tolerance * system_.data())
       continue;
-    wanted_[at] = 1;
+    selected_[at] = 1;
     found = true;
   }
   return found;
@@ -234,7 +234,7 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
     const auto at = static_cast<std::size_t>(i);
     const Index row = problem.row_offset[at];
     finite = finite && solution.motion.segment(row, problem.row_offset[at + 1] - row).allFinite();
-    if (wanted_[at] != 0 || solution.motion[row] >= 0.0) continue;
+    if (selected_[at] != 0 || solution.motion[row] >= 0.0) continue;
     largest = std::max(largest, system_.residual_of(problem, i, solution.reaction, solution.motion));
   }
   solution.residual = largest / system_.data();
@@ -278,8 +278,8 @@ void IterativeContactSolver::find_status(const ContactProblem& problem, ContactS
 
 /// Solves on the wanted points, from the solution's reactions, until no other penetrates. `exchanges`: of nearly
 /// identical points only one is included, which others may replace.
-void IterativeContactSolver::solve_on_wanted(const ContactProblem& problem, const ContactOptions& options,
-                                             bool exchanges, ContactSolution& solution) {
+void IterativeContactSolver::solve_on_selected(const ContactProblem& problem, const ContactOptions& options,
+                                               bool exchanges, ContactSolution& solution) {
   while (true) {
     system_.scale_reaction(solution.reaction, current_.reaction);
     if (!current_.reaction.allFinite()) current_.reaction.setZero();  // scaled beyond the range of numbers
@@ -288,9 +288,9 @@ void IterativeContactSolver::solve_on_wanted(const ContactProblem& problem, cons
     run(options, solution);
     find_motion(problem, solution);
     if (!works_on_candidates()) return;
-    const bool exchanged = exchanges && twins_.exchange(problem, solution.motion, wanted_, solution.reaction);
+    const bool exchanged = exchanges && twins_.exchange(problem, solution.motion, selected_, solution.reaction);
     if (!exchanged && !add_penetrating(problem, options, solution)) return;
-    system_.select(problem, wanted_);
+    system_.select(problem, selected_);
   }
 }
 
@@ -299,18 +299,18 @@ void IterativeContactSolver::solve_on_wanted(const ContactProblem& problem, cons
 void IterativeContactSolver::solve_without_twins(const ContactProblem& problem, const ContactOptions& options,
                                                  ContactSolution& solution) {
   has_all_points_ = false;
-  const std::vector<char> all = wanted_;
+  const std::vector<char> all = selected_;
   const Vector best = solution.reaction;
   if (solution.motion.allFinite()) {
-    twins_.choose(problem, solution.motion, wanted_, solution.reaction);
-    system_.select(problem, wanted_);
-    solve_on_wanted(problem, options, true, solution);
+    twins_.choose(problem, solution.motion, selected_, solution.reaction);
+    system_.select(problem, selected_);
+    solve_on_selected(problem, options, true, solution);
     if (is_accepted(options)) return;
   }
-  wanted_ = all;
+  selected_ = all;
   solution.reaction = best;
-  system_.select(problem, wanted_);
-  solve_on_wanted(problem, options, false, solution);
+  system_.select(problem, selected_);
+  solve_on_selected(problem, options, false, solution);
 }
 
 void IterativeContactSolver::solve(const ContactProblem& problem, const ContactOptions& options,
@@ -352,7 +352,7 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
   }
   if (warm_reaction_.size() == problem.rows() && warm_reaction_.allFinite()) solution.reaction = warm_reaction_;
   has_all_points_ = works_on_candidates();
-  solve_on_wanted(problem, options, false, solution);
+  solve_on_selected(problem, options, false, solution);
   if (has_all_points_ && !is_accepted(options) && solution.contradiction.empty() &&
       twins_.any(*analysed_, analysed_row_offset_))
     solve_without_twins(problem, options, solution);

@@ -60,8 +60,8 @@ class IterativeContactSolver : public ContactSolver {
   void run(const ContactOptions& options, ContactSolution& solution);
   void find_motion(const ContactProblem& problem, ContactSolution& solution) const;
   bool add_penetrating(const ContactProblem& problem, const ContactOptions& options, const ContactSolution& solution);
-  void solve_on_wanted(const ContactProblem& problem, const ContactOptions& options, bool exchanges,
-                       ContactSolution& solution);
+  void solve_on_selected(const ContactProblem& problem, const ContactOptions& options, bool exchanges,
+                         ContactSolution& solution);
   void solve_without_twins(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution);
   [[nodiscard]] bool is_accepted(const ContactOptions& options) const;
   void judge(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution);
@@ -71,7 +71,7 @@ class IterativeContactSolver : public ContactSolver {
   std::shared_ptr<const ContactOperator> analysed_;
   std::vector<Index> analysed_row_offset_;
   Vector warm_reaction_;
-  std::vector<char> wanted_;
+  std::vector<char> selected_;
   TwinPoints twins_;
   bool has_all_points_ = false;  ///< the system may have nearly identical points, and nothing else has been tried yet
   ContactIterate current_, finished_;

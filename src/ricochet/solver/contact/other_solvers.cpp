@@ -8,8 +8,8 @@ namespace ricochet {
 
 namespace {
 /// Largest number of operations of factors, or of entries of W.
-constexpr double most_factor_work = 1e11;
-constexpr double most_sweep_work = 4e9;
+constexpr double max_factor_work = 1e11;
+constexpr double max_sweep_work = 4e9;
 constexpr int fewest_worth_a_try = 5;
 }  // namespace
 
@@ -25,7 +25,7 @@ bool OtherSolvers::solve(const ContactWork& work, const std::vector<Kind>& kinds
   const double rows = static_cast<double>(work.system.rows());
   for (const bool cold : {true, false}) {
     for (const Kind& kind : kinds) {
-      const double limit = kind.factorizes ? most_factor_work / (rows * rows * rows) : most_sweep_work / (rows * rows);
+      const double limit = kind.factorizes ? max_factor_work / (rows * rows * rows) : max_sweep_work / (rows * rows);
       ContactOptions options = work.options;
       options.iteration_limit = static_cast<int>(std::min(limit, static_cast<double>(kind.iteration_limit)));
       if (options.iteration_limit < fewest_worth_a_try) continue;

@@ -13,7 +13,7 @@ constexpr int gradient_iterations = 50000;
 /// Iterations in which the residual must halve if the correction is to be updated in every iteration.
 constexpr int halving_patience = 400;
 /// Part of its residual to which a problem with the correction held is solved before the correction is updated.
-constexpr double held_accuracy = 0.1;
+constexpr double frozen_accuracy = 0.1;
 /// Factors of the estimate of W's largest eigenvalue: its decrease after an iteration, and its increase if too small.
 constexpr double slackening = 0.97, tightening = 1.5;
 
@@ -37,41 +37,41 @@ class AcceleratedGradient final : public IterativeContactSolver {
   void step(const ContactSystem& system);
   void accelerate(const ContactSystem& system, const ContactIterate& current);
   [[nodiscard]] double correction(const ContactSystem& system, std::size_t k, const PaddedVector& motion) const;
-  void hold(const ContactSystem& system, const ContactIterate& current, double residual);
-  [[nodiscard]] bool is_held_problem_solved(const ContactSystem& system, const ContactIterate& current) const;
+  void freeze(const ContactSystem& system, const ContactIterate& current, double residual);
+  [[nodiscard]] bool is_frozen_problem_solved(const ContactSystem& system, const ContactIterate& current) const;
 
   Vector start_reaction_, start_motion_;  ///< y and W y + q
   Vector step_;                           ///< r⁺ − y
   ContactIterate next_;
   FirstOrderVerdict verdict_;
-  Vector held_;  ///< s per point, while it is held
-  bool holds_ = false;
-  double target_ = 0.0;      ///< for the residual of the problem with s held
+  Vector frozen_;  ///< s per point, while it is frozen
+  bool is_frozen_ = false;
+  double target_ = 0.0;      ///< for the residual of the problem with s frozen
   double eigenvalue_ = 1.0;  ///< L
   double theta_ = 1.0;       ///< of Nesterov's sequence
 };
 
 /// Correction s of a point.
 double AcceleratedGradient::correction(const ContactSystem& system, std::size_t k, const PaddedVector& motion) const {
-  if (holds_) return held_[static_cast<Index>(k)];
+  if (is_frozen_) return frozen_[static_cast<Index>(k)];
   return system.points()[k].coefficient * motion.tail<2>().norm();
 }
 
-void AcceleratedGradient::hold(const ContactSystem& system, const ContactIterate& current, double residual) {
+void AcceleratedGradient::freeze(const ContactSystem& system, const ContactIterate& current, double residual) {
   const std::vector<ContactPoint>& points = system.points();
-  holds_ = true;
-  held_.resize(static_cast<Index>(points.size()));
+  is_frozen_ = true;
+  frozen_.resize(static_cast<Index>(points.size()));
   for (std::size_t k = 0; k < points.size(); ++k)
-    held_[static_cast<Index>(k)] = points[k].coefficient * padded(points[k], current.motion).tail<2>().norm();
-  target_ = held_accuracy * residual;
+    frozen_[static_cast<Index>(k)] = points[k].coefficient * padded(points[k], current.motion).tail<2>().norm();
+  target_ = frozen_accuracy * residual;
 }
 
-bool AcceleratedGradient::is_held_problem_solved(const ContactSystem& system, const ContactIterate& current) const {
+bool AcceleratedGradient::is_frozen_problem_solved(const ContactSystem& system, const ContactIterate& current) const {
   for (std::size_t k = 0; k < system.points().size(); ++k) {
     const ContactPoint& point = system.points()[k];
     const PaddedVector r = padded(point, current.reaction);
     PaddedVector slope = padded(point, current.motion);
-    slope[0] += held_[static_cast<Index>(k)];
+    slope[0] += frozen_[static_cast<Index>(k)];
     const PaddedVector change = r - project(point, PaddedVector(r - slope / point.diagonal));
     if (!(change.norm() * std::sqrt(point.diagonal) <= target_)) return false;
   }
@@ -123,7 +123,7 @@ std::string AcceleratedGradient::iterate(const ContactSystem& system, const Cont
   start_reaction_ = current.reaction;
   start_motion_ = current.motion;
   eigenvalue_ = theta_ = 1.0;
-  holds_ = false;
+  is_frozen_ = false;
   double compared = verdict_.best();
   int next_comparison = halving_patience;
   for (int k = 1; k <= limit; ++k) {
@@ -133,9 +133,9 @@ std::string AcceleratedGradient::iterate(const ContactSystem& system, const Cont
     const double residual = system.residual(current);
     note_iteration(system, options, "gradient", residual, current.reaction, solution);
     if (!std::isfinite(residual)) break;
-    if (holds_ && is_held_problem_solved(system, current)) hold(system, current, residual);
-    if (!holds_ && k == next_comparison) {
-      if (!(verdict_.best() < 0.5 * compared)) hold(system, current, residual);
+    if (is_frozen_ && is_frozen_problem_solved(system, current)) freeze(system, current, residual);
+    if (!is_frozen_ && k == next_comparison) {
+      if (!(verdict_.best() < 0.5 * compared)) freeze(system, current, residual);
       compared = verdict_.best();
       next_comparison += halving_patience;
     }

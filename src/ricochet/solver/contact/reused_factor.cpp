@@ -30,7 +30,7 @@ bool ReusedFactor::compute(const Matrix& matrix, const std::vector<ContactUnknow
   return is_factored_;
 }
 
-bool ReusedFactor::place(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns) {
+bool ReusedFactor::map_rows(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns) {
   for (ContactUnknown& unknown : unknowns_) {
     unknown.row = system.system_row(unknown.problem_row);
     // There are no tangents if a stage leaves friction out.

@@ -44,11 +44,11 @@ class ReusedFactor {
   bool compute(const Matrix& matrix, const std::vector<ContactUnknown>& unknowns);
   /// Maps the rows of the earlier unknowns to this system, before `apply`. Returns false if the system does not have
   /// all of them, or (after `load`) their matrix is singular.
-  bool place(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns);
-  /// Computes z ≈ (system of the unknowns given to `place`)⁻¹ b.
+  bool map_rows(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns);
+  /// Computes z ≈ (system of the unknowns given to `map_rows`)⁻¹ b.
   void apply(const Vector& right, Vector& z) const;
 
-  /// Save and load the unknowns: the factor is made again at the next `place`, with the same bits. Throws
+  /// Save and load the unknowns: the factor is made again at the next `map_rows`, with the same bits. Throws
   /// Error(invalid_input) unless they are unknowns on points with these rows (ContactProblem::row_offset).
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name);

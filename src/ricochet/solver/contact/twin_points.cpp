@@ -35,15 +35,15 @@ Index deepest_of(const ContactProblem& problem, const Vector& motion, const std:
 
 bool penetrates(const ContactProblem& problem, const Vector& motion, Index point) {
   const Index row = problem.row_offset[static_cast<std::size_t>(point)];
-  const double known = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
-  return motion[row] < -(known + sum_rounding * std::abs(problem.offset[row]));
+  const double offset_rounding = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
+  return motion[row] < -(offset_rounding + sum_rounding * std::abs(problem.offset[row]));
 }
 
 }  // namespace
 
 bool TwinPoints::any(const ContactOperator& w, const std::vector<Index>& first) {
-  if (is_known_ || w.dense() == nullptr) return !groups_.empty();
-  is_known_ = true;
+  if (is_analysed_ || w.dense() == nullptr) return !groups_.empty();
+  is_analysed_ = true;
   const Matrix& entries = *w.dense();
   const auto rows_of = [&](Index point) {
     const auto at = static_cast<std::size_t>(point);
@@ -75,7 +75,7 @@ bool TwinPoints::any(const ContactOperator& w, const std::vector<Index>& first) 
 }
 
 /// Moves the reactions of the group to one point.
-void TwinPoints::replace(const ContactProblem& problem, Group& group, Index point, std::vector<char>& wanted,
+void TwinPoints::replace(const ContactProblem& problem, Group& group, Index point, std::vector<char>& selected,
                          Vector& reaction) {
   const auto at = static_cast<std::size_t>(point);
   const Index size = problem.row_offset[at + 1] - problem.row_offset[at];
@@ -84,26 +84,26 @@ void TwinPoints::replace(const ContactProblem& problem, Group& group, Index poin
     auto part = reaction.segment(problem.row_offset[static_cast<std::size_t>(other)], size);
     sum += part;
     part.setZero();
-    wanted[static_cast<std::size_t>(other)] = 0;
+    selected[static_cast<std::size_t>(other)] = 0;
   }
   reaction.segment(problem.row_offset[at], size) = sum;
-  wanted[at] = 1;
+  selected[at] = 1;
   group.chosen = point;
 }
 
-void TwinPoints::choose(const ContactProblem& problem, const Vector& motion, std::vector<char>& wanted,
+void TwinPoints::choose(const ContactProblem& problem, const Vector& motion, std::vector<char>& selected,
                         Vector& reaction) {
   exchanges_left_ = exchange_limit;
   for (Group& group : groups_) {
     group.chosen = -1;
     const bool is_in = std::any_of(group.points.begin(), group.points.end(),
-                                   [&](Index k) { return wanted[static_cast<std::size_t>(k)]; });
+                                   [&](Index k) { return selected[static_cast<std::size_t>(k)]; });
     if (is_in && have_one_law(problem, group.points))
-      replace(problem, group, deepest_of(problem, motion, group.points), wanted, reaction);
+      replace(problem, group, deepest_of(problem, motion, group.points), selected, reaction);
   }
 }
 
-bool TwinPoints::exchange(const ContactProblem& problem, const Vector& motion, std::vector<char>& wanted,
+bool TwinPoints::exchange(const ContactProblem& problem, const Vector& motion, std::vector<char>& selected,
                           Vector& reaction) {
   if (exchanges_left_-- <= 0) return false;
   bool found = false;
@@ -111,7 +111,7 @@ bool TwinPoints::exchange(const ContactProblem& problem, const Vector& motion, s
     if (group.chosen < 0) continue;
     const Index deepest = deepest_of(problem, motion, group.points);
     if (deepest == group.chosen || !penetrates(problem, motion, deepest)) continue;
-    replace(problem, group, deepest, wanted, reaction);
+    replace(problem, group, deepest, selected, reaction);
     found = true;
   }
   return found;

@@ -16,26 +16,26 @@ class TwinPoints {
   /// Discards the groups, for another W.
   void forget() {
     groups_.clear();
-    is_known_ = false;
+    is_analysed_ = false;
   }
   /// Returns whether there are any. Searches for them at the first call, in a dense W only.
   bool any(const ContactOperator& w, const std::vector<Index>& first);
-  /// Keeps of each group only the deepest point in `wanted`, with the reactions of all. To be called after `any`.
-  void choose(const ContactProblem& problem, const Vector& motion, std::vector<char>& wanted, Vector& reaction);
+  /// Keeps of each group only the deepest point in `selected`, with the reactions of all. To be called after `any`.
+  void choose(const ContactProblem& problem, const Vector& motion, std::vector<char>& selected, Vector& reaction);
   /// Replaces, after `choose`, the point of a group by another one that penetrates deeper. Returns whether any was
   /// replaced. Works only a few times.
-  bool exchange(const ContactProblem& problem, const Vector& motion, std::vector<char>& wanted, Vector& reaction);
+  bool exchange(const ContactProblem& problem, const Vector& motion, std::vector<char>& selected, Vector& reaction);
 
  private:
   struct Group {
     std::vector<Index> points;  ///< of the problem
     Index chosen = -1;          ///< its point; −1: the group is unchanged, as its points have different laws
   };
-  static void replace(const ContactProblem& problem, Group& group, Index point, std::vector<char>& wanted,
+  static void replace(const ContactProblem& problem, Group& group, Index point, std::vector<char>& selected,
                       Vector& reaction);
 
   std::vector<Group> groups_;
-  bool is_known_ = false;
+  bool is_analysed_ = false;
   int exchanges_left_ = 0;
 };
 

@@ -19,12 +19,12 @@ void CorotatedFrame::restart(const Vector& displacement) {
 
 void CorotatedFrame::follow(const Vector& displacement) {
   bodies_.fit(displacement, fitted_);
-  bool turned = false;
+  bool rotated = false;
   for (std::size_t i = 0; i < fitted_.size(); ++i) {
     fitted_[i] = (fitted_[i] * start_[i].transpose()).eval();
-    turned = turned || rotation_angle(fitted_[i] * rotation_[i].transpose()) > slack;
+    rotated = rotated || rotation_angle(fitted_[i] * rotation_[i].transpose()) > slack;
   }
-  if (!turned) return;
+  if (!rotated) return;
   rotation_ = fitted_;
   is_identity_ = false;
   ++number_;
@@ -34,7 +34,7 @@ namespace {
 
 /// Computes v_a ← R_a v_a, or R_aᵀ v_a; nodes of no body are unchanged.
 template <int d, bool transposed>
-void turn_nodes(const BodyRotations& bodies, const std::vector<Tensor>& rotation, const Vector& from, Vector& to) {
+void rotate_nodes(const BodyRotations& bodies, const std::vector<Tensor>& rotation, const Vector& from, Vector& to) {
   parallel_ranges(from.size() / d, [&](Index first, Index last) {
     for (Index node = first; node < last; ++node) {
       const int body = bodies.body_of_node(node);
@@ -42,12 +42,12 @@ void turn_nodes(const BodyRotations& bodies, const std::vector<Tensor>& rotation
         to.segment<d>(node * d) = from.segment<d>(node * d);
         continue;
       }
-      const Eigen::Matrix<double, d, d> turn = rotation[static_cast<std::size_t>(body)].template topLeftCorner<d, d>();
+      const Eigen::Matrix<double, d, d> r = rotation[static_cast<std::size_t>(body)].template topLeftCorner<d, d>();
       const Eigen::Matrix<double, d, 1> value = from.segment<d>(node * d);
       if constexpr (transposed) {
-        to.segment<d>(node * d) = turn.transpose() * value;
+        to.segment<d>(node * d) = r.transpose() * value;
       } else {
-        to.segment<d>(node * d) = turn * value;
+        to.segment<d>(node * d) = r * value;
       }
     }
   });
@@ -61,20 +61,20 @@ void CorotatedFrame::rotate_back(const Vector& values, Vector& result) const {
     return;
   }
   result.resize(values.size());
-  problem_.dimension == 2 ? turn_nodes<2, true>(bodies_, rotation_, values, result)
-                          : turn_nodes<3, true>(bodies_, rotation_, values, result);
+  problem_.dimension == 2 ? rotate_nodes<2, true>(bodies_, rotation_, values, result)
+                          : rotate_nodes<3, true>(bodies_, rotation_, values, result);
 }
 
 void CorotatedFrame::rotate(Vector& values) const {
   if (is_identity_ || values.size() == 0) return;
-  problem_.dimension == 2 ? turn_nodes<2, false>(bodies_, rotation_, values, values)
-                          : turn_nodes<3, false>(bodies_, rotation_, values, values);
+  problem_.dimension == 2 ? rotate_nodes<2, false>(bodies_, rotation_, values, values)
+                          : rotate_nodes<3, false>(bodies_, rotation_, values, values);
 }
 
 /// Calls visit(row, column, value) for all entries of H R, row by row, columns ascending. Entries of a row of H come by
 /// ascending dof, those of a node together; rows in the frame have all d of them.
 template <class Entry>
-void CorotatedFrame::visit_turned(const SparseRowMatrix& rows, const Entry& visit) const {
+void CorotatedFrame::visit_rotated(const SparseRowMatrix& rows, const Entry& visit) const {
   const int d = problem_.dimension;
   for (Index row = 0; row < rows.rows(); ++row) {
     SparseRowMatrix::InnerIterator entry(rows, row);
@@ -93,7 +93,7 @@ void CorotatedFrame::rotate_back(const SparseRowMatrix& rows, SparseRowMatrix& r
   if (result.rows() == rows.rows() && result.cols() == rows.cols() && result.isCompressed()) {
     Index at = 0;
     bool same = true;
-    visit_turned(rows, [&](Index row, Index column, double value) {
+    visit_rotated(rows, [&](Index row, Index column, double value) {
       same = same && at < result.outerIndexPtr()[row + 1] && at >= result.outerIndexPtr()[row] &&
              result.innerIndexPtr()[at] == column;
       if (same) result.valuePtr()[at++] = value;
@@ -102,7 +102,7 @@ void CorotatedFrame::rotate_back(const SparseRowMatrix& rows, SparseRowMatrix& r
   }
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(static_cast<std::size_t>(rows.nonZeros() * problem_.dimension));
-  visit_turned(rows, [&](Index row, Index column, double value) {
+  visit_rotated(rows, [&](Index row, Index column, double value) {
     entries.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
   });
   result.resize(rows.rows(), rows.cols());

@@ -39,7 +39,7 @@ class CorotatedFrame {
  private:
   static constexpr double slack = 0.02;
   template <class Entry>
-  void visit_turned(const SparseRowMatrix& rows, const Entry& visit) const;
+  void visit_rotated(const SparseRowMatrix& rows, const Entry& visit) const;
 
   const SemidiscreteProblem& problem_;
   BodyRotations bodies_;

@@ -10,7 +10,7 @@ class CorotatedStage final : public StageSolver {
       : solver_(std::move(solver)), frame_(frame) {}
 
   void solve(const Stage& stage, StageSolution& solution) override {
-    take_rows(*stage.rows);
+    update_rows(*stage.rows);
     corotated_stage_.rows = rows_;
     frame_.rotate_back(stage.right_hand_side, corotated_stage_.right_hand_side);
     corotated_stage_.prescribed = stage.prescribed;
@@ -42,7 +42,7 @@ class CorotatedStage final : public StageSolver {
  private:
   /// Renews the rows if the frame has rotated or the rows of the stage have another revision: all of them, with a new
   /// revision for those that changed.
-  void take_rows(const ContactRows& rows) {
+  void update_rows(const ContactRows& rows) {
     const auto points = static_cast<std::size_t>(rows.size());
     const bool follows = !rows.revision.empty();
     const bool same_frame = rows_ != nullptr && frame_number_ == frame_.number();

@@ -4,14 +4,14 @@
 
 namespace ricochet {
 
-void RotatingRows::append(const ContactRows& rows, Index point, Index row_count, bool turns) {
+void RotatingRows::append(const ContactRows& rows, Index point, Index row_count, bool is_rotating) {
   directions_.emplace_back();
   row_.push_back(row_.back() + row_count);
-  first_.push_back(first_.back() + (turns ? rows.dimension() : row_count));
-  if (!turns) return;
+  first_.push_back(first_.back() + (is_rotating ? rows.dimension() : row_count));
+  if (!is_rotating) return;
   any_ = true;
   directions_.back().resize(row_count, rows.dimension());
-  take(rows, point, directions_.size() - 1);
+  read_directions(rows, point, directions_.size() - 1);
 }
 
 void RotatingRows::clear() {
@@ -22,15 +22,15 @@ void RotatingRows::clear() {
 }
 
 /// Uses the entries at the node with the largest part in the trace: rows may be known by their values alone.
-void RotatingRows::take(const ContactRows& rows, Index point, std::size_t i) {
+void RotatingRows::read_directions(const ContactRows& rows, Index point, std::size_t i) {
   if (!rotates(i)) return;
   const Index d = rows.dimension();
-  Index place = 0, largest = 0;
+  Index index = 0, largest = 0;
   double part = 0.0;
-  for (SparseRowMatrix::InnerIterator entry(*rows.rotating_trace, point); entry; ++entry, ++place) {
+  for (SparseRowMatrix::InnerIterator entry(*rows.rotating_trace, point); entry; ++entry, ++index) {
     if (std::abs(entry.value()) <= std::abs(part)) continue;
     part = entry.value();
-    largest = place;
+    largest = index;
   }
   const auto read = [&](const SparseRowMatrix& matrix, Index row, Index direction) {
     const double* const values = matrix.valuePtr() + matrix.outerIndexPtr()[row] + largest * d;
@@ -42,7 +42,7 @@ void RotatingRows::take(const ContactRows& rows, Index point, std::size_t i) {
 
 /// Computes D v of one point, from the rows of E to those of H.
 template <class From, class To>
-void RotatingRows::turn_point(std::size_t i, const From& v, To& result) const {
+void RotatingRows::rotate_point(std::size_t i, const From& v, To& result) const {
   const auto from = v.segment(first_[i], first_[i + 1] - first_[i]);
   auto to = result.segment(row_[i], row_[i + 1] - row_[i]);
   if (rotates(i)) {
@@ -67,7 +67,7 @@ Matrix RotatingRows::product(const Matrix& k) const {
   for (std::size_t j = 0; j < directions_.size(); ++j) {
     for (Index column = row_[j]; column < row_[j + 1]; ++column) {
       auto to = result.col(column);
-      for (std::size_t i = 0; i <= j; ++i) turn_point(i, half.col(column), to);
+      for (std::size_t i = 0; i <= j; ++i) rotate_point(i, half.col(column), to);
     }
   }
   result.triangularView<Eigen::StrictlyLower>() = result.transpose();
@@ -76,7 +76,7 @@ Matrix RotatingRows::product(const Matrix& k) const {
 
 void RotatingRows::rotate(const Vector& v, Vector& result) const {
   result.resize(row_.back());
-  for (std::size_t i = 0; i < directions_.size(); ++i) turn_point(i, v, result);
+  for (std::size_t i = 0; i < directions_.size(); ++i) rotate_point(i, v, result);
 }
 
 void RotatingRows::rotate_back(const Vector& r, Vector& result) const {

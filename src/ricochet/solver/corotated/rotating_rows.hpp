@@ -12,8 +12,8 @@ namespace ricochet {
 
 class RotatingRows {
  public:
-  /// Appends a point with so many rows of H. `rotates`: it has a turning trace, and d rows of E.
-  void append(const ContactRows& rows, Index point, Index row_count, bool turns);
+  /// Appends a point with so many rows of H. `is_rotating`: it has a rotating trace, and d rows of E.
+  void append(const ContactRows& rows, Index point, Index row_count, bool is_rotating);
   void clear();
 
   /// True if some point turns; otherwise H = E.
@@ -24,7 +24,7 @@ class RotatingRows {
   [[nodiscard]] Index first(std::size_t i) const { return first_[i]; }
   [[nodiscard]] Index size() const { return first_.back(); }
   /// Reads D of candidate i from the rows, if it turns.
-  void take(const ContactRows& rows, Index point, std::size_t i);
+  void read_directions(const ContactRows& rows, Index point, std::size_t i);
 
   /// Returns D K Dᵀ, symmetric to the bit.
   [[nodiscard]] Matrix product(const Matrix& k) const;
@@ -34,7 +34,7 @@ class RotatingRows {
 
  private:
   template <class From, class To>
-  void turn_point(std::size_t i, const From& v, To& result) const;
+  void rotate_point(std::size_t i, const From& v, To& result) const;
 
   using Directions = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
 

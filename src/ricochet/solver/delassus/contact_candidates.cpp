@@ -14,7 +14,7 @@ constexpr double reserve = 2.0;
 constexpr double ahead = 8.0;
 /// Largest number of points that are added in advance, and as a multiple of those that carried a force in the last
 /// stage. The others are added when they penetrate.
-constexpr std::size_t most_ahead = 512;
+constexpr std::size_t max_ahead = 512;
 constexpr std::size_t room_to_grow = 3;
 /// Multiple of that number beyond which candidates are dropped at once.
 constexpr std::size_t flood = 4;
@@ -81,12 +81,12 @@ bool ContactCandidates::some_may_touch(const Stage& stage) const {
   return false;
 }
 
-std::size_t ContactCandidates::most() const {
-  return std::max(most_ahead, room_to_grow * closed_);
+std::size_t ContactCandidates::max_count() const {
+  return std::max(max_ahead, room_to_grow * closed_);
 }
 
 bool ContactCandidates::are_too_many() const {
-  return points_.size() > flood * most();
+  return points_.size() > flood * max_count();
 }
 
 std::vector<Index> ContactCandidates::nearest(const Stage& stage) const {
@@ -95,8 +95,8 @@ std::vector<Index> ContactCandidates::nearest(const Stage& stage) const {
   for (Index i = 0; i < stage.gap_offset.size(); ++i) {
     if (stage.eligible[static_cast<std::size_t>(i)] != 0 && stage.gap_offset[i] <= limit) result.push_back(i);
   }
-  if (result.size() <= most()) return result;
-  const auto last = result.begin() + static_cast<std::ptrdiff_t>(most());
+  if (result.size() <= max_count()) return result;
+  const auto last = result.begin() + static_cast<std::ptrdiff_t>(max_count());
   std::nth_element(result.begin(), last, result.end(), [&](Index a, Index b) {
     return std::pair(stage.gap_offset[a], a) < std::pair(stage.gap_offset[b], b);
   });
@@ -118,8 +118,8 @@ std::vector<Index> ContactCandidates::penetrating(const Stage& stage, const Vect
   const auto gap = [&](Index point) { return stage.gap_offset[point] + stage.gap_factor * motion[point]; };
   for (Index i = 0; i < motion.size(); ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const bool was_asked = number_[at] >= 0 && !left_out;
-    if (stage.eligible[at] == 0 || was_asked || !(gap(i) < -stage.gap_offset_rounding[i])) continue;
+    const bool was_included = number_[at] >= 0 && !left_out;
+    if (stage.eligible[at] == 0 || was_included || !(gap(i) < -stage.gap_offset_rounding[i])) continue;
     result.push_back(i);
     deepest = std::max(deepest, -gap(i));
   }
@@ -141,7 +141,7 @@ void ContactCandidates::update_history(const Stage& stage, const Vector& motion,
 
 std::vector<Index> ContactCandidates::worth_keeping(const Stage& stage) {
   if (points_.size() <= few_points) return {};
-  const std::size_t near = std::min(count_below(stage, ahead * reach_, true), most());
+  const std::size_t near = std::min(count_below(stage, ahead * reach_, true), max_count());
   const bool oversized = points_.size() > oversize * std::max(near, few_points);
   oversized_stages_ = oversized ? oversized_stages_ + 1 : 0;
   if (oversized_stages_ < patience && !are_too_many()) return {};

@@ -53,7 +53,7 @@ class ContactCandidates {
   /// True if the point is eligible, among the `candidates` or not, and its gap at δ = 0 is at most `limit`.
   [[nodiscard]] bool is_below(const Stage& stage, Index point, double limit, bool candidates) const;
   [[nodiscard]] std::size_t count_below(const Stage& stage, double limit, bool candidates) const;
-  [[nodiscard]] std::size_t most() const;
+  [[nodiscard]] std::size_t max_count() const;
 
   const Ranks* ranks_;
   std::vector<Index> points_;

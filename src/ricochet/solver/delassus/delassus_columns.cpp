@@ -45,10 +45,10 @@ std::size_t DelassusColumns::entries() const {
 
 /// Computes the columns of a block from the rows `begin`… of H.
 void DelassusColumns::fill(Block& block, const SparseMatrix& transposed, Index begin) const {
-  const auto on_path = [&](Index place) {
+  const auto on_path = [&](Index row) {
     const auto& first = block.path.first;
-    const auto k = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), place) - first.begin()) - 1;
-    return block.path.offsets[k] + place - first[k];
+    const auto k = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), row) - first.begin()) - 1;
+    return block.path.offsets[k] + row - first[k];
   };
   block.columns.setZero();
   for (Index column = 0; column < block.columns.cols(); ++column) {
@@ -121,12 +121,12 @@ void DelassusColumns::add_product(const Block& left, const Block& right, Matrix&
 void DelassusColumns::append(const SparseMatrix& transposed, Matrix& w) {
   const std::size_t old_blocks = blocks_.size();
   const Index old_rows = row_count_;
-  Timer since_told;
+  Timer since_report;
   for (Index begin = 0; begin < transposed.cols(); begin += block_size) {
     append_block(transposed, begin, std::min(begin + block_size, transposed.cols()));
-    if (since_told.seconds() < silence) continue;
+    if (since_report.seconds() < silence) continue;
     log::info(fmt::format("condensing contact: {} of {} rows", row_count_ - old_rows, transposed.cols()));
-    since_told.restart();
+    since_report.restart();
   }
   w.conservativeResize(row_count_, row_count_);
   w.rightCols(row_count_ - old_rows).setZero();

@@ -79,18 +79,18 @@ void DelassusProblem::visit_columns(Index point, const Enter& enter) const {
 
 /// Sorts points by their position in the elimination tree: points whose dofs are close there have nearly the same
 /// columns.
-void DelassusProblem::sort_by_place(std::vector<Index>& points) const {
-  std::vector<Index> place(points.size(), 0);
+void DelassusProblem::sort_by_tree_position(std::vector<Index>& points) const {
+  std::vector<Index> position(points.size(), 0);
   std::vector<std::size_t> order(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     order[i] = i;
     visit_rows(points[i], [&](Index, Index dof, double) {
       const int unknown = unknown_[static_cast<std::size_t>(dof)];
-      if (unknown >= 0) place[i] = std::max(place[i], factor_.factor_index(unknown));
+      if (unknown >= 0) position[i] = std::max(position[i], factor_.factor_index(unknown));
     });
   }
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::pair(place[a], points[a]) < std::pair(place[b], points[b]);
+    return std::pair(position[a], points[a]) < std::pair(position[b], points[b]);
   });
   std::vector<Index> sorted;
   for (const std::size_t i : order) sorted.push_back(points[i]);
@@ -98,7 +98,7 @@ void DelassusProblem::sort_by_place(std::vector<Index>& points) const {
 }
 
 void DelassusProblem::add_candidates(std::vector<Index> points) {
-  sort_by_place(points);
+  sort_by_tree_position(points);
   append_candidates(points);
 }
 
@@ -195,9 +195,10 @@ void DelassusProblem::append_supported() {
   const std::vector<Index>& dofs = problem_.supports.dofs();
   for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
     visit_rows(candidates_.points()[i], [&](Index k, Index dof, double value) {
-      const auto held = std::lower_bound(dofs.begin(), dofs.end(), dof);
-      if (held == dofs.end() || *held != dof) return;
-      entries.emplace_back(static_cast<int>(contact_.row_offset[i] + k), static_cast<int>(held - dofs.begin()), value);
+      const auto support = std::lower_bound(dofs.begin(), dofs.end(), dof);
+      if (support == dofs.end() || *support != dof) return;
+      entries.emplace_back(static_cast<int>(contact_.row_offset[i] + k), static_cast<int>(support - dofs.begin()),
+                           value);
     });
   }
   supported_.resize(contact_.row_offset.back(), problem_.supports.size());
@@ -234,11 +235,11 @@ void DelassusProblem::solve(const Stage& stage, Vector& y, StageSolution& soluti
   candidates_active_ = false;
   iterations_ = 0;
   solution.clear_mean();
-  take_rows(stage);
+  set_rows(stage);
   if (std::none_of(stage.eligible.begin(), stage.eligible.end(), [](char e) { return e != 0; })) return;
-  take_starting_points(stage);
+  add_initial_candidates(stage);
   if (!all_points_ && !choose_candidates(stage)) return;
-  take_starting_points(stage);  // candidates that were dropped
+  add_initial_candidates(stage);  // candidates that were dropped
   find_offsets(stage, y);
   choose_friction(stage);
   const bool has_mean = massless_nodes_ && massless_nodes_->mean() != ReactionMean::end;

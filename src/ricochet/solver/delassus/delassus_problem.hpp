@@ -59,8 +59,8 @@ class DelassusProblem {
   void visit_rows(Index point, const Enter& enter) const;
   template <class Enter>
   void visit_columns(Index point, const Enter& enter) const;
-  void take_rows(const Stage& stage);
-  void take_scale(double scale);
+  void set_rows(const Stage& stage);
+  void set_scale(double scale);
   void scale_warm_start(double ratio);
   void renew_columns(const std::vector<char>& is_new);
   void use_condensed(Matrix w);
@@ -68,17 +68,17 @@ class DelassusProblem {
   void append_candidates(const std::vector<Index>& points);
   bool choose_candidates(const Stage& stage);
   void start_again_with(const std::vector<Index>& points);
-  void sort_by_place(std::vector<Index>& points) const;
+  void sort_by_tree_position(std::vector<Index>& points) const;
   [[nodiscard]] SparseMatrix transposed_columns(const std::vector<Index>& points, const std::vector<int>& unknown,
                                                 Index unknowns) const;
   [[nodiscard]] Matrix release_column_product();
   void set_contact_operator(Matrix w);
   void use_end_weight(double theta);
-  void take_starting_points(const Stage& stage);
+  void add_initial_candidates(const Stage& stage);
   void solve_mean(const Stage& stage);
   void append_columns(const std::vector<Index>& points, Matrix& w);
   void append_supported();
-  void hold_directions_without_trace(Matrix& w) const;
+  void regularize_directions_without_trace(Matrix& w) const;
   void find_offsets(const Stage& stage, const Vector& y);
   void choose_friction(const Stage& stage);
   [[nodiscard]] bool try_contact();

@@ -18,20 +18,20 @@ void DelassusProblem::throw_contradiction(const std::vector<Index>& contradictio
     for (const double component : vector) text += fmt::format("{}{:.6g}", text.empty() ? "" : ", ", component);
     return "(" + text + ")";
   };
-  std::set<std::string> places, contacts;
+  std::set<std::string> positions, contacts;
   bool between_bodies = false;
   for (const Index candidate : contradiction) {
     const Index point = candidates_.points()[static_cast<std::size_t>(candidate)];
     Vector at = Vector::Zero(problem_.dimension);
     problem_.contact.visit_own_nodes(point,
                                      [&](Index node, double weight) { at += weight * problem_.nodes.col(node); });
-    places.insert(as_text(at));
+    positions.insert(as_text(at));
     between_bodies = between_bodies || problem_.contact.between_bodies(point);
     contacts.insert(fmt::format("contact.{} (normal {})", problem_.contact.pair[static_cast<std::size_t>(point)],
                                 as_text(rows_->normals.col(point))));
   }
   constexpr std::size_t shown = 3;
-  std::vector<std::string> some(places.begin(), places.end());
+  std::vector<std::string> some(positions.begin(), positions.end());
   const std::size_t more = some.size() > shown ? some.size() - shown : 0;
   some.resize(some.size() - more);
   const bool one = contacts.size() == 1;

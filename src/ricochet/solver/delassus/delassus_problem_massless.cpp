@@ -11,11 +11,11 @@
 namespace ricochet {
 
 /// Updates the rows of the stage: for candidates with changed rows, renews W, and columns if rows do more than turn.
-void DelassusProblem::take_rows(const Stage& stage) {
+void DelassusProblem::set_rows(const Stage& stage) {
   rows_ = stage.rows.get();
   const bool all_new = has_new_factor_;
   has_new_factor_ = false;
-  if (all_new) take_scale(factor_.scale());
+  if (all_new) set_scale(factor_.scale());
   if (candidates_.points().empty() || (rows_->revision.empty() && !all_new)) return;
   std::vector<char> is_new(static_cast<std::size_t>(rotating_rows_.size()), all_new ? 1 : 0);
   bool any = all_new, have_columns = !all_new;
@@ -24,7 +24,7 @@ void DelassusProblem::take_rows(const Stage& stage) {
     if (revision == revision_[i]) continue;
     revision_[i] = revision;
     any = true;
-    rotating_rows_.take(*rows_, candidates_.points()[i], i);
+    rotating_rows_.read_directions(*rows_, candidates_.points()[i], i);
     if (rotating_rows_.rotates(i)) continue;
     have_columns = false;
     std::fill(is_new.begin() + rotating_rows_.first(i), is_new.begin() + rotating_rows_.first(i + 1), char{1});
@@ -42,7 +42,7 @@ void DelassusProblem::invalidate_columns() {
 }
 
 /// Rescales by powers of two: nothing is rounded.
-void DelassusProblem::take_scale(double scale) {
+void DelassusProblem::set_scale(double scale) {
   const double ratio = scale / scale_;
   scale_ = contact_.reaction_scale = scale;
   if (ratio == 1.0 || solver_ == nullptr) return;
@@ -77,7 +77,7 @@ void DelassusProblem::use_condensed(Matrix w) {
 
 /// If B_T has no trace in a direction (a support holds the body there), any positive diagonal keeps W definite and
 /// makes the friction along it zero.
-void DelassusProblem::hold_directions_without_trace(Matrix& w) const {
+void DelassusProblem::regularize_directions_without_trace(Matrix& w) const {
   for (std::size_t i = 0; i + 1 < contact_.row_offset.size(); ++i) {
     const Index row = contact_.row_offset[i];
     for (Index k = row + 1; k < contact_.row_offset[i + 1]; ++k) {
@@ -99,7 +99,7 @@ void DelassusProblem::set_contact_operator(Matrix w) {
     w = rotating_rows_.product(column_product_);
   }
   if (!massless_nodes_) {
-    hold_directions_without_trace(w);
+    regularize_directions_without_trace(w);
     contact_.contact_operator = make_dense_operator(std::move(w));
     return;
   }
@@ -114,11 +114,11 @@ void DelassusProblem::set_contact_operator(Matrix w) {
 /// Sets the operator U + θ Z.
 void DelassusProblem::use_end_weight(double theta) {
   Matrix w = mean_.combined(theta);
-  hold_directions_without_trace(w);
+  regularize_directions_without_trace(w);
   contact_.contact_operator = make_dense_operator(std::move(w));
 }
 
-void DelassusProblem::take_starting_points(const Stage& stage) {
+void DelassusProblem::add_initial_candidates(const Stage& stage) {
   std::vector<Index> pressing;
   if (massless_nodes_) pressing = pressing_at_start(massless_nodes_->mean(), stage);
   candidates_required_ = candidates_required_ || !pressing.empty();

@@ -45,7 +45,7 @@ void read_row(NumberReader& message, Index row, Index per_node, const GatheredNo
   }
 }
 
-void keep_row(const SparseRowMatrix& matrix, Index row, Triplets& entries) {
+void copy_row(const SparseRowMatrix& matrix, Index row, Triplets& entries) {
   for (SparseRowMatrix::InnerIterator entry(matrix, row); entry; ++entry)
     entries.emplace_back(static_cast<int>(row), static_cast<int>(entry.col()), entry.value());
 }
@@ -79,20 +79,20 @@ SparseRowMatrix with_columns(SparseRowMatrix matrix, Index columns) {
 
 }  // namespace
 
-GatheredContact::GatheredContact(const SemidiscreteProblem& problem, std::size_t home)
+GatheredContact::GatheredContact(const SemidiscreteProblem& problem, std::size_t root_index)
     : problem_(problem), d_(problem.dimension) {
   const Ranks& ranks = *problem.ranks;
   const auto size = static_cast<std::size_t>(ranks.size());
-  Ranks::ForEach<std::int64_t> told(size, {static_cast<std::int64_t>(problem.contact.size())});
+  Ranks::ForEach<std::int64_t> sent(size, {static_cast<std::int64_t>(problem.contact.size())});
   first_.assign(1, 0);
-  const Ranks::ForEach<std::int64_t> counts = ranks.exchange(std::move(told));
+  const Ranks::ForEach<std::int64_t> counts = ranks.exchange(std::move(sent));
   for (const std::vector<std::int64_t>& count : counts) first_.push_back(first_.back() + count.front());
   std::vector<int> by_points(size);
   std::iota(by_points.begin(), by_points.end(), 0);
   std::stable_sort(by_points.begin(), by_points.end(), [&](int a, int b) {
     return counts[static_cast<std::size_t>(a)].front() > counts[static_cast<std::size_t>(b)].front();
   });
-  nodes_ = GatheredNodes(ranks, by_points.at(home), named_by_all(problem.contact.unique_nodes()));
+  nodes_ = GatheredNodes(ranks, by_points.at(root_index), named_by_all(problem.contact.unique_nodes()));
   gather_boundary();
 }
 
@@ -111,15 +111,15 @@ std::vector<Index> GatheredContact::named_by_all(const std::vector<Index>& nodes
 void GatheredContact::gather_boundary() {
   const Ranks& ranks = *problem_.ranks;
   const ContactBoundary& own = problem_.contact;
-  Ranks::ForEach<double> told(static_cast<std::size_t>(ranks.size()));
-  std::vector<double>& message = told[static_cast<std::size_t>(nodes_.root())];
+  Ranks::ForEach<double> sent(static_cast<std::size_t>(ranks.size()));
+  std::vector<double>& message = sent[static_cast<std::size_t>(nodes_.root())];
   for (Index point = 0; point < own.size(); ++point) {
     message.insert(message.end(), {static_cast<double>(own.pair[static_cast<std::size_t>(point)]), own.weights[point],
                                    own.friction_coefficient[point], own.friction_bound[point], own.net[point]});
     append_row(own.trace, point, 1, ranks, message);
     append_row(own.own_trace, point, 1, ranks, message);
   }
-  known_ = ranks.exchange(std::move(told));
+  received_ = ranks.exchange(std::move(sent));
   Vector solved = Vector::Zero(problem_.dof_count());
   for (const Index dof : problem_.contact_dofs) solved[dof] = 1.0;
   const Vector is_solved = nodes_.gather(solved, d_);
@@ -137,16 +137,16 @@ void GatheredContact::read_boundary() {
   const Index points = point_count();
   boundary_.dimension = d_;
   boundary_.pair.resize(static_cast<std::size_t>(points));
-  const std::array<Vector*, 4> told{&boundary_.weights, &boundary_.friction_coefficient, &boundary_.friction_bound,
-                                    &boundary_.net};
-  for (Vector* const values : told) values->setZero(points);
+  const std::array<Vector*, 4> per_point{&boundary_.weights, &boundary_.friction_coefficient, &boundary_.friction_bound,
+                                         &boundary_.net};
+  for (Vector* const values : per_point) values->setZero(points);
   boundary_.initial_gap.setZero(points);
   Triplets trace, own_trace;
   Index point = 0;
-  for (const std::vector<double>& from : known_) {
+  for (const std::vector<double>& from : received_) {
     for (NumberReader numbers(from); !numbers.is_at_end(); ++point) {
       boundary_.pair[static_cast<std::size_t>(point)] = static_cast<int>(numbers.integer());
-      for (Vector* const values : told) (*values)[point] = numbers.next();
+      for (Vector* const values : per_point) (*values)[point] = numbers.next();
       read_row(numbers, point, 1, nodes_, trace);
       read_row(numbers, point, 1, nodes_, own_trace);
     }
@@ -179,10 +179,10 @@ void GatheredContact::gather_rows(const ContactRows& rows) {
   }
   revision_ = rows.revision;
   if (!ranks.any(!changed.empty())) return;
-  Ranks::ForEach<double> told(static_cast<std::size_t>(ranks.size()));
-  std::vector<double>& message = told[static_cast<std::size_t>(nodes_.root())];
+  Ranks::ForEach<double> sent(static_cast<std::size_t>(ranks.size()));
+  std::vector<double>& message = sent[static_cast<std::size_t>(nodes_.root())];
   for (const Index point : changed) append_point(rows, point, d_, ranks, message);
-  known_ = ranks.exchange(std::move(told));
+  received_ = ranks.exchange(std::move(sent));
   if (is_root()) rows_ = read_rows();
 }
 
@@ -194,8 +194,8 @@ std::shared_ptr<ContactRows> GatheredContact::read_rows() const {
   const auto slip_rows = [this](Index point, const auto& visit) {
     for (Index row = point * (d_ - 1); row < (point + 1) * (d_ - 1); ++row) visit(row);
   };
-  for (std::size_t rank = 0; rank < known_.size(); ++rank) {
-    for (NumberReader numbers(known_[rank]); !numbers.is_at_end();) {
+  for (std::size_t rank = 0; rank < received_.size(); ++rank) {
+    for (NumberReader numbers(received_[rank]); !numbers.is_at_end();) {
       const Index point = number(static_cast<int>(rank), numbers.integer());
       const auto at = static_cast<std::size_t>(point);
       is_new[at] = 1;
@@ -210,8 +210,8 @@ std::shared_ptr<ContactRows> GatheredContact::read_rows() const {
   }
   for (Index point = 0; point < point_count(); ++point) {
     if (is_new[static_cast<std::size_t>(point)] != 0) continue;
-    keep_row(rows_->gap_operator, point, gap);
-    slip_rows(point, [&](Index row) { keep_row(rows_->tangential_trace, row, slip); });
+    copy_row(rows_->gap_operator, point, gap);
+    slip_rows(point, [&](Index row) { copy_row(rows_->tangential_trace, row, slip); });
   }
   rows->gap_operator = matrix_of(gap, point_count(), nodes_.count() * d_);
   rows->tangential_trace = matrix_of(slip, point_count() * (d_ - 1), nodes_.count() * d_);
@@ -226,13 +226,13 @@ std::shared_ptr<const ContactRows> GatheredContact::rows_on(const ContactRows& r
 }
 
 std::unique_ptr<SemidiscreteProblem> GatheredContact::make_problem(const GatheredNodes& nodes) const {
-  const Vector places = nodes.gather(problem_.nodes.reshaped(), d_);
+  const Vector positions = nodes.gather(problem_.nodes.reshaped(), d_);
   const Vector of_contact = nodes_.gather(problem_.nodes.reshaped(), d_);
   if (!is_root()) return nullptr;
   auto result = std::make_unique<SemidiscreteProblem>();
   result->dimension = d_;
   result->axisymmetric = problem_.axisymmetric;
-  result->nodes = places.reshaped(d_, nodes.count());
+  result->nodes = positions.reshaped(d_, nodes.count());
   result->nodes.leftCols(nodes_.count()) = of_contact.reshaped(d_, nodes_.count());
   result->internal_force = std::make_shared<NoForce>();
   result->contact = boundary_;

@@ -13,9 +13,9 @@ namespace ricochet {
 
 class GatheredContact {
  public:
-  /// `root` selects the root: 0 is the rank with most contact points, 1 the next one, and so on. Keeps a reference to
-  /// the problem.
-  explicit GatheredContact(const SemidiscreteProblem& problem, std::size_t home = 0);
+  /// `root_index` selects the root: 0 is the rank with most contact points, 1 the next one, and so on. Keeps a
+  /// reference to the problem.
+  explicit GatheredContact(const SemidiscreteProblem& problem, std::size_t root_index = 0);
 
   [[nodiscard]] bool is_root() const { return nodes_.is_root(); }
   /// Gathered contact nodes.
@@ -30,7 +30,7 @@ class GatheredContact {
   [[nodiscard]] static std::shared_ptr<const ContactRows> rows_on(const ContactRows& rows, Index dofs);
 
   /// Gathers a stage at the root, with these points of this rank (others are not eligible there), with the gaps and
-  /// slips that it has at a motion x: the stage for a correction of x. `points` is the same as that of spread().
+  /// slips that it has at a motion x: the stage for a correction of x. `points` is the same as that of scatter().
   void gather(const Stage& stage, const Vector& x, const std::vector<Index>& points, Stage& at_root);
   /// Adds the solution at the root on these points: reactions, status and iterations.
   void scatter(const StageSolution& at_root, const std::vector<Index>& points, StageSolution& solution) const;
@@ -62,7 +62,7 @@ class GatheredContact {
   std::vector<long> revision_;         ///< of rows of this rank when they were sent
   long changes_ = 0;                   ///< of rows; different rows have different revisions at the root
   Vector motion_, slip_;
-  Ranks::ForEach<double> known_;
+  Ranks::ForEach<double> received_;
 };
 
 }  // namespace ricochet

@@ -33,9 +33,9 @@ void GatheredContact::gather(const Stage& stage, const Vector& x, const std::vec
   if (problem_.contact.follows_motion()) gather_rows(*stage.rows);
   stage.rows->normal_motion(x, motion_);
   if (stage.slip_offset.size() > 0) stage.rows->tangential_motion(x, slip_);
-  Ranks::ForEach<double> told(static_cast<std::size_t>(ranks.size()));
-  if (!points.empty()) write_points(stage, points, told[static_cast<std::size_t>(nodes_.root())]);
-  known_ = ranks.exchange(std::move(told));
+  Ranks::ForEach<double> sent(static_cast<std::size_t>(ranks.size()));
+  if (!points.empty()) write_points(stage, points, sent[static_cast<std::size_t>(nodes_.root())]);
+  received_ = ranks.exchange(std::move(sent));
   at_root.gap_factor = stage.gap_factor;
   at_root.slip_factor = stage.slip_factor;
   if (is_root()) read_points(at_root);
@@ -66,7 +66,7 @@ void GatheredContact::write_points(const Stage& stage, const std::vector<Index>&
 void GatheredContact::read_points(Stage& at_root) const {
   const Index count = point_count(), tangents = d_ - 1;
   std::array<bool, stage_parts> has{};
-  for (const std::vector<double>& from : known_) {
+  for (const std::vector<double>& from : received_) {
     for (std::size_t k = 0; k < stage_parts && !from.empty(); ++k) has[k] = has[k] || from[k] != 0.0;
   }
   at_root.rows = rows_;
@@ -80,8 +80,8 @@ void GatheredContact::read_points(Stage& at_root) const {
   at_root.start_gap.setZero(has[with_start] ? count : 0);
   at_root.start_normal_reaction.setZero(has[with_start] ? count : 0);
   at_root.start_tangential_reaction.setZero(has[with_start_friction] ? count * tangents : 0);
-  for (std::size_t rank = 0; rank < known_.size(); ++rank) {
-    NumberReader numbers(known_[rank]);
+  for (std::size_t rank = 0; rank < received_.size(); ++rank) {
+    NumberReader numbers(received_[rank]);
     for (std::size_t k = 0; k < stage_parts && !numbers.is_at_end(); ++k) numbers.next();
     while (!numbers.is_at_end()) {
       const Index point = number(static_cast<int>(rank), numbers.integer());
@@ -106,14 +106,14 @@ void GatheredContact::scatter(const StageSolution& at_root, const std::vector<In
                               StageSolution& solution) const {
   const Ranks& ranks = *problem_.ranks;
   const auto size = static_cast<std::size_t>(ranks.size());
-  Ranks::ForEach<std::int64_t> asked(size);
-  asked[static_cast<std::size_t>(nodes_.root())].assign(points.begin(), points.end());
-  const Ranks::ForEach<std::int64_t> wanted = ranks.exchange(std::move(asked));
-  Ranks::ForEach<double> told(size);
+  Ranks::ForEach<std::int64_t> requested(size);
+  requested[static_cast<std::size_t>(nodes_.root())].assign(points.begin(), points.end());
+  const Ranks::ForEach<std::int64_t> requests = ranks.exchange(std::move(requested));
+  Ranks::ForEach<double> sent(size);
   for (std::size_t rank = 0; is_root() && rank < size; ++rank)
-    write_solution(at_root, static_cast<int>(rank), wanted[rank], told[rank]);
-  const Ranks::ForEach<double> known = ranks.exchange(std::move(told));
-  read_solution(known[static_cast<std::size_t>(nodes_.root())], points, solution);
+    write_solution(at_root, static_cast<int>(rank), requests[rank], sent[rank]);
+  const Ranks::ForEach<double> received = ranks.exchange(std::move(sent));
+  read_solution(received[static_cast<std::size_t>(nodes_.root())], points, solution);
   // Works of the path are sums over points, as those of any rank.
   if (!is_root()) return;
   solution.path_contact_work = at_root.path_contact_work;

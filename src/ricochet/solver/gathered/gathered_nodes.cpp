@@ -4,23 +4,25 @@
 
 namespace ricochet {
 
-GatheredNodes::GatheredNodes(const Ranks& ranks, int home, const std::vector<Index>& nodes, const GatheredNodes* first)
-    : ranks_(&ranks), root_(home), nodes_(nodes) {
+GatheredNodes::GatheredNodes(const Ranks& ranks, int root_rank, const std::vector<Index>& nodes,
+                             const GatheredNodes* first)
+    : ranks_(&ranks), root_(root_rank), nodes_(nodes) {
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
   const auto size = static_cast<std::size_t>(ranks.size());
-  Ranks::ForEach<std::int64_t> told(size), owns(size);
+  Ranks::ForEach<std::int64_t> sent(size), sent_owned(size);
   for (const Index node : nodes_) {
-    told[static_cast<std::size_t>(home)].push_back(ranks.number_of(node));
-    owns[static_cast<std::size_t>(home)].push_back(ranks.is_owned(node) ? 1 : 0);
+    sent[static_cast<std::size_t>(root_rank)].push_back(ranks.number_of(node));
+    sent_owned[static_cast<std::size_t>(root_rank)].push_back(ranks.is_owned(node) ? 1 : 0);
     if (ranks.is_owned(node)) owned_.push_back(node);
   }
-  const Ranks::ForEach<std::int64_t> known = ranks.exchange(std::move(told)), owned = ranks.exchange(std::move(owns));
+  const Ranks::ForEach<std::int64_t> received = ranks.exchange(std::move(sent));
+  const Ranks::ForEach<std::int64_t> received_owned = ranks.exchange(std::move(sent_owned));
   if (!is_root()) return;
   if (first != nullptr) numbers_ = first->numbers_;
   std::vector<std::int64_t> before = numbers_, others;
   std::sort(before.begin(), before.end());
-  for (const auto& list : known) {
+  for (const auto& list : received) {
     for (const std::int64_t number : list) {
       if (!std::binary_search(before.begin(), before.end(), number)) others.push_back(number);
     }
@@ -28,15 +30,15 @@ GatheredNodes::GatheredNodes(const Ranks& ranks, int home, const std::vector<Ind
   std::sort(others.begin(), others.end());
   others.erase(std::unique(others.begin(), others.end()), others.end());
   numbers_.insert(numbers_.end(), others.begin(), others.end());
-  for (std::size_t place = 0; place < numbers_.size(); ++place)
-    index_.emplace_back(numbers_[place], static_cast<Index>(place));
+  for (std::size_t index = 0; index < numbers_.size(); ++index)
+    index_.emplace_back(numbers_[index], static_cast<Index>(index));
   std::sort(index_.begin(), index_.end());
   indices_.resize(size);
-  owned_places_.resize(size);
+  owned_indices_.resize(size);
   for (std::size_t rank = 0; rank < size; ++rank) {
-    for (std::size_t i = 0; i < known[rank].size(); ++i) {
-      indices_[rank].push_back(index_of(known[rank][i]));
-      if (owned[rank][i] != 0) owned_places_[rank].push_back(indices_[rank].back());
+    for (std::size_t i = 0; i < received[rank].size(); ++i) {
+      indices_[rank].push_back(index_of(received[rank][i]));
+      if (received_owned[rank][i] != 0) owned_indices_[rank].push_back(indices_[rank].back());
     }
   }
 }
@@ -47,17 +49,17 @@ Index GatheredNodes::index_of(std::int64_t number) const {
 }
 
 Vector GatheredNodes::gather(const Vector& values, int per_node) const {
-  Ranks::ForEach<double> told(static_cast<std::size_t>(ranks_->size()));
-  std::vector<double>& own = told[static_cast<std::size_t>(root_)];
+  Ranks::ForEach<double> sent(static_cast<std::size_t>(ranks_->size()));
+  std::vector<double>& own = sent[static_cast<std::size_t>(root_)];
   for (const Index node : owned_)
     own.insert(own.end(), values.data() + node * per_node, values.data() + (node + 1) * per_node);
-  const Ranks::ForEach<double> known = ranks_->exchange(std::move(told));
+  const Ranks::ForEach<double> received = ranks_->exchange(std::move(sent));
   if (!is_root()) return {};
   Vector result = Vector::Zero(count() * per_node);
-  for (std::size_t rank = 0; rank < known.size(); ++rank) {
-    const double* from = known[rank].data();
-    for (const Index place : owned_places_[rank]) {
-      std::copy_n(from, per_node, result.data() + place * per_node);
+  for (std::size_t rank = 0; rank < received.size(); ++rank) {
+    const double* from = received[rank].data();
+    for (const Index index : owned_indices_[rank]) {
+      std::copy_n(from, per_node, result.data() + index * per_node);
       from += per_node;
     }
   }
@@ -65,13 +67,13 @@ Vector GatheredNodes::gather(const Vector& values, int per_node) const {
 }
 
 void GatheredNodes::scatter(const Vector& at_root, int per_node, Vector& values) const {
-  Ranks::ForEach<double> told(static_cast<std::size_t>(ranks_->size()));
+  Ranks::ForEach<double> sent(static_cast<std::size_t>(ranks_->size()));
   for (std::size_t rank = 0; rank < indices_.size(); ++rank) {
-    for (const Index place : indices_[rank])
-      told[rank].insert(told[rank].end(), at_root.data() + place * per_node, at_root.data() + (place + 1) * per_node);
+    for (const Index index : indices_[rank])
+      sent[rank].insert(sent[rank].end(), at_root.data() + index * per_node, at_root.data() + (index + 1) * per_node);
   }
-  const Ranks::ForEach<double> known = ranks_->exchange(std::move(told));
-  const double* from = known[static_cast<std::size_t>(root_)].data();
+  const Ranks::ForEach<double> received = ranks_->exchange(std::move(sent));
+  const double* from = received[static_cast<std::size_t>(root_)].data();
   for (const Index node : nodes_) {
     std::copy_n(from, per_node, values.data() + node * per_node);
     from += per_node;

@@ -14,7 +14,8 @@ class GatheredNodes {
   /// `nodes` are those of this rank, in any order; a node named by one of its ranks is named by all. At the root they
   /// are numbered by their numbers in the whole body, except that those of `first` come first, as they are numbered
   /// there.
-  GatheredNodes(const Ranks& ranks, int home, const std::vector<Index>& nodes, const GatheredNodes* first = nullptr);
+  GatheredNodes(const Ranks& ranks, int root_rank, const std::vector<Index>& nodes,
+                const GatheredNodes* first = nullptr);
 
   [[nodiscard]] int root() const { return root_; }
   [[nodiscard]] bool is_root() const { return ranks_->rank() == root_; }
@@ -34,9 +35,9 @@ class GatheredNodes {
   const Ranks* ranks_ = nullptr;
   int root_ = 0;
   std::vector<Index> nodes_, owned_;
-  std::vector<std::int64_t> numbers_;                       ///< at the root, per index
-  std::vector<std::pair<std::int64_t, Index>> index_;       ///< at the root, by number
-  std::vector<std::vector<Index>> indices_, owned_places_;  ///< at the root, of the nodes of each rank
+  std::vector<std::int64_t> numbers_;                        ///< at the root, per index
+  std::vector<std::pair<std::int64_t, Index>> index_;        ///< at the root, by number
+  std::vector<std::vector<Index>> indices_, owned_indices_;  ///< at the root, of the nodes of each rank
 };
 
 }  // namespace ricochet

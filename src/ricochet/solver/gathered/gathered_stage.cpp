@@ -48,12 +48,12 @@ class GatheredStage final : public StageSolver {
   GatheredContact& contact_;
   SparseRowMatrix supported_;  ///< this rank's part of A's rows of supported dofs: supports × dofs
   std::vector<Index> points_;  ///< that take part in the stage
-  Vector right_hand_side_, held_, contact_force_;
+  Vector right_hand_side_, prescribed_, contact_force_;
   // At the root:
   std::unique_ptr<SemidiscreteProblem> root_problem_;
   std::unique_ptr<StageSolver> stage_;
-  Stage near_stage_;
-  StageSolution near_solution_;
+  Stage root_stage_;
+  StageSolution root_solution_;
 };
 
 /// Extracts A's rows of supported dofs without assembling the whole of A.
@@ -105,8 +105,8 @@ GatheredStage::GatheredStage(const SemidiscreteProblem& problem, const OperatorC
 void GatheredStage::solve(const Stage& stage, StageSolution& solution) {
   const Ranks& ranks = *problem_.ranks;
   const int d = problem_.dimension;
-  held_.setZero(problem_.dof_count());
-  prescribe(problem_, stage, held_);
+  prescribed_.setZero(problem_.dof_count());
+  prescribe(problem_, stage, prescribed_);
   right_hand_side_ = stage.right_hand_side;
   if (problem_.supports.size() > 0) right_hand_side_.noalias() -= supported_.transpose() * stage.prescribed;
   ranks.accumulate(right_hand_side_);
@@ -114,17 +114,17 @@ void GatheredStage::solve(const Stage& stage, StageSolution& solution) {
   for (Index point = 0; point < problem_.contact.size(); ++point) {
     if (stage.eligible[static_cast<std::size_t>(point)] != 0) points_.push_back(point);
   }
-  contact_.gather(stage, held_, points_, near_stage_);
-  near_stage_.right_hand_side = contact_.nodes().gather(right_hand_side_, d);
+  contact_.gather(stage, prescribed_, points_, root_stage_);
+  root_stage_.right_hand_side = contact_.nodes().gather(right_hand_side_, d);
   ranks.run_collectively([&] {
-    if (stage_) stage_->solve(near_stage_, near_solution_);
+    if (stage_) stage_->solve(root_stage_, root_solution_);
   });
   solution.open_all(problem_.contact.size(), problem_.contact.has_friction() ? d - 1 : 0);
-  solution.increment = held_;
-  contact_.nodes().scatter(near_solution_.increment, d, solution.increment);
+  solution.increment = prescribed_;
+  contact_.nodes().scatter(root_solution_.increment, d, solution.increment);
   // Supported dofs of contact nodes are not solved for.
   prescribe(problem_, stage, solution.increment);
-  contact_.scatter(near_solution_, points_, solution);
+  contact_.scatter(root_solution_, points_, solution);
   find_support_reaction(problem_, stage, supported_, contact_force_, solution);
 }
 

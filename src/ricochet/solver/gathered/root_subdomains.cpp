@@ -13,12 +13,12 @@ void RootSubdomains::clear() {
 
 std::vector<Index> RootSubdomains::gather_points(const std::vector<Index>& points) const {
   const Ranks& ranks = *body_.problem.ranks;
-  Ranks::ForEach<std::int64_t> told(static_cast<std::size_t>(ranks.size()));
-  told[static_cast<std::size_t>(nodes_.root())].assign(points.begin(), points.end());
-  const Ranks::ForEach<std::int64_t> known = ranks.exchange(std::move(told));
+  Ranks::ForEach<std::int64_t> sent(static_cast<std::size_t>(ranks.size()));
+  sent[static_cast<std::size_t>(nodes_.root())].assign(points.begin(), points.end());
+  const Ranks::ForEach<std::int64_t> received = ranks.exchange(std::move(sent));
   std::vector<Index> result;
-  for (std::size_t rank = 0; rank < known.size(); ++rank) {
-    for (const std::int64_t point : known[rank]) result.push_back(contact_.number(static_cast<int>(rank), point));
+  for (std::size_t rank = 0; rank < received.size(); ++rank) {
+    for (const std::int64_t point : received[rank]) result.push_back(contact_.number(static_cast<int>(rank), point));
   }
   return result;
 }
@@ -26,8 +26,8 @@ std::vector<Index> RootSubdomains::gather_points(const std::vector<Index>& point
 /// Gathers the graph of neighbouring nodes by the cells of all ranks.
 MatrixGraph RootSubdomains::gather_graph(const std::vector<Index>& nodes) {
   const Ranks& ranks = *body_.problem.ranks;
-  Ranks::ForEach<std::int64_t> told(static_cast<std::size_t>(ranks.size()));
-  std::vector<std::int64_t>& message = told[static_cast<std::size_t>(nodes_.root())];
+  Ranks::ForEach<std::int64_t> sent(static_cast<std::size_t>(ranks.size()));
+  std::vector<std::int64_t>& message = sent[static_cast<std::size_t>(nodes_.root())];
   for (const Index node : nodes) {
     for (const int other : body_.neighbourhood.graph().neighbours(node)) {
       if (!std::binary_search(nodes.begin(), nodes.end(), Index{other})) continue;
@@ -35,10 +35,10 @@ MatrixGraph RootSubdomains::gather_graph(const std::vector<Index>& nodes) {
       message.push_back(ranks.number_of(other));
     }
   }
-  const Ranks::ForEach<std::int64_t> known = ranks.exchange(std::move(told));
+  const Ranks::ForEach<std::int64_t> received = ranks.exchange(std::move(sent));
   if (!contact_.is_root()) return {};
   std::vector<Eigen::Triplet<double>> entries;
-  for (const std::vector<std::int64_t>& pairs : known) {
+  for (const std::vector<std::int64_t>& pairs : received) {
     for (std::size_t i = 0; i < pairs.size(); i += 2)
       entries.emplace_back(static_cast<int>(nodes_.index_of(pairs[i])), static_cast<int>(nodes_.index_of(pairs[i + 1])),
                            1.0);
@@ -48,12 +48,12 @@ MatrixGraph RootSubdomains::gather_graph(const std::vector<Index>& nodes) {
   return MatrixGraph(pattern, 1);
 }
 
-void RootSubdomains::gather_body(const std::vector<Index>& points, const RegionNodes& near) {
+void RootSubdomains::gather_body(const std::vector<Index>& points, const RegionNodes& region) {
   clear();
   rows_.reset();
   const Ranks& ranks = *body_.problem.ranks;
   const int d = body_.problem.dimension;
-  nodes_ = GatheredNodes(ranks, contact_.nodes().root(), near.nodes, &contact_.nodes());
+  nodes_ = GatheredNodes(ranks, contact_.nodes().root(), region.nodes, &contact_.nodes());
   points_ = gather_points(points);
   root_problem_ = contact_.make_problem(nodes_);
   const std::vector<char>& is_solved = body_.solved;
@@ -61,16 +61,16 @@ void RootSubdomains::gather_body(const std::vector<Index>& points, const RegionN
       Eigen::Map<const Eigen::Matrix<char, Eigen::Dynamic, 1>>(is_solved.data(), static_cast<Index>(is_solved.size()))
           .cast<double>(),
       d);
-  const SparseMatrix matrix = gather_matrix(ranks, near.matrix, near.nodes, d, nodes_);
-  MatrixGraph graph = gather_graph(near.nodes);
+  const SparseMatrix matrix = gather_matrix(ranks, region.matrix, region.nodes, d, nodes_);
+  MatrixGraph graph = gather_graph(region.nodes);
   if (!contact_.is_root()) return;
-  near_solved_.assign(static_cast<std::size_t>(solved.size()), 0);
-  for (Index dof = 0; dof < solved.size(); ++dof) near_solved_[static_cast<std::size_t>(dof)] = solved[dof] > 0.0;
-  near_product_ = StageProduct(matrix, d);
-  near_nearby_ = std::make_unique<ContactNeighbourhood>(*root_problem_, std::move(graph));
-  subdomains_ = std::make_unique<Subdomains>(*root_problem_, body_.coefficients, near_solved_, near_product_,
-                                             *near_nearby_, all_points_, condensed_stage_);
-  subdomains_->set_layers(near.layers);
+  region_solved_.assign(static_cast<std::size_t>(solved.size()), 0);
+  for (Index dof = 0; dof < solved.size(); ++dof) region_solved_[static_cast<std::size_t>(dof)] = solved[dof] > 0.0;
+  region_product_ = StageProduct(matrix, d);
+  region_neighbourhood_ = std::make_unique<ContactNeighbourhood>(*root_problem_, std::move(graph));
+  subdomains_ = std::make_unique<Subdomains>(*root_problem_, body_.coefficients, region_solved_, region_product_,
+                                             *region_neighbourhood_, all_points_, condensed_stage_);
+  subdomains_->set_layers(region.layers);
 }
 
 std::size_t RootSubdomains::partition_on_root() {
@@ -86,29 +86,29 @@ void RootSubdomains::make_on_root(std::size_t number, std::size_t count) {
 void RootSubdomains::widen_rows() {
   if (rows_ != stage_.rows) {
     rows_ = stage_.rows;
-    near_rows_ = GatheredContact::rows_on(*rows_, root_problem_->dof_count());
+    region_rows_ = GatheredContact::rows_on(*rows_, root_problem_->dof_count());
   }
-  stage_.rows = near_rows_;
+  stage_.rows = region_rows_;
 }
 
 void RootSubdomains::gather(const Stage& stage, const Vector& x, const std::vector<Index>& points,
                             const Vector& residual) {
   contact_.gather(stage, x, points, stage_);
   if (contact_.is_root()) widen_rows();
-  near_residual_ = nodes_.gather(residual, body_.problem.dimension);
+  region_residual_ = nodes_.gather(residual, body_.problem.dimension);
 }
 
 void RootSubdomains::solve_on_root() {
   if (!contact_.is_root()) return;
   solution_.open_all(contact_.point_count(), root_problem_->contact.has_friction() ? body_.problem.dimension - 1 : 0);
-  near_x_.setZero(root_problem_->dof_count());
-  subdomains_->solve(stage_, near_residual_, near_x_, solution_);
+  region_x_.setZero(root_problem_->dof_count());
+  subdomains_->solve(stage_, region_residual_, region_x_, solution_);
 }
 
 void RootSubdomains::scatter(const std::vector<Index>& points, Vector& x, StageSolution& solution) {
   const int d = body_.problem.dimension;
   if (correction_.size() != x.size()) correction_.setZero(x.size());
-  nodes_.scatter(near_x_, d, correction_);
+  nodes_.scatter(region_x_, d, correction_);
   for (const Index node : nodes_.nodes()) {
     x.segment(node * d, d) += correction_.segment(node * d, d);
     correction_.segment(node * d, d).setZero();
@@ -121,11 +121,11 @@ void RootSubdomains::add_motion(Vector& motion) {
   const GatheredNodes& contact_nodes = contact_.nodes();
   body_.problem.ranks->run_collectively([&] {
     if (subdomains_)
-      subdomains_->find_motion(*stage_.rows, solution_, Vector::Zero(root_problem_->dof_count()), near_motion_);
+      subdomains_->find_motion(*stage_.rows, solution_, Vector::Zero(root_problem_->dof_count()), region_motion_);
   });
-  if (layer_motion_.size() != motion.size()) layer_motion_.setZero(motion.size());
-  contact_nodes.scatter(near_motion_, d, layer_motion_);
-  for (const Index node : contact_nodes.nodes()) motion.segment(node * d, d) += layer_motion_.segment(node * d, d);
+  if (contact_motion_.size() != motion.size()) contact_motion_.setZero(motion.size());
+  contact_nodes.scatter(region_motion_, d, contact_motion_);
+  for (const Index node : contact_nodes.nodes()) motion.segment(node * d, d) += contact_motion_.segment(node * d, d);
 }
 
 }  // namespace ricochet

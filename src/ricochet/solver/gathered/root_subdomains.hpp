@@ -39,7 +39,7 @@ class RootSubdomains {
       : body_(body), all_points_(all_points), contact_(contact), condensed_stage_(condensed_stage) {}
 
   /// Gathers these points of each rank, and the body near them, at the root.
-  void gather_body(const std::vector<Index>& points, const RegionNodes& near);
+  void gather_body(const std::vector<Index>& points, const RegionNodes& region);
   /// Partitions the points. Returns the number of subdomains at all roots; 0 elsewhere.
   std::size_t partition_on_root();
   /// Makes a share of the subdomains: every `count`-th one from `number` on.
@@ -56,7 +56,7 @@ class RootSubdomains {
 
   [[nodiscard]] const GatheredContact& contact() const { return contact_; }
   /// Subdomains; null elsewhere.
-  [[nodiscard]] Subdomains* zones() const { return subdomains_.get(); }
+  [[nodiscard]] Subdomains* subdomains() const { return subdomains_.get(); }
   /// Time spent in contact solvers of earlier subdomains.
   [[nodiscard]] double earlier_seconds() const { return earlier_seconds_; }
 
@@ -71,18 +71,18 @@ class RootSubdomains {
   FactoredStage* condensed_stage_;
   double earlier_seconds_ = 0.0;
   GatheredNodes nodes_;
-  Vector correction_, layer_motion_;  ///< per dof; zero between calls
+  Vector correction_, contact_motion_;  ///< per dof; zero between calls
   // At the root:
   std::vector<Index> points_;
   std::unique_ptr<SemidiscreteProblem> root_problem_;
-  std::vector<char> near_solved_;
-  StageProduct near_product_;
-  std::unique_ptr<ContactNeighbourhood> near_nearby_;
+  std::vector<char> region_solved_;
+  StageProduct region_product_;
+  std::unique_ptr<ContactNeighbourhood> region_neighbourhood_;
   std::unique_ptr<Subdomains> subdomains_;
   Stage stage_;
-  std::shared_ptr<const ContactRows> rows_, near_rows_;  ///< as received, and on all nearby nodes
+  std::shared_ptr<const ContactRows> rows_, region_rows_;  ///< as received, and on all nearby nodes
   StageSolution solution_;
-  Vector near_residual_, near_x_, near_motion_;
+  Vector region_residual_, region_x_, region_motion_;
 };
 
 }  // namespace ricochet

@@ -14,8 +14,9 @@ namespace ricochet {
 namespace {
 
 /// Error of the mean relative to the largest reaction: the tolerance, and the limit if rounding stops the iterations.
-constexpr double tolerance = 1e-13, rounding_of_rounds = 1e-10;
-constexpr int rounds_before_settling = 2, most_mean_rounds = 60, most_newton_steps = 60, patience_of_mean = 12;
+constexpr double tolerance = 1e-13, rounding_limit = 1e-10;
+constexpr int iterations_before_freeze = 2, max_mean_iterations = 60, max_newton_steps = 60;
+constexpr int patience_of_mean = 12;
 /// Steps of the power iteration for λ, whose value is a lower bound, and its reserve.
 constexpr int power_steps = 30;
 constexpr double power_reserve = 1.05;
@@ -133,26 +134,26 @@ bool MeanReaction::solve_with(ContactProblem& contact, const Vector& offset, con
 bool MeanReaction::iterate(ContactProblem& contact, const Vector& offset, const std::function<bool()>& solve_contact,
                            ContactSolution& solution) {
   acceleration_.restart();
-  double least = std::numeric_limits<double>::infinity();
+  double best_error = std::numeric_limits<double>::infinity();
   int last_progress = 0;
   const int patience = has_friction_ ? patience_of_mean : 5;  // followed by Newton's method
-  for (int round = 0; round < most_mean_rounds; ++round) {
-    const Vector asked = difference_;
+  for (int iteration = 0; iteration < max_mean_iterations; ++iteration) {
+    const Vector previous = difference_;
     double error = 0.0;
     if (!solve_with(contact, offset, solve_contact, solution, error)) return false;
     if (error <= tolerance) return true;
-    if (error < 0.5 * least) {
-      least = error;
-      last_progress = round;
-    } else if (error <= rounding_of_rounds && round - last_progress > 2) {
+    if (error < 0.5 * best_error) {
+      best_error = error;
+      last_progress = iteration;
+    } else if (error <= rounding_limit && iteration - last_progress > 2) {
       return true;
-    } else if (round - last_progress > patience) {
+    } else if (iteration - last_progress > patience) {
       break;
     }
-    if (round == rounds_before_settling) path_.freeze_shares();
-    acceleration_.advance(asked, difference_, difference_);
+    if (iteration == iterations_before_freeze) path_.freeze_shares();
+    acceleration_.advance(previous, difference_, difference_);
   }
-  reason_ = fmt::format("iterations stopped at an error of {:.2g} of the reactions", least);
+  reason_ = fmt::format("iterations stopped at an error of {:.2g} of the reactions", best_error);
   return false;
 }
 
@@ -171,20 +172,20 @@ bool MeanReaction::newton(ContactProblem& contact, const Vector& offset, const s
   Vector acting = acting_, residual, trial;
   reason_ = "the points in contact were not found along the path of the step";
   if (!evaluate(acting, residual)) return false;
-  double least = std::numeric_limits<double>::infinity();
-  for (int k = 0, last_progress = 0; k < most_newton_steps; ++k) {
+  double best_error = std::numeric_limits<double>::infinity();
+  for (int k = 0, last_progress = 0; k < max_newton_steps; ++k) {
     const double size = std::max(
         {mean.lpNorm<Eigen::Infinity>(), path.end().lpNorm<Eigen::Infinity>(), acting.lpNorm<Eigen::Infinity>()});
     const double error = difference_of(mean, acting);
-    if (error < 0.5 * least) {
-      least = error;
+    if (error < 0.5 * best_error) {
+      best_error = error;
       last_progress = k;
     }
     const bool stuck = k - last_progress > 6;
-    if (error <= 0.1 * tolerance * size || (stuck && error <= rounding_of_rounds * size)) {
+    if (error <= 0.1 * tolerance * size || (stuck && error <= rounding_limit * size)) {
       difference_ = acting - theta() * path.end();
-      double left = 0.0;
-      return solve_with(contact, offset, solve_contact, solution, left) && left <= 10.0 * rounding_of_rounds;
+      double final_error = 0.0;
+      return solve_with(contact, offset, solve_contact, solution, final_error) && final_error <= 10.0 * rounding_limit;
     }
     const Matrix derivative = (1.0 - mu_) * path.mean_derivative() + mu_ * path.end_derivative();
     // If nothing presses on the path, rows of I + DZ are those of the identity.

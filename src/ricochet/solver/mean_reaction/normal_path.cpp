@@ -36,8 +36,8 @@ bool NormalPath::evaluate(const Vector& q) {
 /// number does not fall.
 bool NormalPath::exchange_all(const Vector& q, std::vector<char>& active) {
   const auto count = static_cast<std::size_t>(q.size());
-  std::size_t least = count + 1;
-  for (int left = patience_of_exchange; left >= 0;) {
+  std::size_t fewest = count + 1;
+  for (int remaining = patience_of_exchange; remaining >= 0;) {
     if (!set_.set_points(active) || !evaluate(q)) return false;
     const double force = path_rounding * r_.lpNorm<Eigen::Infinity>();
     wrong_.clear();
@@ -47,11 +47,11 @@ bool NormalPath::exchange_all(const Vector& q, std::vector<char>& active) {
       if (active[i] != 0 ? r_[at] < -force : y_[at] < -gap_rounding_) wrong_.push_back(i);
     }
     if (wrong_.empty()) return true;
-    if (wrong_.size() < least) {
-      least = wrong_.size();
-      left = patience_of_exchange;
+    if (wrong_.size() < fewest) {
+      fewest = wrong_.size();
+      remaining = patience_of_exchange;
     } else {
-      --left;
+      --remaining;
     }
     for (const std::size_t i : wrong_) active[i] = active[i] == 0 ? 1 : 0;
   }
@@ -103,9 +103,9 @@ bool NormalPath::follow(const Vector& q0, const Vector& q1, const std::vector<ch
   if (keeps_derivatives_) mean_derivative_.setZero(u_->rows(), u_->cols());
   active_ = pressing;
   for (std::size_t i = 0; i < active_.size(); ++i) active_[i] = active_[i] != 0 && eligible_[i] != 0 ? 1 : 0;
-  const std::size_t most = 4 * active_.size() + 20;
+  const std::size_t max_pieces = 4 * active_.size() + 20;
   for (double begin = 0.0; begin < 1.0;) {
-    if (count_ > most) return false;
+    if (count_ > max_pieces) return false;
     const double inside = std::min(begin + behind_change, 0.5 * (1.0 + begin));
     at_ = q0_ + inside * change_;
     if (!find_set(at_, active_)) return false;

@@ -31,7 +31,7 @@ class NormalPath {
     set_.prepare(u);
   }
   /// Enables the computation of derivatives for the following paths.
-  void keep_derivatives(bool wanted) { keeps_derivatives_ = wanted; }
+  void keep_derivatives(bool enabled) { keeps_derivatives_ = enabled; }
   /// Follows the path of the eligible points. Returns false if the sets of pressing points were not found. `pressing`
   /// is a guess for the start.
   [[nodiscard]] bool follow(const Vector& q0, const Vector& q1, const std::vector<char>& eligible,

@@ -22,15 +22,15 @@ void PathActiveSet::solve(Vector& x) const {
 }
 
 /// Appends a point. Returns false if it depends on those of the set.
-bool PathActiveSet::append(const Matrix& u, Index point, double least) {
+bool PathActiveSet::append(const Matrix& u, Index point, double tolerance) {
   const auto count = static_cast<Index>(set_.size());
   if (factor_.rows() <= count) factor_.conservativeResize(u.rows(), u.cols());
   row_ = u(set_, point);
   factor_.topLeftCorner(count, count).triangularView<Eigen::Lower>().solveInPlace(row_);
-  const double left = u(point, point) - row_.squaredNorm();
-  if (left <= least * u(point, point)) return false;
+  const double schur = u(point, point) - row_.squaredNorm();
+  if (schur <= tolerance * u(point, point)) return false;
   factor_.row(count).head(count) = row_;
-  factor_(count, count) = std::sqrt(left);
+  factor_(count, count) = std::sqrt(schur);
   set_.push_back(point);
   return true;
 }
@@ -41,11 +41,11 @@ void PathActiveSet::factorize(const Matrix& u) {
   for (const Index point : requested_) (void)append(u, point, dependent);
 }
 
-void PathActiveSet::remove(const Matrix& u, std::size_t place) {
+void PathActiveSet::remove(const Matrix& u, std::size_t index) {
   requested_ = set_;
-  requested_.erase(requested_.begin() + static_cast<std::ptrdiff_t>(place));
+  requested_.erase(requested_.begin() + static_cast<std::ptrdiff_t>(index));
   const auto last = static_cast<Index>(requested_.size());
-  for (auto i = static_cast<Index>(place); i < last; ++i) reaction_[i] = reaction_[i + 1];
+  for (auto i = static_cast<Index>(index); i < last; ++i) reaction_[i] = reaction_[i + 1];
   reaction_.conservativeResize(last);
   factorize(u);
 }
@@ -74,8 +74,8 @@ bool PathActiveSet::add_point(const Matrix& u, Index point, double gap) {
     Vector& change = direction_;
     row_ = change;
     solve(change);
-    const double left = whole - row_.dot(change);
-    double length = left > dependent * whole ? -gap / left : std::numeric_limits<double>::infinity();
+    const double schur = whole - row_.dot(change);
+    double length = schur > dependent * whole ? -gap / schur : std::numeric_limits<double>::infinity();
     std::size_t leaves = set_.size();
     for (std::size_t i = 0; i < set_.size(); ++i) {
       const auto at = static_cast<Index>(i);
@@ -86,7 +86,7 @@ bool PathActiveSet::add_point(const Matrix& u, Index point, double gap) {
     if (!(length < std::numeric_limits<double>::infinity())) return false;
     reaction_ -= length * change;
     own += length;
-    gap += length * left;
+    gap += length * schur;
     if (leaves < set_.size()) {
       remove(u, leaves);
       continue;
@@ -105,8 +105,8 @@ bool PathActiveSet::find(const Matrix& u, const Vector& q, const std::vector<cha
     if (pressing[i] != 0 && eligible[i] != 0) requested_.push_back(static_cast<Index>(i));
   }
   start(u, q);
-  const std::size_t most = 20 * pressing.size() + 100;
-  for (std::size_t round = 0; round < most; ++round) {
+  const std::size_t max_iterations = 20 * pressing.size() + 100;
+  for (std::size_t iteration = 0; iteration < max_iterations; ++iteration) {
     gap_ = q;
     for (std::size_t i = 0; i < set_.size(); ++i) gap_ += reaction_[static_cast<Index>(i)] * u.col(set_[i]);
     for (const Index point : set_) gap_[point] = 0.0;

@@ -19,9 +19,9 @@ class PathActiveSet {
                           std::vector<char>& pressing);
 
  private:
-  bool append(const Matrix& u, Index point, double least);
+  bool append(const Matrix& u, Index point, double tolerance);
   void factorize(const Matrix& u);
-  void remove(const Matrix& u, std::size_t place);
+  void remove(const Matrix& u, std::size_t index);
   void solve(Vector& x) const;
   void start(const Matrix& u, const Vector& q);
   bool add_point(const Matrix& u, Index point, double gap);

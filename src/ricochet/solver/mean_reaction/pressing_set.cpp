@@ -31,9 +31,9 @@ bool PressingSet::set_points(const std::vector<char>& marks) {
   added_.clear();
   removed_.clear();
   for (std::size_t i = 0; i < marks.size(); ++i) {
-    const bool is_in = indices_[i] >= 0, wanted = marks[i] != 0;
-    if (wanted && !is_in) added_.push_back(static_cast<Index>(i));
-    if (!wanted && is_in) removed_.push_back(static_cast<Index>(i));
+    const bool is_in = indices_[i] >= 0, is_marked = marks[i] != 0;
+    if (is_marked && !is_in) added_.push_back(static_cast<Index>(i));
+    if (!is_marked && is_in) removed_.push_back(static_cast<Index>(i));
   }
   // A change costs about three squares, a new inverse about two cubes.
   if (2 * (added_.size() + removed_.size()) < points_.size() + 2) {
@@ -67,12 +67,12 @@ bool PressingSet::add(Index point) {
 
 /// Moves the last point to the position of the removed one.
 bool PressingSet::remove(Index point) {
-  const Index last = count() - 1, place = indices_[static_cast<std::size_t>(point)];
-  if (place != last) {
-    inverse().row(place).swap(inverse().row(last));
-    inverse().col(place).swap(inverse().col(last));
-    points_[static_cast<std::size_t>(place)] = points_[static_cast<std::size_t>(last)];
-    indices_[static_cast<std::size_t>(points_[static_cast<std::size_t>(place)])] = place;
+  const Index last = count() - 1, index = indices_[static_cast<std::size_t>(point)];
+  if (index != last) {
+    inverse().row(index).swap(inverse().row(last));
+    inverse().col(index).swap(inverse().col(last));
+    points_[static_cast<std::size_t>(index)] = points_[static_cast<std::size_t>(last)];
+    indices_[static_cast<std::size_t>(points_[static_cast<std::size_t>(index)])] = index;
   }
   points_.pop_back();
   indices_[static_cast<std::size_t>(point)] = -1;

@@ -16,7 +16,7 @@ constexpr double work_rounding = 1e-13;
 /// Part of the largest reaction above which a jump is not rounding.
 constexpr double path_continuity = 1e-6;
 /// Number of iterations after which κ = 0 wherever friction creates energy.
-constexpr int most_share_rounds = 4;
+constexpr int max_share_iterations = 4;
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void ReactionPath::prepare(const Matrix& u, const std::vector<Index>& row_offset
 
 void ReactionPath::begin_step() {
   normal_.prepare(normal_u_, definite_ ? PathMatrix::definite : PathMatrix::semidefinite);
-  most_.assign(normal_rows_.size(), on_cone);
+  share_limit_.assign(normal_rows_.size(), on_cone);
   shares_frozen_ = false;
 }
 
@@ -42,9 +42,9 @@ void ReactionPath::choose_friction(const Step& step) {
   for (std::size_t i = 0; i < share_.size(); ++i) {
     if (!has_friction(i)) continue;
     const Index row = normal_rows_[i], count = row_offset_[i + 1] - row - 1;
-    share_[i] = std::min(1.0, most_[i]);
+    share_[i] = std::min(1.0, share_limit_[i]);
     const double limit = step.friction[static_cast<Index>(i)];
-    if (!definite_ || limit == 0.0 || most_[i] < on_cone) continue;
+    if (!definite_ || limit == 0.0 || share_limit_[i] < on_cone) continue;
     const Vector& of = step.end[row] > 0.0 ? step.end : step.start;
     const auto tangential = of.segment(row + 1, count);
     if (of[row] <= 0.0 || tangential.norm() < (1.0 - cone_tolerance) * limit * of[row]) continue;
@@ -67,7 +67,7 @@ void ReactionPath::set_friction(const Step& step) {
 }
 
 bool ReactionPath::follow_normal(const Step& step) {
-  taken_ = &normal_;
+  selected_ = &normal_;
   if (std::find(share_.begin(), share_.end(), on_cone) != share_.end()) {
     path_u_ = normal_u_;
     for (std::size_t i = 0; i < share_.size(); ++i) {
@@ -75,7 +75,7 @@ bool ReactionPath::follow_normal(const Step& step) {
       for (Index row = row_offset_[i] + 1; row < row_offset_[i + 1]; ++row)
         path_u_.col(static_cast<Index>(i)) += ratio_[row] * (*u_)(normal_rows_, row);
     }
-    taken_ = &along_;
+    selected_ = &along_;
     along_.prepare(path_u_, PathMatrix::general);
   }
   const auto without_normal = [&](const Vector& q, const Vector& friction, Vector& of_normals) {
@@ -85,8 +85,8 @@ bool ReactionPath::follow_normal(const Step& step) {
   };
   without_normal(step.q0, friction_start_, normal_q0_);
   without_normal(step.q1, friction_end_, normal_q1_);
-  if (!taken_->follow(normal_q0_, normal_q1_, step.eligible, step.pressing)) return false;
-  return taken_ == &normal_ || leads_to_end(step);
+  if (!selected_->follow(normal_q0_, normal_q1_, step.eligible, step.pressing)) return false;
+  return selected_ == &normal_ || leads_to_end(step);
 }
 
 /// Without symmetry reactions need not be unique: they may jump along the path, or end elsewhere than at ρ₁. The work
@@ -106,8 +106,8 @@ bool ReactionPath::leads_to_end(const Step& step) const {
 }
 
 /// Computes ρ and y at a position on the path.
-void ReactionPath::take_state(const Step& step, double time, const Vector& normal, Vector& reaction,
-                              Vector& motion) const {
+void ReactionPath::compute_state(const Step& step, double time, const Vector& normal, Vector& reaction,
+                                 Vector& motion) const {
   reaction = (1.0 - time) * friction_start_ + time * friction_end_;
   for (std::size_t i = 0; i < share_.size(); ++i) {
     const double own = normal[static_cast<Index>(i)];
@@ -122,11 +122,11 @@ void ReactionPath::take_state(const Step& step, double time, const Vector& norma
 /// Computes the mean, and the work per row; both reactions and motions are linear in a piece.
 void ReactionPath::find_works(const Step& step) {
   mean_.setZero(step.end.size());
-  for (std::size_t k = 0; k < taken_->pieces(); ++k) {
-    const NormalPath::Piece& piece = taken_->piece(k);
-    take_state(step, piece.begin, piece.first, reaction_before_, motion_before_);
+  for (std::size_t k = 0; k < selected_->pieces(); ++k) {
+    const NormalPath::Piece& piece = selected_->piece(k);
+    compute_state(step, piece.begin, piece.first, reaction_before_, motion_before_);
     if (k == 0) work_ = reaction_before_.cwiseProduct(motion_before_);
-    take_state(step, piece.end, piece.last, reaction_, motion_);
+    compute_state(step, piece.end, piece.last, reaction_, motion_);
     mean_ += (0.5 * (piece.end - piece.begin)) * (reaction_before_ + reaction_);
     work_ += 0.5 * (reaction_before_ + reaction_).cwiseProduct(motion_ - motion_before_);
   }
@@ -140,18 +140,18 @@ bool ReactionPath::dissipates(const Step& step, bool is_last) {
   bool all = true;
   friction_work_ = 0.0;
   for (std::size_t i = 0; i < share_.size(); ++i) {
-    double work = 0.0, at_end = 0.0, turned = 0.0;
+    double work = 0.0, at_end = 0.0, at_start = 0.0;
     for (Index row = row_offset_[i] + 1; row < row_offset_[i + 1]; ++row) {
       work += work_[row];
       at_end += step.end[row] * motion_[row];
-      turned += step.start[row] * motion_[row];
+      at_start += step.start[row] * motion_[row];
     }
     friction_work_ += work;
     double& share = share_[i];
-    const bool turns = share != on_cone && turned > rounding;
-    if (share == 0.0 || (work <= rounding && !turns)) continue;
+    const bool reverses = share != on_cone && at_start > rounding;
+    if (share == 0.0 || (work <= rounding && !reverses)) continue;
     // The work is that of κ = 0 plus a part proportional to κ.
-    const bool can_shrink = share != on_cone && !turns && !is_last && at_end < -rounding && work > at_end;
+    const bool can_shrink = share != on_cone && !reverses && !is_last && at_end < -rounding && work > at_end;
     share = can_shrink ? std::min(0.9 * share, share * at_end / (at_end - work)) : 0.0;
     all = false;
   }
@@ -160,7 +160,7 @@ bool ReactionPath::dissipates(const Step& step, bool is_last) {
 
 bool ReactionPath::follow(const Step& step) {
   choose_friction(step);
-  for (int round = 0;; ++round) {
+  for (int iteration = 0;; ++iteration) {
     set_friction(step);
     if (!follow_normal(step)) {
       if (std::find(share_.begin(), share_.end(), on_cone) == share_.end()) return false;
@@ -168,9 +168,9 @@ bool ReactionPath::follow(const Step& step) {
       continue;
     }
     find_works(step);
-    if (dissipates(step, round >= most_share_rounds)) break;
+    if (dissipates(step, iteration >= max_share_iterations)) break;
   }
-  if (shares_frozen_) most_ = share_;
+  if (shares_frozen_) share_limit_ = share_;
   return true;
 }
 

@@ -43,7 +43,7 @@ class ReactionPath {
   /// ∫ ρ dτ, all rows.
   [[nodiscard]] const Vector& mean() const { return mean_; }
   /// r(0+), per point.
-  [[nodiscard]] const Vector& start() const { return taken_->start(); }
+  [[nodiscard]] const Vector& start() const { return selected_->start(); }
   /// Path of normal rows without friction.
   [[nodiscard]] NormalPath& normal() { return normal_; }
   /// ρ_T(0+)·(y_T(0+) − y_T0) + ∫ ρ_T·dy_T, y_T0 = 0, of all points. Each part is at most rounding.
@@ -55,7 +55,7 @@ class ReactionPath {
   void set_friction(const Step& step);
   [[nodiscard]] bool follow_normal(const Step& step);
   [[nodiscard]] bool leads_to_end(const Step& step) const;
-  void take_state(const Step& step, double time, const Vector& normal, Vector& reaction, Vector& motion) const;
+  void compute_state(const Step& step, double time, const Vector& normal, Vector& reaction, Vector& motion) const;
   void find_works(const Step& step);
   [[nodiscard]] bool dissipates(const Step& step, bool is_last);
 
@@ -64,9 +64,9 @@ class ReactionPath {
   std::vector<Index> row_offset_, normal_rows_;
   Matrix normal_u_, path_u_;
   NormalPath normal_, along_;  ///< along_: with friction proportional to the normal reactions
-  NormalPath* taken_ = &normal_;
-  std::vector<double> share_;  ///< κ per point; on_cone: ρ_T = D r
-  std::vector<double> most_;   ///< upper bounds of the shares
+  NormalPath* selected_ = &normal_;
+  std::vector<double> share_;        ///< κ per point; on_cone: ρ_T = D r
+  std::vector<double> share_limit_;  ///< upper bounds of the shares
   bool shares_frozen_ = false;
   Vector ratio_;  ///< D per tangential row
   Vector friction_start_, friction_end_, normal_q0_, normal_q1_, work_, mean_;

@@ -42,10 +42,10 @@ std::vector<Bundle> bundle_points(const SemidiscreteProblem& problem, const std:
 }
 
 void bisect(const SemidiscreteProblem& problem, const std::vector<Index>& points, std::vector<Bundle>::iterator begin,
-            std::vector<Bundle>::iterator end, std::size_t most, std::vector<std::vector<Index>>& clusters) {
+            std::vector<Bundle>::iterator end, std::size_t max_points, std::vector<std::vector<Index>>& clusters) {
   std::size_t count = 0;
   for (auto bundle = begin; bundle != end; ++bundle) count += bundle->members.size();
-  if (count <= most || end - begin == 1) {
+  if (count <= max_points || end - begin == 1) {
     std::vector<std::size_t> members;
     for (auto bundle = begin; bundle != end; ++bundle)
       members.insert(members.end(), bundle->members.begin(), bundle->members.end());
@@ -66,21 +66,21 @@ void bisect(const SemidiscreteProblem& problem, const std::vector<Index>& points
   auto middle = begin;
   while (middle + 1 < end && 2 * (before + middle->members.size()) <= count) before += (middle++)->members.size();
   if (middle == begin) ++middle;
-  bisect(problem, points, begin, middle, most, clusters);
-  bisect(problem, points, middle, end, most, clusters);
+  bisect(problem, points, begin, middle, max_points, clusters);
+  bisect(problem, points, middle, end, max_points, clusters);
 }
 
 }  // namespace
 
 std::vector<std::vector<Index>> cluster_points(const SemidiscreteProblem& problem, const std::vector<Index>& points,
-                                               std::size_t most) {
+                                               std::size_t max_points) {
   std::vector<std::vector<Index>> clusters;
-  if (points.size() <= most) {
+  if (points.size() <= max_points) {
     if (!points.empty()) clusters.push_back(points);
     return clusters;
   }
   std::vector<Bundle> bundles = bundle_points(problem, points);
-  bisect(problem, points, bundles.begin(), bundles.end(), most, clusters);
+  bisect(problem, points, bundles.begin(), bundles.end(), max_points, clusters);
   return clusters;
 }
 

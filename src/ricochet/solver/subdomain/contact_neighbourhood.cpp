@@ -13,7 +13,7 @@ constexpr int reserve_layers = 3;
 /// Layers per cell that a wave crosses in a step, behind which the influence of the rest of the body on the contact has
 /// decayed to a tenth.
 constexpr double layers_per_cell_crossed = 1.2;
-constexpr int least_layers = 2;
+constexpr int min_layers = 2;
 
 }  // namespace
 
@@ -55,8 +55,8 @@ std::vector<Index> ContactNeighbourhood::nodes_around(const std::vector<Index>& 
   std::vector<Index> nodes = nodes_of(points);
   if (!problem_.ranks->are_several()) return nodes_within(graph(), nodes, layers).ascending();
   Vector reached = Vector::Zero(problem_.nodes.cols());
-  for (int condensed_stage = 0; condensed_stage <= layers; ++condensed_stage) {
-    for (const Index node : condensed_stage == 0 ? nodes : nodes_within(graph(), nodes, 1).nodes) reached[node] = 1.0;
+  for (int layer = 0; layer <= layers; ++layer) {
+    for (const Index node : layer == 0 ? nodes : nodes_within(graph(), nodes, 1).nodes) reached[node] = 1.0;
     problem_.ranks->accumulate(reached);
     nodes.clear();
     for (Index node = 0; node < reached.size(); ++node) {
@@ -82,8 +82,7 @@ std::vector<Index> ContactNeighbourhood::points_around(const std::vector<Index>&
 int ContactNeighbourhood::layers_to_solve(const std::vector<Index>& points, const OperatorCoefficients& coefficients,
                                           const StageProduct& product) {
   const double crossed = cells_crossed(problem_, coefficients, product, nodes_around(points, reserve_layers));
-  return static_cast<int>(
-      std::clamp(std::ceil(layers_per_cell_crossed * crossed), 1.0 * least_layers, 1.0 * most_layers));
+  return static_cast<int>(std::clamp(std::ceil(layers_per_cell_crossed * crossed), 1.0 * min_layers, 1.0 * max_layers));
 }
 
 }  // namespace ricochet

@@ -15,7 +15,7 @@ class ContactNeighbourhood {
  public:
   /// Number of layers above which iterations are cheaper than subdomains, whose cost grows with the cube of their
   /// layers.
-  static constexpr int most_layers = 12;
+  static constexpr int max_layers = 12;
 
   /// Keeps a reference to the problem. The graph is that of its cells (an equivalent mass has more distant neighbours).
   explicit ContactNeighbourhood(const SemidiscreteProblem& problem) : problem_(problem) {}

@@ -15,13 +15,13 @@ namespace ricochet {
 namespace {
 
 /// Contact points of the smallest clusters that are tried: smaller ones save no work.
-constexpr std::size_t least_cluster = 256;
+constexpr std::size_t min_cluster_size = 256;
 /// Entries of the contact problems, which are dense. With many layers and few points, clusters have nearly the same
 /// points around them, and a single subdomain is cheaper.
-double dense_work(const std::vector<Subdomain::Extent>& zones) {
+double dense_work(const std::vector<Subdomain::Extent>& extents) {
   double sum = 0.0;
-  for (const Subdomain::Extent& zone : zones)
-    sum += static_cast<double>(zone.points.size()) * static_cast<double>(zone.points.size());
+  for (const Subdomain::Extent& extent : extents)
+    sum += static_cast<double>(extent.points.size()) * static_cast<double>(extent.points.size());
   return sum;
 }
 
@@ -48,35 +48,35 @@ void Subdomains::clear() {
 }
 
 /// Returns clusters of at most so many points with the layers around them, as subdomains.
-std::vector<Subdomain::Extent> Subdomains::subdomains_of(const std::vector<Index>& points, std::size_t most) {
-  std::vector<Subdomain::Extent> zones;
+std::vector<Subdomain::Extent> Subdomains::subdomains_of(const std::vector<Index>& points, std::size_t max_points) {
+  std::vector<Subdomain::Extent> extents;
   struct Owner {
-    std::size_t zone;
+    std::size_t subdomain;
     int distance;
   };
   std::unordered_map<Index, Owner> owners;
-  for (std::vector<Index>& cluster : cluster_points(problem_, points, most)) {
+  for (std::vector<Index>& cluster : cluster_points(problem_, points, max_points)) {
     const NodeDistances reached = nodes_within(neighbourhood_.graph(), neighbourhood_.nodes_of(cluster), layers_);
     for (std::size_t i = 0; i < reached.nodes.size(); ++i) {
-      Owner& owner = owners.try_emplace(reached.nodes[i], Owner{zones.size(), reached.distance[i]}).first->second;
-      if (reached.distance[i] < owner.distance) owner = {zones.size(), reached.distance[i]};
+      Owner& owner = owners.try_emplace(reached.nodes[i], Owner{extents.size(), reached.distance[i]}).first->second;
+      if (reached.distance[i] < owner.distance) owner = {extents.size(), reached.distance[i]};
     }
-    zones.push_back({.nodes = reached.ascending(), .own_nodes = {}, .points = {}, .own_points = std::move(cluster)});
+    extents.push_back({.nodes = reached.ascending(), .own_nodes = {}, .points = {}, .own_points = std::move(cluster)});
   }
-  for (std::size_t number = 0; number < zones.size(); ++number) {
-    Subdomain::Extent& zone = zones[number];
-    for (const Index node : zone.nodes) {
-      if (owners.at(node).zone == number) zone.own_nodes.push_back(node);
+  for (std::size_t number = 0; number < extents.size(); ++number) {
+    Subdomain::Extent& extent = extents[number];
+    for (const Index node : extent.nodes) {
+      if (owners.at(node).subdomain == number) extent.own_nodes.push_back(node);
     }
     for (const Index point : points) {
       bool inside = true;
       problem_.contact.visit_nodes(point, [&](Index node, double) {
-        inside = inside && std::binary_search(zone.nodes.begin(), zone.nodes.end(), node);
+        inside = inside && std::binary_search(extent.nodes.begin(), extent.nodes.end(), node);
       });
-      if (inside) zone.points.push_back(point);
+      if (inside) extent.points.push_back(point);
     }
   }
-  return zones;
+  return extents;
 }
 
 std::size_t Subdomains::partition(const std::vector<Index>& points) {
@@ -86,8 +86,8 @@ std::size_t Subdomains::partition(const std::vector<Index>& points) {
   // With massless contact nodes the motion of a contact node depends on all reactions near it.
   extents_ = subdomains_of(points, points.size());
   if (condensed_stage_ == nullptr) {
-    for (std::size_t most = least_cluster; most < points.size(); most *= 2) {
-      std::vector<Subdomain::Extent> others = subdomains_of(points, most);
+    for (std::size_t max_points = min_cluster_size; max_points < points.size(); max_points *= 2) {
+      std::vector<Subdomain::Extent> others = subdomains_of(points, max_points);
       if (dense_work(others) < dense_work(extents_)) extents_ = std::move(others);
     }
   }
@@ -119,10 +119,10 @@ void Subdomains::solve(const Stage& stage, const Vector& residual, Vector& x, St
     subdomains_.front()->solve(stage_, stage.eligible, residual, correction_, x, solution);
     return;
   }
-  for (const auto& zone : subdomains_) {
+  for (const auto& subdomain : subdomains_) {
     solution_.iterations = 0;
-    zone->solve(stage_, stage.eligible, residual, correction_, x, solution_);
-    zone->restrict_to_own(solution_, solution);
+    subdomain->solve(stage_, stage.eligible, residual, correction_, x, solution_);
+    subdomain->restrict_to_own(solution_, solution);
     solution.iterations += solution_.iterations;
   }
 }
@@ -133,7 +133,7 @@ void Subdomains::save(Snapshot& snapshot, const std::string& name) const {
 }
 
 void Subdomains::load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) {
-  layers_ = static_cast<int>(snapshot.integers(name + ".layers", 1, ContactNeighbourhood::most_layers).at(0));
+  layers_ = static_cast<int>(snapshot.integers(name + ".layers", 1, ContactNeighbourhood::max_layers).at(0));
   make(points);
   load_made(snapshot, name);
 }
@@ -143,23 +143,23 @@ void Subdomains::load_made(const Snapshot& snapshot, const std::string& name) {
 }
 
 void Subdomains::report() const {
-  for (const auto& zone : subdomains_) zone->report();
+  for (const auto& subdomain : subdomains_) subdomain->report();
 }
 
 void Subdomains::observe(const ContactObserver& observer) {
   observer_ = observer;
-  for (const auto& zone : subdomains_) zone->observe(observer);
+  for (const auto& subdomain : subdomains_) subdomain->observe(observer);
 }
 
 double Subdomains::contact_seconds() const {
   double sum = earlier_contact_seconds_;
-  for (const auto& zone : subdomains_) sum += zone->contact_seconds();
+  for (const auto& subdomain : subdomains_) sum += subdomain->contact_seconds();
   return sum;
 }
 
 std::size_t Subdomains::factor_entries() const {
   std::size_t sum = 0;
-  for (const auto& zone : subdomains_) sum += zone->factor_entries();
+  for (const auto& subdomain : subdomains_) sum += subdomain->factor_entries();
   return sum;
 }
 

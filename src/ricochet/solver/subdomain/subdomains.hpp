@@ -56,7 +56,7 @@ class Subdomains final : public ContactRegion {
   [[nodiscard]] std::size_t factor_entries() const override;
 
  private:
-  [[nodiscard]] std::vector<Subdomain::Extent> subdomains_of(const std::vector<Index>& points, std::size_t most);
+  [[nodiscard]] std::vector<Subdomain::Extent> subdomains_of(const std::vector<Index>& points, std::size_t max_points);
 
   const SemidiscreteProblem& problem_;
   OperatorCoefficients coefficients_;

@@ -27,7 +27,7 @@ std::string folder_name(const std::string& benchmark, const std::string& method)
 
 /// A method and, per benchmark, its choices.
 struct MethodRow {
-  AskedMethod method;
+  RequestedMethod method;
   std::vector<MethodChoice> chosen;
 
   [[nodiscard]] bool is_always_refused() const {
@@ -135,10 +135,10 @@ BenchmarkPlan plan_benchmarks(const std::vector<Benchmark>& benchmarks, const st
   return plan;
 }
 
-BenchmarkPlan plan_scorecard(const std::vector<Benchmark>& benchmarks, const std::vector<AskedMethod>& methods,
+BenchmarkPlan plan_scorecard(const std::vector<Benchmark>& benchmarks, const std::vector<RequestedMethod>& methods,
                              bool also_consistent, const std::string& directory) {
   std::vector<MethodRow> rows;
-  for (const AskedMethod& method : methods) rows.push_back({method, {}});
+  for (const RequestedMethod& method : methods) rows.push_back({method, {}});
   std::vector<std::unique_ptr<MethodChooser>> choosers;
   for (const Benchmark& benchmark : benchmarks) {
     choosers.push_back(std::make_unique<MethodChooser>(benchmark.case_path));

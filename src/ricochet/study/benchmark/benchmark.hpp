@@ -23,7 +23,7 @@ struct BenchmarkOptions {
 /// `also_consistent` is set, a scheme given without a mass that gets one without inertia on contact nodes has a second
 /// row with the mass "consistent", if it accepts that.
 [[nodiscard]] BenchmarkPlan plan_scorecard(const std::vector<Benchmark>& benchmarks,
-                                           const std::vector<AskedMethod>& methods, bool also_consistent,
+                                           const std::vector<RequestedMethod>& methods, bool also_consistent,
                                            const std::string& directory);
 
 /// Computes the runs that are not complete and writes the tables; `signal` receives the signal that has stopped it, or

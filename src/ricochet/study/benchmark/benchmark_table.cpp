@@ -17,18 +17,18 @@ namespace ricochet {
 
 namespace {
 
-constexpr int not_held = static_cast<int>(ErrorKind::expectation), refused = static_cast<int>(ErrorKind::invalid_input);
+constexpr int not_met = static_cast<int>(ErrorKind::expectation), refused = static_cast<int>(ErrorKind::invalid_input);
 
 /// Returns the results of the expectations that apply to this run, if its case can be read.
 std::vector<ExpectationResult> expectations_of(const BenchmarkRun& run, const std::string& directory,
-                                               const BenchmarkRunResult& outcome) {
+                                               const BenchmarkRunResult& result) {
   const log::Silence silence;  // the run has issued the warnings
   std::vector<ExpectationResult> all;
   try {
     const Case input = read_case(run.benchmark.case_path, run.settings);
-    all = outcome.state.status_text() == "done"
-              ? check_expectations(input, directory, outcome.state.summary_json, ExpectationScope::any_settings)
-              : unmet_expectations(input, outcome.message, ExpectationScope::any_settings);
+    all = result.state.status_text() == "done"
+              ? check_expectations(input, directory, result.state.summary_json, ExpectationScope::any_settings)
+              : unmet_expectations(input, result.message, ExpectationScope::any_settings);
   } catch (const Error&) {
     return {};
   }
@@ -36,9 +36,9 @@ std::vector<ExpectationResult> expectations_of(const BenchmarkRun& run, const st
   return all;
 }
 
-int status_of(const BenchmarkRun& run, const BenchmarkRunResult& outcome) {
-  if (outcome.state.status_text() == "done") return outcome.holds() == outcome.applies() ? 0 : not_held;
-  const int status = outcome.state.exit_status.value_or(0);
+int status_of(const BenchmarkRun& run, const BenchmarkRunResult& result) {
+  if (result.state.status_text() == "done") return result.holds() == result.applies() ? 0 : not_met;
+  const int status = result.state.exit_status.value_or(0);
   return status == refused && !run.is_own_method ? 0 : status;
 }
 
@@ -51,11 +51,11 @@ std::string bounds_text(const ExpectationResult& e) {
 }
 
 TableCell reference_cell(const ExpectationResult& e) {
-  return e.wanted_value ? TableCell(*e.wanted_value) : TableCell(bounds_text(e));
+  return e.expected_value ? TableCell(*e.expected_value) : TableCell(bounds_text(e));
 }
 
 double error_of(const ExpectationResult& e) {
-  if (e.wanted_value) return e.value - *e.wanted_value;
+  if (e.expected_value) return e.value - *e.expected_value;
   if (e.minimum && e.value < *e.minimum) return e.value - *e.minimum;
   if (e.maximum && e.value > *e.maximum) return e.value - *e.maximum;
   return 0.0;
@@ -96,17 +96,17 @@ std::string BenchmarkRunResult::status_text() const {
 BenchmarkResults read_benchmark_results(const BenchmarkPlan& plan) {
   BenchmarkResults results;
   for (const BenchmarkRun& run : plan.runs) {
-    BenchmarkRunResult& outcome = results.run_results.emplace_back();
+    BenchmarkRunResult& result = results.run_results.emplace_back();
     if (run.refusal.empty()) {
-      outcome.state = read_run_state(plan.path(run));
-      outcome.message = outcome.state.status_text() == "done" ? "" : short_reason(outcome.state.message);
+      result.state = read_run_state(plan.path(run));
+      result.message = result.state.status_text() == "done" ? "" : short_reason(result.state.message);
     } else {
-      outcome.state.exit_status = refused;
-      outcome.message = run.refusal;
+      result.state.exit_status = refused;
+      result.message = run.refusal;
     }
-    if (!outcome.message.empty() || outcome.state.status_text() == "done")
-      outcome.expectations = expectations_of(run, plan.path(run), outcome);
-    results.worst_status = worse_status(results.worst_status, status_of(run, outcome));
+    if (!result.message.empty() || result.state.status_text() == "done")
+      result.expectations = expectations_of(run, plan.path(run), result);
+    results.worst_status = worse_status(results.worst_status, status_of(run, result));
   }
   return results;
 }
@@ -148,14 +148,14 @@ std::vector<std::string> benchmark_notes(const BenchmarkPlan& plan, const Benchm
   std::size_t holds = 0, applies = 0;
   std::vector<std::string> notes;
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
-    const BenchmarkRunResult& outcome = results.run_results[i];
-    const bool is_refused = outcome.state.status_text() == "refused";
+    const BenchmarkRunResult& result = results.run_results[i];
+    const bool is_refused = result.state.status_text() == "refused";
     if (is_refused && !plan.runs[i].is_own_method) continue;
-    holds += outcome.holds();
-    applies += outcome.applies();
-    if (outcome.state.status_text() == "done") continue;
-    const std::string why = outcome.message.empty() ? "" : ": " + outcome.message;
-    notes.push_back(fmt::format("{}: {}{}", title_of(plan, plan.runs[i]), outcome.status_text(), why));
+    holds += result.holds();
+    applies += result.applies();
+    if (result.state.status_text() == "done") continue;
+    const std::string why = result.message.empty() ? "" : ": " + result.message;
+    notes.push_back(fmt::format("{}: {}{}", title_of(plan, plan.runs[i]), result.status_text(), why));
   }
   notes.push_back(fmt::format("{} of {} hold.", holds, counted(applies, "expected value")));
   return notes;
@@ -165,11 +165,11 @@ void write_benchmark_tables(const BenchmarkPlan& plan, const BenchmarkResults& r
   write_durably(plan.path("benchmark.csv"), to_csv(benchmark_table(plan, results)));
   std::string page = "# Benchmarks\n\n" + to_markdown(benchmark_table_for_readers(plan, results, true)) + "\n";
   for (const std::string& note : benchmark_notes(plan, results)) page += fmt::format("- {}\n", markdown_text(note));
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   page += "\nThe benchmarks:\n\n";
   for (const BenchmarkRun& run : plan.runs) {
-    if (std::count(told.begin(), told.end(), run.benchmark.name) > 0) continue;
-    told.push_back(run.benchmark.name);
+    if (std::count(reported.begin(), reported.end(), run.benchmark.name) > 0) continue;
+    reported.push_back(run.benchmark.name);
     page += fmt::format("- `{}`: {}\n", run.benchmark.name, markdown_text(run.benchmark.description));
   }
   write_durably(plan.path("benchmark.md"), page);

@@ -30,9 +30,9 @@ void require_known(const std::string& noun, const std::string& name, const std::
                                             join_names(known, " and ", false)));
 }
 
-AskedMethod parse_method(const std::string& text) {
+RequestedMethod parse_method(const std::string& text) {
   const std::size_t slash = text.find('/');
-  AskedMethod method{text.substr(0, slash), slash == std::string::npos ? "" : text.substr(slash + 1)};
+  RequestedMethod method{text.substr(0, slash), slash == std::string::npos ? "" : text.substr(slash + 1)};
   require_known("scheme", method.scheme, scheme_names());
   if (slash != std::string::npos) require_known("mass", method.mass, mass_names());
   return method;
@@ -47,7 +47,7 @@ std::vector<std::string> preset_setting(const std::string& scheme) {
 }
 
 /// Returns the masses in the order in which they are tried.
-std::vector<std::string> masses_to_try(const AskedMethod& method, const std::string& mass_of_case) {
+std::vector<std::string> masses_to_try(const RequestedMethod& method, const std::string& mass_of_case) {
   if (!method.mass.empty()) return {method.mass};
   std::vector<std::string> masses{mass_of_case};
   for (const char* mass : {"equivalent", "consistent", "lumped", "equivalent-lumped"}) {
@@ -58,19 +58,19 @@ std::vector<std::string> masses_to_try(const AskedMethod& method, const std::str
 
 }  // namespace
 
-std::string AskedMethod::text() const {
+std::string RequestedMethod::text() const {
   return mass.empty() ? scheme : scheme + "/" + mass;
 }
 
-std::vector<AskedMethod> parse_methods(const std::string& text) {
-  std::vector<AskedMethod> methods;
+std::vector<RequestedMethod> parse_methods(const std::string& text) {
+  std::vector<RequestedMethod> methods;
   if (text == "all") {
     for (const std::string& scheme : scheme_names()) methods.push_back({scheme});
     return methods;
   }
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t comma = std::min(text.find(',', begin), text.size());
-    AskedMethod method = parse_method(text.substr(begin, comma - begin));
+    RequestedMethod method = parse_method(text.substr(begin, comma - begin));
     if (std::count(methods.begin(), methods.end(), method) == 0) methods.push_back(std::move(method));
     begin = comma + 1;
   }
@@ -78,8 +78,8 @@ std::vector<AskedMethod> parse_methods(const std::string& text) {
 }
 
 std::string short_reason(const std::string& message) {
-  static const std::regex place(R"(^(--set [^:]*|[^:\s]*):(\d+:\d+:)?\s*)");
-  return std::regex_replace(message.substr(0, message.find('\n')), place, "", std::regex_constants::format_first_only);
+  static const std::regex prefix(R"(^(--set [^:]*|[^:\s]*):(\d+:\d+:)?\s*)");
+  return std::regex_replace(message.substr(0, message.find('\n')), prefix, "", std::regex_constants::format_first_only);
 }
 
 MethodChooser::MethodChooser(std::string case_path) : case_path_(std::move(case_path)) {
@@ -91,7 +91,7 @@ MethodChooser::MethodChooser(std::string case_path) : case_path_(std::move(case_
 
 MethodChooser::~MethodChooser() = default;
 
-MethodChoice MethodChooser::choose(const AskedMethod& method) {
+MethodChoice MethodChooser::choose(const RequestedMethod& method) {
   const log::Silence silence;
   MethodChoice chosen;
   for (const std::string& mass : masses_to_try(method, mass_of_case_)) {

@@ -11,17 +11,17 @@
 namespace ricochet {
 
 /// A method as requested.
-struct AskedMethod {
+struct RequestedMethod {
   std::string scheme;
   std::string mass = {};  ///< empty: the first mass that the scheme accepts
 
   /// Returns "newmark" or "newmark/consistent".
   [[nodiscard]] std::string text() const;
-  bool operator==(const AskedMethod&) const = default;
+  bool operator==(const RequestedMethod&) const = default;
 };
 
 /// Parses "SCHEME,SCHEME/MASS,…", or "all" for every scheme. Throws Error(usage) that lists schemes or masses.
-[[nodiscard]] std::vector<AskedMethod> parse_methods(const std::string& text);
+[[nodiscard]] std::vector<RequestedMethod> parse_methods(const std::string& text);
 
 /// Mass and settings of a method for a case.
 struct MethodChoice {
@@ -45,7 +45,7 @@ class MethodChooser {
   MethodChooser& operator=(const MethodChooser&) = delete;
 
   /// Makes a choice without messages: refusals are in the result, and the run issues the warnings.
-  [[nodiscard]] MethodChoice choose(const AskedMethod& method);
+  [[nodiscard]] MethodChoice choose(const RequestedMethod& method);
   [[nodiscard]] const std::string& scheme_of_case() const { return scheme_of_case_; }
 
  private:

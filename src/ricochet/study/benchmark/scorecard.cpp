@@ -19,15 +19,15 @@ std::string percent_text(double percent) {
   return percent < 9.95 ? fmt::format("{:.1f}", percent) : fmt::format("{:.0f}", percent);
 }
 
-bool is_done(const BenchmarkRunResult& outcome) {
-  return outcome.state.status_text() == "done";
+bool is_done(const BenchmarkRunResult& result) {
+  return result.state.status_text() == "done";
 }
 
 /// Returns a text such as "14/15 +0.1 −3 %", with the energy created and lost if large enough to show.
-std::string done_text(const BenchmarkRunResult& outcome) {
-  std::string text = fmt::format("{}/{}", outcome.holds(), outcome.applies());
-  const double created = 100.0 * outcome.state.summary->creation_by_method();
-  const double lost = 100.0 * outcome.state.summary->loss_by_method();
+std::string done_text(const BenchmarkRunResult& result) {
+  std::string text = fmt::format("{}/{}", result.holds(), result.applies());
+  const double created = 100.0 * result.state.summary->creation_by_method();
+  const double lost = 100.0 * result.state.summary->loss_by_method();
   if (created >= shown_percent) text += " +" + percent_text(created);
   if (lost >= shown_percent) text += " −" + percent_text(lost);
   return text + (created >= shown_percent || lost >= shown_percent ? " %" : "");
@@ -80,11 +80,11 @@ std::string MatrixMaker::masses_of(const std::string& method) const {
 }
 
 std::string MatrixMaker::cell_of(std::size_t run) {
-  const BenchmarkRunResult& outcome = results_.run_results[run];
-  if (is_done(outcome)) return done_text(outcome);
-  if (outcome.state.status_text() != "refused") return outcome.status_text();
-  auto found = std::find(matrix_.reasons.begin(), matrix_.reasons.end(), outcome.message);
-  if (found == matrix_.reasons.end()) found = matrix_.reasons.insert(found, outcome.message);
+  const BenchmarkRunResult& result = results_.run_results[run];
+  if (is_done(result)) return done_text(result);
+  if (result.state.status_text() != "refused") return result.status_text();
+  auto found = std::find(matrix_.reasons.begin(), matrix_.reasons.end(), result.message);
+  if (found == matrix_.reasons.end()) found = matrix_.reasons.insert(found, result.message);
   return fmt::format("refused ({})", found - matrix_.reasons.begin() + 1);
 }
 
@@ -93,19 +93,19 @@ void MatrixMaker::add_totals(const std::string& method) {
   std::size_t holds = 0, applies = 0;
   double created = 0.0, lost = 0.0;
   for (const std::size_t i : runs_of(method)) {
-    const BenchmarkRunResult& outcome = results_.run_results[i];
-    if (outcome.state.status_text() == "refused") {
+    const BenchmarkRunResult& result = results_.run_results[i];
+    if (result.state.status_text() == "refused") {
       ++refused;
       continue;
     }
     ++run;
-    failed += outcome.state.status_text() == "failed";
-    holds += outcome.holds();
-    applies += outcome.applies();
-    all_right += is_done(outcome) && outcome.holds() == outcome.applies();
-    if (!is_done(outcome)) continue;
-    created = std::max(created, 100.0 * outcome.state.summary->creation_by_method());
-    lost = std::max(lost, 100.0 * outcome.state.summary->loss_by_method());
+    failed += result.state.status_text() == "failed";
+    holds += result.holds();
+    applies += result.applies();
+    all_right += is_done(result) && result.holds() == result.applies();
+    if (!is_done(result)) continue;
+    created = std::max(created, 100.0 * result.state.summary->creation_by_method());
+    lost = std::max(lost, 100.0 * result.state.summary->loss_by_method());
   }
   matrix_.totals.rows.push_back({plan_.runs[runs_of(method).front()].scheme, masses_of(method), run, all_right, failed,
                                  refused, run > 0 ? TableCell(fmt::format("{}/{}", holds, applies)) : TableCell(),
@@ -161,21 +161,21 @@ ResultTable scorecard_table(const BenchmarkPlan& plan, const BenchmarkResults& r
     table.columns.push_back({name});
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
     const BenchmarkRun& run = plan.runs[i];
-    const BenchmarkRunResult& outcome = results.run_results[i];
+    const BenchmarkRunResult& result = results.run_results[i];
     std::vector<TableCell>& row = table.rows.emplace_back();
     row = {run.scheme, run.mass, run.benchmark.name};
-    if (outcome.state.status_text() == "refused") {
+    if (result.state.status_text() == "refused") {
       row.resize(5);
     } else {
-      row.insert(row.end(), {static_cast<long>(outcome.holds()), static_cast<long>(outcome.applies())});
+      row.insert(row.end(), {static_cast<long>(result.holds()), static_cast<long>(result.applies())});
     }
-    if (const auto& s = outcome.state.summary; s) {
-      row.insert(row.end(), {100.0 * s->creation_by_method(), 100.0 * s->loss_by_method(), outcome.status_text(),
+    if (const auto& s = result.state.summary; s) {
+      row.insert(row.end(), {100.0 * s->creation_by_method(), 100.0 * s->loss_by_method(), result.status_text(),
                              s->processor_seconds, s->steps, s->step});
     } else {
-      row.insert(row.end(), {TableCell(), TableCell(), outcome.status_text(), TableCell(), TableCell(), TableCell()});
+      row.insert(row.end(), {TableCell(), TableCell(), result.status_text(), TableCell(), TableCell(), TableCell()});
     }
-    row.emplace_back(outcome.message);
+    row.emplace_back(result.message);
   }
   return table;
 }

@@ -24,9 +24,9 @@ std::string problem_of(const std::string& methods) {
 
 TEST(BenchmarkMethods, AreReadFromAList) {
   EXPECT_EQ(parse_methods("newmark,newmark/consistent,newmark"),
-            (std::vector<AskedMethod>{{"newmark", ""}, {"newmark", "consistent"}}));
+            (std::vector<RequestedMethod>{{"newmark", ""}, {"newmark", "consistent"}}));
   EXPECT_EQ(parse_methods("all").size(), scheme_names().size());
-  EXPECT_EQ(AskedMethod({"newmark", "lumped"}).text(), "newmark/lumped");
+  EXPECT_EQ(RequestedMethod({"newmark", "lumped"}).text(), "newmark/lumped");
   EXPECT_NE(problem_of("newmrk").find("no scheme \"newmrk\" (did you mean \"newmark\"?); available: midpoint"),
             std::string::npos);
   EXPECT_NE(problem_of("newmark/consitent").find("no mass \"consitent\" (did you mean \"consistent\"?)"),

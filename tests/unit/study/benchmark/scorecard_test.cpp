@@ -38,16 +38,17 @@ const ExpectationResult right{.name = "force",
                               .quantity = "max(history.f)",
                               .published = "others: 2.1",
                               .value = 2.25,
-                              .wanted = "2 within 0.5 absolute",
-                              .wanted_value = 2.0,
+                              .expected = "2 within 0.5 absolute",
+                              .expected_value = 2.0,
                               .tolerance = 0.5};
 const ExpectationResult wrong{.quantity = "history.g[-1]",
                               .value = -3.0,
-                              .wanted = "≥ -1 and ≤ 1",
+                              .expected = "≥ -1 and ≤ 1",
                               .minimum = -1.0,
                               .maximum = 1.0,
                               .holds = false};
-const ExpectationResult unknown{.quantity = "summary.x", .wanted = "≤ 1", .maximum = 1.0, .holds = false, .note = "no"};
+const ExpectationResult unknown{
+    .quantity = "summary.x", .expected = "≤ 1", .maximum = 1.0, .holds = false, .note = "no"};
 
 struct Example {
   BenchmarkPlan plan{"out", true, {}};
