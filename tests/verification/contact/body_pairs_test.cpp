@@ -59,6 +59,10 @@ TEST(BodyPairs, RefuseBodiesThatOverlap) {
   // Closed gaps and a press fit are intended.
   const CaseRun closed(case_of(overlap, pair_of("upper.y0", "lower.y1", "initial_gap = \"closed\"\n")));
   EXPECT_EQ(closed.problem().contact.initial_gap.minCoeff(), 0.0);
+  Vector gaps;  // of the nodes of both bodies
+  closed.problem().node_gaps(Vector::Zero(closed.problem().dof_count()), 0.0, gaps);
+  EXPECT_GT(gaps.size(), closed.problem().contact.initial_gap.size());
+  EXPECT_EQ(gaps.minCoeff(), 0.0);
 }
 
 /// pair_at moves the body of `group` 0.05 too far, whichever side carries the multipliers.
