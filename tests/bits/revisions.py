@@ -4,16 +4,13 @@ import pathlib
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-FOLDER = ROOT / "build-bits"
-SOURCE = FOLDER / "source"
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from worktree import ROOT, Worktree
 
-
-def git(*arguments, root=ROOT):
-    done = subprocess.run(["git", *arguments], cwd=root, check=False, capture_output=True, text=True)
-    if done.returncode != 0:
-        raise SystemExit(f"./dev bits: git {' '.join(arguments)}: {done.stderr.strip()}")
-    return done.stdout.strip()
+WORKTREE = Worktree("bits")
+FOLDER = WORKTREE.folder
+git = WORKTREE.git
+check_out = WORKTREE.check_out
 
 
 def is_dirty():
@@ -31,15 +28,6 @@ def cases(revision):
     """Returns the case files of a commit."""
     paths = git("ls-tree", "-r", "--name-only", revision, "cases").splitlines()
     return {path for path in paths if path.count("/") == 2 and path.endswith(".toml")}
-
-
-def check_out(revision):
-    """Checks out this commit in the worktree. Identical files keep their times, so that little is recompiled."""
-    if not (SOURCE / ".git").exists():
-        git("worktree", "prune")
-        git("worktree", "add", "--detach", "--force", str(SOURCE), revision)
-    git("checkout", "--detach", "--force", revision, root=SOURCE)
-    return SOURCE
 
 
 def compile_programs(root, with_ranks):

@@ -20,9 +20,11 @@ import time
 import tomllib
 
 HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-FOLDER = ROOT / "build-faults"
-SOURCE = FOLDER / "source"
+sys.path.insert(0, str(HERE.parent))
+from worktree import Worktree
+
+WORKTREE = Worktree("faults")
+FOLDER, SOURCE = WORKTREE.folder, WORKTREE.source
 COUNT, REQUIRED = 30, 27
 LONG = "^long$"
 RESULT = re.compile(r"^ *\d+/\d+ Test +#\d+: (\S+) \.*[ *]*(\w+)", re.MULTILINE)
@@ -46,23 +48,6 @@ def read_faults():
         if len(values) != COUNT or repeated:
             stop(f"faults.toml must have {COUNT} faults with different {key}s; it has {len(values)}; more than once: {repeated}")
     return faults
-
-
-def git(*arguments, root=ROOT):
-    done = subprocess.run(["git", *arguments], cwd=root, check=False, capture_output=True, text=True)
-    if done.returncode != 0:
-        stop(f"git {' '.join(arguments)}: {done.stderr.strip()}")
-    return done.stdout.strip()
-
-
-def check_out():
-    """Checks out HEAD in the worktree and returns its hash. Identical files keep their times, so that little is recompiled."""
-    revision = git("rev-parse", "HEAD")
-    if not (SOURCE / ".git").exists():
-        git("worktree", "prune")
-        git("worktree", "add", "--detach", "--force", str(SOURCE), revision)
-    git("checkout", "--detach", "--force", revision, root=SOURCE)
-    return revision
 
 
 def run(*command):
@@ -171,7 +156,8 @@ def main():
     if unknown:
         parser.error(f"there is no fault {', '.join(sorted(unknown))}; see --list")
     chosen = [fault for fault in faults if not arguments.names or fault["name"] in arguments.names]
-    revision = check_out()
+    revision = WORKTREE.git("rev-parse", "HEAD")
+    WORKTREE.check_out(revision)
     configure = ["cmake", "--preset", "release", "-DRICOCHET_BUILD_TESTS=ON", "-DRICOCHET_BUILD_PYTHON=ON"]
     if not succeeds(*configure) or not compiles(arguments.jobs):
         stop(f"{SOURCE} does not compile without any fault")
