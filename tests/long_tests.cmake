@@ -10,3 +10,12 @@ set(RICOCHET_LONG_TESTS
   # orders of convergence on many meshes, and schemes that are not defaults, for long
   verification.follower_pressure verification.published_schemes verification.elements.manufactured_solution
   verification.locking verification.contact.inf_sup end_to_end.adaptive_steps)
+
+# ricochet_require_long_tests(PREFIX): an error unless the entries of the list that begin with PREFIX are tests of this folder.
+function(ricochet_require_long_tests prefix)
+  foreach(name ${RICOCHET_LONG_TESTS})
+    if(name MATCHES "^${prefix}" AND NOT TEST ${name})
+      message(FATAL_ERROR "tests/long_tests.cmake: there is no test ${name}")
+    endif()
+  endforeach()
+endfunction()
