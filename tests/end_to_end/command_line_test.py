@@ -292,6 +292,14 @@ class CommandLine(TestCase):
             process = self.expect_status(0, run("info", path))
             for fragment in said:
                 self.assertIn(fragment, process.stdout)
+        # Energy that is missing counts as much as energy in excess.
+        written = (output / "summary.json").read_text(encoding="utf-8")
+        for extreme, share in (("minimum", -0.25), ("maximum", 0.25)):
+            summary = json.loads(written)
+            summary["extrema"]["energy_residual"][extreme] = share * summary["energy_scale"]
+            (output / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+            self.assertIn("energy account closes to 2.5e-01 of the largest energy", run("info", output).stdout, extreme)
+        (output / "summary.json").write_text(written, encoding="utf-8")
         other = self.simulate(self.case, "other", {"time.scheme": "midpoint"})
         process = self.expect_status(0, run("info", output, other))
         self.assertRegex(process.stdout, rf"{re.escape(str(output))} +newmark +consistent")

@@ -36,7 +36,7 @@ std::vector<Variant> variants() {
 }
 
 struct Frame {
-  Vector displacement, normal, tangential;
+  Vector displacement, normal, tangential, supports;
 };
 
 std::vector<Frame> frames(const std::string& text, const std::vector<std::string>& overrides, SolverMethod method) {
@@ -45,7 +45,8 @@ std::vector<Frame> frames(const std::string& text, const std::vector<std::string
   std::vector<Frame> result;
   run.run([&] {
     const State& state = run.state();
-    result.push_back({state.displacement, state.forces.normal_reaction, state.forces.tangential_reaction});
+    result.push_back({state.displacement, state.forces.normal_reaction, state.forces.tangential_reaction,
+                      state.forces.support_reaction});
   });
   return result;
 }
@@ -62,7 +63,7 @@ std::size_t comparable(const std::vector<Frame>& all, bool smooth) {
 void expect_agreement(const std::vector<Frame>& expected, const std::vector<Frame>& found, bool smooth,
                       double tolerance) {
   ASSERT_EQ(expected.size(), found.size());
-  double u = 0.0, r = 0.0, u_size = 0.0, r_size = 0.0;
+  double u = 0.0, r = 0.0, s = 0.0, u_size = 0.0, r_size = 0.0, s_size = 0.0;
   const std::size_t count = comparable(expected, smooth);
   EXPECT_GT(count, 3U);
   for (std::size_t k = 0; k < count; ++k) {
@@ -72,10 +73,15 @@ void expect_agreement(const std::vector<Frame>& expected, const std::vector<Fram
     r = std::max(r, (expected[k].normal - found[k].normal).lpNorm<Eigen::Infinity>());
     if (expected[k].tangential.size() > 0)
       r = std::max(r, (expected[k].tangential - found[k].tangential).lpNorm<Eigen::Infinity>());
+    if (expected[k].supports.size() > 0) {
+      s_size = std::max(s_size, expected[k].supports.lpNorm<Eigen::Infinity>());
+      s = std::max(s, (expected[k].supports - found[k].supports).lpNorm<Eigen::Infinity>());
+    }
   }
   EXPECT_GT(r_size, 0.0) << "no contact";
   EXPECT_LE(u, tolerance * u_size);
   EXPECT_LE(r, tolerance * r_size);
+  EXPECT_LE(s, tolerance * s_size);
 }
 
 class StepSolvers : public testing::TestWithParam<Variant> {};
@@ -94,19 +100,20 @@ TEST_P(StepSolvers, Agree) {
   }
 }
 
-/// At rest, loaded only by the motion of a support.
+/// At rest, loaded only by the motion of a support; multipliers at the edge of another one press its nodes.
 TEST(StepSolversBySupports, Agree) {
   const std::string square =
       "Rectangle(1)={0,0,0,1,1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1}; "
-      "Physical Curve(\"top\")={3};";
+      "Physical Curve(\"top\")={3}; Physical Curve(\"left\")={4};";
   for (const std::string time : {"scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "scheme = \"reduced-kane\"\n"}) {
     SCOPED_TRACE(time);
     const std::string text =
-        "[mesh]\nfile = \"" + test_support::mesh_geometry("square", square, 0.2, 1) +
+        "[mesh]\nfile = \"" + test_support::mesh_geometry("supported_square", square, 0.2, 1) +
         "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 100.0\npoisson = 0.3\n"
         "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
-        "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.3\n"
-        "[[support]]\ngroup = \"top\"\ncomponents = [\"x\", \"y\"]\nvalue = \"-0.01*t^2\"\n[time]\n" +
+        "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.3\nmultipliers = \"p1\"\n"
+        "[[support]]\ngroup = \"left\"\ncomponents = [\"x\"]\n"
+        "[[support]]\ngroup = \"top\"\ncomponents = [\"y\"]\nvalue = \"-0.01*t^2\"\n[time]\n" +
         time + "step = 0.01\nend = 0.5\n";
     const auto direct = frames(text, {"solver.method=direct"}, SolverMethod::direct);
     const auto iterative = frames(text, {"solver.method=iterative", "solver.tolerance=1e-12"}, SolverMethod::iterative);

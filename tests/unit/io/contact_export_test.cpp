@@ -139,6 +139,11 @@ TEST(FailureBundle, HoldsTheStateAndTheProblem) {
   EXPECT_NE(stated.description.find("This problem was not solved: it circles."), std::string::npos)
       << stated.description;
   EXPECT_NE(stated.title.find("step 7, t = 3.5"), std::string::npos) << stated.title;
+  // The reactions at which the solver stopped, in the units of W: those of the case.
+  EXPECT_FALSE(stated.solution.has_value());
+  ASSERT_EQ(stated.guesses.size(), 1u);
+  EXPECT_EQ(stated.guesses[0].reaction, Eigen::Vector2d(0x1p21, 0.0));
+  EXPECT_EQ(stated.w.coeff(0, 0), 0x1p-18);
 
   ContactProblem bounded = problem();
   bounded.friction_bound = Vector::Ones(2);

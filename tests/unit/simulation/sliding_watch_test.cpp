@@ -86,6 +86,16 @@ TEST(SlidingWatch, TellsOnceWhatSlidesByMoreThanHalfOfTheSmallerFacet) {
   EXPECT_NEAR(resumed.report()[0].slip, 0.2, 1e-12);
 }
 
+TEST(SlidingWatch, TakesTheSmallerFacetsOfEitherSide) {
+  for (const std::string side : {"group", "against"}) {
+    const CaseRun run(stack(lower_on_upper + "multipliers_on = \"" + side + "\"\n"));
+    SlidingWatch watch(run.model().body, run.problem(), run.model().contact_pairs);
+    watch.check(displaced(run, 0.1, 0.0, true, 0.5));
+    ASSERT_EQ(watch.report().size(), 1U);
+    EXPECT_NEAR(watch.report()[0].limit, 0.125, 1e-12) << side << ": facets of 1/2 and 1/4";
+  }
+}
+
 /// Slip is measured from the position at which facets were paired, that of the body of the case's `group`.
 TEST(SlidingWatch, BeginsAtPairAt) {
   for (const std::string side : {"group", "against"}) {

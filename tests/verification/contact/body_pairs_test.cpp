@@ -63,6 +63,11 @@ TEST(BodyPairs, RefuseBodiesThatOverlap) {
   closed.problem().node_gaps(Vector::Zero(closed.problem().dof_count()), 0.0, gaps);
   EXPECT_GT(gaps.size(), closed.problem().contact.initial_gap.size());
   EXPECT_EQ(gaps.minCoeff(), 0.0);
+  // Pairs that slide far have points on one side.
+  const CaseRun sliding(
+      case_of(overlap, pair_of("upper.y0", "lower.y1", "initial_gap = \"closed\"\nsliding = \"large\"\n")));
+  EXPECT_GT(sliding.model().pair_facings.at(0).closed, 0);
+  EXPECT_EQ(test_support::StepEnd(sliding).gap.minCoeff(), 0.0);
 }
 
 /// pair_at moves the body of `group` 0.05 too far, whichever side carries the multipliers.
