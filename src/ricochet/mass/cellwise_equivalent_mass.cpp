@@ -36,12 +36,12 @@ struct ContactCell {
   std::size_t first_share = 0;
 };
 
-/// A cell whose free nodes span space affinely.
+/// A cell whose massive nodes span space affinely.
 struct Donor {
   int cell = 0;
-  AffineFrame frame;  ///< of its free nodes
+  AffineFrame frame;  ///< of its massive nodes
   AffineInertia received{};
-  AffineInertia cost{};  ///< of received inertia: Σ_i L_i²/D_i (m)_ii, with m the matrix added to its free nodes
+  AffineInertia cost{};  ///< of received inertia: Σ_i L_i²/D_i (m)_ii, with m the matrix added to its massive nodes
 };
 
 /// θ_Tq, and the inertia to be shared in the frame of the donor.
@@ -52,8 +52,8 @@ struct Share {
   AffineInertia inertia;
 };
 
-/// Builds M₀ = Σ_free m_T + Σ_contact [S_T + Σ_q θ_Tq W_Tqᵀ R_T W_Tq], see docs/equivalent-mass.md. Since W_Tq maps to
-/// affine functions, only the moments PᵀRP of R_T are needed, and only their sum for each donor.
+/// Builds M₀ = Σ_massive m_T + Σ_contact [S_T + Σ_q θ_Tq W_Tqᵀ R_T W_Tq], see docs/equivalent-mass.md. Since W_Tq maps
+/// to affine functions, only the moments PᵀRP of R_T are needed, and only their sum for each donor.
 class CellwiseBuilder {
  public:
   explicit CellwiseBuilder(const MassInput& input);
@@ -91,7 +91,7 @@ class CellwiseBuilder {
   std::vector<Share> shares_;
 };
 
-/// Entry of two free nodes of a cell, which the consistent mass couples.
+/// Entry of two massive nodes of a cell, which the consistent mass couples.
 double& entry_of(SparseMatrix& matrix, Index row, Index column) {
   double* const entry = stored_entry(matrix, row, column);
   if (entry == nullptr) throw std::logic_error("a mass does not couple two nodes of a cell");
@@ -180,14 +180,15 @@ void CellwiseBuilder::keep_inertia(const std::vector<Index>& nodes, const Matrix
 int CellwiseBuilder::donor_of(int cell) {
   int& number = donor_number_[static_cast<std::size_t>(cell)];
   if (number != -2) return number;
-  std::vector<int> free;
+  std::vector<int> massive;
   for (int k = 0; k < rings_.node_count(cell); ++k) {
-    if (!is_contact(rings_.nodes(cell)[k])) free.push_back(rings_.nodes(cell)[k]);
+    if (!is_contact(rings_.nodes(cell)[k])) massive.push_back(rings_.nodes(cell)[k]);
   }
   Donor donor;
   donor.cell = cell;
   number = -1;
-  if (!make_affine_frame(*input_.nodes, free.data(), static_cast<int>(free.size()), inertia_diagonal_, donor.frame))
+  if (!make_affine_frame(*input_.nodes, massive.data(), static_cast<int>(massive.size()), inertia_diagonal_,
+                         donor.frame))
     return number;
   donors_.push_back(donor);
   return number = static_cast<int>(donors_.size()) - 1;
@@ -217,8 +218,9 @@ void CellwiseBuilder::find_donors() {
   }
 }
 
-/// Computes PᵀRP with P = (1, ξ) in the frame of the donor. Returns false if the donor's free nodes barely span space:
-/// if the root mean square distance of the contact cell's nodes exceeds a hundred times their spread in some direction.
+/// Computes PᵀRP with P = (1, ξ) in the frame of the donor. Returns false if the donor's massive nodes barely span
+/// space: if the root mean square distance of the contact cell's nodes exceeds a hundred times their spread in some
+/// direction.
 bool CellwiseBuilder::transform_inertia(const Donor& donor, const ContactCell& contact_cell,
                                         AffineInertia& inertia) const {
   constexpr double largest_distance = 100.0;
@@ -349,13 +351,13 @@ void CellwiseBuilder::hand_over() {
   }
 }
 
-/// Throws an error that describes the free nodes of the cell's body.
+/// Throws an error that describes the massive nodes of the cell's body.
 void CellwiseBuilder::refuse(const ContactCell& contact_cell) {
   rings_.start(contact_cell.cell);
   while (rings_.grow()) continue;
   const std::vector<Index> body = rings_.nodes();
-  std::vector<Index> free;
-  std::copy_if(body.begin(), body.end(), std::back_inserter(free), [this](Index n) { return !is_contact(n); });
+  std::vector<Index> massive;
+  std::copy_if(body.begin(), body.end(), std::back_inserter(massive), [this](Index n) { return !is_contact(n); });
   const int* const nodes = rings_.nodes(contact_cell.cell);
   const Index node =
       *std::find_if(nodes, nodes + rings_.node_count(contact_cell.cell), [this](Index n) { return is_contact(n); });
@@ -366,7 +368,7 @@ void CellwiseBuilder::refuse(const ContactCell& contact_cell) {
                   "the mesh there or set mesh.degree = 2, name only facets that may touch in the contact group, or use "
                   "mass type \"equivalent-nodewise\", which needs no whole cell (\"consistent\" and \"lumped\", with "
                   "scheme \"contact-stabilized\" or \"newmark\", have no such requirement)",
-                  text_of_point(*input_.nodes, node), describe_free_nodes(*input_.nodes, body, free),
+                  text_of_point(*input_.nodes, node), describe_massive_nodes(*input_.nodes, body, massive),
                   CellRings::many_cells, d_ + 1, d_ == 3 ? "in one plane" : "on one line"));
 }
 

@@ -23,7 +23,7 @@ constexpr double small_weights = 4.0;
 constexpr std::size_t many_rings = 4;
 constexpr double fair_weights = 10.0;
 
-/// Extension of a cell: its contact nodes are extrapolated from free nodes of its own, or of it and its neighbours.
+/// Extension of a cell: its contact nodes are extrapolated from massive nodes of its own, or of it and its neighbours.
 struct CellExtension {
   std::vector<Index> donors;                                 ///< ascending
   Matrix rows;                                               ///< E_e, nodes of the cell × donors
@@ -48,9 +48,9 @@ class Builder {
   CellExtension extend(const std::vector<Index>& nodes);
   [[nodiscard]] CellExtension extend_from(const std::vector<Index>& nodes, std::vector<Index> donors) const;
   void start_rings();
-  void add_free_nodes(int cell, std::vector<Index>& donors);
-  void require_free_nodes_of_body(const std::vector<Index>& nodes);
-  [[nodiscard]] std::vector<Index> free_nodes_of(const std::vector<Index>& nodes) const;
+  void add_massive_nodes(int cell, std::vector<Index>& donors);
+  void require_massive_nodes_of_body(const std::vector<Index>& nodes);
+  [[nodiscard]] std::vector<Index> massive_nodes_of(const std::vector<Index>& nodes) const;
   void extrapolate(const std::vector<Index>& nodes, CellExtension& extension) const;
   [[nodiscard]] bool is_contact(Index node) const { return is_contact_[static_cast<std::size_t>(node)] != 0; }
   [[noreturn]] void refuse(const std::vector<Index>& nodes, const std::vector<Index>& body) const;
@@ -59,7 +59,7 @@ class Builder {
   std::vector<char> is_contact_;
   Vector inertia_diagonal_;  ///< m_jj
   std::unique_ptr<CellRings> rings_;
-  std::vector<char> is_checked_;                ///< per cell: whether the free nodes of its body have been checked
+  std::vector<char> is_checked_;                ///< per cell: whether the massive nodes of its body have been checked
   std::vector<int> visited_by_;                 ///< per node: the last cell that used it as a donor
   SparseMatrix result_;                         ///< on the pattern of M
   std::vector<Eigen::Triplet<double>> beyond_;  ///< entries outside that pattern
@@ -110,17 +110,17 @@ void Builder::add_cell(const std::vector<Index>& nodes, const Matrix& mass) {
   }
 }
 
-/// Extrapolates from the cell's own free nodes if they suffice, else from more and more rings of cells.
+/// Extrapolates from the cell's own massive nodes if they suffice, else from more and more rings of cells.
 CellExtension Builder::extend(const std::vector<Index>& nodes) {
-  std::vector<Index> donors = free_nodes_of(nodes);
+  std::vector<Index> donors = massive_nodes_of(nodes);
   CellExtension best = extend_from(nodes, donors);
   if (best.weights <= small_weights) return best;
   if (!rings_) start_rings();
-  require_free_nodes_of_body(nodes);
+  require_massive_nodes_of_body(nodes);
   rings_->start(number_ - 1);
   for (const Index donor : donors) visited_by_[static_cast<std::size_t>(donor)] = number_;
   for (std::size_t ring = 1, visited = 1, tried = donors.size(); rings_->grow(); ++ring) {
-    for (; visited < rings_->cells().size(); ++visited) add_free_nodes(rings_->cells()[visited], donors);
+    for (; visited < rings_->cells().size(); ++visited) add_massive_nodes(rings_->cells()[visited], donors);
     // Far away, a few additional donors make no difference.
     if (donors.size() > (ring <= many_rings ? tried : tried + tried / 4)) {
       tried = donors.size();
@@ -132,7 +132,7 @@ CellExtension Builder::extend(const std::vector<Index>& nodes) {
     if (rings_->cells().size() > CellRings::many_cells && std::isfinite(best.weights)) return best;
   }
   if (!std::isfinite(best.weights)) refuse(nodes, rings_->nodes());
-  return best;  // extrapolated from all free nodes of the body
+  return best;  // extrapolated from all massive nodes of the body
 }
 
 void Builder::start_rings() {
@@ -141,7 +141,7 @@ void Builder::start_rings() {
   visited_by_.assign(is_contact_.size(), 0);
 }
 
-void Builder::add_free_nodes(int cell, std::vector<Index>& donors) {
+void Builder::add_massive_nodes(int cell, std::vector<Index>& donors) {
   for (int k = 0; k < rings_->node_count(cell); ++k) {
     const auto node = static_cast<std::size_t>(rings_->nodes(cell)[k]);
     if (is_contact_[node] != 0 || visited_by_[node] == number_) continue;
@@ -151,13 +151,13 @@ void Builder::add_free_nodes(int cell, std::vector<Index>& donors) {
 }
 
 /// Rejects, once per body, a body that no number of rings would remedy: the search would extend over it for every cell.
-void Builder::require_free_nodes_of_body(const std::vector<Index>& nodes) {
+void Builder::require_massive_nodes_of_body(const std::vector<Index>& nodes) {
   if (is_checked_[static_cast<std::size_t>(number_ - 1)] != 0) return;
   rings_->start(number_ - 1);
   while (rings_->grow()) continue;
   for (const int cell : rings_->cells()) is_checked_[static_cast<std::size_t>(cell)] = 1;
   const std::vector<Index> body = rings_->nodes();
-  if (!span_space(*input_.nodes, body, free_nodes_of(body))) refuse(nodes, body);
+  if (!span_space(*input_.nodes, body, massive_nodes_of(body))) refuse(nodes, body);
 }
 
 CellExtension Builder::extend_from(const std::vector<Index>& nodes, std::vector<Index> donors) const {
@@ -167,7 +167,7 @@ CellExtension Builder::extend_from(const std::vector<Index>& nodes, std::vector<
   return result;
 }
 
-std::vector<Index> Builder::free_nodes_of(const std::vector<Index>& nodes) const {
+std::vector<Index> Builder::massive_nodes_of(const std::vector<Index>& nodes) const {
   std::vector<Index> result;
   for (const Index node : nodes) {
     if (!is_contact(node)) result.push_back(node);
@@ -229,7 +229,7 @@ void Builder::refuse(const std::vector<Index>& nodes, const std::vector<Index>& 
           "body has {}; refine the mesh there or set mesh.degree = 2, so that at least {} nodes that are not all {} "
           "are off the contact boundary, or name only facets that may touch in the contact group (mass types "
           "\"consistent\" and \"lumped\", with scheme \"contact-stabilized\" or \"newmark\", have no such requirement)",
-          text_of_point(*input_.nodes, node), describe_free_nodes(*input_.nodes, body, free_nodes_of(body)),
+          text_of_point(*input_.nodes, node), describe_massive_nodes(*input_.nodes, body, massive_nodes_of(body)),
           input_.nodes->rows() + 1, input_.nodes->rows() == 3 ? "in one plane" : "on one line"));
 }
 

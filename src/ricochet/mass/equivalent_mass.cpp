@@ -12,7 +12,7 @@ namespace {
 /// the measurements). In 3D it is the cellwise one, whose pattern is that of the consistent mass: the factor of a step
 /// is half as large, and with degree 1 the frequencies are equally accurate except on coarse balls. For bodies too
 /// coarse for it, it is the nodewise one, which needs no whole cell and amplifies inertia less, or the compact one if
-/// there are many contact nodes and even more free ones; in 2D, where the factors differ little, it is the nodewise
+/// there are many contact nodes and even more massive ones; in 2D, where the factors differ little, it is the nodewise
 /// one. If that is refused, a cellwise mass of higher amplification is better than none.
 class EquivalentMass final : public MassConstruction {
  public:
@@ -32,7 +32,8 @@ class EquivalentMass final : public MassConstruction {
     const std::string reason =
         by_cells ? fmt::format("on such a coarse body cells would accumulate {:.3g} times their original inertia", top)
                  : "cells with enough free nodes to receive the inertia of others are rare or missing";
-    // If no free cell is near, `compact` searches far away for each cell, and the factor of `nodewise` is small.
+    // If no cell without contact nodes is near, `compact` searches far away for each cell, and the factor of `nodewise`
+    // is small.
     const char* const name = is_large && by_cells ? compact : nodewise;
     if (std::optional<SparseMatrix> mass = built(name, inertia)) return MassChoice{name, reason, std::move(mass)};
     if (!by_cells) return MassChoice{name, reason, {}};  // building it throws an error with the reason

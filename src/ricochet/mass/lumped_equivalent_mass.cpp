@@ -133,21 +133,21 @@ InertiaCheck check_inertia(const MassBody& body, const Moments& moments, const V
           std::max(ratios.cwiseAbs().maxCoeff(), (own - target).cwiseAbs().maxCoeff() / target.cwiseAbs().maxCoeff())};
 }
 
-/// Returns l with the mass of each contact node distributed among the free nodes nearest to it in the graph, in
+/// Returns l with the mass of each contact node distributed among the massive nodes nearest to it in the graph, in
 /// proportion to their own masses.
 Vector share_contact_mass(const MassInput& input, const Vector& lumped) {
   const SparseMatrix& graph = *input.consistent;
   const std::vector<char> is_contact = input.marked_contact_nodes();
   Vector result = lumped;
   std::vector<Index> visited_by(static_cast<std::size_t>(graph.cols()), -1);
-  std::vector<Index> front, next, free;
+  std::vector<Index> front, next, massive;
   for (const Index node : input.contact_nodes) {
     result[node] = 0.0;
     front.assign(1, node);
     visited_by[static_cast<std::size_t>(node)] = node;
-    free.clear();
+    massive.clear();
     double sum = 0.0;
-    while (free.empty() && !front.empty()) {
+    while (massive.empty() && !front.empty()) {
       next.clear();
       for (const Index from : front) {
         for (SparseMatrix::InnerIterator entry(graph, from); entry; ++entry) {
@@ -156,27 +156,27 @@ Vector share_contact_mass(const MassInput& input, const Vector& lumped) {
           visited_by[static_cast<std::size_t>(neighbour)] = node;
           next.push_back(neighbour);
           if (is_contact[static_cast<std::size_t>(neighbour)] != 0) continue;
-          free.push_back(neighbour);
+          massive.push_back(neighbour);
           sum += lumped[neighbour];
         }
       }
       std::swap(front, next);
     }
-    if (free.empty()) {
+    if (massive.empty()) {
       throw Error(ErrorKind::invalid_input,
                   fmt::format("mass type \"equivalent-lumped\": the body of the contact node at {} has no node off the "
                               "contact boundary that could carry its mass; refine the mesh, or use mass type "
                               "\"lumped\" with scheme \"contact-stabilized\" or \"newmark\"",
                               text_of_point(*input.nodes, node)));
     }
-    for (const Index receiver : free) result[receiver] += lumped[node] * (lumped[receiver] / sum);
+    for (const Index receiver : massive) result[receiver] += lumped[node] * (lumped[receiver] / sum);
   }
   return result;
 }
 
 /// Diagonal mass without inertia on the contact nodes, for explicit schemes. Three steps, the last two body by body:
-/// 1. d: the lumped mass, with that of contact nodes distributed among the nearest free nodes. Total mass is preserved,
-///    and no free node loses mass.
+/// 1. d: the lumped mass, with that of contact nodes distributed among the nearest massive nodes. Total mass is
+///    preserved, and no massive node loses mass.
 /// 2. m = d (1 + a(x)) with the affine a that restores the centre of gravity.
 /// 3. m ← m (1 + p(x)) with the quadratic p that restores the moments of inertia. All conditions of an equivalent mass
 ///    then hold: 6 in 2D, 10 in 3D.
@@ -236,12 +236,12 @@ class LumpedEquivalentMass final : public MassConstruction {
     const Matrix spread = positions.transpose() * weight.asDiagonal() * positions - centre * centre.transpose();
     const Vector sizes = symmetric_eigenvalues(spread);
     if (sizes[0] > least_spread * least_spread) return;
-    std::vector<Index> free;
+    std::vector<Index> massive;
     for (Index i = 0; i < mass.size(); ++i) {
-      if (mass[i] > 0.0) free.push_back(body.nodes[static_cast<std::size_t>(i)]);
+      if (mass[i] > 0.0) massive.push_back(body.nodes[static_cast<std::size_t>(i)]);
     }
-    std::sort(free.begin(), free.end());
-    refuse(input, body, describe_free_nodes(*input.nodes, body.nodes, free));
+    std::sort(massive.begin(), massive.end());
+    refuse(input, body, describe_massive_nodes(*input.nodes, body.nodes, massive));
   }
 
   /// Performs steps 2 and 3 on one body. Returns the error of its moments of inertia, see InertiaCheck.

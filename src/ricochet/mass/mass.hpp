@@ -34,7 +34,7 @@ struct MassInput {
   const CellMasses* cells = nullptr;
 
   [[nodiscard]] const SparseMatrix& inertia_matrix() const { return inertia != nullptr ? *inertia : *consistent; }
-  /// Per node: 1 for contact nodes, 0 for free ones.
+  /// Per node: 1 for contact nodes, 0 for massive nodes, those off the contact boundary.
   [[nodiscard]] std::vector<char> marked_contact_nodes() const;
   /// Throws Error(invalid_input) in the name of a mass type if `cells` is null.
   void require_cells(const std::string& name) const;

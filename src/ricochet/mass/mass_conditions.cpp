@@ -176,7 +176,8 @@ bool span_space(const Points& nodes, const std::vector<Index>& body, const std::
   return !points.empty() && span_dimension(nodes, body, points) == nodes.rows();
 }
 
-std::string describe_free_nodes(const Points& nodes, const std::vector<Index>& body, const std::vector<Index>& points) {
+std::string describe_massive_nodes(const Points& nodes, const std::vector<Index>& body,
+                                   const std::vector<Index>& points) {
   if (points.empty()) return "no node off the contact boundary";
   std::string text = points.size() == 1 ? "one node off the contact boundary, at "
                                         : fmt::format("{} nodes off the contact boundary, at ", points.size());

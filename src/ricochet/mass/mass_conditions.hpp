@@ -48,9 +48,9 @@ void check_moments(const MassInput& input, const SparseMatrix& mass, const std::
 [[nodiscard]] std::string degeneracy(const Points& nodes, const std::vector<Index>& body,
                                      const std::vector<Index>& points);
 [[nodiscard]] bool span_space(const Points& nodes, const std::vector<Index>& body, const std::vector<Index>& points);
-/// Describes free nodes, e.g. "3 nodes off the contact boundary, at (0, 0), (1, 0) and (2, 0), all on one line": their
-/// number, the locations of the first ones, and their degeneracy.
-[[nodiscard]] std::string describe_free_nodes(const Points& nodes, const std::vector<Index>& body,
-                                              const std::vector<Index>& points);
+/// Describes massive nodes, e.g. "3 nodes off the contact boundary, at (0, 0), (1, 0) and (2, 0), all on one line":
+/// their number, the locations of the first ones, and their degeneracy.
+[[nodiscard]] std::string describe_massive_nodes(const Points& nodes, const std::vector<Index>& body,
+                                                 const std::vector<Index>& points);
 
 }  // namespace ricochet

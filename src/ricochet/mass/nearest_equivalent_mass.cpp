@@ -22,8 +22,8 @@ class NearestEquivalentMass final : public MassConstruction {
 
   [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
     const MassFrames frames = mass_frames(input.inertia_matrix(), *input.nodes);
-    SparseMatrix result = free_pattern(input);
-    // Separately for each body: no mass passes between bodies.
+    SparseMatrix result = restricted_to_massive_nodes(input);
+    // Each body is corrected separately: no mass passes between bodies.
     for (const MassBody& body : frames.bodies) correct(result, frames, body, *input.consistent);
     check_conditions(input, frames, result);
     if (!is_positive_definite(result, massless_nodes(input))) {
@@ -46,7 +46,8 @@ class NearestEquivalentMass final : public MassConstruction {
     return nodes;
   }
 
-  static SparseMatrix free_pattern(const MassInput& input) {
+  /// Returns M without the rows and columns of contact nodes.
+  static SparseMatrix restricted_to_massive_nodes(const MassInput& input) {
     const std::vector<char> is_contact = input.marked_contact_nodes();
     SparseMatrix result = *input.consistent;
     result.prune([&](Index row, Index column, double) {
@@ -55,22 +56,23 @@ class NearestEquivalentMass final : public MassConstruction {
     return result;
   }
 
-  /// Too few free nodes cannot preserve mass, centre and inertia: the Gram system is then singular and has no solution.
+  /// Throws an error if the moments of a body are not preserved. Too few massive nodes cannot preserve mass, centre and
+  /// inertia: the Gram system is then singular and has no solution.
   static void check_conditions(const MassInput& input, const MassFrames& frames, const SparseMatrix& mass) {
     for (const MassBody& body : frames.bodies) {
       if (moment_defect(mass, *input.consistent, frames, body) <= 1e-10) continue;
-      std::vector<Index> free;
+      std::vector<Index> massive;
       for (const Index node : body.nodes) {
-        if (!std::binary_search(input.contact_nodes.begin(), input.contact_nodes.end(), node)) free.push_back(node);
+        if (!std::binary_search(input.contact_nodes.begin(), input.contact_nodes.end(), node)) massive.push_back(node);
       }
-      std::sort(free.begin(), free.end());
+      std::sort(massive.begin(), massive.end());
       throw Error(
           ErrorKind::invalid_input,
           fmt::format("mass type \"equivalent-nearest\": the body with the node at {} has {}: they cannot carry its "
                       "mass, centre of gravity and moments of inertia; refine the mesh, or use mass type "
                       "\"consistent\" or \"lumped\" with scheme \"contact-stabilized\" or \"newmark\"",
                       text_of_point(*input.nodes, body.nodes.front()),
-                      describe_free_nodes(*input.nodes, body.nodes, free)));
+                      describe_massive_nodes(*input.nodes, body.nodes, massive)));
     }
   }
 

@@ -12,7 +12,7 @@ namespace ricochet {
 
 namespace {
 
-/// Weights of one contact node on free nodes.
+/// Weights of one contact node on massive nodes.
 struct Extrapolation {
   std::vector<int> nodes;
   Vector weights;
@@ -34,7 +34,7 @@ class ExtensionRows {
     Index node;
     double weight;
   };
-  /// Contact nodes that contribute mass to a free node.
+  /// Contact nodes that contribute mass to a massive node.
   [[nodiscard]] const std::vector<Entry>& column(Index node) const { return column_[static_cast<std::size_t>(node)]; }
   /// Row of a contact node.
   [[nodiscard]] const Extrapolation& row(Index node) const {
@@ -200,11 +200,11 @@ bool extrapolation_weights(const Points& nodes, const Vector& node_weights, cons
   return square <= largest_distance * largest_distance;
 }
 
-/// M₀ = EᵀME. E is the identity on free nodes; the row of a contact node holds the weights on nearby free nodes that
-/// reproduce affine functions with the least norm Σ w_j²/m_jj. Hence PᵃᵀM₀Pᵇ = PᵃᵀMPᵇ exactly, M₀ is by construction
-/// positive semi-definite with the contact dofs as its null space, and wᵀ(m_cc)w measures the mass added to the free
-/// nodes relative to their own: the choice of the norm and of many neighbours keeps the top eigenvalue low.
-/// docs/equivalent-mass.md has the measurements behind `required_neighbours`.
+/// M₀ = EᵀME. E is the identity on massive nodes; the row of a contact node holds the weights on nearby massive nodes
+/// that reproduce affine functions with the least norm Σ w_j²/m_jj. Hence PᵃᵀM₀Pᵇ = PᵃᵀMPᵇ exactly, M₀ is by
+/// construction positive semi-definite with the contact dofs as its null space, and wᵀ(m_cc)w measures the mass added
+/// to the massive nodes relative to their own: the choice of the norm and of many neighbours keeps the top eigenvalue
+/// low. docs/equivalent-mass.md has the measurements behind `required_neighbours`.
 class NodewiseEquivalentMass final : public MassConstruction {
  public:
   [[nodiscard]] bool removes_contact_inertia() const override { return true; }
@@ -225,7 +225,7 @@ class NodewiseEquivalentMass final : public MassConstruction {
   }
 
  private:
-  /// Computes weights on the rings of free nodes around a contact node: enough rings for the wanted
+  /// Computes weights on the rings of massive nodes around a contact node: enough rings for the wanted
   /// number of neighbours and to span space affinely. `visited_by` is work space: the contact node from
   /// which a node was last reached.
   static Extrapolation extrapolate(const MassInput& input, const std::vector<char>& is_contact, const Vector& diagonal,
@@ -233,7 +233,7 @@ class NodewiseEquivalentMass final : public MassConstruction {
     const Index dimension = input.nodes->rows();
     const std::size_t required_neighbours = dimension == 2 ? 20 : 40;
     std::vector<Index> front{node}, next;
-    std::vector<int> free;
+    std::vector<int> massive;
     visited_by[static_cast<std::size_t>(node)] = node;
     Extrapolation result;
     while (!front.empty()) {
@@ -244,13 +244,13 @@ class NodewiseEquivalentMass final : public MassConstruction {
           if (visited_by[static_cast<std::size_t>(neighbour)] == node) continue;
           visited_by[static_cast<std::size_t>(neighbour)] = node;
           next.push_back(neighbour);
-          if (is_contact[static_cast<std::size_t>(neighbour)] == 0) free.push_back(static_cast<int>(neighbour));
+          if (is_contact[static_cast<std::size_t>(neighbour)] == 0) massive.push_back(static_cast<int>(neighbour));
         }
       }
       std::swap(front, next);
-      const bool enough = free.size() >= required_neighbours || front.empty();
-      if (enough && extrapolation_weights(*input.nodes, diagonal, free, node, result.weights)) {
-        result.nodes = std::move(free);
+      const bool enough = massive.size() >= required_neighbours || front.empty();
+      if (enough && extrapolation_weights(*input.nodes, diagonal, massive, node, result.weights)) {
+        result.nodes = std::move(massive);
         return result;
       }
     }
@@ -258,20 +258,20 @@ class NodewiseEquivalentMass final : public MassConstruction {
     for (std::size_t k = 0; k < visited_by.size(); ++k) {
       if (visited_by[k] == node) body.push_back(static_cast<Index>(k));
     }
-    refuse(input, node, body, {free.begin(), free.end()});
+    refuse(input, node, body, {massive.begin(), massive.end()});
   }
 
   [[noreturn]] static void refuse(const MassInput& input, Index node, const std::vector<Index>& body,
-                                  std::vector<Index> free) {
-    std::sort(free.begin(), free.end());
-    const bool flat = free.empty() || !degeneracy(*input.nodes, body, free).empty();
+                                  std::vector<Index> massive) {
+    std::sort(massive.begin(), massive.end());
+    const bool flat = massive.empty() || !degeneracy(*input.nodes, body, massive).empty();
     throw Error(ErrorKind::invalid_input,
                 fmt::format("mass type \"equivalent-nodewise\": the inertia of the contact node at {} cannot be moved "
                             "to other nodes: its body has {}{}; refine the mesh there or set mesh.degree = 2, so that "
                             "{} nodes that are not all {} are off the contact boundary, or name only facets that may "
                             "touch in the contact group (mass types \"consistent\" and \"lumped\", with scheme "
                             "\"contact-stabilized\" or \"newmark\", have no such requirement)",
-                            text_of_point(*input.nodes, node), describe_free_nodes(*input.nodes, body, free),
+                            text_of_point(*input.nodes, node), describe_massive_nodes(*input.nodes, body, massive),
                             flat ? "" : ", which are too close together for their distance from it",
                             input.nodes->rows() == 3 ? "at least 4" : "at least 3",
                             input.nodes->rows() == 3 ? "in one plane" : "on one line"));

@@ -121,7 +121,7 @@ void add_surface(const Body& body, const std::string& group, Measures& all) {
   for (const FacetSurface::Facet& facet : surface.facets()) {
     areas.values.push_back(facet.area);
     sizes.values.push_back(facet.size);
-    heights.values.push_back(facet.height);
+    heights.values.push_back(facet.cell_height);
     diameters.values.push_back(facet_diameter(*body.mesh, facet.number));
   }
   all["areas of facets of " + group] = areas;

@@ -83,7 +83,7 @@ TEST(Degeneracy, IsSaidInWords) {
   EXPECT_EQ(degeneracy(nodes, body, {0, 1, 3}), "in one plane");
   EXPECT_EQ(degeneracy(nodes, body, {0, 1, 3, 4}), "in one plane") << "rounding of coordinates";
   EXPECT_EQ(degeneracy(nodes, body, {0, 1, 3, 5}), "");
-  EXPECT_EQ(describe_free_nodes(nodes, body, {0, 1, 2}),
+  EXPECT_EQ(describe_massive_nodes(nodes, body, {0, 1, 2}),
             "3 nodes off the contact boundary, at (0, 0, 0), (1, 0, 0) and (2, 0, 0), all on one line");
   Points flat = nodes;
   flat.row(2) *= 1e-8;

@@ -111,7 +111,7 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
       if (!faces(k)) continue;
       const FacetSurface::Facet& facet = own.facets()[k];
       directions[facet.number] =
-          middle_direction(facet.centre, -normal_of(k), faced_directions.at(facet.number), facet.height, nullptr);
+          middle_direction(facet.centre, -normal_of(k), faced_directions.at(facet.number), facet.cell_height, nullptr);
     }
     return directions;
   }
@@ -265,7 +265,7 @@ void BodyPairing::Implementation::remove_supported(const FreeComponent& is_free,
 void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) const {
   const double size = extent(body.space->nodes);
   double height = std::numeric_limits<double>::infinity();
-  for (const FacetSurface::Facet& facet : own.facets()) height = std::min(height, facet.height);
+  for (const FacetSurface::Facet& facet : own.facets()) height = std::min(height, facet.cell_height);
   const auto closes = [&](double gap) { return gap < 0.0 && (pair.closed_gaps || gap > -rounding_of_files * height); };
   PairingSummary& facing = result.facing;
   facing.points = static_cast<Index>(result.multipliers.size());

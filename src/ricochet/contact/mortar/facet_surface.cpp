@@ -60,7 +60,7 @@ FacetSurface::FacetSurface(const Body& body, const std::vector<Index>& facets, c
   const std::vector<double> heights = cell_heights(*body.mesh, cells_);
   for (std::size_t k = 0; k < facets.size(); ++k) {
     add_facet(body, facets[k], cells_[k]);
-    const double height = facets_.back().height = heights[k];
+    const double height = facets_.back().cell_height = facets_.back().body_depth = heights[k];
     const IndexInBlocks location = locate_facet(*body.space, facets[k]);
     const CellBlock& block = body.space->facets[location.block];
     for (int i = 0; i < block.nodes_per_cell; ++i) {

@@ -28,20 +28,21 @@ class FacetSurface {
     Vector3 area_vector{0, 0, 0};  ///< ∫ N over the pieces, out of the body: a length in 2D, an area in 3D
     Vector3 centre{0, 0, 0};       ///< the mean of its vertices
     double size = 0.0;             ///< the longest distance between corners
-    double height = 0.0;           ///< of the cell behind it, or as set by set_depths()
+    double cell_height = 0.0;      ///< height of the cell behind it
+    double body_depth = 0.0;       ///< depth of the body behind it, which limits overlaps (deepest_overlap)
   };
 
   /// `facets`: numbered through all blocks, ascending. Their positions are displaced by `shift` (d; zero if empty).
   FacetSurface(const Body& body, const std::vector<Index>& facets, const Vector& shift = {});
   /// Surface for a moving body: facets of second order have all their pieces, even if they are flat at the start.
   [[nodiscard]] static FacetSurface moving(const Body& body, const std::vector<Index>& facets);
-  /// Moves the pieces to the current positions of the mesh nodes; sizes and heights remain the initial ones. Does not
-  /// allocate.
+  /// Moves the pieces to the current positions of the mesh nodes; sizes, heights and depths remain the initial ones.
+  /// Does not allocate.
   void move(const Points& nodes);
 
-  /// Sets the depth of the body behind each facet, if it is known better than by the height of its cell.
-  void set_depths(const std::vector<double>& heights) {
-    for (std::size_t k = 0; k < facets_.size(); ++k) facets_[k].height = heights[k];
+  /// Sets the depth of the body behind each facet, which until then is the height of its cell.
+  void set_depths(const std::vector<double>& depths) {
+    for (std::size_t k = 0; k < facets_.size(); ++k) facets_[k].body_depth = depths[k];
   }
 
   [[nodiscard]] const std::vector<Facet>& facets() const { return facets_; }

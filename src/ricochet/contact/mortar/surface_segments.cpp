@@ -113,11 +113,11 @@ void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std:
     view_box.extend(Vector3(at[0], at[1], view.direction.dot(corner)));
   }
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  const double own_height = any_depth ? infinite : own_.facets()[static_cast<std::size_t>(piece.facet)].height;
+  const double own_depth = any_depth ? infinite : own_.facets()[static_cast<std::size_t>(piece.facet)].body_depth;
   const auto may_face = [&](const BoxTree::Box& box) {
     return overlaps(box, view.first, view_box.min()[0], view_box.max()[0]) &&
            (view.plane || overlaps(box, view.second, view_box.min()[1], view_box.max()[1])) &&
-           overlaps(box, view.direction, -infinite, view_box.max()[2] + own_height);
+           overlaps(box, view.direction, -infinite, view_box.max()[2] + own_depth);
   };
   opposite_.tree().visit(may_face, [&](int other) {
     const FacetSurface::Piece& candidate = opposite_.pieces()[static_cast<std::size_t>(other)];
@@ -131,8 +131,8 @@ void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std:
     if (!(cut.area > sliver * std::min(own.area, cut.opposite.area))) return;
     PlanePoint centre = PlanePoint::Zero();
     for (int k = 0; k < cut.common.count; ++k) centre += cut.common.at(k) / cut.common.count;
-    const double other_height = opposite_.facets()[static_cast<std::size_t>(candidate.facet)].height;
-    if (!any_depth && cut.gap_at(centre) < -deepest_overlap * std::min(own_height, other_height)) return;
+    const double other_depth = opposite_.facets()[static_cast<std::size_t>(candidate.facet)].body_depth;
+    if (!any_depth && cut.gap_at(centre) < -deepest_overlap * std::min(own_depth, other_depth)) return;
     cuts.push_back(std::move(cut));
   });
 }

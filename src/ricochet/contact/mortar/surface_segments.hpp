@@ -24,7 +24,7 @@ struct FacetSegments {
   [[nodiscard]] bool is_whole() const { return covered > 1.0 - 1e-8; }
 };
 
-/// Deepest admissible overlap, relative to the height of the body behind two pieces.
+/// Deepest admissible overlap, relative to the depth of the body behind the facets of two pieces (Facet::body_depth).
 constexpr double deepest_overlap = 0.5;
 
 /// Intersects facets of one surface with those of another, projected along one direction.
@@ -44,7 +44,7 @@ class SegmentFinder {
 
   /// Finds the segments of own facet number `facet` in own.facets(). `direction`: unit, out of the opposite surface.
   /// Pieces that are seen nearly edge-on, or do not face each other, are ignored, and so are those that overlap by more
-  /// than half of the height of the cells behind them: a line through a thin body meets its far side there. Of several
+  /// than half of the depth of the body behind them: a line through a thin body meets its far side there. Of several
   /// pieces behind each other the nearest counts. `any_depth`: admits any overlap.
   [[nodiscard]] FacetSegments find(int facet, const Eigen::Vector3d& direction, bool any_depth = false) const;
 

@@ -15,9 +15,9 @@ int degree_on_segments(const Body& body) {
   return (simplices ? 2 : 4) * body.space->degree;
 }
 
-/// Fraction of the initial thickness to which a body may be squeezed. Overlaps up to half of that are
-/// not attributed to its far side.
-constexpr double squeezed = 0.5;
+/// Fraction of the initial thickness to which a body may be squeezed. Overlaps up to `deepest_overlap` of that are not
+/// attributed to its far side.
+constexpr double min_thickness_ratio = 0.5;
 
 /// Mesh of the displacement: isoparametric, for any degree of the geometry.
 Mesh mesh_of(const DisplacementSpace& space) {
@@ -76,9 +76,9 @@ void MovingSurfaces::enable_self_contact() {
   std::vector<double> depths;
   for (int facet = 0; facet < static_cast<int>(nodes_of.size()); ++facet) {
     ignored_facets.push_back(widen(widen({facet})));
-    const double height = own_.facets()[static_cast<std::size_t>(facet)].height;
-    const double through = finder_.thickness_behind(facet);
-    depths.push_back(std::isfinite(through) ? squeezed * through : height);
+    const double height = own_.facets()[static_cast<std::size_t>(facet)].cell_height;
+    const double thickness = finder_.thickness_behind(facet);
+    depths.push_back(std::isfinite(thickness) ? min_thickness_ratio * thickness : height);
   }
   for (const auto& [node, facets] : at_node) ignored_facets_of_[node] = widen(facets);
   facets_at_ = std::move(at_node);
@@ -91,7 +91,8 @@ double MovingSurfaces::depth_at(Index node) const {
   const auto around = facets_at_.find(node);
   if (around == facets_at_.end()) return own_.height_at(node);
   double least = std::numeric_limits<double>::infinity();
-  for (const int facet : around->second) least = std::min(least, own_.facets()[static_cast<std::size_t>(facet)].height);
+  for (const int facet : around->second)
+    least = std::min(least, own_.facets()[static_cast<std::size_t>(facet)].body_depth);
   return least;
 }
 

@@ -18,8 +18,9 @@ class MovingSurfaces {
   /// Moves the surfaces to X + U. Does nothing if they are there already.
   void move(const Vector& displacement);
 
-  /// Prepares a surface for contact with itself: facets ignore those within two rings around them, and accept a depth
-  /// of at most half the thickness of the body, so that its far side is not taken for a surface that was passed.
+  /// Prepares a surface for contact with itself: facets ignore those within two rings around them, and half the initial
+  /// thickness of the body becomes its depth behind them, so that its far side is not taken for a surface that was
+  /// passed.
   void enable_self_contact();
 
   [[nodiscard]] const FacetMap& map() const { return map_; }
@@ -30,7 +31,7 @@ class MovingSurfaces {
   [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
   /// Current position of one of these nodes.
   [[nodiscard]] Eigen::Vector3d position(Index node) const;
-  /// Least depth of the body behind the facets around a node of the own surface.
+  /// Least depth of the body behind the facets around a node of the own surface; with two surfaces, a cell height.
   [[nodiscard]] double depth_at(Index node) const;
   /// Facets of the opposite surface that a node of the own one ignores, by index; none if there are two surfaces.
   [[nodiscard]] const std::vector<int>& ignored_facets_of(Index node) const;

@@ -87,11 +87,12 @@ struct SlidingPair::Implementation {
         is_self(data.is_self()),
         surfaces(data.body, data.facets, data.opposite_facets) {
     for (const FacetSurface* const surface : {&surfaces.own(), &surfaces.opposite()}) {
-      for (const FacetSurface::Facet& facet : surface->facets()) least_height = std::min(least_height, facet.height);
+      for (const FacetSurface::Facet& facet : surface->facets())
+        least_height = std::min(least_height, facet.cell_height);
     }
     if (is_self) surfaces.enable_self_contact();
     for (const FacetSurface::Facet& facet : surfaces.own().facets())
-      detection_depth = std::min(detection_depth, deepest_overlap * facet.height);
+      detection_depth = std::min(detection_depth, deepest_overlap * facet.body_depth);
     find_points_of_facets();
     for (const FacetSurface::Facet& facet : surfaces.own().facets()) {
       const Vector direction = -facet.area_vector.normalized().head(data.body.space->dimension);

@@ -4,12 +4,12 @@
 
 namespace ricochet {
 
-AlphaWeights::AlphaWeights(double step, double inertia_weight, double force_weight)
-    : inertia(inertia_weight),
-      force(force_weight),
-      gamma(0.5 + force_weight - inertia_weight),
+AlphaWeights::AlphaWeights(double step, double of_inertia, double of_forces)
+    : inertia_weight(of_inertia),
+      force_weight(of_forces),
+      gamma(0.5 + of_forces - of_inertia),
       beta(0.25 * (0.5 + gamma) * (0.5 + gamma)),
-      alpha((1.0 - inertia_weight) / ((1.0 - force_weight) * beta * step * step)),
+      alpha((1.0 - of_inertia) / ((1.0 - of_forces) * beta * step * step)),
       energy_factor(0.5 * step * step * (beta - 0.5 * gamma)) {}
 
 AlphaWeights generalized_alpha_weights(double step, double spectral_radius) {
@@ -24,8 +24,8 @@ void AlphaScheme::advance(const SemidiscreteProblem& problem, State& state, Stag
   const double h = step(), end = state.time + h;
   Vector& before = state.memory.at(algorithmic_acceleration);
   error_.begin(problem, state);
-  shift_ = (weights_.inertia * before - weights_.force * state.acceleration) /
-           ((1.0 - weights_.force) * weights_.alpha);  // c/α
+  shift_ = (weights_.inertia_weight * before - weights_.force_weight * state.acceleration) /
+           ((1.0 - weights_.force_weight) * weights_.alpha);  // c/α
   predicted_ = h * state.velocity + (h * h * (0.5 - weights_.beta)) * before - shift_;
   base_ = state.displacement + predicted_;
   Stage& stage = stages.stage(0);
@@ -41,7 +41,7 @@ void AlphaScheme::advance(const SemidiscreteProblem& problem, State& state, Stag
   for (const Index dof : problem.massless_dofs) change_[dof] = 0.0;
   state.displacement += increment;
   integration_error_ =
-      problem.internal_force->is_linear() ? 0.0 : error_.end(problem, increment, 1.0 - weights_.force, state);
+      problem.internal_force->is_linear() ? 0.0 : error_.end(problem, increment, 1.0 - weights_.force_weight, state);
   state.velocity += h * ((1.0 - weights_.gamma) * before + weights_.gamma * change_);
   change_ -= before;
   before += change_;
@@ -65,10 +65,10 @@ void AlphaScheme::find_damping_velocity(const SemidiscreteProblem& problem, cons
 void AlphaScheme::dissipate(const SemidiscreteProblem& problem, const Vector& increment) {
   problem.mass.multiply(change_, force_);
   dissipation_ = weights_.energy_factor * (2.0 * weights_.gamma - 1.0) * change_.dot(force_);
-  if (weights_.force == 0.5) return;
-  dissipation_ += (0.5 - weights_.force) * increment.dot(force_);
+  if (weights_.force_weight == 0.5) return;
+  dissipation_ += (0.5 - weights_.force_weight) * increment.dot(force_);
   if (!problem.internal_force->is_linear()) return;
-  dissipation_ += (0.5 - weights_.force) * elastic_product(problem, increment, increment, force_);
+  dissipation_ += (0.5 - weights_.force_weight) * elastic_product(problem, increment, increment, force_);
 }
 
 double AlphaScheme::algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const {
@@ -78,8 +78,8 @@ double AlphaScheme::algorithmic_energy(const SemidiscreteProblem& problem, const
 }
 
 bool AlphaScheme::momentum_acceleration(const State& state, Vector& acceleration) const {
-  if (weights_.force == 0.5) return false;
-  acceleration = (0.5 - weights_.force) * state.memory.at(algorithmic_acceleration);
+  if (weights_.force_weight == 0.5) return false;
+  acceleration = (0.5 - weights_.force_weight) * state.memory.at(algorithmic_acceleration);
   return true;
 }
 

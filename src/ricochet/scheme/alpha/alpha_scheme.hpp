@@ -11,12 +11,12 @@ namespace ricochet {
 
 /// Parameters that follow from the weights α_m of inertia and α_f of forces at the start of a step.
 struct AlphaWeights {
-  AlphaWeights(double step, double inertia_weight, double force_weight);
+  AlphaWeights(double step, double of_inertia, double of_forces);
 
-  double inertia, force;  ///< α_m and α_f
-  double gamma, beta;     ///< ½ + α_f − α_m and ¼(½+γ)²
-  double alpha;           ///< (1−α_m)/((1−α_f)βh²)
-  double energy_factor;   ///< ½h²(β−γ/2)
+  double inertia_weight, force_weight;  ///< α_m and α_f
+  double gamma, beta;                   ///< ½ + α_f − α_m and ¼(½+γ)²
+  double alpha;                         ///< (1−α_m)/((1−α_f)βh²)
+  double energy_factor;                 ///< ½h²(β−γ/2)
 };
 /// Weights of generalized-alpha for its spectral radius.
 [[nodiscard]] AlphaWeights generalized_alpha_weights(double step, double spectral_radius);
@@ -43,7 +43,7 @@ class AlphaScheme final : public Scheme {
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     return {{weights_.alpha, 1.0, damping_factor(problem)}};
   }
-  [[nodiscard]] WorkRule work_rule() const override { return {weights_.force, 1.0 - weights_.force}; }
+  [[nodiscard]] WorkRule work_rule() const override { return {weights_.force_weight, 1.0 - weights_.force_weight}; }
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
   [[nodiscard]] JumpResponse jump_response() const override {
     return weights_.gamma > 0.5 ? JumpResponse::fades : JumpResponse::alternates;
@@ -58,7 +58,7 @@ class AlphaScheme final : public Scheme {
 
  protected:
   void step_changed(const SemidiscreteProblem&) override {
-    weights_ = AlphaWeights(step(), weights_.inertia, weights_.force);
+    weights_ = AlphaWeights(step(), weights_.inertia_weight, weights_.force_weight);
   }
 
  private:

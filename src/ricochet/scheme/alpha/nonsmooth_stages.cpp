@@ -5,11 +5,12 @@
 
 namespace ricochet {
 
-/// Solves M δ = Gᵀ normal for a jump of positions or velocities.
-const StageSolution& NonsmoothStages::push(const SemidiscreteProblem& problem, const Vector& normal,
-                                           StageSolve& stages) {
+/// Solves M δ = Gᵀ multiplier + support reactions, with δ = 0 on supported dofs. δ is the jump Q of the positions if
+/// the multiplier is ν, and an acceleration if it is a contact force.
+const StageSolution& NonsmoothStages::solve_jump(const SemidiscreteProblem& problem, const Vector& multiplier,
+                                                 StageSolve& stages) {
   unloaded_stage(problem, velocity_stage, stages);
-  return solve_with_forces(problem, normal, velocity_stage, stages);
+  return solve_with_forces(problem, multiplier, velocity_stage, stages);
 }
 
 void NonsmoothStages::start(const SemidiscreteProblem& problem, State& state, StageSolve& stages) {
@@ -20,53 +21,54 @@ void NonsmoothStages::start(const SemidiscreteProblem& problem, State& state, St
   reaction = state.forces.support_reaction;
   if (state.forces.normal_reaction.sum() > 0.0) {
     stages.stage(velocity_stage).rows = state.forces.rows;
-    const StageSolution& pressed = push(problem, state.forces.normal_reaction, stages);
-    state.acceleration -= pressed.increment;
-    reaction -= pressed.support_reaction;
+    const StageSolution& of_contact = solve_jump(problem, state.forces.normal_reaction, stages);
+    state.acceleration -= of_contact.increment;
+    reaction -= of_contact.support_reaction;
   }
   state.memory[algorithmic_acceleration] = state.acceleration;
 }
 
-void NonsmoothStages::position(const SemidiscreteProblem& problem, const State& state, double step,
-                               const AlphaWeights& weights, StageSolve& stages) {
+void NonsmoothStages::solve_positions(const SemidiscreteProblem& problem, const State& state, double step,
+                                      const AlphaWeights& weights, StageSolve& stages) {
   const double h = step, end = state.time + h;
-  smooth = state.acceleration;
-  algorithmic = state.memory.at(algorithmic_acceleration);
-  support = state.memory.at(smooth_support_reaction);
-  shift_ = (weights.inertia * algorithmic - weights.force * smooth) / ((1.0 - weights.force) * weights.alpha);
-  motion = h * state.velocity + (h * h * (0.5 - weights.beta)) * algorithmic - shift_;
-  base_ = state.displacement + motion;
+  acceleration_without_contact = state.acceleration;
+  algorithmic_start = state.memory.at(algorithmic_acceleration);
+  support_reaction_without_contact = state.memory.at(smooth_support_reaction);
+  shift_ = (weights.inertia_weight * algorithmic_start - weights.force_weight * acceleration_without_contact) /
+           ((1.0 - weights.force_weight) * weights.alpha);
+  displacement_increment = h * state.velocity + (h * h * (0.5 - weights.beta)) * algorithmic_start - shift_;
+  base_ = state.displacement + displacement_increment;
   Stage& stage = stages.stage(position_stage);
   equations_.balance(problem, end, base_, stage);
   equations_.prescribe_from(problem, end, base_, stage);
   require_no_penetration(problem, base_, end, stage);
   stage.slip_offset.resize(0);
   const StageSolution& solution = stages.solve(position_stage);
-  motion += solution.increment;
-  normal_ = solution.normal_reaction / weights.alpha;  // ν
+  displacement_increment += solution.increment;
+  position_multiplier_ = solution.normal_reaction / weights.alpha;
   stages.stage(velocity_stage).rows = stage.rows;
-  const StageSolution& pushed = push(problem, normal_, stages);
-  jump = pushed.increment;
-  smooth = weights.alpha * (solution.increment - jump);
-  after = (solution.increment - shift_ - jump) / (weights.beta * h * h);
-  change = after - algorithmic;
-  mean_support = weights.force * support;
-  support = solution.support_reaction - weights.alpha * pushed.support_reaction;
-  mean_support += (1.0 - weights.force) * support;
+  const StageSolution& jump = solve_jump(problem, position_multiplier_, stages);
+  position_jump = jump.increment;
+  acceleration_without_contact = weights.alpha * (solution.increment - position_jump);
+  algorithmic_end = (solution.increment - shift_ - position_jump) / (weights.beta * h * h);
+  algorithmic_increment = algorithmic_end - algorithmic_start;
+  mean_support_reaction = weights.force_weight * support_reaction_without_contact;
+  support_reaction_without_contact = solution.support_reaction - weights.alpha * jump.support_reaction;
+  mean_support_reaction += (1.0 - weights.force_weight) * support_reaction_without_contact;
 }
 
-const StageSolution& NonsmoothStages::impulses(const SemidiscreteProblem& problem, const State& state, double step,
-                                               const AlphaWeights& weights, StageSolve& stages) {
+const StageSolution& NonsmoothStages::solve_velocities(const SemidiscreteProblem& problem, const State& state,
+                                                       double step, const AlphaWeights& weights, StageSolve& stages) {
   const double end = state.time + step;
-  mean = (1.0 - weights.gamma) * algorithmic + weights.gamma * after;
-  velocity = state.velocity + step * mean;
-  base_ = state.displacement + motion;
+  algorithmic_mean = (1.0 - weights.gamma) * algorithmic_start + weights.gamma * algorithmic_end;
+  predicted_velocity = state.velocity + step * algorithmic_mean;
+  base_ = state.displacement + displacement_increment;
   Stage& stage = unloaded_stage(problem, velocity_stage, stages);
   evaluate_obstacle_velocity(problem, base_, {end}, stage);
-  equations_.require_impact_law(problem, base_, end, velocity, state.velocity, restitution_, step, stage);
+  equations_.require_impact_law(problem, base_, end, predicted_velocity, state.velocity, restitution_, step, stage);
   stage.gap_factor = 1.0;
-  for (Index i = 0; i < normal_.size(); ++i) {
-    if (normal_[i] > 0.0) stage.eligible[static_cast<std::size_t>(i)] = 1;
+  for (Index i = 0; i < position_multiplier_.size(); ++i) {
+    if (position_multiplier_[i] > 0.0) stage.eligible[static_cast<std::size_t>(i)] = 1;
   }
   return stages.solve(velocity_stage);
 }
