@@ -143,6 +143,35 @@ TEST(StartingState, RestingNodesCarryTheWeightFromTheStart) {
   }
 }
 
+/// An unstrained block rotates by ω = 1 about the centre of a bowl, radius 5, that its two lower corners touch: the
+/// bowl keeps them on the circle, with the force m ω² 5 of a lumped mass each, and no force acts on other nodes.
+TEST(StartingState, ReactionsKeepMovingNodesOnACurvedObstacle) {
+  const std::string mesh = test_support::mesh_geometry(
+      "block_in_bowl", "Rectangle(1)={-3,1,0,6,2}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1};",
+      1.0, 1);
+  CaseRun run("[mesh]\nfile = \"" + mesh +
+              "\"\n[[material]]\ngroup = \"body\"\ndensity = 2.0\nyoung = 1000.0\npoisson = 0.3\n"
+              "[obstacle.bowl]\ntype = \"sphere\"\ncentre = [0.0, 5.0]\nradius = 5.0\nside = \"inside\"\n"
+              "[[contact]]\ngroup = \"bottom\"\nobstacle = \"bowl\"\n[mass]\ntype = \"lumped\"\n"
+              "[initial]\nvelocity = [\"5-y\", \"x\"]\n" +
+              newmark);
+  const SemidiscreteProblem& problem = run.problem();
+  const Vector mass = problem.mass.diagonal();
+  Vector expected = Vector::Zero(problem.dof_count());
+  double force = 0.0;
+  for (Index i = 0; i < problem.nodes.cols(); ++i) {
+    const Eigen::Vector2d to_centre = Eigen::Vector2d(0.0, 5.0) - problem.nodes.col(i).head<2>();
+    if (to_centre.norm() < 5.0 - 1e-9) continue;
+    expected.segment<2>(2 * i) = to_centre;
+    force += 5.0 * mass[2 * i];
+  }
+  EXPECT_GT(force, 0.0);
+  EXPECT_EQ((expected.array() != 0.0).count(), 4) << "two corners";
+  // The second difference over h = 1e-3 errs by (ωh)²/4.
+  EXPECT_LT((run.state().acceleration - expected).lpNorm<Eigen::Infinity>(), 1e-6 * 5.0);
+  EXPECT_NEAR(run.state().forces.normal_reaction.sum(), force, 1e-6 * force);
+}
+
 TEST(StartingState, ABodyThatIsStruckAtOnceHasNoReactionYet) {
   CaseRun run(block_case(0.0, "consistent", "[initial]\nvelocity = [0.0, -1.0]\n" + newmark));
   EXPECT_EQ(run.state().forces.normal_reaction.sum(), 0.0);

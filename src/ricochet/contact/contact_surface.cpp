@@ -221,8 +221,8 @@ void ContactSurface::find_states(int pair, const ContactView& view, Work& work) 
     sums[4] = 1.0;
     // A point without a force may be closed nonetheless, e.g. a vertex with nodal forces of degree 2, where only
     // mid-side nodes carry forces, or a facet whose neighbours carry more: its gap decides.
-    const auto add = [&](Index point) {
-      const bool closed = view.normal_reaction[point] > 0.0 || view.gap[entry] <= view.rows.gap_rounding[point];
+    const auto add = [&, gap = view.gap[entry]](Index point) {
+      const bool closed = view.normal_reaction[point] > 0.0 || gap <= view.rows.gap_rounding[point];
       sums[1] += closed ? 0.0 : 1.0;
       sums[2] += 1.0;
     };

@@ -88,8 +88,8 @@ void warn_of_brief_changes(const Case& input, const Vector& centre) {
   std::string last_key;
   for (const auto& [key, function] : functions_of_time(input)) {
     if (key == last_key) continue;
-    const auto value = [&](double time) {
-      return (*function)(centre[0], centre[1], centre.size() > 2 ? centre[2] : 0.0, time);
+    const auto value = [&, &f = *function](double time) {
+      return f(centre[0], centre[1], centre.size() > 2 ? centre[2] : 0.0, time);
     };
     const std::optional<Brief> brief = find_brief_change(value, longest, input.time.end);
     if (!brief) continue;
