@@ -56,10 +56,14 @@ void print_materials(const Body& body) {
   }
 }
 
-void print_bodies(const Model& model, const ConnectedBodies& connected) {
+void print_bodies(const Case& input, const Model& model, const ConnectedBodies& connected) {
   const int d = model.mesh.dimension;
   const RigidBodies rigid(model.problem, connected.of_node, connected.count);
-  const std::vector<std::string> names = names_of_bodies(model.mesh, connected);
+  std::vector<std::string> names = names_of_bodies(model.mesh, connected);
+  for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
+    if (model.obstacles[k]->free_motion() != nullptr)
+      names.push_back(fmt::format("rigid body \"{}\"", input.obstacles[k].name));
+  }
   constexpr std::size_t shown = 10;
   for (std::size_t i = 0; i < std::min(rigid.bodies().size(), shown); ++i) {
     const RigidBody& body = rigid.bodies()[i];
@@ -327,7 +331,7 @@ void print_advice(const Case& input, const Model& model) {
              counted(model.sizes.dofs, "dof"), counted(model.sizes.contact_points, "contact point"));
   print_position(input, model);
   print_materials(model.body);
-  print_bodies(model, connected);
+  print_bodies(input, model, connected);
   print_groups(model.mesh, is_axisymmetric(model.body));
   print_cell_sizes(model.mesh);
   for (std::size_t pair = 0; pair < model.contacts.size(); ++pair) print_contact(input, model, pair);
