@@ -34,7 +34,7 @@ class Session(_core.Session):
 
     - `contact_status`: status of each contact point, numbered as in ricochet.contact: OPEN, CLOSED, STICK, SLIP;
     - `gaps`: gap of each contact point, positive if it is open;
-    - `contact_force`: nodes x dimension, the force of all contacts on each node;
+    - `contact_force`: nodes x dimension, the force of all contacts on each node that acted over the last step;
     - `energies`: a dictionary of the parts of the energy account, with the names of history.csv;
     - `time`, `step_number`; `iterations`: iterations of the contact solver in the last step; `at_end`: whether no step is left.
 

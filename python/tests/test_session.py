@@ -51,6 +51,27 @@ def test_reactions_are_the_force_of_the_history(puck, tmp_path):
     assert forces[:, 1] == pytest.approx(run.history["contact_force_y"][1:], rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.parametrize("scheme, friction", [("reduced-kane", 0.3), ("reduced-kane", 0.0), ("mean-reaction", 0.0), ("reduced-midpoint", 0.0)])
+def test_contact_forces_change_the_momentum(puck, scheme, friction):
+    """Those that acted over a step, where schemes with mean reactions have others at its end."""
+    session = rc.Session(puck, {"time.end": 6e-4, "time.scheme": scheme, "contact.0.friction": friction})
+
+    def momentum():
+        return (session.mass @ session.velocity.reshape(-1)).reshape(-1, 2).sum(axis=0)
+
+    momenta, forces, times = [momentum()], [], [session.time]
+
+    def look(session):
+        momenta.append(momentum())
+        forces.append(session.contact_force.sum(axis=0))
+        times.append(session.time)
+
+    session.run(look)
+    impulses = numpy.array(forces) * numpy.diff(times)[:, numpy.newaxis]
+    assert impulses[:, 1].max() > 1e-4 * momenta[0][0]
+    assert numpy.diff(momenta, axis=0) == pytest.approx(impulses, rel=1e-8, abs=1e-12 * momenta[0][0])
+
+
 def test_loads_velocities_and_obstacles_can_be_changed(puck):
     still = {"initial.velocity": [0.0, 0.0], **SHORT}
     session = rc.Session(puck, still)
