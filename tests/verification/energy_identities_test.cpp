@@ -58,7 +58,7 @@ TEST(EnergyIdentity, NewmarkWithAnyParametersAndMass) {
         const SparseMatrix m = run.problem().mass.to_sparse();
         const SparseMatrix& k = run.problem().internal_force->tangent();
         expect_identity(run, body.name + ", " + mass + ", beta " + std::to_string(beta),
-                        [&, beta, gamma](const StepEnd& a, const StepEnd& b) {
+                        [&, beta = beta, gamma = gamma](const StepEnd& a, const StepEnd& b) {
                           const Vector du = b.displacement - a.displacement;
                           const Vector da = b.acceleration - a.acceleration;
                           const double algorithmic =

@@ -200,8 +200,8 @@ TEST(FrictionLaw, HoldsInACornerBetweenTwoObstacles) {
     Seen seen;
     Vector before = run.state().displacement;
     run.run(
-        [&] {
-          check_law(run, run.state().displacement - before, friction, Vector(), seen);
+        [&, mu = friction] {
+          check_law(run, run.state().displacement - before, mu, Vector(), seen);
           before = run.state().displacement;
         },
         false);

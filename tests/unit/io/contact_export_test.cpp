@@ -46,7 +46,8 @@ TEST(ContactExport, StepsThatAreNone) {
       {"-1", "names a negative step"},
       {"99999999999999999999", "is too large for a step number"},
   };
-  for (const auto& [text, expected] : cases) expect_error([&] { (void)parse_steps(text); }, expected, ErrorKind::usage);
+  for (const auto& [text, expected] : cases)
+    expect_error([&, steps = text] { (void)parse_steps(steps); }, expected, ErrorKind::usage);
 }
 
 /// Two points without friction, one of them eligible.

@@ -142,9 +142,9 @@ TEST(FrameFile, RefusesAFileThatIsMissingOrShorter) {
   file.save(snapshot, "results");
   const std::string whole = content(writer.path);
   overwrite(writer.path, whole.substr(0, whole.size() - 1));
-  EXPECT_THROW(writer.resume(snapshot), Error);
+  EXPECT_THROW((void)writer.resume(snapshot), Error);
   std::filesystem::remove(writer.path);
-  EXPECT_THROW(writer.resume(snapshot), Error);
+  EXPECT_THROW((void)writer.resume(snapshot), Error);
   EXPECT_FALSE(std::filesystem::exists(writer.path + ".pattern"));
 }
 

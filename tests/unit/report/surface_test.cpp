@@ -25,9 +25,14 @@ Points in_space(const Points& nodes) {
   return result;
 }
 
+/// Index in `surface.nodes` of corner k of a triangle.
+int corner_of(const Surface& surface, Index t, int k) {
+  return surface.triangles[static_cast<std::size_t>(3 * t + k)];
+}
+
 double area(const Points& nodes, const Surface& surface, Index t) {
-  const auto corner = [&](Index k) {
-    return Eigen::Vector3d(nodes.col(surface.nodes[static_cast<std::size_t>(surface.triangles[3 * t + k])]));
+  const auto corner = [&](int k) {
+    return Eigen::Vector3d(nodes.col(surface.nodes[static_cast<std::size_t>(corner_of(surface, t, k))]));
   };
   return 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
 }
@@ -37,10 +42,10 @@ struct Sides {
   explicit Sides(const Surface& surface) {
     for (Index t = 0; t < surface.triangle_count(); ++t) {
       for (int k = 0; k < 3; ++k) {
-        const int a = surface.triangles[3 * t + k], b = surface.triangles[3 * t + (k + 1) % 3];
+        const int a = corner_of(surface, t, k), b = corner_of(surface, t, (k + 1) % 3);
         const auto side = std::minmax(a, b);
         ++times[side];
-        edges[side] += (surface.edges[t] >> k) & 1;
+        edges[side] += (surface.edges[static_cast<std::size_t>(t)] >> k) & 1;
       }
     }
   }
@@ -96,7 +101,7 @@ TEST_P(SurfaceOf, TrianglesBelongToTheirCells) {
   for (Index t = 0; t < surface.triangle_count(); ++t) {
     const Index* cell = block.cell(surface.cells[static_cast<std::size_t>(t)]);
     for (int k = 0; k < 3; ++k) {
-      const Index node = surface.nodes[static_cast<std::size_t>(surface.triangles[3 * t + k])];
+      const Index node = surface.nodes[static_cast<std::size_t>(corner_of(surface, t, k))];
       EXPECT_NE(std::find(cell, cell + block.nodes_per_cell, node), cell + block.nodes_per_cell);
     }
   }

@@ -18,9 +18,14 @@ using test_support::box_of;
 using test_support::ElementKind;
 using test_support::make_box_mesh;
 
+/// Index in `volume.nodes` of corner k of a tetrahedron.
+int corner_of(const Volume& volume, Index t, int k) {
+  return volume.tetrahedra[static_cast<std::size_t>(4 * t + k)];
+}
+
 double volume_of(const Points& nodes, const Volume& volume, Index t) {
-  const auto corner = [&](Index k) {
-    return Eigen::Vector3d(nodes.col(volume.nodes[static_cast<std::size_t>(volume.tetrahedra[4 * t + k])]));
+  const auto corner = [&](int k) {
+    return Eigen::Vector3d(nodes.col(volume.nodes[static_cast<std::size_t>(corner_of(volume, t, k))]));
   };
   return std::abs((corner(1) - corner(0)).cross(corner(2) - corner(0)).dot(corner(3) - corner(0))) / 6.0;
 }
@@ -32,10 +37,10 @@ struct Faces {
     for (Index t = 0; t < volume.count(); ++t) {
       for (int k = 0; k < 4; ++k) {
         std::array<int, 3> face{};
-        for (std::size_t i = 0; i < 3; ++i) face[i] = volume.tetrahedra[4 * t + (k + 1 + static_cast<int>(i)) % 4];
+        for (std::size_t i = 0; i < 3; ++i) face[i] = corner_of(volume, t, (k + 1 + static_cast<int>(i)) % 4);
         std::sort(face.begin(), face.end());
         ++times[face];
-        of_cells[face] += volume.faces[t] >> k & 1;
+        of_cells[face] += volume.faces[static_cast<std::size_t>(t)] >> k & 1;
       }
     }
   }
@@ -55,7 +60,8 @@ TEST_P(VolumeOf, ACubeIsComplete) {
   const Index parts = kind.displacement_degree == 2 ? 8 : 1;
   EXPECT_EQ(volume.count(), cells * parts * (kind.shape == CellShape::hexahedron ? 6 : 1));
   std::map<int, double> of_cell;
-  for (Index t = 0; t < volume.count(); ++t) of_cell[volume.cells[t]] += volume_of(nodes, volume, t);
+  for (Index t = 0; t < volume.count(); ++t)
+    of_cell[volume.cells[static_cast<std::size_t>(t)]] += volume_of(nodes, volume, t);
   EXPECT_EQ(static_cast<Index>(of_cell.size()), cells);
   double sum = 0.0;
   for (const auto& [cell, part] : of_cell) sum += part;
@@ -67,8 +73,8 @@ TEST_P(VolumeOf, ACubeIsComplete) {
   for (const auto& [face, times] : faces.times) {
     EXPECT_LE(times, 2);
     EXPECT_TRUE(faces.of_cells.at(face) == 0 || faces.of_cells.at(face) == times);
-    const auto corner = [&](std::size_t k) {
-      return Eigen::Vector3d(nodes.col(volume.nodes[static_cast<std::size_t>(face[k])]));
+    const auto corner = [&, &corners = face](std::size_t k) {
+      return Eigen::Vector3d(nodes.col(volume.nodes[static_cast<std::size_t>(corners[k])]));
     };
     if (times != 1) continue;
     surface += 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
@@ -119,7 +125,7 @@ TEST_P(VolumeOf, ManyCellsAreMadeFewer) {
   EXPECT_TRUE(coarse.is_thinned);
   EXPECT_LE(coarse.count(), of_vertices / 2);
   EXPECT_GT(coarse.count(), of_vertices / 20);
-  for (Index t = 0; t < coarse.count(); ++t) EXPECT_LT(coarse.cells[t], body->space.cells.front().size());
+  for (const int cell : coarse.cells) EXPECT_LT(cell, body->space.cells.front().size());
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, VolumeOf,
