@@ -113,6 +113,25 @@ TEST(MomentumAccount, BalancesWithTheEnergyFromAStaticStart) {
   }
 }
 
+/// The forces of two obstacles cancel in the resultant, and the body does not move.
+TEST(MomentumAccount, BalancesRelativeToForcesThatCancel) {
+  const std::string mesh = test_support::mesh_geometry(
+      "squeezed",
+      "Rectangle(1)={0,0,0,2,1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1}; "
+      "Physical Curve(\"top\")={3};",
+      0.25, 1);
+  const Difference found = largest_difference(
+      "[mesh]\nfile = \"" + mesh +
+      "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 100.0\npoisson = 0.3\n"
+      "[obstacle.lower]\ntype = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
+      "[obstacle.upper]\ntype = \"plane\"\npoint = [0.0, 0.99]\nnormal = [0.0, -1.0]\n"
+      "[[contact]]\ngroup = \"bottom\"\nobstacle = \"lower\"\n[[contact]]\ngroup = \"top\"\nobstacle = \"upper\"\n"
+      "[initial]\ndisplacement = \"static\"\n[time]\nstep = 1e-3\nend = 0.01\n");
+  EXPECT_GE(found.momentum, 0.0);
+  EXPECT_LT(found.momentum, 1e-13);
+  EXPECT_LT(found.angular, 1e-13);
+}
+
 /// Under Tresca's law points without pressure may carry friction: the account and a contact's resultant include it.
 TEST(MomentumAccount, BalancesUnderTrescasLaw) {
   int without_pressure = 0;

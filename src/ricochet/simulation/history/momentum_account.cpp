@@ -148,17 +148,18 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
     sum.size += part.force.norm();
   };
   std::array<Resultant, most_parts> parts;
-  Resultant &contact = parts[0], &supports = parts[1];
+  Resultant &contact = parts[0], &supports = parts[1], &magnitudes = parts[4];
   bool presses_bodies = false;
   for (Index i = 0; i < forces.acting_normal().size(); ++i) {
     // Under Tresca's law a point without pressure may still carry friction.
     if (!carries_acting_force(forces, i)) continue;
+    const Eigen::Vector3d force = in_space(acting_contact_force(forces, i));
+    magnitudes.force[0] += force.norm();
     if (is_summed_by_nodes(i)) {
       presses_bodies = true;
       continue;
     }
     // Between bodies the moment of forces that do not act along the gap is the only remainder.
-    const Eigen::Vector3d force = in_space(acting_contact_force(forces, i));
     contact.force += problem_.contact.net[i] * force;
     contact.moment += in_space(problem_.contact.arm(i, positions_)).cross(force);
   }
@@ -167,23 +168,22 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
     contact.force += left.force;
     contact.moment += left.moment;
   }
-  double size_of_supports = 0.0;
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {
     const Index dof = problem_.supports.dofs()[static_cast<std::size_t>(i)];
     if (!problem_.is_rotation_node(dof / d))
       add(supports, in_space(positions_.col(dof / d)), forces.support_reaction[i] * Eigen::Vector3d::Unit(dof % d));
-    size_of_supports += std::abs(forces.support_reaction[i]);
+    magnitudes.force[0] += std::abs(forces.support_reaction[i]);
   }
   for (const auto& body : problem_.free_bodies)
     supports.moment.tail(body->gyration().size()) += support_torque(*body, forces);
   const bool varies = forces.varying_load.size() > 0, is_damped = forces.damping_force.size() > 0;
   if (varies) parts[2] = part_of_nodes(forces.varying_load);
   if (is_damped) parts[3] = part_of_nodes(forces.damping_force);
-  parts[4].force[0] = size_of_supports;
   add_up_ranks(parts);
   include(contact);
-  sum.size += parts[4].force[0];
   include(supports);
+  // Forces between which a body is squeezed cancel in the resultants.
+  sum.size += magnitudes.force[0];
   if (varies) include(parts[2]);
   if (is_damped) include(parts[3], -1.0);
   return sum;

@@ -37,7 +37,8 @@ class MomentumAccount {
   void enter_impulse(const State& state, const Vector& impulse);
   /// Impulse since the start.
   [[nodiscard]] const Resultant& impulse() const { return impulse_; }
-  /// Σ of the magnitudes of all impulses, per kind of force: the scale of rounding of their sum.
+  /// Σ of the magnitudes of the impulses of all contact points and supports, and of the resultants of each kind of
+  /// force: the scale of rounding of their sum.
   [[nodiscard]] double size() const { return size_; }
   /// Largest distance of a node from the origin so far.
   [[nodiscard]] double arm() const { return arm_; }
@@ -54,8 +55,8 @@ class MomentumAccount {
   [[nodiscard]] Sum resultant(const StepForces& forces);
   [[nodiscard]] Sum of_springs();
   [[nodiscard]] Resultant algorithmic(const State& state);
-  /// Parts of a resultant: contact, supports, loads, damping, and in the last one the magnitude of the supports'
-  /// forces.
+  /// Parts of a resultant: contact, supports, loads, damping, and in the last one the magnitudes of the forces of
+  /// contact points and supports.
   static constexpr std::size_t most_parts = 5;
   [[nodiscard]] Resultant part_of_nodes(const Vector& force) const;
   void add_up_ranks(std::span<Resultant> parts) const;
