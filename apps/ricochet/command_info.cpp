@@ -170,7 +170,6 @@ void describe_result(const std::string& directory) {
     return describe_checkpoint(checkpoints_of(directory).back().path);
   }
   const RunSummary& s = *found;
-  const ColumnDigest energy = s.digest("total_energy");
   fmt::print("{}: {}{}\n", directory, s.title.empty() ? s.case_file : s.title, status_text(directory, s));
   if (!s.message.empty()) fmt::print("  {}\n", indented(s.message));
   print_progress(directory, s);
@@ -180,8 +179,7 @@ void describe_result(const std::string& directory) {
   if (s.history_every > 1) fmt::print("  a row of the history every {} steps\n", s.history_every);
   print_contacts(s.contacts);
   if (std::isfinite(s.critical_step)) print_critical_step(s.step, s.critical_step);
-  fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
-             energy.maximum);
+  fmt::print("  {}\n", energies_text(s));
   fmt::print("  {}\n", energy_account_text(s));
   print_method(s);
   for (const CheckResult& check : s.checks) {

@@ -128,7 +128,7 @@ int report(const ReportArguments& arguments) {
   Report page;
   read_with_retries(arguments.directories, [&] { page = make_report(arguments.directories, options); });
   write_durably(output, page.html);
-  for (const std::string& sentence : page.thinned) log::info(fmt::format("thinned: {}", sentence));
+  for (const std::string& sentence : page.thinned) log::info(fmt::format("report: {}", sentence));
   fmt::print("{}: {:.1f} MB; open it in a browser\n", output, 1e-6 * static_cast<double>(page.html.size()));
   return 0;
 }

@@ -30,12 +30,10 @@ namespace {
 constexpr std::size_t most_impacts_shown = 5;
 
 void print_summary(const RunSummary& s, const std::string& directory) {
-  const ColumnDigest energy = s.digest("total_energy");
   fmt::print("{}\n", s.title.empty() ? s.case_file : s.title);
   fmt::print("  scheme {}, mass {}, {}, {}, {}\n", s.scheme, s.mass_text(), counted(s.nodes, "node"),
              counted(s.contact_points, "contact point"), steps_text(s));
-  fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
-             energy.maximum);
+  fmt::print("  {}\n", energies_text(s));
   fmt::print("  {}\n", energy_account_text(s));
   print_method(s);
   print_friction(s);
@@ -151,6 +149,8 @@ int run(const RunArguments& given) {
   if (arguments.ranks->is_first()) print_summary(summary, options.output_directory);
   // Any process may have received the signal.
   if (summary.status == "interrupted") return 128 + static_cast<int>(arguments.ranks->maximum(stop_signal()));
+  // Expectations have positions in the case, but hold in some of its runs only.
+  if (options.quiet) log::set_run_name(options.output_directory);
   // The first process evaluates the expectations, and all end accordingly.
   arguments.ranks->run_collectively([&summary] {
     for (const ExpectationResult& e : summary.expectations) {

@@ -67,9 +67,7 @@ std::string iterations_note(const CostEstimate& cost) {
   return "";
 }
 
-/// Prints estimates for the run, and returns the seconds until its first step.
-double print_estimates(const Case& input, const Model& model, const Scheme& scheme) {
-  const CostEstimate cost = estimate_cost(input, model, scheme);
+void print_estimates(const Case& input, const Model& model, const CostEstimate& cost) {
   for (std::size_t k = 0; k < cost.stages.size(); ++k) print_estimate(cost.stages[k], k);
   const auto steps = static_cast<double>(step_count(input.time));
   const Index points = model.problem.contact.size();
@@ -92,7 +90,6 @@ double print_estimates(const Case& input, const Model& model, const Scheme& sche
       cost.force_seconds > 0.0 ? fmt::format(", with {} per evaluation of the internal force, measured here",
                                              short_duration_text(cost.force_seconds))
                                : "");
-  return cost.factorization_seconds;
 }
 
 /// Returns true if there is a mesh to check, or one may be made: gmsh may run shell commands of the file, and meshing
@@ -147,10 +144,10 @@ int validate(const ValidateArguments& arguments) {
   check_expected_quantities(input, model);
   refuse_bodies_inside_obstacles(input, model);
   session.scheme().analyse(model.problem);
-  const double start_seconds = print_estimates(input, model, session.scheme());
+  const CostEstimate cost = estimate_cost(input, model, session.scheme());
   // The start of a run, whose result is discarded: it detects incompatible settings and operators that cannot be
   // factorized.
-  const bool starts = start_seconds <= longest_start;
+  const bool starts = cost.factorization_seconds <= longest_start;
   if (starts) session.start();
   fmt::print("{}: valid: {}, {}, {}, {}, {}\n", case_file, counted(model.space.cell_node_count(), "node"),
              counted(model.mesh.cell_count(), "cell"), counted(model.problem.contact.size(), "contact point"),
@@ -162,8 +159,9 @@ int validate(const ValidateArguments& arguments) {
     fmt::print(
         "{}: not checked: the start of the run (whether its operators can be factorized, and its initial state), which "
         "would take an estimated {}\n",
-        case_file, duration_text(start_seconds));
+        case_file, duration_text(cost.factorization_seconds));
   }
+  print_estimates(input, model, cost);
   return 0;
 }
 

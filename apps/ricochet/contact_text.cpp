@@ -22,7 +22,9 @@ std::string law_text(const ContactDescription& c) {
 
 std::string motion_text(const ContactDescription& c) {
   std::string text;
-  if (!c.obstacle_velocity.empty()) text += fmt::format(", moving at ({:g})", fmt::join(c.obstacle_velocity, ", "));
+  if (!c.obstacle_velocity.empty())
+    text += fmt::format(", {} at ({:g})", c.obstacle_moves_freely ? "starting" : "moving",
+                        fmt::join(c.obstacle_velocity, ", "));
   if (c.obstacle_rotation_rate != 0.0) text += fmt::format(", rotating at {:g}", c.obstacle_rotation_rate);
   return text;
 }
@@ -64,15 +66,22 @@ void print_contacts(const std::vector<ContactDescription>& contacts) {
 }
 
 void print_friction(const RunSummary& summary) {
-  const bool any = std::any_of(summary.contacts.begin(), summary.contacts.end(), [](const ContactDescription& c) {
-    return c.friction > 0.0 || c.friction_bound > 0.0 || !c.obstacle_velocity.empty() ||
-           c.obstacle_rotation_rate != 0.0;
+  const std::vector<ContactDescription>& contacts = summary.contacts;
+  const bool has_friction = std::any_of(contacts.begin(), contacts.end(), [](const ContactDescription& c) {
+    return c.friction > 0.0 || c.friction_bound > 0.0;
   });
-  if (!any) return;
-  fmt::print("  friction work {:.6g}, obstacle work {:.6g}; at most {} stick and {} slip at a time\n",
-             summary.digest("friction_work").last, summary.digest("obstacle_work").last,
-             counted(std::lround(summary.digest("sticking").maximum), "point"),
-             std::lround(summary.digest("slipping").maximum));
+  const bool moves = std::any_of(contacts.begin(), contacts.end(), [](const ContactDescription& c) {
+    return !c.obstacle_moves_freely && (!c.obstacle_velocity.empty() || c.obstacle_rotation_rate != 0.0);
+  });
+  const double obstacle_work = summary.digest("obstacle_work").last;
+  if (has_friction) {
+    fmt::print("  friction work {:.6g}, obstacle work {:.6g}; at most {} stick and {} slip at a time\n",
+               summary.digest("friction_work").last, obstacle_work,
+               counted(std::lround(summary.digest("sticking").maximum), "point"),
+               std::lround(summary.digest("slipping").maximum));
+  } else if (moves) {
+    fmt::print("  obstacle work {:.6g}\n", obstacle_work);
+  }
 }
 
 }  // namespace ricochet::program

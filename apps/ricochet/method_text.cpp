@@ -50,12 +50,14 @@ std::string reactions_text(const RunSummary& summary) {
   if (!summary.reactions) return "";
   const ActingReactions& acting = *summary.reactions;
   if (acting.kind == "end") return "those at the end of the step";
-  if (acting.mean_steps + acting.end_steps == 0) return "mean (no contact occurred)";
-  std::string text = "mean";
+  if (acting.mean_steps + acting.end_steps == 0) return "the mean over the step (no contact occurred)";
+  std::string text = "the mean over the step";
   if (acting.mean_steps > 0) {
     const std::string least = fmt::format("{:.2g}", acting.least_weight);
     const std::string largest = fmt::format("{:.2g}", acting.largest_weight);
-    text += ", end weight " + (least == largest ? least : least + " to " + largest);
+    if (largest != "0")
+      text += fmt::format(", in which those at its end have the weight {}",
+                          least == largest ? least : least + " to " + largest);
   }
   if (acting.end_steps > 0)
     text += fmt::format("; those at the end of the step in {} of {} with contact, for which no mean was found",

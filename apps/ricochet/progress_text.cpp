@@ -35,6 +35,12 @@ std::string status_text(const std::string& directory, const RunSummary& summary)
   return is_running(directory, summary) ? " (running)" : " (interrupted)";
 }
 
+std::string energies_text(const RunSummary& summary) {
+  const ColumnDigest energy = summary.digest("total_energy");
+  return fmt::format("energy {:.6g} at the start, {:.6g} at the end; largest total, kinetic or elastic energy {:.6g}",
+                     energy.first, energy.last, summary.energy_scale());
+}
+
 std::string energy_account_text(const RunSummary& summary) {
   const ColumnDigest residual = summary.digest("energy_residual");
   const double largest = std::max(std::abs(residual.minimum), std::abs(residual.maximum));

@@ -10,6 +10,10 @@ namespace ricochet::program {
 /// Returns the suffix of the title of an incomplete run: " (running)", " (interrupted)", " (FAILED)".
 [[nodiscard]] std::string status_text(const std::string& directory, const RunSummary& summary);
 
+/// Returns the total energy at both ends of a run, which is 0 or negative where loads have a potential, and the energy
+/// to which percentages refer.
+[[nodiscard]] std::string energies_text(const RunSummary& summary);
+
 /// Returns how well the energy account balances.
 [[nodiscard]] std::string energy_account_text(const RunSummary& summary);
 

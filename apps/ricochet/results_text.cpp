@@ -56,6 +56,15 @@ std::string body_text(int number, const RunSummary& summary) {
   return name.empty() ? fmt::format("body {}", number) : name;
 }
 
+/// Returns the name of the other body; a rigid body that moves freely has the name of its obstacle, in quotes.
+std::string other_body_text(const Impact& impact, const RunSummary& summary) {
+  std::string name = body_text(impact.other->number, summary);
+  const bool is_obstacle = std::any_of(
+      summary.contacts.begin(), summary.contacts.end(),
+      [&](const ContactDescription& contact) { return contact.obstacle_moves_freely && contact.opponent == name; });
+  return is_obstacle ? fmt::format("\"{}\"", name) : name;
+}
+
 std::string spins_text(const Impact& impact, const RunSummary& summary) {
   if (!impact.ended) return "";
   const std::string own = spins_text(impact.body, impact.before, impact.after, summary);
@@ -63,14 +72,14 @@ std::string spins_text(const Impact& impact, const RunSummary& summary) {
   const std::string others = spins_text(impact.other->number, impact.other->before, impact.other->after, summary);
   std::string text;
   if (!own.empty()) text += fmt::format(", spin of {} {}", body_text(impact.body, summary), own);
-  if (!others.empty()) text += fmt::format(", spin of {} {}", body_text(impact.other->number, summary), others);
+  if (!others.empty()) text += fmt::format(", spin of {} {}", other_body_text(impact, summary), others);
   return text;
 }
 
 /// Returns bodies "one" and "two".
 std::string bodies_text(const Impact& impact, const RunSummary& summary) {
   constexpr std::string_view prefix = "body ";
-  const std::string one = body_text(impact.body, summary), two = body_text(impact.other->number, summary);
+  const std::string one = body_text(impact.body, summary), two = other_body_text(impact, summary);
   const auto is_simple = [&](const std::string& name) {
     return name.starts_with(prefix) && name.find(" and ") == std::string::npos;
   };
@@ -129,6 +138,36 @@ std::string rotational_text(const Impact& impact) {
       error > 0.0 ? "large" : "small", std::abs(error));
 }
 
+/// Whether the contact acts across the axis of an axisymmetric body: its force cancels over the ring, so that impulses
+/// and largest force, which are those along the axis, are zero up to rounding.
+bool is_radial(const Impact& impact, const RunSummary& summary) {
+  constexpr double rounding = 1e-9;
+  const auto plane = summary.parameters.find("mesh.plane");
+  if (plane == summary.parameters.end() || plane->second != "axisymmetric" || impact.contact_points == 0) return false;
+  double radial = 0.0;
+  for (std::size_t i = 0; i < summary.columns.size() && i < summary.digests.size(); ++i) {
+    const std::string& column = summary.columns[i];
+    if (column != "contact_force_x" && !(column.starts_with("pair_force.") && column.ends_with("_x"))) continue;
+    radial = std::max({radial, std::abs(summary.digests[i].minimum), std::abs(summary.digests[i].maximum)});
+  }
+  return impact.largest_force <= rounding * radial;
+}
+
+/// Returns the restitution, the impulse and the forces of an impact.
+std::string collision_text(const Impact& impact) {
+  std::string text;
+  if (const auto restitution = impact.restitution()) {
+    const char* const inward = impact.other ? " (their centres still approach each other after the last force)"
+                                            : " (its centre still approaches the obstacle after the last force)";
+    text = fmt::format(", restitution {:.4g}{}{}{}", *restitution, *restitution < 0.0 ? inward : "",
+                       restitution_error_text(impact), rotational_text(impact));
+  } else if (impact.ended) {
+    text = fmt::format(", no restitution ({})", why_no_restitution(impact));
+  }
+  return text + fmt::format(", {}, largest force {:.4g} at {:.6g} (mean {:.4g})", impulse_text(impact),
+                            impact.largest_force, impact.largest_force_time, impact.mean_force());
+}
+
 std::string impact_text(std::size_t number, const RunSummary& summary) {
   const Impact& impact = summary.impacts[number];
   std::string text = parties_text(impact, summary);
@@ -141,16 +180,10 @@ std::string impact_text(std::size_t number, const RunSummary& summary) {
   } else {
     text += ", not ended";
   }
-  if (const auto restitution = impact.restitution()) {
-    const char* const inward = impact.other ? " (their centres still approach each other after the last force)"
-                                            : " (its centre still approaches the obstacle after the last force)";
-    text += fmt::format(", restitution {:.4g}{}{}{}", *restitution, *restitution < 0.0 ? inward : "",
-                        restitution_error_text(impact), rotational_text(impact));
-  } else if (impact.ended) {
-    text += fmt::format(", no restitution ({})", why_no_restitution(impact));
-  }
-  text += fmt::format(", {}, largest force {:.4g} at {:.6g} (mean {:.4g})", impulse_text(impact), impact.largest_force,
-                      impact.largest_force_time, impact.mean_force());
+  text += is_radial(impact, summary)
+              ? ", radial contact: its force has no resultant along the axis, hence no impulse; a "
+                "[[probe]] of the contact shows the force"
+              : collision_text(impact);
   return text + spins_text(impact, summary) + rotation_text(number, summary) + resolution_text(impact);
 }
 

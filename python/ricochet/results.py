@@ -13,6 +13,16 @@ from .files import library_path
 from .messages import logger
 
 
+def unknown_field(what, name, written, known):
+    """Returns the KeyError for a name that is none of the known ones, among them the fields that a run has written. A field
+    that it could have written is named as such."""
+    possible = json.loads(_core.case_schema())["properties"]["output"]["properties"]["fields"]["items"]["enum"]
+    if name == "all" or name not in possible:
+        return unknown_name(what, name, known)
+    return KeyError(f'the run has not written the field "{name}": add it to output.fields of the case and run it again; '
+                    f'the frames have {", ".join(written) or "no fields"}')
+
+
 class Maximum(NamedTuple):
     """The largest value of a field or column, its time, and its position in the undeformed body: for a cell its centre, for a
     column of the history None. `among` names the range of the search: "every state" of the run, "N of M states", "frames" or
@@ -69,7 +79,7 @@ class Frame(Mapping):
 
     def __getitem__(self, name):
         if name not in self._run.fields:
-            raise unknown_name("field", name, self._run.fields)
+            raise unknown_field("field", name, self._run.fields, self._run.fields)
         return self._run._data.read_field(self.number, name)
 
     def __iter__(self):
@@ -227,6 +237,8 @@ class Run:
                            peak["states"] else f"{peak['states_looked_at']} of {peak['states']} states")
         if name in self.fields:
             return self._largest_in_frames(name)
+        if name not in self.history:
+            raise unknown_field("field or column of the history", name, self.fields, self.fields + list(self.history))
         values = self.history[name]
         at = int(numpy.nanargmax(values))
         return Maximum(float(values[at]), float(self.history.times_of(name)[at]), None, "rows of the history")

@@ -86,8 +86,18 @@ def test_answers(run):
     force = run.maximum("contact_force_y")
     assert force.value == run.history["contact_force_y"].max() and force.place is None
     assert 0.9 < run.impacts[0]["restitution"] < 1.0
-    with pytest.raises(KeyError):
+    with pytest.raises(KeyError, match='no field or column of the history "nothing"'):
         run.maximum("nothing")
+    with pytest.raises(KeyError, match="no field or column .*choose from von_mises"):
+        run.maximum("von_misses")
+
+
+def test_fields_that_were_not_written(tmp_path):
+    """They are told from names that no field has, with the key that writes them."""
+    short = rc.run(ROOT / "cases/puck/puck.toml", tmp_path / "short", {"time.end": 1e-5})
+    for look in (short.maximum, short.frames[-1].__getitem__):
+        with pytest.raises(KeyError, match='has not written the field "nodal_von_mises": add it to output.fields .* displacement, '):
+            look("nodal_von_mises")
 
 
 def test_expectations(run, tmp_path, caplog):

@@ -20,6 +20,7 @@ class CommandLine(TestCase):
     def test_wrong_use_is_status_1(self):
         for arguments, said in (((), "subcommand"),
                                 (("simulate", self.case), ""),
+                                (("block.toml",), "a command is missing: write `ricochet run block.toml`"),
                                 (("run",), "a case file is required"),
                                 (("info",), "path is required"),
                                 (("validate",), "case is required"),
@@ -63,6 +64,19 @@ class CommandLine(TestCase):
             self.assertIn('did you mean "density"', process.stderr)
         self.assertFalse((self.folder / "out").exists())
         self.expect_status(2, run("validate", self.write("torn.toml", block_case()[:300])))
+
+    def test_a_mesh_in_place_of_a_case_is_named_as_such(self):
+        mesh = MESHES / "quadrilateral_o1_msh41_ascii.msh"
+        for arguments in (("run", mesh, "-o", self.folder / "out"), ("validate", mesh), ("run", MESHES / "disc.geo", "-o", self.folder / "out")):
+            process = self.expect_status(2, run(*arguments))
+            self.assertIn(f"{arguments[1]}: a mesh or a geometry, not a case: a case file names it as \"file\" of its [mesh]", process.stderr)
+            self.assertNotIn("TOML", process.stderr)
+
+    def test_validate_begins_with_its_result(self):
+        """The estimates follow, for those who read on."""
+        first, *others = self.expect_status(0, run("validate", self.case)).stdout.splitlines()
+        self.assertRegex(first, r"block\.toml: valid: \d+ nodes, ")
+        self.assertTrue(any(line.startswith("estimate, stage 1 ") for line in others))
 
     def test_missing_files_are_status_4(self):
         missing = self.folder / "missing.toml"

@@ -145,6 +145,8 @@ TRIED = [
     (r'move the bodies apart, set initial_gap = "closed" if surfaces that touch overlap only because their facets are flat', PRESSED_PAIR,
      {"part.two.move": "[0.2, 1.05]"},
      [{"part.two.move": "[0.2, 1.15]"}, {"contact.0.initial_gap": "closed"}, {"initial.displacement": "static"}]),
+    (r'move one of them away, check on which side of the obstacle .*, or set initial.displacement = "static" for a press fit', BLOCK,
+     {**KANE, "mesh.move": "[0.0, -0.15]"}, [{"mesh.move": "[0.0, 0.0]"}, {"initial.displacement": "static"}]),
     (r'or start at rest without a static equilibrium', GROUND, {**NEO, "load.gravity": "[1.0, -10.0]"},
      [HELD_X, {"initial.displacement": '["0", "0"]'}]),
     (r'apply smaller ones, add a \[\[support\]\], or start at rest', GROUND, {**NEO, "load.gravity": "[0.0, -100.0]", "mesh.refine": 0},

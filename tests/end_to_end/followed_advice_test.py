@@ -9,7 +9,7 @@ import re
 import unittest
 
 from advising_messages import advising_messages
-from followed_advice_cases import FILES, KANE, PRESSED_PAIR, STRUCK
+from followed_advice_cases import BLOCK, FILES, KANE, PRESSED_PAIR, STRUCK
 from followed_advice_tables import TRIED, TRIED_BY_RUNS
 from harness import SOURCE, TestCase, block_case, run, settings
 
@@ -85,6 +85,14 @@ class FollowedAdvice(TestCase):
             values = {**KANE, "time.end": 1.0, "time.reaction_weight": "end", "time.step": step, "mesh.refine": refine}
             _, beside = self.info(STRUCK, values, f"refined-{refine}")
             self.assertEqual("implies: use a smaller time.step and smaller cells" in beside, refine == 0)
+
+    def test_overlaps_deeper_than_a_cell_are_no_press_fits(self):
+        """A static start would push the block through the floor: it is not advised, and warns."""
+        deep = self.expect_status(2, self.said(BLOCK, {**KANE, "mesh.move": "[0.0, -0.9]"}, "validate")).stderr
+        self.assertIn("creates energy; check on which side of the obstacle the body is", deep)
+        self.assertNotIn('"static"', deep)
+        said = self.expect_status(0, self.said(BLOCK, {**KANE, "mesh.move": "[0.0, -0.9]", "initial.displacement": "static"}, "validate"))
+        self.assertIn('warning: initial.displacement = "static" moves the body by', said.stderr)
 
     def test_edges_are_no_curves_that_facets_stand_for(self):
         """Two parallelograms overlap: a mesh of second order, which would be the same, is not advised."""

@@ -109,6 +109,12 @@ class Impacts(Bodies):
         self.assertAlmostEqual(impact["normal_velocity_before"], -0.5, delta=1e-6)
         self.assertGreater(impact["restitution"], 0.2)
         self.assertLess(impact["restitution"], 1.0)
+        said = self.expect_status(0, run("info", results)).stdout
+        self.assertIn('  impact 1: the body on "floor" first at ', said)
+        # Its velocity changes; that of an obstacle with a prescribed motion does not.
+        self.assertIn('  contact of "top" with "floor", starting at (0, -0.5): ', said)
+        self.assertNotIn("stick", said)
+        self.assertTrue(summary["contacts"][0]["obstacle_moves_freely"])
 
     def test_springs_are_in_the_balance_of_momentum(self):
         text = self.case('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 2.0\nvelocity = [1.0, 0.5]\n'

@@ -123,6 +123,21 @@ end = 0.001
         said = self.expect_status(0, run("info", folder)).stdout
         self.assertIn("at once: the contact zone is too coarse for a reliable largest force and duration", said)
 
+    def test_a_contact_across_the_axis_has_no_impulse_and_says_so(self):
+        """A ring grows until a wall all round it stops it: the force of the wall is radial, and cancels over the ring."""
+        text = (block_case().replace("[[material]]", 'plane = "axisymmetric"\n[[material]]', 1)
+                .replace("point = [0.0, 0.0]\nnormal = [0.0, 1.0]", "point = [1.52, 0.0]\nnormal = [-1.0, 0.0]")
+                .replace('group = "bottom"', 'group = "sides"')
+                .replace("[load]\ngravity = [0.0, -10.0]", '[initial]\nvelocity = ["x", "0"]')
+                + '[[probe]]\nname = "wall"\ncontact = 0\n')
+        folder = self.simulate(self.write("ring.toml", text), "ring", options=("--quiet", "--force"))
+        found = summary(folder)
+        self.assertEqual(found["impacts"][0]["largest_force"], 0.0)
+        self.assertGreater(max(map(abs, History(folder / "history.csv")["wall.force_x"])), 0.1)
+        [line] = [line for line in self.expect_status(0, run("info", folder)).stdout.splitlines() if line.startswith("  impact 1: ")]
+        self.assertIn(", radial contact: its force has no resultant along the axis, hence no impulse; a [[probe]] of the contact shows", line)
+        self.assertNotIn("largest force 0", line)
+
     def test_a_run_without_contact_says_so(self):
         told = "  no contact: no contact force acted in this run\n"
 

@@ -196,6 +196,11 @@ class Messages(TestCase):
         self.assertTrue(json.loads((output / "summary.json").read_text())["warnings"][0].startswith("time.end"))
         answer = self.expect_status(4, run("run", case, "-o", output, "--quiet"))
         self.assertIn(f"ricochet: {output}: ", answer.stderr)
+        # A position in the case says enough: every run of it has this error.
+        case.write_text(block_case().replace('group = "bottom"', 'group = "botom"'), encoding="utf-8")
+        answer = self.expect_status(2, run("run", case, "-o", self.folder / "wrong", "--quiet"))
+        self.assertIn(f"ricochet: {case}:", answer.stderr)
+        self.assertNotIn("wrong", answer.stderr)
 
 
 class Signals(TestCase):

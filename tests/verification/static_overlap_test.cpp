@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 #include "support/case_run.hpp"
 
 /// @file Static starts of bodies inside an obstacle: a press fit is found, and the error reports any other overlap.
@@ -52,6 +53,7 @@ TEST(StaticOverlap, IsWhatTheErrorIsAbout) {
       for (const std::string part : {"initial.displacement = \"static\": without it 5 of 5 contact points are inside ",
                                      "the deepest by 0.5 at (", ", 0) (contact.0)", "Move the obstacle or the body"})
         EXPECT_NE(message.find(part), std::string::npos) << what << ": " << message;
+      EXPECT_EQ(message.find("a slow ramp") != std::string::npos, what != "linear") << what << ": " << message;
     }
   }
 }
@@ -68,6 +70,24 @@ TEST(StaticOverlap, IsNotSaidWhereThereIsNone) {
       EXPECT_EQ(std::string(error.what()).find("without it"), std::string::npos) << error.what();
     }
   }
+}
+
+/// Gravity presses a square that may slide up and down at its sides onto a floor that is `depth` inside it: by more
+/// than half of its height it has been lifted rather than squeezed.
+TEST(StaticOverlap, ThatLiftsABodyByHalfOfItsHeightIsReported) {
+  const auto warnings = [](double depth) {
+    const log::Silence silence;
+    std::string text = square("linear", depth, "[\"x\"]");
+    text.insert(text.find("[initial]"), "[load]\ngravity = [0.0, -1.0]\n");
+    const CaseRun run(text);
+    return run.session().warnings();
+  };
+  EXPECT_TRUE(warnings(0.2).empty());
+  const std::vector<std::string> lifted = warnings(0.7);
+  ASSERT_EQ(lifted.size(), 1U);
+  for (const std::string part :
+       {"moves the body by 0.6", "more than half of its size in that direction, 1:", "on which side"})
+    EXPECT_NE(lifted[0].find(part), std::string::npos) << lifted[0];
 }
 
 }  // namespace static_overlap_test

@@ -46,6 +46,11 @@ std::string& run_name() {
   return name;
 }
 
+std::string& run_case_file() {
+  static std::string path;
+  return path;
+}
+
 spdlog::level::level_enum spdlog_level(Level level) {
   switch (level) {
     case Level::trace:
@@ -105,13 +110,15 @@ void error(const std::string& message) {
   write_message(Level::error, with_run_name(message));
 }
 
-void set_run_name(std::string name) {
+void set_run_name(std::string name, std::string case_file) {
   run_name() = std::move(name);
+  run_case_file() = std::move(case_file);
 }
 std::string with_run_name(const std::string& message) {
   const bool has_run_name =
       run_name().empty() || message.starts_with(run_name() + ":") || message.starts_with(run_name() + "/");
-  return has_run_name ? message : run_name() + ": " + message;
+  const bool is_about_case = !run_case_file().empty() && message.starts_with(run_case_file() + ":");
+  return has_run_name || is_about_case ? message : run_name() + ": " + message;
 }
 
 CollectWarnings::CollectWarnings(std::vector<std::string>& list) : before_(collected_warnings()) {

@@ -130,12 +130,29 @@ std::string nearest_section(std::string_view name) {
   return nearest_name(name, names);
 }
 
+namespace {
+
+/// Returns ` ("friction" is a key of [[contact]])` if one or two sections have a key of that name; else "". A name that
+/// is also that of a section was not meant as a key.
+std::string owners_of_key(std::string_view name) {
+  constexpr std::size_t most_owners = 2;
+  std::vector<std::string> titles;
+  for (const Section& section : case_sections()) {
+    if (section.kind != SectionKind::top && find_key(section.keys, name) != nullptr)
+      titles.push_back(section_title(section));
+  }
+  if (titles.empty() || titles.size() > most_owners || find_section(name) != nullptr) return "";
+  return fmt::format(" (\"{}\" is a key of {})", name, join_names(titles, " and of ", false));
+}
+
+}  // namespace
+
 std::string unknown_key_message(std::string_view name, const std::string& title, const std::vector<Key>& keys) {
   const std::string near = nearest_key(name, keys);
   const std::string hint = near.empty() ? fmt::format("{} {}", keys.size() == 1 ? "its only key is" : "its keys are",
                                                       join_names(names_of(keys)))
                                         : fmt::format("did you mean \"{}\"?", near);
-  return fmt::format("unknown key \"{}\" in {}; {}", name, title, hint);
+  return fmt::format("unknown key \"{}\" in {}{}; {}", name, title, owners_of_key(name), hint);
 }
 
 std::string unknown_section_message(std::string_view name) {
@@ -149,7 +166,22 @@ std::string unknown_section_message(std::string_view name) {
   return fmt::format("unknown section \"{}\"; {}", name, hint);
 }
 
+std::string with_dotted_numbers(std::string_view path) {
+  std::string text;
+  while (true) {
+    const std::size_t opening = path.find('['), closing = path.find(']', opening);
+    if (closing == std::string_view::npos) return text + std::string(path);
+    const std::string_view number = path.substr(opening + 1, closing - opening - 1);
+    const bool is_number = is_digits(number, 1, 9);
+    text += path.substr(0, is_number ? opening : closing + 1);
+    if (is_number) text.append(".").append(number);
+    path.remove_prefix(closing + 1);
+  }
+}
+
 KeyPath parse_key_path(const std::string& text) {
+  if (const std::string dotted = with_dotted_numbers(text); dotted != text)
+    refuse(fmt::format("the number of an entry, counted from 0, follows a dot: write {}", dotted));
   const std::vector<std::string> parts = split(text);
   KeyPath path;
   path.section = find_section(parts[0]);

@@ -79,6 +79,9 @@ struct KeyPath {
   std::string member;        ///< name of the parameter or condition; else empty
 };
 
+/// Returns a path with the numbers of entries as key paths have them: "contact.0.friction" for "contact[0].friction".
+[[nodiscard]] std::string with_dotted_numbers(std::string_view path);
+
 /// Throws Error(invalid_input), which names the unknown part of the path.
 [[nodiscard]] KeyPath parse_key_path(const std::string& path);
 

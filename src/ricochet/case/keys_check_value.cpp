@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "ricochet/base/text.hpp"
@@ -34,10 +35,58 @@ bool is_choice(const std::string& word, const std::vector<std::string>& choices)
   return std::find(choices.begin(), choices.end(), word) != choices.end();
 }
 
+/// Returns a word in lower case, without blanks and hyphens.
+std::string bare_word(const std::string& word) {
+  std::string bare;
+  for (const char c : word) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      bare += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return bare;
+}
+
+/// Returns the only choice that is a part of the word or contains it: "stress" for "plane stress", "neo-hookean" for
+/// "neohooke"; "" if there is none.
+std::string overlapping_choice(const std::string& word, const std::vector<std::string>& choices) {
+  constexpr std::size_t shortest = 4;
+  const std::string bare = bare_word(word);
+  std::string found;
+  for (const std::string& choice : choices) {
+    const std::string other = bare_word(choice);
+    const bool overlap = bare.size() < other.size() ? bare.size() >= shortest && other.find(bare) != std::string::npos
+                                                    : other.size() >= shortest && bare.find(other) != std::string::npos;
+    if (!overlap) continue;
+    if (!found.empty()) return "";
+    found = choice;
+  }
+  return found;
+}
+
 // Returns `; did you mean "newmark"?` or nothing.
 std::string suggestion(const TomlNode& value, const std::vector<std::string>& choices) {
-  const std::string near = value.kind == Kind::text ? nearest_name(value.text, choices) : "";
+  if (value.kind != Kind::text) return "";
+  std::string near = nearest_name(value.text, choices);
+  if (near.empty()) near = overlapping_choice(value.text, choices);
   return near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);
+}
+
+/// Returns whether pairs of entries are the two parts of numbers with a decimal comma, between which there is no blank:
+/// [1,5, -0,5] has four entries.
+bool has_decimal_commas(const TomlNode& list) {
+  const std::vector<TomlNode>& parts = list.children;
+  if (parts.size() % 2 != 0) return false;
+  bool is_any_certain = false;
+  for (std::size_t i = 0; i < parts.size(); i += 2) {
+    const TomlNode &whole = parts[i], &fraction = parts[i + 1];
+    if (whole.kind != Kind::integer || fraction.kind != Kind::integer || fraction.integer < 0) return false;
+    if (whole.location.line != fraction.location.line) return false;
+    const auto digits = static_cast<int>(std::to_string(whole.integer).size());
+    const int width = fraction.location.column - whole.location.column - 1;
+    const bool may_be_minus_zero = whole.integer == 0 && width == digits + 1;  // or 0 and a blank
+    if (width != digits && !may_be_minus_zero) return false;
+    is_any_certain = is_any_certain || width == digits;
+  }
+  return is_any_certain;
 }
 
 void check_choice(const Key& key, TomlNode& value, Problems& problems) {
@@ -74,7 +123,13 @@ void check_vector(const Key& key, TomlNode& value, bool with_expressions, Proble
            problems);
     return;
   }
-  if (value.children.size() != 2 && value.children.size() != 3) return refuse_type(key, value, problems);
+  if (value.children.size() != 2 && value.children.size() != 3) {
+    refuse(value,
+           fmt::format("\"{}\" must be {}; found {}{}", key.name, wanted_with_unit(key), describe(value),
+                       has_decimal_commas(value) ? "; if their commas are decimal ones, use decimal points" : ""),
+           problems);
+    return;
+  }
   for (std::size_t i = 0; i < value.children.size(); ++i) {
     TomlNode& component = value.children[i];
     if (make_finite_number(component) || (with_expressions && component.kind == Kind::text)) continue;
@@ -112,7 +167,8 @@ void check_directions(const Key& key, TomlNode& value, Problems& problems) {
   for (const TomlNode& name : value.children) {
     std::string reason;
     if (name.kind != Kind::text || !is_choice(name.text, key.choices)) {
-      reason = fmt::format("must be {}; found {}", join_names(key.choices, " or "), describe(name));
+      reason = fmt::format("must be {}; found {}{}", join_names(key.choices, " or "), describe(name),
+                           suggestion(name, key.choices));
     } else if (is_choice(name.text, accepted)) {
       reason = fmt::format("repeats \"{}\"", name.text);
     }

@@ -28,21 +28,23 @@ Key against_key() {
 }
 
 Key damping_key() {
-  return {.name = "damping",
-          .type = KeyType::table,
-          .keys = {{.name = "mass",
-                    .type = KeyType::number,
-                    .unit = "1/time",
-                    .default_value = "0",
-                    .range = nonnegative,
-                    .doc = "Rayleigh damping proportional to the mass matrix."},
-                   {.name = "stiffness",
-                    .type = KeyType::number,
-                    .unit = "time",
-                    .default_value = "0",
-                    .range = nonnegative,
-                    .doc = "Rayleigh damping proportional to the stiffness matrix."}},
-          .doc = "Rayleigh damping."};
+  return {
+      .name = "damping",
+      .type = KeyType::table,
+      .keys = {{.name = "mass",
+                .type = KeyType::number,
+                .unit = "1/time",
+                .default_value = "0",
+                .range = nonnegative,
+                .doc = "Rayleigh damping proportional to the mass matrix."},
+               {.name = "stiffness",
+                .type = KeyType::number,
+                .unit = "time",
+                .default_value = "0",
+                .range = nonnegative,
+                .doc = "Rayleigh damping proportional to the stiffness matrix. If materials at contact nodes without "
+                       "inertia differ in it, it counts twice at these nodes (docs/energy.md, section Damping)."}},
+      .doc = "Rayleigh damping."};
 }
 
 Key relaxation_key() {

@@ -91,6 +91,8 @@ bool is_dotted_name(std::string_view name) {
 std::string dotted_name(const std::string& text, std::string_view prefix, std::string_view body) {
   if (!body.starts_with(prefix)) refuse(text, fmt::format("\"{}\" does not begin with {}", body, prefix));
   const std::string_view name = body.substr(prefix.size());
+  if (const std::string dotted = with_dotted_numbers(body); prefix == summary_prefix && dotted != body)
+    refuse(text, fmt::format("the number of an entry follows a dot, as in {}", dotted));
   if (!is_dotted_name(name)) {
     refuse(text, name.empty()
                      ? fmt::format("nothing follows {}", prefix)
@@ -196,6 +198,10 @@ Quantity parse_quantity(const std::string& text) {
   if (text.starts_with(summary_prefix))
     return {.kind = Quantity::Kind::summary_value, .name = dotted_name(text, summary_prefix, text)};
   if (const std::size_t opening = text.find('('); opening != std::string::npos) return parse_function(text, opening);
+  const std::string begin = text.substr(0, text.find_first_of(".["));
+  if (find_section(begin) != nullptr)
+    refuse(text, fmt::format("\"{}\" is a key of the case, which a study varies with --vary and a run sets with --set",
+                             with_dotted_numbers(text)));
   refuse(text, "it begins with neither history. nor summary. nor a function");
 }
 

@@ -16,6 +16,7 @@
 #include "ricochet/case/keys_check.hpp"
 #include "ricochet/case/keys_override.hpp"
 #include "ricochet/case/read_sections.hpp"
+#include "ricochet/mesh/read_mesh.hpp"
 
 namespace ricochet {
 
@@ -35,6 +36,17 @@ std::string read_text(const std::string& path) {
   if (!stream) fail(std::strerror(errno));
   std::string text(std::istreambuf_iterator<char>(stream), {});
   return text;
+}
+
+/// Refuses a mesh in place of a case.
+void refuse_mesh(const std::string& path) {
+  const bool is_mesh =
+      std::filesystem::path(path).extension() == ".msh" || is_foreign_mesh(path) || needs_gmsh_program(path);
+  if (!is_mesh) return;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{0}: a mesh or a geometry, not a case: a case file names it as \"file\" of its [mesh]; "
+                          "`ricochet info {0}` describes it",
+                          path));
 }
 
 // Lists locations and texts below a node. Vectors and lists of names are one value, lists of tables are not.
@@ -96,7 +108,9 @@ void list_effective_values(const std::string& path, const Section& section, cons
 }  // namespace
 
 Case read_case(const std::string& path, const std::vector<std::string>& overrides) {
-  return read_case_text(read_text(path), path, overrides);
+  const std::string text = read_text(path);
+  refuse_mesh(path);
+  return read_case_text(text, path, overrides);
 }
 
 Case read_case_text(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {

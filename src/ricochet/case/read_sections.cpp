@@ -75,6 +75,11 @@ ContactSection read_contact(const SectionReader& reader, Case& result) {
   contact.obstacle = reader.text("obstacle");
   contact.against = reader.groups("against", result.group_lists);
   contact.friction = reader.number("friction");
+  if (constexpr double unusual = 2.0; contact.friction > unusual)
+    reader.add_warning("friction",
+                       fmt::format("the coefficient of friction {:g} is unusually large; it is not per cent: 30 % is "
+                                   "0.3",
+                                   contact.friction));
   contact.friction_bound = reader.number("friction_bound");
   contact.multipliers = reader.text("multipliers");
   if (contact.multipliers.empty()) contact.multipliers = contact.between_bodies() ? "p1" : "nodal";

@@ -23,17 +23,18 @@ A case file is a [TOML](https://toml.io) document that describes a run completel
 
 ## The keys that most cases need
 
-A thrown ball, complete but for its mesh: everything else has a default.
+A thrown ball of rubber, 4 cm in diameter, complete but for its mesh: everything else has a default.
 
 ```toml
 [mesh]
 file = "ball.msh"
+degree = 2
 
 [[material]]
 group = "all"
 density = 1150.0
 young = 50.0e6
-poisson = 0.45
+poisson = 0.3
 
 [obstacle.floor]
 type = "plane"
@@ -46,11 +47,11 @@ obstacle = "floor"
 friction = 0.3
 
 [initial]
-velocity = [1.0, 0.0, -5.0]
+velocity = [0.5, 0.0, -1.0]
 
 [time]
-step = 2.0e-5
-end = 4.0e-3
+step = 1.5e-5
+end = 3.0e-3
 ```
 
 )page";
@@ -182,15 +183,19 @@ after all results are written.
 struct FrequentKey {
   const char *section, *key, *use;
 };
-constexpr std::array<FrequentKey, 20> frequent_keys{{
+constexpr std::array<FrequentKey, 24> frequent_keys{{
     {"mesh", "file", "the mesh: Gmsh, Abaqus, CalculiX, VTK, MED and others"},
     {"mesh", "scale", "0.001 for a mesh in millimetres in a case in metres"},
+    {"mesh", "plane", "in two dimensions: \"stress\" for a thin plate, \"axisymmetric\" for a section of a round body"},
+    {"mesh", "degree", "2 for rubber, for bodies that bend, and on coarse meshes"},
     {"material", "group", "cells of this material, \"all\" for every cell"},
     {"material", "density", "mass per volume"},
     {"material", "young", "stiffness, with `poisson`"},
     {"material", "poisson", "lateral contraction"},
     {"material", "law", "\"neo-hookean\" for large rotations and strains"},
     {"obstacle", "type", "a rigid plane, sphere, cylinder, torus, triangulated surface or expression"},
+    {"obstacle", "point", "of a plane: a point on it"},
+    {"obstacle", "normal", "of a plane: its direction, out of the obstacle"},
     {"contact", "group", "the boundary that can touch"},
     {"contact", "obstacle", "… this obstacle"},
     {"contact", "against", "… or this boundary of another body"},
@@ -200,7 +205,8 @@ constexpr std::array<FrequentKey, 20> frequent_keys{{
     {"load", "gravity", "weight"},
     {"initial", "velocity", "the throw"},
     {"initial", "displacement", "\"static\" starts in equilibrium"},
-    {"time", "step", "a hundredth of the duration of an impact is a good start, \"adaptive\" chooses by itself"},
+    {"time", "step",
+     "the time in which a wave crosses a cell, which `ricochet info CASE` suggests; \"adaptive\" chooses by itself"},
     {"time", "end", "duration"},
     {"probe", "at", "a point whose motion becomes columns of history.csv"},
 }};

@@ -79,6 +79,26 @@ std::string real_text(double value) {
   return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
 }
 
+/// Returns a hint if a number with a decimal comma is at a position of the document, counted from 1; else "".
+std::string decimal_comma_hint(const std::string& document, const SourceLocation& location) {
+  std::size_t begin = 0;
+  for (int line = 1; line < location.line; ++line) {
+    begin = document.find('\n', begin);
+    if (begin == std::string::npos) return "";
+    ++begin;
+  }
+  const std::string line = document.substr(begin, document.find('\n', begin) - begin);
+  constexpr std::string_view digits = "0123456789";
+  const auto comma = static_cast<std::size_t>(location.column) - 1;
+  if (location.column < 2 || comma + 1 >= line.size() || line[comma] != ',') return "";
+  if (digits.find(line[comma - 1]) == std::string_view::npos || digits.find(line[comma + 1]) == std::string_view::npos)
+    return "";
+  const std::size_t before = line.find_last_not_of(digits, comma - 1);
+  const std::string whole = line.substr(before + 1, comma - before - 1);
+  const std::string fraction = line.substr(comma + 1, line.find_first_not_of(digits, comma + 1) - comma - 1);
+  return fmt::format("; use a decimal point: {}.{}", whole, fraction);
+}
+
 std::string children_text(const TomlNode& node) {
   std::string text;
   for (const TomlNode& child : node.children) {
@@ -109,8 +129,9 @@ TomlNode parse_toml(const std::string& document, const std::string& file) {
   try {
     return convert(toml::parse(document), file);
   } catch (const toml::parse_error& problem) {
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("{}: invalid TOML: {}", location_of(problem.source(), file).text(), problem.description()));
+    const SourceLocation location = location_of(problem.source(), file);
+    throw Error(ErrorKind::invalid_input, fmt::format("{}: invalid TOML: {}{}", location.text(), problem.description(),
+                                                      decimal_comma_hint(document, location)));
   }
 }
 

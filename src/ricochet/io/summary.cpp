@@ -69,6 +69,7 @@ Json contacts_to_json(const RunSummary& summary) {
                   {"obstacle_rotation_rate", c.obstacle_rotation_rate}};
     if (c.between_bodies) entry["tied"] = c.tied;
     if (!c.all_pairs_group.empty()) entry["pair_of"] = c.all_pairs_group;
+    if (c.obstacle_moves_freely) entry["obstacle_moves_freely"] = true;
     if (c.facing) {
       entry["facing"] = {{"multipliers_on", c.facing->multipliers_on},
                          {"reason", c.facing->reason},
@@ -324,7 +325,8 @@ RunSummary summary_from_json(const std::string& text, const std::string& path) {
                             contact.at("multipliers"), contact.at("friction"), contact.at("friction_bound"),
                             contact.at("obstacle_velocity"), contact.at("obstacle_rotation_rate"), between_bodies,
                             contact.value("tied", Json(false)).get<bool>(), facing_from(contact),
-                            contact.value("pair_of", std::string())});
+                            contact.value("pair_of", std::string()),
+                            contact.value("obstacle_moves_freely", Json(false)).get<bool>()});
     }
     for (const auto& probe : json.at("probes")) {
       s.probes.push_back({probe.at("name"), probe.at("node"), probe.at("distance"),

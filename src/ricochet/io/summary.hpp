@@ -63,6 +63,7 @@ struct ContactDescription {
   bool tied = false;                              ///< no multipliers, no friction
   std::optional<PairingDescription> facing = {};  ///< null for an obstacle, or if unknown
   std::string all_pairs_group = {};               ///< group of an entry for every body against every other; else empty
+  bool obstacle_moves_freely = false;             ///< rigid body under forces, whose velocity is that of its start
 };
 
 /// Body of the mesh, and the time for which its contact must be lost for an impact to end.

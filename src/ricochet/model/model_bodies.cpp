@@ -250,13 +250,20 @@ void refuse_overlap_with_obstacle(const Case& input, const Model& model, std::si
   const PenetratingPoints overlap =
       penetrating_points(model.problem, gap, static_cast<int>(number), facet_deviation * model.sizes.diameter);
   if (overlap.count == 0) return;
+  // A static start pushes a body that is deeper inside through the obstacle: it is not where it is meant to be. (Bodies
+  // that overlap by more than half a cell are not paired.)
+  const bool may_be_press_fit = overlap.deepest <= node_spacing(model.space, pair.facets);
+  const char* const remedy =
+      may_be_press_fit
+          ? "move one of them away, check on which side of the obstacle the body is (the normal of a plane points out "
+            "of it, other shapes have a \"side\"), or set initial.displacement = \"static\" for a press fit"
+          : "check on which side of the obstacle the body is (the normal of a plane points out of it, other shapes "
+            "have a \"side\"), or move one of them away";
   refuse(input, fmt::format("contact.{}.group", model.contacts[number].entry),
          fmt::format("at the start {} of group \"{}\" {} inside obstacle \"{}\", the deepest by {:.3g} at {}, and "
-                     "would be pushed out at once, which creates energy; move one of them away, check on which side of "
-                     "the obstacle the body is (the normal of a plane points out of it, other shapes have a \"side\"), "
-                     "or set initial.displacement = \"static\"",
+                     "would be pushed out at once, which creates energy; {}",
                      counted(overlap.count, "contact point"), pair.group, overlap.count == 1 ? "is" : "are",
-                     pair.obstacle_name, overlap.deepest, position_text(overlap.position)));
+                     pair.obstacle_name, overlap.deepest, position_text(overlap.position), remedy));
 }
 
 }  // namespace

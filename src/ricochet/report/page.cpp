@@ -222,7 +222,7 @@ void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_by
   const BodyPart body = frames.pack_body(most_bytes - std::min(arrays_.page_bytes() - before, most_bytes), arrays_);
   say_frames("the body", body.frames.size());
   if (body.deviations.empty())
-    note(run, json, "the run wrote no displacements: the body is shown as it was at the start");
+    note(run, json, "the frames have no displacements (output.fields): the body is shown as it was at the start");
   if (body.is_coarse) {
     note(run, json,
          fmt::format("displacements are stored in {} steps from the smallest to the largest value, fields in {}",

@@ -67,7 +67,7 @@ Run::Run(Session& session, const RunOptions& options)
 
 void Run::begin() {
   // Many quiet runs may execute at once; their warnings need a name.
-  log::set_run_name(options_.quiet ? options_.output_directory : "");
+  log::set_run_name(options_.quiet ? options_.output_directory : "", input_.path);
   check_export(input_, options_, steps_);
   ranks_.run_collectively([&] {
     if (ranks_.is_first()) refuse_overwriting_inputs(directory_, options_, input_);

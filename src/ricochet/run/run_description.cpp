@@ -27,6 +27,7 @@ ContactDescription describe_contact(const Case& input, const ContactSection& con
   result.opponent = contact.obstacle;
   result.obstacle_velocity = obstacle->velocity;
   result.obstacle_rotation_rate = obstacle->rotation_rate;
+  result.obstacle_moves_freely = obstacle->is_free();
   return result;
 }
 

@@ -40,7 +40,8 @@ TEST(MalformedCase, Structure) {
        "9:1: unknown key \"stifness\" in \"damping\" of [[material]]; did you mean \"stiffness\"?"},
       {0, "[mass]\nkind = \"lumped\"", "13:1: unknown key \"kind\" in [mass]; its only key is \"type\""},
       {0, "[output]\nevery = 1",
-       "13:1: unknown key \"every\" in [output]; its keys are \"fields_every\", \"fields_interval\", "
+       "13:1: unknown key \"every\" in [output] (\"every\" is a key of [[probe]]); its keys are \"fields_every\", "
+       "\"fields_interval\", "
        "\"fields\", \"format\", \"fields_precision\", \"compression\", \"history_every\", \"checkpoint_every\" and "
        "\"checkpoint_seconds\""},
       {0, "[load]\ngravty = [0, -1]", "13:1: unknown key \"gravty\" in [load]; did you mean \"gravity\"?"},
@@ -65,6 +66,11 @@ TEST(MalformedCase, Structure) {
       {5, "density = ", "5:11: invalid TOML: Error while parsing key-value pair: expected value, saw '\\n'"},
       {5, "density = 1.0.0",
        "5:14: invalid TOML: Error while parsing floating-point: expected decimal digit or exponent, saw '.'"},
+      {5, "density = 1200,0",
+       "5:15: invalid TOML: Error while parsing key-value pair: expected a comment or whitespace, saw ','; use a "
+       "decimal point: 1200.0"},
+      {5, "density = 1200, # kg",
+       "5:15: invalid TOML: Error while parsing key-value pair: expected a comment or whitespace, saw ','"},
       {0, "[time]\nstep = 1",
        "12:1: invalid TOML: Error while parsing table header: cannot redefine existing table 'time'"},
       {5, "density = 1.0\ndensity = 2.0",
@@ -92,11 +98,29 @@ TEST(MalformedCase, Structure) {
       {5, "densty = \"a\"\n[load]\ngravity = [1]",
        "3:1: [[material]] needs either \"lambda\" and \"mu\" or \"young\" and \"poisson\"; found none of them\n5:1: "
        "unknown key \"densty\" in [[material]]; did you mean \"density\"?\n7:11: \"gravity\" must be a vector of 2 or "
-       "3 numbers (unit: acceleration); found a list of 1 value\n8:1: unknown key \"lambda\" in [load]; its keys are "
-       "\"gravity\", \"body_force\" and \"parameters\"\n9:1: unknown key \"mu\" in [load]; its keys are \"gravity\", "
-       "\"body_force\" and \"parameters\""},
+       "3 numbers (unit: acceleration); found a list of 1 value\n8:1: unknown key \"lambda\" in [load] (\"lambda\" is "
+       "a key of "
+       "[[material]]); its keys are \"gravity\", \"body_force\" and \"parameters\"\n9:1: unknown key \"mu\" in [load] "
+       "(\"mu\" is a key of [[material]]); its keys are \"gravity\", \"body_force\" and \"parameters\""},
   };
   for (const MalformedCase& malformed : cases) expect_problems(malformed);
+}
+
+TEST(MalformedCase, KeysOfOtherSectionsAreNamedWithThem) {
+  const std::string wall = "[obstacle.wall]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n";
+  const std::vector<std::pair<std::string, std::string>> expected{
+      {"friction = 0.3",
+       "unknown key \"friction\" in [obstacle.wall] (\"friction\" is a key of [[contact]]); its keys "
+       "are \"type\", "},
+      {"rest_gap = 0.1", "(\"rest_gap\" is a key of [mesh] and of [part.NAME]); "},
+      {"frictoin = 0.3", "unknown key \"frictoin\" in [obstacle.wall]; its keys are "},
+      // too many sections have it, or it is one
+      {"group = \"a\"", "unknown key \"group\" in [obstacle.wall]; "},
+      {"contact = 1", "unknown key \"contact\" in [obstacle.wall]; "}};
+  for (const auto& [key, problem] : expected) {
+    const std::string found = problems_of(edited_case(0, wall + key));
+    EXPECT_NE(found.find(problem), std::string::npos) << found;
+  }
 }
 
 }  // namespace ricochet::case_test

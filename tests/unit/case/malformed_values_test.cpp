@@ -26,6 +26,9 @@ TEST(MalformedCase, Values) {
       {2, "file = \"a.msh\"\nplane = \"stres\"",
        "3:9: \"plane\" must be one of \"strain\", \"stress\" or \"axisymmetric\"; found the text \"stres\"; did you "
        "mean \"stress\"?"},
+      {2, "file = \"a.msh\"\nplane = \"plane stress\"",
+       "3:9: \"plane\" must be one of \"strain\", \"stress\" or \"axisymmetric\"; found the text \"plane stress\"; did "
+       "you mean \"stress\"?"},
       {2, "file = \"a.msh\"\nsize = 0.1",
        "3:8: \"size\" is only for geometry that the gmsh program meshes; \"a.msh\" is already a mesh"},
       {2, "file = \"a.MSH\"\nsize = 0.1",
@@ -59,6 +62,15 @@ TEST(MalformedCase, Values) {
        "\"equivalent-nearest\" or "
        "\"equivalent-lumped\"; found the "
        "text \"equivalent_nearest\"; did you mean \"equivalent-nearest\"?"},
+      {0, "[solver]\nmethod = \"direct solver\"",
+       "13:10: \"method\" must be one of \"auto\", \"direct\" or \"iterative\"; found the text \"direct solver\"; did "
+       "you mean \"direct\"?"},
+      // decimal commas
+      {0, "[load]\ngravity = [1,5, -0,5]",
+       "13:11: \"gravity\" must be a vector of 2 or 3 numbers (unit: acceleration); found a list of 4 values; if their "
+       "commas are decimal ones, use decimal points"},
+      {0, "[load]\ngravity = [1, 5, 0, 5]",
+       "13:11: \"gravity\" must be a vector of 2 or 3 numbers (unit: acceleration); found a list of 4 values"},
       {0, "[output]\nhistory_every = 0",
        "13:17: \"history_every\" must be an integer of at least 1 (unit: steps); found the integer 0"},
       {0, "[output]\nfields_every = -1",
@@ -130,6 +142,16 @@ TEST(MalformedCase, Values) {
       {11, "end = -1.0", "11:7: \"end\" must be a positive number (unit: time); found the number -1.0"},
   };
   for (const MalformedCase& malformed : cases) expect_problems(malformed);
+}
+
+TEST(MalformedCase, PartsOfANameSuggestIt) {
+  const std::string laws = problems_of(edited_case(7, "mu = 1.0\nlaw = \"neohooke\""));
+  EXPECT_NE(laws.find("found the text \"neohooke\"; did you mean \"neo-hookean\"?"), std::string::npos) << laws;
+  const std::string fields = problems_of(edited_case(0, "[output]\nfields = [\"stres\"]"));
+  EXPECT_NE(fields.find("found the text \"stres\"; did you mean \"stress\"?"), std::string::npos) << fields;
+  // Several names have this part.
+  const std::string alpha = problems_of(edited_case(9, "scheme = \"alpha\""));
+  EXPECT_EQ(alpha.find("did you mean"), std::string::npos) << alpha;
 }
 
 }  // namespace ricochet::case_test

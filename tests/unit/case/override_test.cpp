@@ -72,6 +72,7 @@ TEST(Overrides, SayWhatIsWrongWithThem) {
       {"contact.01.friction=0.3",
        "\"01\" is not a valid number of an entry of [[contact]]: write 1, as in contact.1.friction"},
       {"contact.00=0.3", "\"00\" is not a valid number of an entry of [[contact]]: write 0, as in contact.0.group"},
+      {"contact[0].friction=0.3", "the number of an entry, counted from 0, follows a dot: write contact.0.friction"},
       {"contact=3", "[[contact]] is a list: specify the entry, counted from 0, as in contact.0.group"},
       {"obstacle=3", "the sections [obstacle.NAME] have names: specify one, as in obstacle.floor.type"},
       {"time=3", "\"time\" is a section: specify one of its keys, as in time.scheme"},

@@ -271,6 +271,24 @@ TEST(ReadCase, ResolvesTheMeshAgainstTheFolderOfTheCase) {
   EXPECT_EQ(read_case(file.path()).mesh.file, (folder.parent_path() / "a.msh").lexically_normal().string());
 }
 
+TEST(ReadCase, WarnsOfFrictionInPerCent) {
+  const auto warnings_of = [](const std::string& friction) {
+    std::vector<std::string> warnings;
+    const log::Silence silence;
+    const log::CollectWarnings collect(warnings);
+    static_cast<void>(read_text(edited_case(0,
+                                            "[obstacle.a]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n"
+                                            "[[contact]]\ngroup = \"g\"\nobstacle = \"a\"\nfriction = " +
+                                                friction + "\n[[contact]]\ngroup = \"h\"\nobstacle = \"a\"\n")));
+    return warnings;
+  };
+  EXPECT_TRUE(warnings_of("2.0").empty());
+  const std::vector<std::string> of_percentage = warnings_of("30");
+  ASSERT_EQ(of_percentage.size(), 1U);
+  for (const std::string part : {":19:12: ", "the coefficient of friction 30 is unusually large", "not per cent"})
+    EXPECT_NE(of_percentage[0].find(part), std::string::npos) << of_percentage[0];
+}
+
 TEST(ReadCase, SaysWhenAFileCannotBeRead) {
   for (const std::string path : {"/nowhere/case.toml", "/tmp"}) {
     try {

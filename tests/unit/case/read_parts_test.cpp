@@ -191,7 +191,7 @@ TEST(ReadParts, WrongValues) {
        "\"spin\" must be a number in two dimensions, a vector of 3 numbers in three (unit: 1/time); found the number "
        "nan"},
       {"part.wall.size=1", "\"size\" is only for geometry that the gmsh program meshes; \"w.msh\" is already a mesh"},
-      {"part.ball.axis=1", "unknown key \"axis\" in [part.NAME]; its keys are"},
+      {"part.ball.axis=1", "unknown key \"axis\" in [part.NAME] (\"axis\" is a key of [obstacle.NAME]); its keys are"},
       {"part.ball.turn={angle = 3, axis = [0, 0, 0]}", "\"axis\" must not be zero"}};
   for (const auto& [change, problem] : expected)
     EXPECT_NE(problems_of(two_parts, {change}).find(problem), std::string::npos) << problems_of(two_parts, {change});

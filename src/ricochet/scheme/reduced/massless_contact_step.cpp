@@ -72,10 +72,12 @@ void MasslessContactStep::find_damping(const SemidiscreteProblem& problem) {
   one_damping_ = norm(difference) <= same_damping * size;
   if (one_damping_) return;
   damped_rows_.analyse(problem, 1.0, 2.0 / step_);
-  log::info(
-      fmt::format("scheme \"{}\": stiffness damping differs between the cells at contact nodes, so it is doubled "
-                  "on those nodes",
-                  scheme_));
+  log::info(fmt::format(
+      "scheme \"{}\": the materials at contact nodes differ in damping.stiffness; in the equilibrium of these "
+      "nodes, which have no inertia, the damping force therefore counts twice, so that fast vibrations of "
+      "the surface are damped more than elsewhere (docs/energy.md, section Damping); with one value for the "
+      "materials at the contact it counts once",
+      scheme_));
 }
 
 std::vector<OperatorCoefficients> MasslessContactStep::operators(const SemidiscreteProblem& problem,

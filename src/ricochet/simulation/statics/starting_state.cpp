@@ -12,12 +12,15 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/point_sets.hpp"
+#include "ricochet/base/space_vector.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/linear_algebra/graph_components.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/problem/penetrating_points.hpp"
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/simulation/statics/finite_equilibrium.hpp"
+#include "ricochet/simulation/statics/held_bodies.hpp"
 #include "ricochet/simulation/statics/starting_stage.hpp"
 #include "ricochet/simulation/statics/static_equilibrium.hpp"
 #include "ricochet/solver/step_solver.hpp"
@@ -232,6 +235,46 @@ void warn_of_closed_gaps(const SemidiscreteProblem& problem, const Vector& press
 
 namespace {
 
+/// Warns of a free body that a static start moves, as a whole, by more than half of its size in the direction of the
+/// motion: from far away or through an obstacle on whose wrong side it is. Bodies that supports hold deform only.
+void warn_of_moved_body(const SemidiscreteProblem& problem, const std::vector<Index>& members, bool is_only_one,
+                        const Vector& displacement) {
+  const Index d = problem.dimension;
+  SpaceVector centre = SpaceVector::Zero(d), motion = SpaceVector::Zero(d);
+  for (const Index node : members) {
+    centre += problem.nodes.col(node) / static_cast<double>(members.size());
+    motion += displacement.segment(node * d, d) / static_cast<double>(members.size());
+  }
+  const double length = motion.stableNorm();
+  if (!(length > 0.0)) return;
+  const SpaceVector direction = motion / length;
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest, least = lowest;
+  for (const Index node : members) {
+    const double position = direction.dot(problem.nodes.col(node));
+    lowest = std::min(lowest, position);
+    highest = std::max(highest, position);
+    least = std::min(least, direction.dot(displacement.segment(node * d, d)));
+  }
+  if (!(least > 0.5 * (highest - lowest))) return;
+  log::warning(fmt::format(
+      "initial.displacement = \"static\" moves {} by {:.3g}, more than half of its size in that direction, {:.3g}: it "
+      "rests far from its position in the mesh; check on which side of its obstacle it starts (the normal of a plane "
+      "points out of it, other shapes have a \"side\"), and place it near the position where it rests (\"move\" or "
+      "\"rest_on\" of its mesh)",
+      is_only_one ? "the body" : fmt::format("the body with its centre at ({:.6g})", fmt::join(centre, ", ")), length,
+      highest - lowest));
+}
+
+/// Does so for each body. Single nodes are those of rigid bodies and tied ones.
+void warn_of_moved_bodies(const SemidiscreteProblem& problem, const Vector& displacement) {
+  std::vector<std::vector<Index>> bodies = graph_components(problem.internal_force->graph(problem.dimension));
+  std::erase_if(bodies, [](const std::vector<Index>& members) { return members.size() == 1; });
+  for (const std::vector<Index>& members : bodies) {
+    if (!are_fixed_by_supports(problem, members))
+      warn_of_moved_body(problem, members, bodies.size() == 1, displacement);
+  }
+}
+
 void require_upright_cells(const SemidiscreteProblem& problem, const Vector& displacement) {
   if (problem.internal_force->is_linear()) return;
   Vector force;
@@ -254,17 +297,22 @@ namespace {
   std::string search = reason.what();
   if (search.starts_with(key)) search.erase(0, key.size());
   const bool at_obstacle = problem.obstacles[static_cast<std::size_t>(inside.pair)] != nullptr;
+  const bool may_be_squeezed = at_obstacle && !problem.internal_force->is_linear();
   throw Error(
       reason.kind(),
       fmt::format("initial.displacement = \"static\": without it {} of {} {} inside {}, the deepest by {:.3g} at "
                   "({:.6g}) (contact.{}), and pushing them out did not lead to an equilibrium. {}, so that they "
-                  "overlap by no more than in a press fit, a fraction of a cell; a body that nothing presses against "
+                  "overlap by no more than in a press fit, a fraction of a cell{}; a body that nothing presses against "
                   "another one needs a [[support]], or no static start. The search reports: {}",
                   inside.count, counted(problem.contact.size(), "contact point"), inside.count == 1 ? "is" : "are",
                   at_obstacle ? "their obstacle" : "the other body", inside.deepest, fmt::join(inside.position, ", "),
                   inside.pair,
                   at_obstacle ? "Move the obstacle or the body (a plane's normal points out of it, a sphere has a side)"
                               : "Move the bodies apart",
+                  may_be_squeezed
+                      ? " (an obstacle that moves slowly squeezes a body of a law of finite strain farther: "
+                        "docs/laboratory.md, a slow ramp)"
+                      : "",
                   search));
 }
 
@@ -279,6 +327,7 @@ StaticEquilibrium find_static_equilibrium(const SemidiscreteProblem& problem, co
                                   : finite_equilibrium(problem, undeformed, options);
     log::info(fmt::format("static equilibrium displaces nodes by up to {:.3g}", largest(problem, found.displacement)));
     warn_of_closed_gaps(problem, found.normal_reaction);
+    warn_of_moved_bodies(problem, found.displacement);
     return found;
   } catch (const Error& reason) {
     const PenetratingPoints inside = initially_penetrating_points(problem, undeformed);
