@@ -19,7 +19,7 @@ void NonsmoothStages::start(const SemidiscreteProblem& problem, State& state, St
   if (problem.loads.varies()) problem.loads.varying(state.time, load);
   Vector& reaction = state.memory[smooth_support_reaction];
   reaction = state.forces.support_reaction;
-  if (state.forces.normal_reaction.sum() > 0.0) {
+  if (problem.ranks->any(state.forces.normal_reaction.sum() > 0.0)) {
     stages.stage(velocity_stage).rows = state.forces.rows;
     const StageSolution& of_contact = solve_jump(problem, state.forces.normal_reaction, stages);
     state.acceleration -= of_contact.increment;
