@@ -7,22 +7,23 @@ import pathlib
 import re
 import sys
 
-ENTRY = re.compile(r"^\d+/\d+ Testing: (?P<name>.*?)$(?P<output>.*?)^Test time = +(?P<seconds>[0-9.]+) sec$",
+ENTRY = re.compile(r"^\d+/\d+ Testing: (?P<name>.*?)$(?P<output>.*?)^Test time = +(?P<seconds>[0-9.]+) sec$(?P<end>.*?)^\"",
                    re.MULTILINE | re.DOTALL)
 # GoogleTest names each skipped test (twice), unittest and pytest count them.
 SKIPPED = re.compile(r"^\[  SKIPPED \] (\S+) \(\d+ ms\)$|\b(skipped=\d+)\b|\b(\d+ skipped)\b", re.MULTILINE)
+ALL_SKIPPED = "Skip regular expression found in output"
 
 
 def entries(build):
     """Returns name, seconds and output of each entry."""
     log = build / "Testing" / "Temporary" / "LastTest.log"
     text = log.read_text(errors="replace") if log.exists() else ""
-    return [(each["name"], float(each["seconds"]), each["output"]) for each in ENTRY.finditer(text)]
+    return [(each["name"], float(each["seconds"]), each["output"] + each["end"]) for each in ENTRY.finditer(text)]
 
 
 def skipped(output):
     """Returns the names of the tests that an entry skipped, or their number."""
-    return ["".join(groups) for groups in SKIPPED.findall(output)]
+    return ["".join(groups) for groups in SKIPPED.findall(output)] + ["all of it"] * (ALL_SKIPPED in output)
 
 
 def main():

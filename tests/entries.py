@@ -19,9 +19,11 @@ def tests_by_file(program, excluded):
     with tempfile.TemporaryDirectory() as folder:
         listing = pathlib.Path(folder) / "tests.json"
         chosen = [f"--gtest_filter=-{':'.join(excluded)}"] if excluded else []
-        # Leaks inside libraries that stay loaded until the end are not ours to report.
+        # A filter of the user's shell does not concern the list. Leaks inside libraries that stay loaded until the end are
+        # not ours to report.
+        environment = {name: value for name, value in os.environ.items() if not name.startswith("GTEST_")}
         subprocess.run([program, "--gtest_list_tests", f"--gtest_output=json:{listing}", *chosen], check=True,
-                       stdout=subprocess.DEVNULL, env={**os.environ, "ASAN_OPTIONS": "detect_leaks=0"})
+                       stdout=subprocess.DEVNULL, env={**environment, "ASAN_OPTIONS": "detect_leaks=0"})
         suites = json.loads(listing.read_text())["testsuites"]
     files = {}
     for suite in suites:
@@ -64,6 +66,8 @@ def main():
         lines.append(f"set_tests_properties([=[{name}]=] PROPERTIES {values})")
     if unknown := [name for name in long if name.startswith(arguments.folder.name + ".")]:
         raise SystemExit(f"entries.py: there is no entry {', '.join(sorted(unknown))}; correct the list of long tests")
+    if not lines:
+        raise SystemExit(f"entries.py: {arguments.program} has no tests")
     arguments.output.write_text("\n".join(lines) + "\n")
 
 

@@ -11,6 +11,12 @@ set(RICOCHET_LONG_TESTS
   verification.follower_pressure verification.published_schemes verification.elements.manufactured_solution
   verification.locking verification.contact.inf_sup end_to_end.adaptive_steps)
 
+foreach(name ${RICOCHET_LONG_TESTS})
+  if(NOT name MATCHES "^(unit|verification|allocations|end_to_end|python)[.]")
+    message(FATAL_ERROR "tests/long_tests.cmake: ${name} begins with no folder of tests")
+  endif()
+endforeach()
+
 # ricochet_require_long_tests(PREFIX): an error unless the entries of the list that begin with PREFIX are tests of this folder.
 function(ricochet_require_long_tests prefix)
   foreach(name ${RICOCHET_LONG_TESTS})

@@ -1,5 +1,6 @@
 """A worktree of the repository below its root, in which another revision, or a changed copy, is built."""
 
+import fcntl
 import pathlib
 import subprocess
 
@@ -19,6 +20,15 @@ class Worktree:
         if done.returncode != 0:
             raise SystemExit(f"{self.command}: git {' '.join(arguments)}: {done.stderr.strip()}")
         return done.stdout.strip()
+
+    def lock(self):
+        """Stops if another process uses the folder. The lock ends with this process."""
+        self.folder.mkdir(exist_ok=True)
+        self.locked = (self.folder / "lock").open("w", encoding="utf-8")
+        try:
+            fcntl.flock(self.locked, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise SystemExit(f"{self.command}: another one is running in {self.folder}; wait for its end") from None
 
     def check_out(self, revision):
         """Checks out this commit. Identical files keep their times, so that little is recompiled."""

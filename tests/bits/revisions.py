@@ -11,11 +11,17 @@ WORKTREE = Worktree("bits")
 FOLDER = WORKTREE.folder
 git = WORKTREE.git
 check_out = WORKTREE.check_out
+lock = WORKTREE.lock
 
 
 def is_dirty():
     """Returns whether the working tree has changes. New files count, as CMake compiles them."""
     return bool(git("status", "--porcelain"))
+
+
+def state():
+    """Returns what the working tree contains: its commit and its changes."""
+    return git("rev-parse", "HEAD"), git("status", "--porcelain"), git("diff", "HEAD")
 
 
 def commit(revision):
@@ -33,6 +39,8 @@ def cases(revision):
 def compile_programs(root, with_ranks):
     """Compiles build/ricochet and, if PETSc is available, build/ricochet-mpi."""
     options = ["-DRICOCHET_WITH_PETSC=ON"] if with_ranks else []
+    if not (root / "build" / "CMakeCache.txt").exists():
+        options.append("-DRICOCHET_BUILD_TESTS=OFF")  # GoogleTest may be missing
     targets = ["ricochet_program", *(["ricochet_mpi"] if with_ranks else [])]
     for command in (["cmake", "--preset", "release", *options],
                     ["cmake", "--build", "--preset", "release", "--target", *targets]):

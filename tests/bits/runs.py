@@ -8,6 +8,7 @@ import hashlib
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import tempfile
 import tomllib
@@ -19,7 +20,13 @@ import h5py
 DIAGONAL = (("mass.type=lumped",), ("mass.type=equivalent-lumped",))
 METHODS = ((), ("mass.type=consistent",), *DIAGONAL, ("mass.type=equivalent", "time.preset=textbook-half"))
 REFUSED = 2
+# Statuses with which a run ends: done, refused, not converged, failed expectations. Others are faults of the machine or
+# of the program.
+ENDS = (0, REFUSED, 3, 5)
+TIME_LIMIT = 1800  # seconds
 NO_CASE = {"plan": "no such case", "status": None, "history": "", "frame": "", "touches": False}
+# Settings of the user's shell that choose other kernels.
+CHOSEN_KERNELS = ("OPENBLAS_CORETYPE", "RICOCHET_INSTRUCTION_SET")
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
        "OMPI_MCA_mpi_yield_when_idle": "1"}
 
@@ -119,9 +126,15 @@ class Side:
 
     def call(self, command, settings, end):
         more = [word for setting in (*settings, f"time.end={end!r}") for word in ("--set", setting)]
-        return subprocess.run([*command, "--quiet", "--log-level", "off", *more], cwd=self.root, check=False,
+        environment = {name: value for name, value in os.environ.items() if name not in CHOSEN_KERNELS}
+        with subprocess.Popen([*command, "--quiet", "--log-level", "off", *more], cwd=self.root, start_new_session=True,
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                              env={**os.environ, **MPI, "OPENBLAS_NUM_THREADS": "1"}).returncode
+                              env={**environment, **MPI, "OPENBLAS_NUM_THREADS": "1"}) as process:
+            try:
+                return process.wait(TIME_LIMIT)
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, signal.SIGKILL)
+                return "none within the time limit"
 
 
 def checksum(path):

@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import unittest
+import unittest.mock
 
 from harness import PROGRAM, SOURCE, TestCase
 
@@ -80,6 +81,37 @@ class Bits(TestCase):
                 if run.scheme == "reduced-kane"]
         line, = bits.differences(runs, plain.results(runs), other.results(runs))
         self.assertIn("-> no such case, status 0 -> -, ", line)
+
+    def test_a_run_that_crashes_on_both_sides_is_named_and_not_kept(self):
+        plain = self.tree("plain")
+        (plain.root / "build" / "ricochet").unlink()
+        plain.program.write_text("#!/bin/sh\nkill -SEGV $$\n")
+        plain.program.chmod(0o755)
+        runs = [run for run in all_runs({"cases/rod/rod.toml"}, PROGRAM, ("1 thread",), 10) if run.scheme == "newmark"]
+        found = plain.results(runs)
+        self.assertEqual(bits.differences(runs, found, found), [])
+        self.assertEqual(bits.faults(found), ["cases/rod/rod.toml newmark (1 thread): ended with status -11"])
+        bits.keep(self.folder / "results" / "kept.json", found)
+        self.assertEqual((self.folder / "results" / "kept.json").read_text(), "{}")
+
+    def test_a_run_without_end_is_stopped(self):
+        plain = self.tree("plain")
+        (plain.root / "build" / "ricochet").unlink()
+        plain.program.write_text("#!/bin/sh\nsleep 600\n")
+        plain.program.chmod(0o755)
+        with unittest.mock.patch("runs.TIME_LIMIT", 0.2):
+            self.assertEqual(plain.call([plain.program], [], 1.0), "none within the time limit")
+
+    def test_one_at_a_time(self):
+        worktree = bits.revisions.Worktree("test")
+        worktree.folder = self.folder / "build-test"
+        worktree.lock()
+        other = bits.revisions.Worktree("test")
+        other.folder = worktree.folder
+        with self.assertRaisesRegex(SystemExit, "another one is running"):
+            other.lock()
+        worktree.locked.close()
+        other.locked.close()
 
     def test_nothing_to_compare_is_an_error(self):
         runs = all_runs(cases(SOURCE), PROGRAM, ("1 thread",), 10)

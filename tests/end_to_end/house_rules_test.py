@@ -26,6 +26,12 @@ def named(path, number):
     return f"{path.relative_to(SOURCE)}:{number}"
 
 
+def has_tests(path, name):
+    """Returns whether a class of a Python file has tests of its own."""
+    body = re.search(rf"^class {name}\(.*?(?=^\S|\Z)", path.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    return "    def test_" in body[0]
+
+
 class Comments(unittest.TestCase):
     def test_documentation_comments_begin_with_a_noun_or_a_verb(self):
         sources = files(CODE, ".hpp", ".cpp")
@@ -48,6 +54,30 @@ class Comments(unittest.TestCase):
         wrong = [f"{named(path, number)}: {name}" for path in sources for number, line in enumerate(lines(path), 1)
                  for text in comment.findall(line) for name in named_file.findall(text) if name not in names]
         self.assertEqual(wrong, [])
+
+
+class Entries(unittest.TestCase):
+    """CMake finds the other tests by the names of their files."""
+
+    def test_each_end_to_end_test_has_an_entry(self):
+        folder = SOURCE / "tests" / "end_to_end"
+        text = (folder / "CMakeLists.txt").read_text(encoding="utf-8")
+        entries = [line.split() for line in re.findall(r"^ *ricochet_end_to_end\((.*)\)$", text, re.MULTILINE)]
+        self.assertEqual({words[1] for words in entries}, {path.name.removesuffix("_test.py") for path in folder.glob("*_test.py")})
+        for script in {words[1] for words in entries}:
+            # An entry for some classes of a script requires others for the rest.
+            selections = [[word for word in words[2:] if word[0].isupper() and not word.isupper()]
+                          for words in entries if words[1] == script]
+            if all(selections):
+                classes = re.findall(r"^class (\w+)\(", (folder / f"{script}_test.py").read_text(encoding="utf-8"), re.MULTILINE)
+                tested = [name for name in classes if has_tests(folder / f"{script}_test.py", name)]
+                self.assertEqual(sorted(sum(selections, [])), sorted(tested), script)
+
+    def test_each_test_of_several_processes_has_an_entry(self):
+        names = re.search(r"foreach\(name ([\w ]+)\)\n *add_test\(NAME distributed",
+                          (SOURCE / "tests" / "CMakeLists.txt").read_text(encoding="utf-8"))[1].split()
+        found = (SOURCE / "tests" / "distributed").glob("*_test.py")
+        self.assertEqual(sorted(names), sorted(path.name.removesuffix("_test.py") for path in found))
 
 
 class Sizes(unittest.TestCase):
