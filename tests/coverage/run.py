@@ -76,8 +76,9 @@ def lines_of(names, label):
         return present, executed
     merged, inputs = PROFILES / f"{label}.profdata", PROFILES / f"{label}.txt"
     inputs.write_text("\n".join(raw) + "\n")
-    # A profile that a killed process left incomplete is named on stderr, and left out.
-    subprocess.run(["llvm-profdata", "merge", "-sparse", "-failure-mode=all", "-f", inputs, "-o", merged], check=True)
+    # Profiles that killed processes left incomplete are named on stderr, and left out.
+    if subprocess.run(["llvm-profdata", "merge", "-sparse", "-failure-mode=all", "-f", inputs, "-o", merged], check=False).returncode:
+        return present, executed
     export = subprocess.run(["llvm-cov", "export", "-format=lcov", f"-instr-profile={merged}", *objects()], check=True,
                             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
     for line in export.splitlines():
