@@ -2,6 +2,7 @@
 the other."""
 
 import pathlib
+import re
 import shlex
 import unittest
 
@@ -13,6 +14,20 @@ class Documentation(TestCase):
         printed = self.expect_status(0, run("schema", "--markdown")).stdout
         written = (SOURCE / "docs" / "case-file.md").read_text(encoding="utf-8")
         self.assertEqual(written, printed, "write it anew: build/ricochet schema --markdown > docs/case-file.md")
+
+    def test_names_of_code_are_in_the_files_that_pages_link(self):
+        """`name` in [file](path), or [file](path), `name`: a renamed function must not live on in a page."""
+        named = re.compile(r"`([A-Za-z_:]+)(?:\(\))?`\s+in\s+\[[^\]]*\]\(([^)#]+\.[hc]pp)\)"
+                           r"|\[[^\]]*\]\(([^)#]+\.[hc]pp)\)\)?, `([A-Za-z_:]+)(?:\(\))?`(?! in| of|,)")
+        found = 0
+        for page in sorted((SOURCE / "docs").rglob("*.md")):
+            for match in named.finditer(page.read_text(encoding="utf-8")):
+                name, path = (match[1], match[2]) if match[1] else (match[4], match[3])
+                with self.subTest(page=page.name, name=name):
+                    text = (page.parent / path).read_text(encoding="utf-8")
+                    self.assertRegex(text, rf"\b{name.split('::')[-1]}\b", path)
+                found += 1
+        self.assertGreater(found, 50)
 
     def test_commands_of_the_cases_write_into_different_directories(self):
         taken = {}
