@@ -4,7 +4,7 @@ import json
 import re
 import unittest
 
-from harness import SOURCE, TestCase, block_case, run, settings, with_more
+from harness import MESHES, SOURCE, History, TestCase, block_case, body_case, run, settings, with_more
 
 SUPPORT = '[[support]]\ngroup = "sides"\ncomponents = ["x"]\nvalue = "{}"\n'
 
@@ -30,6 +30,20 @@ class Warnings(TestCase):
                 self.assertIn(f"case.toml:{line}:9", told[0])
                 self.assertIn("jumps at t = 0.1.", told[0])
                 self.assertIn("velocity of this support jumps", run("validate", self.folder / "case.toml").stderr)
+
+    def test_forces_that_cancel_are_no_imbalance_of_momentum(self):
+        """A disc squeezed between two planes: the resultant of the contact forces is rounding."""
+        text = body_case(MESHES / "disc_o2_msh41_ascii.msh", [0.0, 0.0], [0.0, 1.0], '[initial]\ndisplacement = "static"\n',
+                         bottom="boundary", degree=2, mass="equivalent", scheme="reduced-kane", step=0.01, end=0.2)
+        text = text.replace("degree", "move = [0.0, 1.0]\ndegree", 1)
+        text += ('[obstacle.lid]\ntype = "plane"\npoint = [0.0, 1.99]\nnormal = [0.0, -1.0]\n'
+                 '[[contact]]\ngroup = "boundary"\nobstacle = "lid"\n')
+        output = self.simulate(self.write("case.toml", text), options=("--quiet", "--force"))
+        summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
+        self.assertEqual([line for line in summary["warnings"] if "momentum" in line], [])
+        history = History(output / "history.csv")
+        self.assertGreater(history["active_contacts"][-1], 1)
+        self.assertLess(abs(history["contact_force_y"][-1]), 1e-9)
 
     def test_steps_that_are_long_for_their_scheme(self):
         for scheme, limited in (("newmark", True), ("mean-reaction", True), ("reduced-kane", False)):

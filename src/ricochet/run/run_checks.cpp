@@ -125,7 +125,9 @@ void RunChecks::watch(const std::vector<double>& row, const State& state) {
   momentum_scale_ =
       std::max({momentum_scale_, size_of_momenta(row, now),
                 rounding_of_momenta / largest_limit() * std::sqrt(2.0 * mass_ * std::max(row[kinetic_], 0.0))});
-  const double momentum_scale = momentum_scale_ + momentum_.size();
+  // Forces between which a body is squeezed cancel in the resultants and leave rounding.
+  const double momentum_scale =
+      std::max(momentum_scale_ + momentum_.size(), rounding_of_momenta / largest_limit() * momentum_.contact_size());
   for (const std::size_t work : works_) work_scale_ = std::max(work_scale_, std::abs(row[work]));
   // Works that cancel leave rounding, below which no limit can be.
   const double rounding = energy_.result.limit > 0.0 ? rounding_of_works * work_scale_ / energy_.result.limit : 0.0;

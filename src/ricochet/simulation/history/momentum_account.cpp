@@ -60,22 +60,23 @@ Resultant MomentumAccount::algorithmic(const State& state) {
 
 /// The resultant at the end of the last step is saved, as it is about positions that the state does not contain.
 void MomentumAccount::save(Snapshot& snapshot, const std::string& name) const {
-  Vector numbers(21);
+  Vector numbers(23);
   numbers << impulse_.force, impulse_.moment, size_, previous_.total.force, previous_.total.moment, previous_.size,
-      algorithmic_.force, algorithmic_.moment, arm_;
+      algorithmic_.force, algorithmic_.moment, arm_, contact_size_, previous_.contact_size;
   snapshot.save(name, numbers);
 }
 
 void MomentumAccount::load(const Snapshot& snapshot, const std::string& name) {
-  const Vector& numbers = snapshot.reals(name, 21);
+  const Vector& numbers = snapshot.reals(name, 23);
   const auto resultant_at = [&numbers](Index first) {
     return Resultant{numbers.segment<3>(first), numbers.segment<3>(first + 3)};
   };
   impulse_ = resultant_at(0);
   size_ = numbers[6];
-  previous_ = {resultant_at(7), numbers[13]};
+  previous_ = {resultant_at(7), numbers[13], numbers[22]};
   algorithmic_ = resultant_at(14);
   arm_ = numbers[20];
+  contact_size_ = numbers[21];
 }
 
 Resultant MomentumAccount::part_of_nodes(const Vector& force) const {
@@ -154,7 +155,7 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
     // Under Tresca's law a point without pressure may still carry friction.
     if (!carries_acting_force(forces, i)) continue;
     const Eigen::Vector3d force = in_space(acting_contact_force(forces, i));
-    magnitudes.force[0] += force.norm();
+    magnitudes.force[1] += force.norm();
     if (is_summed_by_nodes(i)) {
       presses_bodies = true;
       continue;
@@ -182,8 +183,8 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
   add_up_ranks(parts);
   include(contact);
   include(supports);
-  // Forces between which a body is squeezed cancel in the resultants.
   sum.size += magnitudes.force[0];
+  sum.contact_size = magnitudes.force[1];
   if (varies) include(parts[2]);
   if (is_damped) include(parts[3], -1.0);
   return sum;
@@ -232,6 +233,7 @@ void MomentumAccount::enter_step(const State& state) {
   const auto enter = [this](const Sum& sum, double weight) {
     add_impulse(scheme_.step() * weight, sum.total);
     size_ += scheme_.step() * weight * sum.size;
+    contact_size_ += scheme_.step() * weight * sum.contact_size;
   };
   const Resultant load_before = constant_load_;
   bool at_both_ends = false;

@@ -37,16 +37,18 @@ class MomentumAccount {
   void enter_impulse(const State& state, const Vector& impulse);
   /// Impulse since the start.
   [[nodiscard]] const Resultant& impulse() const { return impulse_; }
-  /// Σ of the magnitudes of the impulses of all contact points and supports, and of the resultants of each kind of
-  /// force: the scale of rounding of their sum.
+  /// Σ of the magnitudes of all impulses: of the resultants of each kind of force, and of each supported dof.
   [[nodiscard]] double size() const { return size_; }
+  /// Σ of the magnitudes of the impulses of all contact points, which may cancel in their resultant and leave its
+  /// rounding.
+  [[nodiscard]] double contact_size() const { return contact_size_; }
   /// Largest distance of a node from the origin so far.
   [[nodiscard]] double arm() const { return arm_; }
 
  private:
   struct Sum {
     Resultant total;
-    double size = 0.0;
+    double size = 0.0, contact_size = 0.0;
   };
   [[nodiscard]] bool is_summed_by_nodes(Index point) const;
   [[nodiscard]] Resultant between_bodies(const StepForces& forces);
@@ -56,7 +58,7 @@ class MomentumAccount {
   [[nodiscard]] Sum of_springs();
   [[nodiscard]] Resultant algorithmic(const State& state);
   /// Parts of a resultant: contact, supports, loads, damping, and in the last one the magnitudes of the forces of
-  /// contact points and supports.
+  /// supports and of contact points.
   static constexpr std::size_t most_parts = 5;
   [[nodiscard]] Resultant part_of_nodes(const Vector& force) const;
   void add_up_ranks(std::span<Resultant> parts) const;
@@ -79,7 +81,7 @@ class MomentumAccount {
   Resultant algorithmic_;                                         ///< of M a, Scheme::momentum_acceleration
   Vector acceleration_, momentum_, force_, normal_, tangential_;  ///< work space
   Resultant impulse_;
-  double size_ = 0.0;
+  double size_ = 0.0, contact_size_ = 0.0;
 };
 
 }  // namespace ricochet
