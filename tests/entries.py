@@ -1,9 +1,9 @@
 """Writes the CTest entries of a GoogleTest program: one for each source file, whose tests share a process.
 
-    entries.py [-x PATTERN]… [--long NAME]… PROGRAM FOLDER OUTPUT [NAME=VALUE]…
+    entries.py [-x PATTERN]… [--label LABEL=NAME]… PROGRAM FOLDER OUTPUT [NAME=VALUE]…
 
 An entry is named after its file (FOLDER unit, unit/mesh/refine_test.cpp: unit.mesh.refine). NAME=VALUE are properties of
-all entries. -x leaves out tests that match a pattern of --gtest_filter; --long gives an entry the label "long".
+all entries. -x leaves out tests that match a pattern of --gtest_filter; --label gives an entry one more label.
 """
 
 import argparse
@@ -51,21 +51,22 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("output", type=pathlib.Path)
     parser.add_argument("-x", action="append", default=[], dest="excluded")
-    parser.add_argument("--long", action="append", default=[])
+    parser.add_argument("--label", action="append", default=[], dest="labels")
     parser.add_argument("properties", nargs="*")
     arguments = parser.parse_args()
-    lines, long = [], set(arguments.long)
+    lines, labels = [], {}
+    for label, name in (each.split("=", 1) for each in arguments.labels):
+        labels.setdefault(name, []).append(label)
     for path, chosen in filters(tests_by_file(arguments.program, arguments.excluded), arguments.excluded):
         parts = pathlib.Path(path).relative_to(arguments.folder).with_suffix("").parts
         name = ".".join((arguments.folder.name, *parts)).removesuffix("_test")
         lines.append(f'add_test([=[{name}]=] [=[{arguments.program}]=] [=[--gtest_filter={chosen}]=])')
-        properties = [each + ";long" if name in long and each.startswith("LABELS=") else each
-                      for each in arguments.properties]
-        long.discard(name)
+        more = labels.pop(name, [])
+        properties = [";".join([each, *more]) if each.startswith("LABELS=") else each for each in arguments.properties]
         values = " ".join("{} [=[{}]=]".format(*each.split("=", 1)) for each in properties)
         lines.append(f"set_tests_properties([=[{name}]=] PROPERTIES {values})")
-    if unknown := [name for name in long if name.startswith(arguments.folder.name + ".")]:
-        raise SystemExit(f"entries.py: there is no entry {', '.join(sorted(unknown))}; correct the list of long tests")
+    if unknown := [name for name in labels if name.startswith(arguments.folder.name + ".")]:
+        raise SystemExit(f"entries.py: there is no entry {', '.join(sorted(unknown))}; correct the lists of long or sanitized tests")
     if not lines:
         raise SystemExit(f"entries.py: {arguments.program} has no tests")
     arguments.output.write_text("\n".join(lines) + "\n")

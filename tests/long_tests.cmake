@@ -11,17 +11,20 @@ set(RICOCHET_LONG_TESTS
   verification.follower_pressure verification.published_schemes verification.elements.manufactured_solution
   verification.locking verification.contact.inf_sup end_to_end.adaptive_steps)
 
-foreach(name ${RICOCHET_LONG_TESTS})
+include(${CMAKE_CURRENT_LIST_DIR}/sanitized_tests.cmake)
+
+foreach(name ${RICOCHET_LONG_TESTS} ${RICOCHET_SANITIZED_TESTS})
   if(NOT name MATCHES "^(unit|verification|allocations|end_to_end|python)[.]")
-    message(FATAL_ERROR "tests/long_tests.cmake: ${name} begins with no folder of tests")
+    message(FATAL_ERROR "tests/long_tests.cmake and tests/sanitized_tests.cmake: ${name} begins with no folder of tests")
   endif()
 endforeach()
 
-# ricochet_require_long_tests(PREFIX): an error unless the entries of the list that begin with PREFIX are tests of this folder.
-function(ricochet_require_long_tests prefix)
-  foreach(name ${RICOCHET_LONG_TESTS})
+# ricochet_require_listed_tests(PREFIX): an error unless the entries of both lists that begin with PREFIX are tests of this
+# folder.
+function(ricochet_require_listed_tests prefix)
+  foreach(name ${RICOCHET_LONG_TESTS} ${RICOCHET_SANITIZED_TESTS})
     if(name MATCHES "^${prefix}" AND NOT TEST ${name})
-      message(FATAL_ERROR "tests/long_tests.cmake: there is no test ${name}")
+      message(FATAL_ERROR "tests/long_tests.cmake and tests/sanitized_tests.cmake: there is no test ${name}")
     endif()
   endforeach()
 endfunction()
