@@ -44,7 +44,8 @@ def machine(program):
 
 def kept(revision, name, program):
     """Returns the file of the results of a commit: they are valid for this machine and these runs."""
-    definition = hashlib.sha256((HERE / "runs.py").read_bytes() + machine(program).encode()).hexdigest()[:16]
+    files = [HERE / "runs.py", *sorted(path for path in (HERE / "cases").iterdir() if path.is_file())]
+    definition = hashlib.sha256(b"".join(path.read_bytes() for path in files) + machine(program).encode()).hexdigest()[:16]
     return revisions.FOLDER / "results" / f"{revision}-{name}-{definition}.json"
 
 

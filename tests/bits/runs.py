@@ -15,10 +15,13 @@ import tomllib
 
 import h5py
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Settings of a method, tried in turn until a case is accepted: those of the case, then masses with inertia on contact
 # nodes, then the diagonal mass without it.
 DIAGONAL = (("mass.type=lumped",), ("mass.type=equivalent-lumped",))
 METHODS = ((), ("mass.type=consistent",), *DIAGONAL, ("mass.type=equivalent", "time.preset=textbook-half"))
+# Cases for what no case of the collection uses.
+OWN_CASES = sorted((pathlib.Path(__file__).resolve().parent / "cases").glob("*.toml"))
 REFUSED = 2
 # Statuses with which a run ends: done, refused, not converged, failed expectations. Others are faults of the machine or
 # of the program.
@@ -33,24 +36,32 @@ MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OM
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    case: str  # relative to the root of the sources
+    case: str  # relative to the root of the sources, or absolute
     scheme: str
     kind: str  # "1 thread", "2 threads", "resumed", "2 ranks"
     steps: int
 
     def __str__(self):
-        return f"{self.case} {self.scheme} ({self.kind})"
+        return f"{self.case.removeprefix(f'{ROOT}/')} {self.scheme} ({self.kind})"
 
 
 @dataclasses.dataclass(frozen=True)
 class Plan:
     """Time steps of a run, and settings of the method."""
-    step: float
+    step: float  # None: adaptive, with the settings of the case
     count: int
+    end: float
     method: tuple
 
     def __str__(self):
-        return " ".join((f"{self.count} steps of {self.step:g}", *self.method))
+        steps = "adaptive steps" if self.step is None else f"{self.count} steps of {self.step:g}"
+        return " ".join((steps, *self.method))
+
+    def middle(self):
+        return 0.5 * self.end if self.step is None else self.step * (self.count // 2)
+
+    def settings(self):
+        return [*([] if self.step is None else [f"time.step={self.step!r}"]), *self.method]
 
 
 def schemes(program):
@@ -59,7 +70,8 @@ def schemes(program):
 
 
 def cases(root):
-    return {str(path.relative_to(root)) for path in root.glob("cases/*/*.toml")}
+    """Returns the cases of a tree of sources, and those beside this file, which both sides run."""
+    return {str(path.relative_to(root)) for path in root.glob("cases/*/*.toml")} | {str(path) for path in OWN_CASES}
 
 
 def all_runs(of_cases, program, kinds, steps):
@@ -72,10 +84,12 @@ def plans(case, steps):
     """Returns the plans of a case. The steps cover its time, so that there is contact. If they are refused as too long,
     the case's own steps follow, and then those of explicit schemes, which end earlier."""
     time = tomllib.loads(case.read_text())["time"]
+    if time["step"] == "adaptive":
+        return [Plan(None, 0, float(time["end"]), method) for method in METHODS]
     own = max(round(time["end"] / time["step"]), 1)
     grids = [(time["step"], own)] if own <= steps else [(time["end"] / steps, steps), (time["step"], steps)]
-    return ([Plan(step, count, method) for step, count in grids for method in METHODS] +
-            [Plan(time["step"] / 20, steps, method) for method in DIAGONAL])
+    return ([Plan(step, count, step * count, method) for step, count in grids for method in METHODS] +
+            [Plan(time["step"] / 20, steps, time["step"] / 20 * steps, method) for method in DIAGONAL])
 
 
 class Side:
@@ -112,17 +126,17 @@ class Side:
                     "frame": frame_checksum(output / "results.h5"), "touches": has_contact(output / "history.csv")}
 
     def execute(self, run, output, plan):
-        settings = [f"time.step={plan.step!r}", f"time.scheme={run.scheme}", "output.fields_every=1000000000", *plan.method]
+        settings = [f"time.scheme={run.scheme}", "output.fields_every=1000000000", *plan.settings()]
         begin = [self.program, "run", run.case, "-o", output, "--threads", "2" if run.kind == "2 threads" else "1"]
         if run.kind == "2 ranks":
             begin = ["mpirun", "-n", "2", self.mpi_program, "run", run.case, "-o", output, "--threads", "1"]
         if run.kind != "resumed":
-            return self.call(begin, settings, plan.step * plan.count)
+            return self.call(begin, settings, plan.end)
         settings.append("output.checkpoint_every=1000000000")
-        status = self.call(begin, settings, plan.step * (plan.count // 2))
+        status = self.call(begin, settings, plan.middle())
         if status not in (0, 5):
             return status
-        return self.call([self.program, "run", "--resume", output], [], plan.step * plan.count)
+        return self.call([self.program, "run", "--resume", output], [], plan.end)
 
     def call(self, command, settings, end):
         more = [word for setting in (*settings, f"time.end={end!r}") for word in ("--set", setting)]
