@@ -16,10 +16,10 @@ import tomllib
 import h5py
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Settings of a method, tried in turn until a case is accepted: those of the case, then masses with inertia on contact
-# nodes, then the diagonal mass without it.
+# Settings of a method, tried in turn until a case is accepted: those of the case, then other masses.
 DIAGONAL = (("mass.type=lumped",), ("mass.type=equivalent-lumped",))
-METHODS = ((), ("mass.type=consistent",), *DIAGONAL, ("mass.type=equivalent", "time.preset=textbook-half"))
+METHODS = ((), ("mass.type=consistent",), ("mass.type=equivalent",), *DIAGONAL,
+           ("mass.type=equivalent", "time.preset=textbook-half"))
 # Cases for what no case of the collection uses.
 OWN_CASES = sorted((pathlib.Path(__file__).resolve().parent / "cases").glob("*.toml"))
 REFUSED = 2
@@ -84,12 +84,13 @@ def plans(case, steps):
     """Returns the plans of a case. The steps cover its time, so that there is contact. If they are refused as too long,
     the case's own steps follow, and then those of explicit schemes, which end earlier."""
     time = tomllib.loads(case.read_text())["time"]
-    if time["step"] == "adaptive":
-        return [Plan(None, 0, float(time["end"]), method) for method in METHODS]
-    own = max(round(time["end"] / time["step"]), 1)
-    grids = [(time["step"], own)] if own <= steps else [(time["end"] / steps, steps), (time["step"], steps)]
-    return ([Plan(step, count, step * count, method) for step, count in grids for method in METHODS] +
-            [Plan(time["step"] / 20, steps, time["step"] / 20 * steps, method) for method in DIAGONAL])
+    adaptive = time["step"] == "adaptive"
+    longest = time["largest"] if adaptive else time["step"]
+    own = max(round(time["end"] / longest), 1)
+    grids = [(longest, own)] if own <= steps else [(time["end"] / steps, steps), (longest, steps)]
+    return ([Plan(None, 0, float(time["end"]), method) for method in METHODS if adaptive] +
+            [Plan(step, count, step * count, method) for step, count in grids for method in METHODS] +
+            [Plan(longest / 20, steps, longest / 20 * steps, method) for method in DIAGONAL])
 
 
 class Side:
@@ -122,7 +123,7 @@ class Side:
         with tempfile.TemporaryDirectory() as folder:
             output = pathlib.Path(folder) / "out"
             status = self.execute(run, output, plan)
-            return {"plan": str(plan), "status": status, "history": checksum(output / "history.csv"),
+            return {"plan": str(plan), "status": status, "history": checksum(output),
                     "frame": frame_checksum(output / "results.h5"), "touches": has_contact(output / "history.csv")}
 
     def execute(self, run, output, plan):
@@ -151,8 +152,12 @@ class Side:
                 return "none within the time limit"
 
 
-def checksum(path):
-    return hashlib.sha256(path.read_bytes()).hexdigest()[:16] if path.exists() else ""
+def checksum(output):
+    """Returns the checksum of the history and of the probes with rows of their own."""
+    if not (output / "history.csv").exists():
+        return ""
+    files = [output / "history.csv", *sorted(output.glob("probes-*.csv"))]
+    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
 
 
 def has_contact(path):

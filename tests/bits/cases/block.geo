@@ -1,0 +1,20 @@
+// A block of 1 by 0.5: 4 by 3 quadrilaterals.
+Point(1) = {0, 0, 0};
+Point(2) = {1, 0, 0};
+Point(3) = {1, 0.5, 0};
+Point(4) = {0, 0.5, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Transfinite Curve {1, 3} = 5;
+Transfinite Curve {2, 4} = 4;
+Transfinite Surface {1};
+Recombine Surface {1};
+Physical Surface("block") = {1};
+Physical Curve("base") = {1};
+Physical Curve("right") = {2};
+Physical Curve("top") = {3};
+Physical Curve("left") = {4};

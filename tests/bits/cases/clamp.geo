@@ -1,0 +1,26 @@
+// A clamp: two arms of 1 by 0.2 with a slot of 0.1 between them, joined at the left; quadrilaterals of 0.1.
+Point(1) = {0, 0, 0};    Point(2) = {0.2, 0, 0};    Point(3) = {1, 0, 0};
+Point(4) = {0, 0.2, 0};  Point(5) = {0.2, 0.2, 0};  Point(6) = {1, 0.2, 0};
+Point(7) = {0, 0.3, 0};  Point(8) = {0.2, 0.3, 0};  Point(9) = {1, 0.3, 0};
+Point(10) = {0, 0.5, 0}; Point(11) = {0.2, 0.5, 0}; Point(12) = {1, 0.5, 0};
+Line(1) = {1, 2};   Line(2) = {2, 3};
+Line(3) = {4, 5};   Line(4) = {5, 6};
+Line(5) = {7, 8};   Line(6) = {8, 9};
+Line(7) = {10, 11}; Line(8) = {11, 12};
+Line(9) = {1, 4};   Line(10) = {2, 5};  Line(11) = {3, 6};
+Line(12) = {4, 7};  Line(13) = {5, 8};
+Line(14) = {7, 10}; Line(15) = {8, 11}; Line(16) = {9, 12};
+Curve Loop(1) = {1, 10, -3, -9};   Plane Surface(1) = {1};
+Curve Loop(2) = {2, 11, -4, -10};  Plane Surface(2) = {2};
+Curve Loop(3) = {3, 13, -5, -12};  Plane Surface(3) = {3};
+Curve Loop(4) = {5, 15, -7, -14};  Plane Surface(4) = {4};
+Curve Loop(5) = {6, 16, -8, -15};  Plane Surface(5) = {5};
+Transfinite Curve {1, 3, 5, 7, 9, 10, 11, 14, 15, 16} = 3;
+Transfinite Curve {2, 4, 6, 8} = 9;
+Transfinite Curve {12, 13} = 2;
+Transfinite Surface {1, 2, 3, 4, 5};
+Recombine Surface {1, 2, 3, 4, 5};
+Physical Surface("clamp") = {1, 2, 3, 4, 5};
+Physical Curve("foot") = {1, 2};
+Physical Curve("head") = {7, 8};
+Physical Curve("slot") = {4, 6, 13};
