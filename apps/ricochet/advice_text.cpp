@@ -59,18 +59,15 @@ void print_materials(const Body& body) {
 void print_bodies(const Case& input, const Model& model, const ConnectedBodies& connected) {
   const int d = model.mesh.dimension;
   const RigidBodies rigid(model.problem, connected.of_node, connected.count);
-  std::vector<std::string> names = names_of_bodies(model.mesh, connected);
-  for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
-    if (model.obstacles[k]->free_motion() != nullptr)
-      names.push_back(fmt::format("rigid body \"{}\"", input.obstacles[k].name));
-  }
+  const std::vector<std::string> names = names_of_all_bodies(input, model);
   constexpr std::size_t shown = 10;
   for (std::size_t i = 0; i < std::min(rigid.bodies().size(), shown); ++i) {
     const RigidBody& body = rigid.bodies()[i];
     const bool is_section = d == 2 && !is_axisymmetric(model.body);
     const std::string inertia =
         is_section ? fmt::format("{:.5g}", body.inertia(2, 2)) : vector_text(body.inertia.diagonal()) + " (xx, yy, zz)";
-    fmt::print("  {}: mass {:.6g}{}, centre {}, moment of inertia about it {}\n", names[i], body.mass,
+    const std::string name = i < model.bodies.names.size() ? names[i] : fmt::format("rigid body \"{}\"", names[i]);
+    fmt::print("  {}: mass {:.6g}{}, centre {}, moment of inertia about it {}\n", name, body.mass,
                is_section ? " per unit of thickness" : "", vector_text(body.centre.head(d), reach(model.mesh)),
                inertia);
   }

@@ -113,6 +113,7 @@ def main():
     begun = time.monotonic()
     revisions.lock()
     state = revisions.state()
+    is_clean = not state[1]
     revision = revisions.commit(arguments.revision)
     tree = working_tree()
     name, steps, kinds = ("quick", QUICK_STEPS, KINDS[:1]) if arguments.quick else ("whole", STEPS, KINDS)
@@ -121,10 +122,10 @@ def main():
         print("./dev bits: no runs on two ranks: PETSc is not installed", file=sys.stderr)
     runs = chosen(all_runs(cases(tree.root) | revisions.cases(revision), tree.program, kinds, steps), arguments.only)
     own = kept(state[0], name, tree.program)
-    new = results(lambda: tree, None if revisions.is_dirty() else own, runs)
+    new = results(lambda: tree, own if is_clean else None, runs)
     if revisions.state() != state:
         raise SystemExit("./dev bits: the sources changed between the compilation and the end of the runs: start it again")
-    if not revisions.is_dirty():
+    if is_clean:
         keep(own, new)
     old = results(lambda: earlier(revision), kept(revision, name, tree.program), runs)
     keep(kept(revision, name, tree.program), old)

@@ -82,6 +82,8 @@ struct Model {
 /// a curved surface: pushing them out would create energy. A static start is exempt. For programs that run cases
 /// unchanged; a model itself may start anywhere. Collective over all ranks.
 void refuse_bodies_inside_obstacles(const Case& input, const Model& model);
+/// Returns the names of the bodies of the mesh and then of the rigid bodies that move freely, as RigidBodies has them.
+[[nodiscard]] std::vector<std::string> names_of_all_bodies(const Case& input, const Model& model);
 
 /// Returns the scheme selected by [time].
 [[nodiscard]] std::unique_ptr<Scheme> make_scheme(const TimeSection& time);

@@ -202,4 +202,12 @@ void start_free_bodies(const Case& input, Model& model) {
   });
 }
 
+std::vector<std::string> names_of_all_bodies(const Case& input, const Model& model) {
+  std::vector<std::string> names = model.bodies.names;
+  for (std::size_t i = 0; i < input.obstacles.size(); ++i) {
+    if (model.obstacles[i]->free_motion() != nullptr) names.push_back(input.obstacles[i].name);
+  }
+  return names;
+}
+
 }  // namespace ricochet

@@ -30,15 +30,6 @@ std::unique_ptr<HistoryWriter> open_history(const Ranks& ranks, const std::strin
   return result;
 }
 
-/// Returns the names of the bodies of the mesh and of the rigid bodies that move freely.
-std::vector<std::string> names_of_all_bodies(const Case& input, const Model& model) {
-  std::vector<std::string> names = model.bodies.names;
-  for (std::size_t i = 0; i < input.obstacles.size(); ++i) {
-    if (model.obstacles[i]->free_motion() != nullptr) names.push_back(input.obstacles[i].name);
-  }
-  return names;
-}
-
 ImpactRecorder make_impact_recorder(const Model& model, const Scheme& scheme, const State& state) {
   ImpactRecorder impacts(model.problem, scheme, state, model.contact_pairs, model.bodies.connected.of_node,
                          model.bodies.crossing_times);
