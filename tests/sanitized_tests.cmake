@@ -21,17 +21,15 @@ set(RICOCHET_SANITIZED_TESTS
   unit.simulation.restitution unit.simulation.self_overlap unit.simulation.sliding_watch unit.solver.choose_method
   unit.solver.contact.contact_point unit.solver.contact.contact_solver_data unit.solver.contact.dependent_conditions
   unit.solver.contact.friction_robustness unit.solver.contact.twin_points unit.solver.contact_candidates
-  unit.solver.delassus_columns unit.solver.dependent_obstacles unit.solver.moved_product unit.solver.reaction_path
-  unit.solver.rotating_rows unit.study.benchmark.manifest unit.study.benchmark.methods unit.study.benchmark.scorecard
-  unit.study.history_errors unit.study.order_columns unit.study.plan unit.study.result_columns unit.study.run_folders
-  unit.study.run_state unit.study.table
+  unit.solver.delassus_columns unit.solver.moved_product unit.solver.reaction_path unit.solver.rotating_rows
+  unit.study.benchmark.manifest unit.study.benchmark.methods unit.study.benchmark.scorecard
+  unit.study.history_errors unit.study.order_columns unit.study.plan unit.study.result_columns
+  unit.study.run_folders unit.study.run_state unit.study.table
   verification.acceleration verification.adaptive_onset verification.axisymmetry.contact
-  verification.axisymmetry.elements verification.body_impacts verification.contact.body_pairs
-  verification.elements.branches verification.elements.stress verification.finite_critical_step
-  verification.finite_loads verification.finite_midpoint verification.finite_rubber verification.inverted_cells
-  verification.refactorize verification.session verification.session_steering verification.static_friction
-  verification.static_overlap verification.stress_raisers verification.support_probe
-  end_to_end.advice end_to_end.benchmark_command end_to_end.changed_files end_to_end.command_line
-  end_to_end.damaged_results end_to_end.method_energy end_to_end.obstacle_files end_to_end.parts end_to_end.placement
-  end_to_end.self_penetration end_to_end.semantic_errors end_to_end.short_runs end_to_end.two_bodies
-  end_to_end.watching)
+  verification.axisymmetry.elements verification.contact.body_pairs verification.elements.branches
+  verification.elements.stress verification.finite_critical_step verification.finite_loads
+  verification.finite_midpoint verification.finite_rubber verification.inverted_cells verification.refactorize
+  verification.session verification.session_steering verification.static_friction verification.static_overlap
+  verification.stress_raisers verification.support_probe
+  end_to_end.advice end_to_end.benchmark_command end_to_end.damaged_results end_to_end.obstacle_files
+  end_to_end.parts end_to_end.placement end_to_end.self_penetration end_to_end.semantic_errors)
