@@ -62,7 +62,8 @@ function inexact(run: Run, impact: Impact): RestitutionRemark | null {
   const method = toNumber(impact.method_energy ?? null) / approach;
   const body = 1 - toNumber(impact.restitution) ** 2;
   const share = (part: number) => `${number(100 * Math.abs(part), 2)} %`;
-  return { grade: "fair", words: `inexact: the method ${method < 0 ? "lost" : "created"} ${share(method)}, the body lost ${share(body)}`,
+  const change = `${impact.against ? "the bodies" : "the body"} ${body < 0 ? "gained" : "lost"} ${share(body)}`;
+  return { grade: "fair", words: `inexact: the method ${method < 0 ? "lost" : "created"} ${share(method)}, ${change}`,
     detail: "of the energy of the approach; use a smaller time step and smaller cells to reduce the part of the method" };
 }
 
