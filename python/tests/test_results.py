@@ -33,6 +33,14 @@ def test_history_is_what_is_in_the_file(run):
     assert (run.history.to_pandas()["kinetic_energy"].to_numpy() == table["kinetic_energy"]).all()
 
 
+def test_columns_of_probes_with_rows_of_their_own(tmp_path):
+    run = rc.run(ROOT / "cases/puck/puck.toml", tmp_path / "out", {"time.end": 2e-5, "probe.1.every": 3, "output.fields_every": 0})
+    names = list(run.history)
+    assert "centre.displacement_y" in names
+    assert len(set(names)) == len(names) == len(run.history)
+    assert len(run.history["centre.displacement_y"]) < len(run.history["time"])
+
+
 def test_columns_share_the_memory_that_was_read(run):
     column, once_more = run.history["time"], run.history["time"]
     # Both are kept: the memory of a discarded copy could be reused for the next one.

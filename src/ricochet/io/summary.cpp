@@ -8,14 +8,13 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/json.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/cell_rotations.hpp"
+#include "ricochet/io/durable_file.hpp"
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/io/summary_expectations.hpp"
 #include "ricochet/io/summary_method.hpp"
@@ -247,7 +246,7 @@ void write_summary(const std::string& path, const RunSummary& summary) {
     throw Error(ErrorKind::file_access, fmt::format("{}: cannot write: {}", path, std::strerror(errno)));
 }
 
-RunSummary read_summary_of_run(const std::string& directory) {
+std::string summary_text_of_run(const std::string& directory) {
   if (!holds_run(directory)) {
     throw Error(
         ErrorKind::file_access,
@@ -260,13 +259,16 @@ RunSummary read_summary_of_run(const std::string& directory) {
                             "`ricochet run` with --resume continues the run and writes a summary",
                             directory));
   }
-  return read_summary(path);
+  return read_file(path);
+}
+
+RunSummary read_summary_of_run(const std::string& directory) {
+  const std::string text = summary_text_of_run(directory);
+  return summary_from_json(text, (std::filesystem::path(directory) / "summary.json").string());
 }
 
 RunSummary read_summary(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw Error(ErrorKind::file_access, fmt::format("{}: cannot read: {}", path, std::strerror(errno)));
-  return summary_from_json({std::istreambuf_iterator<char>(file), {}}, path);
+  return summary_from_json(read_file(path), path);
 }
 
 RunSummary summary_from_json(const std::string& text, const std::string& path) {

@@ -227,6 +227,8 @@ void write_summary(const std::string& path, const RunSummary& summary);
 [[nodiscard]] RunSummary summary_from_json(const std::string& text, const std::string& path);
 /// Reads the summary of the run in a directory. Throws likewise; messages describe the content of the directory.
 [[nodiscard]] RunSummary read_summary_of_run(const std::string& directory);
+/// Reads its text. Throws Error(file_access) likewise.
+[[nodiscard]] std::string summary_text_of_run(const std::string& directory);
 /// Returns a number of a summary by its dotted path ("extrema.total_energy.maximum", "steps"). Throws
 /// Error(invalid_input).
 [[nodiscard]] double summary_value(const std::string& json_text, const std::string& path);

@@ -36,8 +36,9 @@ void check_rows(const std::string& path, const HistoryTable& table) {
   if (times.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: there are no rows yet", path));
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (std::isfinite(times[i]) && (i == 0 || times[i] >= times[i - 1])) continue;
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("{}:{}: the time {} is not later than the previous one", path, i + 2, times[i]));
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("{}:{}: the time {} is not finite, or earlier than that of the row before", path, i + 2, times[i]));
   }
 }
 
@@ -74,8 +75,8 @@ RunData read_run(const std::string& directory, bool with_results) {
   const auto path = [&](const char* file) { return (fs::path(directory) / file).string(); };
   RunData run;
   run.directory = directory;
-  run.summary = read_summary_of_run(directory);
-  run.summary_json = read_file(path("summary.json"));
+  run.summary_json = summary_text_of_run(directory);
+  run.summary = summary_from_json(run.summary_json, path("summary.json"));
   const bool may_grow = run.summary.status != "done";
   run.history = read_history(path("history.csv"), may_grow);
   check_rows(path("history.csv"), run.history);
@@ -83,9 +84,10 @@ RunData read_run(const std::string& directory, bool with_results) {
     run.probe_tables.emplace_back(file, read_history(path(file.c_str()), may_grow));
     check_rows(path(file.c_str()), run.probe_tables.back().second);
   }
-  const double last = run.history.columns.contains("step") ? run.history.columns.at("step").back() : 0.0;
-  if (run.summary.status == "done" && last < static_cast<double>(run.summary.steps)) {
-    run.notes.push_back(fmt::format("history.csv ends at step {:g} of {}: it is truncated", last, run.summary.steps));
+  if (const auto step = run.history.columns.find("step"); step != run.history.columns.end()) {
+    const auto last = static_cast<long>(step->second.back());
+    if (run.summary.status == "done" && last < run.summary.steps)
+      run.notes.push_back(fmt::format("history.csv ends at step {} of {}: it is truncated", last, run.summary.steps));
   }
   if (with_results) read_results(run);
   return run;
@@ -135,23 +137,30 @@ const HistoryTable* RunData::table_of(const std::string& column_name) const {
   return nullptr;
 }
 
+const HistoryTable& RunData::require_table_of(const std::string& column_name) const {
+  if (const HistoryTable* const table = table_of(column_name)) return *table;
+  std::string files = "history.csv";
+  for (const auto& [file, table] : probe_tables) files += ", " + file;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{}: there is no column \"{}\" in {}", directory, column_name, files));
+}
+
 const std::vector<double>& RunData::column(const std::string& column_name) const {
-  const HistoryTable* table = table_of(column_name);
-  if (table == nullptr) {
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("{}/history.csv: there is no column \"{}\"", directory, column_name));
-  }
-  return table->columns.at(column_name);
+  return require_table_of(column_name).columns.at(column_name);
 }
 
 const std::vector<double>& RunData::times_of(const std::string& column_name) const {
-  const HistoryTable* table = table_of(column_name);
-  return (table != nullptr ? *table : history).columns.at("time");
+  return require_table_of(column_name).columns.at("time");
 }
 
 std::vector<std::string> RunData::column_names() const {
   std::vector<std::string> names = history.names;
-  for (const auto& [file, table] : probe_tables) names.insert(names.end(), table.names.begin(), table.names.end());
+  for (const auto& entry : probe_tables) {
+    for (const std::string& name : entry.second.names) {
+      // Steps and times are in every table.
+      if (table_of(name) == &entry.second) names.push_back(name);
+    }
+  }
   return names;
 }
 
