@@ -52,6 +52,12 @@ end = 0.2
 [output]
 fields_every = 0
 '''
+FAR_GEO = """SetFactory("OpenCASCADE");
+Rectangle(1) = {0, 9, 0, 1, 1};
+Mesh.MeshSizeMax = 0.5;
+Physical Surface("body") = {1};
+Physical Curve("skin") = Boundary{ Surface{1}; };
+"""
 SLIT = 1e-6
 HELD = '[[support]]\ngroup = "base"\ncomponents = ["x", "y"]\n[[pressure]]\ngroup = "roof"\nvalue = "{}*min(t/0.1, 1)"\n'
 
@@ -175,6 +181,19 @@ class SelfPenetration(TestCase):
             self.assertLessEqual(found["depth"], 1.01 * largest)
             [warning] = told(output)
             self.assertIn('against = "', warning)
+
+    def test_a_contact_with_another_body_hides_nothing(self):
+        """In long steps the arms move by more than an edge between two checks, with and without another body beside them and a
+        contact with it."""
+        (self.folder / "far.geo").write_text(FAR_GEO)
+        beside = (CLAMP.replace('[mesh]\nfile = "clamp.geo"', '[part.clamp]\nfile = "clamp.geo"\n[part.far]\nfile = "far.geo"')
+                  .replace('group = "body"', 'group = "all"').replace("(0.5-y)", "(0.5-y)*max(0, min(1, 5-y))"))
+        contact = '[[contact]]\ngroup = "clamp.skin"\nagainst = "far.skin"\n'
+        for name, text in (("alone", CLAMP), ("beside", beside), ("contact", beside + contact)):
+            (self.folder / "clamp.geo").write_text(CLAMP_GEO)
+            output = self.simulate(self.write(f"{name}.toml", text), name, {"time.step": 0.02, "time.end": 0.2}, ("--quiet",))
+            [entry] = summary_of(output)["unwatched_penetration"]["not_watched"]
+            self.assertIn("bodies against themselves between checks", entry, name)
 
     def test_what_was_not_watched_is_not_called_fine(self):
         """Results of a version without the check, and of several processes."""

@@ -34,7 +34,7 @@ class PenetrationWatch {
   /// Checks the starting state and the state after every step. Warns, once, of each obstacle, contact and pair of
   /// bodies. Allocates nothing if there is nothing to report.
   void check(const State& state);
-  /// Checks the state after each part of a divided step, before look(): within the whole step a node may move round an
+  /// Checks the state after each part of a divided step, before check(): within the whole step a node may move round an
   /// edge.
   void check_part(const State& state) { passages_.check(state); }
   /// Checks the last state in addition: bodies even if none has moved far.

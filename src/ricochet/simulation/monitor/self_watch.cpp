@@ -13,15 +13,17 @@ namespace ricochet {
 
 namespace {
 
-/// Fractions of the mean edge that nodes may move relative to the body's mean motion between two checks, as others may
-/// approach them by as much; the second after an overlap has been reported, when only its depth is of interest.
-constexpr double motion_before_check = 0.0125, motion_once_found = 0.125;
+/// A check is due when a node has moved by this fraction of the mean edge relative to the mean translation of the body:
+/// two nodes then have approached each other by at most twice of it.
+constexpr double motion_before_check = 0.0125;
+/// Fraction of it after an overlap has been reported, when only its depth is of interest.
+constexpr double motion_once_found = 0.125;
 /// Fraction of the mean edge up to which initial overlaps are attributed to facets that approximate curved surfaces.
 constexpr double overlap_of_facets = 0.5;
 /// Minimum of SelfOverlap::opening at the start: corners of cubes have 0.58.
 constexpr double least_opening = 0.5;
-/// Time of checking a node relative to that of reading a number of a factor: measured, 0.2 µs in the plane and up to 1
-/// µs in space to 0.4 ns.
+/// Cost of checking one node, in entries of a factor that are read: 0.2 µs in the plane and up to 1 µs in space, 0.4 ns
+/// for an entry (measured).
 constexpr double work_per_node_in_plane = 500.0, work_per_node_in_space = 2500.0;
 /// Largest number of checks that are saved for later, and the number available at the start.
 constexpr double most_saved = 4.0;
@@ -57,108 +59,127 @@ SelfWatch::SelfWatch(const Body& body, const SemidiscreteProblem& problem, const
     : positions_(problem.nodes),
       axisymmetric_(problem.axisymmetric),
       work_per_step_(share * step_work),
-      contacts_(static_cast<int>(pairs.size())) {
+      pair_count_(static_cast<int>(pairs.size())) {
   if (problem.ranks->are_several()) return;
+  std::vector<PairNodes> pair_nodes;
+  for (const ContactPair& pair : pairs) {
+    PairNodes& nodes = pair_nodes.emplace_back();
+    if (!pair.between_bodies()) continue;
+    nodes = {pair.tied, facet_nodes(*body.space, pair.facets), facet_nodes(*body.space, pair.opposite_facets)};
+    for (const auto* const facets : {&pair.facets, &pair.opposite_facets}) {
+      const std::vector<double> sizes = facet_sizes(body, *facets).largest;
+      nodes.allowance = std::max(nodes.allowance, 0.5 * *std::max_element(sizes.begin(), sizes.end()));
+    }
+  }
   const std::vector<std::vector<CellFacet>> facets = facets_of_bodies(body, bodies);
   for (std::size_t number = 0; number < facets.size(); ++number) {
-    parts_.push_back(make_part(body, facets[number], bodies.sizes[number]));
-    set_contacts(body, problem.contact, pairs, parts_.back());
+    watched_.push_back(watch_body(body, facets[number], bodies.sizes[number]));
+    set_contacts(pair_nodes, problem.contact, watched_.back());
     found_.emplace_back().body = static_cast<int>(number);
-    work_budget_ += most_saved * parts_.back().work;
+    work_budget_ += most_saved * watched_.back().work;
   }
 }
 
-SelfWatch::Part SelfWatch::make_part(const Body& body, const std::vector<CellFacet>& facets, double size) const {
+SelfWatch::WatchedBody SelfWatch::watch_body(const Body& body, const std::vector<CellFacet>& facets,
+                                             double size) const {
   const std::vector<CellBlock>& cells = body.space->cells;
-  Part part(BodySurface(positions_, surface_pieces(positions_, cells, facets)));
+  WatchedBody watched(BodySurface(positions_, surface_pieces(positions_, cells, facets)));
   for (const CellFacet& facet : facets) {
     const CellShape shape = facet_shape(cells[facet.block].shape);
-    part.facets.push_back({shape, nodes_of_facet(cells, facet)});
-    const int degree = degree_of(shape, static_cast<int>(part.facets.back().nodes.size()));
-    part.facet_of_piece.insert(part.facet_of_piece.end(), flat_pieces(shape, degree).size(), part.facets.size() - 1);
+    watched.facets.push_back({shape, nodes_of_facet(cells, facet)});
+    const int degree = degree_of(shape, static_cast<int>(watched.facets.back().nodes.size()));
+    watched.facet_of_piece.insert(watched.facet_of_piece.end(), flat_pieces(shape, degree).size(),
+                                  watched.facets.size() - 1);
   }
-  const std::size_t count = part.surface.nodes().size();
-  part.sides.resize(count);
-  const SelfOverlap start(part.surface, axisymmetric_);
+  const std::size_t count = watched.surface.nodes().size();
+  watched.contacts.resize(count);
+  const SelfOverlap start(watched.surface, axisymmetric_);
   for (int node = 0; node < static_cast<int>(count); ++node)
-    part.is_left_out.push_back(start.opening(node) < least_opening ? 1 : 0);
-  part.at_start.setZero(static_cast<Index>(count));
-  part.last_displacement.setZero(static_cast<Index>(count) * positions_.rows());
-  part.size = size;
-  part.work = (positions_.rows() == 2 ? work_per_node_in_plane : work_per_node_in_space) * static_cast<double>(count);
-  return part;
+    watched.is_left_out.push_back(start.opening(node) < least_opening ? 1 : 0);
+  watched.at_start.setZero(static_cast<Index>(count));
+  watched.last_displacement.setZero(static_cast<Index>(count) * positions_.rows());
+  watched.size = size;
+  watched.work =
+      (positions_.rows() == 2 ? work_per_node_in_plane : work_per_node_in_space) * static_cast<double>(count);
+  return watched;
 }
 
 /// Stores the contacts of the body with itself, and excludes nodes that are tied.
-void SelfWatch::set_contacts(const Body& body, const ContactBoundary& contact, const std::vector<ContactPair>& pairs,
-                             Part& part) const {
-  const std::vector<Index>& nodes = part.surface.nodes();
+void SelfWatch::set_contacts(const std::vector<PairNodes>& pairs, const ContactBoundary& boundary,
+                             WatchedBody& watched) {
+  const std::vector<Index>& nodes = watched.surface.nodes();
   const auto number_of = [&](Index node) {
     const auto found = std::lower_bound(nodes.begin(), nodes.end(), node);
     return found != nodes.end() && *found == node ? static_cast<std::size_t>(found - nodes.begin()) : nodes.size();
   };
+  const auto is_here = [&](Index node) { return number_of(node) < nodes.size(); };
+  const auto contact_of = [&](std::size_t at, int pair) {
+    std::vector<NodeContact>& contacts = watched.contacts[at];
+    const auto found =
+        std::find_if(contacts.begin(), contacts.end(), [&](const NodeContact& c) { return c.pair == pair; });
+    return found == contacts.end() ? nullptr : &*found;
+  };
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const ContactPair& pair = pairs[k];
-    if (!pair.between_bodies()) continue;
-    double largest = 0.0;
-    for (const auto* const facets : {&pair.facets, &pair.opposite_facets}) {
-      const std::vector<double> sizes = facet_sizes(body, *facets).largest;
-      largest = std::max(largest, *std::max_element(sizes.begin(), sizes.end()));
-    }
+    const PairNodes& pair = pairs[k];
+    // In a contact with another body, this body may penetrate itself.
+    const bool is_with_itself = std::any_of(pair.own.begin(), pair.own.end(), is_here) &&
+                                std::any_of(pair.opposite.begin(), pair.opposite.end(), is_here);
     for (const bool opposite : {false, true}) {
-      for (const Index node : facet_nodes(*body.space, opposite ? pair.opposite_facets : pair.facets)) {
+      for (const Index node : opposite ? pair.opposite : pair.own) {
         const std::size_t at = number_of(node);
         if (at == nodes.size()) continue;
-        if (pair.tied) part.is_left_out[at] = 1;
-        std::vector<Side>& sides = part.sides[at];
-        if (sides.empty() || sides.back().contact != static_cast<int>(k))
-          sides.push_back({static_cast<int>(k), false, false, -1, 0.5 * largest});
-        (opposite ? sides.back().opposite : sides.back().own) = true;
+        if (pair.is_tied) watched.is_left_out[at] = 1;
+        if (!is_with_itself) continue;
+        NodeContact* contact = contact_of(at, static_cast<int>(k));
+        if (contact == nullptr)
+          contact =
+              &watched.contacts[at].emplace_back(NodeContact{static_cast<int>(k), false, false, -1, pair.allowance});
+        (opposite ? contact->opposite : contact->own) = true;
       }
     }
-    for (std::size_t entry = 0; entry < contact.nodes.size(); ++entry) {
-      if (contact.node_pair[entry] != static_cast<int>(k)) continue;
-      const std::size_t at = number_of(contact.nodes[entry]);
-      if (at == nodes.size() || part.sides[at].empty()) continue;
-      if (Side& side = part.sides[at].back(); side.contact == static_cast<int>(k))
-        side.entry = static_cast<Index>(entry);
-    }
+  }
+  for (std::size_t entry = 0; entry < boundary.nodes.size(); ++entry) {
+    const std::size_t at = number_of(boundary.nodes[entry]);
+    if (at == nodes.size()) continue;
+    if (NodeContact* const contact = contact_of(at, boundary.node_pair[entry]))
+      contact->entry = static_cast<Index>(entry);
   }
 }
 
 void SelfWatch::check(const Vector& displacement, double time, bool now, const NodeGaps& gaps) {
-  if (parts_.empty()) return;
+  if (watched_.empty()) return;
   double all = 0.0;
-  for (const Part& part : parts_) all += part.work;
+  for (const WatchedBody& watched : watched_) all += watched.work;
   work_budget_ = std::min(work_budget_ + work_per_step_, most_saved * all);
   bool any = false;
-  for (std::size_t number = 0; number < parts_.size(); ++number) {
-    Part& part = parts_[number];
+  for (std::size_t number = 0; number < watched_.size(); ++number) {
+    WatchedBody& watched = watched_[number];
     const SelfPenetration& found = found_[number];
     const bool is_found = found.deepest.found() || found.at_contact.found();
-    const double limit = (is_found ? motion_once_found : motion_before_check) * part.surface.edge_length();
-    const bool due = checks_ == 0 || (work_budget_ >= part.work && is_due(part, limit, displacement));
+    const double limit = (is_found ? motion_once_found : motion_before_check) * watched.surface.edge_length();
+    const bool due = checks_ == 0 || (work_budget_ >= watched.work && is_due(watched, limit, displacement));
     if (!due && !now) continue;
-    if (checks_ > 0) enter_ignored(part, displacement);
+    if (checks_ > 0) enter_ignored(watched, displacement);
     check_body(number, displacement, time, gaps);
     if (!due) continue;
     any = true;
-    if (checks_ > 0 && std::isfinite(work_budget_)) work_budget_ -= part.work;
+    if (checks_ > 0) work_budget_ -= watched.work;
     const Index d = positions_.rows();
-    const std::vector<Index>& nodes = part.surface.nodes();
+    const std::vector<Index>& nodes = watched.surface.nodes();
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      part.last_displacement.segment(static_cast<Index>(i) * d, d) = displacement.segment(nodes[i] * d, d);
+      watched.last_displacement.segment(static_cast<Index>(i) * d, d) = displacement.segment(nodes[i] * d, d);
   }
   if (any) ++checks_;
 }
 
-/// Considers the motion relative to the mean one, which brings no two parts of the surface together.
-bool SelfWatch::is_due(const Part& part, double limit, const Vector& displacement) const {
+/// Subtracts the mean translation, which cannot bring two regions together. (It does not subtract a rotation: a body
+/// that spins is due.)
+bool SelfWatch::is_due(const WatchedBody& watched, double limit, const Vector& displacement) const {
   const Index d = positions_.rows();
-  const std::vector<Index>& nodes = part.surface.nodes();
+  const std::vector<Index>& nodes = watched.surface.nodes();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   const auto moved = [&](std::size_t i, Index k) {
-    return displacement[nodes[i] * d + k] - part.last_displacement[static_cast<Index>(i) * d + k];
+    return displacement[nodes[i] * d + k] - watched.last_displacement[static_cast<Index>(i) * d + k];
   };
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (Index k = 0; k < d; ++k) mean[k] += moved(i, k);
@@ -172,18 +193,16 @@ bool SelfWatch::is_due(const Part& part, double limit, const Vector& displacemen
   return false;
 }
 
-/// Largest displacement of a node since the last check relative to the rigid motion that is nearest to that of the
-/// surface: a body that flies and spins has not approached itself.
-double SelfWatch::strain_since(const Part& part, const Vector& displacement) const {
+double SelfWatch::largest_deformation_since(const WatchedBody& watched, const Vector& displacement) const {
   using Vector3 = Eigen::Vector3d;
   const Index d = positions_.rows();
-  const std::vector<Index>& nodes = part.surface.nodes();
+  const std::vector<Index>& nodes = watched.surface.nodes();
   const auto position = [&](std::size_t i, const Vector& of, Index first) {
     Vector3 result = Vector3::Zero();
     result.head(d) = positions_.col(nodes[i]) + of.segment(first, d);
     return result;
   };
-  const auto before = [&](std::size_t i) { return position(i, part.last_displacement, static_cast<Index>(i) * d); };
+  const auto before = [&](std::size_t i) { return position(i, watched.last_displacement, static_cast<Index>(i) * d); };
   const auto after = [&](std::size_t i) { return position(i, displacement, nodes[i] * d); };
   Vector3 first = Vector3::Zero(), last = Vector3::Zero();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -192,7 +211,7 @@ double SelfWatch::strain_since(const Part& part, const Vector& displacement) con
   }
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < nodes.size(); ++i) moments += (after(i) - last) * (before(i) - first).transpose();
-  if (d == 2) moments(2, 2) = moments.norm();
+  if (d == 2) moments(2, 2) = moments.norm();  // so that the determinant is that of the plane, times this
   const Eigen::Matrix3d rotation = orthogonal_factor(moments);
   double longest = 0.0;
   for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -201,81 +220,82 @@ double SelfWatch::strain_since(const Part& part, const Vector& displacement) con
 }
 
 /// Surfaces whose distance at the last check exceeds the motion of nodes towards each other have not met since.
-void SelfWatch::enter_ignored(Part& part, const Vector& displacement) const {
-  const double way = strain_since(part, displacement);
-  if (2.0 * way > part.clearance) part.ignored = std::max(part.ignored, way / part.surface.edge_length());
+void SelfWatch::enter_ignored(WatchedBody& watched, const Vector& displacement) const {
+  const double motion = largest_deformation_since(watched, displacement);
+  if (2.0 * motion > watched.clearance)
+    watched.ignored = std::max(watched.ignored, motion / watched.surface.edge_length());
 }
 
 double SelfWatch::ignored_motion() const {
   double most = 0.0;
-  for (const Part& part : parts_) most = std::max(most, part.ignored);
+  for (const WatchedBody& watched : watched_) most = std::max(most, watched.ignored);
   return most;
 }
 
 void SelfWatch::check_body(std::size_t number, const Vector& displacement, double time, const NodeGaps& gaps) {
-  Part& part = parts_[number];
+  WatchedBody& watched = watched_[number];
   SelfPenetration& recorded = found_[number];
-  part.surface.move(positions_, displacement);
-  const SelfOverlap overlap(part.surface, axisymmetric_);
+  watched.surface.move(positions_, displacement);
+  const SelfOverlap overlap(watched.surface, axisymmetric_);
   const bool at_start = checks_ == 0;
-  part.clearance = std::numeric_limits<double>::infinity();
+  watched.clearance = std::numeric_limits<double>::infinity();
   const Vector* gap = nullptr;
-  const std::vector<Index>& nodes = part.surface.nodes();
+  const std::vector<Index>& nodes = watched.surface.nodes();
   for (int node = 0; node < static_cast<int>(nodes.size()); ++node) {
     const auto i = static_cast<std::size_t>(node);
-    if (part.is_left_out[i] != 0) continue;
+    if (watched.is_left_out[i] != 0) continue;
     double clearance = 0.0;
     const auto found = overlap.at(node, &clearance);
-    // A contact of the body with itself keeps its nodes out whether or not they are checked.
-    if (part.sides[i].empty()) part.clearance = std::min(part.clearance, clearance);
+    // Contacts of the body with itself keep their nodes out between two checks, too.
+    if (watched.contacts[i].empty()) watched.clearance = std::min(watched.clearance, clearance);
     if (!found) continue;
-    const Eigen::Vector3d& position = part.surface.at(node);
+    const Eigen::Vector3d& position = watched.surface.at(node);
     const auto piece = static_cast<std::size_t>(found->other_piece);
     double allowed =
-        rounding_of_depth * part.size + 2.0 * part.at_start[node] +
+        rounding_of_depth * watched.size + 2.0 * watched.at_start[node] +
         16.0 * std::numeric_limits<double>::epsilon() * position.lpNorm<Eigen::Infinity>() +
-        bend_of(part.facets[part.facet_of_piece[piece]], displacement) +
-        bend_of(part.facets[part.facet_of_piece[static_cast<std::size_t>(found->own_piece)]], displacement);
-    if (at_start && found->depth <= overlap_of_facets * part.surface.edge_length()) {
-      part.at_start[node] = found->depth;
+        sagitta_of(watched.facets[watched.facet_of_piece[piece]], displacement) +
+        sagitta_of(watched.facets[watched.facet_of_piece[static_cast<std::size_t>(found->own_piece)]], displacement);
+    if (at_start && found->depth <= overlap_of_facets * watched.surface.edge_length()) {
+      watched.at_start[node] = found->depth;
       continue;
     }
-    const Side* const side = contact_at(part, node, found->other_piece);
-    if (side != nullptr) {
+    const NodeContact* const contact = contact_at(watched, node, found->other_piece);
+    if (contact != nullptr) {
       if (gap == nullptr) gap = &gaps();
-      const double here = side->entry >= 0 ? (*gap)[side->entry] : 0.0;
-      allowed += side->allowance + (here < 0.0 ? -here : 0.0);
+      const double here = contact->entry >= 0 ? (*gap)[contact->entry] : 0.0;
+      allowed += contact->allowance + (here < 0.0 ? -here : 0.0);
     }
     if (found->depth <= allowed) continue;
-    if (side != nullptr) {
-      if (found->depth > recorded.at_contact.depth) recorded.contact = side->contact;
+    if (contact != nullptr) {
+      if (found->depth > recorded.at_contact.depth) recorded.contact = contact->pair;
       recorded.at_contact.enter(nodes[i], found->depth, time, position);
     } else if (found->depth > recorded.deepest.depth) {
       recorded.deepest.enter(nodes[i], found->depth, time, position);
-      recorded.own = nodes_of(part, found->own_piece);
-      recorded.through = nodes_of(part, found->other_piece);
+      recorded.own = nodes_of(watched, found->own_piece);
+      recorded.through = nodes_of(watched, found->other_piece);
     }
   }
 }
 
-const SelfWatch::Side* SelfWatch::contact_at(const Part& part, int node, int piece) {
-  for (const Side& side : part.sides[static_cast<std::size_t>(node)]) {
+const SelfWatch::NodeContact* SelfWatch::contact_at(const WatchedBody& watched, int node, int piece) {
+  for (const NodeContact& contact : watched.contacts[static_cast<std::size_t>(node)]) {
     const auto faces = [&](int corner) {
       if (corner < 0) return true;
-      const std::vector<Side>& there = part.sides[static_cast<std::size_t>(corner)];
-      return std::any_of(there.begin(), there.end(), [&](const Side& other) {
-        return other.contact == side.contact && ((side.own && other.opposite) || (side.opposite && other.own));
+      const std::vector<NodeContact>& there = watched.contacts[static_cast<std::size_t>(corner)];
+      return std::any_of(there.begin(), there.end(), [&](const NodeContact& other) {
+        return other.pair == contact.pair && ((contact.own && other.opposite) || (contact.opposite && other.own));
       });
     };
-    const BodySurface::Corners& corners = part.surface.pieces()[static_cast<std::size_t>(piece)];
-    if (std::all_of(corners.begin(), corners.end(), faces)) return &side;
+    const BodySurface::Corners& corners = watched.surface.pieces()[static_cast<std::size_t>(piece)];
+    if (std::all_of(corners.begin(), corners.end(), faces)) return &contact;
   }
   return nullptr;
 }
 
 /// For facets of second order a quarter of the distance of the nodes from those of the straight facet, since pieces
 /// connect the nodes; for quadrilaterals of first order the distance of the nodes from a plane.
-double SelfWatch::bend_of(const Facet& facet, const Vector& displacement) const {
+double SelfWatch::sagitta_of(const Facet& facet, const Vector& displacement) const {
   const Index d = positions_.rows();
   const auto at = [&](int k) {
     Eigen::Vector3d result = Eigen::Vector3d::Zero();
@@ -296,11 +316,11 @@ double SelfWatch::bend_of(const Facet& facet, const Vector& displacement) const 
   return 0.25 * most;
 }
 
-std::array<Index, 3> SelfWatch::nodes_of(const Part& part, int piece) const {
+std::array<Index, 3> SelfWatch::nodes_of(const WatchedBody& watched, int piece) const {
   std::array<Index, 3> result{-1, -1, -1};
-  const BodySurface::Corners& corners = part.surface.pieces()[static_cast<std::size_t>(piece)];
+  const BodySurface::Corners& corners = watched.surface.pieces()[static_cast<std::size_t>(piece)];
   for (std::size_t k = 0; k < 3; ++k) {
-    if (corners[k] >= 0) result[k] = part.surface.nodes()[static_cast<std::size_t>(corners[k])];
+    if (corners[k] >= 0) result[k] = watched.surface.nodes()[static_cast<std::size_t>(corners[k])];
   }
   return result;
 }
@@ -309,10 +329,10 @@ void SelfWatch::save(Snapshot& snapshot, const std::string& name) const {
   Vector numbers(numbers_of_body * static_cast<Index>(found_.size()));
   for (std::size_t k = 0; k < found_.size(); ++k) {
     numbers.segment<numbers_of_body>(numbers_of_body * static_cast<Index>(k)) = to_numbers(found_[k]);
-    const std::string part = name + "." + std::to_string(k);
-    snapshot.save(part + ".at_start", parts_[k].at_start);
-    snapshot.save(part + ".seen", parts_[k].last_displacement);
-    snapshot.save(part + ".unseen", Vector(Eigen::Vector2d(parts_[k].ignored, parts_[k].clearance)));
+    const std::string prefix = name + "." + std::to_string(k);
+    snapshot.save(prefix + ".at_start", watched_[k].at_start);
+    snapshot.save(prefix + ".seen", watched_[k].last_displacement);
+    snapshot.save(prefix + ".unseen", Vector(Eigen::Vector2d(watched_[k].ignored, watched_[k].clearance)));
   }
   snapshot.save(name + ".found", numbers);
   snapshot.save(name + ".saved", work_budget_);
@@ -330,7 +350,7 @@ void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
     const double node_at_contact = of[DeepestPoint::numbers];
     const auto is_node = [&](double number) { return number >= -1.0 && number < nodes; };
     const bool fits = of.allFinite() && is_node(of[0]) && is_node(node_at_contact) &&
-                      rest[0] >= (node_at_contact > -1.0 ? 0.0 : -1.0) && rest[0] < contacts_ &&
+                      rest[0] >= (node_at_contact > -1.0 ? 0.0 : -1.0) && rest[0] < pair_count_ &&
                       std::all_of(rest.data() + 1, rest.data() + 7, is_node);
     if (!fits) Snapshot::refuse(name + ".found", "has numbers that do not denote nodes and contacts of this problem");
     found.deepest = DeepestPoint::from_numbers(of.head<DeepestPoint::numbers>());
@@ -340,16 +360,16 @@ void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
       found.own[i] = static_cast<Index>(rest[1 + static_cast<Index>(i)]);
       found.through[i] = static_cast<Index>(rest[4 + static_cast<Index>(i)]);
     }
-    const std::string part = name + "." + std::to_string(k);
-    parts_[k].at_start = snapshot.reals(part + ".at_start", parts_[k].at_start.size());
-    parts_[k].last_displacement = snapshot.reals(part + ".seen", parts_[k].last_displacement.size());
-    if (!parts_[k].at_start.allFinite() || !(parts_[k].at_start.array() >= 0.0).all())
-      Snapshot::refuse(part + ".at_start", "has entries that are not depths");
-    if (!parts_[k].last_displacement.allFinite()) Snapshot::refuse(part + ".seen", "is not finite");
-    const Vector& ignored = snapshot.reals(part + ".unseen", 2);
-    if (!(ignored[0] >= 0.0 && ignored[1] >= 0.0)) Snapshot::refuse(part + ".unseen", "has negative entries");
-    parts_[k].ignored = ignored[0];
-    parts_[k].clearance = ignored[1];
+    const std::string prefix = name + "." + std::to_string(k);
+    watched_[k].at_start = snapshot.reals(prefix + ".at_start", watched_[k].at_start.size());
+    watched_[k].last_displacement = snapshot.reals(prefix + ".seen", watched_[k].last_displacement.size());
+    if (!watched_[k].at_start.allFinite() || !(watched_[k].at_start.array() >= 0.0).all())
+      Snapshot::refuse(prefix + ".at_start", "has entries that are not depths");
+    if (!watched_[k].last_displacement.allFinite()) Snapshot::refuse(prefix + ".seen", "is not finite");
+    const Vector& ignored = snapshot.reals(prefix + ".unseen", 2);
+    if (!(ignored[0] >= 0.0 && ignored[1] >= 0.0)) Snapshot::refuse(prefix + ".unseen", "has negative entries");
+    watched_[k].ignored = ignored[0];
+    watched_[k].clearance = ignored[1];
   }
   work_budget_ = snapshot.real(name + ".saved");
   if (!(work_budget_ >= 0.0) || !std::isfinite(work_budget_))

@@ -16,26 +16,27 @@
 /// @file Bodies that penetrate themselves.
 namespace ricochet {
 
-/// Body of which one part was found inside another part.
+/// Body a region of which was found inside another region of it.
 struct SelfPenetration {
   int body = 0;
-  DeepestPoint deepest;                      ///< of the nodes without a contact
-  std::array<Index, 3> own{-1, -1, -1};      ///< nodes of the facet at that node which faces `through`
-  std::array<Index, 3> through{-1, -1, -1};  ///< nodes of the facet that the node passed through
+  DeepestPoint deepest;  ///< of the nodes without a contact
+  /// Nodes of the flat piece of a facet at that node which faces `through` most.
+  std::array<Index, 3> own{-1, -1, -1};
+  std::array<Index, 3> through{-1, -1, -1};  ///< nodes of the flat piece that the node passed through
   DeepestPoint at_contact;                   ///< of the nodes at a contact of the body with itself
   int contact = -1;                          ///< index of that ContactPair
 };
 
-/// Searches for nodes of a body's boundary inside another part of the same body (SelfOverlap): at the start, at the
-/// end, and when nodes have moved by a fortieth of an edge relative to each other, within a share of the time of the
+/// Searches for nodes of a body's boundary inside another region of the same body (SelfOverlap): at the start, at the
+/// end, and when two nodes may have approached each other by a fortieth of an edge, within a share of the time of the
 /// steps (estimated from sizes, so that nothing depends on the clock). Overlaps at the start that are no deeper than
-/// half an edge are attributed to facets that approximate curved surfaces, and are tolerated from then on. Also
-/// tolerated are half a facet where a contact keeps the two parts apart in the mean, and the distance of flat pieces
-/// from a curved facet. Nodes of tied facets are excluded, since they are tied to what they lie in, and so are those of
-/// sharp notches and edges.
+/// half an edge are attributed to facets that approximate curved surfaces, and up to twice that depth is tolerated from
+/// then on. Also tolerated are the distance of flat pieces from a curved facet and, where a contact of the body with
+/// itself keeps two regions apart in the mean, half a facet and the penetration of that contact. Nodes of tied facets
+/// are excluded, since they are tied to what they lie in, and so are those of sharp notches and edges.
 class SelfWatch {
  public:
-  /// Share of all checks in the time of the steps.
+  /// Largest share of all checks in the time of the steps.
   static constexpr double share = 0.01;
 
   /// `step_work`: as for PeakStress; if infinite, all checks that are due are performed. On several ranks nothing is
@@ -54,17 +55,17 @@ class SelfWatch {
 
   /// One entry per body; bodies with self-penetration have deepest.found() or at_contact.found().
   [[nodiscard]] const std::vector<SelfPenetration>& bodies() const { return found_; }
-  [[nodiscard]] bool watches() const { return !parts_.empty(); }
+  [[nodiscard]] bool watches() const { return !watched_.empty(); }
   [[nodiscard]] long checks() const { return checks_; }
-  /// Largest distance, in mean edges, that a node has moved between two checks relative to a rigid motion of its body,
-  /// counted only if parts that faced each other were near enough to meet by it: parts that pass into each other and
-  /// out again within this distance are not detected.
+  /// Largest distance, in mean edges, that a node has moved between two checks relative to a rigid motion of its body.
+  /// It counts only if twice of it exceeds the clearance at the check before. Regions that penetrate and separate again
+  /// within this distance are not detected.
   [[nodiscard]] double ignored_motion() const;
 
  private:
-  /// Contact of the body with itself at a node.
-  struct Side {
-    int contact = -1;
+  /// Contact of the body with itself of which a node is a member.
+  struct NodeContact {
+    int pair = -1;
     bool own = false, opposite = false;  ///< the surface or surfaces on which the node is
     Index entry = -1;                    ///< in ContactBoundary::nodes
     double allowance = 0.0;              ///< half of the largest facet of both surfaces
@@ -73,40 +74,49 @@ class SelfWatch {
     CellShape shape;
     std::vector<Index> nodes;  ///< vertices first
   };
+  /// Nodes of a pair of surfaces in contact, before it is known on which bodies they are.
+  struct PairNodes {
+    bool is_tied = false;
+    std::vector<Index> own, opposite;
+    double allowance = 0.0;  ///< as in NodeContact
+  };
   /// Body and its surface.
-  struct Part {
-    explicit Part(BodySurface own_surface) : surface(std::move(own_surface)) {}
+  struct WatchedBody {
+    explicit WatchedBody(BodySurface own_surface) : surface(std::move(own_surface)) {}
     BodySurface surface;
     std::vector<Facet> facets;
     std::vector<std::size_t> facet_of_piece;
-    std::vector<std::vector<Side>> sides;  ///< per node of the surface
-    std::vector<char> is_left_out;         ///< likewise
-    Vector at_start;                       ///< likewise, initial depth
-    Vector last_displacement;              ///< displacement at the last check, d per node
-    double ignored = 0.0;                  ///< see ignored_motion()
-    double clearance = 0.0;                ///< least distance of nodes from surfaces that they face, at the last check
-    double size = 0.0, work = 0.0;         ///< `work`: of a check, relative to reading a number
+    std::vector<std::vector<NodeContact>> contacts;  ///< per node of the surface
+    std::vector<char> is_left_out;                   ///< likewise
+    Vector at_start;                                 ///< likewise, initial depth
+    Vector last_displacement;                        ///< displacement at the last check, d per node
+    double ignored = 0.0;                            ///< see ignored_motion()
+    /// Least distance of nodes, along their normals, from surfaces that they face, at the last check.
+    double clearance = 0.0;
+    double size = 0.0;  ///< diameter, for rounding
+    double work = 0.0;  ///< of a check, relative to reading a number
   };
-  [[nodiscard]] Part make_part(const Body& body, const std::vector<CellFacet>& facets, double size) const;
-  void set_contacts(const Body& body, const ContactBoundary& contact, const std::vector<ContactPair>& pairs,
-                    Part& part) const;
-  [[nodiscard]] double strain_since(const Part& part, const Vector& displacement) const;
-  void enter_ignored(Part& part, const Vector& displacement) const;
-  [[nodiscard]] bool is_due(const Part& part, double limit, const Vector& displacement) const;
+  [[nodiscard]] WatchedBody watch_body(const Body& body, const std::vector<CellFacet>& facets, double size) const;
+  static void set_contacts(const std::vector<PairNodes>& pairs, const ContactBoundary& boundary, WatchedBody& watched);
+  /// Returns the largest distance that a node has moved since the last check relative to the rigid motion that is
+  /// nearest to that of the surface: a body that flies and spins has not approached itself.
+  [[nodiscard]] double largest_deformation_since(const WatchedBody& watched, const Vector& displacement) const;
+  void enter_ignored(WatchedBody& watched, const Vector& displacement) const;
+  [[nodiscard]] bool is_due(const WatchedBody& watched, double limit, const Vector& displacement) const;
   void check_body(std::size_t number, const Vector& displacement, double time, const NodeGaps& gaps);
   /// Contact that keeps a node apart from a piece; null if none.
-  [[nodiscard]] static const Side* contact_at(const Part& part, int node, int piece);
+  [[nodiscard]] static const NodeContact* contact_at(const WatchedBody& watched, int node, int piece);
   /// Distance between the flat pieces and the curved facet that they approximate.
-  [[nodiscard]] double bend_of(const Facet& facet, const Vector& displacement) const;
-  [[nodiscard]] std::array<Index, 3> nodes_of(const Part& part, int piece) const;
+  [[nodiscard]] double sagitta_of(const Facet& facet, const Vector& displacement) const;
+  [[nodiscard]] std::array<Index, 3> nodes_of(const WatchedBody& watched, int piece) const;
 
   const Points& positions_;
   bool axisymmetric_;
-  std::vector<Part> parts_;                         ///< per body
+  std::vector<WatchedBody> watched_;                ///< per body
   std::vector<SelfPenetration> found_;              ///< likewise
   double work_per_step_ = 0.0, work_budget_ = 0.0;  ///< admissible work of checks, and the unused part
   long checks_ = 0;
-  int contacts_;  ///< number of ContactPairs
+  int pair_count_;  ///< number of ContactPairs
 };
 
 }  // namespace ricochet
