@@ -90,17 +90,17 @@ class AutomaticSolver final : public IterativeContactSolver {
   }
 
  private:
-  bool accelerated(const ContactWork& work);
-  bool sweep(const ContactWork& work, int sweeps, double damping);
-  std::string iterate_with_products(const ContactWork& work);
-  bool newton(const ContactWork& work);
-  bool sweeps_and_newton(const ContactWork& work);
-  bool alternate(const ContactWork& work, int sweeps, double damping);
-  std::string find_contradiction(const ContactWork& work);
-  bool fall_back(const ContactWork& work, bool was_cold);
-  static void begin_at_zero(const ContactWork& work);
+  bool accelerated(const ContactIteration& iteration);
+  bool sweep(const ContactIteration& iteration, int sweeps, double damping);
+  std::string iterate_with_products(const ContactIteration& iteration);
+  bool newton(const ContactIteration& iteration);
+  bool sweeps_and_newton(const ContactIteration& iteration);
+  bool alternate(const ContactIteration& iteration, int sweeps, double damping);
+  std::string find_contradiction(const ContactIteration& iteration);
+  bool fall_back(const ContactIteration& iteration, bool was_cold);
+  static void begin_at_zero(const ContactIteration& iteration);
   void keep_fallback();
-  bool sweep_on(const ContactWork& work);
+  bool sweep_on(const ContactIteration& iteration);
 
   GaussSeidel sweeps_;
   AcceleratedGaussSeidel accelerated_;
@@ -130,9 +130,9 @@ void AutomaticSolver::load_memory(const std::vector<Index>& row_offset, const Sn
 }
 
 /// Performs accelerated sweeps for as long as they promise to converge sooner than Newton's method.
-bool AutomaticSolver::accelerated(const ContactWork& work) {
-  const ContactSystem& system = work.system;
-  const double target = std::max(work.options.tolerance, 1e-14) * system.data();
+bool AutomaticSolver::accelerated(const ContactIteration& iteration) {
+  const ContactSystem& system = iteration.system;
+  const double target = std::max(iteration.options.tolerance, 1e-14) * system.data();
   accelerated_.start(system);
   stalled_ = false;
   std::array<double, outlook> earlier{};
@@ -142,123 +142,124 @@ bool AutomaticSolver::accelerated(const ContactWork& work) {
   double residual_per_change = 1.0;
   double exact_residual = system.has_rough_entries() ? system.data() : 0.0;  // when u was last evaluated
   for (int k = 0; k < accelerated_limit; ++k) {
-    unchanged = accelerated_.sweep(system, work.current) ? 0 : unchanged + 1;
+    unchanged = accelerated_.sweep(system, iteration.current) ? 0 : unchanged + 1;
     const double change = accelerated_.change();
     if (!std::isfinite(change)) break;
     // The change of a sweep is a good estimate of the residual, and costs nothing.
     double residual = change * residual_per_change;
     if (residual <= 2.0 * target) {
-      residual = system.residual(work.current);
+      residual = system.residual(iteration.current);
       residual_per_change = residual / change;
     }
-    note_iteration(system, work.options, "sweep", work.options.record ? system.residual(work.current) : residual,
-                   work.current.reaction, work.solution);
+    note_iteration(system, iteration.options, "sweep",
+                   iteration.options.record ? system.residual(iteration.current) : residual, iteration.current.reaction,
+                   iteration.solution);
     best = std::min(best, residual);
     const bool arrived = residual <= target;
     if (arrived || residual < rough_digits * exact_residual) {
-      system.evaluate(work.current);
-      accelerated_.correct(work.current.motion);
+      system.evaluate(iteration.current);
+      accelerated_.correct(iteration.current.motion);
       exact_residual = residual;
-      if (arrived && work.is_done(work.current)) return true;
+      if (arrived && iteration.is_done(iteration.current)) return true;
       if (arrived && ++verdicts == verdict_limit) break;
     }
     if (k == 1) second = residual;
-    stalled_ = k == 3 && residual > stall * second && newton_cost(work, false) < affordable_newton;
+    stalled_ = k == 3 && residual > stall * second && newton_cost(iteration, false) < affordable_newton;
     if (stalled_) break;
     double& past = earlier[static_cast<std::size_t>(k) % outlook];
     if (k >= static_cast<int>(outlook)) {
       const double rate = std::log(past / best) / static_cast<double>(outlook);
       const double remaining = rate > 0.0 ? std::log(best / target) / rate : std::numeric_limits<double>::infinity();
-      if (remaining > newton_cost(work, unchanged > 1)) break;
+      if (remaining > newton_cost(iteration, unchanged > 1)) break;
     }
     past = best;
   }
-  system.evaluate(work.current);
-  best_.keep(work);
-  return work.is_done(work.current);
+  system.evaluate(iteration.current);
+  best_.keep(iteration);
+  return iteration.is_done(iteration.current);
 }
 
 /// Returns whether the problem is solved. Ends early if two sweeps change no state and Newton's method is to follow.
-bool AutomaticSolver::sweep(const ContactWork& work, int sweeps, double damping) {
+bool AutomaticSolver::sweep(const ContactIteration& iteration, int sweeps, double damping) {
   sweeps_.restart();
   const bool long_run = sweeps > cold_sweeps;
   int unchanged = 0;
   for (int k = 1; k <= sweeps && unchanged < 2; ++k) {
-    const bool changed = sweeps_.sweep(work.system, damping, work.current);
-    note_iteration(work.system, work.options, "sweep", work.system.residual(work.current), work.current.reaction,
-                   work.solution);
+    const bool changed = sweeps_.sweep(iteration.system, damping, iteration.current);
+    note_iteration(iteration.system, iteration.options, "sweep", iteration.system.residual(iteration.current),
+                   iteration.current.reaction, iteration.solution);
     unchanged = changed || long_run ? 0 : unchanged + 1;
     if (!long_run || k % 16 != 0) continue;
-    work.system.evaluate(work.current);
-    if (work.is_done(work.current)) return true;
+    iteration.system.evaluate(iteration.current);
+    if (iteration.is_done(iteration.current)) return true;
   }
-  work.system.evaluate(work.current);
-  best_.keep(work);
-  return work.is_done(work.current);
+  iteration.system.evaluate(iteration.current);
+  best_.keep(iteration);
+  return iteration.is_done(iteration.current);
 }
 
 /// Solves with W known by its product alone, by a first-order method that needs no more.
-std::string AutomaticSolver::iterate_with_products(const ContactWork& work) {
+std::string AutomaticSolver::iterate_with_products(const ContactIteration& iteration) {
   if (products_ == nullptr) products_ = make_iterative_contact_solver("accelerated-gradient");
-  return products_->iterate(work.system, work.options, work.current, work.solution);
+  return products_->iterate(iteration.system, iteration.options, iteration.current, iteration.solution);
 }
 
 /// Performs Newton steps from `current` with the line search, then full steps from the best r.
-bool AutomaticSolver::newton(const ContactWork& work) {
-  best_.restart(work);
-  if (newton_.run(work, true, best_)) return true;
-  work.current = best_.iterate;
-  if (newton_.run(work, false, best_)) return true;
-  work.current = best_.iterate;
-  return work.is_loosely_solved(best_.iterate, on_law_);
+bool AutomaticSolver::newton(const ContactIteration& iteration) {
+  best_.restart(iteration);
+  if (newton_.run(iteration, true, best_)) return true;
+  iteration.current = best_.iterate;
+  if (newton_.run(iteration, false, best_)) return true;
+  iteration.current = best_.iterate;
+  return iteration.is_loosely_solved(best_.iterate, on_law_);
 }
 
 /// Alternates sweeps and Newton's method, from `current`.
-bool AutomaticSolver::alternate(const ContactWork& work, int sweeps, double damping) {
-  best_.restart(work);
+bool AutomaticSolver::alternate(const ContactIteration& iteration, int sweeps, double damping) {
+  best_.restart(iteration);
   double tried = std::numeric_limits<double>::infinity();  // merit from which full steps have failed
   for (int alternation = 1; alternation <= alternation_limit; ++alternation) {
-    if (sweeps > 0 && sweep(work, sweeps, damping)) return true;
-    if (newton_.run(work, true, best_)) return true;
-    work.current = best_.iterate;
+    if (sweeps > 0 && sweep(iteration, sweeps, damping)) return true;
+    if (newton_.run(iteration, true, best_)) return true;
+    iteration.current = best_.iterate;
     if (best_.merit < tried) {
       tried = best_.merit;
-      if (newton_.run(work, false, best_)) return true;
-      work.current = best_.iterate;
+      if (newton_.run(iteration, false, best_)) return true;
+      iteration.current = best_.iterate;
     }
-    if (work.is_loosely_solved(best_.iterate, on_law_)) return true;
+    if (iteration.is_loosely_solved(best_.iterate, on_law_)) return true;
     sweeps = cold_sweeps << alternation;
   }
   return false;
 }
 
 /// Performs accelerated sweeps, then Newton steps if they do not converge.
-bool AutomaticSolver::sweeps_and_newton(const ContactWork& work) {
-  begin_ = work.current.reaction;
-  const int before = work.solution.iterations;
-  const bool solved = accelerated(work);
+bool AutomaticSolver::sweeps_and_newton(const ContactIteration& iteration) {
+  begin_ = iteration.current.reaction;
+  const int before = iteration.solution.iterations;
+  const bool solved = accelerated(iteration);
   ContactCosts::update_mean(costs_.of_sweeps,
-                            static_cast<double>(work.solution.iterations - before) * sweep_work(work));
+                            static_cast<double>(iteration.solution.iterations - before) * sweep_cost(iteration));
   if (solved) return true;
-  if (is_nearly_closed(work.system, work.current) && stalled_) {
+  if (is_nearly_closed(iteration.system, iteration.current) && stalled_) {
     // Newton's method does better from the start than from the result of a few sweeps.
-    work.current.reaction = begin_;
-    work.system.evaluate(work.current);
-    best_.restart(work);
+    iteration.current.reaction = begin_;
+    iteration.system.evaluate(iteration.current);
+    best_.restart(iteration);
   }
-  work.current = best_.iterate;
-  return newton(work);
+  iteration.current = best_.iterate;
+  return newton(iteration);
 }
 
 std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactOptions& options,
                                      ContactIterate& current, ContactSolution& solution) {
-  const ContactWork work{system, options, current, solution};
+  const ContactIteration iteration{system, options, current, solution};
   // Data of an earlier problem must not decide bits of this one.
   sweeps_.restart();
   newton_.start();
-  if (!system.has_entries()) return iterate_with_products(work);
+  if (!system.has_entries()) return iterate_with_products(iteration);
   const bool cold = current.reaction.isZero(0.0);
-  if (!cold && work.is_done(current)) return "";
+  if (!cold && iteration.is_done(current)) return "";
   if (system.dense() != nullptr && !has_friction(system)) {
     PrimalDualActiveSet::Watch watch;
     if (options.record) {
@@ -272,38 +273,38 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
     solution.contradiction = frictionless_.contradiction();
     if (!solution.contradiction.empty()) return reason;
   }
-  best_.restart(work);
+  best_.restart(iteration);
   if (cold) best_.merit = std::numeric_limits<double>::infinity();
-  if (!cold && costs_.prefer_newton(work)) {
-    const bool solved = newton_.run(work, true, best_);
+  if (!cold && costs_.prefer_newton(iteration)) {
+    const bool solved = newton_.run(iteration, true, best_);
     ContactCosts::update_mean(costs_.of_newton, newton_.step().work());
     if (solved) return "";
-    work.current = best_.iterate;
+    iteration.current = best_.iterate;
   }
-  if (sweeps_and_newton(work)) return "";
-  if (const std::string reason = find_contradiction(work); !reason.empty()) return reason;
+  if (sweeps_and_newton(iteration)) return "";
+  if (const std::string reason = find_contradiction(iteration); !reason.empty()) return reason;
   if (!std::isfinite(best_.merit)) return "the iteration diverged: the contact operator is not positive definite";
   if (may_leave_out_twins())
     return "some contact points nearly coincide, and it could not be determined which of them carry the force";
-  if (fall_back(work, cold)) return "";
+  if (fall_back(iteration, cold)) return "";
   return "none of the methods satisfied the conditions of contact and friction: there may be no solution, or W is not "
          "positive semi-definite";
 }
 
 /// Looks for a contradiction of the normal conditions among themselves: friction does not remove it.
-std::string AutomaticSolver::find_contradiction(const ContactWork& work) {
-  if (work.system.dense() == nullptr) return "";
-  work.current.reaction.setZero();
+std::string AutomaticSolver::find_contradiction(const ContactIteration& iteration) {
+  if (iteration.system.dense() == nullptr) return "";
+  iteration.current.reaction.setZero();
   int steps = 0;
-  const std::string reason = normals_.solve(work.system, work.current, steps);
-  work.current = best_.iterate;
-  work.solution.contradiction = normals_.contradiction();
-  return work.solution.contradiction.empty() ? "" : reason;
+  const std::string reason = normals_.solve(iteration.system, iteration.current, steps);
+  iteration.current = best_.iterate;
+  iteration.solution.contradiction = normals_.contradiction();
+  return iteration.solution.contradiction.empty() ? "" : reason;
 }
 
-void AutomaticSolver::begin_at_zero(const ContactWork& work) {
-  work.current.reaction.setZero();
-  work.system.evaluate(work.current);
+void AutomaticSolver::begin_at_zero(const ContactIteration& iteration) {
+  iteration.current.reaction.setZero();
+  iteration.system.evaluate(iteration.current);
 }
 
 void AutomaticSolver::keep_fallback() {
@@ -311,48 +312,48 @@ void AutomaticSolver::keep_fallback() {
 }
 
 /// Tries the fallbacks after sweeps and Newton's method have failed, the cheapest first.
-bool AutomaticSolver::fall_back(const ContactWork& work, bool was_cold) {
+bool AutomaticSolver::fall_back(const ContactIteration& iteration, bool was_cold) {
   fallback_ = best_;
   if (!was_cold) {
     // If contact comes and goes, the last reactions can be a bad start.
-    begin_at_zero(work);
-    best_.restart(work);
+    begin_at_zero(iteration);
+    best_.restart(iteration);
     best_.merit = std::numeric_limits<double>::infinity();
     newton_.start();
-    if (sweeps_and_newton(work)) return true;
+    if (sweeps_and_newton(iteration)) return true;
     keep_fallback();
   }
-  if (others_.solve(work, OtherSolvers::first, fallback_)) return true;
-  work.current = fallback_.iterate;
-  if (alternate(work, cold_sweeps, 1.0)) return true;
+  if (others_.solve(iteration, OtherSolvers::first, fallback_)) return true;
+  iteration.current = fallback_.iterate;
+  if (alternate(iteration, cold_sweeps, 1.0)) return true;
   keep_fallback();
   // Strong friction can make full corrections cycle; parts of them, from zero, then often converge.
   for (double damping = 0.5; damping >= smallest_damping; damping *= 0.5) {
-    begin_at_zero(work);
-    if (alternate(work, 2 * cold_sweeps, damping)) return true;
+    begin_at_zero(iteration);
+    if (alternate(iteration, 2 * cold_sweeps, damping)) return true;
     keep_fallback();
   }
-  if (others_.solve(work, OtherSolvers::last, fallback_)) return true;
-  work.current = fallback_.iterate;
-  return sweep_on(work);
+  if (others_.solve(iteration, OtherSolvers::last, fallback_)) return true;
+  iteration.current = fallback_.iterate;
+  return sweep_on(iteration);
 }
 
 /// The last resort: Gauss–Seidel for as long as it brings progress, with Newton's method tried now and then. If
 /// conditions depend on one another it may creep, and still converge.
-bool AutomaticSolver::sweep_on(const ContactWork& work) {
-  const double rows = static_cast<double>(work.system.rows());
+bool AutomaticSolver::sweep_on(const ContactIteration& iteration) {
+  const double rows = static_cast<double>(iteration.system.rows());
   const int sweeps = static_cast<int>(std::clamp(last_work / (rows * rows), 100.0, 4000.0));
   for (int k = 0; k < last_iterations; ++k) {
-    best_.restart(work);
+    best_.restart(iteration);
     const double before = best_.merit;
-    if (sweep(work, sweeps, 1.0)) return true;
-    if (!(work.merit() < 0.5 * before)) break;
-    begin_ = work.current.reaction;
-    if (newton_.run(work, false, best_)) return true;
-    work.current.reaction = begin_;
-    work.system.evaluate(work.current);
+    if (sweep(iteration, sweeps, 1.0)) return true;
+    if (!(iteration.merit() < 0.5 * before)) break;
+    begin_ = iteration.current.reaction;
+    if (newton_.run(iteration, false, best_)) return true;
+    iteration.current.reaction = begin_;
+    iteration.system.evaluate(iteration.current);
   }
-  work.current = best_.iterate;
+  iteration.current = best_.iterate;
   return false;
 }
 

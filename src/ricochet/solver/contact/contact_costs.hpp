@@ -6,9 +6,9 @@
 namespace ricochet {
 
 /// Cost of a sweep: entries read for the points that are closed now, and overhead per point.
-[[nodiscard]] double sweep_work(const ContactWork& work);
+[[nodiscard]] double sweep_cost(const ContactIteration& iteration);
 /// Cost of Newton's method from here, in sweeps; `settled`: the states of the points no longer change.
-[[nodiscard]] double newton_cost(const ContactWork& work, bool settled);
+[[nodiscard]] double newton_cost(const ContactIteration& iteration, bool settled);
 
 /// Costs of problems, averaged over recent ones: zero if not known yet.
 struct ContactCosts {
@@ -17,7 +17,7 @@ struct ContactCosts {
   static void update_mean(double& mean, double value);
   /// True if, from the last reactions, Newton's method with the factor of an earlier step has cost less than sweeps, or
   /// promises to.
-  [[nodiscard]] bool prefer_newton(const ContactWork& work) const;
+  [[nodiscard]] bool prefer_newton(const ContactIteration& iteration) const;
 };
 
 }  // namespace ricochet

@@ -20,22 +20,23 @@ const std::vector<OtherSolvers::Kind> OtherSolvers::last{{"newton-fischer-burmei
                                                          {"newton-jean-moreau", true, 200},
                                                          {"admm", false, 20000}};
 
-bool OtherSolvers::solve(const ContactWork& work, const std::vector<Kind>& kinds, BestIterate& best) {
-  if (!refuse_bounds(work.system).empty()) return false;
-  const double rows = static_cast<double>(work.system.rows());
+bool OtherSolvers::solve(const ContactIteration& iteration, const std::vector<Kind>& kinds, BestIterate& best) {
+  if (!refuse_bounds(iteration.system).empty()) return false;
+  const double rows = static_cast<double>(iteration.system.rows());
   for (const bool cold : {true, false}) {
     for (const Kind& kind : kinds) {
       const double limit = kind.factorizes ? max_factor_work / (rows * rows * rows) : max_sweep_work / (rows * rows);
-      ContactOptions options = work.options;
+      ContactOptions options = iteration.options;
       options.iteration_limit = static_cast<int>(std::min(limit, static_cast<double>(kind.iteration_limit)));
       if (options.iteration_limit < fewest_worth_a_try) continue;
-      work.current.reaction = cold ? Vector(Vector::Zero(work.system.rows())) : best.iterate.reaction;
-      work.system.evaluate(work.current);
+      iteration.current.reaction = cold ? Vector(Vector::Zero(iteration.system.rows())) : best.iterate.reaction;
+      iteration.system.evaluate(iteration.current);
       std::unique_ptr<IterativeContactSolver>& solver = solvers_[kind.name];
       if (solver == nullptr) solver = make_iterative_contact_solver(kind.name);
-      const bool solved = solver->iterate(work.system, options, work.current, work.solution).empty();
-      if ((solved && work.options.tolerance > 0.0) || work.is_loosely_solved(work.current, on_law_)) return true;
-      best.keep(work);
+      const bool solved = solver->iterate(iteration.system, options, iteration.current, iteration.solution).empty();
+      if ((solved && iteration.options.tolerance > 0.0) || iteration.is_loosely_solved(iteration.current, on_law_))
+        return true;
+      best.keep(iteration);
     }
   }
   return false;

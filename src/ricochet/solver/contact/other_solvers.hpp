@@ -26,7 +26,7 @@ class OtherSolvers {
   static const std::vector<Kind> last;
 
   /// Returns whether it is solved, with r and u in work.current. Better iterates than `best` are kept in it.
-  bool solve(const ContactWork& work, const std::vector<Kind>& kinds, BestIterate& best);
+  bool solve(const ContactIteration& iteration, const std::vector<Kind>& kinds, BestIterate& best);
   void forget() { solvers_.clear(); }
 
  private:

@@ -29,10 +29,13 @@ class GatheredContact {
   /// Rows of a stage at the root, on so many dofs of such a problem instead of those of the contact nodes.
   [[nodiscard]] static std::shared_ptr<const ContactRows> rows_on(const ContactRows& rows, Index dofs);
 
-  /// Gathers a stage at the root, with these points of this rank (others are not eligible there), with the gaps and
-  /// slips that it has at a motion x: the stage for a correction of x. `points` is the same as that of scatter().
+  /// Gathers a stage at the root, with these points of this rank; others are not eligible there. The root solves for
+  /// the correction of an increment x: its offsets are q + sGx and p + σB_T x. Offsets, their rounding, eligibility and
+  /// start values are transferred; forces, motion and obstacles are not. `points` is the same as that of scatter().
   void gather(const Stage& stage, const Vector& x, const std::vector<Index>& points, Stage& at_root);
-  /// Adds the solution at the root on these points: reactions, status and iterations.
+  /// Adds the reactions and iterations of the solution at the root on these points; the status of a point becomes the
+  /// larger one. Mean reactions and their weight are those of the root, which also has the works of the path: the
+  /// ranks' works are summed.
   void scatter(const StageSolution& at_root, const std::vector<Index>& points, StageSolution& solution) const;
 
   /// Number, at the root, of a point of a rank.

@@ -9,11 +9,18 @@ namespace ricochet {
 
 namespace {
 
+// Message of write_points: the four flags of stage_part; for each point its index, whether it is eligible, q, rounding
+// of q, whether it is frictionless, rounding of p, gap and normal reaction at the start; for each tangent p and the
+// reaction at the start. Message of write_solution: iterations, whether there are means, their weight; for each point
+// normal reaction, its mean, status; for each tangent reaction, its mean.
+
 /// Vectors that a stage may have.
 constexpr std::size_t stage_parts = 4;
-enum StagePart : std::size_t { with_slip, with_frictionless, with_start, with_start_friction };
+namespace stage_part {
+enum : std::size_t { slip, frictionless, start, start_friction };
+}
 
-/// Entry of a vector per point; 0 if it is not part of the stage.
+/// Entry of a vector per point or per tangent; 0 if it is not part of the stage.
 double value_of(const Vector& values, Index i) {
   return values.size() > 0 ? values[i] : 0.0;
 }
@@ -74,12 +81,12 @@ void GatheredContact::read_points(Stage& at_root) const {
   at_root.eligible.assign(static_cast<std::size_t>(count), 0);
   at_root.gap_offset.setZero(count);
   at_root.gap_offset_rounding.setZero(count);
-  at_root.slip_offset.setZero(has[with_slip] ? count * tangents : 0);
-  at_root.slip_offset_rounding.setZero(has[with_slip] ? count : 0);
-  at_root.frictionless.assign(has[with_frictionless] ? static_cast<std::size_t>(count) : 0, 0);
-  at_root.start_gap.setZero(has[with_start] ? count : 0);
-  at_root.start_normal_reaction.setZero(has[with_start] ? count : 0);
-  at_root.start_tangential_reaction.setZero(has[with_start_friction] ? count * tangents : 0);
+  at_root.slip_offset.setZero(has[stage_part::slip] ? count * tangents : 0);
+  at_root.slip_offset_rounding.setZero(has[stage_part::slip] ? count : 0);
+  at_root.frictionless.assign(has[stage_part::frictionless] ? static_cast<std::size_t>(count) : 0, 0);
+  at_root.start_gap.setZero(has[stage_part::start] ? count : 0);
+  at_root.start_normal_reaction.setZero(has[stage_part::start] ? count : 0);
+  at_root.start_tangential_reaction.setZero(has[stage_part::start_friction] ? count * tangents : 0);
   for (std::size_t rank = 0; rank < received_.size(); ++rank) {
     NumberReader numbers(received_[rank]);
     for (std::size_t k = 0; k < stage_parts && !numbers.is_at_end(); ++k) numbers.next();
@@ -90,7 +97,7 @@ void GatheredContact::read_points(Stage& at_root) const {
       at_root.gap_offset[point] = numbers.next();
       at_root.gap_offset_rounding[point] = numbers.next();
       const bool is_frictionless = numbers.next() != 0.0;
-      if (has[with_frictionless]) at_root.frictionless[at] = is_frictionless ? 1 : 0;
+      if (has[stage_part::frictionless]) at_root.frictionless[at] = is_frictionless ? 1 : 0;
       set_value(at_root.slip_offset_rounding, point, numbers.next());
       set_value(at_root.start_gap, point, numbers.next());
       set_value(at_root.start_normal_reaction, point, numbers.next());
@@ -114,7 +121,7 @@ void GatheredContact::scatter(const StageSolution& at_root, const std::vector<In
     write_solution(at_root, static_cast<int>(rank), requests[rank], sent[rank]);
   const Ranks::ForEach<double> received = ranks.exchange(std::move(sent));
   read_solution(received[static_cast<std::size_t>(nodes_.root())], points, solution);
-  // Works of the path are sums over points, as those of any rank.
+  // The works of the ranks are summed.
   if (!is_root()) return;
   solution.path_contact_work = at_root.path_contact_work;
   solution.path_friction_work = at_root.path_friction_work;
@@ -125,8 +132,8 @@ void GatheredContact::write_solution(const StageSolution& at_root, int rank, con
   const Index tangents = d_ - 1;
   message = {static_cast<double>(at_root.iterations), at_root.mean_normal_reaction.size() > 0 ? 1.0 : 0.0,
              at_root.end_weight};
-  for (const std::int64_t own : points) {
-    const Index point = number(rank, own);
+  for (const std::int64_t of_rank : points) {
+    const Index point = number(rank, of_rank);
     message.insert(message.end(), {at_root.normal_reaction[point], value_of(at_root.mean_normal_reaction, point),
                                    static_cast<double>(at_root.contact_status[static_cast<std::size_t>(point)])});
     for (Index row = point * tangents; row < (point + 1) * tangents; ++row) {
