@@ -45,6 +45,7 @@ TRIED = [
     (r'slips are wrong; use mass "equivalent"', BLOCK, {**NEWMARK, "contact.0.friction": 0.3}, [{"mass.type": "equivalent"}]),
     (r'use a step of at most (\S+), or scheme "reduced-kane" with mass "equivalent", which accepts any', BLOCK,
      {**NEWMARK, "mass.type": "equivalent", "time.step": 0.3}, [step, KANE]),
+    (r'use scheme "reduced-kane" with mass "equivalent", which accepts any', BLOCK, {**NEWMARK, "time.step": 0.3}, [KANE]),
     (r'does not support friction: its energy balance then has no definite sign; use scheme "reduced-kane"', BLOCK,
      {"time.scheme": "mean-reaction", "mass.type": "equivalent", "contact.0.friction": 0.2}, [{"time.scheme": "reduced-kane"}]),
     (r'does not support viscoelastic branches: use "saint-venant-kirchhoff", which is the same for small strains, or', BLOCK, {**KANE, **RELAXES},

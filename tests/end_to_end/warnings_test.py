@@ -6,6 +6,31 @@ import unittest
 
 from harness import MESHES, SOURCE, History, TestCase, block_case, body_case, run, settings, with_more
 
+# A square of side 1 with its boundary.
+SQUARE = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+1 1 "all"
+2 2 "body"
+$EndPhysicalNames
+$Nodes
+4
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+$EndNodes
+$Elements
+5
+1 1 2 1 1 1 2
+2 1 2 1 1 2 3
+3 1 2 1 1 3 4
+4 1 2 1 1 4 1
+5 3 2 2 1 1 2 3 4
+$EndElements
+"""
 SUPPORT = '[[support]]\ngroup = "sides"\ncomponents = ["x"]\nvalue = "{}"\n'
 
 
@@ -31,6 +56,58 @@ class Warnings(TestCase):
                 self.assertIn("jumps at t = 0.1.", told[0])
                 self.assertIn("velocity of this support jumps", run("validate", self.folder / "case.toml").stderr)
 
+    def support_force_after_jump(self, time):
+        """Runs a square all of whose nodes move along x, at 0.01 per unit of time from t = 0.05 on: without strain, the force
+        of the support is that of inertia. Returns its largest value soon after the jump and late, and what the run tells."""
+        output = self.simulate(self.write("square.toml", f'''mesh.file = "square.msh"
+mesh.degree = 1
+mesh.plane = "strain"
+mass.type = "lumped"
+output.history_every = 1
+output.fields_every = 0
+[[material]]
+group = "body"
+density = 1.0
+lambda = 0.0
+mu = 1.0
+[[support]]
+group = "all"
+components = ["x"]
+value = "0.01*max(t - 0.05, 0)"
+[[support]]
+group = "all"
+components = ["y"]
+[[probe]]
+name = "all"
+boundary = "all"
+[time]
+step = 0.01
+end = 3.0
+{time}'''), options=("--quiet", "--force"))
+        force = [abs(value) for value in History(output / "history.csv")["all.support_x"]]
+        told = [line for line in json.loads((output / "summary.json").read_text(encoding="utf-8"))["warnings"] if "jumps" in line]
+        response = "fades" if not told else "grows" if "grows with every step" in told[0] else "alternates"
+        return max(force[5:30]), max(force[270:]), response
+
+    def test_forces_of_supports_after_a_jump_are_as_foretold(self):
+        """All schemes, and the parameters at which the response changes its kind."""
+        self.write("square.msh", SQUARE)
+        schema = json.loads(run("schema").stdout)
+        schemes = schema["properties"]["time"]["properties"]["scheme"]["enum"]
+        times = [f'scheme = "{scheme}"' for scheme in schemes if scheme != "newmark"]
+        times += [f'scheme = "newmark"\nbeta = {beta}\ngamma = {gamma}'
+                  for beta, gamma in ((0.25, 0.5), (0.2, 0.5), (0.3, 0.5), (0.5, 0.5), (0.25, 0.6), (0.3, 0.6), (0.35, 0.6), (0.25, 0.4))]
+        times += [f'scheme = "{scheme}"\nspectral_radius = {radius}'
+                  for scheme in ("generalized-alpha", "nonsmooth-generalized-alpha") for radius in (0.5, 1.0)]
+        times += [f'scheme = "moreau-jean"\ntheta = {theta}' for theta in (0.5, 1.0)]
+        found = set()
+        for time in times:
+            soon, late, told = self.support_force_after_jump(time)
+            response = "fades" if late <= 0.01 * soon or soon < 1e-9 else "grows" if late > 3.0 * soon else "alternates"
+            self.assertEqual(told, response, (time, soon, late))
+            found.add(response)
+        self.assertEqual(found, {"fades", "alternates", "grows"})
+
     def test_forces_that_cancel_are_no_imbalance_of_momentum(self):
         """A disc squeezed between two planes: the resultant of the contact forces is rounding."""
         text = body_case(MESHES / "disc_o2_msh41_ascii.msh", [0.0, 0.0], [0.0, 1.0], '[initial]\ndisplacement = "static"\n',
@@ -54,6 +131,13 @@ class Warnings(TestCase):
                 told = self.warnings_of(text, **{"time.step": step, "mass.type": "equivalent", "time.end": 10 * step})
                 told = [line for line in told if "a compression wave crosses a median cell" in line]
                 self.assertEqual(len(told), 1 if limited and step == 0.1 else 0, (scheme, step, told))
+                if told:
+                    self.assertRegex(told[0], r"use a step of at most [0-9.]+, or scheme")
+        # With inertia at contact nodes, shorter steps create as much.
+        [told] = [line for line in self.warnings_of(block_case(), **{"time.step": 0.1, "mass.type": "consistent", "time.end": 1.0})
+                  if "a compression wave crosses a median cell" in line]
+        self.assertNotIn("a step of at most", told)
+        self.assertIn('use scheme "reduced-kane" with mass "equivalent"', told)
 
     def test_bodies_that_slide_without_damping(self):
         """A block of a different material than the slope of the collection, which does not flutter: damping suppresses

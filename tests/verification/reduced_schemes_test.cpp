@@ -129,6 +129,22 @@ TEST(ReducedKane, LosesEnergyAtEachPointInEveryStep) {
   }
 }
 
+/// It is named only where it has an effect.
+TEST(ReducedKane, NamesTheSettingThatLosesLess) {
+  const auto setting = [](const std::string& weight, double friction, const std::string& more) {
+    CaseRun run(thrown_case(bodies().front(), "equivalent", reduced_kane(weight),
+                            "friction = " + std::to_string(friction) + "\n"),
+                {more});
+    return run.scheme().setting_that_loses_less(run.problem());
+  };
+  const std::string any = "time.step=0.01", named = "time.reaction_weight = \"adaptive\"";
+  EXPECT_EQ(setting("automatic", 0.3, any), named);
+  EXPECT_EQ(setting("end", 0.0, any), named);
+  EXPECT_EQ(setting("automatic", 0.0, any), "");
+  EXPECT_EQ(setting("adaptive", 0.3, any), "");
+  EXPECT_EQ(setting("end", 0.3, "material.0.damping={stiffness=0.001}"), "");  // at contact nodes, too
+}
+
 /// The account has three terms of the mean reaction; each is a loss.
 TEST(ReducedKane, AdaptiveWeightCreatesNoEnergyAndLosesLess) {
   for (const ThrownBody& body : bodies()) {

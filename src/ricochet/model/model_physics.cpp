@@ -38,12 +38,18 @@ void warn_of_long_steps(const Case& input, const Scheme& scheme, const Model& mo
   const std::vector<double> times = cell_crossing_times(model.body);
   const double median = times[times.size() / 2], crossings = input.time.step / median;
   if (!(crossings > limit.crossings)) return;
+  const std::string remedy =
+      limit.shorter_steps_help
+          ? fmt::format(
+                "use a step of at most {:.2g}, or scheme \"reduced-kane\" with mass \"equivalent\", which "
+                "accepts any step",
+                rounded_down(limit.crossings * median, 2))
+          : "use scheme \"reduced-kane\" with mass \"equivalent\", which accepts any step";
   log::warning(
       fmt::format("{}: in time.step = {:.3g} a compression wave crosses a median cell {:.3g} times; with {}, at more "
-                  "than {:g} per step, {}; use a step of at most {:.2g}, or scheme \"reduced-kane\" with mass "
-                  "\"equivalent\", which accepts any step",
+                  "than {:g} per step, {}; {}",
                   input.where("time.step").text(), input.time.step, crossings, scheme_text(input.time), limit.crossings,
-                  limit.trouble, rounded_down(limit.crossings * median, 2)));
+                  limit.trouble, remedy));
 }
 
 /// Warns of a body of degree 1 most of whose nodes are on its contact boundary: few are left inside to carry the

@@ -40,7 +40,8 @@ bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, co
 /// Warns of a loss of energy that no real body has, in an impact whose step is too long for its waves. Where nothing
 /// rebounds, as in sliding or pressing, forces do far more work than is ever stored, and the loss is compared with that
 /// work.
-void judge_loss(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state) {
+void judge_loss(const RunSummary& summary, const Scheme& scheme, const SemidiscreteProblem& problem,
+                const State& state) {
   constexpr double most = 0.05;
   const double loss = summary.loss_by_method(), energy = summary.energy_scale(), work = summary.work_scale();
   if (!(loss > most) || is_rounding_of_energy(energy, problem, state)) return;
@@ -56,14 +57,12 @@ void judge_loss(const RunSummary& summary, const SemidiscreteProblem& problem, c
     }
     return;
   }
+  const std::string setting = scheme.setting_that_loses_less(problem);
   log::warning(
       fmt::format("contact forces and the scheme itself have removed {:.2g} % of the largest energy (contact_work and "
                   "numerical_dissipation of the history), which a real body keeps as waves: rebounds are too slow by "
                   "this amount; a smaller time.step and smaller cells lose less{}",
-                  100.0 * loss,
-                  problem.contact.has_friction() && summary.scheme == "reduced-kane"
-                      ? ", and so does time.reaction_weight = \"adaptive\""
-                      : ""));
+                  100.0 * loss, setting.empty() ? "" : ", and so does " + setting));
 }
 
 void judge_energy(const RunSummary& summary, const Scheme& scheme, const SemidiscreteProblem& problem,
@@ -82,14 +81,14 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
                     "or a larger time.tolerance",
                     counts.tolerated, counted(summary.steps, "step"), counts.largest_error));
   }
-  judge_loss(summary, problem, state);
+  judge_loss(summary, scheme, problem, state);
   if (!(contact_creates || friction_creates || rotates) || is_rounding_of_energy(scale, problem, state)) return;
   if (contact_creates) {
     const bool helps = scheme.suits_singular_mass() && problem.has_singular_mass();
     log::warning(fmt::format(
-        "contact forces have created energy, {:.2g} times the largest energy (contact_work less numerical_dissipation "
+        "{} created energy, {:.2g} times the largest energy (contact_work less numerical_dissipation "
         "of the history); {} scheme \"reduced-kane\" with mass \"equivalent\", which creates none",
-        summary.creation_by_method(),
+        problem.contact.size() > 0 ? "contact forces have" : "the time scheme has", summary.creation_by_method(),
         helps ? "use a smaller time.step, below the time in which a wave crosses a cell, or"
               : "it comes from the time scheme: use"));
   }

@@ -48,7 +48,7 @@ class Bathe final : public Scheme {
     const StageSolution& solution = stages.solve(1);
     second_ += solution.increment;            // U₁ − U_½
     rate_ += (3.0 / h) * solution.increment;  // V₁
-    dissipate(problem, state);
+    compute_dissipation(problem, state);
     increment = 3.0 * second_ - first_;
     store_initial_forces(problem, state, stages);
     state.displacement = middle_ + second_;
@@ -84,7 +84,7 @@ class Bathe final : public Scheme {
     for (const Index dof : problem.massless_dofs) velocity_[dof] = first_[dof] / (0.5 * h);
   }
 
-  void dissipate(const SemidiscreteProblem& problem, const State& state) {
+  void compute_dissipation(const SemidiscreteProblem& problem, const State& state) {
     const Vector& load = problem.loads.constant();
     velocity_change_ = rate_ - velocity_;
     dissipation_ =

@@ -27,6 +27,7 @@ class ContactStabilized final : public Scheme {
     return {{1.0, 0.0, 0.0}, {2.0 / (h * h), 0.5, 1.0 / h}};
   }
   [[nodiscard]] double force_instant() const override { return -0.5; }
+  [[nodiscard]] JumpResponse jump_response() const override { return JumpResponse::alternates; }
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
     return {.support_work = support_work_, .numerical_dissipation = dissipation_};
   }

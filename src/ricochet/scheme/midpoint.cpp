@@ -27,6 +27,7 @@ class Midpoint final : public Scheme {
     return {{4.0 / (h * h), 1.0, 2.0 / h, StageDofs::all}};
   }
   [[nodiscard]] double force_instant() const override { return -0.5; }
+  [[nodiscard]] JumpResponse jump_response() const override { return JumpResponse::alternates; }
 
   void analyse(const SemidiscreteProblem& problem) override {
     require_contact_inertia(problem, "midpoint", "without it they flip from step to step");

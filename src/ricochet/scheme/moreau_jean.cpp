@@ -59,7 +59,7 @@ class MoreauJean final : public Scheme {
     const StageSolution& solution = stages.solve(0);
     increment = h * state.velocity + solution.increment;
     rate_ = solution.increment / (theta_ * h);  // V₁ − V₀
-    dissipate(problem, increment);
+    compute_dissipation(problem, increment);
     state.displacement += increment;
     state.velocity += rate_;
     state.acceleration = rate_ / h;
@@ -67,7 +67,7 @@ class MoreauJean final : public Scheme {
   }
 
  private:
-  void dissipate(const SemidiscreteProblem& problem, const Vector& increment) {
+  void compute_dissipation(const SemidiscreteProblem& problem, const Vector& increment) {
     dissipation_ = 0.0;
     if (theta_ == 0.5) return;
     dissipation_ = (theta_ - 0.5) * (problem.mass.quadratic_form(rate_) +

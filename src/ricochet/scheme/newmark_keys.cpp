@@ -101,9 +101,16 @@ void check_newmark(const ParameterCheck& check, Parameters& values) {
     check.add_warning(at, fmt::format("Newmark's scheme is unstable with gamma = {} (below 1/2)", gamma));
   } else if (2.0 * beta < gamma) {
     check.add_warning(at, fmt::format("Newmark's scheme is only conditionally stable with beta = {}, gamma = {} "
-                                      "(2 beta < gamma): the step must be small enough",
+                                      "(2 beta < gamma): the step must be small enough, and "
+                                      "prescribed displacements of nodes with inertia diverge at any step",
                                       beta, gamma));
   }
+}
+
+Scheme::JumpResponse newmark_jump_response(const NewmarkParameters& parameters) {
+  const auto [beta, gamma] = parameters;
+  if (gamma < 0.5 || 2.0 * beta < gamma || (gamma == 0.5 && beta == 0.25)) return Scheme::JumpResponse::grows;
+  return gamma == 0.5 || 2.0 * beta == gamma ? Scheme::JumpResponse::alternates : Scheme::JumpResponse::fades;
 }
 
 NewmarkParameters newmark_parameters(const Parameters& values) {

@@ -96,13 +96,17 @@ class Scheme {
   struct LongSteps {
     double crossings = 1.0;
     std::string trouble = {};
+    bool shorter_steps_help = true;
   };
   [[nodiscard]] virtual LongSteps long_steps(const SemidiscreteProblem&) const { return {}; }
   /// Reactions that act on the body over a step, for schemes with a choice; none without contact.
   [[nodiscard]] virtual std::optional<ReactionMean> acting_reactions(const SemidiscreteProblem&) const {
     return std::nullopt;
   }
-  /// Effect of a jump in the velocity of a prescribed displacement on the following steps.
+  /// Key and value of the case file with which the scheme loses less energy in impacts of this problem; empty: none.
+  [[nodiscard]] virtual std::string setting_that_loses_less(const SemidiscreteProblem&) const { return {}; }
+  /// Effect of a jump in the velocity of a prescribed displacement on the forces at its dofs, which have inertia, in
+  /// the steps that follow.
   enum class JumpResponse { fades, alternates, grows };
   [[nodiscard]] virtual JumpResponse jump_response() const { return JumpResponse::fades; }
 

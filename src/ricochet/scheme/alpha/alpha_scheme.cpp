@@ -29,7 +29,7 @@ void AlphaScheme::advance(const SemidiscreteProblem& problem, State& state, Stag
   predicted_ = h * state.velocity + (h * h * (0.5 - weights_.beta)) * before - shift_;
   base_ = state.displacement + predicted_;
   Stage& stage = stages.stage(0);
-  if (problem.has_damping()) find_damping_velocity(problem, state, before);
+  if (problem.has_damping()) compute_damping_velocity(problem, state, before);
   equations_.balance(problem, end, base_, velocity_, stage);
   equations_.prescribe_from(problem, end, base_, stage);
   require_no_penetration(problem, base_, end, stage);
@@ -45,7 +45,7 @@ void AlphaScheme::advance(const SemidiscreteProblem& problem, State& state, Stag
   state.velocity += h * ((1.0 - weights_.gamma) * before + weights_.gamma * change_);
   change_ -= before;
   before += change_;
-  dissipate(problem, increment);
+  compute_dissipation(problem, increment);
   state.acceleration = weights_.alpha * solution.increment;
   follow_without_inertia(problem, increment, h, state);
   if (problem.has_damping()) velocity_ += damping_factor(problem) * solution.increment;
@@ -53,7 +53,8 @@ void AlphaScheme::advance(const SemidiscreteProblem& problem, State& state, Stag
 }
 
 /// Computes the velocity that damping acts on, at δ = 0.
-void AlphaScheme::find_damping_velocity(const SemidiscreteProblem& problem, const State& state, const Vector& before) {
+void AlphaScheme::compute_damping_velocity(const SemidiscreteProblem& problem, const State& state,
+                                           const Vector& before) {
   if (problem.has_singular_mass()) {
     velocity_ = predicted_ / step();
   } else {
@@ -62,7 +63,7 @@ void AlphaScheme::find_damping_velocity(const SemidiscreteProblem& problem, cons
   }
 }
 
-void AlphaScheme::dissipate(const SemidiscreteProblem& problem, const Vector& increment) {
+void AlphaScheme::compute_dissipation(const SemidiscreteProblem& problem, const Vector& increment) {
   problem.mass.multiply(change_, force_);
   dissipation_ = weights_.energy_factor * (2.0 * weights_.gamma - 1.0) * change_.dot(force_);
   if (weights_.force_weight == 0.5) return;

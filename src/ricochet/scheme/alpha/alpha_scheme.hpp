@@ -3,6 +3,7 @@
 #include <string>
 
 #include "ricochet/scheme/integration_error.hpp"
+#include "ricochet/scheme/newmark_keys.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
@@ -46,7 +47,7 @@ class AlphaScheme final : public Scheme {
   [[nodiscard]] WorkRule work_rule() const override { return {weights_.force_weight, 1.0 - weights_.force_weight}; }
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
   [[nodiscard]] JumpResponse jump_response() const override {
-    return weights_.gamma > 0.5 ? JumpResponse::fades : JumpResponse::alternates;
+    return newmark_jump_response({weights_.beta, weights_.gamma});
   }
   void start(const SemidiscreteProblem& problem, State& state, StageSolve& stages) override;
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override;
@@ -65,8 +66,8 @@ class AlphaScheme final : public Scheme {
   [[nodiscard]] double damping_factor(const SemidiscreteProblem& problem) const {
     return problem.has_singular_mass() ? 1.0 / step() : weights_.gamma / (weights_.beta * step());
   }
-  void find_damping_velocity(const SemidiscreteProblem& problem, const State& state, const Vector& before);
-  void dissipate(const SemidiscreteProblem& problem, const Vector& increment);
+  void compute_damping_velocity(const SemidiscreteProblem& problem, const State& state, const Vector& before);
+  void compute_dissipation(const SemidiscreteProblem& problem, const Vector& increment);
 
   AlphaWeights weights_;
   double dissipation_ = 0.0, integration_error_ = 0.0;

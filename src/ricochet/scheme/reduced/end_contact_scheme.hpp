@@ -28,6 +28,7 @@ class EndContactScheme : public Scheme {
     return massless_step_.operators(problem, mean_of(problem));
   }
   [[nodiscard]] double acting_instant() const override { return -0.5; }
+  [[nodiscard]] JumpResponse jump_response() const override { return JumpResponse::alternates; }
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
   [[nodiscard]] std::optional<ReactionMean> acting_reactions(const SemidiscreteProblem& problem) const override {
     return !problem.has_contact_dofs() ? std::nullopt : std::optional(mean(problem));

@@ -32,6 +32,11 @@ class ReducedKane final : public EndContactScheme {
                               : "contact nodes have stiffness damping"));
   }
 
+  [[nodiscard]] std::string setting_that_loses_less(const SemidiscreteProblem& problem) const override {
+    const bool has_end_reactions = problem.has_contact_dofs() && mean(problem) == ReactionMean::end;
+    return has_end_reactions && has_mean(problem) ? "time.reaction_weight = \"adaptive\"" : "";
+  }
+
  private:
   /// True if the balance of a step has no term for the work of friction along a path (finite_strain_step.hpp).
   [[nodiscard]] static bool has_finite_strain_friction(const SemidiscreteProblem& problem) {

@@ -21,6 +21,7 @@ class ReducedMidpoint final : public Scheme {
   [[nodiscard]] bool supports_step_changes() const override { return true; }
   [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
   [[nodiscard]] bool supports_relaxation() const override { return true; }
+  [[nodiscard]] JumpResponse jump_response() const override { return JumpResponse::alternates; }
   [[nodiscard]] bool conserves_moments_at_finite_strain() const override { return true; }
   [[nodiscard]] const Vector* displacement_of_forces() const override {
     return massless_step_.displacement_of_forces();
