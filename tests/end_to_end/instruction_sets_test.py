@@ -34,7 +34,7 @@ def possible():
 def kernels(environment):
     """Returns the kernels of OpenBLAS and ours, as printed by --version."""
     text = run("--version", environment=environment).stdout
-    return re.search(r"OpenBLAS \S+ \((\w+)\)", text)[1], re.search(r" for (\S+)( that read in one place)?\n$", text)[1]
+    return re.search(r"OpenBLAS \S+ \((\w+)\)", text)[1], re.search(r" for (\S+)( that read one stream)?\n$", text)[1]
 
 
 class InstructionSets(TestCase):
@@ -73,11 +73,11 @@ class InstructionSets(TestCase):
         self.assertEqual(name, possible()[-1])
         self.assertNotIn(core, LESSER[name])
 
-    def test_only_amds_processors_read_in_one_place_and_only_where_nobody_asked(self):
+    def test_only_amds_processors_read_in_one_stream_and_only_where_nobody_asked(self):
         processor = Path("/proc/cpuinfo").read_text(encoding="utf-8")
         for name in (None, *possible()):
-            one_place = "read in one place" in run("--version", environment=masked(name)).stdout
-            self.assertEqual(one_place, name is None and "AuthenticAMD" in processor)
+            one_stream = "read one stream" in run("--version", environment=masked(name)).stdout
+            self.assertEqual(one_stream, name is None and "AuthenticAMD" in processor)
 
     def test_what_the_user_has_set_stays(self):
         for name in (None, *possible()):

@@ -82,7 +82,7 @@ class Refusals(ResumeTestCase):
         for k, (name, content, says) in enumerate((
                 ("history.csv", b"\n".join([*lines[:100], digit, *lines[101:]]), "lines 101 to 102 differs|line 101 differs"),
                 ("history.csv", history.replace(b"total_energy", b"total_Energy", 1), "line 1 differs|lines 1 to 2 differs"),
-                ("history.csv", history.replace(b"\n", b"\r\n"), "CR LF"),
+                ("history.csv", history.replace(b"\n", b"\r\n"), "carriage returns"),
                 ("probes-3.csv", probes[:2000] + bytes([probes[2000] ^ 1]) + probes[2001:], "probes-3.csv: "),
                 ("results.xdmf", side.replace(b"von_mises", b"von_Mises", 1), "results.xdmf: "),
                 ("obstacles.xdmf", obstacles.replace(b"Float", b"float", 1), "obstacles.xdmf: "),

@@ -142,7 +142,7 @@ Snapshot decode_snapshot(const std::string& text) {
                             format));
   }
   if (head.number<std::uint64_t>() != text.size() - head_size - sizeof(std::uint32_t))
-    throw Error(ErrorKind::invalid_input, "its length is wrong: it is truncated");
+    throw Error(ErrorKind::invalid_input, "its length is wrong: it is truncated, or something was appended");
   const std::string_view content = std::string_view(text).substr(0, text.size() - sizeof(std::uint32_t));
   if (Cursor(std::string_view(text).substr(content.size())).number<std::uint32_t>() != checksum(content))
     throw Error(ErrorKind::invalid_input, "its checksum is wrong");

@@ -22,7 +22,7 @@ constexpr const char* file_suffix = ".lines.file";
   throw Error(
       ErrorKind::file_access,
       fmt::format("{}: {} from the data written before the checkpoint{}; restore the file, or start anew with --force",
-                  path, lines, windows ? " (lines end in CR LF)" : ""));
+                  path, lines, windows ? ": carriage returns were added, as editors do" : ""));
 }
 
 }  // namespace

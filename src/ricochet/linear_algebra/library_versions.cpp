@@ -35,7 +35,7 @@ std::string library_versions() {
   return fmt::format("OpenBLAS {} ({}), {}, Eigen {}.{}.{}, compiled by {}, loops for {}{}", blas_version(),
                      openblas_get_corename(), SparseCholesky::library(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
                      EIGEN_MINOR_VERSION, compiler, name(instruction_set()),
-                     stream_count() == StreamCount::one ? " that read in one place" : "");
+                     stream_count() == StreamCount::one ? " that read one stream" : "");
 }
 
 }  // namespace ricochet

@@ -6,7 +6,7 @@
 namespace ricochet {
 
 /// Returns "OpenBLAS 0.3.21 (Haswell), CHOLMOD 3.0.14, Eigen 3.4.0, compiled by GCC 12.2.0, loops for x86-64-v3 that
-/// read in one place".
+/// read one stream".
 [[nodiscard]] std::string library_versions();
 
 }  // namespace ricochet

@@ -95,9 +95,9 @@ void rest_on_obstacle(const Case& input, const CaseMeshFile& file, const Model& 
     nearest = nearest_to(obstacle, nodes, way * direction);
   }
   mesh.nodes.colwise() += way * direction;
+  const SpaceVector shown = (way * direction).array() + 0.0;  // no "-0"
   log::info(fmt::format("{} is moved by ({:.6g}) to {} obstacle \"{}\"",
-                        file.part.empty() ? "the body" : "part \"" + file.part + '"',
-                        fmt::join(SpaceVector(way * direction), ", "),
+                        file.part.empty() ? "the body" : "part \"" + file.part + '"', fmt::join(shown, ", "),
                         file.rest_gap > 0.0 ? fmt::format("{:g} above", file.rest_gap) : "rest on", file.rest_on));
 }
 
