@@ -76,7 +76,7 @@ double softness(const SemidiscreteProblem& problem, const OperatorCoefficients& 
   Vector elastic, inertial;
   for (int axis = 0; axis < (d == 2 ? 1 : 3); ++axis) {
     const Vector along = shear(problem, bodies, inertia, axis, (axis + 1) % d);
-    problem.internal_force->evaluate(along, elastic);
+    stiffness.multiply(along, elastic);
     problem.mass.multiply(along, inertial);
     const Vector force = coefficients.mass * inertial + coefficients.stiffness * elastic;
     const Vector nodal = diagonal.cwiseProduct(along);

@@ -1,5 +1,6 @@
 #include "ricochet/solver/choose_method.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "ricochet/linear_algebra/block_jacobi.hpp"
@@ -125,6 +126,20 @@ TEST(IterationEstimate, IsOfTheSizeOfTheCounts) {
         EXPECT_LT(estimate.iterations, counted * 2.0) << body.name << ' ' << mass << ' ' << longer;
       }
     }
+  }
+}
+
+/// Laws of finite strain have the linear law's tangent at rest; a unit shear may invert their cells.
+TEST(IterationEstimate, DoesNotDependOnTheLaw) {
+  for (const test_support::ThrownBody& body : test_support::thrown_bodies()) {
+    std::vector<double> iterations;
+    for (const char* const law : {"linear", "neo-hookean"}) {
+      CaseRun run(test_support::thrown_case(body, "equivalent", test_support::time_of("reduced-kane")),
+                  {fmt::format("material.0.law=\"{}\"", law)});
+      const OperatorCoefficients coefficients = run.scheme().operators(run.problem()).back();
+      iterations.push_back(estimate_iterations(run.problem(), coefficients, 1e-10).iterations);
+    }
+    EXPECT_NEAR(iterations[1], iterations[0], 1e-6 * iterations[0]) << body.name;
   }
 }
 
