@@ -75,6 +75,20 @@ void print_bodies(const Case& input, const Model& model, const ConnectedBodies& 
     fmt::print("  {}\n", counted(rigid.bodies().size() - shown, "more body", "more bodies"));
 }
 
+/// Prints the crossing times of each material if they differ much: the median cell may then be one of the stiff body.
+void print_medians_of_materials(const Body& body) {
+  constexpr double much = 3.0;
+  const std::vector<double> medians = median_crossing_times(body);
+  const auto [least, most] = std::minmax_element(medians.begin(), medians.end());
+  if (!(*least > 0.0 && *most > much * *least)) return;
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < medians.size(); ++i)
+    texts.push_back(fmt::format("{:.2g} in \"{}\"", rounded_down(medians[i], 2), body.materials[i].name));
+  fmt::print(
+      "  a median cell of each material: {}; between a stiff and a soft body, the time of the soft one suffices\n",
+      fmt::join(texts, ", "));
+}
+
 void print_steps(const Case& input, const Model& model, const ConnectedBodies& connected) {
   const std::vector<double> times = cell_crossing_times(model.body);
   const std::vector<double> bodies = wave_crossing_times(model.body, connected);
@@ -100,6 +114,7 @@ void print_steps(const Case& input, const Model& model, const ConnectedBodies& c
       "  suggested step {:.2g}: the time in which a compression wave crosses a median cell, so that the mesh resolves "
       "the waves of an impact; the step of the case, {:g}, is {:.3g} of that\n",
       rounded_down(median, 2), step, step / median);
+  print_medians_of_materials(model.body);
 }
 
 /// Returns the time at which a node with this gap meets the obstacle; infinite if it does not.

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
+#include "ricochet/contact/contact_boundary.hpp"
 #include "ricochet/fem/cell_rotations.hpp"
 
 namespace ricochet::program {
@@ -16,7 +19,7 @@ std::string found_text(const UnwatchedPenetration& p) {
   const std::string kind =
       p.passed_through    ? "PASSED THROUGH WITHIN ONE STEP"
       : p.contact.empty() ? "PENETRATION WITHOUT CONTACT"
-                          : fmt::format("PENETRATION AT THE CONTACT of \"{}\" and \"{}\"", p.contact[0], p.contact[1]);
+                          : fmt::format("PENETRATION AT THE CONTACT of {}", pair_names(p.contact[0], p.contact[1]));
   return fmt::format("\n  {}: {}, {:.3g} deep at t = {:.6g} at ({:.4g})", kind, what, p.depth, p.time,
                      fmt::join(p.position, ", "));
 }
@@ -42,10 +45,12 @@ std::string unsettled_text(const UnsettledContact& unsettled, const RunSummary& 
   if (unsettled.contact < 0 || unsettled.contact >= static_cast<int>(s.contacts.size())) return "";
   const ContactDescription& contact = s.contacts[static_cast<std::size_t>(unsettled.contact)];
   return fmt::format(
-      "\n  {}: up to {:.3g} % of the force of \"{}\" and \"{}\" is at stake at points where held steps have left a gap "
-      "(up to {:.3g}, from t = {:.6g} on)",
+      "\n  {}: up to {:.3g} % of the force of {} is at stake at points where held steps have left {} (up to {:.3g}, "
+      "from "
+      "t = {:.6g} on)",
       unsettled.share > UnsettledContact::doubtful ? "FORCE IN DOUBT" : "held steps", 100.0 * unsettled.share,
-      contact.group, contact.opponent, unsettled.gap, unsettled.first_time);
+      pair_names(contact.group, contact.opponent), unsettled.gap < 0.0 ? "an overlap" : "a gap",
+      std::abs(unsettled.gap), unsettled.first_time);
 }
 
 /// Returns the time from which cells have rotated too far. Rotations after the last impact do not affect its results.

@@ -72,7 +72,7 @@ TRIED = [
      [step, {"obstacle.floor.rotation": None, "obstacle.floor.rotation_rate": 100}]),
     (r'of the area in which they face each other is on facets of ".*" that are only partly covered', NARROW, {"contact.0.multipliers_on": "against"},
      [{"contact.0.multipliers_on": "group"}]),
-    (r'make the motion smooth, for example with 0.5\*\(1-cos\(pi\*t/T\)\), and resolve it with at least ten steps', JERKED,
+    (r'make the motion smooth, for example with 0.5\*\(1-cos\(pi\*min\(t/T, 1\)\)\), and resolve it with at least ten steps', JERKED,
      {**NEWMARK, "time.step": 2e-3}, [{"support.0.value": "-0.01*0.5*(1-cos(pi*min(t/0.1, 1)))"}]),
     (r'stretches are 1 \+ principal strain: leave it out, or set material.law', BLOCK, {"output.fields": '["principal_stretch_1"]'},
      [{"output.fields": '["displacement"]'}, {**KANE, "material.0.law": "neo-hookean"}]),

@@ -139,6 +139,18 @@ end = 3.0
         self.assertNotIn("a step of at most", told)
         self.assertIn('use scheme "reduced-kane" with mass "equivalent"', told)
 
+    def test_crossing_times_of_a_stiff_and_a_soft_body(self):
+        """The suggested step has the median of all cells; beside it stand those of materials that differ much."""
+        text = with_more(SOURCE / "cases" / "ball-block" / "ball-block.toml", "")
+        times = []
+        for young in ("2.1e11", "2.1e9", "5.25e8"):
+            case = self.write("case.toml", text.replace("young = 2.1e11", f"young = {young}", 1))
+            out = self.expect_status(0, run("info", case)).stdout
+            times.append([float(t) for t in re.findall(r'([0-9.e+-]+) in "', "".join(re.findall("a median cell of each material: (.*);", out)))])
+        self.assertEqual([len(each) for each in times], [0, 2, 2], times)
+        self.assertAlmostEqual(times[2][0] / times[1][0], 2.0, delta=0.1)
+        self.assertEqual(times[2][1], times[1][1])
+
     def test_bodies_that_slide_without_damping(self):
         """A block of a different material than the slope of the collection, which does not flutter: damping suppresses
         it."""

@@ -32,6 +32,11 @@ struct FrictionLaw {
   friend bool operator==(const FrictionLaw&, const FrictionLaw&) = default;
 };
 
+/// Names of two groups in contact, for messages: "a" and "b", or "a" and itself.
+[[nodiscard]] inline std::string pair_names(const std::string& group, const std::string& opponent) {
+  return '"' + group + "\" and " + (group == opponent ? "itself" : '"' + opponent + '"');
+}
+
 /// Boundary group in contact with an obstacle, or with another group, as specified by a case.
 struct ContactPair {
   std::string group;          ///< with the multipliers

@@ -104,14 +104,37 @@ BodiesOfMesh describe_bodies(const Body& body) {
   return result;
 }
 
-std::vector<double> cell_crossing_times(const Body& body) {
+namespace {
+
+/// Time in which a compression wave crosses the height of each cell.
+std::vector<double> unsorted_crossing_times(const Body& body) {
   std::vector<double> times = cell_heights(*body.mesh);
   for (std::size_t cell = 0; cell < times.size(); ++cell) {
     const Material& material = body.materials[static_cast<std::size_t>(body.cell_material[cell])];
     times[cell] /= compression_wave_speed(material, is_plane_stress(body));
   }
+  return times;
+}
+
+}  // namespace
+
+std::vector<double> cell_crossing_times(const Body& body) {
+  std::vector<double> times = unsorted_crossing_times(body);
   std::sort(times.begin(), times.end());
   return times;
+}
+
+std::vector<double> median_crossing_times(const Body& body) {
+  const std::vector<double> times = unsorted_crossing_times(body);
+  std::vector<std::vector<double>> of_material(body.materials.size());
+  for (std::size_t cell = 0; cell < times.size(); ++cell)
+    of_material[static_cast<std::size_t>(body.cell_material[cell])].push_back(times[cell]);
+  std::vector<double> result;
+  for (std::vector<double>& own : of_material) {
+    std::sort(own.begin(), own.end());
+    result.push_back(own.empty() ? 0.0 : own[own.size() / 2]);
+  }
+  return result;
 }
 
 }  // namespace ricochet

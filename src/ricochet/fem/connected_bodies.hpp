@@ -42,5 +42,7 @@ struct BodiesOfMesh {
 
 /// Times in which a compression wave crosses the height of each cell, ascending.
 [[nodiscard]] std::vector<double> cell_crossing_times(const Body& body);
+/// Median of these times for the cells of each material.
+[[nodiscard]] std::vector<double> median_crossing_times(const Body& body);
 
 }  // namespace ricochet

@@ -130,7 +130,10 @@ ContactPair body_pair(const Case& input, const ModelContact& section, const Mode
                        section.group, section.against, counted(common.size(), "facet")));
   }
   if (pair.large_sliding && !pair.is_one_of_many) check_sliding_bodies(input, key, model, pair);
-  if (pair.is_self()) return pair;
+  if (pair.is_self()) {
+    pair.side_reason = "the surface touches itself";
+    return pair;
+  }
   const bool is_chosen = section.multipliers_on == "automatic";
   const SideChoice choice =
       is_chosen ? choose_side(model.body, pair) : SideChoice{section.multipliers_on == "against", ""};

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
@@ -83,26 +85,33 @@ void warn_of_concentrated_inertia(const Case& input, const std::string& built, c
       built == input.mass.type ? "check whether mass \"equivalent\" selects a construction that does not, " : ""));
 }
 
-/// Returns the step at which the velocity of a prescribed displacement jumps; none if it is smooth. A jump is a second
-/// difference that exceeds those two steps before and after it. (A corner between two steps contributes to both.)
-std::optional<long> find_jump(const std::function<double(long)>& value, long steps) {
+/// Returns the steps at which the velocity of a prescribed displacement jumps. A jump is a second difference that
+/// exceeds those two steps before and after it. (A corner between two steps contributes to both.)
+std::vector<long> find_jumps(const std::function<double(long)>& value, long steps) {
   constexpr double sharp = 0.25;      // relative to the largest velocity
   constexpr double prominence = 4.0;  // a sine stays below this from ten steps per period on
   std::array<double, 5> bend{};       // second differences; the middle one belongs to the step in question
-  double fastest = 0.0, jump = 0.0, earlier = value(1) - value(0);
-  long jumps_at = 0;
+  double fastest = 0.0, earlier = value(1) - value(0);
+  std::vector<std::pair<long, double>> found;
   for (long step = 1; step < steps + 2; ++step) {
     std::rotate(bend.begin(), bend.begin() + 1, bend.end());
     const double increment = step < steps ? value(step + 1) - value(step) : earlier;
     bend.back() = std::abs(increment - earlier);
     fastest = std::max({fastest, std::abs(increment), std::abs(earlier)});
     earlier = increment;
-    if (bend[2] > jump && bend[2] > prominence * std::max(bend[0], bend[4])) {
-      jump = bend[2];
-      jumps_at = step - 2;
+    const bool is_sharp = bend[2] > sharp * fastest && bend[2] > prominence * std::max(bend[0], bend[4]);
+    if (!is_sharp) continue;
+    if (found.empty() || found.back().first < step - 3) {
+      found.emplace_back(step - 2, bend[2]);
+    } else if (bend[2] > found.back().second) {
+      found.back() = {step - 2, bend[2]};
     }
   }
-  return jump > sharp * fastest ? std::optional(jumps_at) : std::nullopt;
+  std::vector<long> result;
+  for (const auto& [step, jump] : found) {
+    if (jump > sharp * fastest) result.push_back(step);
+  }
+  return result;
 }
 
 /// Warns of a prescribed displacement whose velocity jumps: without numerical damping, the velocity of its nodes then
@@ -115,18 +124,17 @@ void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
   for (std::size_t i = 0; i < input.supports.size(); ++i) {
     const SupportSection& section = input.supports[i];
     if (!section.value.depends_on_time()) continue;
-    const std::optional<long> jump =
-        find_jump([&](long step) { return section.value(0.0, 0.0, 0.0, static_cast<double>(step) * time.step); },
-                  std::min(step_count(time), most_instants));
-    if (!jump) continue;
-    log::warning(
-        fmt::format("{}: the velocity of this support jumps at t = {:.6g}. {} keeps such a jump from step to step with "
-                    "alternating sign{}; make the motion smooth, for example with 0.5*(1-cos(pi*t/T)), and resolve it "
-                    "with at least ten steps, or do not use the forces of this support",
-                    input.where(fmt::format("support.{}.value", i)).text(), static_cast<double>(*jump) * time.step,
-                    scheme_text(time),
-                    response == Scheme::JumpResponse::grows ? ", and the support's force grows with every step"
-                                                            : " in the support's force"));
+    const std::vector<long> jumps =
+        find_jumps([&](long step) { return section.value(0.0, 0.0, 0.0, static_cast<double>(step) * time.step); },
+                   std::min(step_count(time), most_instants));
+    if (jumps.empty()) continue;
+    log::warning(fmt::format(
+        "{}: the velocity of this support jumps at t = {:.6g}{}. {} keeps such a jump from step to step with "
+        "alternating sign in the support's force, which {}; make the motion smooth, for example with "
+        "0.5*(1-cos(pi*min(t/T, 1))), and resolve it with at least ten steps, or do not use the forces of this support",
+        input.where(fmt::format("support.{}.value", i)).text(), static_cast<double>(jumps.front()) * time.step,
+        jumps.size() > 1 ? fmt::format(" (and {} later)", counted(jumps.size() - 1, "time")) : "", scheme_text(time),
+        response == Scheme::JumpResponse::grows ? "grows with every step" : "is the larger the shorter the step"));
   }
 }
 

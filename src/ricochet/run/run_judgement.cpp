@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/contact/contact_boundary.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/run/rotation_watch.hpp"
 #include "ricochet/simulation/impact/rotation_growth.hpp"
@@ -118,11 +119,11 @@ void judge_unsettled(const RunSummary& summary) {
   for (const UnsettledContact& contact : summary.unsettled) {
     if (contact.share <= UnsettledContact::doubtful) continue;
     const ContactDescription& pair = summary.contacts[static_cast<std::size_t>(contact.contact)];
-    log::warning(
-        fmt::format("the force of the contact of \"{}\" and \"{}\" is in doubt: up to {:.3g} % of it is at stake where "
-                    "held steps have left gaps of up to {:.3g}, in {} from t = {:.6g} on",
-                    pair.group, pair.opponent, 100.0 * contact.share, contact.gap, counted(contact.steps, "step"),
-                    contact.first_time));
+    log::warning(fmt::format(
+        "the force of the contact of {} is in doubt: up to {:.3g} % of it is at stake where held steps "
+        "have left {} of up to {:.3g}, in {} from t = {:.6g} on",
+        pair_names(pair.group, pair.opponent), 100.0 * contact.share, contact.gap < 0.0 ? "overlaps" : "gaps",
+        std::abs(contact.gap), counted(contact.steps, "step"), contact.first_time));
   }
 }
 

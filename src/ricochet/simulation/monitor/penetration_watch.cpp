@@ -9,6 +9,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/contact/contact_boundary.hpp"
 #include "ricochet/simulation/monitor/penetration_phrases.hpp"
 
 namespace ricochet {
@@ -182,11 +183,11 @@ void PenetrationWatch::warn_at_contact(const BodyPair& pair) const {
                 contact.group)
           : "the facets that faced each other at the start no longer do so, since the bodies have slid along or past "
             "each other; set sliding = \"large\", pair them with pair_at where they meet, or limit their motion";
-  log::warning(
-      fmt::format("{} {} and {} overlap by {} at {}, more than half a facet, although the contact of \"{}\" and \"{}\" "
-                  "should keep that node out: {}; {}",
-                  words::when(p.time), p.bodies[0], p.bodies[1], words::depth_text(p), words::coordinates(p.position),
-                  p.contact[0], p.contact[1], why, words::see_summary));
+  log::warning(fmt::format(
+      "{} {} and {} overlap by {} at {}, more than half a facet, although the contact of {} should keep that "
+      "node out: {}; {}",
+      words::when(p.time), p.bodies[0], p.bodies[1], words::depth_text(p), words::coordinates(p.position),
+      pair_names(p.contact[0], p.contact[1]), why, words::see_summary));
 }
 
 std::vector<const ContactPair*> PenetrationWatch::contacts_between(int first, int second) const {

@@ -5,6 +5,7 @@
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/contact/contact_boundary.hpp"
 #include "ricochet/mesh/derived_groups.hpp"
 #include "ricochet/simulation/monitor/penetration_phrases.hpp"
 #include "ricochet/simulation/monitor/penetration_watch.hpp"
@@ -73,10 +74,11 @@ std::string PenetrationWatch::contact_with_itself(int body, const UnwatchedPenet
 void PenetrationWatch::warn_at_contact(const SelfPenetration& found) const {
   const UnwatchedPenetration p = self_penetration_at_contact(found);
   log::warning(fmt::format(
-      "{} {} penetrates itself by {} at {}, more than half a facet, although the contact of \"{}\" and \"{}\" should "
-      "keep that node out: {}; {}",
-      words::when(p.time), p.bodies[0], words::depth_text(p), words::coordinates(p.position), p.contact[0],
-      p.contact[1],
+      "{} {} penetrates itself by {} at {}, more than half a facet, although the contact of {} should keep that node "
+      "out: "
+      "{}; {}",
+      words::when(p.time), p.bodies[0], words::depth_text(p), words::coordinates(p.position),
+      pair_names(p.contact[0], p.contact[1]),
       pairs_[static_cast<std::size_t>(found.contact)].large_sliding
           ? "in one step its parts approached each other by more than the depth to which the contact detects them, or "
             "they were compressed to less than half of their thickness"

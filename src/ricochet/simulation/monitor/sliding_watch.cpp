@@ -8,6 +8,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/contact/contact_boundary.hpp"
 #include "ricochet/simulation/monitor/facet_sizes.hpp"
 
 namespace ricochet {
@@ -109,14 +110,15 @@ void SlidingWatch::enter(LargeSlidingContact& contact, const State& state) const
 
 void SlidingWatch::warn(const LargeSlidingContact& contact) const {
   const ContactPair& pair = pairs_[static_cast<std::size_t>(contact.contact)];
-  log::warning(
-      fmt::format("at t = {:.6g} the pairing of \"{}\" and \"{}\" did not settle: it changed from one iteration of the "
-                  "step to the next and was held. Points are left at gaps of up to {:.3g}, for example at ({:.4g}) "
-                  "(reference position), which nothing closes while they are pressed, and up to {:.3g} % of the force "
-                  "of this contact is at stake. This creates no energy. The column unsettled_gap has the gap of every "
-                  "step, \"unsettled_contacts\" in summary.json the largest share of the force",
-                  contact.time, pair.first_group(), pair.second_group(), contact.gap,
-                  fmt::join(reference_position(contact.point), ", "), 100.0 * contact.share()));
+  log::warning(fmt::format(
+      "at t = {:.6g} the pairing of {} did not settle: it changed from one iteration of the step to the "
+      "next and was held. Points are left at {} of up to {:.3g}, for example at ({:.4g}) (reference "
+      "position), which nothing {} while they are pressed, and up to {:.3g} % of the force of this contact "
+      "is at stake. This creates no energy. The column unsettled_gap has the gap of every step, "
+      "\"unsettled_contacts\" in summary.json the share of the largest force",
+      contact.time, pair_names(pair.first_group(), pair.second_group()), contact.gap < 0.0 ? "overlaps" : "gaps",
+      std::abs(contact.gap), fmt::join(reference_position(contact.point), ", "),
+      contact.gap < 0.0 ? "removes" : "closes", 100.0 * contact.share()));
 }
 
 /// Warns of the first held step, whatever its effect.
