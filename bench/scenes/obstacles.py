@@ -128,7 +128,7 @@ def motion(random, shape, speed, time, axisymmetric):
     if kind == "rate" and (shape.kind in ROUND and (d == 2 or shape.kind not in ("circle", "hollow")) or shape.kind == "plane" and d == 3):
         value = spin if d == 2 else math.hypot(*spin)
         return {"rotation_rate": axial(value, RATE) if d == 2 else Turn(value)}
-    about = {"about": point(shape.centre)} if shape.kind not in ("plane", "circle", "hollow", "cylinder", "bore", "torus") else {}
+    about = {"about": point(shape.centre)} if shape.kind not in ("plane", *ROUND) else {}
     amplitude = lambda r: tuple(s / r for s in spin) if d == 3 else spin / r
     if kind == "table":
         times = [time * k / 4 for k in range(6)]

@@ -12,7 +12,7 @@ sys.path.insert(0, str(SOURCE / "bench" / "scenes"))
 import run as scenes  # noqa: E402
 import energy  # noqa: E402
 import properties  # noqa: E402
-from draw import scene_of  # noqa: E402
+from draw import FAMILIES, scene_of  # noqa: E402
 from history import deviations  # noqa: E402
 from quantities import Frame  # noqa: E402
 
@@ -34,6 +34,19 @@ class Scenes(unittest.TestCase):
         self.assertEqual(base.status, 0, base.error())
         self.assertTrue(touches)
         return names
+
+    def test_seeds_draw_what_their_names_say(self):
+        """A new kind of obstacle or law changes what a seed draws: take other seeds then."""
+        scenes_of_seeds = [scene_of(seed) for seed in SEEDS]
+        self.assertEqual({scene.family for scene in scenes_of_seeds}, set(FAMILIES))
+        self.assertTrue(any("rotation" in obstacle.keys for scene in scenes_of_seeds for obstacle in scene.obstacles()))
+        self.assertTrue(any("law" in scene.section("material").keys for scene in scenes_of_seeds))
+        pair = scene_of(PAIR_WHOSE_FACETS_ARE_RENUMBERED)
+        self.assertEqual((pair.family, pair.section("material").keys["law"]), ("pair", "neo-hookean"))
+        turning = scene_of(STICKS_TO_A_TURNING_OBSTACLE)
+        [obstacle] = turning.obstacles()
+        self.assertEqual((obstacle.keys["type"], "rotation" in obstacle.keys), ("torus", True))
+        self.assertGreater(turning.section("contact").keys["friction"], 0.0)
 
     def test_observers_descriptions_and_accounts_agree(self):
         for seed in SEEDS:
