@@ -57,16 +57,16 @@ TEST(MalformedCase, References) {
        "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n[[contact]]\ngroup = \"low\"\nobstacle = "
        "\"floor\"\n[[contact]]\ngroup = \"low\"\nobstacle = \"floor\"",
        "20:9: the group \"low\" is already in another [[contact]], at 17:9"},
-      {0, "[obstacle.floor]\ntype = \"cone\"\npoint = [0, 0]\nnormal = [0, 1]",
+      {0, "[obstacle.floor]\ntype = \"teapot\"\npoint = [0, 0]\nnormal = [0, 1]",
        "13:8: \"type\" must be one of \"plane\", \"sphere\", \"cylinder\", \"torus\", \"surface\" or \"implicit\"; "
-       "found the text \"cone\". Shape of the obstacle: a plane with a half-space behind it; a sphere, cylinder or "
+       "found the text \"teapot\". Shape of the obstacle: a plane with a half-space behind it; a sphere, cylinder or "
        "torus, touched from outside or from inside; a surface from a file; or a shape described by an expression."},
       // Keys of another shape cause no further messages.
       {0,
-       "[obstacle.ring]\ntype = \"cone\"\ncentre = [0, 0, 0]\nminor = 1.0\n[[contact]]\ngroup = "
+       "[obstacle.ring]\ntype = \"teapot\"\ncentre = [0, 0, 0]\nminor = 1.0\n[[contact]]\ngroup = "
        "\"low\"\nobstacle = \"ring\"",
        "13:8: \"type\" must be one of \"plane\", \"sphere\", \"cylinder\", \"torus\", \"surface\" or \"implicit\"; "
-       "found the text \"cone\". Shape of the obstacle: a plane with a half-space behind it; a sphere, cylinder or "
+       "found the text \"teapot\". Shape of the obstacle: a plane with a half-space behind it; a sphere, cylinder or "
        "torus, touched from outside or from inside; a surface from a file; or a shape described by an expression."},
       {0, "[obstacle.ball]\ntype = \"sphere\"\npoint = [0, 0]\nradius = -1\nside = \"within\"",
        "12:1: [obstacle.ball] has no \"centre\": a vector of 2 or 3 numbers (unit: length). Centre of the sphere; in "

@@ -253,8 +253,8 @@ TEST(Obstacle, IsRefusedWithoutItsValuesOrWithOthers) {
     }
     return std::string("none");
   };
-  EXPECT_EQ(message("cone", {}),
-            "unknown obstacle type \"cone\"; known: \"plane\", \"sphere\", \"cylinder\", "
+  EXPECT_EQ(message("teapot", {}),
+            "unknown obstacle type \"teapot\"; known: \"plane\", \"sphere\", \"cylinder\", "
             "\"torus\", \"surface\" and \"implicit\"");
   EXPECT_EQ(message("sphere", {{"centre", Numbers{0.0, 0.0}}}),
             "obstacle type \"sphere\" needs the parameter \"radius\"");
