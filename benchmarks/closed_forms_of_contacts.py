@@ -188,33 +188,31 @@ class PointImpact:
         self.area = math.pi * self.radius * self.compression
         self.impulse = 2.0 * masses[1] / sum(masses)  # over that of the first body
 
+    def of_a_quarter(self, quantity):
+        """The reference values of a case that has a quarter of each body: only the area is a quarter."""
+        return {
+            "max(history.contact.force_z)": self.force,
+            "last_time(history.contact.force_z > 0.5)": self.duration,
+            "max(history.contact.area)": self.area / 4.0,
+            "integral(history.contact.force_z)": self.impulse,
+        }.get(quantity)
+
 
 def two_balls(case, quantity):
-    """The area is that of a quarter."""
     material, radii = case["material"][0], [part["scale"] for part in case["part"].values()]
     elastic = (material["young"], material["poisson"])
     masses = [material["density"] * 4.0 / 3.0 * math.pi * radius**3 for radius in radii]
     impact = PointImpact((elastic, elastic), radii, masses, -case["part"]["upper"]["velocity"][2])
-    return {
-        "max(history.contact.force_z)": impact.force,
-        "last_time(history.contact.force_z > 0.5)": impact.duration,
-        "max(history.contact.area)": impact.area / 4.0,
-        "integral(history.contact.force_z)": impact.impulse,
-    }.get(quantity)
+    return impact.of_a_quarter(quantity)
 
 
 def ball_block(case, quantity):
-    """A cube of side 4 for a half-space; areas are those of a quarter."""
+    """A cube of side 4 for a half-space."""
     ball, block = case["material"]
     radius, side = case["part"]["ball"]["scale"], 4.0 * case["part"]["block"]["scale"]
     masses = [ball["density"] * 4.0 / 3.0 * math.pi * radius**3, block["density"] * side**3]
     impact = PointImpact([(m["young"], m["poisson"]) for m in (ball, block)], (radius, math.inf), masses, -case["part"]["ball"]["velocity"][2])
-    return {
-        "max(history.contact.force_z)": impact.force,
-        "last_time(history.contact.force_z > 0.5)": impact.duration,
-        "max(history.contact.area)": impact.area / 4.0,
-        "integral(history.contact.force_z)": impact.impulse,
-    }.get(quantity)
+    return impact.of_a_quarter(quantity)
 
 
 def cylinder_impact(case, quantity):

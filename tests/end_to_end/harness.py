@@ -23,6 +23,33 @@ DISC = SOURCE / "cases" / "disc" / "disc.toml"
 # In a quantity, a row that is neither the first nor the last: it belongs to another time once the step is changed.
 OTHER_ROW = re.compile(r"\[(?!0\]|-1\])")
 
+# A square of side 1 in the group "body": four nodes, all of them on its boundary, "bottom".
+TWO_TRIANGLES = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+1 1 "bottom"
+2 2 "body"
+$EndPhysicalNames
+$Nodes
+4
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+$EndNodes
+$Elements
+6
+1 1 2 1 1 1 2
+2 1 2 1 1 2 3
+3 1 2 1 1 3 4
+4 1 2 1 1 4 1
+5 2 2 2 1 1 2 3
+6 2 2 2 1 1 3 4
+$EndElements
+"""
+
 # Each scheme with its usual mass.
 SCHEMES = {"midpoint": "consistent", "klr-conserving": "consistent", "newmark": "equivalent",
            "semi-explicit": "equivalent-lumped", "reduced-kane": "equivalent"}

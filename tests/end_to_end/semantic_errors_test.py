@@ -6,36 +6,9 @@ import os
 import re
 import unittest
 
-from harness import MESHES, History, TestCase, block_case, run
+from harness import MESHES, TWO_TRIANGLES, History, TestCase, block_case, run
 
 MIXED = block_case("mixed_o1_msh41_ascii.msh").replace('group = "body"', 'group = "all"')
-
-# Four nodes, all of them on the boundary.
-TWO_TRIANGLES = """$MeshFormat
-2.2 0 8
-$EndMeshFormat
-$PhysicalNames
-2
-1 1 "bottom"
-2 2 "body"
-$EndPhysicalNames
-$Nodes
-4
-1 0 0 0
-2 1 0 0
-3 1 1 0
-4 0 1 0
-$EndNodes
-$Elements
-6
-1 1 2 1 1 1 2
-2 1 2 1 1 2 3
-3 1 2 1 1 3 4
-4 1 2 1 1 4 1
-5 2 2 2 1 1 2 3
-6 2 2 2 1 1 3 4
-$EndElements
-"""
 
 
 def support(group, components, value, parameters=""):
