@@ -11,18 +11,34 @@ set(RICOCHET_LONG_TESTS
   verification.follower_pressure verification.published_schemes verification.elements.manufactured_solution
   verification.locking verification.contact.inf_sup end_to_end.adaptive_steps)
 
+# Tests that measure times have the label "timed" and run alone. `./dev faults` and `./dev coverage` leave them out.
+set(RICOCHET_TIMED_TESTS end_to_end.step_price end_to_end.signals python.overhead)
+
 include(${CMAKE_CURRENT_LIST_DIR}/sanitized_tests.cmake)
 
-foreach(name ${RICOCHET_LONG_TESTS} ${RICOCHET_SANITIZED_TESTS})
+foreach(name ${RICOCHET_LONG_TESTS} ${RICOCHET_TIMED_TESTS} ${RICOCHET_SANITIZED_TESTS})
   if(NOT name MATCHES "^(unit|verification|allocations|end_to_end|python)[.]")
     message(FATAL_ERROR "tests/long_tests.cmake and tests/sanitized_tests.cmake: ${name} begins with no folder of tests")
   endif()
 endforeach()
 
-# ricochet_require_listed_tests(PREFIX): an error unless the entries of both lists that begin with PREFIX are tests of this
+# ricochet_listed_labels(NAME VARIABLE): the labels that the lists give to an entry.
+function(ricochet_listed_labels name variable)
+  set(labels)
+  foreach(list LONG TIMED SANITIZED)
+    if(name IN_LIST RICOCHET_${list}_TESTS)
+      string(TOLOWER ${list} label)
+      list(APPEND labels ${label})
+    endif()
+  endforeach()
+  list(TRANSFORM labels REPLACE "^sanitized$" "sanitize")
+  set(${variable} ${labels} PARENT_SCOPE)
+endfunction()
+
+# ricochet_require_listed_tests(PREFIX): an error unless the entries of the lists that begin with PREFIX are tests of this
 # folder.
 function(ricochet_require_listed_tests prefix)
-  foreach(name ${RICOCHET_LONG_TESTS} ${RICOCHET_SANITIZED_TESTS})
+  foreach(name ${RICOCHET_LONG_TESTS} ${RICOCHET_TIMED_TESTS} ${RICOCHET_SANITIZED_TESTS})
     if(name MATCHES "^${prefix}" AND NOT TEST ${name})
       message(FATAL_ERROR "tests/long_tests.cmake and tests/sanitized_tests.cmake: there is no test ${name}")
     endif()

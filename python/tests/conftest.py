@@ -1,10 +1,14 @@
 import os
 import pathlib
 import shutil
+import tempfile
 
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+# Each file begins without meshes, so that none depends on those of another one, or of the user.
+MESH_CACHE = tempfile.TemporaryDirectory(prefix="ricochet-cache-")
+os.environ["RICOCHET_CACHE"] = MESH_CACHE.name
 
 
 @pytest.fixture

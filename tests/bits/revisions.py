@@ -1,5 +1,6 @@
 """Revisions of the project: the two that are compared, and the worktree in which the earlier one is built."""
 
+import hashlib
 import pathlib
 import subprocess
 import sys
@@ -20,8 +21,11 @@ def is_dirty():
 
 
 def state():
-    """Returns what the working tree contains: its commit and its changes."""
-    return git("rev-parse", "HEAD"), git("status", "--porcelain"), git("diff", "HEAD")
+    """Returns what the working tree contains: its commit and its changes, with the contents of new files."""
+    new = hashlib.sha256()
+    for name in git("ls-files", "--others", "--exclude-standard").splitlines():
+        new.update(name.encode() + (ROOT / name).read_bytes())
+    return git("rev-parse", "HEAD"), git("status", "--porcelain"), git("diff", "HEAD"), new.hexdigest()
 
 
 def commit(revision):

@@ -6,8 +6,9 @@
 Compares the working tree with REVISION (by default HEAD, or HEAD~ if nothing has changed since HEAD): every case under
 every scheme that accepts it, with one and two threads, resumed and, where PETSc is installed, on two ranks: checksums of
 history.csv and of the last frame after 200 steps that cover the time of the case. A run that fails must fail with the same
-status, and one that crashes or does not end is a difference. Prints one line for each difference; the exit status is 1 if there is one. --quick: one thread alone, 50 steps.
---only: runs whose names have one of these texts. Results of a commit are kept in build-bits/ for later comparisons.
+status, and one that crashes or does not end is a difference. Prints one line for each difference; the exit status is 1 if
+there is one. --quick: one thread alone, 50 steps. --only: runs whose names have one of these texts. Results of a commit are
+kept in build-bits/ for later comparisons.
 """
 
 import argparse
@@ -76,11 +77,11 @@ def keep(path, found):
 
 
 def chosen(runs, texts):
-    """Returns the runs whose names contain one of these texts, at least one."""
-    found = [run for run in runs if any(text in str(run) for text in texts)]
-    if not found:
-        raise SystemExit("./dev bits: there is no run to compare")
-    return found
+    """Returns the runs whose names contain one of these texts, at least one for each."""
+    for text in texts:
+        if not any(text in str(run) for run in runs):
+            raise SystemExit(f"./dev bits: there is no run to compare whose name contains \"{text}\" (REVISION precedes --only)")
+    return [run for run in runs if any(text in str(run) for text in texts)]
 
 
 def differences(runs, old, new):
@@ -115,6 +116,8 @@ def main():
     state = revisions.state()
     is_clean = not state[1]
     revision = revisions.commit(arguments.revision)
+    if is_clean and revision == state[0]:
+        raise SystemExit(f"./dev bits: {revision[:8]} is the working tree itself; name an earlier revision, or none for HEAD~")
     tree = working_tree()
     name, steps, kinds = ("quick", QUICK_STEPS, KINDS[:1]) if arguments.quick else ("whole", STEPS, KINDS)
     if not has_petsc():

@@ -6,7 +6,7 @@ Builds the preset "coverage" (clang, counters in every function) in build-covera
 of its own, and prints the share of lines by folder and tier. The status is 1 if ./dev test covers more than 3 points less
 than all tests. Tests that fail are named: their lines count. --choose prints the tests without the label "long" in the order
 in which they add most lines per second, which is how those with the label "sanitize" are chosen: a sanitizer finds errors
-only in lines that are executed. --keep takes the counters of the last run.
+only in lines that are executed. --keep takes the counters of the last run. Tests with the label "timed" do not run.
 """
 
 import argparse
@@ -38,7 +38,7 @@ def entries():
     for test in json.loads(listing)["tests"]:
         properties = {each["name"]: each["value"] for each in test.get("properties", [])}
         result[test["name"]] = set(properties.get("LABELS", []))
-    return result
+    return {name: labels for name, labels in result.items() if "timed" not in labels}
 
 
 def run(name):
@@ -80,7 +80,7 @@ def lines_of(names, label):
     if subprocess.run(["llvm-profdata", "merge", "-sparse", "-failure-mode=all", "-f", inputs, "-o", merged], check=False).returncode:
         return present, executed
     export = subprocess.run(["llvm-cov", "export", "-format=lcov", f"-instr-profile={merged}", *objects()], check=True,
-                            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
+                            stdout=subprocess.PIPE, text=True).stdout
     for line in export.splitlines():
         if line.startswith("SF:"):
             path = os.path.relpath(line[3:], ROOT)
@@ -142,6 +142,8 @@ def main():
     labels = entries()
     if not arguments.keep:
         measure(list(labels), arguments.jobs)
+    if not RUNS.exists() or any(pathlib.Path(path).stat().st_mtime > RUNS.stat().st_mtime for path in objects()[::2]):
+        raise SystemExit("./dev coverage: there are no counters of the present programs; run it without --keep")
     runs = json.loads(RUNS.read_text())
     if runs["failed"]:
         print(f"./dev coverage: these tests failed: {', '.join(runs['failed'])}", file=sys.stderr)

@@ -1,6 +1,9 @@
-"""`./dev`: its help and docs/developers/commands.md list all commands, its benchmarks refuse wrong options before
-anything is compiled, and its gate for bits finds a change of one rounding."""
+"""`./dev`: its help and docs/developers/commands.md list all commands, wrong options are refused before anything is
+compiled, the tiers of tests are what their options say, and the gate for bits finds a change of one rounding."""
 
+import contextlib
+import importlib.util
+import io
 import math
 import re
 import subprocess
@@ -10,8 +13,15 @@ import unittest.mock
 
 from harness import PROGRAM, SOURCE, TestCase
 
-sys.path.insert(0, str(SOURCE / "tests" / "bits"))
-import run as bits
+def module(path):
+    """Returns the module of a script, several of which are called run.py."""
+    spec = importlib.util.spec_from_file_location("_".join(path.relative_to(SOURCE).with_suffix("").parts), path)
+    result = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(result)
+    return result
+
+
+bits, tiers, faults = (module(SOURCE / "tests" / name) for name in ("bits/run.py", "run.py", "faults/run.py"))
 from runs import Side, all_runs, cases
 
 
@@ -41,6 +51,58 @@ class Commands(TestCase):
                 refused = python(script, "--check", "--nonsense")
                 self.assertEqual(refused.returncode, 2)
                 self.assertIn("./dev bench" if name == "step" else f"./dev bench {name}", refused.stderr)
+
+
+    def test_help_and_unknown_arguments(self):
+        for name in ("build", "python", "demo", "viewer", "package", "docs", "format"):
+            shown = subprocess.run([SOURCE / "dev", name, "--help"], check=True, capture_output=True, text=True).stdout
+            self.assertRegex(shown, rf"^  {name} ")
+            self.assertEqual(len(re.findall(r"(?m)^  [a-z]", shown)), 1)
+
+    def test_the_page_has_the_faults(self):
+        page = (SOURCE / "docs" / "developers" / "testing.md").read_text(encoding="utf-8")
+        self.assertIn(f"\n\n{faults.table(faults.read_faults())}\n\n", page)
+
+
+class Tiers(TestCase):
+    """The arguments of ctest that options of `./dev test` and `./dev sanitize` amount to."""
+
+    def arguments(self, *words):
+        return tiers.ctest_arguments(*tiers.parse(words))
+
+    def excluded(self, *words):
+        found = self.arguments(*words)
+        self.assertLessEqual(found.count("-LE"), 1, "of several, ctest takes the last")
+        return found[found.index("-LE") + 1] if "-LE" in found else ""
+
+    def test_long_tests_run_if_they_are_selected(self):
+        for words, excluded in (((), "^long$"), (("--all",), ""), (("-R", "x"), ""), (("-L", "x"), ""), (("-E", "x"), "^long$"),
+                                (("-LE", "a"), "^long$|a"), (("--all", "-LE", "a"), "a"), (("-LE", "a", "--all"), "a"),
+                                (("-LE", "a", "-R", "x", "-LE", "b"), "a|b")):
+            self.assertEqual(self.excluded("test", *words), excluded, words)
+
+    def test_labels_of_tiers(self):
+        for tier, label in (("mpi", "^distributed$"), ("sanitize-quick", "^sanitize$")):
+            found = self.arguments(tier, "-R", "x", "-L", "y")
+            self.assertEqual(found[found.index("-L"):][:4], ["-L", label, "-L", "y"])
+        for tier in tiers.TIERS:
+            self.assertIn("--no-tests=error", self.arguments(tier))
+
+    def test_unknown_options_are_refused(self):
+        for words in (("test", "--al"), ("test", "unit.mass"), ("test", "-LEx"), ("mpi", "--all"), ("sanitize", "--quik")):
+            done = python(SOURCE / "tests" / "run.py", "--check", *words)
+            self.assertEqual(done.returncode, 2, words)
+            self.assertIn(tiers.TIERS[words[0]].command, done.stderr)
+
+    def test_a_skipped_test_needs_a_reason(self):
+        log = "1/1 Testing: {}\nOK (skipped=1)\nTest time =   0.10 sec\nTest Passed.\n\"x"
+        (self.folder / "log").write_text(log.format("end_to_end.completion"))
+        (self.folder / "other").write_text(log.format("end_to_end.study"))
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            self.assertTrue(tiers.report(tiers.entries(self.folder / "log")))
+            self.assertFalse(tiers.report(tiers.entries(self.folder / "other")))
+        self.assertIn("end_to_end.completion: skipped=1: needs fish", printed.getvalue())
+        self.assertIn("end_to_end.study: skipped=1: ERROR", printed.getvalue())
 
 
 class Bits(TestCase):
@@ -100,7 +162,7 @@ class Bits(TestCase):
         plain.program.write_text("#!/bin/sh\nsleep 600\n")
         plain.program.chmod(0o755)
         with unittest.mock.patch("runs.TIME_LIMIT", 0.2):
-            self.assertEqual(plain.call([plain.program], [], 1.0), "none within the time limit")
+            self.assertEqual(plain.call([plain.program], [], 1.0)[0], "none within the time limit")
 
     def test_one_at_a_time(self):
         worktree = bits.revisions.Worktree("test")
@@ -116,8 +178,9 @@ class Bits(TestCase):
     def test_nothing_to_compare_is_an_error(self):
         runs = all_runs(cases(SOURCE), PROGRAM, ("1 thread",), 10)
         self.assertEqual(len(bits.chosen(runs, ["rod.toml newmark"])), 1)
-        with self.assertRaisesRegex(SystemExit, "no run to compare"):
-            bits.chosen(runs, ["no such case"])
+        for texts in (["no such case"], ["rod.toml newmark", "HEAD~3"]):
+            with self.assertRaisesRegex(SystemExit, f'no run to compare whose name contains "{texts[-1]}"'):
+                bits.chosen(runs, texts)
 
 
 if __name__ == "__main__":

@@ -57,6 +57,7 @@ class Info(Bodies):
         """A disc: m r²/2; a ball: 2/5 m r²."""
         for space, centre, moment in ((False, "[0.4, 0.82]", "0.09"), (True, "[0.4, 0.4, 0.92]", "(0.072, 0.072, 0.072)")):
             path = self.write("case.toml", self.case(f'type = "sphere"\ncentre = {centre}\nradius = 0.3\nmass = 2.0', space=space))
+            self.expect_status(0, run("validate", path, "--mesh"))
             shown = self.expect_status(0, run("info", path)).stdout
             self.assertRegex(shown, r"\n  the body: mass ")
             line = next(line for line in shown.splitlines() if line.startswith('  rigid body "floor": mass 2'))

@@ -106,9 +106,16 @@ def with_more(path, text):
     return case.replace('file = "', f'file = "{path.parent}/') + text
 
 
-def run(*arguments, directory=None, environment=None):
-    """Returns the finished process of the program, with its output as text."""
-    return subprocess.run([str(PROGRAM), *map(str, arguments)], cwd=directory, env=environment, text=True,
+# Each script begins without meshes, so that none depends on those of another one, or of the user.
+MESH_CACHE = tempfile.TemporaryDirectory(prefix="ricochet-cache-")
+os.environ["RICOCHET_CACHE"] = MESH_CACHE.name
+# Precedes a command that is to respect the modes of files and folders, which root may override.
+RESPECTS_MODES = ("setpriv", "--bounding-set", "-dac_override", "--") if os.geteuid() == 0 else ()
+
+
+def run(*arguments, directory=None, environment=None, before=()):
+    """Returns the finished process of the program, with its output as text. `before` precedes the command."""
+    return subprocess.run([*before, str(PROGRAM), *map(str, arguments)], cwd=directory, env=environment, text=True,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=TIME_LIMIT)
 
 

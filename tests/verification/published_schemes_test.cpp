@@ -16,11 +16,8 @@ namespace published_schemes_test {
 
 using test_support::CaseRun;
 using test_support::expect_identity;
-using test_support::masses_of;
 using test_support::StepEnd;
-using test_support::thrown_bodies;
 using test_support::thrown_case;
-using test_support::ThrownBody;
 using test_support::time_of;
 
 constexpr double rounding = 20.0 * std::numeric_limits<double>::epsilon();
@@ -28,10 +25,10 @@ constexpr double rounding = 20.0 * std::numeric_limits<double>::epsilon();
 /// Runs a scheme on every body with every mass that it supports and that can be computed for the body.
 void each_run(const std::string& scheme, const std::string& keys,
               const std::function<void(CaseRun&, const std::string&)>& check, const std::string& contact = "") {
-  std::vector<ThrownBody> bodies = thrown_bodies();
+  auto bodies = test_support::thrown_bodies();
   bodies.push_back(test_support::one_sided_block());
-  for (const ThrownBody& body : bodies) {
-    for (const std::string& mass : masses_of(scheme)) {
+  for (const auto& body : bodies) {
+    for (const std::string& mass : test_support::masses_of(scheme)) {
       if (mass.starts_with("equivalent-") && body.name != bodies.back().name) continue;
       // The nodal areas at the vertices of six-node triangles are zero.
       const bool needs_area = scheme == "nitsche" && body.dimension == 3 && body.degree == 2;
@@ -161,7 +158,7 @@ TEST(PublishedScheme, NitscheLosesWherePressuresBeginAndEnd) {
       });
       EXPECT_GT(deepest, 0.0) << name;
       EXPECT_EQ(least, 0.0) << name << ": forces never pull";
-      EXPECT_LT(law, 1e-9 * largest) << name << ": r is what the law says of the places";
+      EXPECT_LT(law, 1e-9 * largest) << name << ": r follows the law at these positions";
       EXPECT_GT(ends, 0.0) << name;
     };
     each_run("nitsche", "penalty = " + std::to_string(penalty) + "\n", check);
@@ -341,7 +338,7 @@ TEST(PublishedScheme, PaoliSchatzmanLosesForceTimesTheGapBefore) {
 }
 
 TEST(PublishedScheme, PaoliSchatzmanIsSoWithExplicitStiffness) {
-  for (const ThrownBody& body : thrown_bodies()) {
+  for (const auto& body : test_support::thrown_bodies()) {
     CaseRun run(thrown_case(body, "lumped", time_of("paoli-schatzman") + "stiffness = \"explicit\"\n"));
     expect_half_step_identity(run, body.name, 0.0, [](const StepEnd& a, const StepEnd& b, const StepEnd&) {
       return -0.5 * b.normal.dot(a.gap);
@@ -378,7 +375,7 @@ TEST(PublishedScheme, CdLagrangeChangesByTheImpulsesOnTheVelocitiesBefore) {
 /// identity of a single step shows.
 TEST(PublishedScheme, IsOfSecondOrderWhereNothingTouches) {
   for (const std::string& scheme : scheme_names()) {
-    for (const std::string& mass : masses_of(scheme)) {
+    for (const std::string& mass : test_support::masses_of(scheme)) {
       std::string text = thrown_case(test_support::one_sided_block(), mass, time_of(scheme));
       const auto replace = [&](const std::string& old, const std::string& now) {
         ASSERT_NE(text.find(old), std::string::npos) << old;

@@ -21,7 +21,7 @@ class ObstacleSurfaces {
   [[nodiscard]] const std::vector<int>& numbers() const { return numbers_; }  ///< per cell: its obstacle, from 0
   /// Positions, points × 3, at a time and a displacement.
   [[nodiscard]] std::vector<double> positions(double time, const Vector& displacement) const;
-  /// All surfaces as an XDMF <Grid>; the cell field "obstacle" has the numbers.
+  /// All surfaces as an XDMF `Grid` element; the cell field "obstacle" has the numbers.
   [[nodiscard]] std::string grid(double time, const Vector& displacement) const;
 
  private:

@@ -20,7 +20,7 @@ class XdmfFile {
   XdmfFile(std::string path, const Snapshot& snapshot, const std::string& name);
   void save(Snapshot& snapshot, const std::string& name) const;
 
-  /// Appends a <Grid> element. Throws Error(file_access), also if another program has changed the file.
+  /// Appends a `Grid` element. Throws Error(file_access), also if another program has changed the file.
   void append(const std::string& grid);
   void require_unchanged() const { change_detector_->require_unchanged(); }
 

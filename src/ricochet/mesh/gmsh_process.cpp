@@ -74,14 +74,15 @@ std::string program_version(const std::string& source) {
 
 void run_program(const std::string& input, const std::string& options, const std::filesystem::path& workspace,
                  const std::filesystem::path& output) {
-  // Merged after the input, so that these options override what the input sets; -3 meshes all entities, of any
-  // dimension.
+  // Merged after the input, so that these options override what the input sets.
   const std::filesystem::path options_file = workspace / "options.geo";
   std::ofstream(options_file) << options;
   const std::filesystem::path log = workspace / "gmsh.log";
   const std::string absolute = std::filesystem::absolute(input).string();
-  const ChildResult result =
-      run({absolute, options_file.string(), "-3", "-v", "2", "-nt", "1", "-o", output.string()}, workspace, log);
+  std::vector<std::string> arguments{absolute, options_file.string()};
+  arguments.insert(arguments.end(), command_options.begin(), command_options.end());
+  arguments.insert(arguments.end(), {"-o", output.string()});
+  const ChildResult result = run(std::move(arguments), workspace, log);
   check_spawned(result, input);
   std::error_code ignored;
   const bool written = std::filesystem::file_size(output, ignored) > 0 && !ignored;

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 /// @file Running the gmsh program. Private to mesh/.
 namespace ricochet::gmsh {
+
+/// Options of the command line, on which a mesh depends as on its file: all entities are meshed, of any dimension.
+inline constexpr std::array command_options{"-3", "-v", "2", "-nt", "1"};
 
 /// Returns the version of the gmsh program. Throws Error(invalid_input) that says what to do if it is not installed;
 /// `source` is the file that needs it.

@@ -158,7 +158,8 @@ fs::path cached_mesh(const std::string& source, const std::string& key, const ch
 
 /// Returns the key of a mesh: everything that determines it.
 std::string key_of(const MeshFile& file, const std::string& options) {
-  std::string key = "gmsh " + program_version(file.path) + "\n" + options;
+  std::string key =
+      fmt::format("gmsh {} {}\n{}", program_version(file.path), fmt::join(gmsh::command_options, " "), options);
   std::set<fs::path> visited;
   append_sources(file.path, visited, key);
   return key;
