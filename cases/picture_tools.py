@@ -1,4 +1,4 @@
-"""What the pictures of the cases share: runs, and files."""
+"""Code shared by the pictures of the cases: runs, and files."""
 import csv
 import subprocess
 

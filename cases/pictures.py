@@ -173,7 +173,7 @@ def incline():
 
 
 def rigid_slips(times, force=8.0, limit=0.8 * 9.81, mass=1.0, step=1e-4):
-    """Place of a rigid block under force cos(t) and friction, at these times: it sticks, or slips until it stops."""
+    """Position of a rigid block under force cos(t) and friction, at these times: it sticks, or slips until it stops."""
     place, velocity, result, t = 0.0, 0.0, [], 0.0
     for wanted in times:
         while t < wanted - 0.5 * step:

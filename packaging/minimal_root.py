@@ -8,13 +8,13 @@ import sys
 import tempfile
 import time
 
-# What is there and changes without a package being to blame.
+# Folders that change without any package.
 CHANGING = ("proc/", "dev/", "tmp/", "run/", "packages/", "context/", "root/", "var/log/", "var/cache/", "var/lib/apt/",
             "var/lib/dpkg/")
 
 # Processes and mounts of their own, which end with the first of them.
 ALONE = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-euc"]
-# As a place where something is mounted the folder can be entered from within again, by who makes another root there.
+# The folder is made a mount point, so that a process that makes another root there can enter it from within.
 ENTER = 'mount --rbind "$0" "$0"; mount -t proc proc "$0/proc"; exec chroot "$0" "$@"'
 
 

@@ -37,7 +37,7 @@ def copy(root, context, rest):
 
 
 def build(root, context, steps):
-    """What the container begins with: variables, folder, program."""
+    """Returns the initial state of the container: variables, folder, program."""
     variables, folder, program = {}, "/", []
     for word, rest in instructions():
         if word == "COPY":

@@ -23,7 +23,7 @@ GIGABYTES = 10
 
 
 def git(*arguments):
-    """What git says of this checkout, as bytes. It works for the owner alone, who need not be root."""
+    """Returns git's output for this checkout, as bytes. It works for the owner alone, who need not be root."""
     owner = SOURCE.stat()
     process = subprocess.run(["git", "-C", SOURCE, *arguments], user=owner.st_uid, group=owner.st_gid, extra_groups=[],
                              env={**os.environ, "HOME": "/nonexistent"}, capture_output=True)
@@ -33,7 +33,7 @@ def git(*arguments):
 
 
 def clone(root):
-    """Of what is committed, as a newcomer has it; what is not is told."""
+    """Clones HEAD, as a newcomer would; returns its commit and a note about uncommitted changes."""
     target = root.path / CLONE.lstrip("/")
     bundle = root.folder / "head.bundle"
     bundle.write_bytes(git("bundle", "create", "--quiet", "-", "HEAD"))
@@ -44,7 +44,7 @@ def clone(root):
 
 
 def attempt(root, name, logs):
-    """The status of a part."""
+    """Runs a part and returns its exit status."""
     before = time.monotonic()
     process = root.attempt(PARTS[name], directory=CLONE, shell=("bash", "-c"))
     outcome = "done" if process.returncode == 0 else f"FAILED with status {process.returncode}"

@@ -143,7 +143,7 @@ def try_in(root, steps, packages, recommends):
     must(not own, f"the packages leave behind: {own}")
     known = root.run("dpkg-query -W -f '${Package} ${Status}\\n'")
     must("ricochet" not in known, f"dpkg still knows them:\n{known}")
-    # What packages of Debian leave (caches, states of alternatives) is not ours, and is told.
+    # Files left by Debian's packages (caches, states of alternatives) are not ours, and are reported.
     folders = sorted({"/".join(path.split("/")[:2]) for path in left})
     print(f"           left by packages of Debian: {f'{len(left)} files in ' + ', '.join(folders) if left else 'nothing'}")
 

@@ -44,7 +44,7 @@ StudyPlan plan_of(const StudyArguments& arguments) {
   return plan;
 }
 
-/// Replaces earlier questions by those that are asked now.
+/// Replaces the quantities requested earlier by those requested now.
 StudyQuestions questions_of(const StudyArguments& arguments, StudyQuestions questions) {
   if (!arguments.quantities.empty()) questions.quantities = arguments.quantities;
   if (!arguments.exact.empty()) {

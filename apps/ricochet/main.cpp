@@ -166,7 +166,7 @@ program::DescribedCommand described(const CLI::App& command) {
 
 /// Handles `ricochet complete -- WORD...`, which completion scripts call, and `ricochet manual-page`, which the build
 /// calls: both refer to the command line itself, which must not be parsed for them. Returns false for other commands.
-bool answers_about(const CLI::App& app, int argc, char** argv) {
+bool handle_internal_command(const CLI::App& app, int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (words.size() >= 2 && words[0] == "complete" && words[1] == "--") {
     for (const program::Candidate& candidate : program::complete(described(app), {words.begin() + 2, words.end()}))
@@ -317,7 +317,7 @@ int dispatch(int argc, char** argv) {
       app.add_subcommand("completion", "Print the script with which a shell completes the words of a ricochet command");
   completion->add_option("shell", arguments.shell, "bash, zsh or fish")->required()->type_name("SHELL");
 
-  if (answers_about(app, argc, argv)) return 0;
+  if (handle_internal_command(app, argc, argv)) return 0;
   program::refuse_empty_values(app);
   refuse_case_without_command(argc, argv);
   try {

@@ -45,9 +45,9 @@ std::string unsettled_text(const UnsettledContact& unsettled, const RunSummary& 
   if (unsettled.contact < 0 || unsettled.contact >= static_cast<int>(s.contacts.size())) return "";
   const ContactDescription& contact = s.contacts[static_cast<std::size_t>(unsettled.contact)];
   return fmt::format(
-      "\n  {}: up to {:.3g} % of the force of {} is at stake at points where held steps have left {} (up to {:.3g}, "
+      "\n  {}: up to {:.3g} % of the force of {} is at stake at points where frozen steps have left {} (up to {:.3g}, "
       "from t = {:.6g} on)",
-      unsettled.share > UnsettledContact::doubtful ? "FORCE IN DOUBT" : "held steps", 100.0 * unsettled.share,
+      unsettled.share > UnsettledContact::doubtful ? "FORCE IN DOUBT" : "frozen steps", 100.0 * unsettled.share,
       pair_names(contact.group, contact.opponent), unsettled.gap < 0.0 ? "an overlap" : "a gap",
       std::abs(unsettled.gap), unsettled.first_time);
 }

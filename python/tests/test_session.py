@@ -53,7 +53,7 @@ def test_reactions_are_the_force_of_the_history(puck, tmp_path):
 
 @pytest.mark.parametrize("scheme, friction", [("reduced-kane", 0.3), ("reduced-kane", 0.0), ("mean-reaction", 0.0), ("reduced-midpoint", 0.0)])
 def test_contact_forces_change_the_momentum(puck, scheme, friction):
-    """Those that acted over a step, where schemes with mean reactions have others at its end."""
+    """Forces that acted over a step; with mean reactions those at its end differ."""
     session = rc.Session(puck, {"time.end": 6e-4, "time.scheme": scheme, "contact.0.friction": friction})
 
     def momentum():

@@ -223,7 +223,7 @@ TRIED_BY_RUNS = [
      [{"solver.method": "direct"}, {"time.step": 0.01, "time.end": 0.02}]),
     (r'set sliding = "large" in this \[\[contact\]\], limit the motion, or pair the bodies with pair_at where they are pressed', LANDS, {"time.end": 0.52},
      [{"contact.0.sliding": "large"}, {"time.end": 0.4}, {"contact.0.pair_at": "[-0.5, -0.15]"}]),
-    (r'rebounds are too slow by this amount; a smaller time.step and smaller cells lose less', STRUCK,
+    (r'rebounds lack this much energy; a smaller time.step and smaller cells lose less', STRUCK,
      {**KANE, "time.reaction_weight": "end", "time.step": 0.05, "time.end": 1.0, "contact.0.friction": 0.1},
      [{"time.step": 0.002, "mesh.refine": 1}, {"time.reaction_weight": '"adaptive"'}]),
 ]

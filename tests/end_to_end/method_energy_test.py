@@ -49,7 +49,7 @@ class MethodEnergy(TestCase):
                 self.assertAlmostEqual(budget["at_end"]["method"], put_in[-1], delta=1e-14)
                 self.assertEqual([value for key, value in budget["at_end"].items() if key != "method"], 5 * [0.0])
                 most = max(-min(put_in), max(put_in))
-                self.assertGreater(most, 1e-3, "or the test tells nothing")
+                self.assertGreater(most, 1e-3, "otherwise the test proves nothing")
                 self.assertRegex(self.said(folder), rf"{'created' if name == 'midpoint' else 'lost'} (up to )?{re.escape(percent(most))} ")
 
     def test_percentages_are_those_of_an_energy_that_is_shown(self):
@@ -64,7 +64,7 @@ class MethodEnergy(TestCase):
         history, found = History(folder / "history.csv"), summary(folder)
         budget, scale = found["energy_budget"], history.largest_energy()
         self.assertAlmostEqual(budget["lost_by_method"], -min(of_method(history)) / scale, delta=1e-14)
-        self.assertLess(budget["at_end"]["friction"], -1e-4, "or the test tells nothing")
+        self.assertLess(budget["at_end"]["friction"], -1e-4, "otherwise the test proves nothing")
         self.assertAlmostEqual(budget["at_end"]["friction"], history["friction_work"][-1] / scale, delta=1e-14)
         # "automatic" selects the end reactions with friction.
         self.assertEqual(found["reactions"], {"acting": "end", "least_end_weight": None, "largest_end_weight": None, "steps_of_means": 0,
@@ -111,7 +111,7 @@ class MethodEnergy(TestCase):
             self.assertEqual(reactions and reactions["acting"], acting)
             self.assertEqual("reactions:" in self.said(folder), acting is not None)
 
-    def test_a_run_that_goes_on_tells_the_same(self):
+    def test_a_run_that_continues_reports_the_same(self):
         for weight in ("end", "adaptive"):
             values = LONG | {"time.reaction_weight": weight, "output.checkpoint_every": 1000}
             whole = self.simulate(DISC, f"whole-{weight}", values)

@@ -91,7 +91,7 @@ class SelfContact(TestCase):
                 text = text.replace('file = "clamp.geo"', 'file = "clamp.geo"\ndegree = 2').replace("2e-3", "4e-3")
                 history = self.history(text, f"{multipliers}.toml")
                 self.closes(history)
-                # Facets as multipliers come and go as a whole: a step is held, whose forces have a moment.
+                # Facets as multipliers come and go as a whole: a step is frozen, whose forces have a moment.
                 self.keeps_momenta(history, angular=multipliers == "p1")
 
     def test_a_ring_that_is_crushed(self):

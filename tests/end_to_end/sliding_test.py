@@ -303,8 +303,8 @@ class Refusals(Sliding):
         tied = self.case(against='"slab.top"') + '[[contact]]\ngroup = "slab.top"\nagainst = "other.top"\ntied = true\n'
         self.assertNotEqual(run("run", self.write("tied.toml", tied), "-o", self.folder / "tied", "--quiet").returncode, 0)
 
-    def test_the_force_that_held_steps_put_in_doubt(self):
-        """A shaft pressed into a hub: held steps leave an overlap, the force is wrong, and the run states a bound of
+    def test_the_force_that_frozen_steps_put_in_doubt(self):
+        """A shaft pressed into a hub: frozen steps leave an overlap, the force is wrong, and the run states a bound of
         the error. It slides all the time: the axial force is friction times the radial one, whatever its value."""
         (self.folder / "hub.geo").write_text(HUB_GEO)
         (self.folder / "shaft.geo").write_text(SHAFT_GEO)

@@ -67,7 +67,7 @@ class Watching(TestCase):
     def test_a_directory_without_a_run(self):
         self.assertIn("this directory holds no run", self.expect_status(4, run("info", self.folder)).stderr)
 
-    def test_debug_tells_every_contact_iteration(self):
+    def test_debug_reports_every_contact_iteration(self):
         for friction in (0.0, 0.3):
             values = {"contact.0.friction": friction, "initial.velocity": "[0.05,-0.1]", "time.end": 0.014}
             output = self.folder / f"out-{friction}"
@@ -141,7 +141,7 @@ class Watching(TestCase):
         self.assertIn("of the largest work", process.stdout)
         self.assertLess(json.loads((output / "summary.json").read_text())["checks"]["energy_residual"]["largest"], 1e-8)
 
-    def test_a_step_in_very_short_parts_is_told_once(self):
+    def test_a_step_in_very_short_parts_is_reported_once(self):
         """A block far faster than its waves: no part of its first step has a solution."""
         case = self.write("case.toml", block_case().replace('scheme = "newmark"\npreset = "trapezoidal"', 'scheme = "reduced-kane"'))
         process = self.expect_status(3, run("run", case, "-o", self.folder / "out", "--quiet", *settings(
@@ -170,7 +170,7 @@ class Watching(TestCase):
         text = self.expect_status(0, run("info", output)).stdout
         self.assertIn("(FAILED)", text)
         self.assertIn(str(left[0]), text)
-        # It is no checkpoint, and belongs to the results that are not overwritten.
+        # It is not a checkpoint, but protects the directory from being overwritten.
         self.assertEqual(list(output.glob("checkpoint-*")), [])
         self.expect_status(0, run("run", case, "-o", output, "--force", "--quiet"))
         self.assertEqual(list(output.glob("failure-*")), [])

@@ -65,7 +65,7 @@ TEST(FiniteMidpoint, TheAccountClosesInFlightAndInContact) {
   for (const std::string scheme : {"midpoint", "kane"}) {
     const Measured flight = measure(block(scheme, 0.01, 2.0, 10.0));
     EXPECT_LT(flight.residual, 1e-12) << scheme;
-    EXPECT_GT(flight.largest_error, 1e-7) << scheme << ": there is an error to be told";
+    EXPECT_GT(flight.largest_error, 1e-7) << scheme << ": an error that the test must detect exists";
     EXPECT_EQ(flight.largest_force, 0.0);
     const Measured bounce = measure(block(scheme, 0.01, 1.0, 0.05, "friction = 0.3\n"));
     EXPECT_LT(bounce.residual, 1e-12) << scheme;

@@ -269,7 +269,7 @@ TEST(PrincipalStretches, AreRefusedWithTheLinearLaw) {
            "[output]\nfields = [\"" + field + "\"]\n";
   };
   const CaseRun all(text("all"));
-  const auto sources = make_field_sources({all.model().body, all.problem(), wanted_fields({"all"})});
+  const auto sources = make_field_sources({all.model().body, all.problem(), expand_field_names({"all"})});
   for (const auto& source : sources) {
     for (const Field& field : source->fields()) EXPECT_FALSE(field.name.starts_with("principal_stretch"));
   }

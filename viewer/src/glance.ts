@@ -72,7 +72,7 @@ export function energyFinding(j: Judgement, summary: Summary): Finding {
   return finding(loss < 0.01 ? "good" : "fair", loss < 0.01 ? `conserved to within ${percent(loss)}` : `the method lost ${percent(loss)}`, `−${percent(loss)}`);
 }
 
-/** Largest share of a contact's force at stake, where held steps have left gaps, up to which the force is reliable. */
+/** Largest share of a contact's force at stake, where frozen steps have left gaps, up to which the force is reliable. */
 const doubtful = 0.01;
 
 /** The contact with the largest share of its force at stake, among those with large sliding; null if no share is too large. */
@@ -91,7 +91,7 @@ export function forceFinding(j: Judgement, summary: Summary): Finding {
   const doubt = doubtfulContact(summary);
   if (doubt) {
     const share = percent(toNumber(doubt.share_of_force));
-    return { what, grade: "poor", words: `${most}, in doubt: up to ${share} of the force of contact ${doubt.contact} is at stake where held steps have left gaps`, short: `in doubt, ${share}`, detail: `gap ${number(toNumber(doubt.gap), 3)}, in ${doubt.steps} steps from t = ${number(toNumber(doubt.first_time))} on, in which the pairing of the two sides did not settle; ${detail}` };
+    return { what, grade: "poor", words: `${most}, in doubt: up to ${share} of the force of contact ${doubt.contact} is at stake where frozen steps have left gaps`, short: `in doubt, ${share}`, detail: `gap ${number(toNumber(doubt.gap), 3)}, in ${doubt.steps} steps from t = ${number(toNumber(doubt.first_time))} on, in which the pairing of the two sides did not settle; ${detail}` };
   }
   if (!(j.roughness > 0)) return { what, grade: "none", words: `${most}; too few rows to judge its smoothness`, short: "too few rows", detail };
   const ofNode = j.node_roughness >= 2 && j.node_roughness > 2 * j.roughness;

@@ -261,7 +261,7 @@ test("an infinite depth is reported, not shown as none", async () => {
   await view.close();
 });
 
-test("a force is in doubt where held steps have left gaps", async () => {
+test("a force is in doubt where frozen steps have left gaps", async () => {
   for (const [share, grade] of [[0.43, "poor"], [0.005, ""]]) {
     const run = shortDisc(`doubt${share}`);
     const file = join(run, "summary.json");
@@ -272,7 +272,7 @@ test("a force is in doubt where held steps have left gaps", async () => {
     const view = await open(report(`doubt${share}`, run));
     const force = await view.page.$$eval(".findings dt", (all) => all.filter((dt) => dt.textContent === "Contact force")
       .map((dt) => `${dt.nextElementSibling.className}: ${dt.nextElementSibling.textContent}`)[0]);
-    if (grade) assert.match(force, /^poor: .*in doubt: up to 43 % of the force of contact 1 is at stake where held steps have left gaps/);
+    if (grade) assert.match(force, /^poor: .*in doubt: up to 43 % of the force of contact 1 is at stake where frozen steps have left gaps/);
     else assert.doesNotMatch(force, /in doubt/);
     assert.deepEqual(view.complaints, []);
     await view.close();

@@ -36,7 +36,7 @@ struct ChildResult {
 /// A child process that runs beside this one. It is killed when the thread that started it ends, however that ends.
 class RunningChild {
  public:
-  /// Starts the child. A child that cannot be started counts as ended, and its outcome gives the reason.
+  /// Starts the child. A child that cannot be started counts as ended, and its result states the reason.
   explicit RunningChild(ChildProcess child);
   /// Kills the child and all processes that it has started, unless it has ended.
   ~RunningChild();
@@ -49,7 +49,7 @@ class RunningChild {
   void wait();
   /// Sends a signal to the child and to all processes that it has started; has no effect after its end.
   void send(int signal);
-  /// Outcome of a child that has ended.
+  /// Result of a child that has ended.
   [[nodiscard]] const ChildResult& result() const { return result_; }
 
  private:

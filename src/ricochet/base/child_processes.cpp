@@ -16,7 +16,7 @@ namespace ricochet {
 namespace {
 
 /// Seconds between two polls of the children, and between two calls of PoolWork::watch.
-constexpr double look_interval = 0.005, watch_interval = 0.1;
+constexpr double poll_interval = 0.005, watch_interval = 0.1;
 /// Seconds that children have to end by themselves: a run takes two.
 constexpr double longest_farewell = 5.0;
 
@@ -26,8 +26,8 @@ struct NumberedChild {
   RunningChild process;
 };
 
-void pause_between_looks() {
-  std::this_thread::sleep_for(std::chrono::duration<double>(look_interval));
+void pause_between_polls() {
+  std::this_thread::sleep_for(std::chrono::duration<double>(poll_interval));
 }
 
 void remove_ended(std::list<NumberedChild>& running, const PoolWork& work) {
@@ -43,10 +43,10 @@ void remove_ended(std::list<NumberedChild>& running, const PoolWork& work) {
 
 void end_all(std::list<NumberedChild>& running, const PoolWork& work) {
   for (NumberedChild& child : running) child.process.send(SIGTERM);
-  for (const Timer timer; !running.empty() && timer.seconds() < longest_farewell; pause_between_looks())
+  for (const Timer timer; !running.empty() && timer.seconds() < longest_farewell; pause_between_polls())
     remove_ended(running, work);
   for (NumberedChild& child : running) child.process.send(SIGKILL);
-  for (; !running.empty(); pause_between_looks()) remove_ended(running, work);
+  for (; !running.empty(); pause_between_polls()) remove_ended(running, work);
 }
 
 }  // namespace
@@ -72,7 +72,7 @@ int run_children(std::size_t count, std::size_t at_once, const PoolWork& work) {
       running.emplace_back(next, work.make(next));
       ++next;
     }
-    pause_between_looks();
+    pause_between_polls();
     remove_ended(running, work);
     if (work.watch && since_watch.seconds() >= watch_interval) {
       work.watch();

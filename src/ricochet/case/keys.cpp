@@ -113,7 +113,7 @@ std::string section_title(const Section& section) {
   return "";
 }
 
-std::string wanted_with_unit(const Key& key) {
+std::string admissible_with_unit(const Key& key) {
   return key.unit.empty() || key.unit == "1" ? admissible_values(key)
                                              : fmt::format("{} (unit: {})", admissible_values(key), key.unit);
 }

@@ -58,7 +58,7 @@ struct Section {
 [[nodiscard]] std::string section_title(const Section& section);
 
 /// Description of a key's values, with the unit if it has one.
-[[nodiscard]] std::string wanted_with_unit(const Key& key);
+[[nodiscard]] std::string admissible_with_unit(const Key& key);
 
 /// Key or section that an unknown name was probably meant to be, or "".
 [[nodiscard]] std::string nearest_key(std::string_view name, const std::vector<Key>& keys);

@@ -314,7 +314,7 @@ void TreeChecker::check_keys(const std::vector<Key>& keys, const std::string& ti
       continue;
     } else if (key.required) {
       problems_.add(table.location,
-                    fmt::format("{} has no \"{}\": {}. {}", title, key.name, wanted_with_unit(key), key.doc));
+                    fmt::format("{} has no \"{}\": {}. {}", title, key.name, admissible_with_unit(key), key.doc));
     } else if (key.default_value || (key.type == KeyType::table && !needs_a_user(key))) {
       TomlNode& added = table.children.emplace_back(default_node(key, table.location));
       if (key.type == KeyType::table) check_keys(key.keys, key.name, added);

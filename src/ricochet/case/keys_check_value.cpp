@@ -19,7 +19,8 @@ void refuse(TomlNode& value, const std::string& message, Problems& problems) {
 }
 
 void refuse_type(const Key& key, TomlNode& value, Problems& problems) {
-  refuse(value, fmt::format("\"{}\" must be {}; found {}", key.name, wanted_with_unit(key), describe(value)), problems);
+  refuse(value, fmt::format("\"{}\" must be {}; found {}", key.name, admissible_with_unit(key), describe(value)),
+         problems);
 }
 
 // Accepts integers as numbers and converts them, so that 1 and 1.0 have the same text.
@@ -102,8 +103,8 @@ void check_number(const Key& key, TomlNode& value, Problems& problems) {
   if (make_finite_number(value) && is_within(key.range, value.real)) return;
   value.is_refused = true;
   const char* finite = found.kind == Kind::real && !std::isfinite(found.real) ? ", which is not finite" : "";
-  problems.add(value.location,
-               fmt::format("\"{}\" must be {}; found {}{}", key.name, wanted_with_unit(key), describe(found), finite));
+  problems.add(value.location, fmt::format("\"{}\" must be {}; found {}{}", key.name, admissible_with_unit(key),
+                                           describe(found), finite));
 }
 
 void check_integer(const Key& key, TomlNode& value, Problems& problems) {
@@ -118,14 +119,14 @@ void check_vector(const Key& key, TomlNode& value, bool with_expressions, Proble
   const bool is_vector = value.kind == Kind::list && !value.is_list_of_tables();
   if (!is_vector) {
     refuse(value,
-           fmt::format("\"{}\" must be {}; found {}{}", key.name, wanted_with_unit(key), describe(value),
+           fmt::format("\"{}\" must be {}; found {}{}", key.name, admissible_with_unit(key), describe(value),
                        suggestion(value, key.choices)),
            problems);
     return;
   }
   if (value.children.size() != 2 && value.children.size() != 3) {
     refuse(value,
-           fmt::format("\"{}\" must be {}; found {}{}", key.name, wanted_with_unit(key), describe(value),
+           fmt::format("\"{}\" must be {}; found {}{}", key.name, admissible_with_unit(key), describe(value),
                        has_decimal_commas(value) ? "; if their commas are decimal ones, use decimal points" : ""),
            problems);
     return;
@@ -150,7 +151,7 @@ void check_numbers(const Key& key, TomlNode& value, Problems& problems) {
     if (make_finite_number(entry) && is_within(key.range, entry.real)) continue;
     value.is_refused = true;
     problems.add(entry.location, fmt::format("entry {} of \"{}\" must be {}; found {}", i + 1, key.name,
-                                             wanted_with_unit(of_entry), describe(found)));
+                                             admissible_with_unit(of_entry), describe(found)));
   }
 }
 

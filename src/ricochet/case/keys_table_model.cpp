@@ -266,8 +266,8 @@ Section contact_section() {
            .default_value = "automatic",
            .choices = {"automatic", "group", "against"},
            .doc = "Between bodies: the side that carries the multipliers. \"automatic\" selects the side whose normals "
-                  "turn less within a facet (docs/sliding.md): of a round and a flat side the round one, unless its "
-                  "facets are twice as large. If normals turn alike, it selects the smaller side with sliding = "
+                  "vary less within a facet (docs/sliding.md): of a round and a flat side the round one, unless its "
+                  "facets are twice as large. If they vary equally, it selects the smaller side with sliding = "
                   "\"large\", otherwise the one with the finer mesh, then the more curved, then the softer one."},
           {.name = "initial_gap",
            .type = KeyType::choice,

@@ -136,8 +136,8 @@ void check_obstacle_name(const SectionReader& reader, const char* key, const std
                                                      : fmt::format("the obstacles are {}", join_names(obstacles))));
 }
 
-// Refuses the same text under the same key in two entries of a list; with `run_collectively`, only if that key agrees
-// as well.
+// Refuses the same text under the same key in two entries of a list; with `together`, only if the values of that key
+// agree as well.
 void check_distinct(const std::vector<SectionReader>& readers, const std::string& section, const std::string& name,
                     const std::string& together = "") {
   for (std::size_t i = 0; i < readers.size(); ++i) {

@@ -10,7 +10,7 @@ namespace ricochet {
 namespace {
 
 /// Returns, per rank in ascending order, the nodes that it shares with this one. Each rank collects the sharers of a
-/// range of numbers and answers queries for it.
+/// range of numbers and replies to queries for it.
 std::map<int, std::vector<std::int64_t>> find_sharers(const Communicator& ranks,
                                                       const std::vector<std::int64_t>& numbers, std::int64_t count) {
   const auto size = static_cast<std::size_t>(ranks.size());
@@ -22,7 +22,7 @@ std::map<int, std::vector<std::int64_t>> find_sharers(const Communicator& ranks,
   for (std::size_t rank = 0; rank < size; ++rank) {
     for (const std::int64_t number : received[rank]) sharers[number].push_back(static_cast<int>(rank));
   }
-  // Answers to each rank: pairs of a number and another rank that has it.
+  // Replies to each rank: pairs of a number and another rank that has it.
   std::vector<std::vector<std::int64_t>> replies(size);
   for (std::size_t rank = 0; rank < size; ++rank) {
     for (const std::int64_t number : received[rank]) {

@@ -83,8 +83,8 @@ struct FclibReduction {
 [[nodiscard]] FclibProblem make_fclib(const ContactProblem& problem, Index dimension,
                                       const ContactSolution* solution = nullptr);
 
-/// Stores a solver's result in a problem: as its solution or, if it is none, as its only guess. math_info reports the
-/// outcome.
+/// Stores a solver's result in a problem: as its solution or, if it is none, as its only guess. math_info reports
+/// whether it solves the problem.
 void put_solution(FclibProblem& problem, FclibSolution found, const ContactSolution& how);
 
 }  // namespace ricochet

@@ -18,7 +18,7 @@ class ElasticCells::CellStrips {
  public:
   CellStrips(const Body& body, const Blocks<d>& blocks) : body_(body), blocks_(blocks) {}
 
-  /// Calls work(strip) for the strips of all runs with wanted(material).
+  /// Calls work(strip) for the strips of all runs with is_selected(material).
   template <class Selected, class Work>
   void for_each_strip(Index part, const Selected& is_selected, const Work& work) {
     for (const PackRun& run : blocks_.packs.runs(part)) {

@@ -25,7 +25,7 @@ struct NodeGraph {
   [[nodiscard]] Index parts() const { return static_cast<Index>(part_begins.size()) - 1; }
 };
 [[nodiscard]] NodeGraph node_graph(const DisplacementSpace& space);
-/// Restricts the graph to the cells with at least one wanted node.
+/// Restricts the graph to the cells with at least one selected node.
 [[nodiscard]] NodeGraph cells_at_nodes(const NodeGraph& graph, const DisplacementSpace& space,
                                        const std::vector<char>& is_selected);
 

@@ -52,7 +52,7 @@ ResultsWriter::Implementation::Implementation(const std::string& directory, cons
                                               const Snapshot* snapshot, const std::string& name,
                                               const GlobalBody& global_body)
     : ranks(*problem.ranks),
-      sources(make_field_sources({body, problem, wanted_fields(options.fields)})),
+      sources(make_field_sources({body, problem, expand_field_names(options.fields)})),
       lock_path(directory + "/" + lock_of_results(options.format)) {
   for (const auto& source : sources) {
     for (const Field& field : source->fields()) fields.push_back(field);

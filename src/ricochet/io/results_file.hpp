@@ -33,8 +33,8 @@ struct GlobalBody {
 
 class ResultsWriter {
  public:
-  /// Opens the files in the directory. Keeps references to body and problem. Throws Error(file_access). `to_sparse`: on
-  /// several ranks, which all write together.
+  /// Opens the files in the directory. Keeps references to body and problem. Throws Error(file_access). `global_body`:
+  /// the whole body, on several ranks, which all write together.
   ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
                 const ResultsOptions& options, const GlobalBody& global_body = {});
   /// Continues after the frames that existed when save() was called; the files will have the bytes of an uninterrupted

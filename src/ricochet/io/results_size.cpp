@@ -10,7 +10,7 @@ ResultsSize results_size(const Body& body, const SemidiscreteProblem& problem, c
   constexpr double header = 600.0, group = 1500.0;
   ResultsSize size{group, group};
   const double real = options.file.single ? sizeof(float) : sizeof(double);
-  for (const auto& source : make_field_sources({body, problem, wanted_fields(options.fields)})) {
+  for (const auto& source : make_field_sources({body, problem, expand_field_names(options.fields)})) {
     for (const Field& field : source->fields()) {
       const auto rows = static_cast<double>(field.location == FieldLocation::nodes ? nodes : cells);
       size.frame += header + rows * field.components * (field.is_integer ? sizeof(int) : real);

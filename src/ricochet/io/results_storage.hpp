@@ -13,7 +13,7 @@
 /// @file File with the mesh and the fields of a run, in either format: the part of reading that depends on the format.
 namespace ricochet {
 
-/// A run in progress delays its next frame while readers hold the lock, and readers wait for the run.
+/// Longest time that a reader waits for the lock. A run in progress delays its next frame while readers hold it.
 constexpr double longest_wait_of_a_reader = 10.0;  // seconds
 
 class ResultsStorage {
@@ -33,7 +33,7 @@ class ResultsStorage {
 
  protected:
   ResultsStorage(const std::string& directory, const std::string& name, ResultsFormat format);
-  /// Stores the positions in a newly opened file of all data to be read later, which a run in progress may change.
+  /// Stores the positions of all data to be read later, from a newly opened file: a run in progress may change them.
   virtual void look_up(const Hdf5Reader& file) = 0;
   virtual void forget() {}
 

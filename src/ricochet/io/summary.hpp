@@ -179,7 +179,7 @@ struct RunSummary {
   std::optional<ActingReactions> reactions = {};   ///< null: scheme without a choice, or likewise
   std::optional<RotationReport> rotation = {};     ///< null: results of a version without it
   std::vector<PairSliding> sliding = {};           ///< per contact between bodies
-  std::vector<UnsettledContact> unsettled = {};    ///< contacts with large sliding in which held steps have left gaps
+  std::vector<UnsettledContact> unsettled = {};    ///< contacts with large sliding in which frozen steps have left gaps
   PenetrationReport penetration = {};  ///< without contact; that of contact points is a column of the history
   std::vector<std::string> warnings;
   std::vector<ExpectationResult> expectations;

@@ -14,7 +14,7 @@ namespace ricochet {
 [[nodiscard]] Json reactions_to_json(const RunSummary& summary);
 /// Null if all steps have the same length.
 [[nodiscard]] Json adaptive_steps_to_json(const RunSummary& summary);
-/// Contacts with large sliding in which held steps have left points at a gap; an empty list if there are none.
+/// Contacts with large sliding in which frozen steps have left points at a gap; an empty list if there are none.
 [[nodiscard]] Json unsettled_contacts_to_json(const RunSummary& summary);
 /// Null on a single process.
 [[nodiscard]] Json processes_to_json(const RunSummary& summary);

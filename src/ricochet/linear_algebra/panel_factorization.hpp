@@ -43,13 +43,13 @@ struct PanelWorkspace {
 
 class PanelFactorization {
  public:
-  /// Keeps references. All supernodes of `updates` must be complete, and so must the earlier panels of its own
-  /// supernode.
+  /// Keeps references. All supernodes that the updates of assemble() name must be complete, and so must the earlier
+  /// panels of its own supernode.
   PanelFactorization(SupernodalFactor& factor, const FactorPanel& panel, PanelWorkspace& workspace);
 
   [[nodiscard]] Index rows() const { return rows_; }
   /// Assembles rows [begin, end), before they are divided by the triangle: A's entries minus the contributions of
-  /// earlier columns, in the order of `updates` [first, last). Parts of the rows may be assembled in parallel, each
+  /// earlier columns, in the order of the updates [first, last). Parts of the rows may be assembled in parallel, each
   /// with its own `row_storage`. Throws std::logic_error if A has an entry outside the rows of the factor.
   void assemble(const LowerColumns& matrix, double scale, const PanelUpdate* first, const PanelUpdate* last,
                 Index begin, Index end, std::vector<int>& row_storage);

@@ -30,8 +30,9 @@ class EquivalentMass final : public MassConstruction {
     if (by_cells && top <= (is_large ? most_of_large : most_of_small))
       return MassChoice{cellwise, "its factor has the size of that of the consistent mass", by_cells};
     const std::string reason =
-        by_cells ? fmt::format("on such a coarse body cells would accumulate {:.3g} times their original inertia", top)
-                 : "cells with enough free nodes to receive the inertia of others are rare or missing";
+        by_cells
+            ? fmt::format("on such a coarse body cells would accumulate {:.3g} times their original inertia", top)
+            : "cells with enough nodes off the contact boundary to receive the inertia of others are rare or missing";
     // If no cell without contact nodes is near, `compact` searches far away for each cell, and the factor of `nodewise`
     // is small.
     const char* const name = is_large && by_cells ? compact : nodewise;

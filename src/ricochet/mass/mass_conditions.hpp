@@ -29,7 +29,7 @@ struct MassFrames {
 [[nodiscard]] Matrix mass_moments(const SparseMatrix& mass, const MassFrames& frames, const MassBody& body);
 
 /// Largest difference between the moments of two masses in a body, relative to the largest moment; infinite
-/// if the wanted moments are zero.
+/// if the moments of `target` are zero.
 [[nodiscard]] double moment_defect(const SparseMatrix& found, const SparseMatrix& target, const MassFrames& frames,
                                    const MassBody& body);
 struct MassInput;

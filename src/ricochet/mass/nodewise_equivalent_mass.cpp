@@ -225,9 +225,9 @@ class NodewiseEquivalentMass final : public MassConstruction {
   }
 
  private:
-  /// Computes weights on the rings of massive nodes around a contact node: enough rings for the wanted
-  /// number of neighbours and to span space affinely. `visited_by` is work space: the contact node from
-  /// which a node was last reached.
+  /// Computes weights on the rings of massive nodes around a contact node: enough rings for the required number of
+  /// neighbours and to span space affinely. `visited_by` is work space: the contact node from which a node was last
+  /// reached.
   static Extrapolation extrapolate(const MassInput& input, const std::vector<char>& is_contact, const Vector& diagonal,
                                    Index node, std::vector<Index>& visited_by) {
     const Index dimension = input.nodes->rows();

@@ -56,7 +56,7 @@ void check_axisymmetric_obstacle(const Case& input, const ObstacleSection& secti
   const std::string& name = section.name;
   if (!is_axisymmetric(input) || !obstacle.moves()) return;
   const std::string key = "obstacle." + name;
-  if (obstacle.turns() || obstacle.spins())
+  if (obstacle.rotates() || obstacle.spins())
     refuse(input, key,
            fmt::format("obstacle \"{}\" rotates, but the case is axisymmetric: obstacles can move only along the axis",
                        name));

@@ -11,7 +11,7 @@
 ///
 /// The body moves by s along a direction e until f(s) = min_i g(x_i + s e) equals the requested gap δ, where g is the
 /// distance from the obstacle at t = 0 and x_i are the nodes of the boundary. A distance changes by no more than the
-/// path, so that
+/// length of the path, so that
 ///   s ← s − (f(s) − δ)
 /// never passes the first position with the gap δ, whether the body falls (f > δ) or is lifted out of the obstacle. The
 /// error shrinks by the factor 1 − cos θ, where θ is the angle between e and the normal of the obstacle at the point of
@@ -88,7 +88,7 @@ void rest_on_obstacle(const Case& input, const CaseMeshFile& file, const Model& 
     if (way == before) break;
     if (!(std::abs(way) < limit) || iteration > most_iterations) {
       refuse(input, key,
-             fmt::format("the body does not come to rest on obstacle \"{}\": moved along ({:.4g}) it misses the "
+             fmt::format("the body does not come to rest on obstacle \"{}\": moved along ({:.4g}), it misses the "
                          "obstacle; use \"move\" to set where it comes down",
                          file.rest_on, fmt::join(SpaceVector(way < 0.0 ? -direction : direction), ", ")));
     }

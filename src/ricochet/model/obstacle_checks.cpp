@@ -85,7 +85,7 @@ double largest_rotation(const Obstacle& obstacle, Index dimension, const Case& i
 /// Warns of fast rotation. Friction uses the motion of the material at the end of a step relative to the chord of the
 /// step (motion_at), and its speed is tan(θ/2)/(θ/2) times the true one.
 void warn_of_fast_rotation(const Case& input, const ContactPair& pair, Index dimension) {
-  if (!pair.obstacle->turns() || pair.obstacle->free_motion() != nullptr) return;
+  if (!pair.obstacle->rotates() || pair.obstacle->free_motion() != nullptr) return;
   constexpr double most = 0.3, advised = 0.25;
   const double angle = largest_rotation(*pair.obstacle, dimension, input);
   if (!(angle > most)) return;

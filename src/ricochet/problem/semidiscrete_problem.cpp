@@ -24,7 +24,7 @@ void subtract_translation(const std::vector<const Obstacle*>& obstacles, const s
 
 bool SemidiscreteProblem::has_rotating_obstacles() const {
   return std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle* obstacle) {
-    return obstacle != nullptr && (obstacle->turns() || obstacle->spins());
+    return obstacle != nullptr && (obstacle->rotates() || obstacle->spins());
   });
 }
 

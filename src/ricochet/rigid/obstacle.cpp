@@ -20,7 +20,7 @@ SpaceVector rate_times_arm(double rate, const SpaceVector& axis, const SpaceVect
 }
 
 Pose::Rotation rotation_of(const Pose& pose, Index dimension) {
-  return pose.turns() ? pose.rotation : Pose::Rotation(Pose::Rotation::Identity(dimension, dimension));
+  return pose.rotates() ? pose.rotation : Pose::Rotation(Pose::Rotation::Identity(dimension, dimension));
 }
 SpaceVector shift_of(const Pose& pose, Index dimension) {
   return pose.shift.size() > 0 ? pose.shift : SpaceVector(SpaceVector::Zero(dimension));
@@ -43,11 +43,11 @@ constexpr double least_half_cosine = 0.01;
 double PosedObstacle::gap_rounding(const SpaceVector& position) const {
   const double moved = pose_.shift.size() > 0 ? pose_.shift.lpNorm<1>() : 0.0;
   return shape_->gap_rounding(pose_.to_body_frame(position)) +
-         eight_roundings(moved + (pose_.turns() ? position.lpNorm<1>() : 0.0));
+         eight_roundings(moved + (pose_.rotates() ? position.lpNorm<1>() : 0.0));
 }
 
 double rotation_angle_between(const Pose& start, const Pose& end, Index dimension) {
-  if (!start.turns() && !end.turns()) return 0.0;
+  if (!start.rotates() && !end.rotates()) return 0.0;
   const double squared = half_cosine(rotation_of(start, dimension), rotation_of(end, dimension));
   return 2.0 * std::acos(std::sqrt(std::clamp(squared, 0.0, 1.0)));
 }
@@ -55,7 +55,7 @@ double rotation_angle_between(const Pose& start, const Pose& end, Index dimensio
 SpaceVector motion_at(const Pose& start, const Pose& end, const SpaceVector& middle) {
   const Index d = middle.size();
   const SpaceVector before = shift_of(start, d), after = shift_of(end, d);
-  if (!start.turns() && !end.turns()) return after - before;
+  if (!start.rotates() && !end.rotates()) return after - before;
   const Pose::Rotation first = rotation_of(start, d), last = rotation_of(end, d);
   const SpaceVector of_shape = half_cosine(first, last) < least_half_cosine
                                    ? end.to_body_frame(middle)
@@ -67,7 +67,7 @@ SpaceVector normal_of_step(const PosedObstacle& start, const SpaceVector& from, 
                            const SpaceVector& to) {
   const ObstacleShape& shape = *end.shape_;
   const SpaceVector reference_before = start.pose_.to_body_frame(from), reference_after = end.pose_.to_body_frame(to);
-  if (!end.pose_.turns() && !start.pose_.turns()) return shape.normal_of_step(reference_before, reference_after);
+  if (!end.pose_.rotates() && !start.pose_.rotates()) return shape.normal_of_step(reference_before, reference_after);
   const Pose::Rotation first = rotation_of(start.pose_, to.size()), last = rotation_of(end.pose_, to.size());
   const SpaceVector at_start = first * shape.normal(reference_before), at_end = last * shape.normal(reference_after);
   const SpaceVector middle = shape.gradient(0.5 * (reference_before + reference_after));
@@ -107,9 +107,9 @@ Pose Obstacle::pose(double time) const {
   Pose result;
   if (path_ == nullptr) return result;
   result.shift = path_->is_uniform() ? SpaceVector(time * path_->velocity()) : path_->displacement(time);
-  if (!path_->turns()) return result;
+  if (!path_->rotates()) return result;
   result.rotation = rotation_by(path_->rotation(time), about_.size());
-  if (result.turns()) result.shift += about_ - result.rotation * about_;
+  if (result.rotates()) result.shift += about_ - result.rotation * about_;
   return result;
 }
 

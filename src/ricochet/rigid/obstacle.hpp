@@ -74,7 +74,7 @@ class Obstacle {
 
   /// Whether gaps are linear functions of the position with constant normals: those of t = 0 minus n·translation(t).
   [[nodiscard]] bool has_constant_normals() const {
-    return shape_->is_flat() && free_ == nullptr && (path_ == nullptr || !path_->turns());
+    return shape_->is_flat() && free_ == nullptr && (path_ == nullptr || !path_->rotates());
   }
   [[nodiscard]] double least_radius() const { return shape_->least_radius(); }
   /// Checksum of the files that define it; empty if none.
@@ -85,7 +85,7 @@ class Obstacle {
   [[nodiscard]] bool moves() const { return path_ != nullptr || spin_ != 0.0; }
   [[nodiscard]] bool spins() const { return spin_ != 0.0; }
   /// Whether its poses at two instants differ by more than a translation.
-  [[nodiscard]] bool turns() const { return path_ != nullptr && path_->turns(); }
+  [[nodiscard]] bool rotates() const { return path_ != nullptr && path_->rotates(); }
   /// Returns u(t) − u(0).
   [[nodiscard]] SpaceVector translation(double time) const;
   [[nodiscard]] Pose pose(double time) const;

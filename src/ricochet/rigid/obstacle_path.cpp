@@ -42,7 +42,7 @@ class ExpressionPath final : public ObstaclePath {
     return displacement_.empty() ? SpaceVector(SpaceVector::Zero(dimension_)) : value_of(displacement_, time);
   }
   [[nodiscard]] SpaceVector rotation(double time) const override { return value_of(rotation_, time); }
-  [[nodiscard]] bool turns() const override { return !rotation_.empty(); }
+  [[nodiscard]] bool rotates() const override { return !rotation_.empty(); }
 
  private:
   std::vector<Expression> displacement_, rotation_;
@@ -55,7 +55,7 @@ class TablePath final : public ObstaclePath {
       : times_(std::move(times)), values_(std::move(values)), dimension_(dimension) {}
   [[nodiscard]] SpaceVector displacement(double time) const override { return at(time).head(dimension_); }
   [[nodiscard]] SpaceVector rotation(double time) const override { return at(time).tail(values_.rows() - dimension_); }
-  [[nodiscard]] bool turns() const override { return values_.rows() > dimension_; }
+  [[nodiscard]] bool rotates() const override { return values_.rows() > dimension_; }
   [[nodiscard]] std::string checksum() const override {
     return Checksum()
         .add(times_.data(), times_.size())
@@ -93,7 +93,7 @@ std::string contents_of(const std::string& file) {
 }
 
 /// Refuses a header that names the last of four columns as a length, since it is an angle in the plane.
-void look_at_angle(const NumberLines& lines, const std::string& file) {
+void refuse_length_header(const NumberLines& lines, const std::string& file) {
   const std::array lengths{"z", "uz", "u_z", "dz", "Z", "UZ", "U_Z", "DZ"};
   const std::string last = lines.header().empty() ? "" : lines.header().back();
   if (std::find(lengths.begin(), lengths.end(), last) != lengths.end())
@@ -139,7 +139,7 @@ std::unique_ptr<ObstaclePath> read_path(const std::string& file, Index dimension
     values.insert(values.end(), numbers.begin() + 1, numbers.end());
   }
   if (times.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: the motion contains no numbers", file));
-  if (dimension == 2 && columns == with_rotation) look_at_angle(lines, file);
+  if (dimension == 2 && columns == with_rotation) refuse_length_header(lines, file);
   const auto rows = static_cast<Index>(columns) - 1, count = static_cast<Index>(times.size());
   return std::make_unique<TablePath>(std::move(times), Eigen::Map<const Points>(values.data(), rows, count), dimension);
 }

@@ -17,9 +17,9 @@ class ObstaclePath {
  public:
   virtual ~ObstaclePath() = default;
   [[nodiscard]] virtual SpaceVector displacement(double time) const = 0;
-  /// Rotation vector θ; only if turns().
+  /// Rotation vector θ; only if rotates().
   [[nodiscard]] virtual SpaceVector rotation(double /*time*/) const { return {}; }
-  [[nodiscard]] virtual bool turns() const { return false; }
+  [[nodiscard]] virtual bool rotates() const { return false; }
   /// Constant velocity, if u is linear in t: displacements are then t times this velocity, and θ is zero.
   [[nodiscard]] virtual bool is_uniform() const { return false; }
   [[nodiscard]] virtual SpaceVector velocity() const { return {}; }
@@ -40,7 +40,7 @@ class SteeredPath final : public ObstaclePath {
 
   [[nodiscard]] SpaceVector displacement(double time) const override;
   [[nodiscard]] SpaceVector rotation(double time) const override;
-  [[nodiscard]] bool turns() const override { return before_ != nullptr && before_->turns(); }
+  [[nodiscard]] bool rotates() const override { return before_ != nullptr && before_->rotates(); }
   [[nodiscard]] std::string checksum() const override { return before_ != nullptr ? before_->checksum() : ""; }
 
   void save(Snapshot& snapshot, const std::string& name) const;

@@ -11,21 +11,21 @@ struct Pose {
   SpaceVector shift;  ///< s; empty: zero
   Rotation rotation;  ///< Q; empty: the identity
 
-  [[nodiscard]] bool turns() const { return rotation.size() > 0; }
+  [[nodiscard]] bool rotates() const { return rotation.size() > 0; }
   /// Returns X for a point in space.
   [[nodiscard]] SpaceVector to_body_frame(SpaceVector position) const {
     if (shift.size() > 0) position -= shift;
-    return turns() ? SpaceVector(rotation.transpose() * position) : position;
+    return rotates() ? SpaceVector(rotation.transpose() * position) : position;
   }
   /// Returns x for a point of the obstacle.
   [[nodiscard]] SpaceVector to_space(SpaceVector position) const {
-    if (turns()) position = SpaceVector(rotation * position);
+    if (rotates()) position = SpaceVector(rotation * position);
     if (shift.size() > 0) position += shift;
     return position;
   }
   /// Rotates a direction of the obstacle to space.
   [[nodiscard]] SpaceVector direction(const SpaceVector& of_obstacle) const {
-    return turns() ? SpaceVector(rotation * of_obstacle) : of_obstacle;
+    return rotates() ? SpaceVector(rotation * of_obstacle) : of_obstacle;
   }
 };
 

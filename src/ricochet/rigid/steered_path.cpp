@@ -37,17 +37,17 @@ SpaceVector SteeredPath::displacement(double time) const {
 
 SpaceVector SteeredPath::rotation(double time) const {
   if (const Leg* leg = leg_at(time)) return leg->rotation + (time - leg->start) * leg->rotation_rate;
-  return turns() ? before_->rotation(time) : SpaceVector(SpaceVector::Zero(rotations_));
+  return rotates() ? before_->rotation(time) : SpaceVector(SpaceVector::Zero(rotations_));
 }
 
 void SteeredPath::steer(double time, const SpaceVector& velocity, const SpaceVector& rotation_rate) {
   check_rates("velocity", velocity, dimension_);
   Leg leg{time, displacement(time), rotation(time), velocity, SpaceVector::Zero(rotations_)};
   if (rotation_rate.size() > 0) {
-    if (!turns())
+    if (!rotates())
       throw Error(ErrorKind::invalid_input,
                   "it has no rotation whose rate could be set: add one to the case, which can be zero, as in rotation "
-                  "= \"0\" (a rotation_rate in the case turns its surface in place and remains unchanged)");
+                  "= \"0\" (a rotation_rate in the case rotates its surface in place and remains unchanged)");
     check_rates("rotation rate", rotation_rate, rotations_);
     leg.rotation_rate = rotation_rate;
   }

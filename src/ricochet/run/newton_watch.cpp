@@ -90,9 +90,9 @@ ExplicitRun try_explicit(const Case& input) {
 
 std::string many_iterations_text(const NewtonWatch& watch, const ExplicitRun& other, double now, double left,
                                  double step) {
-  const std::string what =
-      fmt::format("at t = {:.6g} Newton's method has needed more than {} iterations in {} steps, {:.2g} s each", now,
-                  NewtonWatch::many, watch.steps(), watch.seconds_per_step());
+  const std::string what = fmt::format(
+      "at t = {:.6g} Newton's method has needed more than {} iterations in each of {} steps, {:.2g} s per step", now,
+      NewtonWatch::many, watch.steps(), watch.seconds_per_step());
   if (!other.refusal.empty()) {
     return fmt::format(
         "{}; scheme \"{}\" with mass.type = \"{}\", which solves no system of the whole body, does not support this "

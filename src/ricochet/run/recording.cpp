@@ -55,14 +55,14 @@ std::unique_ptr<ResultsWriter> open_results(const OutputSection& output, const M
   return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, global_body);
 }
 
-/// Makes the watch of penetration. Steps at finite strain compute stresses and tangents of all cells and refactorize,
-/// several times: this many evaluations of the stress of all cells take no longer (measured).
+/// Makes the penetration watch. Steps at finite strain compute stresses and tangents of all cells and refactorize
+/// several times, which takes at least as long as this many evaluations of the stress of all cells (measured).
 PenetrationWatch make_penetration_watch(const Case& input, const Model& model, std::size_t factor_entries) {
   std::vector<NamedObstacle> obstacles;
   for (std::size_t i = 0; i < input.obstacles.size(); ++i)
     obstacles.push_back({input.obstacles[i].name, model.obstacles[i].get()});
-  constexpr double looks_at_cells = 20.0;
-  const double of_cells = has_finite_strain(model.body) ? looks_at_cells * evaluation_work(model.body) : 0.0;
+  constexpr double cell_evaluations = 20.0;
+  const double of_cells = has_finite_strain(model.body) ? cell_evaluations * evaluation_work(model.body) : 0.0;
   return {model.body, model.problem, model.contact_pairs,
           obstacles,  model.bodies,  step_work(model.sizes.dofs, factor_entries) + of_cells};
 }
@@ -110,7 +110,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
   method_.load(*snapshot, "method");
 }
 
-/// Sums over all ranks.
+/// Returns the energy of the method, summed over all ranks.
 double Recording::method_energy(const State& state, EnergyAccount& account) const {
   return model_.problem.ranks->sum(account.method_energy(state));
 }

@@ -15,7 +15,8 @@ namespace ricochet {
 
 namespace {
 
-/// Rotation, in rad, above which the run reports at its end how large the error has become: it grows with the square.
+/// Rotation, in rad, above which the run reports at its end how large the error has become; the error grows with the
+/// square.
 constexpr double large_rotation = 2.0 * rotation_limit;
 /// Equivalent strain above which small strain does not hold.
 constexpr double strain_limit = 0.1;
@@ -38,7 +39,7 @@ bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, co
   return energy <= 1e-14 * problem.ranks->sum(terms);
 }
 
-/// Warns of a loss of energy that no real body has, in an impact whose step is too long for its waves. Where nothing
+/// Warns of a loss of energy that no real body has, in an impact whose step is too long for its waves. If nothing
 /// rebounds, as in sliding or pressing, forces do far more work than is ever stored, and the loss is compared with that
 /// work.
 void judge_loss(const RunSummary& summary, const Scheme& scheme, const SemidiscreteProblem& problem,
@@ -61,8 +62,8 @@ void judge_loss(const RunSummary& summary, const Scheme& scheme, const Semidiscr
   const std::string setting = scheme.setting_that_loses_less(problem);
   log::warning(
       fmt::format("contact forces and the scheme itself have removed {:.2g} % of the largest energy (contact_work and "
-                  "numerical_dissipation of the history), which a real body keeps as waves: rebounds are too slow by "
-                  "this amount; a smaller time.step and smaller cells lose less{}",
+                  "numerical_dissipation of the history), which a real body keeps as waves: rebounds lack this much "
+                  "energy; a smaller time.step and smaller cells lose less{}",
                   100.0 * loss, setting.empty() ? "" : ", and so does " + setting));
 }
 
@@ -120,8 +121,8 @@ void judge_unsettled(const RunSummary& summary) {
     if (contact.share <= UnsettledContact::doubtful) continue;
     const ContactDescription& pair = summary.contacts[static_cast<std::size_t>(contact.contact)];
     log::warning(fmt::format(
-        "the force of the contact of {} is in doubt: up to {:.3g} % of it is at stake where held steps "
-        "have left {} of up to {:.3g}, in {} from t = {:.6g} on",
+        "the force of the contact of {} is in doubt: up to {:.3g} % of it is at stake where frozen steps have left {} "
+        "of up to {:.3g}, in {} from t = {:.6g} on",
         pair_names(pair.group, pair.opponent), 100.0 * contact.share, contact.gap < 0.0 ? "overlaps" : "gaps",
         std::abs(contact.gap), counted(contact.steps, "step"), contact.first_time));
   }

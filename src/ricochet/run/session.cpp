@@ -200,7 +200,7 @@ void Session::set_obstacle_velocity(const std::string& obstacle, const Vector& v
   try {
     SteeredPath& path = steered_path(obstacle);
     const double now = simulation_ != nullptr ? time() : 0.0;
-    const bool is_rotating = path.turns() && path.rotation(now + input_.time.step) != path.rotation(now);
+    const bool is_rotating = path.rotates() && path.rotation(now + input_.time.step) != path.rotation(now);
     path.steer(now, velocity, rotation_rate);
     if (is_rotating && rotation_rate.size() == 0) {
       log::warning(

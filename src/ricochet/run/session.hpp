@@ -13,7 +13,7 @@
 ///
 ///   Session session("case.toml", {"time.step=1e-4"});
 ///   session.write_to({.output_directory = "out/a"});      // optional: without it nothing is written
-///   while (session.step()) look(session.state());
+///   while (session.step()) use(session.state());
 ///   const RunSummary summary = session.finish();
 ///
 /// One session at a time runs in a process, on all of its threads: warnings, signals and the ordering of matrices
@@ -82,9 +82,9 @@ class Session {
   void set_velocity(const Vector& velocity);
   /// Moves this obstacle from now on with a constant velocity (d numbers) and a constant rate of its rotation vector (1
   /// or 3 numbers, only if the case gives it a rotation; if empty, it stops rotating, with a warning), starting from
-  /// its present position; a `rotation_rate` of the case, of its surface in place, remains. The first call for an
-  /// obstacle must precede start(), write_to() and any access to the state. Throws Error(usage) if it comes too late,
-  /// and Error(invalid_input) if there is no such obstacle, it moves freely, or the numbers do not fit.
+  /// its present position; a `rotation_rate` of the case, which rotates its surface in place, stays in effect. The
+  /// first call for an obstacle must precede start(), write_to() and any access to the state. Throws Error(usage) if it
+  /// comes too late, and Error(invalid_input) if there is no such obstacle, it moves freely, or the numbers do not fit.
   void set_obstacle_velocity(const std::string& obstacle, const Vector& velocity, const Vector& rotation_rate = {});
 
   /// Computes one step. Returns false, without any effect, at the end of the run; further calls cause a warning. Throws

@@ -15,8 +15,8 @@ namespace {
 ///   friction on B_T (U₁−U₀)/h;   V₁ = V₀ + (2/h)(U₁ − Û).
 /// The second stage depends on the first. In a step J changes by ΔUᵀ(Gᵀr_N − …) − (2/h²)(Û−U₀−hV₀)ᵀM(U₁−Û); without
 /// friction, and apart from the work of supports, by −r_N·g₀ − (2/h²) μ·g₁ ≤ 0 if gaps are linear: no step, however
-/// long, creates energy there. r_N acts along normals of the step, so that its part also holds on spheres; the part of
-/// μ is smaller in hollows (concave gaps) and larger on balls (convex ones), by up to (2/h²) μ |U₁−Û|²/2R.
+/// long, creates energy there. r_N acts along normals of the step, so that its term is ≤ 0 on spheres as well; the term
+/// of μ is smaller in hollows (concave gaps) and larger on balls (convex ones), by up to (2/h²) μ |U₁−Û|²/2R.
 class ContactStabilized final : public Scheme {
  public:
   using Scheme::Scheme;

@@ -17,7 +17,7 @@ struct StageEstimate {
   ChosenMethod chosen;
   Index unknowns = 0;
   double factor_bytes = 0.0;           ///< 0 for the iterative method
-  double peak_bytes = 0.0;             ///< while the factor is made, including the matrix
+  double peak_bytes = 0.0;             ///< while the factor is computed, including the matrix
   double factorization_seconds = 0.0;  ///< without the ordering
   double iterations = 0.0;             ///< per solve; 0 with a factor
   double step_seconds = 0.0;           ///< of the triangular solves or the iterations
@@ -29,7 +29,7 @@ struct StageEstimate {
                                                               const std::vector<OperatorCoefficients>& operators,
                                                               const StepSolverOptions& options = {});
 
-/// Seconds per step for products with matrices and for vectors besides the solves, with every scheme.
+/// Seconds that a step of any scheme spends on products with matrices and on vectors, besides the solves.
 [[nodiscard]] double estimate_products(const SemidiscreteProblem& problem);
 
 }  // namespace ricochet

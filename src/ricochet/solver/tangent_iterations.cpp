@@ -19,10 +19,10 @@ constexpr int max_iterations = 400;
 /// Iterations without progress after which the acceleration is restarted, since points that touch and separate change
 /// the map; and after which the step fails.
 constexpr int patience_of_acceleration = 20, patience_of_iterations = 60;
-/// Iterations without progress after which pairs of facets are held.
+/// Iterations without progress after which pairs of facets are frozen.
 constexpr int patience_of_pairs = 25;
 /// After so many iterations, if the last ones brought no progress, the error may be a multiple of the rounding of the
-/// gaps: forces that turn with large surfaces keep it.
+/// gaps: forces that rotate with large surfaces keep it.
 constexpr int patient_iterations = 40, patience_of_rounding = 5;
 constexpr double remaining_rounding = 100.0;
 /// Largest error before a step fails: gaps have the rounding of everything that moves the points, and in narrow corners

@@ -7,7 +7,7 @@
 namespace ricochet {
 
 /// Solves a stage with tangent planes at the previous solution, until the linearization error of the gaps is rounding.
-/// Each iteration would square the error if forces did not turn with the normals; they do, and the error changes by a
+/// Each iteration would square the error if forces did not rotate with the normals; they do, and the error changes by a
 /// factor of their size times the curvature of the surface over the stiffness of the step: mostly small, one half in a
 /// hard impact, and above one if a step is long for the force it requires. So iterations that do not settle by
 /// themselves are accelerated.

@@ -11,11 +11,11 @@ namespace ricochet {
 
 struct StudyResults {
   ResultTable table;
-  /// For readers, a sentence each: the meaning of the columns, and why runs failed; and the warnings of runs.
+  /// Notes for readers, one sentence each: meaning of the columns, reasons why runs failed. Warnings of the runs.
   std::vector<std::string> notes, warnings;
   int done = 0;  ///< completed runs
-  /// The worst status of the runs that have one; if these are all 0, the status of a question that no completed run
-  /// could answer.
+  /// The worst status of the runs that have one; if these are all 0, status `usage` if no completed run has a requested
+  /// quantity.
   int worst_status = 0;
 };
 

@@ -66,7 +66,7 @@ TEST_P(RefineMesh, LeavesNoGaps) {
   std::set<std::vector<double>> places;
   for (Index i = 0; i < mesh.node_count(); ++i)
     places.insert(std::vector<double>(mesh.nodes.col(i).begin(), mesh.nodes.col(i).end()));
-  EXPECT_EQ(places.size(), static_cast<std::size_t>(mesh.node_count())) << "two nodes at one place";
+  EXPECT_EQ(places.size(), static_cast<std::size_t>(mesh.node_count())) << "two nodes at one position";
   // The nodes are exactly those of the cells.
   std::set<Index> used;
   for (const CellBlock& block : mesh.cells) used.insert(block.nodes.begin(), block.nodes.end());

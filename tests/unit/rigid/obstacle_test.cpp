@@ -309,7 +309,7 @@ TEST(Obstacle, TurnsAndIsWhereItsPoseSays) {
     const Vector about = Eigen::Vector3d(0.2, 0.5, -0.3).head(dimension);
     const Obstacle obstacle(shape_of(type, dimension, "outside"), make_path(displacement, rotation, dimension), 0.0,
                             about);
-    ASSERT_TRUE(obstacle.turns());
+    ASSERT_TRUE(obstacle.rotates());
     EXPECT_FALSE(obstacle.has_constant_normals());
     const double start = 0.2, end = 0.35;
     const PosedObstacle before = obstacle.at(start), after = obstacle.at(end);
@@ -369,7 +369,7 @@ TEST(Obstacle, FollowsATable) {
   const std::string file = folder.file("motion.csv");
   std::ofstream(file) << "t,x,y,angle\n0,0,0,0\n1, 2, 0, 0.5\n# half as fast\n3,4,-1,0.5\n";
   const auto path = read_path(file, 2);
-  EXPECT_TRUE(path->turns());
+  EXPECT_TRUE(path->rotates());
   EXPECT_NEAR(path->displacement(0.5)[0], 1.0, 1e-15);
   EXPECT_NEAR(path->displacement(2.0)[1], -0.5, 1e-15);
   EXPECT_NEAR(path->rotation(0.2)[0], 0.1, 1e-15);

@@ -90,7 +90,8 @@ TEST(ContactCandidates, AreAskedForWhereOthersPenetrate) {
   EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, -1.4, -2.0, -1.0 - 5e-16}), false), (PointNumbers{2}));
   EXPECT_EQ(candidates.penetrating(stage, gaps({0.0, -1.6, -2.0, 0.0}), false), (PointNumbers{2, 1}));
   EXPECT_EQ(candidates.penetrating(stage, gaps({0.0, 0.0, 0.0, -1.0 - 5e-16}), false), PointNumbers{});
-  EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, 0.0, 0.0, 0.0}), true), (PointNumbers{0})) << "nobody asked it";
+  EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, 0.0, 0.0, 0.0}), true), (PointNumbers{0}))
+      << "no request included it";
 }
 
 /// An unsupported body falls through its obstacle with all points, which are not all added at once.

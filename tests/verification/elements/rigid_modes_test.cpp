@@ -108,7 +108,7 @@ TEST_P(RigidModes, AnyRotationBelowHalfATurnIsMeasured) {
 }
 
 /// One node rotates only its own cells: the gauge returns the largest rotation of a cell, not an average.
-TEST_P(RigidModes, OneCellThatTurnsIsSeen) {
+TEST_P(RigidModes, ARotatingCellIsDetected) {
   const auto test = make_body();
   const int d = test->mesh.dimension;
   const CellRotations gauge(test->body);

@@ -237,7 +237,7 @@ export interface Summary {
   bodies: { mass: Value; name?: string; held?: boolean }[];
   impacts: Impact[];
   impacts_left_out: number;
-  /** Contacts with large sliding in which held steps have left gaps; not in results of older versions. */
+  /** Contacts with large sliding in which frozen steps have left gaps; not in results of older versions. */
   unsettled_contacts?: { contact: number; share_of_force: Value; steps: number; first_time: Value; time: Value; gap: Value }[];
   peak_stress: PeakStress | null;
   expectations: Expectation[];

@@ -107,7 +107,7 @@ SlidingPair::Data data_of(const Body& body, const ContactPair& pair, const Bound
 }
 
 /// Evaluates the pairing at the initial positions, and sets offsets that close gaps there.
-void look_at_the_start(const Body& body, const ContactPair& pair, const FreeComponent& is_free, BoundaryPatch& patch,
+void evaluate_at_start(const Body& body, const ContactPair& pair, const FreeComponent& is_free, BoundaryPatch& patch,
                        PairingSummary& facing) {
   patch.numbers.assign(patch.retained.size(), 0);
   const SlidingPair sliding(data_of(body, pair, patch, is_free));
@@ -161,7 +161,7 @@ void make_sliding_patch(const Body& body, const ContactPair& pair, const FreeCom
     const Eigen::Vector3d direction = normals.at_node(node).at(body.space->nodes, {});
     patch.nodes.push_back({node, true, direction.normalized().head(body.space->dimension), 0.0, {}});
   }
-  look_at_the_start(body, pair, is_free, patch, facing);
+  evaluate_at_start(body, pair, is_free, patch, facing);
 }
 
 std::unique_ptr<ContactGeometry> make_sliding_geometry(const Body& body, const std::vector<ContactPair>& pairs,

@@ -66,7 +66,7 @@ class SurfaceNormals {
     bool is_level = false;
   };
   /// Finds facets with this normal; if there are none, those between whose normals it lies.
-  [[nodiscard]] Sight look(const Vector3& normal) const {
+  [[nodiscard]] Sight find_sight(const Vector3& normal) const {
     const auto may_have = [&](const BoxTree::Box& box) { return box.contains(normal); };
     Sight result;
     plane_tree_.visit(may_have, [&](int number) {
@@ -75,7 +75,7 @@ class SurfaceNormals {
       result.is_level = true;
       result.bend.add(plane.bend, plane.bend.weight);
     });
-    if (!result.is_level && !joints_.empty()) result.bend = look_at_joints(normal, may_have);
+    if (!result.is_level && !joints_.empty()) result.bend = find_bend(normal, may_have);
     if (result.bend.weight > 0.0) result.bend = result.bend.mean();
     return result;
   }
@@ -91,7 +91,7 @@ class SurfaceNormals {
   /// Finds joints whose normals include a given one; if there are none, those adjacent to it: a surface that ends at a
   /// plane of symmetry touches its counterpart across that plane with half of a facet.
   template <class MayHave>
-  [[nodiscard]] Bend look_at_joints(const Vector3& normal, const MayHave& may_have) const {
+  [[nodiscard]] Bend find_bend(const Vector3& normal, const MayHave& may_have) const {
     Bend within, beside;
     joint_tree_.visit(may_have, [&](int number) {
       const Joint& joint = joints_[static_cast<std::size_t>(number)];
@@ -194,7 +194,7 @@ bool are_parted(const Bend& one, const Bend& other) {
 VariationSums sums_over(const SurfaceNormals& first, const SurfaceNormals& second, bool is_straight) {
   VariationSums sums;
   for (const SurfaceNormals::Plane& plane : first.planes()) {
-    const SurfaceNormals::Sight opposite = second.look(-plane.normal);
+    const SurfaceNormals::Sight opposite = second.find_sight(-plane.normal);
     if (!(opposite.bend.weight > 0.0) || (!opposite.is_level && are_parted(plane.bend, opposite.bend))) continue;
     const double area = plane.bend.weight;
     sums.area += area;

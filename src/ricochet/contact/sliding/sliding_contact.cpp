@@ -299,7 +299,7 @@ class SlidingContact final : public ContactGeometry {
     }
     if (any_near)
       pair.compute_views(writer_.middle(), SlidingPair::Content::row, views.left_out, views.any_depth, views.middle);
-    if (any_near && start != nullptr) look_at_entering(pair, displacement, views);
+    if (any_near && start != nullptr) evaluate_entering(pair, displacement, views);
     if (views.chosen) choose(start != nullptr, views);
     for (std::size_t i = 0; i < views.gaps.size(); ++i) {
       const double gap_rounding = rows.gap_rounding[number(k, i)];
@@ -329,7 +329,7 @@ class SlidingContact final : public ContactGeometry {
   }
 
   /// Computes the views at the end, from which points that enter have their rows.
-  void look_at_entering(const SlidingPair& pair, const Vector& displacement, PairViews& views) const {
+  void evaluate_entering(const SlidingPair& pair, const Vector& displacement, PairViews& views) const {
     bool any = false;
     left_out_.assign(views.gaps.size(), 1);
     for (std::size_t i = 0; i < views.gaps.size(); ++i) {

@@ -71,7 +71,7 @@ struct SlidingPair::Implementation {
   std::vector<std::vector<int>> points_of;
   std::vector<RotatingNormal> normals;  ///< per own facet, into its body
   // State of the current evaluation.
-  mutable Vector looked_at;
+  mutable Vector evaluated_displacement;
   mutable std::vector<Sums> sums;
   mutable std::vector<SlidingVector> current_normals;  ///< N of each own facet
   mutable std::vector<char> included;                  ///< per anchor of the current own facet
@@ -209,7 +209,7 @@ void SlidingPair::Implementation::add_normal_derivative(int facet, const Sliding
     SlidingVector& pull = sums[point].pull;
     const SlidingVector w = (n * n.dot(pull) - pull) / length;
     normals[static_cast<std::size_t>(facet)].visit_derivative(
-        data.body.space->nodes, looked_at, w, [&](Index node, const SlidingVector& value) {
+        data.body.space->nodes, evaluated_displacement, w, [&](Index node, const SlidingVector& value) {
           entry_of<SlidingVector>(views[point].row, node, SlidingVector::Zero()) += value;
         });
     pull.setZero();
@@ -279,7 +279,7 @@ void SlidingPair::compute_views(const Vector& displacement, Content content, con
                                 const std::vector<char>& any_depth, std::vector<SlidingView>& views) const {
   const Implementation& own = *implementation_;
   own.surfaces.move(displacement);
-  own.looked_at = displacement;
+  own.evaluated_displacement = displacement;
   for (std::size_t facet = 0; facet < own.normals.size(); ++facet)
     own.current_normals[facet] = own.normals[facet].at(own.data.body.space->nodes, displacement);
   views.resize(points().size());

@@ -24,8 +24,8 @@ class ContactFields final : public FieldSource {
     gap_.assign(count, 0.0);
     status_.assign(count, 0);
     add_stresses(context, "contact_pressure", "friction_traction", stresses_);
-    if (context.wants("gap")) fields_.push_back({"gap", FieldLocation::nodes, 1, false, nodes, gap_.data()});
-    if (context.wants("contact_status"))
+    if (context.is_requested("gap")) fields_.push_back({"gap", FieldLocation::nodes, 1, false, nodes, gap_.data()});
+    if (context.is_requested("contact_status"))
       fields_.push_back({"contact_status", FieldLocation::nodes, 1, true, nodes, status_.data()});
     if (deforms_) add_stresses(context, "nominal_contact_pressure", "nominal_friction_traction", nominal_);
   }
@@ -46,10 +46,10 @@ class ContactFields final : public FieldSource {
     const Index nodes = space_.node_count();
     stresses.pressure.assign(static_cast<std::size_t>(nodes), 0.0);
     stresses.traction.assign(static_cast<std::size_t>(3 * nodes), 0.0);
-    stresses.is_requested = context.wants_any({pressure, traction});
-    if (context.wants(pressure))
+    stresses.is_requested = context.any_is_requested({pressure, traction});
+    if (context.is_requested(pressure))
       fields_.push_back({pressure, FieldLocation::nodes, 1, false, nodes, stresses.pressure.data()});
-    if (context.wants(traction) && has_friction_)
+    if (context.is_requested(traction) && has_friction_)
       fields_.push_back({traction, FieldLocation::nodes, 3, false, nodes, stresses.traction.data()});
   }
   void find_true_reactions(const State& state);

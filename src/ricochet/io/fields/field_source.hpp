@@ -8,7 +8,7 @@
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/state.hpp"
 
-/// @file Fields of a frame. To add some: a file with a class and its names, and one line in registry.cpp.
+/// @file Fields of a frame. A new field needs a class in a file, and a line with its names in registry.cpp.
 namespace ricochet {
 
 enum class FieldLocation { nodes, cells };
@@ -37,17 +37,17 @@ struct FieldContext {
   const SemidiscreteProblem& problem;
   std::vector<std::string> requested;  ///< names
 
-  [[nodiscard]] bool wants(const std::string& name) const;
-  [[nodiscard]] bool wants_any(const std::vector<std::string>& names) const;
+  [[nodiscard]] bool is_requested(const std::string& name) const;
+  [[nodiscard]] bool any_is_requested(const std::vector<std::string>& names) const;
 };
 
-/// Sources of the wanted fields, in the order of the registry; names that do not apply (friction without friction) are
-/// ignored.
+/// Sources of the requested fields, in the order of the registry; names that do not apply (fields of friction in a case
+/// without friction) are ignored.
 [[nodiscard]] std::vector<std::unique_ptr<FieldSource>> make_field_sources(const FieldContext& context);
 /// Names of all fields.
 [[nodiscard]] std::vector<std::string> field_names();
 /// Expands names: "all" stands for all fields, an empty list for the default ones, which are cheap.
-[[nodiscard]] std::vector<std::string> wanted_fields(const std::vector<std::string>& names);
+[[nodiscard]] std::vector<std::string> expand_field_names(const std::vector<std::string>& names);
 
 /// Copies a vector of dofs to three components per node, also in the plane, in the order of the mesh file.
 void copy_vector(const DisplacementSpace& space, const Vector& values, std::vector<double>& field);

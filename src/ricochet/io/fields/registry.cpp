@@ -32,18 +32,18 @@ const std::vector<FieldRegistration>& registrations() {
 
 }  // namespace
 
-bool FieldContext::wants(const std::string& name) const {
+bool FieldContext::is_requested(const std::string& name) const {
   return std::find(requested.begin(), requested.end(), name) != requested.end();
 }
 
-bool FieldContext::wants_any(const std::vector<std::string>& names) const {
-  return std::any_of(names.begin(), names.end(), [this](const std::string& name) { return wants(name); });
+bool FieldContext::any_is_requested(const std::vector<std::string>& names) const {
+  return std::any_of(names.begin(), names.end(), [this](const std::string& name) { return is_requested(name); });
 }
 
 std::vector<std::unique_ptr<FieldSource>> make_field_sources(const FieldContext& context) {
   std::vector<std::unique_ptr<FieldSource>> result;
   for (const FieldRegistration& entry : registrations()) {
-    if (context.wants_any(entry.names)) result.push_back(entry.make(context));
+    if (context.any_is_requested(entry.names)) result.push_back(entry.make(context));
   }
   return result;
 }
@@ -55,7 +55,7 @@ std::vector<std::string> field_names() {
   return result;
 }
 
-std::vector<std::string> wanted_fields(const std::vector<std::string>& names) {
+std::vector<std::string> expand_field_names(const std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), "all") != names.end()) return field_names();
   if (!names.empty()) return names;
   return {"displacement", "velocity", "contact_pressure", "friction_traction", "gap", "contact_status", "von_mises"};

@@ -22,7 +22,8 @@ class StretchFields final : public FieldSource {
       const std::string name = fmt::format("principal_stretch_{}", k + 1);
       const Index cells = body_.mesh->cell_count();
       stretches_[k].assign(static_cast<std::size_t>(cells), 1.0);
-      if (context.wants(name)) fields_.push_back({name, FieldLocation::cells, 1, false, cells, stretches_[k].data()});
+      if (context.is_requested(name))
+        fields_.push_back({name, FieldLocation::cells, 1, false, cells, stretches_[k].data()});
     }
   }
 

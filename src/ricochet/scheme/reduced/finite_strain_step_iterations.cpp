@@ -11,7 +11,8 @@ constexpr int patience_of_pairs = 80;
 
 }  // namespace
 
-/// Holds pairs from now on, until the step is done. Returns false if there is nothing to hold, or it is held already.
+/// Freezes pairs from now on, until the step is done. Returns false if there is nothing to freeze, or it is frozen
+/// already.
 bool FiniteStrainStep::freeze_pairs(const SemidiscreteProblem& problem) {
   if (!problem.contact.follows_motion() || !problem.contact.geometry->freeze()) return false;
   progress_.restart();

@@ -6,7 +6,7 @@ namespace {
 
 constexpr const char* stick_slip = "stick_slip";
 
-/// True if sticking points have a position to return to: rows that turn with the motion have other tangents in each
+/// True if sticking points have a position to return to: rows that rotate with the motion have other tangents in each
 /// step.
 bool has_fixed_tangents(const SemidiscreteProblem& problem) {
   return problem.contact.has_friction() && !problem.contact.follows_motion();

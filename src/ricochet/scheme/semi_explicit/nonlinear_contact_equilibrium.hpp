@@ -11,11 +11,11 @@
 /// @file Contact nodes without inertia in an explicit step for an internal force f = ∂W/∂u that is nonlinear in the
 /// displacement: with c the contact nodes, and all others at their displacements at the end of the step,
 ///   f_c(u_f, u_c) = L_c + Gᵀ r_N − B_Tᵀ r_T,   0 ≤ r_N ⟂ g(u) ≥ 0,   friction on B_T (u − uⁿ)/h.
-/// Newton's method with the run's factor of K_cc, which turns with the bodies (corotated_frame.hpp) and is renewed if
-/// corrections shrink too slowly: K_cc δ = L_c − f_c + Hᵀρ, u_c += δ, with exact contact conditions in every iteration;
-/// accelerated after some iterations, since the factor is that of another strain. Forces are those of the cells at
-/// contact nodes alone. Iterations start from the displacements that contact nodes reach with the velocity of the last
-/// step.
+/// Newton's method with the run's factor of K_cc, which is kept in the corotated frame of the bodies
+/// (corotated_frame.hpp) and renewed if corrections shrink too slowly: K_cc δ = L_c − f_c + Hᵀρ, u_c += δ, with exact
+/// contact conditions in every iteration; accelerated after some iterations, since the factor is that of another
+/// strain. Forces are those of the cells at contact nodes alone. Iterations start from the displacements that contact
+/// nodes reach with the velocity of the last step.
 namespace ricochet {
 
 class NonlinearContactEquilibrium {

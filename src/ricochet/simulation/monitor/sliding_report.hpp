@@ -19,7 +19,7 @@ struct PairSliding {
   [[nodiscard]] bool is_beyond() const { return slip > limit; }
 };
 
-/// Doubtful force of a contact with large sliding, at points where a held step has left a gap or an overlap, which
+/// Doubtful force of a contact with large sliding, at points where a frozen step has left a gap or an overlap, which
 /// nothing closes while they are pressed. A force at a gap should not exist; an overlap should have been pushed out, by
 /// a force no larger than that which moves the nodes of the point alone.
 struct UnsettledContact {

@@ -65,7 +65,7 @@ double SlidingWatch::slip_of(Index point, const State& state) const {
   return (apart - apart.dot(normal) * normal).norm();
 }
 
-/// A held step leaves a gap, or an overlap, at points that carry a force.
+/// A frozen step leaves a gap, or an overlap, at points that carry a force.
 void SlidingWatch::check_large_sliding(const State& state) {
   warn_of_frozen_step(state);
   if (state.step == 0) return;
@@ -111,8 +111,8 @@ void SlidingWatch::enter(LargeSlidingContact& contact, const State& state) const
 void SlidingWatch::warn(const LargeSlidingContact& contact) const {
   const ContactPair& pair = pairs_[static_cast<std::size_t>(contact.contact)];
   log::warning(fmt::format(
-      "at t = {:.6g} the pairing of {} did not settle: it changed from one iteration of the step to the "
-      "next and was held. Points are left at {} of up to {:.3g}, for example at ({:.4g}) (reference "
+      "at t = {:.6g} the pairing of {} did not settle: it changed from one iteration of the step to the next and was "
+      "frozen. Points are left at {} of up to {:.3g}, for example at ({:.4g}) (reference "
       "position), which nothing {} while they are pressed, and up to {:.3g} % of the force of this contact "
       "is at stake. This creates no energy. The column unsettled_gap has the gap of every step, "
       "\"unsettled_contacts\" in summary.json the share of the largest force",
@@ -121,13 +121,13 @@ void SlidingWatch::warn(const LargeSlidingContact& contact) const {
       contact.gap < 0.0 ? "removes" : "closes", 100.0 * contact.share()));
 }
 
-/// Warns of the first held step, whatever its effect.
+/// Warns of the first frozen step, whatever its effect.
 void SlidingWatch::warn_of_frozen_step(const State& state) {
   if (frozen_step_warned_ || !problem_.contact.geometry->has_frozen()) return;
   frozen_step_warned_ = true;
   log::warning(
       fmt::format("at t = {:.6g} the pairing of bodies with large sliding changed from one iteration of a step to the "
-                  "next and was held: the forces of such steps create no energy, but they have a moment, which shows "
+                  "next and was frozen: the forces of such steps create no energy, but they have a moment, which shows "
                   "in the angular momentum of free bodies",
                   state.time));
 }

@@ -10,7 +10,7 @@
 #include "ricochet/simulation/monitor/sliding_report.hpp"
 
 /// @file Slip between bodies beyond the limit of their pairing: facets that face each other at the start are assumed to
-/// do so for the whole run. For pairs with large sliding, the doubtful force of held steps.
+/// do so for the whole run. For pairs with large sliding, the doubtful force of frozen steps.
 namespace ricochet {
 
 class SlidingWatch {

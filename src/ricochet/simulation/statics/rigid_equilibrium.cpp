@@ -13,7 +13,7 @@ namespace {
 
 /// Fraction of the loads that is rounding.
 constexpr double rounding = 1e-11;
-/// Fraction of the load's power on a motion that reactions may balance at most if the motion proves anything.
+/// Largest fraction of the load's power on a motion that reactions may balance if the motion is to be a proof.
 constexpr double proof = 1e-3;
 /// Likewise, for a motion that is accurate to the digits that are shown.
 constexpr double settled = 1e-9;
@@ -215,8 +215,8 @@ std::vector<Cone> make_cones(const SemidiscreteProblem& problem, const FreeMotio
   const Index tangents = problem.dimension - 1;
   std::vector<Cone> cones;
   for (Index i = 0; i < contact.size(); ++i) {
-    // Another body is assumed to press as hard as it is pressed: what such reactions cannot hold, it cannot hold
-    // either.
+    // The other body is assumed to bear any reaction: a load that such reactions cannot balance, the real body cannot
+    // balance either.
     bool reaches = false;
     contact.visit_nodes(i,
                         [&](Index node, double) { reaches = reaches || motions.contains(node * problem.dimension); });

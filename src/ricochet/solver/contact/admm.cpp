@@ -17,14 +17,15 @@ namespace {
 
 constexpr int admm_iterations = 20000;
 constexpr double relaxation = 1.6;
-/// Iterations between verdicts if the residuals of the iteration itself do not call for one.
+/// Iterations between two evaluations of the measure, unless the residual of the iteration triggers one.
 constexpr int verdict_interval = 16;
-/// Iterations between adaptations of the penalty, at first and their growth, and the least factor of a change.
+/// Initial number of iterations between adaptations of the penalty, its growth factor, and the least factor by which
+/// the penalty is changed.
 constexpr int first_interval = 12;
 constexpr double interval_growth = 1.3;
 constexpr double least_change = 2.5;
-/// Lanczos steps of the initial estimate of W's extreme eigenvalues; the smallest counts as at least this part of the
-/// largest.
+/// Lanczos steps of the initial estimate of W's extreme eigenvalues; the smallest is assumed to be at least this
+/// fraction of the largest.
 constexpr int lanczos_steps = 16;
 constexpr double smallest_part = 1e-8;
 
@@ -117,10 +118,10 @@ double geometric_mean_eigenvalue(const ContactSystem& system) {
 ///   (W + ρ D) r⁺ = ρ D (z − m) − q − s n,   v = α r⁺ + (1 − α) z + m,   z⁺ = P_K(v),   m⁺ = v − z⁺,
 /// with −ρ D m the û of the iteration, from which the next s is taken. S. Boyd et al., Found. Trends Mach. Learn. 3
 /// (2011) 1–122, with their over-relaxation α and balancing of residuals; on contact problems V. Acary, M. Brémond, O.
-/// Huber, INRIA RR-9118 (2017). ρ starts at the geometric mean of the extreme eigenvalues of D⁻¹W, with which the
-/// slowest modes of a linear problem are fastest, and follows
+/// Huber, INRIA RR-9118 (2017). ρ starts at the geometric mean of the extreme eigenvalues of D⁻¹W, for which the
+/// slowest modes of a linear problem converge fastest, and is replaced by
 ///   ρ ← ρ (|r − z|/max(|r|, |z|) · |m|/|z⁺ − z|)^½
-/// if that is far from it: only then is the matrix factorized again.
+/// if the two differ by a factor of at least `least_change`; only then is the matrix factorized again.
 class Admm final : public IterativeContactSolver {
  protected:
   [[nodiscard]] std::string refuses(const ContactSystem& system) const override {
@@ -137,7 +138,7 @@ class Admm final : public IterativeContactSolver {
   double measure(const ContactSystem& system);
   bool adapt(const ContactSystem& system, ContactSolution& solution);
 
-  std::vector<double> key_;  ///< of `start_factor_`: rows and diagonals
+  std::vector<double> key_;  ///< points, sizes and diagonals for which `start_factor_` was computed
   double start_penalty_ = 1.0, penalty_ = 1.0;
   PenaltyFactor start_factor_, adapted_factor_;
   PenaltyFactor* factor_ = &start_factor_;
@@ -192,7 +193,7 @@ void Admm::advance(const ContactSystem& system) {
   }
 }
 
-/// Computes the larger of the primal and the dual residual, and their balance.
+/// Returns the largest primal or dual residual of a point, and sets `balance_`.
 double Admm::measure(const ContactSystem& system) {
   double largest = 0.0;
   double primal = 0.0, dual = 0.0, of_r = 0.0, of_z = 0.0, of_multiplier = 0.0;
@@ -233,7 +234,7 @@ std::string Admm::iterate(const ContactSystem& system, const ContactOptions& opt
   if (!start(system, current, solution)) return indefinite;
   double best = system.residual(current);
   double interval = first_interval;
-  int next_look = first_interval;
+  int next_adaptation = first_interval;
   for (int k = 1; k <= limit; ++k) {
     advance(system);
     const double residual = measure(system);
@@ -249,10 +250,10 @@ std::string Admm::iterate(const ContactSystem& system, const ContactOptions& opt
         if (system.is_solved(current, options.tolerance)) return "";
       }
     }
-    if (k == next_look) {
+    if (k == next_adaptation) {
       if (!adapt(system, solution)) return indefinite;
       interval *= interval_growth;
-      next_look += static_cast<int>(interval);
+      next_adaptation += static_cast<int>(interval);
     }
   }
   return "the iteration limit was reached";

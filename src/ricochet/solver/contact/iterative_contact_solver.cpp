@@ -276,7 +276,7 @@ void IterativeContactSolver::find_status(const ContactProblem& problem, ContactS
   }
 }
 
-/// Solves on the wanted points, from the solution's reactions, until no other penetrates. `exchanges`: of nearly
+/// Solves on the selected points, from the solution's reactions, until no other penetrates. `exchanges`: of nearly
 /// identical points only one is included, which others may replace.
 void IterativeContactSolver::solve_on_selected(const ContactProblem& problem, const ContactOptions& options,
                                                bool exchanges, ContactSolution& solution) {

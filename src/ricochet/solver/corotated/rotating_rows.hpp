@@ -4,7 +4,7 @@
 
 #include "ricochet/contact/contact_rows.hpp"
 
-/// @file Rows H of contact candidates whose directions turn with the motion while their trace is constant: H = D E,
+/// @file Rows H of contact candidates whose directions rotate with the motion while their trace is constant: H = D E,
 /// where E has the rows c ⊗ e_k for such a point and the rows of H themselves for every other one, and D has the
 /// directions n and t. The columns of E are unaffected by rotation, and with K = Y_E Y_Eᵀ of them the Delassus operator
 /// is W = D K Dᵀ.
@@ -16,14 +16,14 @@ class RotatingRows {
   void append(const ContactRows& rows, Index point, Index row_count, bool is_rotating);
   void clear();
 
-  /// True if some point turns; otherwise H = E.
+  /// True if some point has rotating directions; otherwise H = E.
   [[nodiscard]] bool any() const { return any_; }
-  /// True if candidate i turns, in the order in which they were appended.
+  /// True if those of candidate i rotate, in the order in which they were appended.
   [[nodiscard]] bool rotates(std::size_t i) const { return directions_[i].size() > 0; }
   /// First row of E of candidate i; the total number after the last.
   [[nodiscard]] Index first(std::size_t i) const { return first_[i]; }
   [[nodiscard]] Index size() const { return first_.back(); }
-  /// Reads D of candidate i from the rows, if it turns.
+  /// Reads D of candidate i from the rows, if its directions rotate.
   void read_directions(const ContactRows& rows, Index point, std::size_t i);
 
   /// Returns D K Dᵀ, symmetric to the bit.

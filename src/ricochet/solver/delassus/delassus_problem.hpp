@@ -19,7 +19,7 @@
 ///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + W ρ.
 /// For a stage with massless contact nodes, with U = (1 − ℓ/2) V and Z = W − V, V = 2⁻ᵏ H A_c⁻¹ Hᵀ, it is
 ///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + Z ρ̄ + U ρ.
-/// If directions turn, columns are those of E with H = D E (rotating_rows.hpp).
+/// If directions rotate, columns are those of E with H = D E (rotating_rows.hpp).
 namespace ricochet {
 
 class DelassusProblem {
@@ -108,8 +108,8 @@ class DelassusProblem {
   RotatingRows rotating_rows_;
   Vector of_columns_;                                     ///< per row of E
   std::unique_ptr<MasslessContactNodes> massless_nodes_;  ///< null if the stage has no massless contact nodes
-  Matrix column_product_;  ///< of columns, with massless contact nodes or turning rows; else it is the contact operator
-                           ///< itself
+  Matrix column_product_;  ///< of columns, with massless contact nodes or rotating rows; else it is the contact
+                           ///< operator itself
   MeanReaction mean_;
   SparseRowMatrix supported_;   ///< H on supported dofs: rows × supports
   Vector coefficient_, bound_;  ///< of friction, per candidate; the bound in units of r

@@ -10,7 +10,7 @@
 
 namespace ricochet {
 
-/// Updates the rows of the stage: for candidates with changed rows, renews W, and columns if rows do more than turn.
+/// Updates the rows of the stage: for candidates with changed rows, renews W, and columns if rows do more than rotate.
 void DelassusProblem::set_rows(const Stage& stage) {
   rows_ = stage.rows.get();
   const bool all_new = has_new_factor_;

@@ -15,7 +15,7 @@ class FactoredStage;
 class MasslessContactNodes {
  public:
   /// `coefficients` are those of the stage with massless contact nodes, `condensed_stage` is the stage of A_c; if that
-  /// is refactorized, so is the former, after it. Keeps references to the problem and the stage of A_c.
+  /// is refactorized, the other is refactorized after it. Keeps references to the problem and the stage of A_c.
   MasslessContactNodes(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                        FactoredStage& condensed_stage);
 
@@ -26,13 +26,14 @@ class MasslessContactNodes {
   [[nodiscard]] const std::vector<int>& unknown() const { return unknown_; }
   [[nodiscard]] Index size() const;
 
-  /// Extends V by rows of H, given as columns, `size()` × rows; or renews the changed ones.
+  /// `append` extends V by rows of H, passed as the columns of a `size()` × rows matrix; `renew` recomputes the changed
+  /// ones.
   void append(const SparseMatrix& transposed) { columns_.append(transposed, compliance_); }
   void renew(const SparseMatrix& transposed, const std::vector<char>& is_new) {
     columns_.renew(transposed, is_new, compliance_);
   }
   void clear();
-  /// V, rows × rows, in length/force, without the power of two of any factor.
+  /// V, rows × rows, in length/force, with the factor's power of two removed.
   [[nodiscard]] Matrix compliance() const;
 
   /// Computes m on contact nodes, from δ per dof and the reactions of a solution; zero elsewhere from the first call
@@ -52,7 +53,8 @@ class MasslessContactNodes {
   Vector normal_, tangential_, force_, factor_vector_;
 };
 
-/// Points that press at the start of a step: part of the path of a mean, wherever they move.
+/// Eligible points with a normal reaction at the start of a step, which a mean contains wherever the points move; empty
+/// if the end reactions act.
 inline std::vector<Index> pressing_at_start(ReactionMean mean, const Stage& stage) {
   std::vector<Index> result;
   if (mean == ReactionMean::end) return result;
