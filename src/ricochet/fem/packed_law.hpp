@@ -4,8 +4,8 @@
 #include "ricochet/fem/symmetric_tensor.hpp"
 
 /// @file Base of laws that are written once for a single point and for packs of points. Such a law has
-///   template <class T> typename T::Number density(const T& strain) const   and
-///   template <class T> T stress_at(const T& strain) const,
+///   `template <class T> typename T::Number density(const T& strain) const` and
+///   `template <class T> T stress_at(const T& strain) const`,
 /// both RICOCHET_PART_OF_CALLER, with T a SpaceTensor or a PlaneTensor. Included by source files only.
 namespace ricochet {
 
