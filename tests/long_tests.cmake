@@ -16,29 +16,31 @@ set(RICOCHET_TIMED_TESTS end_to_end.step_price end_to_end.signals python.overhea
 
 include(${CMAKE_CURRENT_LIST_DIR}/sanitized_tests.cmake)
 
-foreach(name ${RICOCHET_LONG_TESTS} ${RICOCHET_TIMED_TESTS} ${RICOCHET_SANITIZED_TESTS})
+foreach(name ${RICOCHET_LONG_TESTS} ${RICOCHET_TIMED_TESTS} ${RICOCHET_SANITIZE_TESTS})
   if(NOT name MATCHES "^(unit|verification|allocations|end_to_end|python)[.]")
     message(FATAL_ERROR "tests/long_tests.cmake and tests/sanitized_tests.cmake: ${name} begins with no folder of tests")
   endif()
 endforeach()
 
-# ricochet_listed_labels(NAME VARIABLE): the labels that the lists give to an entry.
-function(ricochet_listed_labels name variable)
-  set(labels)
-  foreach(list LONG TIMED SANITIZED)
+# ricochet_label_test(NAME LABELS…): gives an entry these labels and those of the lists.
+function(ricochet_label_test name)
+  set(labels ${ARGN})
+  foreach(label long timed sanitize)
+    string(TOUPPER ${label} list)
     if(name IN_LIST RICOCHET_${list}_TESTS)
-      string(TOLOWER ${list} label)
       list(APPEND labels ${label})
     endif()
   endforeach()
-  list(TRANSFORM labels REPLACE "^sanitized$" "sanitize")
-  set(${variable} ${labels} PARENT_SCOPE)
+  set_tests_properties(${name} PROPERTIES LABELS "${labels}")
+  if("timed" IN_LIST labels)
+    set_tests_properties(${name} PROPERTIES RUN_SERIAL ON)
+  endif()
 endfunction()
 
 # ricochet_require_listed_tests(PREFIX): an error unless the entries of the lists that begin with PREFIX are tests of this
 # folder.
 function(ricochet_require_listed_tests prefix)
-  foreach(name ${RICOCHET_LONG_TESTS} ${RICOCHET_TIMED_TESTS} ${RICOCHET_SANITIZED_TESTS})
+  foreach(name ${RICOCHET_LONG_TESTS} ${RICOCHET_TIMED_TESTS} ${RICOCHET_SANITIZE_TESTS})
     if(name MATCHES "^${prefix}" AND NOT TEST ${name})
       message(FATAL_ERROR "tests/long_tests.cmake and tests/sanitized_tests.cmake: there is no test ${name}")
     endif()

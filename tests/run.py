@@ -32,11 +32,12 @@ TIERS = {"test": Tier("./dev test", "release", "build", excluded="^long$"),
          "mpi": Tier("./dev test --mpi", "release", "build", label="^distributed$", jobs=1),
          "sanitize": Tier("./dev sanitize", "debug", "build-debug"),
          "sanitize-quick": Tier("./dev sanitize --quick", "sanitize", "build-sanitize", label="^sanitize$")}
-# Entries that may skip tests, and why. Each reason is one of the machine: no test is skipped on every machine.
+OTHERS_BEFORE = "OpenBLAS has threads of an earlier test (unit.base.blas_kernels runs these first), or the compiler fuses no product and sum"
+# Entries that may skip tests, and why: each test runs in another entry, or on another machine.
 SKIPS = {"unit.base.instruction_sets": "the compiler fuses no product and sum",
          "unit.base.blas_kernels": "needs a processor with more than one set of kernels, and an OpenBLAS that can change them",
-         "unit.instruction_sets.x86-64": "needs a processor with more than one set of kernels",
-         "unit.instruction_sets.x86-64-v3": "needs a processor with this instruction set, and a better one",
+         "unit.instruction_sets.x86-64": OTHERS_BEFORE,
+         "unit.instruction_sets.x86-64-v3": f"{OTHERS_BEFORE}, or the processor lacks this set",
          "end_to_end.instruction_sets": "needs a processor with several instruction sets",
          "end_to_end.completion": "needs fish",
          "end_to_end.show_in_paraview": "needs ParaView: apt-get install python3-paraview paraview xvfb xauth",
@@ -52,19 +53,17 @@ ALL_SKIPPED = "Skip regular expression found in output"
 
 
 def parse(words):
-    parser = argparse.ArgumentParser(allow_abbrev=False, usage=argparse.SUPPRESS)
+    tier = TIERS[next(word for word in words if word in TIERS)]
+    parser = argparse.ArgumentParser(prog=tier.command, usage="%(prog)s [options]", allow_abbrev=False)
     parser.add_argument("tier", choices=TIERS, help=argparse.SUPPRESS)
-    tier = TIERS.get(next((word for word in words if word in TIERS), ""))
-    parser.prog = tier.command if tier else "run.py"
-    parser.usage = "%(prog)s [options]"
     parser.add_argument("--check", action="store_true", help=argparse.SUPPRESS)
-    if tier and tier.excluded:
+    if tier.excluded:
         parser.add_argument("--all", action="store_true", help="also the long tests")
     parser.add_argument("-R", "--tests-regex", help="entries with this in their names, long ones included")
     parser.add_argument("-L", "--label-regex", action="append", default=[], help="entries with this label, long ones included")
     parser.add_argument("-E", "--exclude-regex", help="no entries with this in their names")
     parser.add_argument("-LE", "--label-exclude", action="append", default=[], help="no entries with this label")
-    parser.add_argument("-j", "--parallel", type=int, default=tier.jobs if tier else 1, help="entries beside each other")
+    parser.add_argument("-j", "--parallel", type=int, default=tier.jobs, help="entries beside each other")
     parser.add_argument("-N", "--show-only", action="store_true", help="print the entries, and run none")
     parser.add_argument("-V", "--verbose", action="store_true", help="print the output of all entries")
     parser.add_argument("--rerun-failed", action="store_true", help="the entries that failed in the last run")
@@ -76,14 +75,17 @@ def parse(words):
     return tier, parser.parse_args(words)
 
 
+def leaves_out(tier, given):
+    """Returns whether the entries that the tier excludes do not run: they are neither selected nor requested."""
+    return tier.excluded and not (given.all or given.tests_regex or given.label_regex or given.rerun_failed)
+
+
 def ctest_arguments(tier, given):
     """Returns the arguments of ctest, which takes the last of several -LE."""
-    is_selection = given.tests_regex or given.label_regex or given.rerun_failed
-    excluded = [*([] if is_selection or not tier.excluded or given.all else [tier.excluded]), *given.label_exclude]
     result = ["--preset", tier.preset, "--no-tests=error", "-j", str(given.parallel)]
-    for label in [*([tier.label] if tier.label else []), *given.label_regex]:
+    for label in [tier.label, *given.label_regex] if tier.label else given.label_regex:
         result += ["-L", label]
-    if excluded:
+    if excluded := [tier.excluded, *given.label_exclude] if leaves_out(tier, given) else given.label_exclude:
         result += ["-LE", "|".join(excluded)]
     for option, value in (("-R", given.tests_regex), ("-E", given.exclude_regex), ("--timeout", given.timeout),
                           ("--repeat", given.repeat)):
@@ -124,11 +126,10 @@ def main():
         return 0
     log = ROOT / tier.build / "Testing" / "Temporary" / "LastTest.log"
     log.unlink(missing_ok=True)
-    arguments = ctest_arguments(tier, given)
-    status = subprocess.run(["ctest", *arguments], cwd=ROOT, check=False).returncode
+    status = subprocess.run(["ctest", *ctest_arguments(tier, given)], cwd=ROOT, check=False).returncode
     ran = entries(log)
     has_reasons = not ran or report(ran)
-    if tier.excluded in arguments:
+    if leaves_out(tier, given):
         print("The long tests were not run (every case, benchmark and tutorial, among others): ./dev test --all runs them, too.")
     return status or (0 if has_reasons else 1)
 

@@ -2,7 +2,7 @@
 # the others execute, as `./dev coverage --choose` lists them, up to nine tenths of the lines that all tests execute, without
 # those that take long under sanitizers for few lines. A sanitizer finds errors only in lines that run. Tests of hostile input
 # are there whatever they cost; those that limit memory cannot run with sanitizers.
-set(RICOCHET_SANITIZED_TESTS
+set(RICOCHET_SANITIZE_TESTS
   unit.base.archive unit.base.blas_kernels unit.base.child_process unit.base.child_processes
   unit.base.dense_decompositions unit.base.expression unit.base.json unit.base.number_lines unit.base.parallel
   unit.base.text unit.case.malformed_references unit.case.malformed_structure unit.case.malformed_values

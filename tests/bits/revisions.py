@@ -23,7 +23,7 @@ def is_dirty():
 def state():
     """Returns what the working tree contains: its commit and its changes, with the contents of new files."""
     new = hashlib.sha256()
-    for name in git("ls-files", "--others", "--exclude-standard").splitlines():
+    for name in filter(None, git("ls-files", "-z", "--others", "--exclude-standard").split("\0")):
         new.update(name.encode() + (ROOT / name).read_bytes())
     return git("rev-parse", "HEAD"), git("status", "--porcelain"), git("diff", "HEAD"), new.hexdigest()
 

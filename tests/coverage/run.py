@@ -63,9 +63,8 @@ def measure(names, jobs):
 
 
 def objects():
-    """Returns the arguments of llvm-cov for all programs and libraries, each once."""
-    files = dict.fromkeys(path.resolve() for pattern in OBJECTS for path in sorted(BUILD.glob(pattern)))
-    return [argument for path in files for argument in ("-object", str(path))][1:]
+    """Returns all programs and libraries, each once."""
+    return dict.fromkeys(path.resolve() for pattern in OBJECTS for path in sorted(BUILD.glob(pattern)))
 
 
 def lines_of(names, label):
@@ -79,7 +78,8 @@ def lines_of(names, label):
     # Profiles that killed processes left incomplete are named on stderr, and left out.
     if subprocess.run(["llvm-profdata", "merge", "-sparse", "-failure-mode=all", "-f", inputs, "-o", merged], check=False).returncode:
         return present, executed
-    export = subprocess.run(["llvm-cov", "export", "-format=lcov", f"-instr-profile={merged}", *objects()], check=True,
+    arguments = [argument for path in objects() for argument in ("-object", str(path))][1:]
+    export = subprocess.run(["llvm-cov", "export", "-format=lcov", f"-instr-profile={merged}", *arguments], check=True,
                             stdout=subprocess.PIPE, text=True).stdout
     for line in export.splitlines():
         if line.startswith("SF:"):
@@ -142,7 +142,7 @@ def main():
     labels = entries()
     if not arguments.keep:
         measure(list(labels), arguments.jobs)
-    if not RUNS.exists() or any(pathlib.Path(path).stat().st_mtime > RUNS.stat().st_mtime for path in objects()[::2]):
+    if not RUNS.exists() or any(path.stat().st_mtime > RUNS.stat().st_mtime for path in objects()):
         raise SystemExit("./dev coverage: there are no counters of the present programs; run it without --keep")
     runs = json.loads(RUNS.read_text())
     if runs["failed"]:

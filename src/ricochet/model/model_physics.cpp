@@ -63,12 +63,12 @@ void warn_of_few_interior_nodes(const Model& model, std::size_t contact_nodes) {
   const bool is_thin =
       model.space.degree == 1 && static_cast<double>(contact_nodes) > most * static_cast<double>(nodes);
   if (!is_thin || !model.problem.has_singular_mass() || !model.problem.contact.has_friction()) return;
-  log::warning(
-      fmt::format("{} of {} nodes are contact nodes, whose inertia mass \"{}\" moves to nodes off the contact "
-                  "boundary: on such a coarse "
-                  "mesh the motion along the obstacle and the spin caused by friction can be wrong by tens of per "
-                  "cent; name only facets that may touch in the contact group, refine the mesh, or set mesh.degree = 2",
-                  contact_nodes, nodes, model.mass_built));
+  log::warning(fmt::format(
+      "{} of {} nodes are contact nodes, whose inertia mass \"{}\" moves to nodes off the contact "
+      "boundary: on such a coarse mesh the motion along the obstacle and the spin caused by friction can be "
+      "wrong by tens of per cent; name only facets that may touch in the contact group, refine the mesh, or "
+      "set mesh.degree = 2",
+      contact_nodes, nodes, model.mass_built));
 }
 
 /// Warns if few massive nodes carry the inertia of many contact nodes: a thin tube with contact on both of its faces

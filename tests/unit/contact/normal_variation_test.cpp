@@ -35,7 +35,7 @@ struct Pair {
     pair.opposite_facets = body->mesh.group("upper.y0", 1).members;
     pair.large_sliding = true;
   }
-  [[nodiscard]] NormalVariation rotates() const {
+  [[nodiscard]] NormalVariation variation() const {
     return normal_variation(body->body, pair.facets, pair.opposite_facets);
   }
   std::unique_ptr<MeshedBody> body;
@@ -46,7 +46,7 @@ TEST(NormalVariation, OfACircleAboveAPlane) {
   for (const int degree : {1, 2}) {
     for (const auto& [flat, round] : {std::pair{8, 8}, {4, 16}, {24, 8}}) {
       const double h_flat = 1.0 / flat, h_round = 1.0 / round;
-      const NormalVariation turns = Pair(round_on_flat(flat, round, degree)).rotates();
+      const NormalVariation turns = Pair(round_on_flat(flat, round, degree)).variation();
       ASSERT_TRUE(turns.touch);
       const double window = degree == 1 ? std::max(h_flat, h_round) : h_flat;
       EXPECT_NEAR(turns.own, 2.0 * window / radius, 0.02 * turns.own) << flat << " " << round;
@@ -63,7 +63,7 @@ TEST(NormalVariation, OfAHalfThatEndsAtAPlaneOfSymmetry) {
   stack.upper_map = [whole](const Vector& x) -> Vector {
     return whole((Vector(2) << 0.5 + 0.5 * x[0], x[1]).finished());
   };
-  const NormalVariation turns = Pair(stack).rotates();
+  const NormalVariation turns = Pair(stack).variation();
   ASSERT_TRUE(turns.touch);
   EXPECT_NEAR(turns.opposite, 1.0 / (16.0 * radius), 0.02 * turns.opposite);
 }
@@ -101,8 +101,8 @@ TEST(NormalVariation, HaveNoDoubtOfFlatFaces) {
   stack.upper_counts = {3, 2};
   stack.distortion = 0.0;
   const Pair test(stack);
-  EXPECT_TRUE(test.rotates().touch);
-  EXPECT_EQ(test.rotates().own_of_bends, 0.0);
+  EXPECT_TRUE(test.variation().touch);
+  EXPECT_EQ(test.variation().own_of_bends, 0.0);
   EXPECT_FALSE(doubt_side(test.body->body, test.pair));
 }
 
@@ -112,7 +112,7 @@ TEST(NormalVariation, AreNoneOfFacesThatDoNotLookAtEachOther) {
   stack.lower_counts = stack.upper_counts = {3, 2};
   stack.distortion = 0.0;
   stack.upper_map = [](const Vector& x) -> Vector { return Vector(x + Vector::Unit(2, 1) * (1.0 + 0.1 * x[0])); };
-  EXPECT_FALSE(Pair(stack).rotates().touch);
+  EXPECT_FALSE(Pair(stack).variation().touch);
 }
 
 /// A flat face reaches the rim of a hollow, but not its interior.
@@ -122,7 +122,7 @@ TEST(NormalVariation, AreNoneInAHollowThatAFlatFaceDoesNotReach) {
     const double side = x[0] - 0.5;
     return Vector(x + Vector::Unit(2, 1) * (1.1 - (1.0 - x[1]) * side * side));
   };
-  EXPECT_FALSE(Pair(stack).rotates().touch);
+  EXPECT_FALSE(Pair(stack).variation().touch);
 }
 
 }  // namespace
