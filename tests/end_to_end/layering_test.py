@@ -8,13 +8,13 @@ import unittest
 
 from harness import SOURCE
 
-LAYERS = ["base", "linear_algebra", "hdf5", "mesh", "rigid", "fem", "contact", "mass", "problem", "scheme", "solver", "fclib",
-          "simulation", "io", "case", "model", "run", "study", "report", "distributed"]
+LAYERS = ["base", "linear_algebra", "hdf5", "mesh", "rigid", "fem", "contact", "mass", "problem", "step", "scheme", "solver",
+          "fclib", "simulation", "io", "case", "model", "run", "study", "report", "distributed"]
 # The library ricochet_contact: solvers of the contact problem and its files, without finite elements or time.
 CONTACT_LIBRARY = ("base", "linear_algebra", "hdf5", "solver/contact", "fclib")
 # linear_algebra serves the layers from mass on: meshes, obstacles, elements and contact do without it.
 WITHOUT_LINEAR_ALGEBRA = {"mesh", "rigid", "fem", "contact"}
-# Schemes and step solvers share the stages in problem/: neither depends on the other.
+# Schemes and step solvers share the stages in step/: neither depends on the other.
 STRANGERS = {("scheme", "solver"), ("solver", "scheme")}
 
 # Headers of other projects are confined to these folders, with the number of source files that may include them there.

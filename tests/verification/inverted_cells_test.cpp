@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/scheme/stage_solve.hpp"
+#include "ricochet/step/stage_solve.hpp"
 #include "support/case_run.hpp"
 
 /// @file Message of a step that fails because an iteration has inverted a cell.

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/critical_step.hpp"
 #include "ricochet/simulation/simulation.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 

@@ -1,8 +1,8 @@
 #include <array>
 
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

@@ -1,7 +1,7 @@
 #include "ricochet/scheme/kane.hpp"
 
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/requirements.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

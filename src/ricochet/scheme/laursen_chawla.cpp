@@ -1,7 +1,7 @@
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/requirements.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

@@ -10,8 +10,8 @@
 
 #include "ricochet/base/registry.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/scheme/stage_solve.hpp"
 #include "ricochet/scheme/step_part.hpp"
+#include "ricochet/step/stage_solve.hpp"
 
 /// @file Time schemes. To add one: a file with a class and its registration, one line in registry.cpp, and its tests.
 namespace ricochet {

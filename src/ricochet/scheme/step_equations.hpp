@@ -1,8 +1,8 @@
 #pragma once
 
-#include "ricochet/problem/stage.hpp"
-#include "ricochet/scheme/stage_solve.hpp"
 #include "ricochet/scheme/step_part.hpp"
+#include "ricochet/step/stage.hpp"
+#include "ricochet/step/stage_solve.hpp"
 
 /// @file Terms that all schemes share: balance and contact conditions of stages, and the transfer of solutions.
 namespace ricochet {

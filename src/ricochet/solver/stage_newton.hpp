@@ -3,9 +3,9 @@
 #include <functional>
 
 #include "ricochet/linear_algebra/anderson_acceleration.hpp"
-#include "ricochet/problem/newton_progress.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/problem/stage.hpp"
+#include "ricochet/step/newton_progress.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Stages whose internal force is nonlinear in the displacement.
 namespace ricochet {

@@ -6,9 +6,9 @@
 
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "ricochet/solver/stage/solver_options.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Solvers of the stages of a step, which do not depend on time.
 namespace ricochet {

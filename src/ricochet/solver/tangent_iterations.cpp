@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

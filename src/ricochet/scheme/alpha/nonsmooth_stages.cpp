@@ -1,7 +1,7 @@
 #include "ricochet/scheme/alpha/nonsmooth_stages.hpp"
 
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/response/contact_response.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

@@ -1,8 +1,8 @@
 #include "ricochet/scheme/central/central_scheme.hpp"
 
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/critical_step.hpp"
 #include "ricochet/scheme/requirements.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

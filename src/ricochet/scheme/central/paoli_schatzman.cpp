@@ -1,7 +1,7 @@
 #include "ricochet/base/error.hpp"
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/central/central_scheme.hpp"
 #include "ricochet/scheme/restitution_key.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

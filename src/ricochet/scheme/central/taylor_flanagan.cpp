@@ -1,5 +1,5 @@
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/central/central_scheme.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/reduced/massless_contact_step.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

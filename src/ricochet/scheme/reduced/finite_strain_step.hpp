@@ -5,7 +5,6 @@
 
 #include "ricochet/linear_algebra/anderson_acceleration.hpp"
 #include "ricochet/problem/flight_prediction.hpp"
-#include "ricochet/problem/newton_progress.hpp"
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/scheme/reduced/end_contact.hpp"
 #include "ricochet/scheme/reduced/energy_secant.hpp"
@@ -14,6 +13,7 @@
 #include "ricochet/scheme/reduced/velocity_correction.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
+#include "ricochet/step/newton_progress.hpp"
 
 /// @file The step of massless_contact_step.hpp for an internal force f = ∂W/∂u that is nonlinear in the displacement.
 ///

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "ricochet/contact/row_values.hpp"
-#include "ricochet/problem/stage.hpp"
 #include "ricochet/scheme/state.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Lagged contact rows, for iterations that correct the error of rows which follow the motion.
 namespace ricochet {

@@ -8,7 +8,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
-#include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

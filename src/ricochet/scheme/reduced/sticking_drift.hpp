@@ -1,7 +1,7 @@
 #pragma once
 
-#include "ricochet/problem/stage.hpp"
 #include "ricochet/scheme/state.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Drift of sticking points from their initial position: a remainder of rounding, which the next step reverses.
 /// The sum over all steps telescopes, so a sticking point stays where it is, however many steps there are.

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/scheme/stage_solve.hpp"
+#include "ricochet/step/stage_solve.hpp"
 
 /// @file Response of contact points to normal forces on them through the operator of a stage, for contact laws that are
 /// no complementarity problems and that a scheme solves itself.

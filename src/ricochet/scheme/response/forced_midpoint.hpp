@@ -1,8 +1,8 @@
 #pragma once
 
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/kane.hpp"
 #include "ricochet/scheme/response/contact_response.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 /// @file The midpoint rule inside the body, with normal forces that a scheme computes itself from gaps before and
 /// after.

@@ -1,6 +1,6 @@
 #include "ricochet/scheme/semi_explicit/contact_equilibrium.hpp"
 
-#include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

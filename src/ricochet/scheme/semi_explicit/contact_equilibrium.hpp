@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "ricochet/problem/stage.hpp"
 #include "ricochet/scheme/contact_stiffness.hpp"
 #include "ricochet/scheme/state.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Contact nodes without inertia in an explicit step: their equilibrium at the end of it,
 ///   K_cc u_c + K_ci u_i = L_c + Gᵀ r_N − B_Tᵀ r_T,

@@ -3,10 +3,10 @@
 #include <memory>
 
 #include "ricochet/linear_algebra/anderson_acceleration.hpp"
-#include "ricochet/problem/newton_progress.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/scheme/stage_solve.hpp"
 #include "ricochet/scheme/state.hpp"
+#include "ricochet/step/newton_progress.hpp"
+#include "ricochet/step/stage_solve.hpp"
 
 /// @file Contact nodes without inertia in an explicit step for an internal force f = ∂W/∂u that is nonlinear in the
 /// displacement: with c the contact nodes, and all others at their displacements at the end of the step,

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/simulation/statics/held_bodies.hpp"
 #include "ricochet/simulation/statics/starting_stage.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "ricochet/problem/stage.hpp"
 #include "ricochet/scheme/state.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Functions shared by the searches for a starting state. Not part of the public interface.
 namespace ricochet {

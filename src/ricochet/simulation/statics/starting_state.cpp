@@ -16,7 +16,6 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/linear_algebra/graph_components.hpp"
 #include "ricochet/mass/mass.hpp"
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/problem/penetrating_points.hpp"
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/simulation/statics/finite_equilibrium.hpp"
@@ -24,6 +23,7 @@
 #include "ricochet/simulation/statics/starting_stage.hpp"
 #include "ricochet/simulation/statics/static_equilibrium.hpp"
 #include "ricochet/solver/step_solver.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

@@ -10,11 +10,11 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/displacement_space.hpp"
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/simulation/statics/held_bodies.hpp"
 #include "ricochet/simulation/statics/rigid_equilibrium.hpp"
 #include "ricochet/simulation/statics/starting_stage.hpp"
 #include "ricochet/solver/step_solver.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 

@@ -4,7 +4,7 @@
 
 #include "ricochet/base/ranks.hpp"
 #include "ricochet/base/snapshot.hpp"
-#include "ricochet/problem/stage.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Contact points that take part in the contact problem of a stage. None is left out for good: after every stage
 /// the points outside of the problem are checked, and if one of them would penetrate it is added and the stage is

@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "ricochet/solver/corotated/rotating_rows.hpp"
 #include "ricochet/solver/delassus/contact_candidates.hpp"
 #include "ricochet/solver/delassus/delassus_columns.hpp"
 #include "ricochet/solver/delassus/massless_contact_nodes.hpp"
 #include "ricochet/solver/mean_reaction/mean_reaction.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Contact conditions of a stage, condensed on its candidates for contact.
 ///

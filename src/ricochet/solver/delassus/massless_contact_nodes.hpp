@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/delassus/delassus_columns.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Massless contact nodes in the contact conditions of a stage (stage.hpp): m = δ − ½ A_c⁻¹ Hᵀ (ℓρ + 2(ρ̄ − ρ)),
 /// and V = H A_c⁻¹ Hᵀ on the candidates for contact.

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/gathered/gathered_nodes.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Contact points of a body that is divided among ranks, gathered on one of them, their root, which solves the
 /// contact problems. All functions are collective over the ranks.

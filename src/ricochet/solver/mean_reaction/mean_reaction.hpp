@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "ricochet/linear_algebra/anderson_acceleration.hpp"
-#include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "ricochet/solver/mean_reaction/reaction_path.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Mean ρ̄ of the reactions over a step, and with it the contact problem of a stage with massless contact nodes:
 ///   y = o + Z ρ̄ + U ρ,   Coulomb's law for y and ρ,

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/problem/stage.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Matrix of a stage, and the dofs it is solved for.
 namespace ricochet {

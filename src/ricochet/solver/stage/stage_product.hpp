@@ -2,7 +2,7 @@
 
 #include "ricochet/linear_algebra/node_matrix.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/problem/stage.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Products with the matrix of a stage.
 namespace ricochet {

@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "ricochet/solver/stage/solver_options.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Interface of the solvers of the stages of one operator. Everything that is constant is computed in their
 /// constructors.

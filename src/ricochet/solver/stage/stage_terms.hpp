@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/problem/stage.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Matrices whose sum is the operator of a stage.
 namespace ricochet {

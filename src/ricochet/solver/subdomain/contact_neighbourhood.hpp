@@ -4,8 +4,8 @@
 
 #include "ricochet/linear_algebra/matrix_graph.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/stage/stage_product.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Neighbourhood of contact points, by the cells of the body. Functions are collective over the ranks, each with
 /// its own points.

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "ricochet/base/snapshot.hpp"
-#include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Part of a stage solved by iterations that is solved directly: the body near its contact.
 namespace ricochet {

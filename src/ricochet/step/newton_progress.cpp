@@ -1,4 +1,4 @@
-#include "ricochet/problem/newton_progress.hpp"
+#include "ricochet/step/newton_progress.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ricochet/problem/stage.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Interface through which a scheme has the stages of its step solved.
 namespace ricochet {

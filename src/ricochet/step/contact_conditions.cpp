@@ -1,4 +1,4 @@
-#include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 #include <algorithm>
 #include <cmath>

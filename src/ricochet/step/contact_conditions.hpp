@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/problem/stage.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file Contact conditions common to most stages: first require_no_penetration or require_no_approach, which also
 /// updates the rows, then require_friction.
