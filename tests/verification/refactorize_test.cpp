@@ -50,9 +50,9 @@ std::string block_case(const std::string& more = "") {
 /// A stage that presses and drags the block.
 Stage pressed_stage(const SemidiscreteProblem& problem) {
   Stage stage;
-  stage.right_hand_side.setZero(problem.dof_count());
-  for (Index i = 0; i < problem.dof_count(); ++i) stage.right_hand_side[i] = i % 2 == 0 ? 0.02 : -0.3;
-  stage.prescribed.setZero(problem.supports.size());
+  stage.right_hand_side.force.setZero(problem.dof_count());
+  for (Index i = 0; i < problem.dof_count(); ++i) stage.right_hand_side.force[i] = i % 2 == 0 ? 0.02 : -0.3;
+  stage.right_hand_side.prescribed.setZero(problem.supports.size());
   const Vector base = Vector::Zero(problem.dof_count());
   require_no_penetration(problem, base, 0.0, stage);
   require_friction(problem, base, 1.0, stage);

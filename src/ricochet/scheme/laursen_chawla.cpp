@@ -39,7 +39,7 @@ class LaursenChawla final : public Scheme {
     equations_.prescribe(problem, state.time + h, half_way, stage);
     evaluate_obstacle_velocity(problem, base_, {middle, h}, stage);
     require_no_approach(problem, state.displacement, state.time, state.velocity, stage.obstacle, h, stage);
-    stage.gap_factor = 2.0 / h;
+    stage.conditions.gap.factor = 2.0 / h;
     equations_.require_friction_beside_rates(problem, state.velocity, 2.0 / h, stage);
 
     const StageSolution& solution = stages.solve(0);

@@ -53,7 +53,7 @@ class MoreauJean final : public Scheme {
     evaluate_obstacle_velocity(problem, work_displacement_, {state.time + 0.5 * h, h}, stage);
     equations_.require_impact_law(problem, work_displacement_, state.time + 0.5 * h, state.velocity, state.velocity,
                                   restitution_, h, stage);
-    stage.gap_factor = 1.0 / (theta_ * h);
+    stage.conditions.gap.factor = 1.0 / (theta_ * h);
     equations_.require_friction_beside_rates(problem, state.velocity, 1.0 / ((slip_at_end_ ? theta_ : 1.0) * h), stage);
 
     const StageSolution& solution = stages.solve(0);

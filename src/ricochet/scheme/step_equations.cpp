@@ -7,11 +7,11 @@ namespace ricochet {
 void StepEquations::balance(const SemidiscreteProblem& problem, double time, const Vector& base, Stage& stage) {
   time_ = time;
   problem.internal_force->evaluate(base, force_);
-  problem.loads.total(time, stage.right_hand_side);
-  if (problem.pressure) problem.pressure->add_force(base, time, stage.right_hand_side);
-  stage.pressure_time = time;
-  stage.right_hand_side -= force_;
-  if (!problem.internal_force->is_linear()) stage.force_base = base;
+  problem.loads.total(time, stage.right_hand_side.force);
+  if (problem.pressure) problem.pressure->add_force(base, time, stage.right_hand_side.force);
+  stage.linearization.pressure.time = time;
+  stage.right_hand_side.force -= force_;
+  if (!problem.internal_force->is_linear()) stage.linearization.base = base;
 }
 
 void StepEquations::balance(const SemidiscreteProblem& problem, double time, const Vector& base, const Vector& velocity,
@@ -23,22 +23,23 @@ void StepEquations::balance(const SemidiscreteProblem& problem, double time, con
 void StepEquations::balance_with(const SemidiscreteProblem& problem, const Vector& load, const Vector& base,
                                  const Vector& velocity, Stage& stage) {
   problem.internal_force->evaluate(base, force_);
-  stage.right_hand_side = load - force_;
-  if (!problem.internal_force->is_linear()) stage.force_base = base;
+  stage.right_hand_side.force = load - force_;
+  if (!problem.internal_force->is_linear()) stage.linearization.base = base;
   resist(problem, velocity, stage);
 }
 
 void StepEquations::resist(const SemidiscreteProblem& problem, const Vector& velocity, Stage& stage) {
   if (!problem.has_damping()) return;
   problem.damping.evaluate(velocity, damping_force_);
-  stage.right_hand_side -= damping_force_;
+  stage.right_hand_side.force -= damping_force_;
 }
 
 void StepEquations::observe_step(const SemidiscreteProblem& problem, const Vector& start, double start_time,
                                  const Vector& end, double step, Stage& stage) {
   if (!problem.has_moving_obstacles()) return;
   middle_ = 0.5 * (start + end);
-  evaluate_obstacle_velocity(problem, middle_, {start_time + 0.5 * step, step, 0.5 * stage.gap_factor}, stage);
+  evaluate_obstacle_velocity(problem, middle_, {start_time + 0.5 * step, step, 0.5 * stage.conditions.gap.factor},
+                             stage);
 }
 
 void StepEquations::require_impact_law(const SemidiscreteProblem& problem, const Vector& displacement, double time,
@@ -54,14 +55,15 @@ void StepEquations::require_impact_law(const SemidiscreteProblem& problem, const
 void StepEquations::require_friction_beside_rates(const SemidiscreteProblem& problem, const Vector& velocity,
                                                   double slip_factor, Stage& stage) {
   require_friction(problem, velocity, slip_factor, stage);
-  if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
+  if (stage.conditions.slip.offset.size() > 0) stage.conditions.slip.rounding = stage.conditions.gap.rounding;
 }
 
 void StepEquations::require_friction_over_step(const SemidiscreteProblem& problem, const State& state,
                                                const Vector& predicted, double step, Stage& stage) {
   if (problem.has_moving_obstacles()) {
     middle_ = state.displacement + 0.5 * predicted;
-    evaluate_obstacle_velocity(problem, middle_, {state.time + 0.5 * step, step, 0.5 * stage.gap_factor}, stage);
+    evaluate_obstacle_velocity(problem, middle_, {state.time + 0.5 * step, step, 0.5 * stage.conditions.gap.factor},
+                               stage);
   }
   if (!problem.contact.has_friction()) return;
   rate_ = predicted / step;
@@ -113,8 +115,8 @@ void StepEquations::store_reactions(const Stage& stage, const StageSolution& sol
 
 Stage& unloaded_stage(const SemidiscreteProblem& problem, std::size_t number, StageSolve& stages) {
   Stage& stage = stages.stage(number);
-  stage.right_hand_side.setZero(problem.dof_count());
-  stage.prescribed.setZero(problem.supports.size());
+  stage.right_hand_side.force.setZero(problem.dof_count());
+  stage.right_hand_side.prescribed.setZero(problem.supports.size());
   return stage;
 }
 

@@ -35,7 +35,7 @@ class StepEquations {
   }
   template <class Increment>
   void prescribe(const SemidiscreteProblem& problem, double time, const Increment& increment, Stage& stage) {
-    prescribe(problem, time, increment, stage.prescribed);
+    prescribe(problem, time, increment, stage.right_hand_side.prescribed);
   }
 
   /// Sets δ on supported dofs such that they reach their prescribed displacements at `time` from the base.

@@ -41,7 +41,7 @@ class IterativeStage final : public StageSolver {
   IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                  const StepSolverOptions& options, FactoredStage* condensed, GatheredContact* gathered);
 
-  void solve(const Stage& stage, StageSolution& solution) override;
+  void solve(const LinearStage& stage, StageSolution& solution) override;
   void refactorize(const Vector& displacement) override;
   void show_contact() const override {
     if (touches_) subdomains_->report();
@@ -56,19 +56,19 @@ class IterativeStage final : public StageSolver {
  private:
   void make_preconditioner();
   bool switch_to_multigrid();
-  void begin(const Stage& stage, StageSolution& solution);
+  void begin(const LinearStage& stage, StageSolution& solution);
   [[nodiscard]] bool are_outside(const std::vector<Index>& points) const;
-  void make_subdomains(const Stage& stage, const std::vector<Index>& required);
+  void make_subdomains(const LinearStage& stage, const std::vector<Index>& required);
   void keep_columns() { moved_.make(product_, subdomains_->nodes(), problem_.nodes.cols(), problem_.dimension); }
   void find_residual();
-  void solve_subdomains(const Stage& stage, StageSolution& solution);
-  void find_reactions(const Stage& stage, const StageSolution& solution);
+  void solve_subdomains(const LinearStage& stage, StageSolution& solution);
+  void find_reactions(const LinearStage& stage, const StageSolution& solution);
   void mask(Vector& values) const;
   void accumulate(Vector& force) const;
-  [[nodiscard]] double forces(const Stage& stage);
+  [[nodiscard]] double forces(const LinearStage& stage);
   void solve_linear(double norm, double target);
   void watch_single_precision();
-  void end(const Stage& stage, StageSolution& solution);
+  void end(const LinearStage& stage, StageSolution& solution);
 
   const SemidiscreteProblem& problem_;
   OperatorCoefficients coefficients_;
@@ -177,10 +177,10 @@ bool IterativeStage::are_outside(const std::vector<Index>& points) const {
 
 /// Makes subdomains for these points and those near them, and for those of the last subdomains unless there are too
 /// many: a body that rolls leaves them behind.
-void IterativeStage::make_subdomains(const Stage& stage, const std::vector<Index>& required) {
+void IterativeStage::make_subdomains(const LinearStage& stage, const std::vector<Index>& required) {
   std::vector<Index> points = required;
   if (problem_.ranks->any(candidates_.are_too_many())) {
-    const std::vector<Index> nearest = candidates_.nearest(stage);
+    const std::vector<Index> nearest = candidates_.nearest(stage.conditions);
     points.insert(points.end(), nearest.begin(), nearest.end());
     candidates_.clear();
   }
@@ -228,25 +228,25 @@ void IterativeStage::load(const Snapshot& snapshot, const std::string& name) {
 }
 
 /// Sets the initial guess: increments of a smooth motion continue. Supports are exact.
-void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
-  right_hand_side_ = stage.right_hand_side;
+void IterativeStage::begin(const LinearStage& stage, StageSolution& solution) {
+  right_hand_side_ = stage.right_hand_side.force;
   accumulate(right_hand_side_);
   guess_ = increment_;
   if (has_previous_) guess_ += increment_ - previous_;
   for (const int dof : unsolved_) guess_[dof] = 0.0;
   prescribe(problem_, stage, guess_);
   // Nothing is loaded or prescribed: the residual of a nonzero guess would have no reference.
-  const bool is_loaded = !stage.right_hand_side.isZero(0.0) || !stage.prescribed.isZero(0.0);
+  const bool is_loaded = !stage.right_hand_side.force.isZero(0.0) || !stage.right_hand_side.prescribed.isZero(0.0);
   if (!problem_.ranks->any(is_loaded)) guess_.setZero();
   solution.open_all(problem_.contact.size(), problem_.contact.has_friction() ? problem_.dimension - 1 : 0);
   std::vector<Index> pressing;
   if (coefficients_.condensed_operator >= 0) pressing = pressing_at_start(coefficients_.mean, stage);
   const Ranks& ranks = *problem_.ranks;
   presses_at_start_ = ranks.any(!pressing.empty());
-  candidates_.estimate_reach(stage);
-  may_touch_ = ranks.any(candidates_.some_may_touch(stage));
+  candidates_.estimate_reach(stage.conditions);
+  may_touch_ = ranks.any(candidates_.some_may_touch(stage.conditions));
   if (may_touch_) {
-    const std::vector<Index> approaching = candidates_.approaching(stage);
+    const std::vector<Index> approaching = candidates_.approaching(stage.conditions);
     if (ranks.any(!approaching.empty())) make_subdomains(stage, approaching);
   }
   if (presses_at_start_ && ranks.any(are_outside(pressing))) make_subdomains(stage, pressing);
@@ -267,7 +267,7 @@ void IterativeStage::find_residual() {
 }
 
 /// Solves the subdomains and updates the residual. They move few nodes, so that these columns of A suffice.
-void IterativeStage::solve_subdomains(const Stage& stage, StageSolution& solution) {
+void IterativeStage::solve_subdomains(const LinearStage& stage, StageSolution& solution) {
   moved_.begin(guess_);
   subdomains_->solve(stage, residual_, guess_, solution);
   moved_.multiply(guess_, work_);
@@ -275,16 +275,16 @@ void IterativeStage::solve_subdomains(const Stage& stage, StageSolution& solutio
   residual_ -= work_;
 }
 
-void IterativeStage::find_reactions(const Stage& stage, const StageSolution& solution) {
+void IterativeStage::find_reactions(const LinearStage& stage, const StageSolution& solution) {
   reactions_.setZero(problem_.dof_count());
-  stage.rows->add_force(solution.acting_normal(), solution.acting_tangential(), reactions_);
+  stage.rows.add_force(solution.acting_normal(), solution.acting_tangential(), reactions_);
   accumulate(reactions_);
 }
 
 /// Norm of all forces, those of moving supports included: the reference of the residual.
-double IterativeStage::forces(const Stage& stage) {
+double IterativeStage::forces(const LinearStage& stage) {
   work_ = right_hand_side_;
-  if (problem_.ranks->any(!stage.prescribed.isZero(0.0))) {
+  if (problem_.ranks->any(!stage.right_hand_side.prescribed.isZero(0.0))) {
     prescribed_.setZero(problem_.dof_count());
     prescribe(problem_, stage, prescribed_);
     product_.multiply(prescribed_, supported_force_);
@@ -326,7 +326,7 @@ void IterativeStage::watch_single_precision() {
   promised_ = 0.0;
 }
 
-void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
+void IterativeStage::solve(const LinearStage& stage, StageSolution& solution) {
   begin(stage, solution);
   single_is_trusted_ = true;
   promised_ = 0.0;
@@ -348,9 +348,9 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
     const double norm = gradients_.norm(*preconditioner_, residual_);
     if (norm <= target) {
       const bool has_condensation = coefficients_.condensed_operator >= 0;
-      if (has_condensation) subdomains_->find_motion(*stage.rows, solution, guess_, solution.contact_increment);
-      stage.rows->normal_motion(has_condensation ? solution.contact_increment : guess_, motion_);
-      const std::vector<Index> penetrating = candidates_.penetrating(stage, motion_, !touches);
+      if (has_condensation) subdomains_->find_motion(stage.rows, solution, guess_, solution.contact_increment);
+      stage.rows.normal_motion(has_condensation ? solution.contact_increment : guess_, motion_);
+      const std::vector<Index> penetrating = candidates_.penetrating(stage.conditions, motion_, !touches);
       if (!problem_.ranks->any(!penetrating.empty())) {
         touches_ = touches;
         return end(stage, solution);
@@ -370,9 +370,9 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
           outer_iteration_limit));
 }
 
-void IterativeStage::end(const Stage& stage, StageSolution& solution) {
+void IterativeStage::end(const LinearStage& stage, StageSolution& solution) {
   if (counts_.gradients - gradients_before_ > iterations_for_multigrid) switch_to_multigrid();
-  candidates_.update_history(stage, motion_,
+  candidates_.update_history(stage.conditions, motion_,
                              static_cast<std::size_t>((solution.normal_reaction.array() > 0.0).count()));
   previous_ = increment_;
   increment_ = guess_;
@@ -382,8 +382,8 @@ void IterativeStage::end(const Stage& stage, StageSolution& solution) {
   solution.support_reaction.resize(problem_.supports.size());
   if (supported.empty()) return;
   product_.multiply(guess_, work_);
-  work_ -= stage.right_hand_side;
-  stage.rows->add_force(-solution.acting_normal(), -solution.acting_tangential(), work_);
+  work_ -= stage.right_hand_side.force;
+  stage.rows.add_force(-solution.acting_normal(), -solution.acting_tangential(), work_);
   for (std::size_t i = 0; i < supported.size(); ++i)
     solution.support_reaction[static_cast<Index>(i)] = work_[supported[i]];
 }

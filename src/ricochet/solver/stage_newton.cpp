@@ -8,14 +8,11 @@
 namespace ricochet {
 
 void StageNewton::store_stage(const Stage& stage) {
-  base_ = stage.force_base;
-  pressure_time_ = stage.pressure_time;
-  pressure_part_ = stage.pressure_part;
-  evaluate(base_, force_at_base_);
+  linearization_ = stage.linearization;
+  evaluate(linearization_.base, force_at_base_);
   right_hand_side_ = stage.right_hand_side;
-  prescribed_ = stage.prescribed;
-  gap_offset_ = stage.gap_offset;
-  slip_offset_ = stage.slip_offset;
+  gap_offset_ = stage.conditions.gap.offset;
+  slip_offset_ = stage.conditions.slip.offset;
   if (!stage.motion) return;
   motion_ = stage.motion->displacement;
   velocity_ = stage.motion->velocity;
@@ -26,7 +23,8 @@ void StageNewton::evaluate(const Vector& displacement, Vector& force) {
   problem_.internal_force->evaluate(displacement, force);
   if (!problem_.pressure) return;
   follower_load_.setZero(force.size());
-  problem_.pressure->add_force(displacement, pressure_time_, follower_load_, pressure_part_);
+  problem_.pressure->add_force(displacement, linearization_.pressure.time, follower_load_,
+                               linearization_.pressure.part);
   force -= follower_load_;
 }
 
@@ -41,7 +39,7 @@ void StageNewton::correct(const Vector& correction) {
 void StageNewton::update_internal_force(double factor) {
   constexpr int max_halvings = 5;
   for (int halving = 0;; ++halving) {
-    displacement_ = base_ + factor * total_;
+    displacement_ = linearization_.base + factor * total_;
     try {
       evaluate(displacement_, force_);
       return;
@@ -55,35 +53,37 @@ void StageNewton::update_internal_force(double factor) {
 /// Sets the stage for a correction of δ = total.
 void StageNewton::linearize(const OperatorCoefficients& coefficients, Stage& stage) {
   problem_.mass.multiply(total_, inertial_force_);
-  stage.right_hand_side = right_hand_side_ - coefficients.mass * inertial_force_ - (force_ - force_at_base_);
+  stage.right_hand_side.force =
+      right_hand_side_.force - coefficients.mass * inertial_force_ - (force_ - force_at_base_);
   if (problem_.has_damping()) {
     problem_.damping.evaluate(total_, damping_force_);
-    stage.right_hand_side -= coefficients.damping * damping_force_;
+    stage.right_hand_side.force -= coefficients.damping * damping_force_;
   }
-  stage.prescribed = prescribed_;
+  stage.right_hand_side.prescribed = right_hand_side_.prescribed;
   for (Index i = 0; i < problem_.supports.size(); ++i)
-    stage.prescribed[i] -= total_[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
+    stage.right_hand_side.prescribed[i] -= total_[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
   if (stage.motion) {
-    stage.motion->displacement = motion_ + stage.gap_factor * total_;
-    if (stage.slip_offset.size() > 0) stage.motion->velocity = velocity_ + stage.slip_factor * total_;
+    stage.motion->displacement = motion_ + stage.conditions.gap.factor * total_;
+    if (stage.conditions.slip.offset.size() > 0)
+      stage.motion->velocity = velocity_ + stage.conditions.slip.factor * total_;
     if (stage.motion->reevaluates_obstacles)
       stage.motion->obstacle_displacement = observed_ + stage.motion->instant.factor * total_;
     zero_motion_.setZero(total_.size());
     linearize_contact(problem_, zero_motion_, stage);
     return;
   }
-  stage.rows->normal_motion(total_, stage.gap_offset);
-  stage.gap_offset = gap_offset_ + stage.gap_factor * stage.gap_offset;
-  if (stage.slip_offset.size() == 0) return;
-  stage.rows->tangential_motion(total_, stage.slip_offset);
-  stage.slip_offset = slip_offset_ + stage.slip_factor * stage.slip_offset;
+  stage.rows->normal_motion(total_, stage.conditions.gap.offset);
+  stage.conditions.gap.offset = gap_offset_ + stage.conditions.gap.factor * stage.conditions.gap.offset;
+  if (stage.conditions.slip.offset.size() == 0) return;
+  stage.rows->tangential_motion(total_, stage.conditions.slip.offset);
+  stage.conditions.slip.offset = slip_offset_ + stage.conditions.slip.factor * stage.conditions.slip.offset;
 }
 
 void StageNewton::solve(const OperatorCoefficients& coefficients, const SolveLinear& solve_linear, const Renew& renew,
                         Stage& stage, StageSolution& solution) {
   store_stage(stage);
   total_.setZero(problem_.dof_count());
-  const double size = problem_.nodes.cwiseAbs().maxCoeff() + base_.lpNorm<Eigen::Infinity>();
+  const double size = problem_.nodes.cwiseAbs().maxCoeff() + linearization_.base.lpNorm<Eigen::Infinity>();
   progress_.start(4.0 * std::numeric_limits<double>::epsilon() * size);
   acceleration_.restart();
   before_ = total_;
@@ -112,9 +112,10 @@ void StageNewton::solve(const OperatorCoefficients& coefficients, const SolveLin
   }
   solution.increment = total_;
   if (problem_.pressure) {
-    displacement_ = base_ + coefficients.stiffness * total_;
+    displacement_ = linearization_.base + coefficients.stiffness * total_;
     solution.follower_load.setZero(total_.size());
-    problem_.pressure->add_force(displacement_, pressure_time_, solution.follower_load, pressure_part_);
+    problem_.pressure->add_force(displacement_, linearization_.pressure.time, solution.follower_load,
+                                 linearization_.pressure.part);
   }
   solution.iterations = iterations;
   solution.newton_iterations = progress_.iterations();

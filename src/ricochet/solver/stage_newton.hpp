@@ -37,8 +37,9 @@ class StageNewton {
   AndersonAcceleration acceleration_{8};
   Vector total_, before_, displacement_, force_, inertial_force_, damping_force_, zero_motion_, follower_load_;
   // Data of the stage at δ = 0:
-  double pressure_time_ = 0.0, pressure_part_ = 1.0;
-  Vector base_, force_at_base_, right_hand_side_, prescribed_, gap_offset_, slip_offset_, motion_, velocity_, observed_;
+  ForceLinearization linearization_;
+  RightHandSide right_hand_side_;
+  Vector force_at_base_, gap_offset_, slip_offset_, motion_, velocity_, observed_;
 };
 
 }  // namespace ricochet

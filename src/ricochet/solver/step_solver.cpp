@@ -62,11 +62,11 @@ class StagesStepSolver final : public StepSolver {
   void solve(std::size_t number, Stage& stage, StageSolution& solution) override {
     StageSolver& solver = *stages_.at(number);
     const auto solve_linear = [&](Stage& linear, StageSolution& result) {
-      solver.solve(linear, result);
+      solver.solve(linear.linear(), result);
       if (linear.motion) tangent_iterations_.follow_motion(solver, linear, result);
     };
-    if (stage.force_base.size() > 0) {
-      follow(stage.force_base);
+    if (stage.linearization.base.size() > 0) {
+      follow(stage.linearization.base);
       newton_.solve(
           operators_[number], solve_linear, [this](const Vector& displacement) { renew(displacement, displacement); },
           stage, solution);

@@ -56,7 +56,7 @@ void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSo
       last_progress = iteration;
     }
     const bool is_last = iteration == max_iterations || iteration - last_progress > patience_of_iterations;
-    const Vector& rounding = stage.gap_offset_rounding;
+    const Vector& rounding = stage.conditions.gap.rounding;
     const double of_rounding = error / problem_.ranks->maximum(rounding.size() > 0 ? rounding.maxCoeff() : 0.0);
     if (iteration >= patient_iterations && iteration - last_progress >= patience_of_rounding &&
         of_rounding <= remaining_rounding)
@@ -71,7 +71,7 @@ void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSo
       last_progress = last_start = iteration;
       acceleration_.restart();
       linearize_contact(problem_, linearized_at_, stage);
-      solver.solve(stage, solution);
+      solver.solve(stage.linear(), solution);
       iterations += solution.iterations;
       continue;
     }
@@ -87,7 +87,7 @@ void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSo
     }
     linearize_at(solution.contact_motion(), iteration > plain_iterations);
     linearize_contact(problem_, linearized_at_, stage);
-    solver.solve(stage, solution);
+    solver.solve(stage.linear(), solution);
     iterations += solution.iterations;
   }
   solution.iterations = iterations;

@@ -38,8 +38,8 @@ void update_rows(const SemidiscreteProblem& problem, const Vector& displacement,
 
 /// Makes every point eligible except those whose condition another point enforces.
 void set_eligible(const SemidiscreteProblem& problem, Stage& stage) {
-  stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 1);
-  if (problem.contact.follows_motion()) problem.contact.geometry->deactivate_points(stage.eligible);
+  stage.conditions.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 1);
+  if (problem.contact.follows_motion()) problem.contact.geometry->deactivate_points(stage.conditions.eligible);
 }
 
 /// Computes the gaps at the end of a step, or at an instant.
@@ -52,13 +52,13 @@ void compute_gaps(const SemidiscreteProblem& problem, const Vector& displacement
 /// Computes the slip rate at δ = 0 and its rounding error.
 void compute_slip_offset(const SemidiscreteProblem& problem, const Vector& velocity, const Vector& obstacle,
                          Stage& stage) {
-  stage.rows->tangential_motion(velocity, stage.slip_offset);
-  problem.trace_rounding(velocity, stage.slip_offset_rounding);
+  stage.rows->tangential_motion(velocity, stage.conditions.slip.offset);
+  problem.trace_rounding(velocity, stage.conditions.slip.rounding);
   if (obstacle.size() == 0) return;
-  stage.slip_offset -= obstacle;
+  stage.conditions.slip.offset -= obstacle;
   const int tangents = problem.dimension - 1;
   for (Index i = 0; i < problem.contact.size(); ++i) {
-    stage.slip_offset_rounding[i] +=
+    stage.conditions.slip.rounding[i] +=
         8.0 * std::numeric_limits<double>::epsilon() * obstacle.segment(i * tangents, tangents).lpNorm<1>();
   }
 }
@@ -80,8 +80,9 @@ double obstacle_error(const SemidiscreteProblem& problem, const StageSolution& s
                       const Stage& stage, ContactMotion& motion) {
   obstacle_velocity_at(problem, increment, motion, motion.obstacle);
   project_motion(*stage.rows, motion.obstacle);
-  const bool has_friction = stage.slip_offset.size() > 0;
-  const double duration = has_friction ? stage.gap_factor / stage.slip_factor : motion.instant.span;
+  const bool has_friction = stage.conditions.slip.offset.size() > 0;
+  const double duration =
+      has_friction ? stage.conditions.gap.factor / stage.conditions.slip.factor : motion.instant.span;
   const Index tangents = problem.dimension - 1;
   double error = -std::numeric_limits<double>::infinity();
   for (Index i = 0; i < problem.contact.size(); ++i) {
@@ -90,7 +91,7 @@ double obstacle_error(const SemidiscreteProblem& problem, const StageSolution& s
     const double speed = std::hypot(motion.obstacle.normal[i], along.norm());
     const double wrong = std::hypot(motion.obstacle.normal[i] - stage.obstacle.normal[i],
                                     (along - stage.obstacle.tangential.segment(i * tangents, tangents)).norm());
-    const double rounding = has_friction ? stage.slip_offset_rounding[i] : 0.0;
+    const double rounding = has_friction ? stage.conditions.slip.rounding[i] : 0.0;
     error = std::max(error, duration * (wrong - same_velocity * speed - rounding));
   }
   return error;
@@ -110,9 +111,9 @@ void evaluate_obstacle_velocity(const SemidiscreteProblem& problem, const Vector
 void require_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage,
                             const StepStart* start) {
   update_rows(problem, base, time, start, stage);
-  compute_gaps(problem, base, time, start != nullptr, stage.gap_offset);
-  stage.gap_offset_rounding = stage.rows->gap_rounding;
-  stage.gap_factor = 1.0;
+  compute_gaps(problem, base, time, start != nullptr, stage.conditions.gap.offset);
+  stage.conditions.gap.rounding = stage.rows->gap_rounding;
+  stage.conditions.gap.factor = 1.0;
   set_eligible(problem, stage);
   if (!problem.contact.follows_motion() && !problem.has_rotating_obstacles()) return;
   if (!stage.motion) stage.motion.emplace();
@@ -132,26 +133,27 @@ void require_no_approach(const SemidiscreteProblem& problem, const Vector& displ
                          const Vector& velocity, ObstacleMotion& obstacle, double step, Stage& stage) {
   update_rows(problem, displacement, time, nullptr, stage);
   stage.motion.reset();
-  problem.gaps(displacement, time, stage.gap_offset);
+  problem.gaps(displacement, time, stage.conditions.gap.offset);
   // A displacement is the sum of its increments, and this condition on velocities corrects none of their rounding
   // errors: a point that slides or rests drifts by one unit of rounding per step.
-  problem.trace_rounding(displacement, stage.gap_offset_rounding);
+  problem.trace_rounding(displacement, stage.conditions.gap.rounding);
   set_eligible(problem, stage);
   for (Index i = 0; i < problem.contact.size(); ++i) {
-    const bool touches = stage.gap_offset[i] <= stage.rows->gap_rounding[i] + stage.gap_offset_rounding[i];
-    if (!touches) stage.eligible[static_cast<std::size_t>(i)] = 0;
+    const bool touches =
+        stage.conditions.gap.offset[i] <= stage.rows->gap_rounding[i] + stage.conditions.gap.rounding[i];
+    if (!touches) stage.conditions.eligible[static_cast<std::size_t>(i)] = 0;
   }
-  problem.trace_rounding(velocity, stage.gap_offset);
-  stage.gap_offset_rounding = stage.gap_offset_rounding / step + stage.gap_offset;
-  stage.rows->normal_motion(velocity, stage.gap_offset);
+  problem.trace_rounding(velocity, stage.conditions.gap.offset);
+  stage.conditions.gap.rounding = stage.conditions.gap.rounding / step + stage.conditions.gap.offset;
+  stage.rows->normal_motion(velocity, stage.conditions.gap.offset);
   if (obstacle.normal.size() == 0) return;
   project_motion(*stage.rows, obstacle);
-  stage.gap_offset -= obstacle.normal;
+  stage.conditions.gap.offset -= obstacle.normal;
 }
 
 void require_friction(const SemidiscreteProblem& problem, const Vector& velocity, double slip_factor, Stage& stage) {
   if (!problem.contact.has_friction()) return;
-  stage.slip_factor = slip_factor;
+  stage.conditions.slip.factor = slip_factor;
   project_motion(*stage.rows, stage.obstacle);
   compute_slip_offset(problem, velocity, stage.obstacle.tangential, stage);
   if (stage.motion) stage.motion->velocity = velocity;
@@ -159,16 +161,16 @@ void require_friction(const SemidiscreteProblem& problem, const Vector& velocity
 
 void linearize_contact(const SemidiscreteProblem& problem, const Vector& increment, Stage& stage) {
   ContactMotion& motion = *stage.motion;
-  motion.solution = motion.displacement + stage.gap_factor * increment;
+  motion.solution = motion.displacement + stage.conditions.gap.factor * increment;
   const StepStart start{motion.start, motion.start_time};
   update_rows(problem, motion.solution, motion.time, motion.start.size() > 0 ? &start : nullptr, stage);
   set_eligible(problem, stage);
-  compute_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, stage.gap_offset);
+  compute_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, stage.conditions.gap.offset);
   stage.rows->normal_motion(increment, motion.gap_change);
-  stage.gap_offset -= stage.gap_factor * motion.gap_change;
+  stage.conditions.gap.offset -= stage.conditions.gap.factor * motion.gap_change;
   if (motion.reevaluates_obstacles) obstacle_velocity_at(problem, increment, motion, stage.obstacle);
   project_motion(*stage.rows, stage.obstacle);
-  if (stage.slip_offset.size() == 0) return;
+  if (stage.conditions.slip.offset.size() == 0) return;
   compute_slip_offset(problem, motion.velocity, stage.obstacle.tangential, stage);
 }
 
@@ -176,22 +178,24 @@ LinearizationError linearization_error(const SemidiscreteProblem& problem, const
                                        Vector& gap) {
   ContactMotion& motion = *stage.motion;
   const Vector& increment = solution.contact_motion();
-  motion.solution = motion.displacement + stage.gap_factor * increment;
+  motion.solution = motion.displacement + stage.conditions.gap.factor * increment;
   compute_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, gap);
   stage.rows->normal_motion(increment, motion.gap_change);
   problem.trace_rounding(increment, motion.gap_change_rounding);
   constexpr double none = -std::numeric_limits<double>::infinity();
   LinearizationError error{none, none};
   for (Index i = 0; i < gap.size(); ++i) {
-    if (stage.eligible[static_cast<std::size_t>(i)] == 0) continue;
+    if (stage.conditions.eligible[static_cast<std::size_t>(i)] == 0) continue;
     // The residual of the linear condition is the solver's and is there for any rows; it is not a linearization error.
-    const double beside = std::abs(gap[i] - (stage.gap_offset[i] + stage.gap_factor * motion.gap_change[i]));
+    const double beside =
+        std::abs(gap[i] - (stage.conditions.gap.offset[i] + stage.conditions.gap.factor * motion.gap_change[i]));
     const double wrong = solution.normal_reaction[i] > 0.0 ? beside : std::min(-gap[i], beside);
-    const double rounding = stage.gap_offset_rounding[i];
+    const double rounding = stage.conditions.gap.rounding[i];
     error.beyond_rounding = std::max(error.beyond_rounding, wrong - rounding);
     // Both gaps are rounded, and the contribution of the increment is subtracted and added again.
-    error.beyond_all_rounding = std::max(error.beyond_all_rounding,
-                                         wrong - 2.0 * (rounding + stage.gap_factor * motion.gap_change_rounding[i]));
+    error.beyond_all_rounding =
+        std::max(error.beyond_all_rounding,
+                 wrong - 2.0 * (rounding + stage.conditions.gap.factor * motion.gap_change_rounding[i]));
   }
   if (motion.reevaluates_obstacles) {
     const double obstacle = obstacle_error(problem, solution, increment, stage, motion);

@@ -8,6 +8,7 @@
 #include "ricochet/base/contact_status.hpp"
 #include "ricochet/base/types.hpp"
 #include "ricochet/contact/contact_rows.hpp"
+#include "ricochet/problem/follower_pressure.hpp"
 
 /// @file Interface between time schemes and step solvers: a step consists of one or more contact problems.
 ///
@@ -63,6 +64,41 @@ struct ObstacleInstant {
   double factor = 0.0;  ///< contact points move by factor · δ from the displacement of the evaluation
 };
 
+/// Momentum equation of a stage, per dof of the problem.
+struct RightHandSide {
+  Vector force;       ///< b
+  Vector prescribed;  ///< δ on supported dofs, in the order of Supports::dofs()
+};
+
+/// A motion of contact points as a function of δ: offset + factor · (rows δ).
+struct AffineMotion {
+  Vector offset;        ///< q, or p: (d−1) per contact point; no slip if empty
+  Vector rounding;      ///< rounding error of the offset, per contact point
+  double factor = 1.0;  ///< s, or σ
+};
+
+/// Conditions on the contact points with given rows.
+struct ContactConditions {
+  std::vector<char> eligible;      ///< per contact point: 0 if it carries no force in this stage
+  AffineMotion gap;                ///< y: a y above −(rounding + the solver's own error) counts as zero
+  AffineMotion slip;               ///< w; empty if the stage has no friction
+  std::vector<char> frictionless;  ///< per contact point: 1 if this stage omits its friction; empty: none
+};
+
+/// Start of the step, per contact point, from which a mean of the reactions is computed; empty for ReactionMean::end.
+struct MeanStart {
+  Vector gap, normal_reaction, tangential_reaction;
+};
+
+/// A stage with rows and forces that do not depend on δ: what the solver of an operator is given. A wrapper passes on
+/// the parts that it leaves as they are.
+struct LinearStage {
+  const ContactRows& rows;  ///< G and B_T
+  const RightHandSide& right_hand_side;
+  const ContactConditions& conditions;
+  const MeanStart& start;
+};
+
 /// Data from which the solver re-evaluates the contact conditions of a stage if rows follow the motion: the gap at
 /// displacement + s δ at `time`, and the slip rate B_T (velocity + σ δ) relative to the obstacles.
 struct ContactMotion {
@@ -79,32 +115,29 @@ struct ContactMotion {
   ObstacleMotion obstacle;                           ///< work space
 };
 
+/// Linearization of a nonlinear internal force f at a displacement p.
+struct ForceLinearization {
+  /// p: b contains −f(p), and A δ stands for αM δ + ηC δ + f(p + κδ) − f(p). Empty if A δ is linear.
+  Vector base;
+  /// Loads that follow the surface: b contains them at p, and the solver re-evaluates them at p + κδ.
+  FollowerPressure::Instant pressure;
+};
+
 struct Stage {
   std::shared_ptr<const ContactRows> rows;  ///< G and B_T
+  RightHandSide right_hand_side;
+  ContactConditions conditions;
+  MeanStart start;
+  ForceLinearization linearization;
   /// Set if the gaps of this stage, or the velocities of its obstacles, are nonlinear functions of δ: the solver then
   /// re-evaluates rows and offsets until they hold at the solution.
   std::optional<ContactMotion> motion;
-  std::vector<std::shared_ptr<ContactRows>> row_storage;  ///< storage for rows that follow the motion
   /// Obstacle velocities: the conditions are relative to them, and the reactions do work on them.
   ObstacleMotion obstacle;
-  Vector right_hand_side;  ///< b, per dof
-  /// Displacement p of the linearization if the internal force f is nonlinear: b contains −f(p), and A δ stands for
-  /// αM δ + ηC δ + f(p + κδ) − f(p). Empty if A δ is linear.
-  Vector force_base;
-  /// Instant and scale factor of the loads that follow the surface: b contains them at p, and the
-  /// solver re-evaluates them at p + κδ.
-  double pressure_time = 0.0, pressure_part = 1.0;
-  Vector prescribed;               ///< δ on supported dofs, in the order of Supports::dofs()
-  std::vector<char> eligible;      ///< per contact point
-  Vector gap_offset;               ///< q, per contact point
-  Vector gap_offset_rounding;      ///< rounding error of q: a y above −(this + the solver's own error) counts as zero
-  double gap_factor = 1.0;         ///< s
-  double slip_factor = 1.0;        ///< σ
-  Vector slip_offset;              ///< p, (d−1) per contact point; empty if the stage has no friction
-  Vector slip_offset_rounding;     ///< rounding error of p, per contact point
-  std::vector<char> frictionless;  ///< per contact point: 1 if this stage omits its friction; empty: none
-  /// y and the reactions at the start of the step, per contact point, unless the mean is ReactionMean::end.
-  Vector start_gap, start_normal_reaction, start_tangential_reaction;
+  std::vector<std::shared_ptr<ContactRows>> row_storage;  ///< storage for rows that follow the motion
+
+  /// The stage with its present rows and right-hand side.
+  [[nodiscard]] LinearStage linear() const { return {*rows, right_hand_side, conditions, start}; }
 };
 
 struct StageSolution {

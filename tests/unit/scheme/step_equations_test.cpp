@@ -30,12 +30,12 @@ TEST_F(StepEquationsTest, BalanceTheForcesAtTheBase) {
   problem_.internal_force->evaluate(base_, internal);
   equations_.balance(problem_, time, base_, stage_);
   const double size = load.norm() + internal.norm();
-  EXPECT_LE((stage_.right_hand_side - (load - internal)).norm(), 1e-15 * size);
+  EXPECT_LE((stage_.right_hand_side.force - (load - internal)).norm(), 1e-15 * size);
   ASSERT_TRUE(problem_.has_damping());
   equations_.balance(problem_, time, base_, velocity_, stage_);
   const Vector damping = problem_.damping.matrix() * velocity_;
   EXPECT_GT(damping.norm(), 0.0);
-  EXPECT_LE((stage_.right_hand_side - (load - internal - damping)).norm(), 1e-15 * (size + damping.norm()));
+  EXPECT_LE((stage_.right_hand_side.force - (load - internal - damping)).norm(), 1e-15 * (size + damping.norm()));
 }
 
 /// p = B_T v minus the obstacle's velocity, over the whole step: v = ΔU/h, and the plane drags along.
@@ -51,8 +51,8 @@ TEST_F(StepEquationsTest, TakeTheSlipOfTheWholeStep) {
   ObstacleMotion obstacle;
   problem_.obstacle_velocity(run_.state().displacement + 0.5 * predicted, 0.5 * h, h, obstacle);
   EXPECT_GT(obstacle.tangential.norm(), 0.0);
-  EXPECT_LE((stage_.slip_offset - (slip - obstacle.tangential)).norm(), 1e-14 * slip.norm());
-  EXPECT_EQ(stage_.slip_factor, 1.0 / h);
+  EXPECT_LE((stage_.conditions.slip.offset - (slip - obstacle.tangential)).norm(), 1e-14 * slip.norm());
+  EXPECT_EQ(stage_.conditions.slip.factor, 1.0 / h);
 }
 
 TEST(StepEquations, PrescribeWhatSupportsDo) {
@@ -68,7 +68,7 @@ TEST(StepEquations, PrescribeWhatSupportsDo) {
         problem, 0.2, [](Index dof, double value) { return value - static_cast<double>(dof); }, stage);
     for (Index i = 0; i < wanted.size(); ++i) {
       const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-      EXPECT_EQ(stage.prescribed[i], wanted[i] - static_cast<double>(dof));
+      EXPECT_EQ(stage.right_hand_side.prescribed[i], wanted[i] - static_cast<double>(dof));
     }
     break;
   }

@@ -9,13 +9,13 @@
 namespace ricochet {
 namespace {
 
-/// Stage with all points eligible, y = gap + Gδ.
-Stage stage_with_gaps(const Vector& gaps) {
-  Stage stage;
-  stage.gap_offset = gaps;
-  stage.gap_offset_rounding = Vector::Constant(gaps.size(), 1e-15);
-  stage.eligible.assign(static_cast<std::size_t>(gaps.size()), 1);
-  return stage;
+/// Conditions with all points eligible, y = gap + Gδ.
+ContactConditions conditions_with_gaps(const Vector& gaps) {
+  ContactConditions conditions;
+  conditions.gap.offset = gaps;
+  conditions.gap.rounding = Vector::Constant(gaps.size(), 1e-15);
+  conditions.eligible.assign(static_cast<std::size_t>(gaps.size()), 1);
+  return conditions;
 }
 
 Vector gaps(std::initializer_list<double> values) {
@@ -24,37 +24,37 @@ Vector gaps(std::initializer_list<double> values) {
 
 using PointNumbers = std::vector<Index>;
 
-bool some_may_touch(ContactCandidates& candidates, const Stage& stage) {
-  candidates.estimate_reach(stage);
-  return candidates.some_may_touch(stage);
+bool some_may_touch(ContactCandidates& candidates, const ContactConditions& conditions) {
+  candidates.estimate_reach(conditions);
+  return candidates.some_may_touch(conditions);
 }
 
-PointNumbers approaching(ContactCandidates& candidates, const Stage& stage) {
-  candidates.estimate_reach(stage);
-  return candidates.approaching(stage);
+PointNumbers approaching(ContactCandidates& candidates, const ContactConditions& conditions) {
+  candidates.estimate_reach(conditions);
+  return candidates.approaching(conditions);
 }
 
-PointNumbers worth_keeping(ContactCandidates& candidates, const Stage& stage) {
-  candidates.estimate_reach(stage);
-  return candidates.worth_keeping(stage);
+PointNumbers worth_keeping(ContactCandidates& candidates, const ContactConditions& conditions) {
+  candidates.estimate_reach(conditions);
+  return candidates.worth_keeping(conditions);
 }
 
 TEST(ContactCandidates, AreNoneFarFromTheObstacle) {
   ContactCandidates candidates(3);
-  const Stage stage = stage_with_gaps(gaps({1.0, 2.0, 3.0}));
-  EXPECT_FALSE(some_may_touch(candidates, stage));
-  EXPECT_EQ(approaching(candidates, stage), PointNumbers{});
-  EXPECT_EQ(candidates.penetrating(stage, gaps({-0.9, -1.9, -2.9}), false), PointNumbers{});
+  const ContactConditions conditions = conditions_with_gaps(gaps({1.0, 2.0, 3.0}));
+  EXPECT_FALSE(some_may_touch(candidates, conditions));
+  EXPECT_EQ(approaching(candidates, conditions), PointNumbers{});
+  EXPECT_EQ(candidates.penetrating(conditions, gaps({-0.9, -1.9, -2.9}), false), PointNumbers{});
 }
 
 TEST(ContactCandidates, TakeUpPointsInsideTheObstacleAndThoseWithinReachOfThem) {
   ContactCandidates candidates(5);
   // Inside by 1: the stage moves points by that, and by twice that at most; points within eight times that are added.
-  const Stage stage = stage_with_gaps(gaps({20.0, -1.0, 15.9, 0.5, 1.9}));
-  EXPECT_TRUE(some_may_touch(candidates, stage));
-  EXPECT_EQ(approaching(candidates, stage), (PointNumbers{1, 2, 3, 4}));
+  const ContactConditions conditions = conditions_with_gaps(gaps({20.0, -1.0, 15.9, 0.5, 1.9}));
+  EXPECT_TRUE(some_may_touch(candidates, conditions));
+  EXPECT_EQ(approaching(candidates, conditions), (PointNumbers{1, 2, 3, 4}));
   candidates.add_candidates({1, 2, 3, 4});
-  EXPECT_EQ(approaching(candidates, stage), PointNumbers{});
+  EXPECT_EQ(approaching(candidates, conditions), PointNumbers{});
   EXPECT_EQ(candidates.number(1), 0);
   EXPECT_EQ(candidates.number(4), 3);
   EXPECT_EQ(candidates.number(0), -1);
@@ -62,35 +62,35 @@ TEST(ContactCandidates, TakeUpPointsInsideTheObstacleAndThoseWithinReachOfThem) 
 
 TEST(ContactCandidates, ReachIsWhatTheLastStageMovedPointsBy) {
   ContactCandidates candidates(2);
-  Stage stage = stage_with_gaps(gaps({1.5, 100.0}));
-  EXPECT_FALSE(some_may_touch(candidates, stage));
-  candidates.update_history(stage, gaps({-1.0, 0.2}), 0);
-  EXPECT_TRUE(some_may_touch(candidates, stage));
-  EXPECT_EQ(approaching(candidates, stage), (PointNumbers{0}));
-  stage.gap_factor = 0.5;  // y = q + s G δ
-  EXPECT_FALSE(some_may_touch(candidates, stage));
+  ContactConditions conditions = conditions_with_gaps(gaps({1.5, 100.0}));
+  EXPECT_FALSE(some_may_touch(candidates, conditions));
+  candidates.update_history(conditions, gaps({-1.0, 0.2}), 0);
+  EXPECT_TRUE(some_may_touch(candidates, conditions));
+  EXPECT_EQ(approaching(candidates, conditions), (PointNumbers{0}));
+  conditions.gap.factor = 0.5;  // y = q + s G δ
+  EXPECT_FALSE(some_may_touch(candidates, conditions));
 }
 
 TEST(ContactCandidates, NeverAreWhatMayNotTouch) {
   ContactCandidates candidates(2);
-  Stage stage = stage_with_gaps(gaps({-1.0, -1.0}));
-  stage.eligible = {0, 1};
-  EXPECT_EQ(approaching(candidates, stage), (PointNumbers{1}));
-  EXPECT_EQ(candidates.penetrating(stage, gaps({-1.0, -1.0}), false), (PointNumbers{1}));
-  stage.eligible = {0, 0};
-  EXPECT_FALSE(some_may_touch(candidates, stage));
-  EXPECT_EQ(candidates.penetrating(stage, gaps({-1.0, -1.0}), false), PointNumbers{});
+  ContactConditions conditions = conditions_with_gaps(gaps({-1.0, -1.0}));
+  conditions.eligible = {0, 1};
+  EXPECT_EQ(approaching(candidates, conditions), (PointNumbers{1}));
+  EXPECT_EQ(candidates.penetrating(conditions, gaps({-1.0, -1.0}), false), (PointNumbers{1}));
+  conditions.eligible = {0, 0};
+  EXPECT_FALSE(some_may_touch(candidates, conditions));
+  EXPECT_EQ(candidates.penetrating(conditions, gaps({-1.0, -1.0}), false), PointNumbers{});
 }
 
 TEST(ContactCandidates, AreAskedForWhereOthersPenetrate) {
   ContactCandidates candidates(4);
-  const Stage stage = stage_with_gaps(gaps({1.0, 1.0, 1.0, 1.0}));
+  const ContactConditions conditions = conditions_with_gaps(gaps({1.0, 1.0, 1.0, 1.0}));
   candidates.add_candidates({0});
   // 0 is a candidate, so the solver handles its gap. 2 is deepest, 1 less than half as deep, 3 inside by rounding only.
-  EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, -1.4, -2.0, -1.0 - 5e-16}), false), (PointNumbers{2}));
-  EXPECT_EQ(candidates.penetrating(stage, gaps({0.0, -1.6, -2.0, 0.0}), false), (PointNumbers{2, 1}));
-  EXPECT_EQ(candidates.penetrating(stage, gaps({0.0, 0.0, 0.0, -1.0 - 5e-16}), false), PointNumbers{});
-  EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, 0.0, 0.0, 0.0}), true), (PointNumbers{0}))
+  EXPECT_EQ(candidates.penetrating(conditions, gaps({-9.0, -1.4, -2.0, -1.0 - 5e-16}), false), (PointNumbers{2}));
+  EXPECT_EQ(candidates.penetrating(conditions, gaps({0.0, -1.6, -2.0, 0.0}), false), (PointNumbers{2, 1}));
+  EXPECT_EQ(candidates.penetrating(conditions, gaps({0.0, 0.0, 0.0, -1.0 - 5e-16}), false), PointNumbers{});
+  EXPECT_EQ(candidates.penetrating(conditions, gaps({-9.0, 0.0, 0.0, 0.0}), true), (PointNumbers{0}))
       << "no request included it";
 }
 
@@ -98,11 +98,11 @@ TEST(ContactCandidates, AreAskedForWhereOthersPenetrate) {
 TEST(ContactCandidates, DoubleAtMost) {
   const Index count = 1000;
   ContactCandidates candidates(count);
-  const Stage stage = stage_with_gaps(Vector::LinSpaced(count, 0.0, 1.0));
+  const ContactConditions conditions = conditions_with_gaps(Vector::LinSpaced(count, 0.0, 1.0));
   const Vector fallen = Vector::Constant(count, -1e6);
   std::size_t rounds = 0;
-  for (PointNumbers found = candidates.penetrating(stage, fallen, false); !found.empty();
-       found = candidates.penetrating(stage, fallen, false), ++rounds) {
+  for (PointNumbers found = candidates.penetrating(conditions, fallen, false); !found.empty();
+       found = candidates.penetrating(conditions, fallen, false), ++rounds) {
     EXPECT_LE(found.size(), std::max<std::size_t>(32, candidates.points().size()));
     EXPECT_EQ(found.front(), static_cast<Index>(candidates.points().size())) << "the deepest first";
     candidates.add_candidates(found);
@@ -115,14 +115,14 @@ TEST(ContactCandidates, AreDroppedWhenTheyHaveBeenFarForLong) {
   const Index count = 200;
   ContactCandidates candidates(count);
   Vector distance = Vector::Zero(count);
-  candidates.add_candidates(approaching(candidates, stage_with_gaps(distance)));
+  candidates.add_candidates(approaching(candidates, conditions_with_gaps(distance)));
   ASSERT_EQ(candidates.points().size(), 200U);
   distance.tail(count - 3).setConstant(50.0);
   distance[0] = -0.01;
   PointNumbers kept;
   int stages = 0;
   while (kept.empty() && stages < 1000) {
-    kept = worth_keeping(candidates, stage_with_gaps(distance));
+    kept = worth_keeping(candidates, conditions_with_gaps(distance));
     ++stages;
   }
   EXPECT_EQ(kept, (PointNumbers{0, 1, 2}));
@@ -139,17 +139,17 @@ TEST(ContactCandidates, AreTheNearestOfManyThatMayTouch) {
   ContactCandidates candidates(count);
   Vector distance(count);
   for (Index i = 0; i < count; ++i) distance[i] = static_cast<double>(i * 7919 % count + 1);
-  const Stage stage = stage_with_gaps(distance);
-  candidates.update_history(stage, Vector::Constant(count, -1e5), 0);
-  const PointNumbers taken = approaching(candidates, stage);
+  const ContactConditions conditions = conditions_with_gaps(distance);
+  candidates.update_history(conditions, Vector::Constant(count, -1e5), 0);
+  const PointNumbers taken = approaching(candidates, conditions);
   ASSERT_GE(taken.size(), 100U);
   EXPECT_LE(taken.size(), 600U);
   for (const Index point : taken) EXPECT_LE(distance[point], static_cast<double>(taken.size()));
   candidates.add_candidates(taken);
-  EXPECT_EQ(approaching(candidates, stage), PointNumbers{}) << "the others are asked for where they penetrate";
+  EXPECT_EQ(approaching(candidates, conditions), PointNumbers{}) << "the others are asked for where they penetrate";
   // Many loaded points have many neighbours.
-  candidates.update_history(stage, Vector::Constant(count, -1e5), 1000);
-  const std::size_t all = taken.size() + approaching(candidates, stage).size();
+  candidates.update_history(conditions, Vector::Constant(count, -1e5), 1000);
+  const std::size_t all = taken.size() + approaching(candidates, conditions).size();
   EXPECT_GE(all, 2000U);
   EXPECT_LE(all, 4000U);
 }
@@ -170,15 +170,15 @@ TEST(ContactCandidates, StayFewOnAWheelThatRolls) {
   std::size_t most = 0;
   for (int step = 0; step < steps; ++step) {
     const Vector now = height(static_cast<double>(step) / steps);
-    const Stage stage = stage_with_gaps(now);
-    if (const PointNumbers kept = worth_keeping(candidates, stage); !kept.empty()) {
+    const ContactConditions conditions = conditions_with_gaps(now);
+    if (const PointNumbers kept = worth_keeping(candidates, conditions); !kept.empty()) {
       candidates.clear();
       candidates.add_candidates(kept);
     }
-    candidates.add_candidates(approaching(candidates, stage));
+    candidates.add_candidates(approaching(candidates, conditions));
     for (const Index point : candidates.points()) came[static_cast<std::size_t>(point)] = 1;
     most = std::max(most, candidates.points().size());
-    candidates.update_history(stage, height(static_cast<double>(step + 1) / steps) - now, 5);
+    candidates.update_history(conditions, height(static_cast<double>(step + 1) / steps) - now, 5);
   }
   EXPECT_EQ(std::count(came.begin(), came.end(), 1), count);
   EXPECT_LE(most, 3000U);

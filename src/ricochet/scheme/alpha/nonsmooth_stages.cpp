@@ -42,7 +42,7 @@ void NonsmoothStages::solve_positions(const SemidiscreteProblem& problem, const 
   equations_.balance(problem, end, base_, stage);
   equations_.prescribe_from(problem, end, base_, stage);
   require_no_penetration(problem, base_, end, stage);
-  stage.slip_offset.resize(0);
+  stage.conditions.slip.offset.resize(0);
   const StageSolution& solution = stages.solve(position_stage);
   displacement_increment += solution.increment;
   position_multiplier_ = solution.normal_reaction / weights.alpha;
@@ -66,9 +66,9 @@ const StageSolution& NonsmoothStages::solve_velocities(const SemidiscreteProblem
   Stage& stage = unloaded_stage(problem, velocity_stage, stages);
   evaluate_obstacle_velocity(problem, base_, {end}, stage);
   equations_.require_impact_law(problem, base_, end, predicted_velocity, state.velocity, restitution_, step, stage);
-  stage.gap_factor = 1.0;
+  stage.conditions.gap.factor = 1.0;
   for (Index i = 0; i < position_multiplier_.size(); ++i) {
-    if (position_multiplier_[i] > 0.0) stage.eligible[static_cast<std::size_t>(i)] = 1;
+    if (position_multiplier_[i] > 0.0) stage.conditions.eligible[static_cast<std::size_t>(i)] = 1;
   }
   return stages.solve(velocity_stage);
 }

@@ -21,7 +21,7 @@ class CdLagrange final : public CentralScheme {
     const double h = step();
     equations().require_impact_law(problem, instant.now, instant.time, instant.velocity, instant.velocity, restitution_,
                                    h, stage);
-    stage.gap_factor = 1.0 / h;
+    stage.conditions.gap.factor = 1.0 / h;
     equations().require_friction_beside_rates(problem, instant.velocity, 1.0 / h, stage);
   }
 

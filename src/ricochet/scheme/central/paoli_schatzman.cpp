@@ -33,8 +33,8 @@ class PaoliSchatzman final : public CentralScheme {
     require_no_penetration(problem, next_, instant.time + step(), stage);
     if (restitution_ > 0.0) {
       problem.gaps(instant.before.displacement, instant.before.time, gap_before_);
-      stage.gap_offset += restitution_ * gap_before_;
-      stage.gap_offset_rounding *= 1.0 + restitution_;
+      stage.conditions.gap.offset += restitution_ * gap_before_;
+      stage.conditions.gap.rounding *= 1.0 + restitution_;
     }
     require_friction(problem, instant.velocity, 0.5 / step(), stage);
   }

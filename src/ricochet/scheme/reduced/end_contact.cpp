@@ -8,15 +8,15 @@ void EndContact::require(const SemidiscreteProblem& problem, ReactionMean mean, 
                          const Vector& end_displacement, StepEquations& equations, Stage& stage) {
   const StepStart start{state.displacement, state.time};
   require_no_penetration(problem, end_displacement, state.time + step, stage, &start);
-  stage.gap_factor = 2.0;
+  stage.conditions.gap.factor = 2.0;
   equations.observe_step(problem, state.displacement, state.time, end_displacement, step, stage);
   rate_ = (end_displacement - state.displacement) / step;
   require_friction(problem, rate_, 2.0 / step, stage);
   stick_.require(problem, state, step, stage);
   if (mean == ReactionMean::end) return;
-  problem.gaps(state.displacement, state.time, stage.start_gap);
-  stage.start_normal_reaction = state.forces.normal_reaction;
-  stage.start_tangential_reaction = state.forces.tangential_reaction;
+  problem.gaps(state.displacement, state.time, stage.start.gap);
+  stage.start.normal_reaction = state.forces.normal_reaction;
+  stage.start.tangential_reaction = state.forces.tangential_reaction;
 }
 
 }  // namespace ricochet

@@ -131,22 +131,22 @@ void FiniteStrainStep::balance(const SemidiscreteProblem& problem, double step, 
   inertial_increment_ = middle_ - base_;
   problem.mass.multiply(inertial_increment_, inertial_force_);
   kinetic_ = kinetic_start_ + (4.0 / step) * (state.velocity + (2.0 / step) * inertial_increment_).dot(inertial_force_);
-  stage.right_hand_side = loads_.mean() - force_ - (4.0 / (step * step)) * inertial_force_;
-  loads_.add_pressure(stage.right_hand_side);
+  stage.right_hand_side.force = loads_.mean() - force_ - (4.0 / (step * step)) * inertial_force_;
+  loads_.add_pressure(stage.right_hand_side.force);
   for (const auto& body : problem.free_bodies)
-    body->add_gyroscopic_force(end_, state.velocity, step, stage.right_hand_side);
-  if (sigma_.value() != 0.0) stage.right_hand_side -= sigma_.value() * strain_force_;
+    body->add_gyroscopic_force(end_, state.velocity, step, stage.right_hand_side.force);
+  if (sigma_.value() != 0.0) stage.right_hand_side.force -= sigma_.value() * strain_force_;
   if (problem.has_damping()) {
     half_increment_ = middle_ - state.displacement;
     problem.damping.evaluate(half_increment_, damping_force_);
-    stage.right_hand_side -= (2.0 / step) * damping_force_;
+    stage.right_hand_side.force -= (2.0 / step) * damping_force_;
   }
   if (problem.contact.follows_motion() && has_reactions_) {
     lagged_row_force_.setZero();
     lagged_.add_difference(reactions_.normal, reactions_.tangential, lagged_row_force_);
-    stage.right_hand_side += lagged_row_force_;
+    stage.right_hand_side.force += lagged_row_force_;
     problem.contact.geometry->add_couples(middle_, *lagged_.exact(), reactions_.acting_normal,
-                                          reactions_.acting_tangential, stage.right_hand_side);
+                                          reactions_.acting_tangential, stage.right_hand_side.force);
   }
   const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - middle_[dof]; };
   equations_.prescribe(problem, state.time + step, half_way, stage);
@@ -156,7 +156,7 @@ void FiniteStrainStep::balance(const SemidiscreteProblem& problem, double step, 
 /// and L₁ contain the force of lagged rows.
 void FiniteStrainStep::require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                        const State& state, StageSolve& stages, Stage& stage) {
-  contact_residual_ = loads_.mean() - end_force_ - 2.0 * stage.right_hand_side + lagged_row_force_;
+  contact_residual_ = loads_.mean() - end_force_ - 2.0 * stage.right_hand_side.force + lagged_row_force_;
   if (loads_.acts_at_ends()) contact_residual_ += loads_.beside_at_end();
   problem.gather_contact(contact_residual_, contact_right_hand_side_);
   const Vector& shift = MasslessContactStep::solve_contact_nodes(problem, contact_right_hand_side_, stages);
@@ -312,7 +312,7 @@ const StageSolution& FiniteStrainStep::solve_iteration(const SemidiscreteProblem
   last_end_ = end_;
   balance(problem, step, state, stage);
   if (!problem.has_contact_dofs()) {
-    stage.eligible.clear();
+    stage.conditions.eligible.clear();
     stage.motion.reset();
   } else {
     require_contact(problem, mean, step, state, stages, stage);

@@ -40,14 +40,14 @@ void LaggedRows::replace_rows(const Vector& motion, Stage& stage) {
   stage.rows = read_only_;
   stage.motion.reset();
   exact_->normal_motion(motion, motion_);
-  stage.gap_offset += stage.gap_factor * motion_;
+  stage.conditions.gap.offset += stage.conditions.gap.factor * motion_;
   lagged_->normal_motion(motion, motion_);
-  stage.gap_offset -= stage.gap_factor * motion_;
-  if (stage.slip_offset.size() == 0) return;
+  stage.conditions.gap.offset -= stage.conditions.gap.factor * motion_;
+  if (stage.conditions.slip.offset.size() == 0) return;
   exact_->tangential_motion(motion, motion_);
-  stage.slip_offset += stage.slip_factor * motion_;
+  stage.conditions.slip.offset += stage.conditions.slip.factor * motion_;
   lagged_->tangential_motion(motion, motion_);
-  stage.slip_offset -= stage.slip_factor * motion_;
+  stage.conditions.slip.offset -= stage.conditions.slip.factor * motion_;
 }
 
 /// Replaces Ĥ by H at points where they differ too much.

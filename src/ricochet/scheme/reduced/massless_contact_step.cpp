@@ -125,10 +125,11 @@ void MasslessContactStep::find_residual(const SemidiscreteProblem& problem, cons
 }
 
 void MasslessContactStep::set_contact_force(const SemidiscreteProblem& problem, const Vector& force, Stage& stage) {
-  if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
+  if (stage.right_hand_side.force.size() != problem.dof_count())
+    stage.right_hand_side.force.setZero(problem.dof_count());
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i)
-    stage.right_hand_side[problem.contact_dofs[i]] = force[static_cast<Index>(i)];
-  stage.prescribed.setZero(problem.supports.size());
+    stage.right_hand_side.force[problem.contact_dofs[i]] = force[static_cast<Index>(i)];
+  stage.right_hand_side.prescribed.setZero(problem.supports.size());
 }
 
 const Vector& MasslessContactStep::solve_contact_nodes(const SemidiscreteProblem& problem,
@@ -136,7 +137,7 @@ const Vector& MasslessContactStep::solve_contact_nodes(const SemidiscreteProblem
   Stage& stage = stages.stage(condensed_stage);
   set_contact_force(problem, right_hand_side, stage);
   stage.motion.reset();
-  stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 0);
+  stage.conditions.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 0);
   return stages.solve(condensed_stage).increment;
 }
 
@@ -187,7 +188,7 @@ const StageSolution& MasslessContactStep::solve(const SemidiscreteProblem& probl
     for (const auto& body : problem.free_bodies)
       body->add_gyroscopic_force(predicted_end_, state.velocity, step_, next_gyroscopic_force_);
     const double size =
-        stage.right_hand_side.lpNorm<Eigen::Infinity>() + next_gyroscopic_force_.lpNorm<Eigen::Infinity>();
+        stage.right_hand_side.force.lpNorm<Eigen::Infinity>() + next_gyroscopic_force_.lpNorm<Eigen::Infinity>();
     const double change = (next_gyroscopic_force_ - gyroscopic_force_).lpNorm<Eigen::Infinity>();
     if (change <= 4.0 * std::numeric_limits<double>::epsilon() * size) return *solution;
     if (change > 0.5 * last && change <= near * size) return *solution;
@@ -195,7 +196,7 @@ const StageSolution& MasslessContactStep::solve(const SemidiscreteProblem& probl
     if (iteration == max_iterations || !std::isfinite(change))
       throw Error(ErrorKind::not_converged,
                   "the rotation of a rigid body was not found: it rotates too far in one step");
-    stage.right_hand_side += next_gyroscopic_force_ - gyroscopic_force_;
+    stage.right_hand_side.force += next_gyroscopic_force_ - gyroscopic_force_;
     gyroscopic_force_ = next_gyroscopic_force_;
     solution = &stages.solve(midpoint_stage(problem));
   }
@@ -271,7 +272,7 @@ void MasslessContactStep::correct(const SemidiscreteProblem& problem, ReactionMe
   corrections_ = {.load_work = load_work_of_mean(problem, mu, work.load, stages)};
   if (touches) {
     motion_from_obstacles(*stage.rows, increment, state.obstacle_increment, gap_change_);
-    const double along = (1.0 - mu) * solution.path_contact_work - mu * solution.normal_reaction.dot(stage.start_gap);
+    const double along = (1.0 - mu) * solution.path_contact_work - mu * solution.normal_reaction.dot(stage.start.gap);
     corrections_.contact_work = along - solution.mean_normal_reaction.dot(gap_change_);
     if (problem.contact.has_friction()) {
       slip_on_obstacles(*stage.rows, increment, state.obstacle_increment, slip_change_);

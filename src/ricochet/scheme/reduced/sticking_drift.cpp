@@ -18,9 +18,9 @@ void StickingDrift::require(const SemidiscreteProblem& problem, const State& sta
   if (!has_fixed_tangents(problem)) return;
   const auto memory = state.memory.find(stick_slip);
   if (memory == state.memory.end()) return;
-  if (memory->second.size() != stage.slip_offset.size())
+  if (memory->second.size() != stage.conditions.slip.offset.size())
     Snapshot::refuse(stick_slip, "belongs to other contact points");
-  stage.slip_offset += memory->second / step;
+  stage.conditions.slip.offset += memory->second / step;
 }
 
 void StickingDrift::update_drift(const SemidiscreteProblem& problem, const Vector& before, State& state) {

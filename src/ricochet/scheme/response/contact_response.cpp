@@ -11,13 +11,13 @@ namespace ricochet {
 const StageSolution& solve_with_forces(const SemidiscreteProblem& problem, const Vector& normal, std::size_t number,
                                        StageSolve& stages) {
   Stage& stage = stages.stage(number);
-  stage.rows->add_force(normal, Vector(), stage.right_hand_side);
+  stage.rows->add_force(normal, Vector(), stage.right_hand_side.force);
   stage.motion.reset();
-  stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 0);
-  stage.gap_offset.setZero(problem.contact.size());
-  stage.gap_offset_rounding.setZero(problem.contact.size());
-  stage.gap_factor = 1.0;
-  stage.slip_offset.resize(0);
+  stage.conditions.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 0);
+  stage.conditions.gap.offset.setZero(problem.contact.size());
+  stage.conditions.gap.rounding.setZero(problem.contact.size());
+  stage.conditions.gap.factor = 1.0;
+  stage.conditions.slip.offset.resize(0);
   return stages.solve(number);
 }
 

@@ -32,7 +32,7 @@ void ForcedMidpoint::advance(const SemidiscreteProblem& problem, State& state, S
   problem.gaps(displacement_, end, free_);
   if (find_forces(problem, *stage.rows, {state, before_, displacement_, free_}, stages, normal_)) {
     balance(problem, state, stages);
-    add_other_forces(stage.right_hand_side);
+    add_other_forces(stage.right_hand_side.force);
     solution = &solve_with_forces(problem, normal_, 0, stages);
   }
   solution_.increment = solution->increment;

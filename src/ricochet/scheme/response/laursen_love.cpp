@@ -40,7 +40,7 @@ class LaursenLove final : public Kane {
     problem.gaps(state.displacement, state.time, gap_);
     points_.clear();
     for (Index i = 0; i < gap_.size(); ++i) {
-      if (solution.normal_reaction[i] > 0.0 && gap_[i] > stage.gap_offset_rounding[i]) points_.push_back(i);
+      if (solution.normal_reaction[i] > 0.0 && gap_[i] > stage.conditions.gap.rounding[i]) points_.push_back(i);
     }
     acts_ = !points_.empty();
     if (!acts_) return;

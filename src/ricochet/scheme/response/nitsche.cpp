@@ -87,7 +87,7 @@ class Nitsche final : public ForcedMidpoint {
       if (i < count) {
         unit[i] = 1.0;
       } else {
-        stage.right_hand_side = stress_.rows.row(i - count).transpose();
+        stage.right_hand_side.force = stress_.rows.row(i - count).transpose();
       }
       const Vector& motion = solve_with_forces(problem, unit, 0, stages).increment;
       rows.normal_motion(motion, column);

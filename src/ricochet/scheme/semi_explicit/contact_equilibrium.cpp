@@ -41,12 +41,13 @@ void ContactEquilibrium::require(const SemidiscreteProblem& problem, const State
                                  const Vector& load, const Vector& supported_next, double step, Stage& stage) {
   predict(problem, state, supported_next, step);
   stiffness_.multiply(predicted_, row_force_);
-  if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
+  if (stage.right_hand_side.force.size() != problem.dof_count())
+    stage.right_hand_side.force.setZero(problem.dof_count());
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
     const Index dof = problem.contact_dofs[i];
-    stage.right_hand_side[dof] = load[dof] - force[dof] - row_force_[static_cast<Index>(i)];
+    stage.right_hand_side.force[dof] = load[dof] - force[dof] - row_force_[static_cast<Index>(i)];
   }
-  stage.prescribed.setZero(problem.supports.size());  // prescribed displacements are in the base
+  stage.right_hand_side.prescribed.setZero(problem.supports.size());  // prescribed displacements are in the base
   require_no_penetration(problem, base_, state.time + step, stage);
   if (problem.has_moving_obstacles())
     evaluate_obstacle_velocity(problem, middle_, {state.time + 0.5 * step, step, 0.5}, stage);

@@ -78,7 +78,7 @@ void NonlinearContactEquilibrium::evaluate(const SemidiscreteProblem& problem, c
 
 void NonlinearContactEquilibrium::require(const SemidiscreteProblem& problem, const State& state, const Vector& load,
                                           double step, const Vector& increment, const Vector& end, Stage& stage) {
-  for (const Index dof : problem.contact_dofs) stage.right_hand_side[dof] = load[dof] - force_[dof];
+  for (const Index dof : problem.contact_dofs) stage.right_hand_side.force[dof] = load[dof] - force_[dof];
   require_no_penetration(problem, end, state.time + step, stage);
   if (problem.has_moving_obstacles()) {
     middle_ = state.displacement + 0.5 * increment;
@@ -95,8 +95,10 @@ const StageSolution* NonlinearContactEquilibrium::solve(const SemidiscreteProble
   if (!problem.has_contact_dofs()) return nullptr;
   stages.follow(end);
   Stage& stage = stages.stage(0);
-  if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
-  stage.prescribed.setZero(problem.supports.size());  // supported nodes are at their prescribed displacements
+  if (stage.right_hand_side.force.size() != problem.dof_count())
+    stage.right_hand_side.force.setZero(problem.dof_count());
+  stage.right_hand_side.prescribed.setZero(
+      problem.supports.size());  // supported nodes are at their prescribed displacements
   progress_.start(4.0 * std::numeric_limits<double>::epsilon() * (reach_ + largest_on_contact(problem, end)));
   moved_ = false;
   point_.resize(static_cast<Index>(problem.contact_dofs.size()));

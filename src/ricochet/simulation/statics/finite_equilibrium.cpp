@@ -112,9 +112,10 @@ class LoadPath {
   Stage stage_at(double part, const Vector& displacement) {
     find_forces(part, displacement);
     Stage stage = contact_stage(problem_, displacement, right_hand_side_);
-    stage.force_base.resize(0);  // one linear stage
+    stage.linearization.base.resize(0);  // one linear stage
     for (Index i = 0; i < problem_.supports.size(); ++i)
-      stage.prescribed[i] = part * supported_[i] - displacement[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
+      stage.right_hand_side.prescribed[i] =
+          part * supported_[i] - displacement[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
     require_friction(problem_, displacement - origin_, 1.0, stage);
     return stage;
   }

@@ -23,9 +23,9 @@ Vector residual_force(const SemidiscreteProblem& problem, const Vector& displace
 
 Stage contact_stage(const SemidiscreteProblem& problem, const Vector& displacement, Vector right_hand_side) {
   Stage stage;
-  stage.right_hand_side = std::move(right_hand_side);
-  stage.prescribed.setZero(problem.supports.size());
-  if (!problem.internal_force->is_linear()) stage.force_base = displacement;
+  stage.right_hand_side.force = std::move(right_hand_side);
+  stage.right_hand_side.prescribed.setZero(problem.supports.size());
+  if (!problem.internal_force->is_linear()) stage.linearization.base = displacement;
   require_no_penetration(problem, displacement, 0.0, stage);
   return stage;
 }

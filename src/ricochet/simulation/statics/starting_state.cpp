@@ -165,12 +165,13 @@ void find_acceleration(const SemidiscreteProblem& problem, const Vector& support
   once.solves = 1;
   const auto solver = make_step_solver(problem, {{1.0, 0.0, 0.0, StageDofs::massive}}, once);
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
-  stage.prescribed = support_acceleration;
-  stage.force_base.resize(0);  // the unknown is an acceleration
-  stage.eligible = std::move(resting);
+  stage.right_hand_side.prescribed = support_acceleration;
+  stage.linearization.base.resize(0);  // the unknown is an acceleration
+  stage.conditions.eligible = std::move(resting);
   stage.motion.reset();
-  find_curvature_term(problem, state, step, stage.gap_offset);  // the condition is on the sum of G a and this
-  stage.gap_offset_rounding.setZero();
+  find_curvature_term(problem, state, step,
+                      stage.conditions.gap.offset);  // the condition is on the sum of G a and this
+  stage.conditions.gap.rounding.setZero();
   evaluate_obstacle_velocity(problem, state.displacement, {}, stage);
   require_friction(problem, state.velocity, step, stage);
   StageSolution solution;

@@ -9,23 +9,11 @@ class CorotatedStage final : public StageSolver {
   CorotatedStage(std::unique_ptr<StageSolver> solver, const CorotatedFrame& frame)
       : solver_(std::move(solver)), frame_(frame) {}
 
-  void solve(const Stage& stage, StageSolution& solution) override {
-    update_rows(*stage.rows);
-    corotated_stage_.rows = rows_;
-    frame_.rotate_back(stage.right_hand_side, corotated_stage_.right_hand_side);
-    corotated_stage_.prescribed = stage.prescribed;
-    corotated_stage_.eligible = stage.eligible;
-    corotated_stage_.gap_offset = stage.gap_offset;
-    corotated_stage_.gap_offset_rounding = stage.gap_offset_rounding;
-    corotated_stage_.gap_factor = stage.gap_factor;
-    corotated_stage_.slip_factor = stage.slip_factor;
-    corotated_stage_.slip_offset = stage.slip_offset;
-    corotated_stage_.slip_offset_rounding = stage.slip_offset_rounding;
-    corotated_stage_.frictionless = stage.frictionless;
-    corotated_stage_.start_gap = stage.start_gap;
-    corotated_stage_.start_normal_reaction = stage.start_normal_reaction;
-    corotated_stage_.start_tangential_reaction = stage.start_tangential_reaction;
-    solver_->solve(corotated_stage_, solution);
+  void solve(const LinearStage& stage, StageSolution& solution) override {
+    update_rows(stage.rows);
+    frame_.rotate_back(stage.right_hand_side.force, right_hand_side_.force);
+    right_hand_side_.prescribed = stage.right_hand_side.prescribed;
+    solver_->solve({*rows_, right_hand_side_, stage.conditions, stage.start}, solution);
     frame_.rotate(solution.increment);
     frame_.rotate(solution.contact_increment);
   }
@@ -73,7 +61,7 @@ class CorotatedStage final : public StageSolver {
 
   std::unique_ptr<StageSolver> solver_;
   const CorotatedFrame& frame_;
-  Stage corotated_stage_;
+  RightHandSide right_hand_side_;
   std::shared_ptr<ContactRows> rows_;
   const ContactRows* source_ = nullptr;
   std::vector<long> source_revision_;

@@ -55,28 +55,29 @@ void ContactCandidates::load_history(const Snapshot& snapshot, const std::string
 }
 
 /// Uses the motion of earlier stages, or that which this one requires if points are inside at δ = 0.
-void ContactCandidates::estimate_reach(const Stage& stage) {
+void ContactCandidates::estimate_reach(const ContactConditions& conditions) {
   double deepest = 0.0;
-  for (Index i = 0; i < stage.gap_offset.size(); ++i) {
-    if (stage.eligible[static_cast<std::size_t>(i)] != 0) deepest = std::max(deepest, -stage.gap_offset[i]);
+  for (Index i = 0; i < conditions.gap.offset.size(); ++i) {
+    if (conditions.eligible[static_cast<std::size_t>(i)] != 0) deepest = std::max(deepest, -conditions.gap.offset[i]);
   }
-  reach_ = reserve * std::max(ranks_->maximum(deepest), stage.gap_factor * largest_motion_);
+  reach_ = reserve * std::max(ranks_->maximum(deepest), conditions.gap.factor * largest_motion_);
 }
 
-bool ContactCandidates::is_below(const Stage& stage, Index point, double limit, bool candidates) const {
+bool ContactCandidates::is_below(const ContactConditions& conditions, Index point, double limit,
+                                 bool candidates) const {
   const auto at = static_cast<std::size_t>(point);
-  return stage.eligible[at] != 0 && (number_[at] >= 0) == candidates && stage.gap_offset[point] <= limit;
+  return conditions.eligible[at] != 0 && (number_[at] >= 0) == candidates && conditions.gap.offset[point] <= limit;
 }
 
-std::size_t ContactCandidates::count_below(const Stage& stage, double limit, bool candidates) const {
+std::size_t ContactCandidates::count_below(const ContactConditions& conditions, double limit, bool candidates) const {
   std::size_t count = 0;
-  for (Index i = 0; i < stage.gap_offset.size(); ++i) count += is_below(stage, i, limit, candidates) ? 1 : 0;
+  for (Index i = 0; i < conditions.gap.offset.size(); ++i) count += is_below(conditions, i, limit, candidates) ? 1 : 0;
   return count;
 }
 
-bool ContactCandidates::some_may_touch(const Stage& stage) const {
-  for (Index i = 0; i < stage.gap_offset.size(); ++i) {
-    if (stage.eligible[static_cast<std::size_t>(i)] != 0 && stage.gap_offset[i] <= reach_) return true;
+bool ContactCandidates::some_may_touch(const ContactConditions& conditions) const {
+  for (Index i = 0; i < conditions.gap.offset.size(); ++i) {
+    if (conditions.eligible[static_cast<std::size_t>(i)] != 0 && conditions.gap.offset[i] <= reach_) return true;
   }
   return false;
 }
@@ -89,37 +90,38 @@ bool ContactCandidates::are_too_many() const {
   return points_.size() > flood * max_count();
 }
 
-std::vector<Index> ContactCandidates::nearest(const Stage& stage) const {
+std::vector<Index> ContactCandidates::nearest(const ContactConditions& conditions) const {
   const double limit = ahead * reach_;
   std::vector<Index> result;
-  for (Index i = 0; i < stage.gap_offset.size(); ++i) {
-    if (stage.eligible[static_cast<std::size_t>(i)] != 0 && stage.gap_offset[i] <= limit) result.push_back(i);
+  for (Index i = 0; i < conditions.gap.offset.size(); ++i) {
+    if (conditions.eligible[static_cast<std::size_t>(i)] != 0 && conditions.gap.offset[i] <= limit) result.push_back(i);
   }
   if (result.size() <= max_count()) return result;
   const auto last = result.begin() + static_cast<std::ptrdiff_t>(max_count());
   std::nth_element(result.begin(), last, result.end(), [&](Index a, Index b) {
-    return std::pair(stage.gap_offset[a], a) < std::pair(stage.gap_offset[b], b);
+    return std::pair(conditions.gap.offset[a], a) < std::pair(conditions.gap.offset[b], b);
   });
   result.erase(last, result.end());
   std::sort(result.begin(), result.end());
   return result;
 }
 
-std::vector<Index> ContactCandidates::approaching(const Stage& stage) const {
-  if (count_below(stage, reach_, false) == 0) return {};
-  std::vector<Index> result = nearest(stage);
+std::vector<Index> ContactCandidates::approaching(const ContactConditions& conditions) const {
+  if (count_below(conditions, reach_, false) == 0) return {};
+  std::vector<Index> result = nearest(conditions);
   std::erase_if(result, [&](Index point) { return number(point) >= 0; });
   return result;
 }
 
-std::vector<Index> ContactCandidates::penetrating(const Stage& stage, const Vector& motion, bool left_out) const {
+std::vector<Index> ContactCandidates::penetrating(const ContactConditions& conditions, const Vector& motion,
+                                                  bool left_out) const {
   std::vector<Index> result;
   double deepest = 0.0;
-  const auto gap = [&](Index point) { return stage.gap_offset[point] + stage.gap_factor * motion[point]; };
+  const auto gap = [&](Index point) { return conditions.gap.offset[point] + conditions.gap.factor * motion[point]; };
   for (Index i = 0; i < motion.size(); ++i) {
     const auto at = static_cast<std::size_t>(i);
     const bool was_included = number_[at] >= 0 && !left_out;
-    if (stage.eligible[at] == 0 || was_included || !(gap(i) < -stage.gap_offset_rounding[i])) continue;
+    if (conditions.eligible[at] == 0 || was_included || !(gap(i) < -conditions.gap.rounding[i])) continue;
     result.push_back(i);
     deepest = std::max(deepest, -gap(i));
   }
@@ -129,23 +131,23 @@ std::vector<Index> ContactCandidates::penetrating(const Stage& stage, const Vect
   return result;
 }
 
-void ContactCandidates::update_history(const Stage& stage, const Vector& motion, std::size_t closed) {
+void ContactCandidates::update_history(const ContactConditions& conditions, const Vector& motion, std::size_t closed) {
   closed_ = closed;
   largest_motion_ = 0.0;
   for (Index i = 0; i < motion.size(); ++i) {
-    if (stage.eligible[static_cast<std::size_t>(i)] != 0)
+    if (conditions.eligible[static_cast<std::size_t>(i)] != 0)
       largest_motion_ = std::max(largest_motion_, std::abs(motion[i]));
   }
   largest_motion_ = ranks_->maximum(largest_motion_);
 }
 
-std::vector<Index> ContactCandidates::worth_keeping(const Stage& stage) {
+std::vector<Index> ContactCandidates::worth_keeping(const ContactConditions& conditions) {
   if (points_.size() <= few_points) return {};
-  const std::size_t near = std::min(count_below(stage, ahead * reach_, true), max_count());
+  const std::size_t near = std::min(count_below(conditions, ahead * reach_, true), max_count());
   const bool oversized = points_.size() > oversize * std::max(near, few_points);
   oversized_stages_ = oversized ? oversized_stages_ + 1 : 0;
   if (oversized_stages_ < patience && !are_too_many()) return {};
-  std::vector<Index> result = nearest(stage);
+  std::vector<Index> result = nearest(conditions);
   std::erase_if(result, [&](Index point) { return number(point) < 0; });
   return result;
 }

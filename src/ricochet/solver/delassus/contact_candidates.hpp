@@ -28,31 +28,32 @@ class ContactCandidates {
   void load_history(const Snapshot& snapshot, const std::string& name);
 
   /// Estimates, before a stage, how far it may move points. Collective over the ranks.
-  void estimate_reach(const Stage& stage);
+  void estimate_reach(const ContactConditions& conditions);
   /// True if some eligible point may touch in this stage: its y at δ = 0 is within reach of the motion of earlier
   /// stages.
-  [[nodiscard]] bool some_may_touch(const Stage& stage) const;
+  [[nodiscard]] bool some_may_touch(const ContactConditions& conditions) const;
   /// Points that may touch and are no candidates, with those that will be near soon, so that the set does not grow in
   /// every step. Of many, the nearest: a body that moves far in a step may touch with its whole surface, and does with
   /// a small part. Empty if none may touch.
-  [[nodiscard]] std::vector<Index> approaching(const Stage& stage) const;
+  [[nodiscard]] std::vector<Index> approaching(const ContactConditions& conditions) const;
   /// After a stage with this G δ (per point): eligible points that penetrate by more than rounding; of many, the
   /// deepest. Candidates are checked only if they were `left_out` of the stage. Empty: the stage is solved.
-  [[nodiscard]] std::vector<Index> penetrating(const Stage& stage, const Vector& motion, bool left_out) const;
+  [[nodiscard]] std::vector<Index> penetrating(const ContactConditions& conditions, const Vector& motion,
+                                               bool left_out) const;
   /// Remembers how far a solved stage has moved points, and how many carry a force. Collective over the ranks.
-  void update_history(const Stage& stage, const Vector& motion, std::size_t closed);
+  void update_history(const ContactConditions& conditions, const Vector& motion, std::size_t closed);
   /// Candidates to be kept, if they have long been many more than the points near the obstacle, or are very many;
   /// empty: no change.
-  [[nodiscard]] std::vector<Index> worth_keeping(const Stage& stage);
+  [[nodiscard]] std::vector<Index> worth_keeping(const ContactConditions& conditions);
   /// True if there are so many candidates that those far from the obstacle should be dropped at once.
   [[nodiscard]] bool are_too_many() const;
   /// Eligible points near the obstacle, candidates or not; of many, the nearest. Ascending.
-  [[nodiscard]] std::vector<Index> nearest(const Stage& stage) const;
+  [[nodiscard]] std::vector<Index> nearest(const ContactConditions& conditions) const;
 
  private:
   /// True if the point is eligible, among the `candidates` or not, and its gap at δ = 0 is at most `limit`.
-  [[nodiscard]] bool is_below(const Stage& stage, Index point, double limit, bool candidates) const;
-  [[nodiscard]] std::size_t count_below(const Stage& stage, double limit, bool candidates) const;
+  [[nodiscard]] bool is_below(const ContactConditions& conditions, Index point, double limit, bool candidates) const;
+  [[nodiscard]] std::size_t count_below(const ContactConditions& conditions, double limit, bool candidates) const;
   [[nodiscard]] std::size_t max_count() const;
 
   const Ranks* ranks_;

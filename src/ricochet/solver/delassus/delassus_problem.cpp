@@ -205,29 +205,30 @@ void DelassusProblem::append_supported() {
   supported_.setFromTriplets(entries.begin(), entries.end());
 }
 
-void DelassusProblem::find_offsets(const Stage& stage, const Vector& y) {
+void DelassusProblem::find_offsets(const LinearStage& stage, const Vector& y) {
   columns_.motion(y, rotating_rows_.any() ? of_columns_ : contact_.offset);
   if (rotating_rows_.any()) rotating_rows_.rotate(of_columns_, contact_.offset);
-  if (supported_.nonZeros() > 0) contact_.offset.noalias() += supported_ * stage.prescribed;
+  if (supported_.nonZeros() > 0) contact_.offset.noalias() += supported_ * stage.right_hand_side.prescribed;
   const Index tangents = problem_.dimension - 1;
   for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
     const Index point = candidates_.points()[i];
     const Index row = contact_.row_offset[i];
     const Index count = contact_.row_offset[i + 1] - row - 1;
-    contact_.offset[row] += stage.gap_offset[point] / stage.gap_factor;
-    contact_.offset_rounding[row] = stage.gap_offset_rounding[point] / stage.gap_factor;
+    contact_.offset[row] += stage.conditions.gap.offset[point] / stage.conditions.gap.factor;
+    contact_.offset_rounding[row] = stage.conditions.gap.rounding[point] / stage.conditions.gap.factor;
     if (count == 0) continue;
-    if (stage.slip_offset.size() == 0) {
+    if (stage.conditions.slip.offset.size() == 0) {
       contact_.offset_rounding.segment(row + 1, count).setZero();
       continue;
     }
     contact_.offset.segment(row + 1, count) +=
-        stage.slip_offset.segment(point * tangents, tangents) / stage.slip_factor;
-    contact_.offset_rounding.segment(row + 1, count).setConstant(stage.slip_offset_rounding[point] / stage.slip_factor);
+        stage.conditions.slip.offset.segment(point * tangents, tangents) / stage.conditions.slip.factor;
+    contact_.offset_rounding.segment(row + 1, count)
+        .setConstant(stage.conditions.slip.rounding[point] / stage.conditions.slip.factor);
   }
 }
 
-void DelassusProblem::solve(const Stage& stage, Vector& y, StageSolution& solution) {
+void DelassusProblem::solve(const LinearStage& stage, Vector& y, StageSolution& solution) {
   const Index points = problem_.contact.size();
   solution.normal_reaction.setZero(points);
   if (friction_) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
@@ -236,7 +237,8 @@ void DelassusProblem::solve(const Stage& stage, Vector& y, StageSolution& soluti
   iterations_ = 0;
   solution.clear_mean();
   set_rows(stage);
-  if (std::none_of(stage.eligible.begin(), stage.eligible.end(), [](char e) { return e != 0; })) return;
+  if (std::none_of(stage.conditions.eligible.begin(), stage.conditions.eligible.end(), [](char e) { return e != 0; }))
+    return;
   add_initial_candidates(stage);
   if (!all_points_ && !choose_candidates(stage)) return;
   add_initial_candidates(stage);  // candidates that were dropped
@@ -256,15 +258,16 @@ void DelassusProblem::solve(const Stage& stage, Vector& y, StageSolution& soluti
 }
 
 /// Returns false if nothing can touch.
-bool DelassusProblem::choose_candidates(const Stage& stage) {
-  candidates_.estimate_reach(stage);
-  if (!candidates_required_ && !candidates_.some_may_touch(stage)) return false;
-  if (const std::vector<Index> kept = candidates_.worth_keeping(stage); !kept.empty()) start_again_with(kept);
-  if (const std::vector<Index> near = candidates_.approaching(stage); !near.empty()) add_candidates(near);
+bool DelassusProblem::choose_candidates(const LinearStage& stage) {
+  candidates_.estimate_reach(stage.conditions);
+  if (!candidates_required_ && !candidates_.some_may_touch(stage.conditions)) return false;
+  if (const std::vector<Index> kept = candidates_.worth_keeping(stage.conditions); !kept.empty())
+    start_again_with(kept);
+  if (const std::vector<Index> near = candidates_.approaching(stage.conditions); !near.empty()) add_candidates(near);
   return !candidates_.points().empty();
 }
 
-void DelassusProblem::write_solution(const Stage& stage, StageSolution& solution) const {
+void DelassusProblem::write_solution(const LinearStage& stage, StageSolution& solution) const {
   const Vector& reaction = contact_solution_.reaction;
   solution.iterations += iterations_;
   const Index tangents = problem_.dimension - 1;
@@ -279,13 +282,13 @@ void DelassusProblem::write_solution(const Stage& stage, StageSolution& solution
   if (massless_nodes_ && massless_nodes_->mean() != ReactionMean::end) write_mean_reactions(stage, solution);
 }
 
-bool DelassusProblem::add_penetrating(const Stage& stage, const Vector& increment, StageSolution& solution) {
-  if (massless_nodes_) massless_nodes_->find_motion(*stage.rows, solution, increment, solution.contact_increment);
-  stage.rows->normal_motion(massless_nodes_ ? solution.contact_increment : increment, motion_);
-  std::vector<Index> found = candidates_.penetrating(stage, motion_, !candidates_active_);
+bool DelassusProblem::add_penetrating(const LinearStage& stage, const Vector& increment, StageSolution& solution) {
+  if (massless_nodes_) massless_nodes_->find_motion(stage.rows, solution, increment, solution.contact_increment);
+  stage.rows.normal_motion(massless_nodes_ ? solution.contact_increment : increment, motion_);
+  std::vector<Index> found = candidates_.penetrating(stage.conditions, motion_, !candidates_active_);
   candidates_required_ = !found.empty();
   if (!candidates_required_) {
-    candidates_.update_history(stage, motion_, candidates_active_ ? closed_points() : 0);
+    candidates_.update_history(stage.conditions, motion_, candidates_active_ ? closed_points() : 0);
     return false;
   }
   std::erase_if(found, [&](Index point) { return candidates_.number(point) >= 0; });
@@ -301,16 +304,16 @@ std::size_t DelassusProblem::closed_points() const {
 }
 
 /// Sets friction in stages that have a slip rate, at points where these do not leave it out.
-void DelassusProblem::choose_friction(const Stage& stage) {
+void DelassusProblem::choose_friction(const LinearStage& stage) {
   for (std::size_t i = 0; i < candidates_.points().size(); ++i)
-    contact_.eligible[i] = stage.eligible[static_cast<std::size_t>(candidates_.points()[i])];
+    contact_.eligible[i] = stage.conditions.eligible[static_cast<std::size_t>(candidates_.points()[i])];
   if (!friction_) return;
   contact_.friction_coefficient = coefficient_;
   contact_.friction_bound = bound_;
   for (Index i = 0; i < coefficient_.size(); ++i) {
     const auto point = static_cast<std::size_t>(candidates_.points()[static_cast<std::size_t>(i)]);
-    const bool left_out = !stage.frictionless.empty() && stage.frictionless[point] != 0;
-    if (stage.slip_offset.size() > 0 && !left_out) continue;
+    const bool left_out = !stage.conditions.frictionless.empty() && stage.conditions.frictionless[point] != 0;
+    if (stage.conditions.slip.offset.size() > 0 && !left_out) continue;
     contact_.friction_coefficient[i] = 0.0;
     contact_.friction_bound[i] = 0.0;
   }

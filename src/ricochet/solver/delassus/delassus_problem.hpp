@@ -31,10 +31,10 @@ class DelassusProblem {
 
   /// Computes the reactions on the candidates, adds Yρ to y and the iterations to those of the solution. Throws
   /// Error(not_converged), and Error(invalid_input) if no motion of linear bodies meets the conditions of contact.
-  void solve(const Stage& stage, Vector& y, StageSolution& solution);
+  void solve(const LinearStage& stage, Vector& y, StageSolution& solution);
   /// Checks the resulting increment: returns false if no other point penetrates. True: those that do are candidates
   /// now, and the stage must be solved again. Completes the solution by m for a stage with massless contact nodes.
-  bool add_penetrating(const Stage& stage, const Vector& increment, StageSolution& solution);
+  bool add_penetrating(const LinearStage& stage, const Vector& increment, StageSolution& solution);
 
   /// Renews columns and W, with the rows of the next stage, after the factor has been made anew.
   void invalidate_columns();
@@ -59,14 +59,14 @@ class DelassusProblem {
   void visit_rows(Index point, const Enter& enter) const;
   template <class Enter>
   void visit_columns(Index point, const Enter& enter) const;
-  void set_rows(const Stage& stage);
+  void set_rows(const LinearStage& stage);
   void set_scale(double scale);
   void scale_warm_start(double ratio);
   void renew_columns(const std::vector<char>& is_new);
   void use_condensed(Matrix w);
   void add_candidates(std::vector<Index> points);
   void append_candidates(const std::vector<Index>& points);
-  bool choose_candidates(const Stage& stage);
+  bool choose_candidates(const LinearStage& stage);
   void start_again_with(const std::vector<Index>& points);
   void sort_by_tree_position(std::vector<Index>& points) const;
   [[nodiscard]] SparseMatrix transposed_columns(const std::vector<Index>& points, const std::vector<int>& unknown,
@@ -74,19 +74,19 @@ class DelassusProblem {
   [[nodiscard]] Matrix release_column_product();
   void set_contact_operator(Matrix w);
   void use_end_weight(double theta);
-  void add_initial_candidates(const Stage& stage);
-  void solve_mean(const Stage& stage);
+  void add_initial_candidates(const LinearStage& stage);
+  void solve_mean(const LinearStage& stage);
   void append_columns(const std::vector<Index>& points, Matrix& w);
   void append_supported();
   void regularize_directions_without_trace(Matrix& w) const;
-  void find_offsets(const Stage& stage, const Vector& y);
-  void choose_friction(const Stage& stage);
+  void find_offsets(const LinearStage& stage, const Vector& y);
+  void choose_friction(const LinearStage& stage);
   [[nodiscard]] bool try_contact();
   void solve_contact();
   void log_iterations() const;
   [[nodiscard]] std::size_t closed_points() const;
-  void write_solution(const Stage& stage, StageSolution& solution) const;
-  void write_mean_reactions(const Stage& stage, StageSolution& solution) const;
+  void write_solution(const LinearStage& stage, StageSolution& solution) const;
+  void write_mean_reactions(const LinearStage& stage, StageSolution& solution) const;
   [[noreturn]] void throw_no_mean() const;
   [[noreturn]] void throw_not_solved() const;
   [[noreturn]] void throw_contradiction(const std::vector<Index>& contradiction) const;

@@ -11,8 +11,8 @@
 namespace ricochet {
 
 /// Updates the rows of the stage: for candidates with changed rows, renews W, and columns if rows do more than rotate.
-void DelassusProblem::set_rows(const Stage& stage) {
-  rows_ = stage.rows.get();
+void DelassusProblem::set_rows(const LinearStage& stage) {
+  rows_ = &stage.rows;
   const bool all_new = has_new_factor_;
   has_new_factor_ = false;
   if (all_new) set_scale(factor_.scale());
@@ -118,7 +118,7 @@ void DelassusProblem::use_end_weight(double theta) {
   contact_.contact_operator = make_dense_operator(std::move(w));
 }
 
-void DelassusProblem::add_initial_candidates(const Stage& stage) {
+void DelassusProblem::add_initial_candidates(const LinearStage& stage) {
   std::vector<Index> pressing;
   if (massless_nodes_) pressing = pressing_at_start(massless_nodes_->mean(), stage);
   candidates_required_ = candidates_required_ || !pressing.empty();
@@ -126,16 +126,16 @@ void DelassusProblem::add_initial_candidates(const Stage& stage) {
   if (!pressing.empty()) add_candidates(pressing);
 }
 
-void DelassusProblem::solve_mean(const Stage& stage) {
+void DelassusProblem::solve_mean(const LinearStage& stage) {
   const Index tangents = problem_.dimension - 1;
   Vector start_gap(contact_.points()), start = Vector::Zero(contact_.rows());
   for (Index i = 0; i < contact_.points(); ++i) {
     const Index point = candidates_.points()[static_cast<std::size_t>(i)];
     const Index row = contact_.row_offset[static_cast<std::size_t>(i)];
-    start_gap[i] = stage.start_gap[point] / stage.gap_factor;
-    start[row] = scale_ * stage.start_normal_reaction[point];
+    start_gap[i] = stage.start.gap[point] / stage.conditions.gap.factor;
+    start[row] = scale_ * stage.start.normal_reaction[point];
     for (Index k = 1; row + k < contact_.row_offset[static_cast<std::size_t>(i) + 1]; ++k)
-      start[row + k] = -scale_ * stage.start_tangential_reaction[point * tangents + k - 1];
+      start[row + k] = -scale_ * stage.start.tangential_reaction[point * tangents + k - 1];
   }
   const Vector offset = contact_.offset;
   const auto solve = [&] { return try_contact(); };
@@ -162,13 +162,13 @@ void DelassusProblem::solve_mean(const Stage& stage) {
   solver_->set_warm_start(contact_solution_.reaction);
 }
 
-void DelassusProblem::write_mean_reactions(const Stage& stage, StageSolution& solution) const {
+void DelassusProblem::write_mean_reactions(const LinearStage& stage, StageSolution& solution) const {
   const Index tangents = problem_.dimension - 1;
   solution.mean_normal_reaction.setZero(solution.normal_reaction.size());
   solution.mean_tangential_reaction = solution.tangential_reaction;
   // Gaps and slips are gap_factor times the motions of the contact problem.
-  solution.path_contact_work = -stage.gap_factor * mean_.path_work() / scale_;
-  solution.path_friction_work = stage.gap_factor * mean_.friction_work() / scale_;
+  solution.path_contact_work = -stage.conditions.gap.factor * mean_.path_work() / scale_;
+  solution.path_friction_work = stage.conditions.gap.factor * mean_.friction_work() / scale_;
   solution.end_weight = mean_.end_weight();
   for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
     const Index point = candidates_.points()[i], row = contact_.row_offset[i];

@@ -27,7 +27,7 @@ class DirectStage final : public StageSolver {
   DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, AnalysedOperator analysed,
               const StepSolverOptions& options, FactoredStage* condensed_stage);
 
-  void solve(const Stage& stage, StageSolution& solution) override;
+  void solve(const LinearStage& stage, StageSolution& solution) override;
   void refactorize(const Vector& displacement) override;
   void show_contact() const override { stage_.report(); }
   void observe_contact(const ContactObserver& observer) override { stage_.observe(observer); }
@@ -38,7 +38,7 @@ class DirectStage final : public StageSolver {
   [[nodiscard]] FactoredStage* factored() override { return &stage_; }
 
  private:
-  [[nodiscard]] const Vector& right_hand_side(const Stage& stage);
+  [[nodiscard]] const Vector& right_hand_side(const LinearStage& stage);
 
   const SemidiscreteProblem& problem_;
   OperatorCoefficients coefficients_;
@@ -61,14 +61,14 @@ void DirectStage::refactorize(const Vector& displacement) {
 }
 
 /// Computes b − A_fs δ_s.
-const Vector& DirectStage::right_hand_side(const Stage& stage) {
-  if (problem_.supports.size() == 0 || stage.prescribed.isZero(0.0)) return stage.right_hand_side;
-  right_hand_side_ = stage.right_hand_side;
-  right_hand_side_.noalias() -= supported_.transpose() * stage.prescribed;
+const Vector& DirectStage::right_hand_side(const LinearStage& stage) {
+  if (problem_.supports.size() == 0 || stage.right_hand_side.prescribed.isZero(0.0)) return stage.right_hand_side.force;
+  right_hand_side_ = stage.right_hand_side.force;
+  right_hand_side_.noalias() -= supported_.transpose() * stage.right_hand_side.prescribed;
   return right_hand_side_;
 }
 
-void DirectStage::solve(const Stage& stage, StageSolution& solution) {
+void DirectStage::solve(const LinearStage& stage, StageSolution& solution) {
   solution.iterations = 0;
   // Dofs that are neither solved for nor supported stay zero from the first step on.
   if (solution.increment.size() != problem_.dof_count()) solution.increment.setZero(problem_.dof_count());

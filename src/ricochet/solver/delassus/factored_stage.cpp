@@ -45,7 +45,7 @@ void FactoredStage::refactorize(const SemidiscreteProblem& problem, const Operat
 }
 
 /// Computes y = L⁻¹P 2ᵏ b, y += Yρ, δ = Pᵀ L⁻ᵀ y; repeated with more contact points if others have penetrated.
-void FactoredStage::solve(const Stage& stage, const Vector& right_hand_side, StageSolution& solution,
+void FactoredStage::solve(const LinearStage& stage, const Vector& right_hand_side, StageSolution& solution,
                           Vector& increment) {
   if (!factor_.positive_definite()) throw std::logic_error("a stage is solved although its operator was refused");
   const double scale = factor_.scale();

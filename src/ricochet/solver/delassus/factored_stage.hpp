@@ -24,7 +24,7 @@ class FactoredStage {
   /// Computes, from b per dof of the problem, the reactions, and δ on the dofs of the factor. The other entries of
   /// `increment` are unchanged, and are part of the motion by which the gaps of points outside the contact problem are
   /// judged.
-  void solve(const Stage& stage, const Vector& right_hand_side, StageSolution& solution, Vector& increment);
+  void solve(const LinearStage& stage, const Vector& right_hand_side, StageSolution& solution, Vector& increment);
 
   /// Refactorizes with other values of A on the dofs of the factor, of the same pattern.
   void refactorize(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,

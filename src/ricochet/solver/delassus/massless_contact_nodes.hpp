@@ -55,11 +55,12 @@ class MasslessContactNodes {
 
 /// Eligible points with a normal reaction at the start of a step, which a mean contains wherever the points move; empty
 /// if the end reactions act.
-inline std::vector<Index> pressing_at_start(ReactionMean mean, const Stage& stage) {
+inline std::vector<Index> pressing_at_start(ReactionMean mean, const LinearStage& stage) {
   std::vector<Index> result;
   if (mean == ReactionMean::end) return result;
-  for (Index i = 0; i < stage.start_normal_reaction.size(); ++i) {
-    if (stage.start_normal_reaction[i] > 0.0 && stage.eligible[static_cast<std::size_t>(i)] != 0) result.push_back(i);
+  for (Index i = 0; i < stage.start.normal_reaction.size(); ++i) {
+    if (stage.start.normal_reaction[i] > 0.0 && stage.conditions.eligible[static_cast<std::size_t>(i)] != 0)
+      result.push_back(i);
   }
   return result;
 }

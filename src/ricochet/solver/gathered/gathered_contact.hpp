@@ -32,7 +32,7 @@ class GatheredContact {
   /// Gathers a stage at the root, with these points of this rank; others are not eligible there. The root solves for
   /// the correction of an increment x: its offsets are q + sGx and p + σB_T x. Offsets, their rounding, eligibility and
   /// start values are transferred; forces, motion and obstacles are not. `points` is the same as that of scatter().
-  void gather(const Stage& stage, const Vector& x, const std::vector<Index>& points, Stage& at_root);
+  void gather(const LinearStage& stage, const Vector& x, const std::vector<Index>& points, Stage& at_root);
   /// Adds the reactions and iterations of the solution at the root on these points; the status of a point becomes the
   /// larger one. Mean reactions and their weight are those of the root, which also has the works of the path: the
   /// ranks' works are summed.
@@ -48,7 +48,7 @@ class GatheredContact {
   [[nodiscard]] std::shared_ptr<ContactRows> empty_rows() const;
   void gather_rows(const ContactRows& rows);
   [[nodiscard]] std::shared_ptr<ContactRows> read_rows() const;
-  void write_points(const Stage& stage, const std::vector<Index>& points, std::vector<double>& message) const;
+  void write_points(const LinearStage& stage, const std::vector<Index>& points, std::vector<double>& message) const;
   void read_points(Stage& at_root) const;
   void write_solution(const StageSolution& at_root, int rank, const std::vector<std::int64_t>& points,
                       std::vector<double>& message) const;

@@ -35,37 +35,40 @@ void add_value(Vector& values, Index i, double value) {
 
 }  // namespace
 
-void GatheredContact::gather(const Stage& stage, const Vector& x, const std::vector<Index>& points, Stage& at_root) {
+void GatheredContact::gather(const LinearStage& stage, const Vector& x, const std::vector<Index>& points,
+                             Stage& at_root) {
   const Ranks& ranks = *problem_.ranks;
-  if (problem_.contact.follows_motion()) gather_rows(*stage.rows);
-  stage.rows->normal_motion(x, motion_);
-  if (stage.slip_offset.size() > 0) stage.rows->tangential_motion(x, slip_);
+  if (problem_.contact.follows_motion()) gather_rows(stage.rows);
+  stage.rows.normal_motion(x, motion_);
+  if (stage.conditions.slip.offset.size() > 0) stage.rows.tangential_motion(x, slip_);
   Ranks::ForEach<double> sent(static_cast<std::size_t>(ranks.size()));
   if (!points.empty()) write_points(stage, points, sent[static_cast<std::size_t>(nodes_.root())]);
   received_ = ranks.exchange(std::move(sent));
-  at_root.gap_factor = stage.gap_factor;
-  at_root.slip_factor = stage.slip_factor;
+  at_root.conditions.gap.factor = stage.conditions.gap.factor;
+  at_root.conditions.slip.factor = stage.conditions.slip.factor;
   if (is_root()) read_points(at_root);
 }
 
-void GatheredContact::write_points(const Stage& stage, const std::vector<Index>& points,
+void GatheredContact::write_points(const LinearStage& stage, const std::vector<Index>& points,
                                    std::vector<double>& message) const {
   const Index tangents = d_ - 1;
-  const bool slips = stage.slip_offset.size() > 0;
-  for (const bool has :
-       {slips, !stage.frictionless.empty(), stage.start_gap.size() > 0, stage.start_tangential_reaction.size() > 0})
+  const bool slips = stage.conditions.slip.offset.size() > 0;
+  for (const bool has : {slips, !stage.conditions.frictionless.empty(), stage.start.gap.size() > 0,
+                         stage.start.tangential_reaction.size() > 0})
     message.push_back(has ? 1.0 : 0.0);
   for (const Index point : points) {
     const auto at = static_cast<std::size_t>(point);
-    message.insert(message.end(),
-                   {static_cast<double>(point), static_cast<double>(stage.eligible[at]),
-                    stage.gap_offset[point] + stage.gap_factor * motion_[point], stage.gap_offset_rounding[point],
-                    stage.frictionless.empty() ? 0.0 : static_cast<double>(stage.frictionless[at]),
-                    value_of(stage.slip_offset_rounding, point), value_of(stage.start_gap, point),
-                    value_of(stage.start_normal_reaction, point)});
+    message.insert(
+        message.end(),
+        {static_cast<double>(point), static_cast<double>(stage.conditions.eligible[at]),
+         stage.conditions.gap.offset[point] + stage.conditions.gap.factor * motion_[point],
+         stage.conditions.gap.rounding[point],
+         stage.conditions.frictionless.empty() ? 0.0 : static_cast<double>(stage.conditions.frictionless[at]),
+         value_of(stage.conditions.slip.rounding, point), value_of(stage.start.gap, point),
+         value_of(stage.start.normal_reaction, point)});
     for (Index row = point * tangents; row < (point + 1) * tangents; ++row) {
-      message.push_back(slips ? stage.slip_offset[row] + stage.slip_factor * slip_[row] : 0.0);
-      message.push_back(value_of(stage.start_tangential_reaction, row));
+      message.push_back(slips ? stage.conditions.slip.offset[row] + stage.conditions.slip.factor * slip_[row] : 0.0);
+      message.push_back(value_of(stage.start.tangential_reaction, row));
     }
   }
 }
@@ -77,33 +80,33 @@ void GatheredContact::read_points(Stage& at_root) const {
     for (std::size_t k = 0; k < stage_parts && !from.empty(); ++k) has[k] = has[k] || from[k] != 0.0;
   }
   at_root.rows = rows_;
-  at_root.prescribed.resize(0);
-  at_root.eligible.assign(static_cast<std::size_t>(count), 0);
-  at_root.gap_offset.setZero(count);
-  at_root.gap_offset_rounding.setZero(count);
-  at_root.slip_offset.setZero(has[stage_part::slip] ? count * tangents : 0);
-  at_root.slip_offset_rounding.setZero(has[stage_part::slip] ? count : 0);
-  at_root.frictionless.assign(has[stage_part::frictionless] ? static_cast<std::size_t>(count) : 0, 0);
-  at_root.start_gap.setZero(has[stage_part::start] ? count : 0);
-  at_root.start_normal_reaction.setZero(has[stage_part::start] ? count : 0);
-  at_root.start_tangential_reaction.setZero(has[stage_part::start_friction] ? count * tangents : 0);
+  at_root.right_hand_side.prescribed.resize(0);
+  at_root.conditions.eligible.assign(static_cast<std::size_t>(count), 0);
+  at_root.conditions.gap.offset.setZero(count);
+  at_root.conditions.gap.rounding.setZero(count);
+  at_root.conditions.slip.offset.setZero(has[stage_part::slip] ? count * tangents : 0);
+  at_root.conditions.slip.rounding.setZero(has[stage_part::slip] ? count : 0);
+  at_root.conditions.frictionless.assign(has[stage_part::frictionless] ? static_cast<std::size_t>(count) : 0, 0);
+  at_root.start.gap.setZero(has[stage_part::start] ? count : 0);
+  at_root.start.normal_reaction.setZero(has[stage_part::start] ? count : 0);
+  at_root.start.tangential_reaction.setZero(has[stage_part::start_friction] ? count * tangents : 0);
   for (std::size_t rank = 0; rank < received_.size(); ++rank) {
     NumberReader numbers(received_[rank]);
     for (std::size_t k = 0; k < stage_parts && !numbers.is_at_end(); ++k) numbers.next();
     while (!numbers.is_at_end()) {
       const Index point = number(static_cast<int>(rank), numbers.integer());
       const auto at = static_cast<std::size_t>(point);
-      at_root.eligible[at] = numbers.next() != 0.0 ? 1 : 0;
-      at_root.gap_offset[point] = numbers.next();
-      at_root.gap_offset_rounding[point] = numbers.next();
+      at_root.conditions.eligible[at] = numbers.next() != 0.0 ? 1 : 0;
+      at_root.conditions.gap.offset[point] = numbers.next();
+      at_root.conditions.gap.rounding[point] = numbers.next();
       const bool is_frictionless = numbers.next() != 0.0;
-      if (has[stage_part::frictionless]) at_root.frictionless[at] = is_frictionless ? 1 : 0;
-      set_value(at_root.slip_offset_rounding, point, numbers.next());
-      set_value(at_root.start_gap, point, numbers.next());
-      set_value(at_root.start_normal_reaction, point, numbers.next());
+      if (has[stage_part::frictionless]) at_root.conditions.frictionless[at] = is_frictionless ? 1 : 0;
+      set_value(at_root.conditions.slip.rounding, point, numbers.next());
+      set_value(at_root.start.gap, point, numbers.next());
+      set_value(at_root.start.normal_reaction, point, numbers.next());
       for (Index row = point * tangents; row < (point + 1) * tangents; ++row) {
-        set_value(at_root.slip_offset, row, numbers.next());
-        set_value(at_root.start_tangential_reaction, row, numbers.next());
+        set_value(at_root.conditions.slip.offset, row, numbers.next());
+        set_value(at_root.start.tangential_reaction, row, numbers.next());
       }
     }
   }

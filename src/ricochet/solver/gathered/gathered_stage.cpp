@@ -21,7 +21,7 @@ class GatheredStage final : public StageSolver {
   GatheredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                 const StepSolverOptions& options, GatheredContact& contact);
 
-  void solve(const Stage& stage, StageSolution& solution) override;
+  void solve(const LinearStage& stage, StageSolution& solution) override;
   void refactorize(const Vector&) override {
     throw Error(ErrorKind::invalid_input, "bodies at finite strain cannot be divided among processes");
   }
@@ -102,22 +102,23 @@ GatheredStage::GatheredStage(const SemidiscreteProblem& problem, const OperatorC
   });
 }
 
-void GatheredStage::solve(const Stage& stage, StageSolution& solution) {
+void GatheredStage::solve(const LinearStage& stage, StageSolution& solution) {
   const Ranks& ranks = *problem_.ranks;
   const int d = problem_.dimension;
   prescribed_.setZero(problem_.dof_count());
   prescribe(problem_, stage, prescribed_);
-  right_hand_side_ = stage.right_hand_side;
-  if (problem_.supports.size() > 0) right_hand_side_.noalias() -= supported_.transpose() * stage.prescribed;
+  right_hand_side_ = stage.right_hand_side.force;
+  if (problem_.supports.size() > 0)
+    right_hand_side_.noalias() -= supported_.transpose() * stage.right_hand_side.prescribed;
   ranks.accumulate(right_hand_side_);
   points_.clear();
   for (Index point = 0; point < problem_.contact.size(); ++point) {
-    if (stage.eligible[static_cast<std::size_t>(point)] != 0) points_.push_back(point);
+    if (stage.conditions.eligible[static_cast<std::size_t>(point)] != 0) points_.push_back(point);
   }
   contact_.gather(stage, prescribed_, points_, root_stage_);
-  root_stage_.right_hand_side = contact_.nodes().gather(right_hand_side_, d);
+  root_stage_.right_hand_side.force = contact_.nodes().gather(right_hand_side_, d);
   ranks.run_collectively([&] {
-    if (stage_) stage_->solve(root_stage_, root_solution_);
+    if (stage_) stage_->solve(root_stage_.linear(), root_solution_);
   });
   solution.open_all(problem_.contact.size(), problem_.contact.has_friction() ? d - 1 : 0);
   solution.increment = prescribed_;

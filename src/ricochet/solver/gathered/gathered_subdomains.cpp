@@ -27,7 +27,7 @@ class GatheredSubdomains final : public ContactRegion {
   }
   [[nodiscard]] bool are_made() const override { return active_ > 0; }
   [[nodiscard]] const std::vector<Index>& nodes() const override { return nodes_; }
-  void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
+  void solve(const LinearStage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
   void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
                    Vector& motion) override;
 
@@ -115,7 +115,7 @@ void GatheredSubdomains::make(const std::vector<Index>& points) {
   observe(observer_);
 }
 
-void GatheredSubdomains::solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) {
+void GatheredSubdomains::solve(const LinearStage& stage, const Vector& residual, Vector& x, StageSolution& solution) {
   for (std::size_t i = 0; i < active_; ++i) roots_[i].subdomains->gather(stage, x, points_, residual);
   body_.problem.ranks->run_collectively([&] {
     for (std::size_t i = 0; i < active_; ++i) roots_[i].subdomains->solve_on_root();

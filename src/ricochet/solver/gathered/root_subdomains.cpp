@@ -91,7 +91,7 @@ void RootSubdomains::widen_rows() {
   stage_.rows = region_rows_;
 }
 
-void RootSubdomains::gather(const Stage& stage, const Vector& x, const std::vector<Index>& points,
+void RootSubdomains::gather(const LinearStage& stage, const Vector& x, const std::vector<Index>& points,
                             const Vector& residual) {
   contact_.gather(stage, x, points, stage_);
   if (contact_.is_root()) widen_rows();
@@ -102,7 +102,7 @@ void RootSubdomains::solve_on_root() {
   if (!contact_.is_root()) return;
   solution_.open_all(contact_.point_count(), root_problem_->contact.has_friction() ? body_.problem.dimension - 1 : 0);
   region_x_.setZero(root_problem_->dof_count());
-  subdomains_->solve(stage_, region_residual_, region_x_, solution_);
+  subdomains_->solve(stage_.linear(), region_residual_, region_x_, solution_);
 }
 
 void RootSubdomains::scatter(const std::vector<Index>& points, Vector& x, StageSolution& solution) {

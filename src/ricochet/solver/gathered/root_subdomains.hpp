@@ -48,7 +48,7 @@ class RootSubdomains {
 
   /// Gather the stage and the residual at the root, solve there, and add motion and reactions to the values on the
   /// ranks.
-  void gather(const Stage& stage, const Vector& x, const std::vector<Index>& points, const Vector& residual);
+  void gather(const LinearStage& stage, const Vector& x, const std::vector<Index>& points, const Vector& residual);
   void solve_on_root();
   void scatter(const std::vector<Index>& points, Vector& x, StageSolution& solution);
   /// Adds the contribution of the last solution to the motion of massless contact nodes.

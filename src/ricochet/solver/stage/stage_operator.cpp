@@ -59,23 +59,24 @@ SparseRowMatrix supported_rows(const SemidiscreteProblem& problem, const SparseM
   return extract(matrix, support, problem.supports.size(), every, problem.dof_count());
 }
 
-void find_support_reaction(const SemidiscreteProblem& problem, const Stage& stage, const SparseRowMatrix& supported,
-                           Vector& contact_force, StageSolution& solution) {
+void find_support_reaction(const SemidiscreteProblem& problem, const LinearStage& stage,
+                           const SparseRowMatrix& supported, Vector& contact_force, StageSolution& solution) {
   Vector& reaction = solution.support_reaction;
   reaction.resize(problem.supports.size());
   if (reaction.size() == 0) return;
   contact_force.setZero(problem.dof_count());
-  stage.rows->add_force(solution.acting_normal(), solution.acting_tangential(), contact_force);
+  stage.rows.add_force(solution.acting_normal(), solution.acting_tangential(), contact_force);
   reaction.noalias() = supported * solution.increment;
   for (Index i = 0; i < reaction.size(); ++i) {
     const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-    reaction[i] = reaction[i] - stage.right_hand_side[dof] - contact_force[dof];
+    reaction[i] = reaction[i] - stage.right_hand_side.force[dof] - contact_force[dof];
   }
 }
 
-void prescribe(const SemidiscreteProblem& problem, const Stage& stage, Vector& increment) {
+void prescribe(const SemidiscreteProblem& problem, const LinearStage& stage, Vector& increment) {
   const std::vector<Index>& supported = problem.supports.dofs();
-  for (std::size_t i = 0; i < supported.size(); ++i) increment[supported[i]] = stage.prescribed[static_cast<Index>(i)];
+  for (std::size_t i = 0; i < supported.size(); ++i)
+    increment[supported[i]] = stage.right_hand_side.prescribed[static_cast<Index>(i)];
 }
 
 std::vector<int> number_dofs(const SemidiscreteProblem& problem, const std::vector<int>& dofs) {

@@ -28,11 +28,11 @@ namespace ricochet {
 
 /// Computes the support reactions of a solution, A_s δ − b − Hᵀρ̄ with the rows of supported_rows(). Ranks have a part
 /// each. `contact_force` is work space.
-void find_support_reaction(const SemidiscreteProblem& problem, const Stage& stage, const SparseRowMatrix& supported,
-                           Vector& contact_force, StageSolution& solution);
+void find_support_reaction(const SemidiscreteProblem& problem, const LinearStage& stage,
+                           const SparseRowMatrix& supported, Vector& contact_force, StageSolution& solution);
 
 /// Writes the prescribed values of a stage to its supported dofs. `increment` is per dof.
-void prescribe(const SemidiscreteProblem& problem, const Stage& stage, Vector& increment);
+void prescribe(const SemidiscreteProblem& problem, const LinearStage& stage, Vector& increment);
 
 /// Numbers of the given dofs: per dof of the problem its index in the list, or −1.
 [[nodiscard]] std::vector<int> number_dofs(const SemidiscreteProblem& problem, const std::vector<int>& dofs);

@@ -17,7 +17,7 @@ class StageSolver {
  public:
   virtual ~StageSolver() = default;
   /// Throws Error(not_converged), which names the failed part.
-  virtual void solve(const Stage& stage, StageSolution& solution) = 0;
+  virtual void solve(const LinearStage& stage, StageSolution& solution) = 0;
   /// Shows the contact problem of the last solution to the observer, if it had one: for rows that follow the motion,
   /// only that of the last iteration belongs to the step.
   virtual void show_contact() const = 0;

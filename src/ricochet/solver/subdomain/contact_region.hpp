@@ -21,7 +21,7 @@ class ContactRegion {
   [[nodiscard]] virtual const std::vector<Index>& nodes() const = 0;
 
   /// Solves, from the residual b − A x of the whole body without reactions, for x near the contact and the reactions.
-  virtual void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) = 0;
+  virtual void solve(const LinearStage& stage, const Vector& residual, Vector& x, StageSolution& solution) = 0;
   /// For a stage with massless contact nodes: computes the contact motion m of the last solution (stage.hpp) on contact
   /// nodes, from δ per dof.
   virtual void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,

@@ -46,9 +46,12 @@ Subdomain::Subdomain(const SemidiscreteProblem& problem, const OperatorCoefficie
       analyse_subdomain(extent.nodes, solved, problem.dimension, product), all_candidates, condensed_stage);
 }
 
-void Subdomain::solve(Stage& stage, const std::vector<char>& eligible, const Vector& residual, Vector& correction,
-                      Vector& x, StageSolution& solution) {
-  for (std::size_t i = 0; i < has_.size(); ++i) stage.eligible[i] = has_[i] != 0 ? eligible[i] : char{0};
+void Subdomain::choose_points(const std::vector<char>& eligible, std::vector<char>& own) const {
+  for (std::size_t i = 0; i < has_.size(); ++i) own[i] = has_[i] != 0 ? eligible[i] : char{0};
+}
+
+void Subdomain::solve(const LinearStage& stage, const Vector& residual, Vector& correction, Vector& x,
+                      StageSolution& solution) {
   stage_->solve(stage, residual, solution, correction);
   for (const int dof : own_dofs_) x[dof] += correction[dof];
   for (const int dof : stage_->dofs()) correction[dof] = 0.0;

@@ -27,11 +27,12 @@ class Subdomain {
             const std::vector<char>& solved, const Extent& extent, const StageProduct& product, bool all_candidates,
             FactoredStage* condensed_stage);
 
-  /// Solves for the correction c. `stage` is one on c; its eligible points are chosen here. `correction`, per dof of
-  /// the problem, is work space, zero before and after. x changes on the subdomain's own nodes; `solution` is that of
-  /// the subdomain.
-  void solve(Stage& stage, const std::vector<char>& eligible, const Vector& residual, Vector& correction, Vector& x,
-             StageSolution& solution);
+  /// Restricts eligible points to those of the subdomain.
+  void choose_points(const std::vector<char>& eligible, std::vector<char>& own) const;
+  /// Solves for the correction c. `stage` is one on c, with the points of choose_points(). `correction`, per dof of the
+  /// problem, is work space, zero before and after. x changes on the subdomain's own nodes; `solution` is that of the
+  /// subdomain.
+  void solve(const LinearStage& stage, const Vector& residual, Vector& correction, Vector& x, StageSolution& solution);
   /// Restricts a subdomain solution to the points it owns.
   void restrict_to_own(const StageSolution& local, StageSolution& solution) const;
 

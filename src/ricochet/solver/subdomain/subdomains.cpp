@@ -105,23 +105,25 @@ void Subdomains::make_share(std::size_t number, std::size_t count) {
 }
 
 /// Solves the stage on the correction: q and p at x instead of at δ = 0. All subdomains start from the same residual.
-void Subdomains::solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) {
-  stage_ = stage;  // its right-hand side is not used; a copy does not omit later members
-  stage_.row_storage.clear();
-  stage_.prescribed.setZero(stage.prescribed.size());
-  stage.rows->normal_motion(x, motion_);
-  stage_.gap_offset += stage.gap_factor * motion_;
-  if (stage.slip_offset.size() > 0) {
-    stage.rows->tangential_motion(x, slip_);
-    stage_.slip_offset += stage.slip_factor * slip_;
+void Subdomains::solve(const LinearStage& stage, const Vector& residual, Vector& x, StageSolution& solution) {
+  supports_at_rest_.prescribed.setZero(stage.right_hand_side.prescribed.size());
+  conditions_ = stage.conditions;
+  stage.rows.normal_motion(x, motion_);
+  conditions_.gap.offset += stage.conditions.gap.factor * motion_;
+  if (stage.conditions.slip.offset.size() > 0) {
+    stage.rows.tangential_motion(x, slip_);
+    conditions_.slip.offset += stage.conditions.slip.factor * slip_;
   }
+  const LinearStage on_correction{stage.rows, supports_at_rest_, conditions_, stage.start};
   if (is_one_) {
-    subdomains_.front()->solve(stage_, stage.eligible, residual, correction_, x, solution);
+    subdomains_.front()->choose_points(stage.conditions.eligible, conditions_.eligible);
+    subdomains_.front()->solve(on_correction, residual, correction_, x, solution);
     return;
   }
   for (const auto& subdomain : subdomains_) {
     solution_.iterations = 0;
-    subdomain->solve(stage_, stage.eligible, residual, correction_, x, solution_);
+    subdomain->choose_points(stage.conditions.eligible, conditions_.eligible);
+    subdomain->solve(on_correction, residual, correction_, x, solution_);
     subdomain->restrict_to_own(solution_, solution);
     solution.iterations += solution_.iterations;
   }

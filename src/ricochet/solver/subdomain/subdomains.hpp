@@ -34,7 +34,7 @@ class Subdomains final : public ContactRegion {
   void clear() override;
   [[nodiscard]] bool are_made() const override { return !subdomains_.empty(); }
   [[nodiscard]] const std::vector<Index>& nodes() const override { return nodes_; }
-  void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
+  void solve(const LinearStage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
   void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
                    Vector& motion) override {
     massless_nodes_->find_motion(rows, solution, increment, motion);
@@ -73,7 +73,8 @@ class Subdomains final : public ContactRegion {
   std::vector<std::unique_ptr<Subdomain>> subdomains_;
   ContactObserver observer_;
   double earlier_contact_seconds_ = 0.0;
-  Stage stage_;                        ///< on the correction
+  ContactConditions conditions_;       ///< of the stage on the correction
+  RightHandSide supports_at_rest_;     ///< likewise; the force is the residual
   Vector correction_, motion_, slip_;  ///< correction; G x and B_T x at the start
   StageSolution solution_;             ///< of one subdomain
 };
