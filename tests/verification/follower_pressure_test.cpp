@@ -275,7 +275,7 @@ TEST(FollowerPressure, InFlightMomentaAreKeptAndTheAccountCloses) {
       CaseRun run(case_of({.dimension = dimension, .scheme = scheme}));
       const Momenta first(run);
       const double size = run.simulation().account().energies(run.state()).total();
-      const bool keeps_moments = run.scheme().conserves_moments_at_finite_strain();
+      const bool keeps_moments = run.scheme().traits().conserves_moments_at_finite_strain;
       double worst = 0.0, work = 0.0, turned = 0.0, drifted = 0.0;
       run.run([&] {
         const Momenta now(run);
@@ -311,7 +311,7 @@ TEST(FollowerPressure, ABodyThatBouncesUnderPressure) {
               const std::string what = scheme + friction + " step " + std::to_string(run.state().step);
               const Momenta now(run);
               EXPECT_LT((now.linear - first.linear - momentum.impulse().force).norm(), 1e-12) << what;
-              if (run.scheme().conserves_moments_at_finite_strain()) {
+              if (run.scheme().traits().conserves_moments_at_finite_strain) {
                 EXPECT_LT((now.angular - first.angular - momentum.impulse().moment).norm(), 1e-11) << what;
               }
               EXPECT_NEAR(account_error(run), 0.0, 1e-11 * size) << what;

@@ -102,7 +102,7 @@ TEST(NonlinearForce, IsRefusedWhereATangentIsTakenForConstant) {
   for (const std::string& name : scheme_names()) {
     const auto scheme =
         name == "newmark" ? make_scheme(name, 0.01, {{"preset", "trapezoidal"}}) : make_scheme(name, 0.01);
-    if (scheme->supports_nonlinear_force()) continue;
+    if (scheme->traits().supports_nonlinear_force) continue;
     EXPECT_THROW(Simulation(problem, *scheme, run.model().initial), Error) << name;
   }
 }

@@ -37,7 +37,7 @@ void refuse_undividable_case(const Case& input) {
       refuse_several(input, "output.fields",
                      fmt::format("the field \"{}\"{}", name, name == "all" ? ", with stresses at nodes," : ""));
   }
-  if (!make_scheme(input.time)->supports_ranks())
+  if (!make_scheme(input.time)->traits().supports_ranks)
     refuse_several(input, "time.scheme", fmt::format("scheme \"{}\"", input.time.scheme));
 }
 

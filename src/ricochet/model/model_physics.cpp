@@ -26,7 +26,7 @@ namespace ricochet {
 namespace {
 
 void warn_of_creep(const Case& input, const Scheme& scheme, const SemidiscreteProblem& problem) {
-  if (!scheme.stuck_nodes_alternate() || problem.has_singular_mass() || !problem.contact.has_friction()) return;
+  if (!scheme.traits().stuck_nodes_alternate || problem.has_singular_mass() || !problem.contact.has_friction()) return;
   log::warning(
       fmt::format("{} with friction and mass \"{}\": nodes that stick keep their velocity with alternating sign, their "
                   "forces oscillate and slips are wrong; use mass \"equivalent\"",
@@ -35,7 +35,7 @@ void warn_of_creep(const Case& input, const Scheme& scheme, const SemidiscretePr
 
 void warn_of_long_steps(const Case& input, const Scheme& scheme, const Model& model) {
   if (model.problem.contact.size() == 0) return;
-  const Scheme::LongSteps limit = scheme.long_steps(model.problem);
+  const LongSteps limit = scheme.traits_for(model.problem).long_steps;
   if (limit.trouble.empty()) return;
   const std::vector<double> times = cell_crossing_times(model.body);
   const double median = times[times.size() / 2], crossings = input.time.step / median;
@@ -119,8 +119,8 @@ std::vector<long> find_jumps(const std::function<double(long)>& value, long step
 /// alternates by ±(half of the jump) from step to step.
 void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
   const TimeSection& time = input.time;
-  const Scheme::JumpResponse response = scheme.jump_response();
-  if (response == Scheme::JumpResponse::fades) return;
+  const JumpResponse response = scheme.traits().jump_response;
+  if (response == JumpResponse::fades) return;
   constexpr long most_instants = 2'000'000;
   for (std::size_t i = 0; i < input.supports.size(); ++i) {
     const SupportSection& section = input.supports[i];
@@ -135,7 +135,7 @@ void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
         "0.5*(1-cos(pi*min(t/T, 1))), and resolve it with at least ten steps, or do not use the forces of this support",
         input.where(fmt::format("support.{}.value", i)).text(), static_cast<double>(jumps.front()) * time.step,
         jumps.size() > 1 ? fmt::format(" (and {} later)", counted(jumps.size() - 1, "time")) : "", scheme_text(time),
-        response == Scheme::JumpResponse::grows ? "grows with every step" : "is the larger the shorter the step"));
+        response == JumpResponse::grows ? "grows with every step" : "is the larger the shorter the step"));
   }
 }
 
@@ -234,13 +234,13 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
         model.space.nodes);
   add_ground(input, model);
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
-  if (!model.problem.internal_force->is_linear() && !scheme->supports_nonlinear_force()) {
+  if (!model.problem.internal_force->is_linear() && !scheme->traits().supports_nonlinear_force) {
     refuse(input, "time.scheme",
            fmt::format("scheme \"{}\" requires the linear material law; \"reduced-kane\", the default, also supports "
                        "laws of finite strain, and so does \"semi-explicit\"",
                        input.time.scheme));
   }
-  if (!model.problem.free_bodies.empty() && !scheme->supports_free_bodies()) {
+  if (!model.problem.free_bodies.empty() && !scheme->traits().supports_free_bodies) {
     refuse(
         input, "time.scheme",
         fmt::format("scheme \"{}\" does not support rigid bodies that move freely; \"reduced-kane\", the default, does",

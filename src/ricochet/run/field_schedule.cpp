@@ -111,7 +111,7 @@ OutputEstimate estimate_output(const Case& input, const Model& model) {
     result.frame_bytes = size.frame;
     result.results_bytes = size.of(result.frames);
   }
-  result.rows = 1 + steps / input.output.history_every.value_or(make_scheme(input.time)->history_every());
+  result.rows = 1 + steps / input.output.history_every.value_or(make_scheme(input.time)->traits().history_every);
   result.history_bytes =
       bytes_of_number * static_cast<double>(history_columns(model).size()) * static_cast<double>(result.rows);
   result.is_limited = schedule.is_limited();

@@ -90,8 +90,8 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       sliding_(model.body, model.problem, model.contact_pairs),
       late_(model.body, model.problem, model.contact_pairs),
       rotation_(model.body, *model.problem.ranks, column_index(recorder_.columns(), "max_rotation")),
-      method_(scheme.acting_reactions(model.problem), *model.problem.ranks),
-      history_every_(input.output.history_every.value_or(scheme.history_every())) {
+      method_(scheme.traits_for(model.problem).acting_reactions, *model.problem.ranks),
+      history_every_(input.output.history_every.value_or(scheme.traits().history_every)) {
   for (const auto& [every, sensors] : model.sampled_sensors) {
     SensorRecorder recorder(model.problem, sensors);
     std::unique_ptr<HistoryWriter> file =

@@ -56,7 +56,7 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
   angular_.result.limit = input.check.angular_momentum;
   // The shape functions of degree 1 on curved cells do not contain rotations.
   if (!model.contains_rotations) angular_.result.limit = 0.0;
-  if (!model.problem.internal_force->is_linear() && !scheme.conserves_moments_at_finite_strain())
+  if (!model.problem.internal_force->is_linear() && !scheme.traits().conserves_moments_at_finite_strain)
     angular_.result.limit = 0.0;
   if (snapshot == nullptr) return;
   momentum_.load(*snapshot, "checks.impulse");

@@ -83,8 +83,8 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   summary.step = input.time.step;
   summary.end_time = input.time.end;
   summary.critical_step = scheme.critical_step();
-  summary.energy_instant = scheme.energy_instant();
-  summary.force_instant = scheme.force_instant();
+  summary.energy_instant = scheme.traits().energy_instant;
+  summary.force_instant = scheme.traits().force_instant;
   for (const ModelContact& contact : model.contacts)
     summary.contacts.push_back(describe_contact(input, contact, contact.all_pairs_group));
   for (std::size_t i = 0; i < summary.contacts.size(); ++i) summary.contacts[i].facing = describe_facing(model, i);

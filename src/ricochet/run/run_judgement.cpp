@@ -59,7 +59,7 @@ void judge_loss(const RunSummary& summary, const Scheme& scheme, const Semidiscr
     }
     return;
   }
-  const std::string setting = scheme.setting_that_loses_less(problem);
+  const std::string setting = scheme.traits_for(problem).setting_that_loses_less;
   log::warning(
       fmt::format("contact forces and the scheme itself have removed {:.2g} % of the largest energy (contact_work and "
                   "numerical_dissipation of the history), which a real body keeps as waves: rebounds lack this much "
@@ -86,7 +86,7 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
   judge_loss(summary, scheme, problem, state);
   if (!(contact_creates || friction_creates || rotates) || is_rounding_of_energy(scale, problem, state)) return;
   if (contact_creates) {
-    const bool helps = scheme.suits_singular_mass() && problem.has_singular_mass();
+    const bool helps = scheme.traits().suits_singular_mass && problem.has_singular_mass();
     log::warning(fmt::format(
         "{} created energy, {:.2g} times the largest energy (contact_work less numerical_dissipation "
         "of the history); {} scheme \"reduced-kane\" with mass \"equivalent\", which creates none",
@@ -96,7 +96,7 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
   }
   if (friction_creates) {
     const char* const remedy = problem.has_singular_mass() ? "use a smaller time.step, or"
-                               : scheme.suits_singular_mass()
+                               : scheme.traits().suits_singular_mass
                                    ? "with inertia on contact nodes, smaller steps alone do not help: use mass "
                                      "\"equivalent\" with a smaller time.step, or"
                                    : "use";

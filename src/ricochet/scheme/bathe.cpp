@@ -17,19 +17,16 @@ namespace {
 /// sign; the momentum changes by ⅓h(F₀+F_½+F₁). On massless dofs the velocity of the middle is 2Δ₁/h.
 class Bathe final : public Scheme {
  public:
-  using Scheme::Scheme;
+  explicit Bathe(double step)
+      : Scheme(step, {.work_rule = {0.0, 1.0 / 3.0}, .supports_step_changes = true, .suits_singular_mass = true}) {}
 
-  [[nodiscard]] bool supports_step_changes() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     const double h = step();
     return {{16.0 / (h * h), 1.0, damping_factor(problem)}, {9.0 / (h * h), 1.0, 3.0 / h}};
   }
-  [[nodiscard]] WorkRule work_rule() const override { return {0.0, 1.0 / 3.0}; }
-  [[nodiscard]] bool suits_singular_mass() const override { return true; }
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return {.numerical_dissipation = dissipation_};
+  [[nodiscard]] LastStep last_step() const override {
+    return {.corrections = {.numerical_dissipation = dissipation_}, .other_parts = parts_};
   }
-  [[nodiscard]] std::span<const StepPart> other_parts() const override { return parts_; }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step();

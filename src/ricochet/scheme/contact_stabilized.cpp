@@ -19,17 +19,18 @@ namespace {
 /// of μ is smaller in hollows (concave gaps) and larger on balls (convex ones), by up to (2/h²) μ |U₁−Û|²/2R.
 class ContactStabilized final : public Scheme {
  public:
-  using Scheme::Scheme;
+  explicit ContactStabilized(double step)
+      : Scheme(step, {.force_instant = -0.5,
+                      .acting_instant = -0.5,
+                      .supports_step_changes = true,
+                      .jump_response = JumpResponse::alternates}) {}
 
-  [[nodiscard]] bool supports_step_changes() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
     return {{1.0, 0.0, 0.0}, {2.0 / (h * h), 0.5, 1.0 / h}};
   }
-  [[nodiscard]] double force_instant() const override { return -0.5; }
-  [[nodiscard]] JumpResponse jump_response() const override { return JumpResponse::alternates; }
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return {.support_work = support_work_, .numerical_dissipation = dissipation_};
+  [[nodiscard]] LastStep last_step() const override {
+    return {.corrections = {.support_work = support_work_, .numerical_dissipation = dissipation_}};
   }
 
   void analyse(const SemidiscreteProblem& problem) override {

@@ -18,24 +18,27 @@ namespace ricochet {
 /// sign.)
 class Kane : public Scheme {
  public:
-  explicit Kane(double step, std::string name = "kane") : Scheme(step), name_(std::move(name)) {}
+  explicit Kane(double step)
+      : Kane(step, "kane",
+             {.acting_instant = -0.5,
+              .supports_step_changes = true,
+              .supports_nonlinear_force = true,
+              .conserves_moments_at_finite_strain = true,
+              .jump_response = JumpResponse::alternates}) {}
 
-  [[nodiscard]] bool supports_step_changes() const override { return true; }
-  [[nodiscard]] bool supports_nonlinear_force() const override { return name_ == "kane"; }
-  [[nodiscard]] bool conserves_moments_at_finite_strain() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
     return {{2.0 / (h * h), 0.5, 1.0 / h}};
   }
-  [[nodiscard]] double acting_instant() const override { return -0.5; }
-  [[nodiscard]] JumpResponse jump_response() const override { return JumpResponse::alternates; }
   void analyse(const SemidiscreteProblem& problem) override;
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override;
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return {.integration_error = integration_error_};
+  [[nodiscard]] LastStep last_step() const override {
+    return {.corrections = {.integration_error = integration_error_}};
   }
 
  protected:
+  /// Creates a scheme derived from this one.
+  Kane(double step, std::string name, const SchemeTraits& traits) : Scheme(step, traits), name_(std::move(name)) {}
   /// Fills the stage except its contact conditions.
   Stage& balance(const SemidiscreteProblem& problem, const State& state, StageSolve& stages);
   /// Adds the contact conditions.

@@ -16,15 +16,16 @@ namespace {
 /// rounding, but points penetrate by up to their motion in a step, and contact forces oscillate.
 class LaursenChawla final : public Scheme {
  public:
-  using Scheme::Scheme;
+  explicit LaursenChawla(double step)
+      : Scheme(step, {.force_instant = -0.5,
+                      .acting_instant = -0.5,
+                      .supports_step_changes = true,
+                      .jump_response = JumpResponse::alternates}) {}
 
-  [[nodiscard]] bool supports_step_changes() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
     return {{4.0 / (h * h), 1.0, 2.0 / h}};
   }
-  [[nodiscard]] double force_instant() const override { return -0.5; }
-  [[nodiscard]] JumpResponse jump_response() const override { return JumpResponse::alternates; }
 
   void analyse(const SemidiscreteProblem& problem) override {
     require_contact_inertia(problem, "laursen-chawla", "without it they flip from step to step");

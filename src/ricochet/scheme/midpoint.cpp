@@ -17,17 +17,18 @@ namespace {
 /// hundreds and does not vanish as h → 0: the scheme is included to show this.
 class Midpoint final : public Scheme {
  public:
-  using Scheme::Scheme;
+  explicit Midpoint(double step)
+      : Scheme(step, {.force_instant = -0.5,
+                      .acting_instant = -0.5,
+                      .supports_step_changes = true,
+                      .supports_nonlinear_force = true,
+                      .conserves_moments_at_finite_strain = true,
+                      .jump_response = JumpResponse::alternates}) {}
 
-  [[nodiscard]] bool supports_step_changes() const override { return true; }
-  [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
-  [[nodiscard]] bool conserves_moments_at_finite_strain() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
     return {{4.0 / (h * h), 1.0, 2.0 / h, StageDofs::all}};
   }
-  [[nodiscard]] double force_instant() const override { return -0.5; }
-  [[nodiscard]] JumpResponse jump_response() const override { return JumpResponse::alternates; }
 
   void analyse(const SemidiscreteProblem& problem) override {
     require_contact_inertia(problem, "midpoint", "without it they flip from step to step");
@@ -55,8 +56,8 @@ class Midpoint final : public Scheme {
     equations_.store_forces(problem, stage, solution, h, increment, 1.0 / h, state);
   }
 
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return {.integration_error = integration_error_};
+  [[nodiscard]] LastStep last_step() const override {
+    return {.corrections = {.integration_error = integration_error_}};
   }
 
  private:

@@ -21,22 +21,20 @@ namespace {
 class MoreauJean final : public Scheme {
  public:
   MoreauJean(double step, double theta, double restitution, bool slip_at_end)
-      : Scheme(step), theta_(theta), restitution_(restitution), slip_at_end_(slip_at_end) {}
+      : Scheme(step, {.force_instant = theta - 1.0,
+                      .acting_instant = -0.5,
+                      .supports_step_changes = true,
+                      // V₁ = V₀ + (ΔU/h − V₀)/θ
+                      .jump_response = theta > 0.5 ? JumpResponse::fades : JumpResponse::alternates}),
+        theta_(theta),
+        restitution_(restitution),
+        slip_at_end_(slip_at_end) {}
 
-  [[nodiscard]] bool supports_step_changes() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
     return {{1.0 / (theta_ * h * h), theta_, 1.0 / h}};
   }
-  [[nodiscard]] double force_instant() const override { return theta_ - 1.0; }
-  [[nodiscard]] double acting_instant() const override { return -0.5; }
-  /// V₁ = V₀ + (ΔU/h − V₀)/θ.
-  [[nodiscard]] JumpResponse jump_response() const override {
-    return theta_ > 0.5 ? JumpResponse::fades : JumpResponse::alternates;
-  }
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return {.numerical_dissipation = dissipation_};
-  }
+  [[nodiscard]] LastStep last_step() const override { return {.corrections = {.numerical_dissipation = dissipation_}}; }
 
   void analyse(const SemidiscreteProblem& problem) override {
     require_contact_inertia(problem, "moreau-jean", "its impulses change their velocities");

@@ -23,32 +23,39 @@ namespace {
 /// mixture of the two velocities would make the operator unsymmetric.
 class Newmark final : public Scheme {
  public:
-  Newmark(double step, double beta, double gamma) : Scheme(step), beta_(beta), gamma_(gamma) {}
+  Newmark(double step, double beta, double gamma)
+      : Scheme(step, {.work_rule = {1.0 - gamma, gamma},
+                      .supports_step_changes = true,
+                      .supports_nonlinear_force = true,
+                      .suits_singular_mass = true,
+                      // A node that friction holds is one whose displacement is prescribed: under the trapezoidal rule
+                      // it keeps ±V.
+                      .stuck_nodes_alternate = newmark_jump_response({beta, gamma}) != JumpResponse::fades,
+                      .jump_response = newmark_jump_response({beta, gamma})}),
+        beta_(beta),
+        gamma_(gamma) {}
 
-  [[nodiscard]] bool supports_step_changes() const override { return true; }
-  [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     return {{alpha(), 1.0, damping_factor(problem)}};
   }
-  [[nodiscard]] WorkRule work_rule() const override { return {1.0 - gamma_, gamma_}; }
-  [[nodiscard]] bool suits_singular_mass() const override { return true; }
-  /// A node that friction holds is one whose displacement is prescribed: under the trapezoidal rule it keeps ±V.
-  [[nodiscard]] bool stuck_nodes_alternate() const override { return jump_response() != JumpResponse::fades; }
   /// Numbers of the random cases of docs/energy.md.
-  [[nodiscard]] LongSteps long_steps(const SemidiscreteProblem& problem) const override {
+  [[nodiscard]] ProblemTraits traits_for(const SemidiscreteProblem& problem) const override {
     if (!problem.has_singular_mass()) {
-      return {.trouble =
+      return {
+          .long_steps = {
+              .trouble =
                   "its contact and friction forces can create energy: with beta = 1/4, gamma = 1/2 and inertia at "
                   "contact nodes more than 1 % of the total was created in half of the random cases, with steps of any "
                   "length",
-              .shorter_steps_help = false};
+              .shorter_steps_help = false}};
     }
-    return {.trouble =
+    return {
+        .long_steps = {
+            .trouble =
                 "its contact and friction forces can create energy: with beta = 1/4, gamma = 1/2 more than 1 % of the "
                 "total was created in one of eleven random cases at one to three crossings, in half of them at three "
-                "to ten, and in nine of ten beyond thirty"};
+                "to ten, and in nine of ten beyond thirty"}};
   }
-  [[nodiscard]] JumpResponse jump_response() const override { return newmark_jump_response({beta_, gamma_}); }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step();
@@ -82,8 +89,8 @@ class Newmark final : public Scheme {
     return factor * problem.mass.quadratic_form(state.acceleration);
   }
 
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return {.numerical_dissipation = dissipation_, .integration_error = integration_error_};
+  [[nodiscard]] LastStep last_step() const override {
+    return {.corrections = {.numerical_dissipation = dissipation_, .integration_error = integration_error_}};
   }
 
  private:

@@ -107,10 +107,10 @@ void check_newmark(const ParameterCheck& check, Parameters& values) {
   }
 }
 
-Scheme::JumpResponse newmark_jump_response(const NewmarkParameters& parameters) {
+JumpResponse newmark_jump_response(const NewmarkParameters& parameters) {
   const auto [beta, gamma] = parameters;
-  if (gamma < 0.5 || 2.0 * beta < gamma || (gamma == 0.5 && beta == 0.25)) return Scheme::JumpResponse::grows;
-  return gamma == 0.5 || 2.0 * beta == gamma ? Scheme::JumpResponse::alternates : Scheme::JumpResponse::fades;
+  if (gamma < 0.5 || 2.0 * beta < gamma || (gamma == 0.5 && beta == 0.25)) return JumpResponse::grows;
+  return gamma == 0.5 || 2.0 * beta == gamma ? JumpResponse::alternates : JumpResponse::fades;
 }
 
 NewmarkParameters newmark_parameters(const Parameters& values) {

@@ -23,6 +23,6 @@ void check_newmark(const ParameterCheck& check, Parameters& values);
 ///   a₁ = −[w₀ + (½−β)a₀]/β,   w₁ = w₀ + (1−γ)a₀ + γa₁,
 /// a map of determinant 1 + (½−γ)/β and trace 2 − (γ+½)/β. Its eigenvalues are smaller than 1 for γ > ½ and 2β > γ, and
 /// some is larger than 1 for γ < ½ or 2β < γ. At β = ¼, γ = ½ both are −1, with one eigenvector: A grows linearly.
-[[nodiscard]] Scheme::JumpResponse newmark_jump_response(const NewmarkParameters& parameters);
+[[nodiscard]] JumpResponse newmark_jump_response(const NewmarkParameters& parameters);
 
 }  // namespace ricochet

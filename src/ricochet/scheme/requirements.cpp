@@ -33,14 +33,14 @@ void require_explicit(const SemidiscreteProblem& problem, const std::string& sch
 }
 
 void require_changing_steps(const Scheme& scheme, const std::string& name) {
-  if (scheme.supports_step_changes()) return;
+  if (scheme.traits().supports_step_changes) return;
   throw Error(ErrorKind::invalid_input, fmt::format("{} uses the previous step and cannot change the length of steps; "
                                                     "set time.step to a number, or use scheme \"reduced-kane\"",
                                                     name));
 }
 
 void require_relaxation(const Scheme& scheme, const SemidiscreteProblem& problem, const std::string& name) {
-  if (problem.internal_force->viscous() == nullptr || scheme.supports_relaxation()) return;
+  if (problem.internal_force->viscous() == nullptr || scheme.traits().supports_relaxation) return;
   throw Error(ErrorKind::invalid_input, name +
                                             " does not support viscoelastic branches: use scheme \"reduced-kane\", "
                                             "\"mean-reaction\" or \"reduced-midpoint\", or remove material.relaxation");

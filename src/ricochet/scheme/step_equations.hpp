@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ricochet/scheme/step_part.hpp"
+#include "ricochet/scheme/last_step.hpp"
 #include "ricochet/step/stage.hpp"
 #include "ricochet/step/stage_solve.hpp"
 

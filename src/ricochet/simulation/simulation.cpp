@@ -43,7 +43,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
       scheme_(scheme),
       options_(options),
       whole_step_(scheme.step()) {
-  if (!scheme_.supports_nonlinear_force()) require_linear(*problem_.internal_force, nameless);
+  if (!scheme_.traits().supports_nonlinear_force) require_linear(*problem_.internal_force, nameless);
   require_relaxation(scheme_, problem_, nameless);
   scheme_.analyse(problem_);
   state_ = make_starting_state(problem_, initial, scheme_.step(), options);
@@ -347,10 +347,10 @@ void Simulation::advance(const std::function<void(const State&)>& each_part) {
     energy = take_controlled_step();
   } else {
     try {
-      take_step(!scheme_.supports_step_changes());
+      take_step(!scheme_.traits().supports_step_changes);
     } catch (const Error& problem) {
       const bool is_nonlinear = !problem_.internal_force->is_linear() || problem_.contact.follows_motion();
-      const bool may_cut = is_nonlinear && scheme_.supports_step_changes();
+      const bool may_cut = is_nonlinear && scheme_.traits().supports_step_changes;
       if (problem.kind() != ErrorKind::not_converged || !may_cut) throw;
       take_step_in_parts(each_part);
       in_parts = true;

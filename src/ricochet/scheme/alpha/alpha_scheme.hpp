@@ -37,24 +37,23 @@ struct AlphaWeights {
 /// a = A = 0, V = ΔU/h, and damping acts on ΔU/h, as under newmark.
 class AlphaScheme final : public Scheme {
  public:
-  AlphaScheme(double step, const AlphaWeights& weights) : Scheme(step), weights_(weights) {}
+  AlphaScheme(double step, const AlphaWeights& weights)
+      : Scheme(step, {.work_rule = {weights.force_weight, 1.0 - weights.force_weight},
+                      .supports_step_changes = true,
+                      .supports_nonlinear_force = true,
+                      .suits_singular_mass = true,
+                      .jump_response = newmark_jump_response({weights.beta, weights.gamma})}),
+        weights_(weights) {}
 
-  [[nodiscard]] bool supports_step_changes() const override { return true; }
-  [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     return {{weights_.alpha, 1.0, damping_factor(problem)}};
-  }
-  [[nodiscard]] WorkRule work_rule() const override { return {weights_.force_weight, 1.0 - weights_.force_weight}; }
-  [[nodiscard]] bool suits_singular_mass() const override { return true; }
-  [[nodiscard]] JumpResponse jump_response() const override {
-    return newmark_jump_response({weights_.beta, weights_.gamma});
   }
   void start(const SemidiscreteProblem& problem, State& state, StageSolve& stages) override;
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override;
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override;
   bool momentum_acceleration(const State& state, Vector& acceleration) const override;
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return {.numerical_dissipation = dissipation_, .integration_error = integration_error_};
+  [[nodiscard]] LastStep last_step() const override {
+    return {.corrections = {.numerical_dissipation = dissipation_, .integration_error = integration_error_}};
   }
 
  protected:

@@ -23,15 +23,10 @@ namespace {
 class NonsmoothGeneralizedAlpha final : public Scheme {
  public:
   NonsmoothGeneralizedAlpha(double step, double spectral_radius, double restitution)
-      : Scheme(step), weights_(generalized_alpha_weights(step, spectral_radius)), contact_problems_(restitution) {}
+      : NonsmoothGeneralizedAlpha(step, generalized_alpha_weights(step, spectral_radius), restitution) {}
 
-  [[nodiscard]] bool supports_step_changes() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     return {{weights_.alpha, 1.0, 0.0}, {1.0, 0.0, 0.0}};
-  }
-  [[nodiscard]] double acting_instant() const override { return -0.5; }
-  [[nodiscard]] JumpResponse jump_response() const override {
-    return weights_.gamma > 0.5 ? JumpResponse::fades : JumpResponse::alternates;
   }
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override {
     return weights_.energy_factor * problem.mass.quadratic_form(state.memory.at(algorithmic_acceleration));
@@ -40,7 +35,7 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
     acceleration = (0.5 - weights_.force_weight) * state.memory.at(algorithmic_acceleration);
     return true;
   }
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override { return corrections_; }
+  [[nodiscard]] LastStep last_step() const override { return {.corrections = corrections_}; }
 
   void analyse(const SemidiscreteProblem& problem) override {
     require_contact_inertia(problem, "nonsmooth-generalized-alpha", "its impulses change their velocities");
@@ -75,6 +70,13 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
   }
 
  private:
+  NonsmoothGeneralizedAlpha(double step, const AlphaWeights& weights, double restitution)
+      : Scheme(step, {.acting_instant = -0.5,
+                      .supports_step_changes = true,
+                      .jump_response = weights.gamma > 0.5 ? JumpResponse::fades : JumpResponse::alternates}),
+        weights_(weights),
+        contact_problems_(restitution) {}
+
   /// Computes the corrections of the energy account: the works of varying loads and supports in F̄ on ΔU less those on
   /// the increment, and as numerical dissipation the terms that the identity above subtracts. Replaces the varying load
   /// contained in a₀, `load_of_acceleration`, by that contained in a₁.

@@ -19,7 +19,6 @@ class CentralScheme : public Scheme {
     const double h = step();
     return {{1.0 / (h * h), stiffness_, 0.5 / h}};
   }
-  [[nodiscard]] double energy_instant() const override { return 0.5; }
   [[nodiscard]] double critical_step() const override { return critical_step_; }
   [[nodiscard]] std::optional<double> stability_limit(const SemidiscreteProblem& problem) const override;
 
@@ -34,7 +33,10 @@ class CentralScheme : public Scheme {
  protected:
   /// `stiffness` is κ. `without_inertia` describes how contact nodes without inertia would move, for their refusal.
   CentralScheme(std::string name, double step, double stiffness, std::string without_inertia)
-      : Scheme(step), name_(std::move(name)), stiffness_(stiffness), without_inertia_(std::move(without_inertia)) {}
+      : Scheme(step, {.energy_instant = 0.5}),
+        name_(std::move(name)),
+        stiffness_(stiffness),
+        without_inertia_(std::move(without_inertia)) {}
 
   /// Data of a step that contact conditions may refer to.
   struct Instant {

@@ -10,36 +10,30 @@ namespace ricochet {
 
 class EndContactScheme : public Scheme {
  public:
-  EndContactScheme(const std::string& name, double step) : Scheme(step), massless_step_(name, step) {}
+  EndContactScheme(const std::string& name, double step)
+      : Scheme(step, {.acting_instant = -0.5,
+                      .supports_step_changes = true,
+                      .supports_nonlinear_force = true,
+                      .supports_relaxation = true,
+                      .supports_free_bodies = true,
+                      .conserves_moments_at_finite_strain = true,
+                      .suits_singular_mass = true,
+                      .jump_response = JumpResponse::alternates}),
+        massless_step_(name, step) {}
 
-  [[nodiscard]] bool supports_step_changes() const override { return true; }
-  [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
-  [[nodiscard]] bool supports_relaxation() const override { return true; }
-  [[nodiscard]] bool supports_free_bodies() const override { return true; }
-  [[nodiscard]] bool conserves_moments_at_finite_strain() const override { return true; }
-  [[nodiscard]] const Vector* displacement_of_forces() const override {
-    return massless_step_.displacement_of_forces();
-  }
-  [[nodiscard]] bool has_couples_between_bodies() const override {
-    return massless_step_.displacement_of_forces() != nullptr;
-  }
   void analyse(const SemidiscreteProblem& problem) override { massless_step_.analyse(problem); }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     return massless_step_.operators(problem, mean_of(problem));
   }
-  [[nodiscard]] double acting_instant() const override { return -0.5; }
-  [[nodiscard]] JumpResponse jump_response() const override { return JumpResponse::alternates; }
-  [[nodiscard]] bool suits_singular_mass() const override { return true; }
-  [[nodiscard]] std::optional<ReactionMean> acting_reactions(const SemidiscreteProblem& problem) const override {
-    return !problem.has_contact_dofs() ? std::nullopt : std::optional(mean(problem));
+  [[nodiscard]] ProblemTraits traits_for(const SemidiscreteProblem& problem) const override {
+    if (!problem.has_contact_dofs()) return {};
+    return {.acting_reactions = mean(problem)};
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     massless_step_.advance(problem, mean_of(problem), state, stages, increment);
   }
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return massless_step_.corrections();
-  }
+  [[nodiscard]] LastStep last_step() const override { return massless_step_.last_step(); }
 
  protected:
   [[nodiscard]] const MasslessContactStep& massless_step() const { return massless_step_; }

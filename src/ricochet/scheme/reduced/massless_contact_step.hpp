@@ -42,12 +42,15 @@ class MasslessContactStep {
   /// Performs a step that is determined by the contact conditions at its end, see above.
   void advance(const SemidiscreteProblem& problem, ReactionMean mean, State& state, StageSolve& stages,
                Vector& increment);
-  /// Corrections of the last step.
-  [[nodiscard]] const StepCorrections& corrections() const { return finite_ ? finite_->corrections() : corrections_; }
+  /// Report on the last step: at finite strain its forces act at the middle x, with couples between bodies.
+  [[nodiscard]] LastStep last_step() const {
+    if (!finite_) return {.corrections = corrections_};
+    return {.corrections = finite_->corrections(),
+            .displacement_of_forces = &finite_->middle(),
+            .has_couples_between_bodies = true};
+  }
 
   [[nodiscard]] bool has_finite_strain() const { return finite_.has_value(); }
-  /// Middle x of the last step at finite strain; else null.
-  [[nodiscard]] const Vector* displacement_of_forces() const { return finite_ ? &finite_->middle() : nullptr; }
 
   // Parts of a step, for schemes that combine them in another way.
   /// Computes L̄ and base = u₀ + (h/2)v₀, and fills the stage with the balance at the middle.

@@ -18,10 +18,12 @@ class MeanReactionScheme final : public EndContactScheme {
     EndContactScheme::analyse(problem);
     massless_step().require_frictionless_planes(problem);
   }
-  [[nodiscard]] LongSteps long_steps(const SemidiscreteProblem&) const override {
-    return {.trouble =
-                "the contact forces at the ends of steps oscillate: those of a block at rest alternated between zero "
-                "and four times its weight at ten crossings, without end (their means, which act, do not)"};
+  [[nodiscard]] ProblemTraits traits_for(const SemidiscreteProblem& problem) const override {
+    ProblemTraits traits = EndContactScheme::traits_for(problem);
+    traits.long_steps.trouble =
+        "the contact forces at the ends of steps oscillate: those of a block at rest alternated between zero "
+        "and four times its weight at ten crossings, without end (their means, which act, do not)";
+    return traits;
   }
 
  private:

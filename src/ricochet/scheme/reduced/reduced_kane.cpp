@@ -32,9 +32,11 @@ class ReducedKane final : public EndContactScheme {
                               : "contact nodes have stiffness damping"));
   }
 
-  [[nodiscard]] std::string setting_that_loses_less(const SemidiscreteProblem& problem) const override {
-    const bool has_end_reactions = problem.has_contact_dofs() && mean(problem) == ReactionMean::end;
-    return has_end_reactions && has_mean(problem) ? "time.reaction_weight = \"adaptive\"" : "";
+  [[nodiscard]] ProblemTraits traits_for(const SemidiscreteProblem& problem) const override {
+    ProblemTraits traits = EndContactScheme::traits_for(problem);
+    if (traits.acting_reactions == ReactionMean::end && has_mean(problem))
+      traits.setting_that_loses_less = "time.reaction_weight = \"adaptive\"";
+    return traits;
   }
 
  private:

@@ -16,19 +16,16 @@ namespace {
 /// (finite_strain_step.hpp).
 class ReducedMidpoint final : public Scheme {
  public:
-  explicit ReducedMidpoint(double step) : Scheme(step), massless_step_("reduced-midpoint", step) {}
+  explicit ReducedMidpoint(double step)
+      : Scheme(step, {.acting_instant = -0.5,
+                      .supports_step_changes = true,
+                      .supports_nonlinear_force = true,
+                      .supports_relaxation = true,
+                      .conserves_moments_at_finite_strain = true,
+                      .suits_singular_mass = true,
+                      .jump_response = JumpResponse::alternates}),
+        massless_step_("reduced-midpoint", step) {}
 
-  [[nodiscard]] bool supports_step_changes() const override { return true; }
-  [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
-  [[nodiscard]] bool supports_relaxation() const override { return true; }
-  [[nodiscard]] JumpResponse jump_response() const override { return JumpResponse::alternates; }
-  [[nodiscard]] bool conserves_moments_at_finite_strain() const override { return true; }
-  [[nodiscard]] const Vector* displacement_of_forces() const override {
-    return massless_step_.displacement_of_forces();
-  }
-  [[nodiscard]] bool has_couples_between_bodies() const override {
-    return massless_step_.displacement_of_forces() != nullptr;
-  }
   void analyse(const SemidiscreteProblem& problem) override {
     massless_step_.analyse(problem);
     massless_step_.require_frictionless_planes(problem);
@@ -39,8 +36,6 @@ class ReducedMidpoint final : public Scheme {
     result.back().condensed_operator = -1;
     return result;
   }
-  [[nodiscard]] double acting_instant() const override { return -0.5; }
-  [[nodiscard]] bool suits_singular_mass() const override { return true; }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     if (!problem.internal_force->is_linear()) {
@@ -67,8 +62,10 @@ class ReducedMidpoint final : public Scheme {
       corrections_.contact_work =
           -massless_step_.contact_node_work(problem, *stage.rows, result_, increment, stages).reactions;
   }
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return massless_step_.has_finite_strain() ? massless_step_.corrections() : corrections_;
+  [[nodiscard]] LastStep last_step() const override {
+    LastStep result = massless_step_.last_step();
+    if (!massless_step_.has_finite_strain()) result.corrections = corrections_;
+    return result;
   }
 
  protected:

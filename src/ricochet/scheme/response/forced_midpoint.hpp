@@ -13,13 +13,19 @@ namespace ricochet {
 /// with forces r ≥ 0 of the obstacle and f of the body on itself. No friction, no curved obstacles.
 class ForcedMidpoint : public Kane {
  public:
-  using Kane::Kane;
+  ForcedMidpoint(double step, std::string name)
+      : Kane(step, std::move(name),
+             {.force_instant = -0.5,
+              .acting_instant = -0.5,
+              .supports_step_changes = true,
+              .supports_ranks = false,
+              .conserves_moments_at_finite_strain = true,
+              .jump_response = JumpResponse::alternates}) {}
 
-  [[nodiscard]] double force_instant() const override { return -0.5; }
   /// Energy of the contact.
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override;
   /// Energy that the forces take from the body and the contact stores.
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override { return corrections_; }
+  [[nodiscard]] LastStep last_step() const override { return {.corrections = corrections_}; }
   void analyse(const SemidiscreteProblem& problem) override;
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override;
 

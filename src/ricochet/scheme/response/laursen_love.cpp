@@ -14,15 +14,24 @@ namespace {
 /// impact of the contact nodes, which rebound: contact forces oscillate.
 class LaursenLove final : public Kane {
  public:
-  [[nodiscard]] bool supports_ranks() const override { return false; }
-  explicit LaursenLove(double step) : Kane(step, "laursen-love") {}
+  explicit LaursenLove(double step)
+      : Kane(step, "laursen-love",
+             {.acting_instant = -0.5,
+              .supports_step_changes = true,
+              .supports_ranks = false,
+              .conserves_moments_at_finite_strain = true,
+              .jump_response = JumpResponse::alternates}) {}
 
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     std::vector<OperatorCoefficients> result = Kane::operators(problem);
     result.push_back({1.0, 0.0, 0.0});
     return result;
   }
-  [[nodiscard]] std::span<const StepPart> other_parts() const override { return {&impulse_, acts_ ? 1U : 0U}; }
+  [[nodiscard]] LastStep last_step() const override {
+    LastStep result = Kane::last_step();
+    result.other_parts = {&impulse_, acts_ ? 1U : 0U};
+    return result;
+  }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     Stage& stage = balance(problem, state, stages);

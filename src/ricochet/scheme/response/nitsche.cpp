@@ -20,7 +20,6 @@ namespace {
 /// A step requires one dense problem of all contact points: suitable for a few hundred.
 class Nitsche final : public ForcedMidpoint {
  public:
-  [[nodiscard]] bool supports_ranks() const override { return false; }
   Nitsche(double step, double penalty) : ForcedMidpoint(step, "nitsche"), penalty_(penalty) {}
 
   void analyse(const SemidiscreteProblem& problem) override {

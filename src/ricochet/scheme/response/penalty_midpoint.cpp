@@ -19,7 +19,6 @@ namespace {
 /// that penetrate before or after.
 class PenaltyMidpoint final : public ForcedMidpoint {
  public:
-  [[nodiscard]] bool supports_ranks() const override { return false; }
   PenaltyMidpoint(double step, double penalty) : ForcedMidpoint(step, "penalty-midpoint"), penalty_(penalty) {}
 
   void analyse(const SemidiscreteProblem& problem) override {

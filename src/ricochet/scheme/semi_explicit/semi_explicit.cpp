@@ -48,19 +48,19 @@ constexpr const char* force_memory = "internal_force";
 /// not taken.
 class SemiExplicit final : public Scheme {
  public:
-  explicit SemiExplicit(double step, bool at_any_step = false) : Scheme(step), at_any_step_(at_any_step) {}
+  explicit SemiExplicit(double step, bool at_any_step = false)
+      : Scheme(step, {.work_rule = {0.5, 0.5},
+                      .history_every = 2,
+                      .supports_nonlinear_force = true,
+                      .conserves_moments_at_finite_strain = true,
+                      .suits_singular_mass = true}),
+        at_any_step_(at_any_step) {}
 
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     if (!problem.has_contact_dofs()) return {};
     return {{0.0, 1.0, 0.0, StageDofs::contact}};
   }
-  [[nodiscard]] WorkRule work_rule() const override { return {0.5, 0.5}; }
   [[nodiscard]] double critical_step() const override { return tracked_ ? tracked_->smallest() : critical_step_; }
-  [[nodiscard]] bool supports_nonlinear_force() const override { return true; }
-  [[nodiscard]] bool conserves_moments_at_finite_strain() const override { return true; }
-  [[nodiscard]] const Vector* displacement_of_forces() const override { return &end_; }
-  [[nodiscard]] long history_every() const override { return 2; }
-  [[nodiscard]] bool suits_singular_mass() const override { return true; }
   [[nodiscard]] std::optional<double> stability_limit(const SemidiscreteProblem& problem) const override {
     return problem.has_diagonal_mass() ? std::optional(central_difference_limit(problem)) : std::nullopt;
   }
@@ -108,8 +108,8 @@ class SemiExplicit final : public Scheme {
     if (!at_any_step_) tracked_->track(problem, h, state.memory.at(force_memory), energy_, state);
   }
 
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return {.integration_error = integration_error_};
+  [[nodiscard]] LastStep last_step() const override {
+    return {.corrections = {.integration_error = integration_error_}, .displacement_of_forces = &end_};
   }
 
   [[nodiscard]] const Vector* internal_force(const State& state) const override {

@@ -8,7 +8,7 @@
 namespace ricochet {
 
 EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state)
-    : problem_(problem), scheme_(scheme), rule_(scheme.work_rule()), previous_(state.forces) {
+    : problem_(problem), scheme_(scheme), rule_(scheme.traits().work_rule), previous_(state.forces) {
   const Energies start = energies(state);
   initial_ = start.total() + start.algorithmic;
   initial_algorithmic_ = start.algorithmic;
@@ -17,7 +17,7 @@ EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& s
 
 EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
                              const Snapshot& snapshot, const std::string& name)
-    : problem_(problem), scheme_(scheme), rule_(scheme.work_rule()), previous_(state.forces) {
+    : problem_(problem), scheme_(scheme), rule_(scheme.traits().work_rule), previous_(state.forces) {
   const Vector& works = snapshot.reals(name + ".works", 10);
   works_ = {works[0], works[1], works[2], works[3], works[4], works[5], works[6], works[7], works[8], works[9]};
   initial_ = snapshot.real(name + ".initial");
@@ -101,12 +101,12 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   const ContactRows* rows = nullptr;
   enter(previous_, rule_.previous_weight, increment, rows);
   enter(state.forces, rule_.current_weight, increment, rows);
-  for (const StepPart& part : scheme_.other_parts()) {
+  for (const StepPart& part : scheme_.last_step().other_parts) {
     obstacle_ = part.obstacle_increment;
     rows = nullptr;
     enter(part.forces, part.weight, part.increment, rows);
   }
-  const StepCorrections corrections = scheme_.step_corrections(problem_);
+  const StepCorrections corrections = scheme_.last_step().corrections;
   works_.contact += corrections.contact_work;
   works_.friction += corrections.friction_work;
   works_.support += corrections.support_work;
@@ -149,7 +149,7 @@ double EnergyAccount::method_energy(const State& state) {
 }
 
 Energies EnergyAccount::energies(const State& state) {
-  const bool at_state = scheme_.energy_instant() == 0.0;
+  const bool at_state = scheme_.traits().energy_instant == 0.0;
   if (!at_state) scheme_.energy_state(state, displacement_, velocity_);
   const Vector& displacement = at_state ? state.displacement : displacement_;
   const Vector* const force = scheme_.internal_force(state);

@@ -69,7 +69,7 @@ class EnergyAccount {
   [[nodiscard]] double unsettled_gap() const { return unsettled_gap_; }
   /// Velocity from which `energies` was last computed, for this state.
   [[nodiscard]] const Vector& velocity(const State& state) const {
-    return scheme_.energy_instant() == 0.0 ? state.velocity : velocity_;
+    return scheme_.traits().energy_instant == 0.0 ? state.velocity : velocity_;
   }
 
  private:

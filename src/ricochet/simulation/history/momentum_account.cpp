@@ -28,7 +28,7 @@ void add(Resultant& sum, const Eigen::Vector3d& position, const Eigen::Vector3d&
 MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state)
     : problem_(problem),
       scheme_(scheme),
-      rule_(scheme.work_rule()),
+      rule_(scheme.traits().work_rule),
       finite_strain_(!problem.internal_force->is_linear()),
       positions_(problem.nodes) {
   if (positions_change()) displacement_before_ = state.displacement;
@@ -133,7 +133,7 @@ Resultant MomentumAccount::between_bodies(const StepForces& forces) {
   forces.rows->add_force(normal_, tangential_, force_);
   // Before the first step no force has acted at any position.
   const Vector* const position_of_forces =
-      scheme_.has_couples_between_bodies() ? scheme_.displacement_of_forces() : nullptr;
+      scheme_.last_step().has_couples_between_bodies ? scheme_.last_step().displacement_of_forces : nullptr;
   if (position_of_forces != nullptr && position_of_forces->size() == problem_.dof_count() &&
       problem_.contact.follows_motion())
     problem_.contact.geometry->add_couples(*position_of_forces, *forces.rows, normal_, tangential_, force_);
@@ -239,7 +239,7 @@ void MomentumAccount::enter_step(const State& state) {
   bool at_both_ends = false;
   if (positions_change()) {
     if (has_springs_) mean_ = 0.5 * (displacement_before_ + state.displacement);
-    const Vector* const of_scheme = scheme_.displacement_of_forces();
+    const Vector* const of_scheme = scheme_.last_step().displacement_of_forces;
     at_both_ends = of_scheme != nullptr && rule_.previous_weight != 0.0;
     if (of_scheme != nullptr) {
       displacement_of_forces_ = *of_scheme;
@@ -259,7 +259,7 @@ void MomentumAccount::enter_step(const State& state) {
   const Sum current = resultant(state.forces);
   if (rule_.previous_weight != 0.0) enter(previous_, rule_.previous_weight);
   enter(current, rule_.current_weight);
-  for (const StepPart& part : scheme_.other_parts()) enter(resultant(part.forces), part.weight);
+  for (const StepPart& part : scheme_.last_step().other_parts) enter(resultant(part.forces), part.weight);
   previous_ = current;
   const Resultant now = algorithmic(state);
   add_impulse(-scheme_.step(), {now.force - algorithmic_.force, now.moment - algorithmic_.moment});

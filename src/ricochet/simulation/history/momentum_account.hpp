@@ -13,8 +13,8 @@
 /// curved cells does not. In an axisymmetric body only forces along the axis have an impulse: the other forces cancel
 /// over the ring, and so do all moments.
 /// At finite strain moments are about current positions: at the middle of the step for schemes that evaluate internal
-/// forces there (Scheme::conserves_moments_at_finite_strain), or, if the forces of both ends of a step act, at the
-/// respective end.
+/// forces there (SchemeTraits::conserves_moments_at_finite_strain), or, if the forces of both ends of a step act, at
+/// the respective end.
 namespace ricochet {
 
 /// Resultant force and moment, or momentum and angular momentum.

@@ -44,7 +44,7 @@ ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme&
 
 /// Computes the velocity with which momenta are accounted for.
 void ImpactRecorder::store_velocity(const State& state, Vector& velocity) {
-  if (scheme_.energy_instant() == 0.0) {
+  if (scheme_.traits().energy_instant == 0.0) {
     velocity = state.velocity;
   } else {
     scheme_.energy_state(state, scratch_, velocity);
@@ -124,7 +124,7 @@ void ImpactRecorder::add_along_axis(Index point, double part, const SpaceVector&
 }
 
 void ImpactRecorder::find_other_forces() {
-  const std::span<const StepPart> parts = scheme_.other_parts();
+  const std::span<const StepPart> parts = scheme_.last_step().other_parts;
   others_.resize(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     others_[i].weight = parts[i].weight;
@@ -139,7 +139,7 @@ void ImpactRecorder::enter_impulse(const State& state) {
 ImpactRecorder::Acting ImpactRecorder::acting_in(std::size_t collision) const {
   Acting acting;
   const Force &previous = previous_[collision], &current = current_[collision];
-  if (scheme_.work_rule().previous_weight != 0.0 && previous.any()) acting.previous = &previous;
+  if (scheme_.traits().work_rule.previous_weight != 0.0 && previous.any()) acting.previous = &previous;
   if (current.any()) acting.current = &current;
   for (const OtherForces& each : others_) {
     const Force& force = each.forces[collision];
@@ -155,7 +155,7 @@ void ImpactRecorder::enter_step(const State& state, double method_energy) {
   find_other_forces();
   motion_ = nullptr;
   if (state.step <= 1 && first_step_ == 0.0) first_step_ = scheme_.step();
-  const double instant = state.time + scheme_.acting_instant() * scheme_.step();
+  const double instant = state.time + scheme_.traits().acting_instant * scheme_.step();
   for (std::size_t collision = 0; collision < collision_pairs_.size(); ++collision)
     enter_collision_pair(collision, instant);
   std::swap(previous_, current_);
@@ -232,7 +232,7 @@ void ImpactRecorder::touch(Interval& interval, const Acting& acting, double inst
 }
 
 void ImpactRecorder::add_impulses(Interval& interval, std::size_t collision) const {
-  const WorkRule rule = scheme_.work_rule();
+  const WorkRule rule = scheme_.traits().work_rule;
   const double h = scheme_.step();
   const auto add_impulse = [&](const Force& force, double weight) {
     add(interval.impulse, h * weight, force.all);

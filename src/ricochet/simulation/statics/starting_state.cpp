@@ -169,8 +169,8 @@ void find_acceleration(const SemidiscreteProblem& problem, const Vector& support
   stage.linearization.base.resize(0);  // the unknown is an acceleration
   stage.conditions.eligible = std::move(resting);
   stage.motion.reset();
-  find_curvature_term(problem, state, step,
-                      stage.conditions.gap.offset);  // the condition is on the sum of G a and this
+  // The condition is on the sum of G a and this.
+  find_curvature_term(problem, state, step, stage.conditions.gap.offset);
   stage.conditions.gap.rounding.setZero();
   evaluate_obstacle_velocity(problem, state.displacement, {}, stage);
   require_friction(problem, state.velocity, step, stage);
