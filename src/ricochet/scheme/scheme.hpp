@@ -18,7 +18,7 @@ namespace ricochet {
 
 class Scheme {
  public:
-  Scheme(double step, const SchemeTraits& traits) : step_(step), traits_(traits) {}
+  explicit Scheme(double step, const SchemeTraits& traits = {}) : step_(step), traits_(traits) {}
   virtual ~Scheme() = default;
   Scheme(const Scheme&) = delete;
   Scheme& operator=(const Scheme&) = delete;

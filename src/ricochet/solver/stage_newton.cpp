@@ -37,14 +37,13 @@ void StageNewton::correct(const Vector& correction) {
 
 /// Evaluates f(p + κδ). If a correction inverts a cell, half of it is taken, then half of that.
 void StageNewton::update_internal_force(double factor) {
-  constexpr int max_halvings = 5;
   for (int halving = 0;; ++halving) {
     displacement_ = linearization_.base + factor * total_;
     try {
       evaluate(displacement_, force_);
       return;
     } catch (const Error& problem) {
-      if (problem.kind() != ErrorKind::not_converged || halving == max_halvings) throw;
+      if (problem.kind() != ErrorKind::not_converged || halving == most_halvings) throw;
     }
     total_ = 0.5 * (total_ + before_);
   }

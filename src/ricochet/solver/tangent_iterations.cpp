@@ -11,28 +11,8 @@
 
 namespace ricochet {
 
-namespace {
-
-/// Iterations that settle by themselves take fewer.
-constexpr int plain_iterations = 6;
-constexpr int max_iterations = 400;
-/// Iterations without progress after which the acceleration is restarted, since points that touch and separate change
-/// the map; and after which the step fails.
-constexpr int patience_of_acceleration = 20, patience_of_iterations = 60;
-/// Iterations without progress after which pairs of facets are frozen.
-constexpr int patience_of_pairs = 25;
-/// After so many iterations, if the last ones brought no progress, the error may be a multiple of the rounding of the
-/// gaps: forces that rotate with large surfaces keep it.
-constexpr int patient_iterations = 40, patience_of_rounding = 5;
-constexpr double remaining_rounding = 100.0;
-/// Largest error before a step fails: gaps have the rounding of everything that moves the points, and in narrow corners
-/// more than once.
-constexpr double max_remaining_rounding = 1e4;
-constexpr int last_iterations = 60;
-
-}  // namespace
-
-TangentIterations::TangentIterations(const SemidiscreteProblem& problem) : problem_(problem) {
+TangentIterations::TangentIterations(const SemidiscreteProblem& problem, const ContactThresholds& thresholds)
+    : problem_(problem), thresholds_(thresholds) {
   if (!problem.ranks->are_several()) return;
   Vector is_counted(static_cast<Index>(problem.contact_dofs.size()));
   for (Index i = 0; i < is_counted.size(); ++i) {
@@ -49,23 +29,25 @@ void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSo
   for (int iteration = 0;; ++iteration) {
     const LinearizationError remaining = linearization_error(problem_, solution, stage, gap_);
     // Iterations that settle by themselves do so to the rounding of the gaps.
-    const double error = iteration <= plain_iterations ? remaining.beyond_rounding : remaining.beyond_all_rounding;
+    const double error =
+        iteration <= thresholds_.plain_iterations ? remaining.beyond_rounding : remaining.beyond_all_rounding;
     if (error <= 0.0) break;
     if (error < 0.9 * best_error) {
       best_error = error;
       last_progress = iteration;
     }
-    const bool is_last = iteration == max_iterations || iteration - last_progress > patience_of_iterations;
+    const bool is_last =
+        iteration == thresholds_.max_iterations || iteration - last_progress > thresholds_.patience_of_iterations;
     const Vector& rounding = stage.conditions.gap.rounding;
     const double of_rounding = error / problem_.ranks->maximum(rounding.size() > 0 ? rounding.maxCoeff() : 0.0);
-    if (iteration >= patient_iterations && iteration - last_progress >= patience_of_rounding &&
-        of_rounding <= remaining_rounding)
+    if (iteration >= thresholds_.patient_iterations && iteration - last_progress >= thresholds_.patience_of_rounding &&
+        of_rounding <= thresholds_.remaining_rounding)
       break;
-    if (iteration >= last_iterations && of_rounding <= max_remaining_rounding) break;
+    if (iteration >= thresholds_.last_iterations && of_rounding <= thresholds_.max_remaining_rounding) break;
     // Pairs change from iteration to iteration: they are held, and the next iteration solves the then linear
     // conditions.
-    const bool is_stuck =
-        iteration - last_progress > patience_of_pairs || !std::isfinite(error) || iteration == max_iterations;
+    const bool is_stuck = iteration - last_progress > thresholds_.patience_of_pairs || !std::isfinite(error) ||
+                          iteration == thresholds_.max_iterations;
     if (is_stuck && problem_.contact.follows_motion() && problem_.contact.geometry->freeze()) {
       best_error = std::numeric_limits<double>::infinity();
       last_progress = last_start = iteration;
@@ -81,11 +63,12 @@ void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSo
                               "converge in {} iterations (the gaps are still wrong by {:.3g})",
                               iteration, best_error));
     }
-    if (iteration == plain_iterations || iteration - std::max(last_progress, last_start) > patience_of_acceleration) {
+    if (iteration == thresholds_.plain_iterations ||
+        iteration - std::max(last_progress, last_start) > thresholds_.patience_of_acceleration) {
       acceleration_.restart();
       last_start = iteration;
     }
-    linearize_at(solution.contact_motion(), iteration > plain_iterations);
+    linearize_at(solution.contact_motion(), iteration > thresholds_.plain_iterations);
     linearize_contact(problem_, linearized_at_, stage);
     solver.solve(stage.linear(), solution);
     iterations += solution.iterations;

@@ -2,6 +2,7 @@
 
 #include "ricochet/linear_algebra/anderson_acceleration.hpp"
 #include "ricochet/solver/stage/stage_solver.hpp"
+#include "ricochet/step/thresholds.hpp"
 
 /// @file Contact conditions that follow the motion.
 namespace ricochet {
@@ -13,7 +14,7 @@ namespace ricochet {
 /// themselves are accelerated.
 class TangentIterations {
  public:
-  explicit TangentIterations(const SemidiscreteProblem& problem);
+  explicit TangentIterations(const SemidiscreteProblem& problem, const ContactThresholds& thresholds = {});
   /// Starts from a stage that has been solved once. Throws Error(not_converged).
   void follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution);
 
@@ -21,6 +22,7 @@ class TangentIterations {
   void linearize_at(const Vector& increment, bool accelerate);
 
   const SemidiscreteProblem& problem_;
+  ContactThresholds thresholds_;
   Vector gap_;
   AndersonAcceleration acceleration_{12};
   Vector linearized_at_;  ///< contact motion

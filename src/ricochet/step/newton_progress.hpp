@@ -6,6 +6,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/types.hpp"
+#include "ricochet/step/thresholds.hpp"
 
 /// @file Convergence monitor of Newton iterations with a factorization that is reused.
 namespace ricochet {
@@ -16,6 +17,7 @@ namespace ricochet {
 class NewtonProgress {
  public:
   enum class Advice { go_on, done, renew, failed };
+  explicit NewtonProgress(const NewtonThresholds& thresholds = {}) : thresholds_(thresholds) {}
 
   /// Begins a solution; `rounding`: rounding error of the positions, the smallest meaningful correction.
   void start(double rounding) {
@@ -42,20 +44,23 @@ class NewtonProgress {
     }
     const double rate = correction / last_;
     const double left = rate < 1.0 ? correction * rate / (1.0 - rate) : correction;
-    if (rate < 1.0 && left <= tolerance * increment) return Advice::done;
+    if (rate < 1.0 && left <= thresholds_.tolerance * increment) return Advice::done;
     // The accumulated rounding of the forces may exceed that of the positions: further iterations gain nothing.
-    if (rate >= stalled && correction <= std::max(loose_tolerance * increment, most_rounding * rounding_))
+    if (rate >= thresholds_.stalled &&
+        correction <= std::max(thresholds_.loose_tolerance * increment, thresholds_.most_rounding * rounding_))
       return Advice::done;
     last_ = correction;
-    slow_ = rate > slow_rate ? slow_ + 1 : 0;
+    slow_ = rate > thresholds_.slow_rate ? slow_ + 1 : 0;
     growing_ = rate > 1.0 ? growing_ + 1 : 0;
     least_ = std::min(least_, correction);
-    const bool diverges = correction > divergence * least_;
-    accelerates_ = accelerates_ || growing_ >= most_growing || (slow_ >= patience && renewals_ > 0);
+    const bool diverges = correction > thresholds_.divergence * least_;
+    accelerates_ =
+        accelerates_ || growing_ >= thresholds_.most_growing || (slow_ >= thresholds_.patience && renewals_ > 0);
     // If earlier factorizations did not help, another one does not either, and iterations
     // that still converge may continue.
-    const bool is_worth_one = slow_ >= (accelerates_ ? long_patience : patience) && renewals_ < helpful_renewals;
-    if (is_worth_one || diverges || iterations_ >= max_iterations) return renew_or_fail();
+    const bool is_worth_one = slow_ >= (accelerates_ ? thresholds_.long_patience : thresholds_.patience) &&
+                              renewals_ < thresholds_.helpful_renewals;
+    if (is_worth_one || diverges || iterations_ >= thresholds_.max_iterations) return renew_or_fail();
     return Advice::go_on;
   }
   void count_renewal() { ++renewals_; }
@@ -67,17 +72,11 @@ class NewtonProgress {
   [[nodiscard]] int iterations() const { return total_iterations_; }
 
  private:
-  static constexpr double tolerance = 1e-13;       ///< relative to the increment
-  static constexpr double loose_tolerance = 1e-9;  ///< if rounding keeps the corrections from decreasing further
-  static constexpr double most_rounding = 100.0;   ///< relative to that of the positions, in the same situation
-  static constexpr double stalled = 0.7;
-  static constexpr double slow_rate = 0.5;
-  static constexpr double divergence = 1e3;
-  static constexpr int most_growing = 2, patience = 3, long_patience = 15, max_iterations = 60, helpful_renewals = 3,
-                       most_renewals = 6;
+  [[nodiscard]] Advice renew_or_fail() const {
+    return renewals_ < thresholds_.most_renewals ? Advice::renew : Advice::failed;
+  }
 
-  [[nodiscard]] Advice renew_or_fail() const { return renewals_ < most_renewals ? Advice::renew : Advice::failed; }
-
+  NewtonThresholds thresholds_;
   double rounding_ = 0.0, last_ = 0.0, least_ = 0.0;
   int iterations_ = 0, total_iterations_ = 0, slow_ = 0, growing_ = 0, renewals_ = 0;
   bool accelerates_ = false;

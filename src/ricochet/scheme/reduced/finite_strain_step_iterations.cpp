@@ -43,7 +43,6 @@ void FiniteStrainStep::throw_if_inverted(const SemidiscreteProblem& problem) {
 
 void FiniteStrainStep::evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state,
                                              bool near) {
-  constexpr int most_halvings = 5;
   for (int halving = 0;; ++halving) {
     try {
       evaluate(problem, step, state, near);

@@ -61,7 +61,6 @@ void NonlinearContactEquilibrium::move_to(const SemidiscreteProblem& problem, co
 /// Evaluates f at the end. If the last change inverts a cell, half of it is taken, then half of that.
 void NonlinearContactEquilibrium::evaluate(const SemidiscreteProblem& problem, const State& state, Vector& increment,
                                            Vector& end) {
-  constexpr int most_halvings = 5;
   double part = 1.0;
   for (int halving = 0;; ++halving) {
     try {
