@@ -62,8 +62,8 @@ TEST_F(Account, GoesOnFromWhatWasSaved) {
   EnergyAccount account(run_.problem(), run_.scheme(), run_.state());
   account.enter_step(increment_, state_);
   Snapshot snapshot;
-  account.save(snapshot, "account");
-  EnergyAccount resumed(run_.problem(), run_.scheme(), state_, snapshot, "account");
+  account.persist(snapshot.saver("account"));
+  EnergyAccount resumed(run_.problem(), run_.scheme(), state_, snapshot.loader("account"));
   account.enter_step(increment_, state_);
   resumed.enter_step(increment_, state_);
   EXPECT_EQ(resumed.works().sum(), account.works().sum());
