@@ -83,7 +83,7 @@ const ContactSolution& ContactRun::solve(const FrictionProblem& problem, const C
     operator_ = make_dense_operator(problem.w);
     solver_->analyse(problem.contact(operator_));
     solver_->set_warm_start(start_reactions_);
-    if (start_) solver_->load(*start_, "solver");
+    if (start_) solver_->persist(start_->loader("solver"));
   }
   solver_->solve(problem.contact(operator_), options, solution_);
   return solution_;

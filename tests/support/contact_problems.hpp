@@ -60,7 +60,7 @@ class ContactRun {
   /// Returns the state of the solver; start_with makes a solver start its first problem from it.
   [[nodiscard]] Snapshot saved() const {
     Snapshot snapshot;
-    solver_->save(snapshot, "solver");
+    solver_->persist(snapshot.saver("solver"));
     return snapshot;
   }
   void start_with(Snapshot snapshot) { start_ = std::move(snapshot); }

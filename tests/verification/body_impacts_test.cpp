@@ -247,9 +247,9 @@ TEST(BodyImpacts, GoOnFromASnapshot) {
         for (ImpactRecorder& other : resumed) other.enter_step(run.state(), method_energy);
         if (run.state().step % 10 != 0) return;
         Snapshot snapshot;
-        recorder.save(snapshot, "impacts");
+        recorder.persist(snapshot.saver("impacts"));
         resumed.push_back(make_recorder(run));
-        resumed.back().load(snapshot, "impacts");
+        resumed.back().persist(snapshot.loader("impacts"));
       },
       false);
   ASSERT_EQ(recorder.impacts().size(), 1U);

@@ -260,14 +260,14 @@ TEST(Impacts, GoOnFromASnapshot) {
         for (ImpactRecorder& other : resumed) other.enter_step(run.state(), method_energy(run));
         if (run.state().step % 60 != 0) return;
         Snapshot snapshot;
-        recorder.save(snapshot, "impacts");
+        recorder.persist(snapshot.saver("impacts"));
         resumed.push_back(make_recorder(run));
-        resumed.back().load(snapshot, "impacts");
+        resumed.back().persist(snapshot.loader("impacts"));
       },
       false);
   const auto numbers = [](const ImpactRecorder& of) {
     Snapshot snapshot;
-    of.save(snapshot, "impacts");
+    of.persist(snapshot.saver("impacts"));
     return snapshot.values();
   };
   ASSERT_GT(recorder.impacts().size(), 0u);

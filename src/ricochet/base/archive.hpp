@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,7 +19,7 @@
 namespace ricochet {
 
 /// Serializes in both directions by one description: `archive(value)` appends the value or reads it. A composite type
-/// has a function transfer(Archive&, Value&) beside it, which passes its parts to the archive. Both processes must run
+/// has a function persist(archive, value) beside it, which passes its parts to the archive. Both processes must run
 /// on the same kind of machine: neither a version nor the byte order is stored.
 class Archive {
  public:
@@ -43,12 +44,16 @@ class Archive {
     ((*this)(values), ...);
   }
 
+  /// Passes on members for which other visitors have a rule, such as one by which they are divided.
+  template <class Rule, class... Values>
+  requires requires { typename Rule::IsMemberRule; }
+  void operator()(const Rule&, Values&... values) { all(values...); }
   template <class Value>
   void operator()(Value& value) {
     if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
       block(&value, 1);
     } else {
-      transfer(*this, value);
+      persist(*this, value);
     }
   }
   void operator()(std::string& text) { sequence(text); }
@@ -75,6 +80,15 @@ class Archive {
     (*this)(is_there);
     if (is_there && !value) value.emplace();
     if (is_there) (*this)(*value);
+  }
+  template <class Value>
+  void operator()(std::shared_ptr<const Value>& value) {
+    bool is_there = value != nullptr;
+    (*this)(is_there);
+    if (!is_there) return;
+    const auto own = reads_ ? std::make_shared<Value>() : std::make_shared<Value>(*value);
+    (*this)(*own);
+    if (reads_) value = own;
   }
   template <class Number, int rows, int columns, int options, int most_rows, int most_columns>
   void operator()(Eigen::Matrix<Number, rows, columns, options, most_rows, most_columns>& matrix) {

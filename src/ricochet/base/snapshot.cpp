@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "ricochet/base/error.hpp"
 
@@ -19,13 +20,6 @@ const Kind& Snapshot::find(const std::string& name, const char* kind) const {
   const Kind* const value = std::get_if<Kind>(&found->second);
   if (value == nullptr) refuse(name, fmt::format("does not hold {}", kind));
   return *value;
-}
-
-void Snapshot::save(const std::string& name, const std::vector<ContactStatus>& values) {
-  Integers numbers;
-  numbers.reserve(values.size());
-  for (const ContactStatus status : values) numbers.push_back(static_cast<std::int64_t>(status));
-  save(name, std::move(numbers));
 }
 
 const Vector& Snapshot::reals(const std::string& name) const {
@@ -56,16 +50,6 @@ std::int64_t Snapshot::integer(const std::string& name) const {
   return values.front();
 }
 
-std::vector<ContactStatus> Snapshot::statuses(const std::string& name, Index size) const {
-  const Integers& values = integers(name, 0, static_cast<std::int64_t>(ContactStatus::slip));
-  if (static_cast<Index>(values.size()) != size)
-    refuse(name, fmt::format("has {} numbers where {} are expected", values.size(), size));
-  std::vector<ContactStatus> result;
-  result.reserve(values.size());
-  for (const std::int64_t value : values) result.push_back(static_cast<ContactStatus>(value));
-  return result;
-}
-
 const Snapshot::Texts& Snapshot::texts(const std::string& name) const {
   return find<Texts>(name, "texts");
 }
@@ -74,6 +58,74 @@ const std::string& Snapshot::text(const std::string& name) const {
   const Texts& values = texts(name);
   if (values.size() != 1) refuse(name, fmt::format("has {} texts where one is expected", values.size()));
   return values.front();
+}
+
+void NumberVisitor::visit(double& value) {
+  if (!reads_) return written_.push_back(value);
+  value = read_.front();
+  read_ = read_.subspan(1);
+}
+
+/// 2⁶³, the limit of a type as a double, is no int64.
+double NumberVisitor::whole(double number, double most) const {
+  if (number != std::floor(number) || std::abs(number) > most || std::abs(number) >= 0x1p63)
+    Snapshot::refuse(name_, fmt::format("has {}, which is no whole number of its range", number));
+  return number;
+}
+
+SnapshotVisitor Snapshot::saver(const std::string& name) {
+  return {this, nullptr, name};
+}
+
+SnapshotVisitor Snapshot::loader(const std::string& name) const {
+  return {nullptr, this, name};
+}
+
+std::string SnapshotVisitor::name_of(const std::string& key) const {
+  return name_.empty() || key.empty() ? name_ + key : name_ + "." + key;
+}
+
+void SnapshotVisitor::operator()(const std::string& key, std::string& value) const {
+  if (!loads()) return to_->save(name_of(key), value);
+  value = from_->text(name_of(key));
+}
+
+void SnapshotVisitor::operator()(const std::string& key, Snapshot::Texts& values) const {
+  if (!loads()) return to_->save(name_of(key), values);
+  values = from_->texts(name_of(key));
+}
+
+void SnapshotVisitor::operator()(const std::string& key, Vector& values) const {
+  if (!loads()) return to_->save(name_of(key), values);
+  values = from_->reals(name_of(key));
+}
+
+void SnapshotVisitor::operator()(const std::string& key, Vector& values, Index size, Index other_size) const {
+  if (!loads()) return to_->save(name_of(key), values);
+  values = from_->reals(name_of(key), size, other_size);
+}
+
+void SnapshotVisitor::operator()(const std::string& key, Points& values, Index rows, Index columns,
+                                 Index other_columns) const {
+  Vector numbers = values.reshaped();
+  (*this)(key, numbers, rows * columns, rows * other_columns);
+  if (loads()) values = numbers.reshaped(rows, numbers.size() / rows);
+}
+
+void SnapshotVisitor::exchange(const std::string& key, Snapshot::Integers& values, IntegerRange range,
+                               Index size) const {
+  if (!loads()) return to_->save(name_of(key), values);
+  values = from_->integers(name_of(key), range.least, range.most);
+  require(size < 0 || static_cast<Index>(values.size()) == size, key,
+          fmt::format("has {} numbers where {} are expected", values.size(), size));
+}
+
+std::size_t SnapshotVisitor::count_of_records(const std::string& key, Index width, std::size_t most) const {
+  const Index size = from_->reals(name_of(key)).size();
+  require(size % width == 0, key, fmt::format("has {} numbers where a multiple of {} is expected", size, width));
+  const auto count = static_cast<std::size_t>(size / width);
+  require(count <= most, key, fmt::format("has {} records where at most {} are possible", count, most));
+  return count;
 }
 
 }  // namespace ricochet

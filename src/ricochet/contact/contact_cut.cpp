@@ -4,110 +4,130 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/selection.hpp"
+#include "ricochet/contact/contact_members.hpp"
 
 namespace ricochet {
 
 namespace {
 
-/// Extracts rows of a matrix, in this order, with its columns renumbered: those with number −1 are omitted.
-SparseRowMatrix cut_matrix(const SparseRowMatrix& whole, const std::vector<Index>& rows, Index columns,
-                           const std::function<Index(Index)>& new_column) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (SparseRowMatrix::InnerIterator entry(whole, rows[i]); entry; ++entry) {
-      const Index at = new_column(entry.col());
-      if (at >= 0) entries.emplace_back(static_cast<int>(i), static_cast<int>(at), entry.value());
+/// Visits the members of a boundary and restricts each to a part.
+class ContactCutter {
+ public:
+  ContactCutter(const ContactCut& part, Index dimension)
+      : part_(part), d_(dimension), nodes_(static_cast<std::size_t>(part.nodes)) {
+    for (const Index point : part.points) {
+      for (Index k = 0; k < d_ - 1; ++k) tangents_.push_back(point * (d_ - 1) + k);
+    }
+    for (std::size_t node = 0; node < part.node_number.size(); ++node) {
+      if (const Index own = part.node_number[node]; own >= 0)
+        nodes_[static_cast<std::size_t>(own)] = static_cast<Index>(node);
     }
   }
-  SparseRowMatrix result(static_cast<Index>(rows.size()), columns);
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result;
-}
 
-/// Returns the `per` rows of each point.
-std::vector<Index> rows_of(const std::vector<Index>& points, Index per) {
-  std::vector<Index> result;
-  for (const Index point : points) {
-    for (Index k = 0; k < per; ++k) result.push_back(point * per + k);
+  template <class... Members>
+  void operator()(ContactAxes axes, Members&... members) {
+    (cut(axes, members), ...);
   }
-  return result;
-}
 
-}  // namespace
+ private:
+  /// Items of the part, by their numbers in the whole.
+  [[nodiscard]] const std::vector<Index>& items(ContactAxis axis) const {
+    return axis == ContactAxis::point     ? part_.points
+           : axis == ContactAxis::tangent ? tangents_
+           : axis == ContactAxis::entry   ? part_.entries
+                                          : nodes_;
+  }
+  /// Number of an item of the whole in the part, or −1.
+  [[nodiscard]] Index number(ContactAxis axis, Index item) const {
+    const auto at = static_cast<std::size_t>(item);
+    if (axis == ContactAxis::node) return part_.node_number[at];
+    if (axis == ContactAxis::facet) return part_.facet_number.empty() ? -1 : part_.facet_number[at];
+    if (axis != ContactAxis::dof) return index_in(items(axis), item);
+    const Index node = number(ContactAxis::node, item / d_);
+    return node < 0 ? -1 : node * d_ + item % d_;
+  }
 
-SparseRowMatrix cut_trace(const SparseRowMatrix& whole, const ContactCut& part) {
-  return cut_matrix(whole, part.points, part.nodes,
-                    [&](Index node) { return part.node_number[static_cast<std::size_t>(node)]; });
-}
+  template <class Value>
+  void cut(ContactAxes axes, Value& values) {
+    if constexpr (requires { values.size(); }) {
+      if (axes.along != ContactAxis::none && values.size() > 0) values = chosen(values, items(axes.along));
+    }
+  }
+  void cut(ContactAxes axes, Points& columns) { columns = chosen_columns(columns, items(axes.along)); }
+  void cut(ContactAxes axes, std::vector<Index>& numbers) {
+    if (axes.along != ContactAxis::none) numbers = chosen(numbers, items(axes.along));
+    if (axes.of == ContactAxis::none) return;
+    constexpr Index on_another_rank = -2;
+    for (Index& each : numbers) {
+      if (each < 0) continue;
+      const Index own = number(axes.of, each);
+      each = own >= 0 ? own : on_another_rank;
+    }
+    if (axes.along != ContactAxis::none) return;
+    std::erase(numbers, on_another_rank);
+    std::sort(numbers.begin(), numbers.end());
+  }
+  /// Columns without a number in the part are omitted.
+  void cut(ContactAxes axes, SparseRowMatrix& matrix) {
+    if (axes.along == ContactAxis::none) return;
+    const std::vector<Index>& rows = items(axes.along);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      for (SparseRowMatrix::InnerIterator entry(matrix, rows[i]); entry; ++entry) {
+        const Index column = number(axes.of, entry.col());
+        if (column >= 0) entries.emplace_back(static_cast<int>(i), static_cast<int>(column), entry.value());
+      }
+    }
+    const Index columns = axes.of == ContactAxis::dof ? part_.nodes * d_ : static_cast<Index>(items(axes.of).size());
+    matrix = SparseRowMatrix(static_cast<Index>(rows.size()), columns);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+  }
+  void cut(ContactAxes axes, std::shared_ptr<const SparseRowMatrix>& matrix) {
+    if (matrix == nullptr) return;
+    SparseRowMatrix own = *matrix;
+    cut(axes, own);
+    matrix = std::make_shared<const SparseRowMatrix>(std::move(own));
+  }
+  void cut(ContactAxes, std::shared_ptr<const ContactRows>& rows) {
+    ContactRows own = *rows;
+    persist(*this, own);
+    rows = std::make_shared<const ContactRows>(std::move(own));
+  }
+  void cut(ContactAxes, std::vector<CurvedContactData::Point>& points) {
+    for (CurvedContactData::Point& point : points) point.number = number(ContactAxis::point, point.number);
+    std::erase_if(points, [](const CurvedContactData::Point& point) { return point.number < 0; });
+  }
+  void cut(ContactAxes, std::vector<CurvedContactData::Node>& nodes) {
+    for (CurvedContactData::Node& node : nodes) {
+      node.entry = number(ContactAxis::entry, node.entry);
+      node.node = number(ContactAxis::node, node.node);
+    }
+    std::erase_if(nodes, [](const CurvedContactData::Node& node) { return node.entry < 0; });
+  }
 
-namespace {
-
-ContactRows cut_rows(const ContactRows& whole, const ContactCut& part) {
-  const Index d = whole.dimension();
-  const auto number_of_dof = [&](Index dof) {
-    const Index node = part.node_number[static_cast<std::size_t>(dof / d)];
-    return node < 0 ? -1 : node * d + dof % d;
-  };
-  const std::vector<Index> slip_rows = rows_of(part.points, d - 1);
-  ContactRows rows;
-  rows.normals = chosen_columns(whole.normals, part.points);
-  rows.tangents = chosen(whole.tangents, part.points);
-  rows.slips = chosen(whole.slips, slip_rows);
-  rows.gap_rounding = chosen(whole.gap_rounding, part.points);
-  rows.gap_operator = cut_matrix(whole.gap_operator, part.points, part.nodes * d, number_of_dof);
-  rows.tangential_trace = cut_matrix(whole.tangential_trace, slip_rows, part.nodes * d, number_of_dof);
-  if (whole.gap.size() > 0) rows.gap = chosen(whole.gap, part.points);
-  rows.revision = chosen(whole.revision, part.points);
-  if (whole.rotating_trace)
-    rows.rotating_trace = std::make_shared<const SparseRowMatrix>(cut_trace(*whole.rotating_trace, part));
-  return rows;
-}
+  const ContactCut& part_;
+  Index d_;
+  std::vector<Index> tangents_, nodes_;
+};
 
 }  // namespace
 
 ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part) {
   if (whole.net.size() > 0 && whole.net.minCoeff() == 0.0)
     throw Error(ErrorKind::invalid_input, "contact between bodies cannot be divided");
-  const auto number_of_node = [&](Index node) { return part.node_number[static_cast<std::size_t>(node)]; };
-  const std::vector<Index> point_index = inverse_indices(part.points, whole.size());
-  ContactBoundary own;
-  own.dimension = whole.dimension;
-  for (const Index facet : whole.facets) {
-    const Index number = part.facet_number.empty() ? -1 : part.facet_number[static_cast<std::size_t>(facet)];
-    if (number >= 0) own.facets.push_back(number);
-  }
-  std::sort(own.facets.begin(), own.facets.end());
-  own.pair = chosen(whole.pair, part.points);
-  own.initial_gap = chosen(whole.initial_gap, part.points);
-  own.weights = chosen(whole.weights, part.points);
-  own.friction_coefficient = chosen(whole.friction_coefficient, part.points);
-  own.friction_bound = chosen(whole.friction_bound, part.points);
+  ContactCutter cutter(part, whole.dimension);
+  ContactBoundary own = whole;
+  own.surface = nullptr;
   own.has_friction_elsewhere = whole.has_friction();
-  own.trace = cut_trace(whole.trace, part);
-  own.own_trace = cut_trace(whole.own_trace, part);
-  own.net = chosen(whole.net, part.points);
-  own.large_sliding = chosen(whole.large_sliding, part.points);
-  own.opposite_node = whole.opposite_node;
-  for (const Index entry : part.entries) {
-    const auto at = static_cast<std::size_t>(entry);
-    own.nodes.push_back(number_of_node(whole.nodes[at]));
-    const Index point = whole.own_point[at];
-    const Index number = point < 0 ? -1 : point_index[static_cast<std::size_t>(point)];
-    own.own_point.push_back(point >= 0 && number < 0 ? -2 : number);
-  }
-  own.node_pair = chosen(whole.node_pair, part.entries);
-  own.is_opposite = chosen(whole.is_opposite, part.entries);
-  own.node_normals = chosen_columns(whole.node_normals, part.entries);
-  own.node_initial_gap = chosen(whole.node_initial_gap, part.entries);
-  own.opposite_projection.resize(0, 0);
-  own.pressure_recovery = cut_matrix(whole.pressure_recovery, part.entries, static_cast<Index>(part.points.size()),
-                                     [&](Index point) { return point_index[static_cast<std::size_t>(point)]; });
-  own.rows = std::make_shared<const ContactRows>(cut_rows(*whole.rows, part));
-  if (whole.follows_motion()) {
-    own.geometry = whole.geometry->cut(part);
-    if (own.geometry == nullptr)
-      throw Error(ErrorKind::invalid_input, "contact whose directions rotate with bodies cannot be divided");
-  }
+  persist(cutter, own);
+  if (!whole.follows_motion()) return own;
+  const CurvedContactData* const curved = whole.geometry->curved();
+  const auto is_free_body = [](const Obstacle* obstacle) { return obstacle->free_motion() != nullptr; };
+  if (curved == nullptr || std::any_of(curved->obstacles.begin(), curved->obstacles.end(), is_free_body))
+    throw Error(ErrorKind::invalid_input, "contact whose directions rotate with bodies cannot be divided");
+  CurvedContactData data = *curved;
+  persist(cutter, data);
+  own.geometry = make_curved_contact(std::move(data));
   return own;
 }
 

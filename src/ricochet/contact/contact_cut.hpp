@@ -15,10 +15,7 @@ struct ContactCut {
 
 /// Restricts a boundary. The rows of the points must involve nodes of the part only. The pressure recovery of nodes is
 /// restricted to the points of the part; it sums to the whole over parts that contain each point once. Throws
-/// Error(invalid_input) for contact between bodies.
+/// Error(invalid_input) for contact between bodies and with free rigid bodies.
 [[nodiscard]] ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part);
-
-/// Restricts a trace, points × nodes.
-[[nodiscard]] SparseRowMatrix cut_trace(const SparseRowMatrix& whole, const ContactCut& part);
 
 }  // namespace ricochet

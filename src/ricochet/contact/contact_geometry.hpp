@@ -8,7 +8,6 @@
 /// @file Contact conditions that follow the motion.
 namespace ricochet {
 
-struct ContactCut;         // contact_cut.hpp
 struct CurvedContactData;  // curved_contact.hpp
 
 /// State at the start of a step.
@@ -60,10 +59,8 @@ class ContactGeometry {
   [[nodiscard]] virtual Vector row_values(const ContactRows&) const { return {}; }
   /// Restores the rows that had these normals (d × points), gaps and values.
   virtual void restore(const Points& normals, const Vector& gap, const Vector& row_values, ContactRows& rows) const = 0;
-  /// Data of a geometry that consists of curved obstacles alone; else null.
+  /// Data of a geometry that consists of curved obstacles alone, which can be divided; else null.
   [[nodiscard]] virtual const CurvedContactData* curved() const { return nullptr; }
-  /// Restricts the geometry to some points and nodes, renumbered; null if that is not supported.
-  [[nodiscard]] virtual std::unique_ptr<ContactGeometry> cut(const ContactCut&) const { return nullptr; }
 };
 
 /// Combines several geometries, each with its own points and nodes.

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "ricochet/base/selection.hpp"
-#include "ricochet/contact/contact_cut.hpp"
 #include "ricochet/contact/contact_directions.hpp"
 
 namespace ricochet {
@@ -142,7 +140,6 @@ class CurvedContact final : public ContactGeometry {
   }
 
   [[nodiscard]] const CurvedContactData* curved() const override { return &data_; }
-  [[nodiscard]] std::unique_ptr<ContactGeometry> cut(const ContactCut& part) const override;
 
  private:
   [[nodiscard]] Index dimension() const { return data_.node_positions.rows(); }
@@ -208,30 +205,6 @@ class CurvedContact final : public ContactGeometry {
   mutable Vector gap_;         ///< at the previous update
   mutable long revision_ = 0;  ///< number of the last update; different rows never share it
 };
-
-std::unique_ptr<ContactGeometry> CurvedContact::cut(const ContactCut& part) const {
-  const auto is_free_body = [](const Obstacle* obstacle) { return obstacle->free_motion() != nullptr; };
-  if (std::any_of(data_.obstacles.begin(), data_.obstacles.end(), is_free_body)) return nullptr;
-  CurvedContactData own;
-  own.obstacles = data_.obstacles;
-  for (CurvedContactData::Point point : data_.points) {
-    point.number = index_in(part.points, point.number);
-    if (point.number >= 0) own.points.push_back(point);
-  }
-  for (CurvedContactData::Node node : data_.nodes) {
-    node.entry = index_in(part.entries, node.entry);
-    node.node = part.node_number[static_cast<std::size_t>(node.node)];
-    if (node.entry >= 0) own.nodes.push_back(node);
-  }
-  own.node_positions.resize(data_.node_positions.rows(), part.nodes);
-  for (std::size_t node = 0; node < part.node_number.size(); ++node) {
-    if (part.node_number[node] >= 0)
-      own.node_positions.col(part.node_number[node]) = data_.node_positions.col(static_cast<Index>(node));
-  }
-  own.node_normals = chosen_columns(data_.node_normals, part.entries);
-  own.trace = cut_trace(data_.trace, part);
-  return std::make_unique<CurvedContact>(std::move(own));
-}
 
 }  // namespace
 

@@ -3,62 +3,62 @@
 #include <algorithm>
 
 #include "ricochet/base/archive.hpp"
-#include "ricochet/contact/contact_archive.hpp"
+#include "ricochet/contact/contact_members.hpp"
 #include "ricochet/model/model_parts.hpp"
 
 namespace ricochet {
 
-void transfer(Archive& archive, CellBlock& block) {
+void persist(Archive& archive, CellBlock& block) {
   archive.all(block.shape, block.nodes_per_cell, block.nodes, block.tags);
 }
-void transfer(Archive& archive, Group& group) {
+void persist(Archive& archive, Group& group) {
   archive.all(group.name, group.tag, group.dimension, group.members);
 }
-void transfer(Archive& archive, MeshPart& part) {
+void persist(Archive& archive, MeshPart& part) {
   archive.all(part.name, part.first_node, part.node_count, part.cells);
 }
-void transfer(Archive& archive, Mesh& mesh) {
+void persist(Archive& archive, Mesh& mesh) {
   archive.all(mesh.source, mesh.dimension, mesh.degree, mesh.nodes, mesh.node_tags, mesh.cells, mesh.facets,
               mesh.groups, mesh.parts, mesh.is_piece);
 }
-void transfer(Archive& archive, DisplacementSpace& space) {
+void persist(Archive& archive, DisplacementSpace& space) {
   archive.all(space.dimension, space.degree, space.nodes, space.cells, space.facets, space.number, space.glued,
               space.nodes_without_cells);
 }
-void transfer(Archive& archive, CellFacet& facet) {
+void persist(Archive& archive, CellFacet& facet) {
   archive.all(facet.block, facet.cell, facet.local);
 }
-void transfer(Archive& archive, ConnectedBodies& bodies) {
+void persist(Archive& archive, ConnectedBodies& bodies) {
   archive.all(bodies.count, bodies.of_node, bodies.of_cell);
 }
-void transfer(Archive& archive, BodiesOfMesh& bodies) {
+void persist(Archive& archive, BodiesOfMesh& bodies) {
   archive.all(bodies.connected, bodies.names, bodies.crossing_times, bodies.sizes, bodies.boundary);
 }
-void transfer(Archive& archive, HistoryBodies& bodies) {
+void persist(Archive& archive, HistoryBodies& bodies) {
   archive.all(bodies.labels, bodies.of_node);
 }
-void transfer(Archive& archive, Probe& probe) {
+void persist(Archive& archive, Probe& probe) {
   archive.all(probe.name, probe.node, probe.distance, probe.contact_node, probe.number);
 }
-void transfer(Archive& archive, Column& column) {
+void persist(Archive& archive, Column& column) {
   archive.all(column.name, column.by);
 }
-void transfer(Archive& archive, ProbeTargets& targets) {
+void persist(Archive& archive, ProbeTargets& targets) {
   archive.all(targets.probes, targets.positions, targets.columns, targets.nodes, targets.sums);
 }
-void transfer(Archive& archive, ModelSizes& sizes) {
+void persist(Archive& archive, ModelSizes& sizes) {
   archive.all(sizes.nodes, sizes.cells, sizes.dofs, sizes.contact_points, sizes.supported_dofs, sizes.diameter);
 }
-void transfer(Archive& archive, ContactScale& scale) {
+void persist(Archive& archive, ContactScale& scale) {
   archive.all(scale.body_size, scale.spacing);
 }
-void transfer(Archive& archive, StaticEquilibrium& equilibrium) {
+void persist(Archive& archive, StaticEquilibrium& equilibrium) {
   archive.all(equilibrium.displacement, equilibrium.normal_reaction);
 }
-void transfer(Archive& archive, InitialConditions& initial) {
+void persist(Archive& archive, InitialConditions& initial) {
   archive.all(initial.static_equilibrium, initial.displacement, initial.velocity, initial.found);
 }
-void transfer(Archive& archive, NodeMatrix& matrix) {
+void persist(Archive& archive, NodeMatrix& matrix) {
   int d = matrix.dimension();
   SparseMatrix sparse = archive.reads() ? SparseMatrix() : matrix.to_sparse();
   archive.all(d, sparse);
@@ -82,17 +82,11 @@ void transfer_geometry(Archive& archive, const std::vector<const Obstacle*>& of_
       obstacles.push_back(found - of_case.begin());
     }
   }
-  archive.all(obstacles, data.points, data.nodes, data.node_positions, data.node_normals, data.trace);
+  archive.all(obstacles, data);
   if (!archive.reads()) return;
   for (const Index number : obstacles)
     data.obstacles.push_back(model.obstacles.at(static_cast<std::size_t>(number)).get());
   contact.geometry = make_curved_contact(std::move(data));
-}
-
-void transfer_rows(Archive& archive, ContactBoundary& contact) {
-  ContactRows rows = archive.reads() ? ContactRows() : *contact.rows;
-  archive(rows);
-  if (archive.reads()) contact.rows = std::make_shared<const ContactRows>(std::move(rows));
 }
 
 /// Transfers supports; values are represented by the sections that prescribe them, and dofs without a section are those
@@ -129,7 +123,6 @@ void transfer_problem(Archive& archive, const Case& input, Model& model) {
   archive.all(problem.dimension, problem.axisymmetric, problem.nodes, problem.mass, problem.massless_dofs,
               problem.is_massless, problem.has_massless_elsewhere, problem.has_contact_elsewhere, problem.contact_dofs,
               problem.contact);
-  transfer_rows(archive, problem.contact);
   transfer_supports(archive, input, problem.supports);
   transfer_damping(archive, problem);
 }

@@ -101,45 +101,34 @@ FrameFile::FrameFile(std::string path, const std::vector<FixedDataset>& fixed, s
 }
 
 FrameFile::FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
-                     const FrameFileOptions& options, const Snapshot& snapshot, const std::string& name)
+                     const FrameFileOptions& options, const SnapshotVisitor& saved)
     : FrameFile(std::move(path), std::move(frame), options) {
   arrangement_ = make_frame_arrangement(fixed, layout_, options_);
-  load(snapshot, name);
+  persist(saved);
   repair(fixed, Repair::write);
   change_detector_.emplace(path_);
 }
 
 void FrameFile::check(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
-                      const FrameFileOptions& options, const Snapshot& snapshot, const std::string& name) {
+                      const FrameFileOptions& options, const SnapshotVisitor& saved) {
   FrameFile file(std::move(path), std::move(frame), options);
   file.arrangement_ = make_frame_arrangement(fixed, file.layout_, options);
-  file.load(snapshot, name);
+  file.persist(saved);
   file.repair(fixed, Repair::verify);
 }
 
-void FrameFile::load(const Snapshot& snapshot, const std::string& name) {
-  frames_ = snapshot.integer(name + ".frames");
-  stored_sizes_ = snapshot.integers(name + ".stored_sizes", 0, std::int64_t{1} << 40);
+void FrameFile::persist(const SnapshotVisitor& visit) {
+  visit("frames", frames_);
+  visit("stored_sizes", stored_sizes_, {0, std::int64_t{1} << 40});
+  visit("checksums", checksums_, {0, 0xffffffff});
   const std::size_t expected = options_.compression > 0 ? static_cast<std::size_t>(frames_) * layout_.size() : 0;
-  if (stored_sizes_.size() != expected) {
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("the saved state does not fit: it has {} frames of {} datasets with {} sizes", frames_,
-                            layout_.size(), stored_sizes_.size()));
-  }
-  checksums_ = snapshot.integers(name + ".checksums", 0, 0xffffffff);
-  if (static_cast<long>(checksums_.size()) != frames_)
-    throw Error(ErrorKind::invalid_input, "the saved state does not fit: it does not have one checksum per frame");
+  visit.require(
+      stored_sizes_.size() == expected, "stored_sizes",
+      fmt::format("has {} sizes for {} frames of {} datasets", stored_sizes_.size(), frames_, layout_.size()));
+  visit.require(static_cast<long>(checksums_.size()) == frames_, "checksums", "does not have one checksum per frame");
   if (!arrangement_->keeps_times()) return;
-  const Vector& times = snapshot.reals(name + ".times", frames_);
-  times_.assign(times.begin(), times.end());
-}
-
-void FrameFile::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name + ".frames", std::int64_t{frames_});
-  snapshot.save(name + ".stored_sizes", stored_sizes_);
-  snapshot.save(name + ".checksums", checksums_);
-  if (arrangement_->keeps_times())
-    snapshot.save(name + ".times", Vector(Eigen::Map<const Vector>(times_.data(), static_cast<Index>(times_.size()))));
+  if (visit.loads()) times_.resize(checksums_.size());
+  visit.numbers("times", times_);
 }
 
 void FrameFile::create(const std::string& path, const std::vector<FixedDataset>& fixed) const {

@@ -23,15 +23,15 @@ class FrameFile {
   /// Creates a file with the groups and datasets that all frames share. Throws Error(file_access).
   FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
             const FrameFileOptions& options = {});
-  /// Continues a file that held so many frames when save() was called, and may have been changed by an interrupted run
-  /// since. Throws Error(file_access), with the file unchanged, if it is not that file or the values of these frames
-  /// differ.
+  /// Continues a file that held so many frames when persist() was called, and may have been changed by an interrupted
+  /// run since. Throws Error(file_access), with the file unchanged, if it is not that file or the values of these
+  /// frames differ.
   FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
-            const FrameFileOptions& options, const Snapshot& snapshot, const std::string& name);
-  void save(Snapshot& snapshot, const std::string& name) const;
+            const FrameFileOptions& options, const SnapshotVisitor& saved);
+  void persist(const SnapshotVisitor& visit);
   /// Throws what continuing would throw, and changes nothing: for several files, before the first is changed.
   static void check(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
-                    const FrameFileOptions& options, const Snapshot& snapshot, const std::string& name);
+                    const FrameFileOptions& options, const SnapshotVisitor& saved);
 
   /// Appends a frame: the values of its datasets, in the order of the layout (const double*, const int*), and its time
   /// (stored by VTKHDF only). If the disk is full or another program has changed the file, throws Error(file_access)
@@ -43,7 +43,6 @@ class FrameFile {
  private:
   FrameFile(std::string path, std::vector<DatasetLayout> frame, const FrameFileOptions& options)
       : path_(std::move(path)), layout_(std::move(frame)), options_(options) {}
-  void load(const Snapshot& snapshot, const std::string& name);
   void create(const std::string& path, const std::vector<FixedDataset>& fixed) const;
   std::vector<FrameExtent> write_frame(const std::string& path, const FrameToWrite& frame) const;
   [[nodiscard]] FrameExtent count_extent(const std::string& path) const;

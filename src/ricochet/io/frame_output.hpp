@@ -18,8 +18,7 @@ struct FrameOutputContext {
   const SemidiscreteProblem& problem;
   const std::vector<Field>& fields;  ///< their values are read when a frame is written
   const FrameFileOptions& options;
-  const Snapshot* snapshot;  ///< of the resumed run; nullptr: new files
-  const std::string& name;   ///< name of the output in the snapshot
+  const SnapshotVisitor* saved;  ///< loads the output of the resumed run; nullptr: new files
 };
 
 class FrameOutput {
@@ -28,7 +27,7 @@ class FrameOutput {
   /// Writes a frame. All files are complete afterwards, and contain no partial frame if the run is killed meanwhile.
   virtual void write(const State& state) = 0;
   [[nodiscard]] virtual long frames() const = 0;
-  virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
+  virtual void save(const SnapshotVisitor& visit) = 0;
   /// Throws Error(file_access) if another program has changed a file since it was written.
   virtual void require_unchanged() const = 0;
   /// Paths of all files.

@@ -28,8 +28,7 @@ HistoryWriter::HistoryWriter(const std::string& path, const std::vector<std::str
   put_line();
 }
 
-HistoryWriter::HistoryWriter(const std::string& path, const Snapshot& snapshot, const std::string& name)
-    : path_(path), checksums_(snapshot, name) {
+HistoryWriter::HistoryWriter(const std::string& path, const SnapshotVisitor& saved) : path_(path), checksums_(saved) {
   truncate_file(path_, checksums_.length());
   open();
 }
@@ -50,8 +49,8 @@ void HistoryWriter::open() {
   waiting_.reserve(2 * piece);
 }
 
-void HistoryWriter::save(Snapshot& snapshot, const std::string& name) const {
-  checksums_.save(snapshot, name, std::filesystem::path(path_).filename().string());
+void HistoryWriter::save(const SnapshotVisitor& visit) {
+  checksums_.persist(visit, std::filesystem::path(path_).filename().string());
 }
 
 void HistoryWriter::put_line() {

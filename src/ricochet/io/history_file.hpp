@@ -20,15 +20,15 @@ class HistoryWriter {
  public:
   /// Begins a new file.
   HistoryWriter(const std::string& path, const std::vector<std::string>& columns);
-  /// Continues after the rows that existed when save() was called under this name. Throws Error(file_access) if the
+  /// Continues after the rows that existed when save() was called. Throws Error(file_access) if the
   /// file is missing or shorter; require_same_files() compares its content.
-  HistoryWriter(const std::string& path, const Snapshot& snapshot, const std::string& name);
+  HistoryWriter(const std::string& path, const SnapshotVisitor& saved);
   /// Writes the buffered rest, if possible.
   ~HistoryWriter();
   HistoryWriter(const HistoryWriter&) = delete;
   HistoryWriter& operator=(const HistoryWriter&) = delete;
   /// Saves the state after the last row; a snapshot of it is valid for the file only after sync().
-  void save(Snapshot& snapshot, const std::string& name) const;
+  void save(const SnapshotVisitor& visit);
   void write(const std::vector<double>& row);
   /// Writes everything to the operating system, so that others can read it. Checks the file even if nothing is
   /// buffered.

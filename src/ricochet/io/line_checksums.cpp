@@ -31,32 +31,29 @@ LineChecksums::LineChecksums() {
   blocks_.reserve(most_blocks);
 }
 
-LineChecksums::LineChecksums(const Snapshot& snapshot, const std::string& name) : LineChecksums() {
-  const Snapshot::Integers& sums = snapshot.integers(name + ".lines.sums", 0, 0xffffffff);
-  const Snapshot::Integers& lengths = snapshot.integers(name + ".lines.lengths", 0, std::int64_t{1} << 50);
-  pieces_ = snapshot.integer(name + ".lines.pieces");
-  pieces_per_block_ = snapshot.integer(name + ".lines.per_block");
-  const auto count = static_cast<std::int64_t>(sums.size());
-  if (sums.size() != lengths.size() || sums.size() > most_blocks || pieces_per_block_ < 1 ||
-      pieces_ > count * pieces_per_block_ || pieces_ <= (count - 1) * pieces_per_block_)
-    throw Error(ErrorKind::invalid_input, fmt::format("the saved state does not fit: checksums of {}", name));
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    blocks_.push_back({static_cast<std::uint32_t>(sums[i]), lengths[i]});
-    length_ += lengths[i];
-  }
-}
-
-void LineChecksums::save(Snapshot& snapshot, const std::string& name, const std::string& file_name) const {
+void LineChecksums::persist(const SnapshotVisitor& visit, std::string file_name) {
+  const SnapshotVisitor lines = visit.part("lines");
   Snapshot::Integers sums, lengths;
   for (const Block& block : blocks_) {
     sums.push_back(block.sum);
     lengths.push_back(block.length);
   }
-  snapshot.save(name + file_suffix, file_name);
-  snapshot.save(name + ".lines.sums", std::move(sums));
-  snapshot.save(name + ".lines.lengths", std::move(lengths));
-  snapshot.save(name + ".lines.pieces", pieces_);
-  snapshot.save(name + ".lines.per_block", pieces_per_block_);
+  lines("file", file_name);
+  lines("sums", sums, {0, 0xffffffff});
+  lines("lengths", lengths, {0, std::int64_t{1} << 50}, static_cast<Index>(sums.size()));
+  lines("pieces", pieces_);
+  lines("per_block", pieces_per_block_);
+  if (!visit.loads()) return;
+  const auto count = static_cast<std::int64_t>(sums.size());
+  lines.require(sums.size() <= most_blocks && pieces_per_block_ >= 1 && pieces_ <= count * pieces_per_block_ &&
+                    pieces_ > (count - 1) * pieces_per_block_,
+                "sums", "do not belong to so many lines");
+  blocks_.clear();
+  length_ = 0;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    blocks_.push_back({static_cast<std::uint32_t>(sums[i]), lengths[i]});
+    length_ += lengths[i];
+  }
 }
 
 void LineChecksums::add(std::string_view piece) {
@@ -108,7 +105,7 @@ void require_same_files(const std::string& directory, const Snapshot& snapshot) 
   for (const auto& [key, value] : snapshot.values()) {
     if (!key.ends_with(file_suffix)) continue;
     const std::string name = key.substr(0, key.size() - std::string_view(file_suffix).size());
-    LineChecksums(snapshot, name).require_same((std::filesystem::path(directory) / snapshot.text(key)).string());
+    LineChecksums(snapshot.loader(name)).require_same((std::filesystem::path(directory) / snapshot.text(key)).string());
   }
 }
 

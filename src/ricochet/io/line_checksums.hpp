@@ -17,8 +17,9 @@ class LineChecksums {
  public:
   LineChecksums();
   /// Loads saved checksums.
-  LineChecksums(const Snapshot& snapshot, const std::string& name);
-  void save(Snapshot& snapshot, const std::string& name, const std::string& file_name) const;
+  explicit LineChecksums(const SnapshotVisitor& saved) : LineChecksums() { persist(saved, ""); }
+  /// Saves the checksums and the name of the file, which require_same_files() reads; loads the checksums.
+  void persist(const SnapshotVisitor& visit, std::string file_name);
 
   /// Adds a piece that has been appended to the file.
   void add(std::string_view piece);

@@ -33,8 +33,7 @@ class LockedFrames {
 
 struct ResultsWriter::Implementation {
   Implementation(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
-                 const ResultsOptions& options, const Snapshot* snapshot, const std::string& name,
-                 const GlobalBody& global_body);
+                 const ResultsOptions& options, const SnapshotVisitor* saved, const GlobalBody& global_body);
   void open(const FrameOutputContext& context, ResultsFormat format);
 
   const Ranks& ranks;
@@ -49,8 +48,7 @@ struct ResultsWriter::Implementation {
 
 ResultsWriter::Implementation::Implementation(const std::string& directory, const Body& body,
                                               const SemidiscreteProblem& problem, const ResultsOptions& options,
-                                              const Snapshot* snapshot, const std::string& name,
-                                              const GlobalBody& global_body)
+                                              const SnapshotVisitor* saved, const GlobalBody& global_body)
     : ranks(*problem.ranks),
       sources(make_field_sources({body, problem, expand_field_names(options.fields)})),
       lock_path(directory + "/" + lock_of_results(options.format)) {
@@ -58,16 +56,15 @@ ResultsWriter::Implementation::Implementation(const std::string& directory, cons
     for (const Field& field : source->fields()) fields.push_back(field);
   }
   if (!ranks.are_several()) {
-    open({directory, body, problem, fields, options.file, snapshot, name}, options.format);
+    open({directory, body, problem, fields, options.file, saved}, options.format);
     return;
   }
-  if (snapshot != nullptr) frame_count = snapshot->integer(name + ".frame_count");
+  if (saved != nullptr) (*saved)("frame_count", frame_count);
   gathered = std::make_unique<GatheredFields>(ranks, fields, global_body.node_rows, global_body.cell_rows,
                                               global_body.nodes, global_body.cells);
   ranks.run_collectively([&] {
     if (!ranks.is_first()) return;
-    open({directory, *global_body.body, *global_body.problem, gathered->fields(), options.file, snapshot, name},
-         options.format);
+    open({directory, *global_body.body, *global_body.problem, gathered->fields(), options.file, saved}, options.format);
   });
 }
 
@@ -75,7 +72,7 @@ void ResultsWriter::Implementation::open(const FrameOutputContext& context, Resu
   const auto make = [&] {
     output = format == ResultsFormat::vtkhdf ? make_vtkhdf_output(context) : make_xdmf_output(context);
   };
-  if (context.snapshot == nullptr) {
+  if (context.saved == nullptr) {
     make();
     return;
   }
@@ -86,13 +83,11 @@ void ResultsWriter::Implementation::open(const FrameOutputContext& context, Resu
 
 ResultsWriter::ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
                              const ResultsOptions& options, const GlobalBody& global_body)
-    : implementation_(std::make_unique<Implementation>(directory, body, problem, options, nullptr, "", global_body)) {}
+    : implementation_(std::make_unique<Implementation>(directory, body, problem, options, nullptr, global_body)) {}
 
 ResultsWriter::ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
-                             const ResultsOptions& options, const Snapshot& snapshot, const std::string& name,
-                             const GlobalBody& global_body)
-    : implementation_(
-          std::make_unique<Implementation>(directory, body, problem, options, &snapshot, name, global_body)) {}
+                             const ResultsOptions& options, const SnapshotVisitor& saved, const GlobalBody& global_body)
+    : implementation_(std::make_unique<Implementation>(directory, body, problem, options, &saved, global_body)) {}
 
 ResultsWriter::~ResultsWriter() = default;
 
@@ -113,9 +108,9 @@ long ResultsWriter::frames() const {
   return implementation_->output ? implementation_->output->frames() : implementation_->frame_count;
 }
 
-void ResultsWriter::save(Snapshot& snapshot, const std::string& name) const {
-  if (implementation_->gathered) snapshot.save(name + ".frame_count", std::int64_t{implementation_->frame_count});
-  if (implementation_->output) implementation_->output->save(snapshot, name);
+void ResultsWriter::save(const SnapshotVisitor& visit) {
+  if (implementation_->gathered) visit("frame_count", implementation_->frame_count);
+  if (implementation_->output) implementation_->output->save(visit);
 }
 
 void ResultsWriter::require_unchanged() const {

@@ -40,8 +40,7 @@ class ResultsWriter {
   /// Continues after the frames that existed when save() was called; the files will have the bytes of an uninterrupted
   /// run. Throws Error(file_access) if they are not those files.
   ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
-                const ResultsOptions& options, const Snapshot& snapshot, const std::string& name,
-                const GlobalBody& global_body = {});
+                const ResultsOptions& options, const SnapshotVisitor& saved, const GlobalBody& global_body = {});
   ~ResultsWriter();
   ResultsWriter(const ResultsWriter&) = delete;
   ResultsWriter& operator=(const ResultsWriter&) = delete;
@@ -49,7 +48,7 @@ class ResultsWriter {
   /// Writes a frame. All files are complete afterwards.
   void write(const State& state);
   [[nodiscard]] long frames() const;
-  void save(Snapshot& snapshot, const std::string& name) const;
+  void save(const SnapshotVisitor& visit);
   /// Throws Error(file_access) if another program has changed a file since it was written; so does write().
   void require_unchanged() const;
   /// Waits until all files are on the disk.

@@ -50,13 +50,13 @@ class VtkHdfOutput : public FrameOutput {
     const DisplacementSpace& space = *context.body.space;
     std::vector<FixedDataset> fixed = mesh_datasets(space, context.problem.contact);
     for (FixedDataset& set : vtkhdf_mesh_datasets(space)) fixed.push_back(std::move(set));
-    const FileOfFrames body{"results.vtkhdf", ".frames", std::move(fixed), vtkhdf_datasets_of(context.fields)};
+    const FileOfFrames body{"results.vtkhdf", "frames", std::move(fixed), vtkhdf_datasets_of(context.fields)};
     for (const Field& field : context.fields) values_.emplace_back(field);
     if (obstacles_.any()) {
       const FileOfFrames surfaces = file_of_surfaces();
-      if (context.snapshot != nullptr) {
-        FrameFile::check(path(surfaces), surfaces.fixed, surfaces.layout, options_of(context), *context.snapshot,
-                         context.name + surfaces.saved_as);
+      if (context.saved != nullptr) {
+        FrameFile::check(path(surfaces), surfaces.fixed, surfaces.layout, options_of(context),
+                         context.saved->part(surfaces.saved_as));
       }
       open(file_, body, context);
       open(obstacle_file_, surfaces, context);
@@ -76,9 +76,9 @@ class VtkHdfOutput : public FrameOutput {
     file_->append(values, state.time);
   }
   [[nodiscard]] long frames() const override { return file_->frames(); }
-  void save(Snapshot& snapshot, const std::string& name) const override {
-    file_->save(snapshot, name + ".frames");
-    if (obstacle_file_) obstacle_file_->save(snapshot, name + ".obstacles");
+  void save(const SnapshotVisitor& visit) override {
+    file_->persist(visit.part("frames"));
+    if (obstacle_file_) obstacle_file_->persist(visit.part("obstacles"));
   }
   void require_unchanged() const override {
     file_->require_unchanged();
@@ -105,10 +105,10 @@ class VtkHdfOutput : public FrameOutput {
   }
   void open(std::optional<FrameFile>& file, const FileOfFrames& about, const FrameOutputContext& context) const {
     const FrameFileOptions options = options_of(context);
-    if (context.snapshot == nullptr) {
+    if (context.saved == nullptr) {
       file.emplace(path(about), about.fixed, about.layout, options);
     } else {
-      file.emplace(path(about), about.fixed, about.layout, options, *context.snapshot, context.name + about.saved_as);
+      file.emplace(path(about), about.fixed, about.layout, options, context.saved->part(about.saved_as));
     }
   }
   [[nodiscard]] FileOfFrames file_of_surfaces() const {
@@ -116,7 +116,7 @@ class VtkHdfOutput : public FrameOutput {
     const CellShape shape = corners == 2 ? CellShape::interval : CellShape::quadrilateral;
     FileOfFrames file{
         "obstacles.vtkhdf",
-        ".obstacles",
+        "obstacles",
         vtkhdf_cell_datasets(obstacles_.point_count(), obstacles_.cells(), vtk_cell(shape, 1).vtk_number, corners),
         {{"Points", false, obstacles_.point_count(), 3}}};
     const std::vector<int>& numbers = obstacles_.numbers();

@@ -28,8 +28,7 @@ XdmfFile::XdmfFile(std::string path, const std::string& collection, const std::s
   append(head);
 }
 
-XdmfFile::XdmfFile(std::string path, const Snapshot& snapshot, const std::string& name)
-    : path_(std::move(path)), checksums_(snapshot, name) {
+XdmfFile::XdmfFile(std::string path, const SnapshotVisitor& saved) : path_(std::move(path)), checksums_(saved) {
   truncate_file(path_, checksums_.length());
   file_.open(path_, std::ios::in | std::ios::out | std::ios::binary);
   if (!file_) throw_file_error(path_, "write", errno);
@@ -37,8 +36,8 @@ XdmfFile::XdmfFile(std::string path, const Snapshot& snapshot, const std::string
   append("");
 }
 
-void XdmfFile::save(Snapshot& snapshot, const std::string& name) const {
-  checksums_.save(snapshot, name, std::filesystem::path(path_).filename().string());
+void XdmfFile::save(const SnapshotVisitor& visit) {
+  checksums_.persist(visit, std::filesystem::path(path_).filename().string());
 }
 
 /// Overwrites the closing tags by the grid and new closing tags in one write, once there is space for both.

@@ -17,8 +17,8 @@ class XdmfFile {
   /// collection is displayed with this one; may be empty. Throws Error(file_access).
   XdmfFile(std::string path, const std::string& collection, const std::string& included = "");
   /// Continues after the grids that existed when save() was called. Throws Error(file_access) if it is not that file.
-  XdmfFile(std::string path, const Snapshot& snapshot, const std::string& name);
-  void save(Snapshot& snapshot, const std::string& name) const;
+  XdmfFile(std::string path, const SnapshotVisitor& saved);
+  void save(const SnapshotVisitor& visit);
 
   /// Appends a `Grid` element. Throws Error(file_access), also if another program has changed the file.
   void append(const std::string& grid);

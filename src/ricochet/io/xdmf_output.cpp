@@ -56,15 +56,14 @@ class XdmfOutput : public FrameOutput {
     mesh_ = topology_of(space, fixed[1]) + geometry_of(space);
     const std::vector<DatasetLayout> layout = datasets_of(fields_);
     const std::string obstacles = "obstacles.xdmf";
-    if (context.snapshot == nullptr) {
+    if (context.saved == nullptr) {
       file_.emplace(path("results.h5"), fixed, layout, context.options);
       if (obstacles_.any()) obstacle_side_.emplace(path(obstacles), "obstacles");
       side_.emplace(path("results.xdmf"), "body", obstacles_.any() ? obstacles : "");
     } else {
-      const Snapshot& snapshot = *context.snapshot;
-      file_.emplace(path("results.h5"), fixed, layout, context.options, snapshot, context.name + ".frames");
-      if (obstacles_.any()) obstacle_side_.emplace(path(obstacles), snapshot, context.name + ".obstacles");
-      side_.emplace(path("results.xdmf"), snapshot, context.name + ".side");
+      file_.emplace(path("results.h5"), fixed, layout, context.options, context.saved->part("frames"));
+      if (obstacles_.any()) obstacle_side_.emplace(path(obstacles), context.saved->part("obstacles"));
+      side_.emplace(path("results.xdmf"), context.saved->part("side"));
     }
     for (const Field& field : fields_) values_.push_back(field.values);
   }
@@ -77,10 +76,10 @@ class XdmfOutput : public FrameOutput {
     side_->append(grid(state.time, frame));
   }
   [[nodiscard]] long frames() const override { return file_->frames(); }
-  void save(Snapshot& snapshot, const std::string& name) const override {
-    file_->save(snapshot, name + ".frames");
-    side_->save(snapshot, name + ".side");
-    if (obstacle_side_) obstacle_side_->save(snapshot, name + ".obstacles");
+  void save(const SnapshotVisitor& visit) override {
+    file_->persist(visit.part("frames"));
+    side_->save(visit.part("side"));
+    if (obstacle_side_) obstacle_side_->save(visit.part("obstacles"));
   }
   void require_unchanged() const override {
     file_->require_unchanged();

@@ -65,15 +65,9 @@ void FreeMotion::begin_step(const Vector& displacement) {
   }
 }
 
-void FreeMotion::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name + ".axes", Vector(axes_.reshaped()));
-  snapshot.save(name + ".turned", Vector(rotation_at_start_));
-}
-
-void FreeMotion::load(const Snapshot& snapshot, const std::string& name) {
-  const Index d = dimension();
-  axes_ = snapshot.reals(name + ".axes", d * d).reshaped(d, d);
-  rotation_at_start_ = snapshot.reals(name + ".turned", gyration_.size());
+void FreeMotion::persist(const SnapshotVisitor& visit) {
+  visit.numbers("axes", axes_);
+  visit.numbers("turned", rotation_at_start_);
 }
 
 Pose::Rotation FreeMotion::axes(const Vector& displacement) const {

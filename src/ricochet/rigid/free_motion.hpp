@@ -42,8 +42,7 @@ class FreeMotion {
 
   /// Begins a step at this displacement, to which the functions below refer.
   void begin_step(const Vector& displacement);
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
   /// Pose at a displacement of the step.
   [[nodiscard]] Pose pose(const Vector& displacement) const;

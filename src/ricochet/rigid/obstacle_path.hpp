@@ -43,15 +43,15 @@ class SteeredPath final : public ObstaclePath {
   [[nodiscard]] bool rotates() const override { return before_ != nullptr && before_->rotates(); }
   [[nodiscard]] std::string checksum() const override { return before_ != nullptr ? before_->checksum() : ""; }
 
-  void save(Snapshot& snapshot, const std::string& name) const;
-  /// Throws Error(invalid_input) if the entry does not fit.
-  void load(const Snapshot& snapshot, const std::string& name);
+  /// Throws Error(invalid_input) if an entry that is loaded does not fit; the path is then unchanged.
+  void persist(const SnapshotVisitor& visit);
 
  private:
   /// Position at an instant, and rates from there on.
   struct Leg {
     double start = 0.0;
     SpaceVector displacement, rotation, velocity, rotation_rate;
+    [[nodiscard]] auto members() { return std::tie(start, displacement, rotation, velocity, rotation_rate); }
   };
   [[nodiscard]] const Leg* leg_at(double time) const;
 

@@ -56,33 +56,9 @@ void SteeredPath::steer(double time, const SpaceVector& velocity, const SpaceVec
   legs_.push_back(std::move(leg));
 }
 
-void SteeredPath::save(Snapshot& snapshot, const std::string& name) const {
-  const Index width = 1 + 2 * (dimension_ + rotations_);
-  Vector numbers(width * static_cast<Index>(legs_.size()));
-  for (std::size_t i = 0; i < legs_.size(); ++i) {
-    const Leg& leg = legs_[i];
-    numbers.segment(static_cast<Index>(i) * width, width) << leg.start, leg.displacement, leg.rotation, leg.velocity,
-        leg.rotation_rate;
-  }
-  snapshot.save(name, numbers);
-}
-
-void SteeredPath::load(const Snapshot& snapshot, const std::string& name) {
-  const Vector& numbers = snapshot.reals(name);
-  const Index width = 1 + 2 * (dimension_ + rotations_);
-  if (numbers.size() % width != 0 || numbers.size() / width > static_cast<Index>(most_legs))
-    Snapshot::refuse(name, "is not a motion of an obstacle of this case");
-  legs_.clear();
-  for (Index first = 0; first < numbers.size(); first += width) {
-    Index at = first;
-    const auto read = [&](Index count) -> SpaceVector { return numbers.segment((at += count) - count, count); };
-    Leg leg{.start = numbers[at++], .displacement = {}, .rotation = {}, .velocity = {}, .rotation_rate = {}};
-    leg.displacement = read(dimension_);
-    leg.rotation = read(rotations_);
-    leg.velocity = read(dimension_);
-    leg.rotation_rate = read(rotations_);
-    legs_.push_back(std::move(leg));
-  }
+void SteeredPath::persist(const SnapshotVisitor& visit) {
+  const SpaceVector motion = SpaceVector::Zero(dimension_), rotation = SpaceVector::Zero(rotations_);
+  visit.list("", legs_, most_legs, Leg{0.0, motion, rotation, motion, rotation});
 }
 
 }  // namespace ricochet

@@ -43,13 +43,7 @@ ResultsOptions results_options(const OutputSection& output) {
 }
 
 FieldSchedule::FieldSchedule(const Case& input, const Model& model, long steps, const Snapshot* snapshot) {
-  if (snapshot != nullptr) {
-    every_ = snapshot->integer("fields.every");
-    last_ = snapshot->integer("fields.last");
-    const Vector& times = snapshot->reals("fields.interval", 2);
-    interval_ = times[0];
-    intervals_before_ = times[1];
-  }
+  if (snapshot != nullptr) persist(snapshot->loader("fields"));
   if (input.output.fields_interval) {
     interval_ = *input.output.fields_interval;
   } else if (input.output.fields_every && snapshot == nullptr) {
@@ -68,10 +62,10 @@ FieldSchedule::FieldSchedule(const Case& input, const Model& model, long steps, 
   }
 }
 
-void FieldSchedule::save(Snapshot& snapshot) const {
-  snapshot.save("fields.every", std::int64_t{every_});
-  snapshot.save("fields.last", std::int64_t{last_});
-  snapshot.save("fields.interval", Vector(Eigen::Vector2d(interval_, intervals_before_)));
+void FieldSchedule::persist(const SnapshotVisitor& visit) {
+  visit("every", every_);
+  visit("last", last_);
+  visit.numbers("interval", interval_, intervals_before_);
 }
 
 /// Returns the number of whole intervals up to this time; one that a step completes up to rounding counts.

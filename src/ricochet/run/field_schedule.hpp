@@ -18,7 +18,7 @@ class FieldSchedule {
   /// If the case does not state an interval, the number of steps and the size of a frame determine it. A resumed run
   /// keeps its original interval, even if its end has been moved.
   FieldSchedule(const Case& input, const Model& model, long steps, const Snapshot* snapshot = nullptr);
-  void save(Snapshot& snapshot) const;
+  void persist(const SnapshotVisitor& visit);
   [[nodiscard]] bool any() const { return every_ > 0 || interval_ > 0.0; }
   /// Returns true if a frame follows a step. Must be called once for every step, in order.
   [[nodiscard]] bool includes(const State& state);

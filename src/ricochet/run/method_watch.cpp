@@ -23,24 +23,9 @@ std::string name_of(ReactionMean acting) {
 
 }  // namespace
 
-void MethodWatch::save(Snapshot& snapshot, const std::string& name) const {
-  Vector numbers(5);
-  numbers << least_, largest_, last_, least_weight_, largest_weight_;
-  snapshot.save(name + ".numbers", numbers);
-  snapshot.save(name + ".steps", Snapshot::Integers{mean_steps_, end_steps_});
-}
-
-void MethodWatch::load(const Snapshot& snapshot, const std::string& name) {
-  const Vector& numbers = snapshot.reals(name + ".numbers", 5);
-  const Snapshot::Integers& steps = snapshot.integers(name + ".steps", 0, std::numeric_limits<std::int64_t>::max());
-  if (steps.size() != 2) throw Error(ErrorKind::invalid_input, "the checkpoint's record of reactions is damaged");
-  least_ = numbers[0];
-  largest_ = numbers[1];
-  last_ = numbers[2];
-  least_weight_ = numbers[3];
-  largest_weight_ = numbers[4];
-  mean_steps_ = steps[0];
-  end_steps_ = steps[1];
+void MethodWatch::persist(const SnapshotVisitor& visit) {
+  visit.numbers("numbers", least_, largest_, last_, least_weight_, largest_weight_);
+  visit.integers("steps", {0, std::numeric_limits<std::int64_t>::max()}, mean_steps_, end_steps_);
 }
 
 void MethodWatch::enter_step(const State& state, double method_energy) {

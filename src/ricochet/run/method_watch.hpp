@@ -16,8 +16,7 @@ class MethodWatch {
   /// Watches a scheme with these acting reactions; none if the scheme has no choice.
   explicit MethodWatch(std::optional<ReactionMean> acting, const Ranks& ranks = one_rank())
       : acting_(acting), ranks_(&ranks) {}
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
   /// Enters a step with EnergyAccount::method_energy at its end. Allocates nothing.
   void enter_step(const State& state, double method_energy);

@@ -46,19 +46,11 @@ bool NewtonWatch::enter_step(int iterations, double seconds) {
   return true;
 }
 
-void NewtonWatch::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name, Vector(Eigen::Vector4d(weight_, static_cast<double>(steps_), seconds_, has_warned_ ? 1.0 : 0.0)));
-}
-
-void NewtonWatch::load(const Snapshot& snapshot, const std::string& name) {
+void NewtonWatch::persist(const SnapshotVisitor& visit) {
   constexpr double limit = 1e15;  // integers below it are exact
-  const Vector& numbers = snapshot.reals(name, 4);
-  if (!(numbers.array() >= 0.0 && numbers.array() < limit).all())
-    Snapshot::refuse(name, fmt::format("has entries that are not between 0 and {:g}", limit));
-  weight_ = numbers[0];
-  steps_ = static_cast<long>(numbers[1]);
-  seconds_ = numbers[2];
-  has_warned_ = numbers[3] != 0.0;
+  const Vector numbers = visit.numbers("", weight_, steps_, seconds_, has_warned_);
+  visit.require((numbers.array() >= 0.0 && numbers.array() < limit).all(), "",
+                fmt::format("has entries that are not between 0 and {:g}", limit));
 }
 
 ExplicitRun try_explicit(const Case& input) {

@@ -13,8 +13,7 @@ class NewtonWatch {
   /// Number of iterations of a step above which it has very many.
   static constexpr int many = 200;
 
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
   /// Enters a step with the seconds that it took. Returns true once per run, when steps with very many iterations have
   /// become frequent.

@@ -24,7 +24,7 @@ std::unique_ptr<HistoryWriter> open_history(const Ranks& ranks, const std::strin
   std::unique_ptr<HistoryWriter> result;
   ranks.run_collectively([&] {
     if (!ranks.is_first()) return;
-    result = snapshot != nullptr ? std::make_unique<HistoryWriter>(path, *snapshot, name)
+    result = snapshot != nullptr ? std::make_unique<HistoryWriter>(path, snapshot->loader(name))
                                  : std::make_unique<HistoryWriter>(path, columns);
   });
   return result;
@@ -50,7 +50,7 @@ std::unique_ptr<ResultsWriter> open_results(const OutputSection& output, const M
                    model.sizes.nodes,
                    model.sizes.cells};
   if (snapshot != nullptr)
-    return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, *snapshot, "results",
+    return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, snapshot->loader("results"),
                                            global_body);
   return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, global_body);
 }
@@ -80,7 +80,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       recorder_(model.problem, *model.rotation, model.sensors, model.history_bodies),
       history_(
           open_history(*model.problem.ranks, directory + "/history.csv", recorder_.columns(), snapshot, "history")),
-      checks_(input, model, scheme, state, recorder_.columns(), snapshot),
+      checks_(input, model, scheme, state, recorder_.columns()),
       model_(model),
       body_names_(names_of_all_bodies(input, model)),
       impacts_(make_impact_recorder(model, scheme, state)),
@@ -99,15 +99,19 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
                      sampled_name(every));
     sampled_.push_back({every, std::move(recorder), std::move(file)});
   }
-  if (snapshot == nullptr) return;
-  digest_.load(*snapshot, "digest", recorder_.columns().size());
-  impacts_.load(*snapshot, "impacts");
-  peak_stress_.load(*snapshot, "peak_stress");
-  penetration_.load(*snapshot, "penetration");
-  sliding_.load(*snapshot, "sliding");
-  late_.load(*snapshot, "late_contact");
-  rotation_.load(*snapshot, "rotation");
-  method_.load(*snapshot, "method");
+  if (snapshot != nullptr) persist(snapshot->loader(""));
+}
+
+void Recording::persist(const SnapshotVisitor& visit) {
+  digest_.persist(visit.part("digest"), recorder_.columns().size());
+  checks_.persist(visit.part("checks"));
+  impacts_.persist(visit.part("impacts"));
+  peak_stress_.persist(visit.part("peak_stress"));
+  penetration_.persist(visit.part("penetration"));
+  sliding_.persist(visit.part("sliding"));
+  late_.persist(visit.part("late_contact"));
+  rotation_.persist(visit.part("rotation"));
+  method_.persist(visit.part("method"));
 }
 
 /// Returns the energy of the method, summed over all ranks.
@@ -191,27 +195,19 @@ void Recording::flush() {
 void Recording::save(Snapshot& snapshot) {
   if (history_) {
     history_->sync();
-    history_->save(snapshot, "history");
+    history_->save(snapshot.saver("history"));
   }
   for (Sampled& sampled : sampled_) {
     if (!sampled.file) continue;
     sampled.file->sync();
-    sampled.file->save(snapshot, sampled_name(sampled.every));
+    sampled.file->save(snapshot.saver(sampled_name(sampled.every)));
   }
   if (results_) {
     results_->sync();
-    results_->save(snapshot, "results");
+    results_->save(snapshot.saver("results"));
   }
-  fields_.save(snapshot);
-  digest_.save(snapshot, "digest");
-  checks_.save(snapshot, "checks");
-  impacts_.save(snapshot, "impacts");
-  peak_stress_.save(snapshot, "peak_stress");
-  penetration_.save(snapshot, "penetration");
-  sliding_.save(snapshot, "sliding");
-  late_.save(snapshot, "late_contact");
-  rotation_.save(snapshot, "rotation");
-  method_.save(snapshot, "method");
+  fields_.persist(snapshot.saver("fields"));
+  persist(snapshot.saver(""));
 }
 
 void Recording::describe(RunSummary& summary) const {

@@ -51,6 +51,7 @@ class Recording {
   [[nodiscard]] double watch_seconds() const { return watch_seconds_; }
 
  private:
+  void persist(const SnapshotVisitor& visit);
   [[nodiscard]] double method_energy(const State& state, EnergyAccount& account) const;
   void write_row(const State& state, EnergyAccount& account);
   void check_finite(const std::vector<double>& row) const;

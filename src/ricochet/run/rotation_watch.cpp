@@ -35,21 +35,15 @@ RotationWatch::RotationWatch(const Body& body, const Ranks& ranks, std::size_t c
   records_.reserve(static_cast<std::size_t>(most) + 3);
 }
 
-void RotationWatch::save(Snapshot& snapshot, const std::string& name) const {
-  Vector numbers(2 * static_cast<Index>(records_.size()));
-  for (std::size_t i = 0; i < records_.size(); ++i)
-    numbers.segment<2>(2 * static_cast<Index>(i)) << records_[i].time, records_[i].rotation;
-  snapshot.save(name, numbers);
-}
-
-void RotationWatch::load(const Snapshot& snapshot, const std::string& name) {
-  const Vector& numbers = snapshot.reals(name);
-  const auto most = static_cast<Index>(2 * records_.capacity());
-  bool fits = numbers.size() % 2 == 0 && numbers.size() <= most && numbers.allFinite();
-  for (Index i = 2; fits && i < numbers.size(); ++i) fits = numbers[i] > numbers[i - 2];
-  if (!fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of rotations is damaged");
-  records_.clear();
-  for (Index i = 0; i < numbers.size(); i += 2) records_.push_back({numbers[i], numbers[i + 1]});
+void RotationWatch::persist(const SnapshotVisitor& visit) {
+  visit.list("", records_, records_.capacity());
+  bool fits = true;
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    const auto& [time, rotation] = records_[i];
+    fits = fits && std::isfinite(time) && std::isfinite(rotation);
+    if (i > 0) fits = fits && time > records_[i - 1].time && rotation > records_[i - 1].rotation;
+  }
+  if (visit.loads() && !fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of rotations is damaged");
 }
 
 double RotationWatch::time_beyond_limit() const {

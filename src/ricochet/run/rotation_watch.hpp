@@ -17,8 +17,7 @@ class RotationWatch {
  public:
   /// `column` is the index of max_rotation in a row. At finite strain there is no limit. Keeps references.
   RotationWatch(const Body& body, const Ranks& ranks, std::size_t column);
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
   /// Enters a row of history.csv. Warns the first time that a cell has rotated too far. Allocates nothing.
   void watch(const std::vector<double>& row, const State& state);
@@ -32,6 +31,7 @@ class RotationWatch {
  private:
   struct RotationRecord {
     double time, rotation;
+    [[nodiscard]] auto members() { return std::tie(time, rotation); }
   };
   const Body& body_;
   const Ranks& ranks_;

@@ -210,8 +210,8 @@ void Run::begin_session() {
     summary_.resumed_at.assign(resumed_at.begin(), resumed_at.end());
     summary_.resumed_at.push_back(session_.simulation().state().step);
     summary_.checkpoint_step = session_.simulation().state().step;
-    times_.load(*snapshot_, "run.times");
-    newton_.load(*snapshot_, "run.newton");
+    times_.persist(snapshot_->loader("run.times"));
+    newton_.persist(snapshot_->loader("run.newton"));
     log::info("resumed after " + step_in_words());
   } else {
     const std::lock_guard files(files_);

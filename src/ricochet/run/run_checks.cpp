@@ -22,7 +22,7 @@ constexpr double rounding_of_momenta = 1e-12;
 }  // namespace
 
 RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme, const State& state,
-                     const std::vector<std::string>& columns, const Snapshot* snapshot)
+                     const std::vector<std::string>& columns)
     : model_(model),
       stops_(input.check.stops),
       momentum_(model.problem, scheme, state),
@@ -58,33 +58,13 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
   if (!model.contains_rotations) angular_.result.limit = 0.0;
   if (!model.problem.internal_force->is_linear() && !scheme.traits().conserves_moments_at_finite_strain)
     angular_.result.limit = 0.0;
-  if (snapshot == nullptr) return;
-  momentum_.load(*snapshot, "checks.impulse");
-  const Vector& numbers = snapshot->reals("checks.state", 14);
-  start_ = {numbers.head(3), numbers.segment(3, 3)};
-  energy_scale_ = numbers[6];
-  momentum_scale_ = numbers[7];
-  ignored_scale_ = numbers[8];
-  energy_.result.largest = numbers[9];
-  linear_.result.largest = numbers[10];
-  angular_.result.largest = numbers[11];
-  has_start_ = numbers[12] != 0.0;
-  work_scale_ = numbers[13];
-  const Snapshot::Integers& was_warned = snapshot->integers("checks.told", 0, 1);
-  if (was_warned.size() != 3) return;
-  energy_.warned = was_warned[0] != 0;
-  linear_.warned = was_warned[1] != 0;
-  angular_.warned = was_warned[2] != 0;
 }
 
-void RunChecks::save(Snapshot& snapshot, const std::string& name) const {
-  momentum_.save(snapshot, name + ".impulse");
-  Vector numbers(14);
-  numbers << start_.force, start_.moment, energy_scale_, momentum_scale_, ignored_scale_, energy_.result.largest,
-      linear_.result.largest, angular_.result.largest, has_start_ ? 1.0 : 0.0, work_scale_;
-  snapshot.save(name + ".state", numbers);
-  snapshot.save(name + ".told",
-                Snapshot::Integers{energy_.warned ? 1 : 0, linear_.warned ? 1 : 0, angular_.warned ? 1 : 0});
+void RunChecks::persist(const SnapshotVisitor& visit) {
+  momentum_.persist(visit.part("impulse"));
+  visit.numbers("state", start_, energy_scale_, momentum_scale_, ignored_scale_, energy_.result.largest,
+                linear_.result.largest, angular_.result.largest, has_start_, work_scale_);
+  visit.integers("told", {0, 1}, energy_.warned, linear_.warned, angular_.warned);
 }
 
 double RunChecks::size_of_momenta(const std::vector<double>& row, const Resultant& all) const {

@@ -12,10 +12,10 @@ namespace ricochet {
 
 class RunChecks {
  public:
-  /// Opens the balances at a starting state, or at the state of the snapshot. `columns` are those of history.csv.
+  /// Opens the balances at a starting state. `columns` are those of history.csv.
   RunChecks(const Case& input, const Model& model, const Scheme& scheme, const State& state,
-            const std::vector<std::string>& columns, const Snapshot* snapshot);
-  void save(Snapshot& snapshot, const std::string& name) const;
+            const std::vector<std::string>& columns);
+  void persist(const SnapshotVisitor& visit);
 
   /// Enters a part of a step that was cut, or the whole step.
   void enter_part(const State& state) { momentum_.enter_step(state); }

@@ -110,8 +110,8 @@ Snapshot Run::take_snapshot() {
   Snapshot snapshot;
   session_.save(snapshot);
   recording_->save(snapshot);
-  times_until_now().save(snapshot, "run.times");
-  newton_.save(snapshot, "run.newton");
+  times_until_now().persist(snapshot.saver("run.times"));
+  newton_.persist(snapshot.saver("run.newton"));
   snapshot.save("run.warnings", session_.warnings());
   snapshot.save("run.case_path", summary_.case_path);
   snapshot.save("run.settings", Snapshot::Texts(summary_.settings));

@@ -17,42 +17,38 @@ void RunTimes::add_start(double seconds, const std::vector<ChosenMethod>& method
   }
 }
 
+namespace {
+
+/// Phases in the order of a run.
+constexpr std::pair<const char*, double RunTimes::*> phase_times[] = {{"read_mesh", &RunTimes::read_mesh},
+                                                                      {"model", &RunTimes::model},
+                                                                      {"assembly", &RunTimes::assembly},
+                                                                      {"ordering", &RunTimes::ordering},
+                                                                      {"factorization", &RunTimes::factorization},
+                                                                      {"start", &RunTimes::start},
+                                                                      {"steps", &RunTimes::steps},
+                                                                      {"contact_solver", &RunTimes::contact},
+                                                                      {"output", &RunTimes::output},
+                                                                      {"penetration_watch", &RunTimes::watch},
+                                                                      {"checkpoints", &RunTimes::checkpoints}};
+
+}  // namespace
+
 std::vector<std::pair<std::string, double>> RunTimes::phases() const {
-  return {{"read_mesh", read_mesh},
-          {"model", model},
-          {"assembly", assembly},
-          {"ordering", ordering},
-          {"factorization", factorization},
-          {"start", start},
-          {"steps", steps},
-          {"contact_solver", contact},
-          {"output", output},
-          {"penetration_watch", watch},
-          {"checkpoints", checkpoints},
-          {"total", earlier_total_ + session_.seconds()}};
+  std::vector<std::pair<std::string, double>> result;
+  for (const auto& [phase, seconds] : phase_times) result.emplace_back(phase, this->*seconds);
+  result.emplace_back("total", earlier_total_ + session_.seconds());
+  return result;
 }
 
-void RunTimes::save(Snapshot& snapshot, const std::string& name) const {
-  for (const auto& [phase, seconds] : phases()) snapshot.save(name + "." + phase, seconds);
-  snapshot.save(name + ".processor", processor());
-}
-
-void RunTimes::load(const Snapshot& snapshot, const std::string& name) {
-  const auto add = [&](const char* phase, double& seconds) { seconds += snapshot.real(name + "." + phase); };
-  add("read_mesh", read_mesh);
-  add("model", model);
-  add("assembly", assembly);
-  add("ordering", ordering);
-  add("factorization", factorization);
-  add("start", start);
-  add("steps", steps);
-  add("contact_solver", contact);
-  add("output", output);
-  add("penetration_watch", watch);
-  add("checkpoints", checkpoints);
-  add("total", earlier_total_);
-  // Checkpoints of versions that did not measure it: with one thread it equals the wall-clock time.
-  add(snapshot.has(name + ".processor") ? "processor" : "total", earlier_processor_);
+void RunTimes::persist(const SnapshotVisitor& visit) {
+  const auto add = [&](const char* phase, double until_now, double& seconds) {
+    visit(phase, until_now);
+    if (visit.loads()) seconds += until_now;
+  };
+  for (const auto& [phase, seconds] : phase_times) add(phase, this->*seconds, this->*seconds);
+  add("total", earlier_total_ + session_.seconds(), earlier_total_);
+  add("processor", processor(), earlier_processor_);
 }
 
 }  // namespace ricochet

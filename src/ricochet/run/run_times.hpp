@@ -26,9 +26,8 @@ struct RunTimes {
   [[nodiscard]] std::vector<std::pair<std::string, double>> phases() const;
   /// Returns the processor time; steps that an interruption has lost are not included.
   [[nodiscard]] double processor() const { return earlier_processor_ + processor_.seconds(); }
-  void save(Snapshot& snapshot, const std::string& name) const;
-  /// Adds the times of earlier sessions.
-  void load(const Snapshot& snapshot, const std::string& name);
+  /// Saves the times, or adds those of earlier sessions.
+  void persist(const SnapshotVisitor& visit);
 
  private:
   double earlier_total_ = 0.0, earlier_processor_ = 0.0;

@@ -80,7 +80,7 @@ void Session::resume(const Snapshot& snapshot) {
   if (snapshot.has(load_name)) set_load(snapshot.reals(load_name));
   if (snapshot.has(steered_name)) {
     for (const std::string& name : snapshot.texts(steered_name))
-      steered_path(name).load(snapshot, "session.motion." + name);
+      steered_path(name).persist(snapshot.loader("session.motion." + name));
   }
   simulation_ = std::make_unique<Simulation>(model().problem, scheme(), snapshot, solver_options(input_, model()),
                                              step_control_options(input_.time));
@@ -94,7 +94,7 @@ void Session::save(Snapshot& snapshot) {
   for (const ObstacleSection& obstacle : input_.obstacles) {
     if (!obstacle.is_steered) continue;
     steered.push_back(obstacle.name);
-    steered_path(obstacle.name).save(snapshot, "session.motion." + obstacle.name);
+    steered_path(obstacle.name).persist(snapshot.saver("session.motion." + obstacle.name));
   }
   if (!steered.empty()) snapshot.save(steered_name, std::move(steered));
 }

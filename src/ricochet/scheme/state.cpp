@@ -9,94 +9,82 @@
 
 namespace ricochet {
 
-void save(const SemidiscreteProblem& problem, const State& state, Snapshot& snapshot, const std::string& name) {
-  snapshot.save(name + ".step", static_cast<std::int64_t>(state.step));
-  snapshot.save(name + ".time", state.time);
-  snapshot.save(name + ".displacement", state.displacement);
-  snapshot.save(name + ".velocity", state.velocity);
-  snapshot.save(name + ".acceleration", state.acceleration);
-  snapshot.save(name + ".internal_strain", state.internal_strain);
-  snapshot.save(name + ".normal_reaction", state.forces.normal_reaction);
-  snapshot.save(name + ".tangential_reaction", state.forces.tangential_reaction);
-  snapshot.save(name + ".mean_normal_reaction", state.forces.mean_normal_reaction);
-  snapshot.save(name + ".mean_tangential_reaction", state.forces.mean_tangential_reaction);
-  snapshot.save(name + ".end_weight", state.forces.end_weight);
-  snapshot.save(name + ".support_reaction", state.forces.support_reaction);
-  snapshot.save(name + ".varying_load", state.forces.varying_load);
-  snapshot.save(name + ".damping_force", state.forces.damping_force);
-  const bool follows = !state.forces.rows->revision.empty();
-  const Points& normals = state.forces.rows->normals;
-  snapshot.save(name + ".normals", follows ? Vector(normals.reshaped()) : Vector());
-  snapshot.save(name + ".gap", follows ? state.forces.rows->gap : Vector());
-  if (follows && problem.contact.geometry->row_value_count() > 0)
-    snapshot.save(name + ".row_values", problem.contact.geometry->row_values(*state.forces.rows));
-  snapshot.save(name + ".contact_status", state.contact_status);
-  snapshot.save(name + ".obstacle_increment.normal", state.obstacle_increment.normal);
-  snapshot.save(name + ".obstacle_increment.tangential", state.obstacle_increment.tangential);
-  snapshot.save(name + ".obstacle_increment.in_space", Vector(state.obstacle_increment.in_space.reshaped()));
-  snapshot.save(name + ".iterations", state.iterations);
-  snapshot.save(name + ".newton_rounds", state.newton_iterations);
-  Snapshot::Texts names;
-  for (const auto& [key, values] : state.memory) {
-    names.push_back(key);
-    snapshot.save(name + ".memory." + key, values);
-  }
-  snapshot.save(name + ".memory", std::move(names));
-}
-
 namespace {
 
-/// Reads values whose count is one of these lengths.
-const Vector& memory(const Snapshot& snapshot, const std::string& name, std::initializer_list<Index> lengths) {
-  const Vector& values = snapshot.reals(name);
-  if (std::find(lengths.begin(), lengths.end(), values.size()) == lengths.end())
-    Snapshot::refuse(name, "has a length that does not fit this problem");
-  return values;
+/// Saves and loads the rows of contact that follows the motion.
+void persist_rows(const SnapshotVisitor& visit, const ContactBoundary& contact,
+                  std::shared_ptr<const ContactRows>& rows) {
+  const bool follows = contact.follows_motion();
+  if (visit.loads()) rows = contact.rows;
+  Points normals;
+  Vector gap, row_values;
+  if (follows) {
+    normals = rows->normals;
+    gap = rows->gap;
+    row_values = contact.geometry->row_values(*rows);
+  }
+  const Index points = follows ? contact.size() : 0;
+  visit("normals", normals, contact.dimension, points, points);
+  visit("gap", gap, points);
+  if (row_values.size() > 0) visit("row_values", row_values, row_values.size());
+  if (!visit.loads() || !follows) return;
+  const auto restored = std::make_shared<ContactRows>(*rows);
+  contact.geometry->restore(normals, gap, row_values, *restored);
+  rows = restored;
+}
+
+/// Saves and loads the forces, of one of two sizes each if they may be absent.
+void persist(const SnapshotVisitor& visit, const SemidiscreteProblem& problem, StepForces& forces) {
+  const Index dofs = problem.dof_count(), points = problem.contact.size();
+  const Index tangents = points * (problem.dimension - 1);
+  visit("normal_reaction", forces.normal_reaction, points);
+  visit("tangential_reaction", forces.tangential_reaction, tangents, 0);
+  visit("mean_normal_reaction", forces.mean_normal_reaction, points, 0);
+  visit("mean_tangential_reaction", forces.mean_tangential_reaction, tangents, 0);
+  visit("end_weight", forces.end_weight);
+  visit("support_reaction", forces.support_reaction, problem.supports.size());
+  visit("varying_load", forces.varying_load, dofs, 0);
+  visit("damping_force", forces.damping_force, dofs, 0);
+  persist_rows(visit, problem.contact, forces.rows);
+}
+
+/// Saves and loads the scheme's memory: vectors of one of these sizes.
+void persist_memory(const SnapshotVisitor& visit, std::initializer_list<Index> sizes,
+                    std::map<std::string, Vector>& memory) {
+  Snapshot::Texts names;
+  for (const auto& [key, values] : memory) names.push_back(key);
+  visit("memory", names);
+  for (const std::string& key : names) {
+    Vector& values = memory[key];
+    visit("memory." + key, values);
+    visit.require(std::find(sizes.begin(), sizes.end(), values.size()) != sizes.end(), "memory." + key,
+                  "has a length that does not fit this problem");
+  }
 }
 
 }  // namespace
 
-State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, const std::string& name) {
+void persist(const SnapshotVisitor& visit, const SemidiscreteProblem& problem, State& state) {
   const Index dofs = problem.dof_count(), points = problem.contact.size();
   const Index tangents = points * (problem.dimension - 1);
-  State state;
-  state.step = snapshot.integer(name + ".step");
-  state.time = snapshot.real(name + ".time");
-  state.displacement = snapshot.reals(name + ".displacement", dofs);
-  state.velocity = snapshot.reals(name + ".velocity", dofs);
-  state.acceleration = snapshot.reals(name + ".acceleration", dofs);
   const ViscousForce* const viscous = problem.internal_force->viscous();
-  state.internal_strain = snapshot.reals(name + ".internal_strain", viscous != nullptr ? viscous->internal_size() : 0);
-  state.forces.normal_reaction = snapshot.reals(name + ".normal_reaction", points);
-  state.forces.tangential_reaction = snapshot.reals(name + ".tangential_reaction", tangents, 0);
-  state.forces.mean_normal_reaction = snapshot.reals(name + ".mean_normal_reaction", points, 0);
-  state.forces.mean_tangential_reaction = snapshot.reals(name + ".mean_tangential_reaction", tangents, 0);
-  state.forces.end_weight = snapshot.real(name + ".end_weight");
-  state.forces.support_reaction = snapshot.reals(name + ".support_reaction", problem.supports.size());
-  state.forces.varying_load = snapshot.reals(name + ".varying_load", dofs, 0);
-  state.forces.damping_force = snapshot.reals(name + ".damping_force", dofs, 0);
-  state.forces.rows = problem.contact.rows;
-  if (problem.contact.follows_motion()) {
-    const auto rows = std::make_shared<ContactRows>(*problem.contact.rows);
-    const Vector& normals = snapshot.reals(name + ".normals", points * problem.dimension);
-    const Index values = problem.contact.geometry->row_value_count();
-    problem.contact.geometry->restore(normals.reshaped(problem.dimension, points),
-                                      snapshot.reals(name + ".gap", points),
-                                      values > 0 ? snapshot.reals(name + ".row_values", values) : Vector(), *rows);
-    state.forces.rows = rows;
-  }
-  state.contact_status = snapshot.statuses(name + ".contact_status", points);
-  state.obstacle_increment.normal = snapshot.reals(name + ".obstacle_increment.normal", points, 0);
-  state.obstacle_increment.tangential = snapshot.reals(name + ".obstacle_increment.tangential", tangents, 0);
-  const Vector& in_space = snapshot.reals(name + ".obstacle_increment.in_space", points * problem.dimension, 0);
-  state.obstacle_increment.in_space = in_space.reshaped(problem.dimension, in_space.size() / problem.dimension);
-  state.iterations = static_cast<int>(snapshot.integer(name + ".iterations"));
-  state.newton_iterations = static_cast<int>(snapshot.integer(name + ".newton_rounds"));
-  const Index row_values = row_value_count(*problem.contact.rows);
-  for (const std::string& key : snapshot.texts(name + ".memory"))
-    state.memory[key] = memory(snapshot, name + ".memory." + key,
-                               {dofs, problem.supports.size(), tangents, row_values, State::memory_numbers});
-  return state;
+  visit("step", state.step);
+  visit("time", state.time);
+  visit("displacement", state.displacement, dofs);
+  visit("velocity", state.velocity, dofs);
+  visit("acceleration", state.acceleration, dofs);
+  visit("internal_strain", state.internal_strain, viscous != nullptr ? viscous->internal_size() : 0);
+  persist(visit, problem, state.forces);
+  visit("contact_status", state.contact_status, {0, static_cast<std::int64_t>(ContactStatus::slip)}, points);
+  ObstacleMotion& increment = state.obstacle_increment;
+  visit("obstacle_increment.normal", increment.normal, points, 0);
+  visit("obstacle_increment.tangential", increment.tangential, tangents, 0);
+  visit("obstacle_increment.in_space", increment.in_space, problem.dimension, points, 0);
+  visit("iterations", state.iterations);
+  visit("newton_rounds", state.newton_iterations);
+  persist_memory(
+      visit, {dofs, problem.supports.size(), tangents, row_value_count(*problem.contact.rows), State::memory_numbers},
+      state.memory);
 }
 
 }  // namespace ricochet

@@ -53,8 +53,7 @@ struct State {
   std::map<std::string, Vector> memory;
 };
 
-void save(const SemidiscreteProblem& problem, const State& state, Snapshot& snapshot, const std::string& name);
-/// Throws Error(invalid_input) if sizes do not match this problem.
-[[nodiscard]] State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, const std::string& name);
+/// Saves and loads a state of this problem. Throws Error(invalid_input) if sizes do not match.
+void persist(const SnapshotVisitor& visit, const SemidiscreteProblem& problem, State& state);
 
 }  // namespace ricochet

@@ -22,11 +22,6 @@ bool is_finite(const SemidiscreteProblem& problem, StageDofs dofs, const Vector&
                      [&](Index dof) { return std::isfinite(increment[dof]); });
 }
 
-/// Name of a solver in snapshots.
-std::string level_name(int number) {
-  return "solver." + std::to_string(number);
-}
-
 /// Number of times that a step without a solution is halved.
 constexpr int deepest_cut = 8;
 /// Level of parts from which the user is warned: the step then takes 2^k times as long.
@@ -67,50 +62,57 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
       scheme_(scheme),
       options_(options),
       whole_step_(scheme.step()) {
-  for (std::size_t k = 0; k < problem_.free_bodies.size(); ++k)
-    problem_.free_bodies[k]->load(snapshot, fmt::format("free_body.{}", k));
-  state_ = load_state(problem_, snapshot, "state");
-  scheme_.analyse(problem_);
-  int first = 0;
   if (control) {
     require_changing_steps(scheme_, nameless);
     control_.emplace(problem_, *control);
-    control_->load(snapshot, "control");
-    first = static_cast<int>(snapshot.integer("level"));
   }
-  cut_steps_ = snapshot.integer("cut_steps");
-  short_parts_warned_ = snapshot.integer("told_short_parts") != 0;
-  for (const std::int64_t level : snapshot.integers("levels", 0, control_ ? control_->deepest() : deepest_cut)) {
-    const auto number = static_cast<int>(level);
-    if (scheme_.step() != length_of(number)) scheme_.change_step(problem_, length_of(number));
-    const std::string name = level_name(number);
-    // The saved methods are kept even if others would now be chosen for the remaining steps: they change the bits.
-    StepSolverOptions stored = options;
-    stored.chosen = saved_methods(snapshot, name, scheme_.operators(problem_).size());
-    make_level(number, stored).solver->load(snapshot, name);
-  }
-  if (!levels_.contains(first)) Snapshot::refuse("level", "is none of the saved step lengths");
-  if (scheme_.step() != length_of(first)) scheme_.change_step(problem_, length_of(first));
-  current_ = &levels_.at(first);
-  account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_, snapshot, "account");
+  const SnapshotVisitor visit = snapshot.loader("");
+  persist(visit);
+  account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_, visit.part("account"));
   set_up_tunnelling_watches();
 }
 
-void Simulation::save(Snapshot& snapshot) const {
-  ricochet::save(problem_, state_, snapshot, "state");
-  for (std::size_t k = 0; k < problem_.free_bodies.size(); ++k)
-    problem_.free_bodies[k]->save(snapshot, fmt::format("free_body.{}", k));
-  Snapshot::Integers numbers;
+void Simulation::save(Snapshot& snapshot) {
+  const SnapshotVisitor visit = snapshot.saver("");
+  persist(visit);
+  account_->persist(visit.part("account"));
+}
+
+void Simulation::persist(const SnapshotVisitor& visit) {
+  const SnapshotVisitor bodies = visit.part("free_body");
+  for (std::size_t k = 0; k < problem_.free_bodies.size(); ++k) problem_.free_bodies[k]->persist(bodies.part(k));
+  ricochet::persist(visit.part("state"), problem_, state_);
+  if (visit.loads()) scheme_.analyse(problem_);
+  if (control_) control_->persist(visit.part("control"));
+  visit("cut_steps", cut_steps_);
+  visit("told_short_parts", short_parts_warned_);
+  persist_levels(visit);
+}
+
+void Simulation::persist_levels(const SnapshotVisitor& visit) {
+  std::vector<int> numbers;
+  int current = 0;
   for (const auto& [number, level] : levels_) {
     numbers.push_back(number);
-    level.solver->save(snapshot, level_name(number));
-    if (&level == current_) snapshot.save("level", std::int64_t{number});
+    if (&level == current_) current = number;
   }
-  snapshot.save("cut_steps", std::int64_t{cut_steps_});
-  snapshot.save("told_short_parts", std::int64_t{short_parts_warned_ ? 1 : 0});
-  snapshot.save("levels", std::move(numbers));
-  if (control_) control_->save(snapshot, "control");
-  account_->save(snapshot, "account");
+  visit("levels", numbers, {0, control_ ? control_->deepest() : deepest_cut});
+  visit("level", current);
+  for (const int number : numbers) {
+    const SnapshotVisitor saved = visit.part("solver").part(static_cast<std::size_t>(number));
+    if (visit.loads()) {
+      if (scheme_.step() != length_of(number)) scheme_.change_step(problem_, length_of(number));
+      // The saved methods are kept even if others would now be chosen for the remaining steps: they change the bits.
+      StepSolverOptions stored = options_;
+      stored.chosen = saved_methods(saved, scheme_.operators(problem_).size());
+      make_level(number, stored);
+    }
+    levels_.at(number).solver->persist(saved);
+  }
+  if (!visit.loads()) return;
+  visit.require(levels_.contains(current), "level", "is none of the saved step lengths");
+  if (scheme_.step() != length_of(current)) scheme_.change_step(problem_, length_of(current));
+  current_ = &levels_.at(current);
 }
 
 Simulation::Level& Simulation::make_level(int number, const StepSolverOptions& options) {

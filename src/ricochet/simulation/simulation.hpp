@@ -27,7 +27,7 @@ class Simulation : private StageSolve {
   /// Throws Error(invalid_input) if the snapshot does not fit.
   Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const Snapshot& snapshot,
              const StepSolverOptions& options = {}, const std::optional<StepControlOptions>& control = {});
-  void save(Snapshot& snapshot) const;
+  void save(Snapshot& snapshot);
 
   /// Advances the state by one step. Throws Error(not_converged), which names the step and its time; the state is then
   /// that before the step, except if adaptive steps stop because the scheme has created most of the energy. At finite
@@ -68,6 +68,8 @@ class Simulation : private StageSolve {
     std::unique_ptr<StepSolver> solver;
     std::vector<SolvedStage> stages;
   };
+  void persist(const SnapshotVisitor& visit);
+  void persist_levels(const SnapshotVisitor& visit);
   Level& make_level(int level, const StepSolverOptions& options);
   void use_level(int level);
   void set_up_tunnelling_watches();

@@ -196,54 +196,20 @@ void StepControl::fit_to_end() {
   while (level_ < finest_ && ticks_ + ticks_of(level_) > end_ticks_) ++level_;
 }
 
-void StepControl::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name + ".ticks", Snapshot::Integers{ticks_, energy_ahead_ticks_, stretch_ticks_, stretch_steps_});
-  snapshot.save(name + ".levels", Snapshot::Integers{level_, required_level_, last_level_, deepest_});
-  snapshot.save(name + ".steps", Snapshot::Integers{finest_, patience_, backoff_});
-  snapshot.save(name + ".counts", Snapshot::Integers{counts_.refused, counts_.unsolved, counts_.tolerated});
-  Vector numbers(8);
-  numbers << largest_energy_, step_before_, error_, counts_.largest_error, counts_.shortest, counts_.longest,
-      own_energy_, energy_ahead_;
-  snapshot.save(name + ".numbers", numbers);
-  snapshot.save(name + ".acceleration", acceleration_before_);
-}
-
-void StepControl::load(const Snapshot& snapshot, const std::string& name) {
-  const Snapshot::Integers& ticks = snapshot.integers(name + ".ticks", 0, std::int64_t{1} << 60);
-  if (ticks.size() != 4) Snapshot::refuse(name + ".ticks", "does not have four entries");
-  ticks_ = ticks[0];
-  energy_ahead_ticks_ = ticks[1];
-  stretch_ticks_ = ticks[2];
-  stretch_steps_ = static_cast<long>(ticks[3]);
-  const Snapshot::Integers& levels = snapshot.integers(name + ".levels", 0, deepest_);
-  if (levels.size() != 4 || levels[3] != deepest_) Snapshot::refuse(name + ".levels", "belongs to other step lengths");
-  level_ = static_cast<int>(levels[0]);
-  required_level_ = static_cast<int>(levels[1]);
-  last_level_ = static_cast<int>(levels[2]);
-  const Snapshot::Integers& steps =
-      snapshot.integers(name + ".steps", std::numeric_limits<int>::min() / 2, most_levels * most_patience);
-  if (steps.size() != 3 || steps[0] < 0 || steps[0] > deepest_ || steps[2] < 0)
-    Snapshot::refuse(name + ".steps", "does not belong to these step lengths");
-  finest_ = static_cast<int>(steps[0]);
-  patience_ = static_cast<int>(steps[1]);
-  backoff_ = static_cast<int>(steps[2]);
-  const Snapshot::Integers& counts = snapshot.integers(name + ".counts");
-  if (counts.size() != 3) Snapshot::refuse(name + ".counts", "does not have three entries");
-  counts_.refused = counts[0];
-  counts_.unsolved = counts[1];
-  counts_.tolerated = counts[2];
-  const Vector& numbers = snapshot.reals(name + ".numbers", 8);
-  if (!(numbers.array() >= 0.0).all())
-    Snapshot::refuse(name + ".numbers", "has entries that are negative or not numbers");
-  largest_energy_ = numbers[0];
-  step_before_ = numbers[1];
-  error_ = numbers[2];
-  counts_.largest_error = numbers[3];
-  counts_.shortest = numbers[4];
-  counts_.longest = numbers[5];
-  own_energy_ = numbers[6];
-  energy_ahead_ = numbers[7];
-  acceleration_before_ = snapshot.reals(name + ".acceleration", problem_.dof_count());
+void StepControl::persist(const SnapshotVisitor& visit) {
+  int deepest = deepest_;
+  visit.integers("ticks", {0, std::int64_t{1} << 60}, ticks_, energy_ahead_ticks_, stretch_ticks_, stretch_steps_);
+  visit.integers("levels", {0, deepest_}, level_, required_level_, last_level_, deepest);
+  visit.require(deepest == deepest_, "levels", "belongs to other step lengths");
+  visit.integers("steps", {std::numeric_limits<int>::min() / 2, most_levels * most_patience}, finest_, patience_,
+                 backoff_);
+  visit.require(finest_ >= 0 && finest_ <= deepest_ && backoff_ >= 0, "steps", "does not belong to these step lengths");
+  visit.integers("counts", {}, counts_.refused, counts_.unsolved, counts_.tolerated);
+  const Vector numbers = visit.numbers("numbers", largest_energy_, step_before_, error_, counts_.largest_error,
+                                       counts_.shortest, counts_.longest, own_energy_, energy_ahead_);
+  visit.require((numbers.array() >= 0.0).all(), "numbers", "has entries that are negative or not numbers");
+  visit("acceleration", acceleration_before_, problem_.dof_count());
+  if (!visit.loads()) return;
   // The end may differ from the one that the saved length was fitted to.
   level_ = required_level_;
   fit_to_end();

@@ -86,8 +86,7 @@ class StepControl {
 
   [[nodiscard]] const StepCounts& counts() const { return counts_; }
 
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
  private:
   [[nodiscard]] std::int64_t ticks_of(int level) const { return std::int64_t{1} << (deepest_ - level); }

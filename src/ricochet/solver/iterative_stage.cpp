@@ -47,8 +47,7 @@ class IterativeStage final : public StageSolver {
     if (touches_) subdomains_->report();
   }
   void observe_contact(const ContactObserver& observer) override { subdomains_->observe(observer); }
-  void save(Snapshot& snapshot, const std::string& name) const override;
-  void load(const Snapshot& snapshot, const std::string& name) override;
+  void persist(const SnapshotVisitor& visit) override;
   [[nodiscard]] double contact_seconds() const override { return subdomains_->contact_seconds(); }
   [[nodiscard]] IterationCounts iteration_counts() const override { return counts_; }
   [[nodiscard]] std::size_t factor_entries() const override { return subdomains_->factor_entries(); }
@@ -200,31 +199,26 @@ void IterativeStage::make_subdomains(const LinearStage& stage, const std::vector
   }
 }
 
-void IterativeStage::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name + ".increment", increment_);
-  snapshot.save(name + ".previous", previous_);
-  snapshot.save(name + ".has_previous", has_previous_);
-  snapshot.save(name + ".preconditioner", kind_);
-  candidates_.save_history(snapshot, name + ".near");
-  snapshot.save(name + ".has_zone", subdomains_->are_made());
-  if (!subdomains_->are_made()) return;
-  snapshot.save(name + ".near.points", candidates_.points());
-  subdomains_->save(snapshot, name + ".zones");
-}
-
-void IterativeStage::load(const Snapshot& snapshot, const std::string& name) {
-  increment_ = snapshot.reals(name + ".increment", problem_.dof_count());
-  previous_ = snapshot.reals(name + ".previous", problem_.dof_count());
-  has_previous_ = snapshot.flag(name + ".has_previous");
-  if (snapshot.text(name + ".preconditioner") == multigrid) switch_to_multigrid();
-  if (snapshot.flag(name + ".has_zone")) {
-    const std::vector<Index>& points = snapshot.integers(name + ".near.points", 0, problem_.contact.size() - 1);
-    candidates_.clear();
-    candidates_.add_candidates(points);
-    subdomains_->load(snapshot, name + ".zones", points);
-    keep_columns();
+void IterativeStage::persist(const SnapshotVisitor& visit) {
+  visit("increment", increment_, problem_.dof_count());
+  visit("previous", previous_, problem_.dof_count());
+  visit("has_previous", has_previous_);
+  std::string kind = kind_;
+  visit("preconditioner", kind);
+  if (visit.loads() && kind == multigrid) switch_to_multigrid();
+  bool has_subdomains = subdomains_->are_made();
+  visit("has_zone", has_subdomains);
+  if (has_subdomains) {
+    std::vector<Index> points = candidates_.points();
+    visit("near.points", points, {0, problem_.contact.size() - 1});
+    if (visit.loads()) {
+      candidates_.clear();
+      candidates_.add_candidates(points);
+    }
+    subdomains_->persist(visit.part("zones"), points);
+    if (visit.loads()) keep_columns();
   }
-  candidates_.load_history(snapshot, name + ".near");
+  candidates_.persist_history(visit.part("near"));
 }
 
 /// Sets the initial guess: increments of a smooth motion continue. Supports are exact.

@@ -19,14 +19,11 @@ namespace ricochet {
 
 namespace {
 
+constexpr const char* methods_entry = "methods";  ///< of a snapshot
+
 /// Operations from which a factorization takes seconds and is announced.
 constexpr double long_factorization = 1e11;
 
-constexpr const char* methods_entry = ".methods";  ///< entries of a snapshot
-constexpr const char* made_at_entry = ".made_at";
-constexpr const char* contact_made_at_entry = ".contact_made_at";
-constexpr const char* pressure_at_entry = ".pressure_at";  ///< at the factorization; of the last forces
-constexpr const char* frame_entry = ".frame";
 constexpr const char* kept = "as at the beginning of the run";
 
 void log_factorization(const ChosenMethod& chosen, std::size_t unknowns) {
@@ -112,35 +109,35 @@ class StagesStepSolver final : public StepSolver {
     for (const auto& stage : stages_) sum += stage->factor_entries();
     return sum;
   }
-  void save(Snapshot& snapshot, const std::string& name) const override {
-    Snapshot::Integers methods;
-    for (const ChosenMethod& chosen : methods_) methods.push_back(static_cast<std::int64_t>(chosen.method));
-    snapshot.save(name + methods_entry, std::move(methods));
-    if (frame_) {
-      snapshot.save(name + made_at_entry, factor_displacement_);
-      snapshot.save(name + contact_made_at_entry, contact_factor_displacement_);
-      if (problem_.pressure)
-        snapshot.save(name + pressure_at_entry,
-                      Vector(Eigen::Vector4d(factor_pressure_.time, factor_pressure_.part,
-                                             problem_.pressure->last().time, problem_.pressure->last().part)));
-      frame_->save(snapshot, name + frame_entry);
+  void persist(const SnapshotVisitor& visit) override {
+    if (!visit.loads()) {  // saved_methods() loads them, before the stages are made
+      std::vector<SolverMethod> methods;
+      for (const ChosenMethod& chosen : methods_) methods.push_back(chosen.method);
+      visit(methods_entry, methods);
     }
-    for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->save(snapshot, fmt::format("{}.{}", name, i));
-  }
-  void load(const Snapshot& snapshot, const std::string& name) override {
-    if (frame_) {
-      const Vector& made_at = snapshot.reals(name + made_at_entry, 0, problem_.dof_count());
-      const Vector* const instants = problem_.pressure ? &snapshot.reals(name + pressure_at_entry, 4) : nullptr;
-      if (instants != nullptr) problem_.pressure->set_last({(*instants)[0], (*instants)[1]});
-      if (made_at.size() > 0) renew(made_at, snapshot.reals(name + contact_made_at_entry, problem_.dof_count()));
-      if (instants != nullptr) problem_.pressure->set_last({(*instants)[2], (*instants)[3]});
-      frame_->load(snapshot, name + frame_entry);
-    }
-    for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->load(snapshot, fmt::format("{}.{}", name, i));
+    if (frame_) persist_factors(visit);
+    for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->persist(visit.part(i));
   }
   [[nodiscard]] const std::vector<ChosenMethod>& methods() const override { return methods_; }
 
  private:
+  /// The factors are made again with the pressure of their forces; the last forces may have another one.
+  void persist_factors(const SnapshotVisitor& visit) {
+    const FollowerPressure* const pressure = problem_.pressure.get();
+    Vector made_at = factor_displacement_, contact_made_at = contact_factor_displacement_;
+    visit("made_at", made_at, 0, problem_.dof_count());
+    visit("contact_made_at", contact_made_at, made_at.size());
+    FollowerPressure::Instant last;
+    if (pressure != nullptr) {
+      FollowerPressure::Instant at_factor = factor_pressure_;
+      last = pressure->last();
+      visit.numbers("pressure_at", at_factor.time, at_factor.part, last.time, last.part);
+      if (visit.loads()) pressure->set_last(at_factor);
+    }
+    if (visit.loads() && made_at.size() > 0) renew(made_at, contact_made_at);
+    if (visit.loads() && pressure != nullptr) pressure->set_last(last);
+    frame_->persist(visit.part("frame"));
+  }
   /// Returns false if an operator is not positive definite.
   bool make_factors(const Vector& displacement, const Vector& of_contact_nodes) {
     try {
@@ -240,14 +237,12 @@ class StagesStepSolver final : public StepSolver {
 
 }  // namespace
 
-std::vector<SolverMethod> saved_methods(const Snapshot& snapshot, const std::string& name, std::size_t operators) {
-  std::vector<SolverMethod> result;
-  const auto least = static_cast<std::int64_t>(SolverMethod::direct),
-             most = static_cast<std::int64_t>(SolverMethod::iterative);
-  for (const std::int64_t method : snapshot.integers(name + methods_entry, least, most))
-    result.push_back(static_cast<SolverMethod>(method));
-  if (result.size() != operators) Snapshot::refuse(name + methods_entry, "belongs to another number of operators");
-  return result;
+std::vector<SolverMethod> saved_methods(const SnapshotVisitor& saved, std::size_t operators) {
+  std::vector<SolverMethod> methods;
+  saved(methods_entry, methods,
+        {static_cast<std::int64_t>(SolverMethod::direct), static_cast<std::int64_t>(SolverMethod::iterative)});
+  saved.require(methods.size() == operators, methods_entry, "belongs to another number of operators");
+  return methods;
 }
 
 std::unique_ptr<StepSolver> make_step_solver(const SemidiscreteProblem& problem,

@@ -38,19 +38,17 @@ class StepSolver {
   [[nodiscard]] virtual std::size_t factor_entries() const = 0;
   /// Iterations of all stages; zero if all are solved directly.
   [[nodiscard]] virtual IterationCounts iteration_counts() const = 0;
-  /// Saves the data that stages leave for later ones: guesses, warm starts, the points that may touch. A solver made
-  /// for the same operators that has loaded them continues with the same bits.
-  virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
-  /// Throws Error(invalid_input) if the data do not fit.
-  virtual void load(const Snapshot& snapshot, const std::string& name) = 0;
+  /// Saves and loads the data that stages leave for later ones: guesses, warm starts, the points that may touch. A
+  /// solver made for the same operators that has loaded them continues with the same bits. Throws Error(invalid_input)
+  /// if the data do not fit.
+  virtual void persist(const SnapshotVisitor& visit) = 0;
   /// Method of each operator.
   [[nodiscard]] virtual const std::vector<ChosenMethod>& methods() const = 0;
 };
 
-/// Methods of the solver of so many operators that was saved under this name, for StepSolverOptions::chosen. Throws
+/// Loads the methods of a solver of so many operators that was saved, for StepSolverOptions::chosen. Throws
 /// Error(invalid_input) if their number differs.
-[[nodiscard]] std::vector<SolverMethod> saved_methods(const Snapshot& snapshot, const std::string& name,
-                                                      std::size_t operators);
+[[nodiscard]] std::vector<SolverMethod> saved_methods(const SnapshotVisitor& saved, std::size_t operators);
 
 /// Computes everything that is constant for these operators. Throws Error(invalid_input), which names the node, if an
 /// operator is not positive definite.

@@ -13,7 +13,7 @@ struct Thing {
   std::optional<Vector> values;
 };
 
-void transfer(Archive& archive, Thing& thing) {
+void persist(Archive& archive, Thing& thing) {
   archive.all(thing.name, thing.pairs, thing.values);
 }
 

@@ -125,7 +125,7 @@ TEST_P(KilledFrameFiles, HoldAllStepsThatTheyCount) {
   constexpr long saved = 62, count = 66;
   while (file.frames() < count) {
     const long k = file.frames();
-    if (k == saved) file.save(snapshot, "results");
+    if (k == saved) file.persist(snapshot.saver("results"));
     // Indices grow at some steps: these at steps fixed by their layout, older ones at step 64.
     const bool grows = k == 0 || k == 4 || k == 20 || k == 36 || k >= saved;
     if (grows)
@@ -134,8 +134,8 @@ TEST_P(KilledFrameFiles, HoldAllStepsThatTheyCount) {
       append(file);
   }
   std::optional<FrameFile> resumed;
-  expect_whole_steps_between_writes(path, saved, count,
-                                    [&] { resumed.emplace(path, fixed, layout, GetParam(), snapshot, "results"); });
+  expect_whole_steps_between_writes(
+      path, saved, count, [&] { resumed.emplace(path, fixed, layout, GetParam(), snapshot.loader("results")); });
   for (long k = saved; k < count; ++k) expect_whole_steps_between_writes(path, k, k + 1, [&] { append(*resumed); });
 }
 

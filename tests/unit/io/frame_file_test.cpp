@@ -57,7 +57,7 @@ struct Writer {
 
   [[nodiscard]] FrameFile start() const { return {path, fixed, layout, options}; }
   [[nodiscard]] FrameFile resume(const Snapshot& snapshot) const {
-    return {path, fixed, layout, options, snapshot, "results"};
+    return {path, fixed, layout, options, snapshot.loader("results")};
   }
   static void append(FrameFile& file) {
     const std::vector<double> a = reals(file.frames());
@@ -78,7 +78,7 @@ TEST_P(FrameFiles, GoOnWithTheSameBytesWhereverTheyWereLeft) {
   FrameFile file = writer.start();
   for (long k = 0; k <= count; ++k) {
     after.push_back(content(writer.path));
-    file.save(snapshots.emplace_back(), "results");
+    file.persist(snapshots.emplace_back().saver("results"));
     if (k < count) Writer::append(file);
   }
   for (const auto& [saved, left] :
@@ -100,7 +100,7 @@ TEST_P(FrameFiles, GoOnFromAFileThatWasTorn) {
   std::string at_checkpoint;
   while (file.frames() < count) {
     if (file.frames() == saved) {
-      file.save(snapshot, "results");
+      file.persist(snapshot.saver("results"));
       at_checkpoint = content(writer.path);
     }
     Writer::append(file);
@@ -139,7 +139,7 @@ TEST(FrameFile, RefusesAFileThatIsMissingOrShorter) {
   FrameFile file = writer.start();
   for (int k = 0; k < 4; ++k) Writer::append(file);
   Snapshot snapshot;
-  file.save(snapshot, "results");
+  file.persist(snapshot.saver("results"));
   const std::string whole = content(writer.path);
   overwrite(writer.path, whole.substr(0, whole.size() - 1));
   EXPECT_THROW((void)writer.resume(snapshot), Error);

@@ -43,7 +43,7 @@ TEST_F(LineChecksumsTest, NamesTheLinesThatHaveChanged) {
     }
     EXPECT_EQ(checksums.length(), static_cast<std::int64_t>(text.size()));
     Snapshot snapshot;
-    checksums.save(snapshot, "rows", "rows.csv");
+    checksums.persist(snapshot.saver("rows"), "rows.csv");
     write(text);
     EXPECT_EQ(problem(snapshot), "") << count;
     write(text + "what came after it\n");
@@ -76,15 +76,15 @@ TEST_F(LineChecksumsTest, AreTheSameWhereverTheyWereSaved) {
   LineChecksums whole;
   for (int i = 0; i < count; ++i) whole.add(line(i));
   Snapshot expected;
-  whole.save(expected, "rows", "rows.csv");
+  whole.persist(expected.saver("rows"), "rows.csv");
   for (const int left : {1, 300, 512, 513, 1023, 1999}) {
     LineChecksums first;
     for (int i = 0; i < left; ++i) first.add(line(i));
     Snapshot saved, found;
-    first.save(saved, "rows", "rows.csv");
-    LineChecksums second(saved, "rows");
+    first.persist(saved.saver("rows"), "rows.csv");
+    LineChecksums second(saved.loader("rows"));
     for (int i = left; i < count; ++i) second.add(line(i));
-    second.save(found, "rows", "rows.csv");
+    second.persist(found.saver("rows"), "rows.csv");
     EXPECT_EQ(expected.values(), found.values()) << left;
   }
 }
@@ -93,15 +93,15 @@ TEST_F(LineChecksumsTest, RefuseWhatTheyHaveNotSaved) {
   LineChecksums checksums;
   for (int i = 0; i < 10; ++i) checksums.add(line(i));
   Snapshot snapshot;
-  checksums.save(snapshot, "rows", "rows.csv");
+  checksums.persist(snapshot.saver("rows"), "rows.csv");
   snapshot.save("rows.lines.pieces", std::int64_t{11});
-  EXPECT_THROW(LineChecksums(snapshot, "rows"), Error);
+  EXPECT_THROW(LineChecksums(snapshot.loader("rows")), Error);
   // Blocks of negative length.
-  checksums.save(snapshot, "rows", "rows.csv");
+  checksums.persist(snapshot.saver("rows"), "rows.csv");
   Snapshot::Integers lengths = snapshot.integers("rows.lines.lengths");
   lengths.front() = -1;
   snapshot.save("rows.lines.lengths", std::move(lengths));
-  EXPECT_THROW(LineChecksums(snapshot, "rows"), Error);
+  EXPECT_THROW(LineChecksums(snapshot.loader("rows")), Error);
   EXPECT_THROW(require_same_files(testing::TempDir(), snapshot), Error);
 }
 

@@ -51,16 +51,16 @@ TEST(MethodWatch, GoesOnFromASnapshot) {
   MethodWatch watch(ReactionMean::mixed), resumed(ReactionMean::mixed);
   enter(watch, -1.0, 0.25);
   Snapshot snapshot;
-  watch.save(snapshot, "method");
-  resumed.load(snapshot, "method");
+  watch.persist(snapshot.saver("method"));
+  resumed.persist(snapshot.loader("method"));
   for (MethodWatch* each : {&watch, &resumed}) enter(*each, -0.5, 0.5);
   Snapshot one, other;
-  watch.save(one, "method");
-  resumed.save(other, "method");
+  watch.persist(one.saver("method"));
+  resumed.persist(other.saver("method"));
   EXPECT_TRUE(one.values() == other.values());
   EXPECT_EQ(resumed.energy(1.0).lost, 1.0);
   snapshot.save("method.steps", Snapshot::Integers{1});
-  EXPECT_THROW(resumed.load(snapshot, "method"), Error);
+  EXPECT_THROW(resumed.persist(snapshot.loader("method")), Error);
 }
 
 }  // namespace

@@ -36,26 +36,26 @@ TEST(NewtonWatch, GoesOnFromACheckpoint) {
   NewtonWatch watch;
   EXPECT_EQ(warns_after(watch, {500, 500}), 0);
   Snapshot snapshot;
-  watch.save(snapshot, "newton");
+  watch.persist(snapshot.saver("newton"));
   NewtonWatch other;
-  other.load(snapshot, "newton");
+  other.persist(snapshot.loader("newton"));
   EXPECT_EQ(warns_after(other, {500, 500}), 1);
   EXPECT_EQ(other.steps(), 4);
 }
 
 TEST(NewtonWatch, RefusesACheckpointThatIsDamaged) {
   Snapshot snapshot;
-  NewtonWatch().save(snapshot, "newton");
+  NewtonWatch().persist(snapshot.saver("newton"));
   const Vector good = snapshot.reals("newton");
   for (Index k = 0; k < good.size(); ++k) {
     for (const double bad : {-1.0, 1e15, std::numeric_limits<double>::infinity(), std::nan("")}) {
       Vector damaged = good;
       damaged[k] = bad;
       snapshot.save("newton", damaged);
-      EXPECT_THROW(NewtonWatch().load(snapshot, "newton"), Error) << k << ": " << bad;
+      EXPECT_THROW(NewtonWatch().persist(snapshot.loader("newton")), Error) << k << ": " << bad;
     }
   }
-  EXPECT_THROW(NewtonWatch().load(Snapshot(), "newton"), Error);
+  EXPECT_THROW(NewtonWatch().persist(Snapshot().loader("newton")), Error);
 }
 
 }  // namespace

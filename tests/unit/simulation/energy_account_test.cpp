@@ -62,8 +62,8 @@ TEST_F(Account, GoesOnFromWhatWasSaved) {
   EnergyAccount account(run_.problem(), run_.scheme(), run_.state());
   account.enter_step(increment_, state_);
   Snapshot snapshot;
-  account.save(snapshot, "account");
-  EnergyAccount resumed(run_.problem(), run_.scheme(), state_, snapshot, "account");
+  account.persist(snapshot.saver("account"));
+  EnergyAccount resumed(run_.problem(), run_.scheme(), state_, snapshot.loader("account"));
   account.enter_step(increment_, state_);
   resumed.enter_step(increment_, state_);
   EXPECT_EQ(resumed.works().sum(), account.works().sum());
@@ -87,7 +87,10 @@ TEST(DeepestPoint, KeepsTheWorstAndTheFirst) {
   deepest.enter(4, 0.1, 1.0, {1.0, 0.0, 0.0});
   deepest.enter(5, 0.3, 2.0, {2.0, 0.0, 0.0});
   deepest.enter(6, 0.2, 3.0, {3.0, 0.0, 0.0});
-  const DeepestPoint again = DeepestPoint::from_numbers(deepest.to_numbers());
+  Snapshot snapshot;
+  snapshot.saver("deepest").numbers("", deepest);
+  DeepestPoint again;
+  snapshot.loader("deepest").numbers("", again);
   EXPECT_EQ(again.node, 5);
   EXPECT_EQ(again.depth, 0.3);
   EXPECT_EQ(again.time, 2.0);

@@ -77,9 +77,9 @@ TEST(SlidingWatch, TellsOnceWhatSlidesByMoreThanHalfOfTheSmallerFacet) {
   EXPECT_NEAR(watch.report()[0].position[1], 1.0 + gap, 1e-12) << "of the finer side";
   // A resumed run keeps the slip, and does not report it again.
   Snapshot snapshot;
-  watch.save(snapshot, "sliding");
+  watch.persist(snapshot.saver("sliding"));
   SlidingWatch resumed(run.model().body, run.problem(), run.model().contact_pairs);
-  resumed.load(snapshot, "sliding");
+  resumed.persist(snapshot.loader("sliding"));
   resumed.check(displaced(run, 0.15, 0.0, true, 1.25));
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(resumed.report()[0].time_beyond, 0.75);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <tuple>
 
 /// @file Digests of the columns of a history.
 namespace ricochet {
@@ -13,6 +14,8 @@ inline constexpr std::array work_columns{"load_work",    "contact_work",  "frict
 struct ColumnDigest {
   double first = 0.0, last = 0.0, minimum = 0.0, maximum = 0.0;
   double total_variation = 0.0;  ///< Σ |difference of consecutive rows|
+
+  [[nodiscard]] auto members() { return std::tie(first, last, minimum, maximum, total_variation); }
 };
 
 }  // namespace ricochet

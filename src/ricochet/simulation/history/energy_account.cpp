@@ -16,23 +16,17 @@ EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& s
 }
 
 EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
-                             const Snapshot& snapshot, const std::string& name)
+                             const SnapshotVisitor& saved)
     : problem_(problem), scheme_(scheme), rule_(scheme.traits().work_rule), previous_(state.forces) {
-  const Vector& works = snapshot.reals(name + ".works", 10);
-  works_ = {works[0], works[1], works[2], works[3], works[4], works[5], works[6], works[7], works[8], works[9]};
-  initial_ = snapshot.real(name + ".initial");
-  initial_algorithmic_ = snapshot.real(name + ".initial_algorithmic");
-  if (problem.contact.has_sliding_pairs()) gap_before_ = snapshot.reals(name + ".gap_before", problem.contact.size());
+  persist(saved);
 }
 
-void EnergyAccount::save(Snapshot& snapshot, const std::string& name) const {
-  Vector works(10);
-  works << works_.load, works_.contact, works_.friction, works_.support, works_.obstacle, works_.damping,
-      works_.numerical_dissipation, works_.integration_error, works_.viscous_dissipation, works_.re_pairing;
-  snapshot.save(name + ".works", works);
-  if (problem_.contact.has_sliding_pairs()) snapshot.save(name + ".gap_before", gap_before_);
-  snapshot.save(name + ".initial", initial_);
-  snapshot.save(name + ".initial_algorithmic", initial_algorithmic_);
+void EnergyAccount::persist(const SnapshotVisitor& visit) {
+  visit.numbers("works", works_.load, works_.contact, works_.friction, works_.support, works_.obstacle, works_.damping,
+                works_.numerical_dissipation, works_.integration_error, works_.viscous_dissipation, works_.re_pairing);
+  visit("initial", initial_);
+  visit("initial_algorithmic", initial_algorithmic_);
+  if (problem_.contact.has_sliding_pairs()) visit("gap_before", gap_before_, problem_.contact.size());
 }
 
 EnergyAccount::StepWorks EnergyAccount::works_of(const StepForces& forces, const Vector& increment,

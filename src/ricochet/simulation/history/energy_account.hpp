@@ -41,9 +41,9 @@ class EnergyAccount {
   /// Opens the account on a starting state.
   EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state);
   /// Resumes an account that was saved at this state.
-  EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state, const Snapshot& snapshot,
-                const std::string& name);
-  void save(Snapshot& snapshot, const std::string& name) const;
+  EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
+                const SnapshotVisitor& saved);
+  void persist(const SnapshotVisitor& visit);
 
   /// Enters a step: its displacement increment and the forces at its end (in the state).
   void enter_step(const Vector& increment, const State& state);

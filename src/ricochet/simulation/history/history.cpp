@@ -280,23 +280,10 @@ void HistoryDigest::add(const std::vector<double>& row) {
   ++rows_;
 }
 
-void HistoryDigest::save(Snapshot& snapshot, const std::string& name) const {
-  Vector numbers(static_cast<Index>(5 * columns_.size()));
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    const ColumnDigest& digest = columns_[i];
-    numbers.segment<5>(static_cast<Index>(5 * i)) << digest.first, digest.last, digest.minimum, digest.maximum,
-        digest.total_variation;
-  }
-  snapshot.save(name + ".columns", numbers);
-  snapshot.save(name + ".rows", std::int64_t{rows_});
-}
-
-void HistoryDigest::load(const Snapshot& snapshot, const std::string& name, std::size_t columns) {
-  const Vector& numbers = snapshot.reals(name + ".columns", static_cast<Index>(5 * columns));
-  columns_.clear();
-  for (Index i = 0; i < numbers.size(); i += 5)
-    columns_.push_back({numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3], numbers[i + 4]});
-  rows_ = snapshot.integer(name + ".rows");
+void HistoryDigest::persist(const SnapshotVisitor& visit, std::size_t columns) {
+  if (visit.loads()) columns_.resize(columns);
+  visit.numbers("columns", columns_);
+  visit("rows", rows_);
 }
 
 }  // namespace ricochet

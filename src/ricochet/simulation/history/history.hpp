@@ -105,9 +105,8 @@ class HistoryRecorder {
 class HistoryDigest {
  public:
   void add(const std::vector<double>& row);
-  void save(Snapshot& snapshot, const std::string& name) const;
-  /// Throws Error(invalid_input) if the saved digest has another number of columns.
-  void load(const Snapshot& snapshot, const std::string& name, std::size_t columns);
+  /// Throws Error(invalid_input) if a digest that is loaded has another number of columns.
+  void persist(const SnapshotVisitor& visit, std::size_t columns);
   [[nodiscard]] const std::vector<ColumnDigest>& columns() const { return columns_; }
   [[nodiscard]] long rows() const { return rows_; }
 

@@ -59,24 +59,9 @@ Resultant MomentumAccount::algorithmic(const State& state) {
 }
 
 /// The resultant at the end of the last step is saved, as it is about positions that the state does not contain.
-void MomentumAccount::save(Snapshot& snapshot, const std::string& name) const {
-  Vector numbers(23);
-  numbers << impulse_.force, impulse_.moment, size_, previous_.total.force, previous_.total.moment, previous_.size,
-      algorithmic_.force, algorithmic_.moment, arm_, contact_size_, previous_.contact_size;
-  snapshot.save(name, numbers);
-}
-
-void MomentumAccount::load(const Snapshot& snapshot, const std::string& name) {
-  const Vector& numbers = snapshot.reals(name, 23);
-  const auto resultant_at = [&numbers](Index first) {
-    return Resultant{numbers.segment<3>(first), numbers.segment<3>(first + 3)};
-  };
-  impulse_ = resultant_at(0);
-  size_ = numbers[6];
-  previous_ = {resultant_at(7), numbers[13], numbers[22]};
-  algorithmic_ = resultant_at(14);
-  arm_ = numbers[20];
-  contact_size_ = numbers[21];
+void MomentumAccount::persist(const SnapshotVisitor& visit) {
+  visit.numbers("", impulse_, size_, previous_.total, previous_.size, algorithmic_, arm_, contact_size_,
+                previous_.contact_size);
 }
 
 Resultant MomentumAccount::part_of_nodes(const Vector& force) const {

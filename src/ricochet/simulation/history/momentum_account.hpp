@@ -21,15 +21,16 @@ namespace ricochet {
 struct Resultant {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+
+  [[nodiscard]] auto members() { return std::tie(force, moment); }
 };
 
 class MomentumAccount {
  public:
   /// Opens the account on a starting state.
   MomentumAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state);
-  void save(Snapshot& snapshot, const std::string& name) const;
-  /// Loads an account that was saved at the state on which this one was opened.
-  void load(const Snapshot& snapshot, const std::string& name);
+  /// Saves the account, or loads one that was saved at the state on which this one was opened.
+  void persist(const SnapshotVisitor& visit);
 
   /// Enters a step with the forces at its end (in the state).
   void enter_step(const State& state);

@@ -39,9 +39,8 @@ class ImpactRecorder {
   /// the time for which contact must be lost for an impact to end.
   ImpactRecorder(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
                  const std::vector<ContactPair>& pairs, std::vector<int> body_of_node, std::vector<double> separation);
-  void save(Snapshot& snapshot, const std::string& name) const;
-  /// Loads a recorder that was saved at the state on which this one was opened.
-  void load(const Snapshot& snapshot, const std::string& name);
+  /// Saves the recorder, or loads one that was saved at the state on which this one was opened.
+  void persist(const SnapshotVisitor& visit);
 
   /// Marks contact points that are inside their obstacle, or the opposite body, when the run begins.
   void begin_inside(const std::vector<Index>& points);
@@ -63,8 +62,8 @@ class ImpactRecorder {
   struct Motion {
     Three velocity, spin;
     double kinetic, rigid_kinetic;
+    [[nodiscard]] auto members() { return std::tie(velocity, spin, kinetic, rigid_kinetic); }
   };
-  /// Consists of double only, so that a snapshot stores it directly.
   struct Interval {
     double collision;  ///< index in collision_pairs_
     double phase;      ///< no_contact, touching or apart: lost, but it may be regained
@@ -81,6 +80,13 @@ class ImpactRecorder {
     double method_before, method_after;
     Three rotation, other_rotation;  ///< RotatingBody::rotation
     Three other_arm;                 ///< RotatingBody::arm of the other body
+
+    [[nodiscard]] auto members() {
+      return std::tie(collision, phase, begin, end, from_start, from_inside, intervals, contact_time, impulse,
+                      normal_impulse, pressing, travel, sliding, largest, largest_time, most_points, first_position,
+                      before, after, other_before, other_after, method_before, method_after, rotation, other_rotation,
+                      other_arm);
+    }
   };
   /// Phases of an interval, stored as numbers too.
   static constexpr double no_contact = 0.0, touching = 1.0, apart = 2.0;
@@ -121,6 +127,7 @@ class ImpactRecorder {
     double part;
   };
   class BodyOrder;
+  [[nodiscard]] bool fits(const Interval& interval) const;
   void find_collision_pairs(const std::vector<ContactPair>& pairs);
   void add_collision_pairs_of_ranks(const std::vector<ContactPair>& pairs);
   [[nodiscard]] int free_body_of(Index point) const;

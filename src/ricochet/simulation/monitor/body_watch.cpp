@@ -141,30 +141,11 @@ BodyPair& BodyWatch::pair_of(int first, int second) {
   return pairs_.back();
 }
 
-void BodyWatch::save(Snapshot& snapshot, const std::string& name) const {
-  constexpr Index numbers = 3 + 2 * DeepestPoint::numbers;
-  Vector pairs(numbers * static_cast<Index>(pairs_.size()));
-  for (std::size_t i = 0; i < pairs_.size(); ++i)
-    pairs.segment<numbers>(numbers * static_cast<Index>(i)) << pairs_[i].first, pairs_[i].second, pairs_[i].contact,
-        pairs_[i].deepest.to_numbers(), pairs_[i].at_contact.to_numbers();
-  snapshot.save(name + ".pairs", pairs);
-  snapshot.save(name + ".seen", last_displacement_);
-  snapshot.save(name + ".free_way", free_way_);
-  snapshot.save(name + ".looks", std::int64_t{checks_});
-}
-
-void BodyWatch::load(const Snapshot& snapshot, const std::string& name) {
-  constexpr Index numbers = 3 + 2 * DeepestPoint::numbers;
-  const Vector& pairs = snapshot.reals(name + ".pairs");
-  pairs_.clear();
-  for (Index i = 0; i + numbers <= pairs.size(); i += numbers)
-    pairs_.push_back({static_cast<int>(pairs[i]), static_cast<int>(pairs[i + 1]),
-                      DeepestPoint::from_numbers(pairs.segment<DeepestPoint::numbers>(i + 3)),
-                      DeepestPoint::from_numbers(pairs.segment<DeepestPoint::numbers>(i + 3 + DeepestPoint::numbers)),
-                      static_cast<int>(pairs[i + 2])});
-  last_displacement_ = snapshot.reals(name + ".seen", last_displacement_.size());
-  free_way_ = snapshot.real(name + ".free_way");
-  checks_ = snapshot.integer(name + ".looks");
+void BodyWatch::persist(const SnapshotVisitor& visit) {
+  visit.list("pairs", pairs_);
+  visit("seen", last_displacement_, last_displacement_.size());
+  visit("free_way", free_way_);
+  visit("looks", checks_);
 }
 
 }  // namespace ricochet

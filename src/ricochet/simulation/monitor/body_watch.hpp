@@ -21,6 +21,8 @@ struct BodyPair {
   DeepestPoint deepest;       ///< a node of either without a contact against penetration
   DeepestPoint at_contact;    ///< a node of either at a contact, deeper than its allowance
   int contact = -1;           ///< index of that ContactPair
+
+  [[nodiscard]] auto members() { return std::tie(first, second, contact, deepest, at_contact); }
 };
 
 /// Searches for nodes of one body inside the surface of another: at the start, and then whenever nodes have moved so
@@ -35,8 +37,7 @@ class BodyWatch {
   BodyWatch(const Points& positions, const std::vector<CellBlock>& cells, const std::vector<CellFacet>& boundary,
             const ConnectedBodies& bodies, const std::vector<double>& size,
             const std::vector<ContactNodeAllowance>& node_allowances = {});
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
   /// Gaps of the nodes of the contact boundary at the displacement that is checked.
   using NodeGaps = std::function<const Vector&()>;

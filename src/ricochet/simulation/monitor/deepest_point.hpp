@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <tuple>
 
 #include "ricochet/base/types.hpp"
 
@@ -23,15 +24,7 @@ struct DeepestPoint {
     position = at_position;
   }
 
-  static constexpr Index numbers = 7;
-  [[nodiscard]] Eigen::Matrix<double, numbers, 1> to_numbers() const {
-    Eigen::Matrix<double, numbers, 1> result;
-    result << static_cast<double>(node), depth, time, position, first_time;
-    return result;
-  }
-  [[nodiscard]] static DeepestPoint from_numbers(const Eigen::Matrix<double, numbers, 1>& values) {
-    return {static_cast<Index>(values[0]), values[1], values[2], values.segment<3>(3), values[6]};
-  }
+  [[nodiscard]] auto members() { return std::tie(node, depth, time, position, first_time); }
 };
 
 /// Depth, relative to the size of the body, up to which it is rounding.

@@ -67,15 +67,11 @@ void LateContactWatch::warn(const Contact& contact, Index entry, double time) co
       time, fmt::join(position, ", "), -gap_[entry], pair.first_group(), pair.second_group(), pair.group, pair.group));
 }
 
-void LateContactWatch::save(Snapshot& snapshot, const std::string& name) const {
+void LateContactWatch::persist(const SnapshotVisitor& visit) {
   Snapshot::Integers warned;
   for (const Contact& contact : contacts_) warned.push_back(contact.is_warned ? 1 : 0);
-  snapshot.save(name + ".told", warned);
-}
-
-void LateContactWatch::load(const Snapshot& snapshot, const std::string& name) {
-  const Snapshot::Integers& warned = snapshot.integers(name + ".told", 0, 1);
-  for (std::size_t i = 0; i < std::min(warned.size(), contacts_.size()); ++i) contacts_[i].is_warned = warned[i] != 0;
+  visit("told", warned, {0, 1}, static_cast<Index>(warned.size()));
+  for (std::size_t i = 0; i < contacts_.size(); ++i) contacts_[i].is_warned = warned[i] != 0;
 }
 
 }  // namespace ricochet

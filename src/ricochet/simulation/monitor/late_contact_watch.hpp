@@ -16,8 +16,7 @@ class LateContactWatch {
  public:
   /// Keeps references to problem and pairs.
   LateContactWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs);
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
   /// Checks the starting state and the state after every step: warns, once, of each contact between bodies that carries
   /// no force while one of its nodes is inside the other body by more than a tenth of the largest facet there.

@@ -129,29 +129,9 @@ void ObstacleWatch::check_rim(const RimFacet& facet, const State& state) {
   }
 }
 
-void ObstacleWatch::save(Snapshot& snapshot, const std::string& name) const {
-  Vector numbers(DeepestPoint::numbers * static_cast<Index>(deepest_.size()));
-  for (std::size_t k = 0; k < deepest_.size(); ++k)
-    numbers.segment<DeepestPoint::numbers>(DeepestPoint::numbers * static_cast<Index>(k)) = deepest_[k].to_numbers();
-  snapshot.save(name + ".deepest", numbers);
-  Vector rims(6 * static_cast<Index>(rims_.size()));
-  for (std::size_t i = 0; i < rims_.size(); ++i) {
-    const RimContact& rim = rims_[i];
-    rims.segment<6>(6 * static_cast<Index>(i)) << rim.pair, static_cast<double>(rim.node), rim.time, rim.position;
-  }
-  snapshot.save(name + ".rims", rims);
-}
-
-void ObstacleWatch::load(const Snapshot& snapshot, const std::string& name) {
-  const Vector& numbers =
-      snapshot.reals(name + ".deepest", DeepestPoint::numbers * static_cast<Index>(deepest_.size()));
-  for (std::size_t k = 0; k < deepest_.size(); ++k)
-    deepest_[k] = DeepestPoint::from_numbers(
-        numbers.segment<DeepestPoint::numbers>(DeepestPoint::numbers * static_cast<Index>(k)));
-  const Vector& rims = snapshot.reals(name + ".rims");
-  rims_.clear();
-  for (Index i = 0; i + 6 <= rims.size(); i += 6)
-    rims_.push_back({static_cast<int>(rims[i]), static_cast<Index>(rims[i + 1]), rims[i + 2], rims.segment<3>(i + 3)});
+void ObstacleWatch::persist(const SnapshotVisitor& visit) {
+  visit.numbers("deepest", deepest_);
+  visit.list("rims", rims_);
 }
 
 }  // namespace ricochet

@@ -16,6 +16,8 @@ struct RimContact {
   Index node = -1;  ///< on the border of the group
   double time = 0.0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
+
+  [[nodiscard]] auto members() { return std::tie(pair, node, time, position); }
 };
 
 /// Checks the nodes of the boundary against each obstacle, except for the contact nodes of that obstacle (whose gaps
@@ -29,8 +31,7 @@ class ObstacleWatch {
   ObstacleWatch(const SemidiscreteProblem& problem, const std::vector<CellBlock>& cells,
                 const std::vector<CellFacet>& boundary, const std::vector<const Obstacle*>& obstacles,
                 const std::vector<double>& size);
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
   /// Checks a state. Allocates nothing.
   void check(const State& state);

@@ -77,33 +77,16 @@ void PeakStress::evaluate(const State& state) {
   if (raisers_) result_.raised_by = raisers_->at(state, largest.cell);
 }
 
-void PeakStress::save(Snapshot& snapshot, const std::string& name) const {
-  Vector numbers(6);
-  numbers << evaluations_per_step_, evaluation_budget_, since_evaluation_, hardest_press_, result_.von_mises,
-      result_.time;
-  snapshot.save(name, numbers);
-  snapshot.save(name + ".counts", Snapshot::Integers{result_.step, result_.cell, result_.evaluations, result_.states,
-                                                     last_evaluation_, static_cast<std::int64_t>(result_.raised_by)});
-}
-
-void PeakStress::load(const Snapshot& snapshot, const std::string& name) {
-  const Vector& numbers = snapshot.reals(name, 6);
-  evaluations_per_step_ = numbers[0];
-  evaluation_budget_ = numbers[1];
-  since_evaluation_ = numbers[2];
-  hardest_press_ = numbers[3];
-  result_.von_mises = numbers[4];
-  result_.time = numbers[5];
-  const Snapshot::Integers& counts = snapshot.integers(name + ".counts");
-  if (counts.size() != 6 || counts[1] < -1 || counts[1] >= body_.mesh->cell_count() || counts[5] < 0 ||
-      counts[5] >= stress_raisers)
+void PeakStress::persist(const SnapshotVisitor& visit) {
+  visit.numbers("", evaluations_per_step_, evaluation_budget_, since_evaluation_, hardest_press_, result_.von_mises,
+                result_.time);
+  auto raised_by = static_cast<int>(result_.raised_by);
+  visit.integers("counts", {}, result_.step, result_.cell, result_.evaluations, result_.states, last_evaluation_,
+                 raised_by);
+  if (visit.loads() &&
+      (result_.cell < -1 || result_.cell >= body_.mesh->cell_count() || raised_by < 0 || raised_by >= stress_raisers))
     throw Error(ErrorKind::invalid_input, "the checkpoint's largest stress does not belong to this mesh");
-  result_.step = counts[0];
-  result_.cell = counts[1];
-  result_.evaluations = counts[2];
-  result_.states = counts[3];
-  last_evaluation_ = counts[4];
-  result_.raised_by = static_cast<StressRaiser>(counts[5]);
+  result_.raised_by = static_cast<StressRaiser>(raised_by);
 }
 
 }  // namespace ricochet

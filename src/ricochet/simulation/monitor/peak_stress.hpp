@@ -27,8 +27,7 @@ class PeakStress {
   /// `raisers`: identifies what raises the largest stress; null if this is not required.
   PeakStress(const Body& body, double step_work, const Ranks& ranks = one_rank(),
              std::unique_ptr<StressRaisers> raisers = nullptr);
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
   /// Enters the next state. A state that is saved in a frame is always evaluated.
   void enter(const State& state, bool is_frame);

@@ -323,20 +323,13 @@ PenetrationReport PenetrationWatch::report() const {
   return result;
 }
 
-void PenetrationWatch::save(Snapshot& snapshot, const std::string& name) const {
-  obstacles_.save(snapshot, name + ".obstacles");
-  passages_.save(snapshot, name + ".passages");
-  body_watch_.save(snapshot, name + ".bodies");
-  self_watch_.save(snapshot, name + ".themselves");
-  snapshot.save(name + ".looks", std::int64_t{checks_});
-}
-
-void PenetrationWatch::load(const Snapshot& snapshot, const std::string& name) {
-  obstacles_.load(snapshot, name + ".obstacles");
-  passages_.load(snapshot, name + ".passages");
-  body_watch_.load(snapshot, name + ".bodies");
-  self_watch_.load(snapshot, name + ".themselves");
-  checks_ = snapshot.integer(name + ".looks");
+void PenetrationWatch::persist(const SnapshotVisitor& visit) {
+  obstacles_.persist(visit.part("obstacles"));
+  passages_.persist(visit.part("passages"));
+  body_watch_.persist(visit.part("bodies"));
+  self_watch_.persist(visit.part("themselves"));
+  visit("looks", checks_);
+  if (!visit.loads()) return;
   // Everything that was found has been reported at once.
   for (std::size_t k = 0; k < obstacle_warned_.size(); ++k)
     obstacle_warned_[k] = obstacles_.deepest()[k].found() ? 1 : 0;

@@ -28,8 +28,7 @@ class PenetrationWatch {
   /// (SelfWatch).
   PenetrationWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
                    const std::vector<NamedObstacle>& obstacles, BodiesOfMesh bodies, double step_work);
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
   /// Checks the starting state and the state after every step. Warns, once, of each obstacle, contact and pair of
   /// bodies. Allocates nothing if there is nothing to report.

@@ -27,17 +27,6 @@ constexpr double least_opening = 0.5;
 constexpr double work_per_node_in_plane = 500.0, work_per_node_in_space = 2500.0;
 /// Largest number of checks that are saved for later, and the number available at the start.
 constexpr double most_saved = 4.0;
-constexpr Index numbers_of_body = 2 * DeepestPoint::numbers + 7;
-
-using BodyNumbers = Eigen::Matrix<double, numbers_of_body, 1>;
-
-BodyNumbers to_numbers(const SelfPenetration& found) {
-  BodyNumbers result;
-  result << found.deepest.to_numbers(), found.at_contact.to_numbers(), found.contact, static_cast<double>(found.own[0]),
-      static_cast<double>(found.own[1]), static_cast<double>(found.own[2]), static_cast<double>(found.through[0]),
-      static_cast<double>(found.through[1]), static_cast<double>(found.through[2]);
-  return result;
-}
 
 std::vector<std::vector<CellFacet>> facets_of_bodies(const Body& body, const BodiesOfMesh& bodies) {
   std::vector<std::vector<CellFacet>> result(static_cast<std::size_t>(bodies.connected.count));
@@ -325,60 +314,38 @@ std::array<Index, 3> SelfWatch::nodes_of(const WatchedBody& watched, int piece) 
   return result;
 }
 
-void SelfWatch::save(Snapshot& snapshot, const std::string& name) const {
-  Vector numbers(numbers_of_body * static_cast<Index>(found_.size()));
-  for (std::size_t k = 0; k < found_.size(); ++k) {
-    numbers.segment<numbers_of_body>(numbers_of_body * static_cast<Index>(k)) = to_numbers(found_[k]);
-    const std::string prefix = name + "." + std::to_string(k);
-    snapshot.save(prefix + ".at_start", watched_[k].at_start);
-    snapshot.save(prefix + ".seen", watched_[k].last_displacement);
-    snapshot.save(prefix + ".unseen", Vector(Eigen::Vector2d(watched_[k].ignored, watched_[k].clearance)));
-  }
-  snapshot.save(name + ".found", numbers);
-  snapshot.save(name + ".saved", work_budget_);
-  snapshot.save(name + ".work", work_per_step_);
-  snapshot.save(name + ".looks", std::int64_t{checks_});
+/// Returns whether these are nodes and contacts of this problem.
+bool SelfWatch::fits(const SelfPenetration& found) const {
+  const auto is_node = [this](Index node) { return node >= -1 && node < positions_.cols(); };
+  return is_node(found.deepest.node) && is_node(found.at_contact.node) &&
+         found.contact >= (found.at_contact.found() ? 0 : -1) && found.contact < pair_count_ &&
+         std::all_of(found.own.begin(), found.own.end(), is_node) &&
+         std::all_of(found.through.begin(), found.through.end(), is_node);
 }
 
-void SelfWatch::load(const Snapshot& snapshot, const std::string& name) {
-  const Vector& numbers = snapshot.reals(name + ".found", numbers_of_body * static_cast<Index>(found_.size()));
-  const auto nodes = static_cast<double>(positions_.cols());
+void SelfWatch::persist(const SnapshotVisitor& visit) {
+  const bool is_finite = visit.numbers("found", found_).allFinite();
+  const auto fits_here = [this](const SelfPenetration& found) { return fits(found); };
+  visit.require(is_finite && std::all_of(found_.begin(), found_.end(), fits_here), "found",
+                "has numbers that do not denote nodes and contacts of this problem");
   for (std::size_t k = 0; k < found_.size(); ++k) {
-    const BodyNumbers of = numbers.segment<numbers_of_body>(numbers_of_body * static_cast<Index>(k));
-    SelfPenetration& found = found_[k];
-    const auto rest = of.tail<7>();
-    const double node_at_contact = of[DeepestPoint::numbers];
-    const auto is_node = [&](double number) { return number >= -1.0 && number < nodes; };
-    const bool fits = of.allFinite() && is_node(of[0]) && is_node(node_at_contact) &&
-                      rest[0] >= (node_at_contact > -1.0 ? 0.0 : -1.0) && rest[0] < pair_count_ &&
-                      std::all_of(rest.data() + 1, rest.data() + 7, is_node);
-    if (!fits) Snapshot::refuse(name + ".found", "has numbers that do not denote nodes and contacts of this problem");
-    found.deepest = DeepestPoint::from_numbers(of.head<DeepestPoint::numbers>());
-    found.at_contact = DeepestPoint::from_numbers(of.segment<DeepestPoint::numbers>(DeepestPoint::numbers));
-    found.contact = static_cast<int>(rest[0]);
-    for (std::size_t i = 0; i < 3; ++i) {
-      found.own[i] = static_cast<Index>(rest[1 + static_cast<Index>(i)]);
-      found.through[i] = static_cast<Index>(rest[4 + static_cast<Index>(i)]);
-    }
-    const std::string prefix = name + "." + std::to_string(k);
-    watched_[k].at_start = snapshot.reals(prefix + ".at_start", watched_[k].at_start.size());
-    watched_[k].last_displacement = snapshot.reals(prefix + ".seen", watched_[k].last_displacement.size());
-    if (!watched_[k].at_start.allFinite() || !(watched_[k].at_start.array() >= 0.0).all())
-      Snapshot::refuse(prefix + ".at_start", "has entries that are not depths");
-    if (!watched_[k].last_displacement.allFinite()) Snapshot::refuse(prefix + ".seen", "is not finite");
-    const Vector& ignored = snapshot.reals(prefix + ".unseen", 2);
-    if (!(ignored[0] >= 0.0 && ignored[1] >= 0.0)) Snapshot::refuse(prefix + ".unseen", "has negative entries");
-    watched_[k].ignored = ignored[0];
-    watched_[k].clearance = ignored[1];
+    WatchedBody& watched = watched_[k];
+    const SnapshotVisitor each = visit.part(k);
+    each("at_start", watched.at_start, watched.at_start.size());
+    each.require(watched.at_start.allFinite() && (watched.at_start.array() >= 0.0).all(), "at_start",
+                 "has entries that are not depths");
+    each("seen", watched.last_displacement, watched.last_displacement.size());
+    each.require(watched.last_displacement.allFinite(), "seen", "is not finite");
+    each.numbers("unseen", watched.ignored, watched.clearance);
+    each.require(watched.ignored >= 0.0 && watched.clearance >= 0.0, "unseen", "has negative entries");
   }
-  work_budget_ = snapshot.real(name + ".saved");
-  if (!(work_budget_ >= 0.0) || !std::isfinite(work_budget_))
-    Snapshot::refuse(name + ".saved", "is not a valid amount of work");
+  visit("saved", work_budget_);
+  visit.require(work_budget_ >= 0.0 && std::isfinite(work_budget_), "saved", "is not a valid amount of work");
   // Infinite if all checks that are due are performed.
-  work_per_step_ = snapshot.real(name + ".work");
-  if (!(work_per_step_ >= 0.0)) Snapshot::refuse(name + ".work", "is not a valid amount of work");
-  checks_ = snapshot.integer(name + ".looks");
-  if (checks_ < 0) Snapshot::refuse(name + ".looks", "is negative");
+  visit("work", work_per_step_);
+  visit.require(work_per_step_ >= 0.0, "work", "is not a valid amount of work");
+  visit("looks", checks_);
+  visit.require(checks_ >= 0, "looks", "is negative");
 }
 
 }  // namespace ricochet

@@ -25,6 +25,8 @@ struct SelfPenetration {
   std::array<Index, 3> through{-1, -1, -1};  ///< nodes of the flat piece that the node passed through
   DeepestPoint at_contact;                   ///< of the nodes at a contact of the body with itself
   int contact = -1;                          ///< index of that ContactPair
+
+  [[nodiscard]] auto members() { return std::tie(deepest, at_contact, contact, own, through); }
 };
 
 /// Searches for nodes of a body's boundary inside another region of the same body (SelfOverlap): at the start, at the
@@ -43,8 +45,7 @@ class SelfWatch {
   /// checked, as none has the whole boundary.
   SelfWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
             const BodiesOfMesh& bodies, double step_work);
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
   /// Gaps of the nodes of the contact boundary at the displacement that is checked.
   using NodeGaps = std::function<const Vector&()>;
@@ -108,6 +109,7 @@ class SelfWatch {
   [[nodiscard]] static const NodeContact* contact_at(const WatchedBody& watched, int node, int piece);
   /// Distance between the flat pieces and the curved facet that they approximate.
   [[nodiscard]] double sagitta_of(const Facet& facet, const Vector& displacement) const;
+  [[nodiscard]] bool fits(const SelfPenetration& found) const;
   [[nodiscard]] std::array<Index, 3> nodes_of(const WatchedBody& watched, int piece) const;
 
   const Points& positions_;

@@ -199,65 +199,16 @@ std::vector<UnsettledContact> SlidingWatch::unsettled() const {
   return result;
 }
 
-void SlidingWatch::save(Snapshot& snapshot, const std::string& name) const {
-  Vector numbers(7 * static_cast<Index>(largest_.size()));
-  for (std::size_t i = 0; i < largest_.size(); ++i) {
-    const Largest& largest = largest_[i];
-    numbers.segment<7>(7 * static_cast<Index>(i)) << largest.ratio, largest.slip, largest.limit, largest.time,
-        largest.time_beyond, static_cast<double>(largest.point), largest.is_beyond ? 1.0 : 0.0;
-  }
-  snapshot.save(name, numbers);
-  snapshot.save(name + ".has_told", std::int64_t{frozen_step_warned_ ? 2 : 0});
-  Vector sliding(9 * static_cast<Index>(large_sliding_.size()));
-  for (std::size_t i = 0; i < large_sliding_.size(); ++i) {
-    const LargeSlidingContact& each = large_sliding_[i];
-    sliding.segment<9>(9 * static_cast<Index>(i)) << each.largest_force, each.force, static_cast<double>(each.steps),
-        each.first_time, each.time, each.gap, static_cast<double>(each.point), each.is_warned ? 1.0 : 0.0, each.missing;
-  }
-  snapshot.save(name + ".far", sliding);
-}
-
-/// Loads nothing from checkpoints of earlier versions, which contain no record of contacts with large sliding.
-void SlidingWatch::load_large_sliding(const Snapshot& snapshot, const std::string& name) {
-  if (!snapshot.has(name)) return;
-  const Vector& numbers = snapshot.reals(name, 9 * static_cast<Index>(large_sliding_.size()));
-  for (std::size_t i = 0; i < large_sliding_.size(); ++i) {
-    const auto of = numbers.segment<9>(9 * static_cast<Index>(i));
-    const bool fits = of.allFinite() && of[2] >= 0.0 && of[2] < 1e15 && of[6] >= -1.0 &&
-                      of[6] < static_cast<double>(problem_.contact.size()) && of[6] == std::floor(of[6]) &&
-                      (of[7] == 0.0 || of[7] == 1.0);
-    if (!fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of sliding is damaged");
-    LargeSlidingContact& sliding = large_sliding_[i];
-    sliding.largest_force = of[0];
-    sliding.force = of[1];
-    sliding.steps = static_cast<long>(of[2]);
-    sliding.first_time = of[3];
-    sliding.time = of[4];
-    sliding.gap = of[5];
-    sliding.point = static_cast<Index>(of[6]);
-    sliding.is_warned = of[7] != 0.0;
-    sliding.missing = of[8];
-  }
-}
-
-void SlidingWatch::load(const Snapshot& snapshot, const std::string& name) {
-  const Vector& numbers = snapshot.reals(name, 7 * static_cast<Index>(largest_.size()));
-  frozen_step_warned_ = (snapshot.integer(name + ".has_told") & 2) != 0;
-  load_large_sliding(snapshot, name + ".far");
-  for (std::size_t i = 0; i < largest_.size(); ++i) {
-    const auto of = numbers.segment<7>(7 * static_cast<Index>(i));
-    const bool fits = of.allFinite() && of[5] >= -1.0 && of[5] < static_cast<double>(problem_.contact.size()) &&
-                      of[5] == std::floor(of[5]) && (of[6] == 0.0 || of[6] == 1.0);
-    if (!fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of sliding is damaged");
-    Largest& largest = largest_[i];
-    largest.ratio = of[0];
-    largest.slip = of[1];
-    largest.limit = of[2];
-    largest.time = of[3];
-    largest.time_beyond = of[4];
-    largest.point = static_cast<Index>(of[5]);
-    largest.is_beyond = of[6] != 0.0;
-  }
+void SlidingWatch::persist(const SnapshotVisitor& visit) {
+  constexpr std::int64_t frozen_step = 2, most_steps = 1'000'000'000'000'000;
+  std::int64_t warned = frozen_step_warned_ ? frozen_step : 0;
+  visit("has_told", warned);
+  frozen_step_warned_ = (warned & frozen_step) != 0;
+  bool fits = visit.numbers("", largest_).allFinite() && visit.numbers("far", large_sliding_).allFinite();
+  for (const Largest& each : largest_) fits = fits && is_point(each.point);
+  for (const LargeSlidingContact& each : large_sliding_)
+    fits = fits && is_point(each.point) && each.steps >= 0 && each.steps < most_steps;
+  if (visit.loads() && !fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of sliding is damaged");
 }
 
 }  // namespace ricochet

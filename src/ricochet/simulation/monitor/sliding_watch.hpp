@@ -17,8 +17,7 @@ class SlidingWatch {
  public:
   /// Keeps references to problem and pairs.
   SlidingWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs);
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
   /// Checks the pressed points between bodies in the starting state and after every step. Warns, once, of each contact
   /// whose slip exceeds its limit. Allocates nothing if there is nothing to report.
@@ -42,6 +41,9 @@ class SlidingWatch {
     double first_time = 0.0, time = 0.0, gap = 0.0;
     Index point = -1;
     bool is_warned = false;
+    [[nodiscard]] auto members() {
+      return std::tie(largest_force, force, steps, first_time, time, gap, point, is_warned, missing);
+    }
     [[nodiscard]] double share() const { return force > 0.0 ? force / (largest_force + missing) : 0.0; }
   };
   /// Record of a contact between bodies.
@@ -50,6 +52,7 @@ class SlidingWatch {
     double ratio = 0.0, slip = 0.0, limit = 0.0, time = 0.0, time_beyond = 0.0;
     Index point = -1;
     bool is_beyond = false;
+    [[nodiscard]] auto members() { return std::tie(ratio, slip, limit, time, time_beyond, point, is_beyond); }
   };
   void add_large_sliding_contact(int contact);
   [[nodiscard]] double slip_of(Index point, const State& state) const;
@@ -59,7 +62,7 @@ class SlidingWatch {
   void enter(LargeSlidingContact& contact, const State& state) const;
   void warn(const LargeSlidingContact& contact) const;
   void warn_of_frozen_step(const State& state);
-  void load_large_sliding(const Snapshot& snapshot, const std::string& name);
+  [[nodiscard]] bool is_point(Index point) const { return point >= -1 && point < problem_.contact.size(); }
 
   const SemidiscreteProblem& problem_;
   const std::vector<ContactPair>& pairs_;

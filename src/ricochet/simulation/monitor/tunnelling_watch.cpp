@@ -103,24 +103,13 @@ bool TunnellingWatch::any_tunnels(const State& state, double time) const {
   return false;
 }
 
-void TunnellingWatch::save(Snapshot& snapshot, const std::string& name) const {
+void TunnellingWatch::persist(const SnapshotVisitor& visit) {
   for (std::size_t k = 0; k < previous_.size(); ++k) {
-    const std::string own = name + "." + std::to_string(k);
-    snapshot.save(own + ".places", Vector(previous_[k].positions.reshaped()));
-    snapshot.save(own + ".gaps", previous_[k].gaps);
-    snapshot.save(own + ".passage", Vector(passages_[k].to_numbers()));
-  }
-}
-
-void TunnellingWatch::load(const Snapshot& snapshot, const std::string& name) {
-  for (std::size_t k = 0; k < previous_.size(); ++k) {
-    const std::string own = name + "." + std::to_string(k);
-    previous_[k].gaps = snapshot.reals(own + ".gaps");
-    if (previous_[k].gaps.size() != 0 && previous_[k].gaps.size() != static_cast<Index>(nodes_.size()))
-      Snapshot::refuse(own + ".gaps", "has a length that does not fit this problem");
-    const Vector& positions = snapshot.reals(own + ".places", problem_.dimension * previous_[k].gaps.size());
-    previous_[k].positions = positions.reshaped(problem_.dimension, previous_[k].gaps.size());
-    passages_[k] = DeepestPoint::from_numbers(snapshot.reals(own + ".passage", DeepestPoint::numbers));
+    auto& [positions, gaps] = previous_[k];
+    const SnapshotVisitor each = visit.part(k);
+    each("gaps", gaps, static_cast<Index>(nodes_.size()), 0);
+    each("places", positions, problem_.dimension, gaps.size(), gaps.size());
+    each.numbers("passage", passages_[k]);
   }
 }
 

@@ -20,8 +20,7 @@ class TunnellingWatch {
   /// Keeps a reference to the problem. `nodes`: ascending, or contact points.
   TunnellingWatch(const SemidiscreteProblem& problem, std::vector<Index> nodes,
                   const std::vector<const Obstacle*>& obstacles, Of of = Of::nodes);
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
   /// Checks a state after the previous one. Allocates nothing after the first time.
   void check(const State& state);

@@ -51,9 +51,7 @@ class AlartCurnierStep {
   [[nodiscard]] static double iteration_work(double unknowns);
   /// Factor of a large system, see IterativeContactSolver.
   [[nodiscard]] const ReusedFactor& reused() const { return reused_; }
-  void load_memory(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name) {
-    reused_.load(row_offset, snapshot, name);
-  }
+  [[nodiscard]] ReusedFactor& reused() { return reused_; }
   /// True if the last step needed a new factor.
   [[nodiscard]] bool has_factored() const { return has_factored_; }
   /// True if the last two steps had the same states: with exact systems Newton's method converges from here on.

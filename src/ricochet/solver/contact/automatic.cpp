@@ -79,12 +79,7 @@ class AutomaticSolver final : public IterativeContactSolver {
     frictionless_.reset();
     costs_ = {};
   }
-  void save_memory(Snapshot& snapshot, const std::string& name) const override {
-    snapshot.save(name + ".costs", Vector(Eigen::Vector2d(costs_.of_sweeps, costs_.of_newton)));
-    snapshot.save(name + ".active_set", frictionless_.base());
-    newton_.step().reused().save(snapshot, name);
-  }
-  void load_memory(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name) override;
+  void persist_memory(const SnapshotVisitor& visit, const std::vector<Index>& row_offset) override;
   [[nodiscard]] bool keeps_row(Index problem_row) const override {
     return frictionless_.keeps_row(problem_row) || newton_.step().reused().keeps_row(problem_row);
   }
@@ -117,16 +112,17 @@ class AutomaticSolver final : public IterativeContactSolver {
   ContactCosts costs_;
 };
 
-void AutomaticSolver::load_memory(const std::vector<Index>& row_offset, const Snapshot& snapshot,
-                                  const std::string& name) {
-  const Vector& costs = snapshot.reals(name + ".costs", 2);
-  if (!(costs[0] >= 0.0 && costs[1] >= 0.0)) Snapshot::refuse(name + ".costs", "has negative entries");
-  costs_ = {costs[0], costs[1]};
-  const std::vector<Index>& base = snapshot.integers(name + ".active_set");
-  if (!are_first_rows(row_offset, base, true))
-    Snapshot::refuse(name + ".active_set", "has entries that are not points of this problem");
-  frictionless_.set_base(base);
-  newton_.load_memory(row_offset, snapshot, name);
+void AutomaticSolver::persist_memory(const SnapshotVisitor& visit, const std::vector<Index>& row_offset) {
+  visit.numbers("costs", costs_.of_sweeps, costs_.of_newton);
+  visit.require(costs_.of_sweeps >= 0.0 && costs_.of_newton >= 0.0, "costs", "has negative entries");
+  std::vector<Index> base = frictionless_.base();
+  visit("active_set", base);
+  if (visit.loads()) {
+    visit.require(are_first_rows(row_offset, base, true), "active_set",
+                  "has entries that are not points of this problem");
+    frictionless_.set_base(base);
+  }
+  newton_.step().reused().persist(visit, row_offset);
 }
 
 /// Performs accelerated sweeps for as long as they promise to converge sooner than Newton's method.

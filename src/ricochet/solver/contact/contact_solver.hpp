@@ -100,12 +100,11 @@ class ContactSolver {
   /// Sets them, after `analyse`. Throws Error(invalid_input) for another length and for numbers that are not finite;
   /// the next start is then a cold one.
   virtual void set_warm_start(const Vector& reactions) = 0;
-  /// Save and load the reactions and everything else that decides bits of the next solve (kept factors, by the data
-  /// they were made of): a solver that loads them, after `analyse`, continues with the same bits. `load` throws
+  /// Saves and loads the reactions and everything else that decides bits of the next solve (kept factors, by the data
+  /// they were made of): a solver that loads them, after `analyse`, continues with the same bits. Loading throws
   /// Error(invalid_input) for data that no solver of its kind has saved for such points; the next start is then a cold
   /// one.
-  virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
-  virtual void load(const Snapshot& snapshot, const std::string& name) = 0;
+  virtual void persist(const SnapshotVisitor& visit) = 0;
 };
 
 /// Observer of contact problems and their results, including those that were not solved.

@@ -57,9 +57,7 @@ class GlobalizedNewton {
   /// Discards the factors, which are of another W.
   void reset();
   [[nodiscard]] const AlartCurnierStep& step() const { return step_; }
-  void load_memory(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name) {
-    step_.load_memory(row_offset, snapshot, name);
-  }
+  [[nodiscard]] AlartCurnierStep& step() { return step_; }
 
  private:
   [[nodiscard]] double next_reduction(const ContactIteration& iteration) const;

@@ -54,17 +54,14 @@ void IterativeContactSolver::set_warm_start(const Vector& reactions) {
   warm_reaction_ = reactions;
 }
 
-void IterativeContactSolver::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name + ".reactions", warm_reaction_);
-  save_memory(snapshot, name);
-}
-
-void IterativeContactSolver::load(const Snapshot& snapshot, const std::string& name) {
+void IterativeContactSolver::persist(const SnapshotVisitor& visit) {
   try {
-    set_warm_start(snapshot.reals(name + ".reactions"));
-    load_memory(analysed_row_offset_, snapshot, name);
+    Vector reactions = warm_reaction_;
+    visit("reactions", reactions);
+    if (visit.loads()) set_warm_start(reactions);
+    persist_memory(visit, analysed_row_offset_);
   } catch (const Error&) {
-    set_warm_start({});
+    if (visit.loads()) set_warm_start({});
     throw;
   }
 }

@@ -18,8 +18,7 @@ class IterativeContactSolver : public ContactSolver {
   void solve(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution) override;
   [[nodiscard]] const Vector& warm_start() const override { return warm_reaction_; }
   void set_warm_start(const Vector& reactions) override;
-  void save(Snapshot& snapshot, const std::string& name) const override;
-  void load(const Snapshot& snapshot, const std::string& name) override;
+  void persist(const SnapshotVisitor& visit) override;
 
   /// Iterates from `current`, which is evaluated and satisfies the signs and limits of its law, towards a solution:
   /// until system.is_solved(current, tolerance), or for as long as there is progress. Leaves the best r and its u in
@@ -36,12 +35,10 @@ class IterativeContactSolver : public ContactSolver {
   [[nodiscard]] virtual std::string refuses(const ContactSystem&) const { return {}; }
   /// Discards data kept from earlier problems, for another W or another start.
   virtual void forget() {}
-  /// Save and load the data that besides the reactions are kept from one problem to the next and decide bits (factors
+  /// Saves and loads the data that besides the reactions are kept from one problem to the next and decide bits (factors
   /// that are used again, by the data they were made of); loading follows `forget`, for points with these rows
-  /// (ContactProblem::row_offset). Throws as `load` does; the caller then discards partial data.
-  virtual void save_memory(Snapshot&, const std::string& /* name */) const {}
-  virtual void load_memory(const std::vector<Index>& /* row_offset */, const Snapshot&, const std::string& /* name */) {
-  }
+  /// (ContactProblem::row_offset). Throws as `persist` does; the caller then discards partial data.
+  virtual void persist_memory(const SnapshotVisitor&, const std::vector<Index>& /* row_offset */) {}
   /// True if kept data require the rows of a point in the system, though it may be open.
   [[nodiscard]] virtual bool keeps_row(Index /* of the problem, a point's first */) const { return false; }
   /// True if the solver works on the points that move into the obstacle or had a reaction, and adds others if they

@@ -30,9 +30,8 @@ class NewtonAlartCurnier final : public NewtonContactSolver {
     NewtonContactSolver::forget();
     step_.reset();
   }
-  void save_memory(Snapshot& snapshot, const std::string& name) const override { step_.reused().save(snapshot, name); }
-  void load_memory(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name) override {
-    step_.load_memory(row_offset, snapshot, name);
+  void persist_memory(const SnapshotVisitor& visit, const std::vector<Index>& row_offset) override {
+    step_.reused().persist(visit, row_offset);
   }
   [[nodiscard]] bool keeps_row(Index problem_row) const override { return step_.reused().keeps_row(problem_row); }
 

@@ -51,43 +51,27 @@ bool ReusedFactor::map_rows(const ContactSystem& system, const std::vector<Conta
   return true;
 }
 
-void ReusedFactor::save(Snapshot& snapshot, const std::string& name) const {
+void ReusedFactor::persist(const SnapshotVisitor& visit, const std::vector<Index>& row_offset) {
   std::vector<Index> rows, sizes;
-  Vector values(7 * static_cast<Index>(unknowns_.size()));
-  double* next = values.data();
   for (const ContactUnknown& unknown : unknowns_) {
     rows.push_back(unknown.problem_row);
     sizes.push_back(unknown.size);
-    next = std::copy(unknown.trial.begin(), unknown.trial.end(), next);
-    next = std::copy(unknown.test.begin(), unknown.test.end(), next);
-    *next++ = unknown.diagonal;
   }
-  snapshot.save(name + ".unknowns.rows", std::move(rows));
-  snapshot.save(name + ".unknowns.sizes", std::move(sizes));
-  snapshot.save(name + ".unknowns.values", values);
-}
-
-void ReusedFactor::load(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name) {
-  unknowns_.clear();
-  is_factored_ = false;
-  const std::vector<Index>& rows = snapshot.integers(name + ".unknowns.rows");
-  const std::vector<Index>& sizes = snapshot.integers(name + ".unknowns.sizes", 1, 3);
-  const Vector& values = snapshot.reals(name + ".unknowns.values", 7 * static_cast<Index>(rows.size()));
-  if (!are_first_rows(row_offset, rows, false) || sizes.size() != rows.size())
-    Snapshot::refuse(name + ".unknowns", "do not belong to points of this problem");
-  const double* next = values.data();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto point = std::lower_bound(row_offset.begin(), row_offset.end(), rows[i]);
-    if (sizes[i] > point[1] - point[0]) Snapshot::refuse(name + ".unknowns", "have more rows than their points");
-    ContactUnknown unknown;
-    unknown.problem_row = rows[i];
-    unknown.size = sizes[i];
-    std::copy(next, next + 3, unknown.trial.begin());
-    std::copy(next + 3, next + 6, unknown.test.begin());
-    unknown.diagonal = next[6];
-    next += 7;
-    unknowns_.push_back(unknown);
+  visit("unknowns.rows", rows);
+  visit("unknowns.sizes", sizes, {1, 3});
+  if (visit.loads()) {
+    is_factored_ = false;
+    visit.require(are_first_rows(row_offset, rows, false) && sizes.size() == rows.size(), "unknowns",
+                  "do not belong to points of this problem");
+    unknowns_.assign(rows.size(), {});
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto point = std::lower_bound(row_offset.begin(), row_offset.end(), rows[i]);
+      visit.require(sizes[i] <= point[1] - point[0], "unknowns", "have more rows than their points");
+      unknowns_[i].problem_row = rows[i];
+      unknowns_[i].size = sizes[i];
+    }
   }
+  visit.numbers("unknowns.values", unknowns_);
 }
 
 /// Unknowns are in the order of their points.

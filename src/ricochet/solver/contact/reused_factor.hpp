@@ -23,6 +23,7 @@ struct ContactUnknown {
     return problem_row == other.problem_row && size == other.size && trial == other.trial && test == other.test &&
            diagonal == other.diagonal;
   }
+  [[nodiscard]] auto members() { return std::tie(trial, test, diagonal); }
 };
 
 [[nodiscard]] inline double test_motion(const ContactUnknown& unknown, const double* motion) {
@@ -48,10 +49,10 @@ class ReusedFactor {
   /// Computes z ≈ (system of the unknowns given to `map_rows`)⁻¹ b.
   void apply(const Vector& right, Vector& z) const;
 
-  /// Save and load the unknowns: the factor is made again at the next `map_rows`, with the same bits. Throws
-  /// Error(invalid_input) unless they are unknowns on points with these rows (ContactProblem::row_offset).
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name);
+  /// Saves and loads the unknowns: the factor is made again at the next `map_rows`, with the same bits. Throws
+  /// Error(invalid_input) unless they are unknowns on points with these rows (ContactProblem::row_offset); those that
+  /// are loaded are then incomplete.
+  void persist(const SnapshotVisitor& visit, const std::vector<Index>& row_offset);
   /// True if one of the unknowns belongs to the point that begins with this row of the problem.
   [[nodiscard]] bool keeps_row(Index problem_row) const;
 

@@ -109,17 +109,9 @@ void CorotatedFrame::rotate_back(const SparseRowMatrix& rows, SparseRowMatrix& r
   result.setFromTriplets(entries.begin(), entries.end());
 }
 
-void CorotatedFrame::save(Snapshot& snapshot, const std::string& name) const {
-  Vector numbers(static_cast<Index>(9 * rotation_.size()));
-  for (std::size_t i = 0; i < rotation_.size(); ++i)
-    numbers.segment<9>(static_cast<Index>(9 * i)) = rotation_[i].reshaped();
-  snapshot.save(name + ".rotation", numbers);
-}
-
-void CorotatedFrame::load(const Snapshot& snapshot, const std::string& name) {
-  const Vector& numbers = snapshot.reals(name + ".rotation", static_cast<Index>(9 * bodies_.count()));
-  for (std::size_t i = 0; i < rotation_.size(); ++i)
-    rotation_[i].reshaped() = numbers.segment<9>(static_cast<Index>(9 * i));
+void CorotatedFrame::persist(const SnapshotVisitor& visit) {
+  visit.numbers("rotation", rotation_);
+  if (!visit.loads()) return;
   is_identity_ =
       std::all_of(rotation_.begin(), rotation_.end(), [](const Tensor& r) { return r == Tensor::Identity(); });
   ++number_;

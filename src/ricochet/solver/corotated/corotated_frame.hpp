@@ -33,8 +33,7 @@ class CorotatedFrame {
   /// Computes H R; `result` keeps its storage if the pattern is unchanged.
   void rotate_back(const SparseRowMatrix& rows, SparseRowMatrix& result) const;
 
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
  private:
   static constexpr double slack = 0.02;

@@ -20,8 +20,7 @@ class CorotatedStage final : public StageSolver {
   void show_contact() const override { solver_->show_contact(); }
   void refactorize(const Vector& displacement) override { solver_->refactorize(displacement); }
   void observe_contact(const ContactObserver& observer) override { solver_->observe_contact(observer); }
-  void save(Snapshot& snapshot, const std::string& name) const override { solver_->save(snapshot, name); }
-  void load(const Snapshot& snapshot, const std::string& name) override { solver_->load(snapshot, name); }
+  void persist(const SnapshotVisitor& visit) override { solver_->persist(visit); }
   [[nodiscard]] IterationCounts iteration_counts() const override { return solver_->iteration_counts(); }
   [[nodiscard]] double contact_seconds() const override { return solver_->contact_seconds(); }
   [[nodiscard]] std::size_t factor_entries() const override { return solver_->factor_entries(); }

@@ -42,16 +42,10 @@ void ContactCandidates::clear() {
   oversized_stages_ = 0;
 }
 
-void ContactCandidates::save_history(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name + ".largest_motion", largest_motion_);
-  snapshot.save(name + ".oversized_stages", oversized_stages_);
-  snapshot.save(name + ".closed", static_cast<std::int64_t>(closed_));
-}
-
-void ContactCandidates::load_history(const Snapshot& snapshot, const std::string& name) {
-  largest_motion_ = snapshot.real(name + ".largest_motion");
-  oversized_stages_ = static_cast<int>(snapshot.integer(name + ".oversized_stages"));
-  closed_ = static_cast<std::size_t>(snapshot.integers(name + ".closed", 0, static_cast<Index>(number_.size())).at(0));
+void ContactCandidates::persist_history(const SnapshotVisitor& visit) {
+  visit("largest_motion", largest_motion_);
+  visit("oversized_stages", oversized_stages_);
+  visit("closed", closed_, {0, static_cast<Index>(number_.size())});
 }
 
 /// Uses the motion of earlier stages, or that which this one requires if points are inside at δ = 0.

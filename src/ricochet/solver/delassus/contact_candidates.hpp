@@ -23,9 +23,8 @@ class ContactCandidates {
   void add_candidates(const std::vector<Index>& points);
   void clear();
 
-  /// Save and load everything except the points themselves, which are added separately.
-  void save_history(Snapshot& snapshot, const std::string& name) const;
-  void load_history(const Snapshot& snapshot, const std::string& name);
+  /// Saves and loads everything except the points themselves, which are added separately.
+  void persist_history(const SnapshotVisitor& visit);
 
   /// Estimates, before a stage, how far it may move points. Collective over the ranks.
   void estimate_reach(const ContactConditions& conditions);

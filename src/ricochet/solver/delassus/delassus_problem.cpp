@@ -134,30 +134,27 @@ void DelassusProblem::append_candidates(const std::vector<Index>& points) {
   contact_solution_.reaction = start;
 }
 
-void DelassusProblem::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name + ".candidates", candidates_.points());
-  snapshot.save(name + ".taken_up", candidate_counts_);
-  snapshot.save(name + ".scale", scale_);
-  candidates_.save_history(snapshot, name);
-  if (solver_ != nullptr) solver_->save(snapshot, name + ".solver");
-}
-
-void DelassusProblem::load(const Snapshot& snapshot, const std::string& name) {
-  const std::vector<Index>& points = snapshot.integers(name + ".candidates", 0, problem_.contact.size() - 1);
-  const auto count = static_cast<Index>(points.size());
-  // Scale of the factor that the state has: a solver whose reactions are rescaled loses its history.
-  scale_ = contact_.reaction_scale = factor_.scale();
-  start_again_with({});
-  for (const Index end : snapshot.integers(name + ".taken_up", 1, count)) {
-    const auto begin = static_cast<Index>(candidates_.points().size());
-    if (end > begin) append_candidates({points.begin() + begin, points.begin() + end});
+void DelassusProblem::persist(const SnapshotVisitor& visit) {
+  std::vector<Index> points = candidates_.points(), counts = candidate_counts_;
+  double scale = scale_;
+  visit("candidates", points, {0, problem_.contact.size() - 1});
+  visit("taken_up", counts, {1, static_cast<Index>(points.size())});
+  visit("scale", scale);
+  if (visit.loads()) {
+    // Scale of the factor that the state has: a solver whose reactions are rescaled loses its history.
+    scale_ = contact_.reaction_scale = factor_.scale();
+    start_again_with({});
+    for (const Index end : counts) {
+      const auto begin = static_cast<Index>(candidates_.points().size());
+      if (end > begin) append_candidates({points.begin() + begin, points.begin() + end});
+    }
   }
-  candidates_.load_history(snapshot, name);
+  candidates_.persist_history(visit);
   if (solver_ == nullptr) return;
-  solver_->load(snapshot, name + ".solver");
-  const double saved = snapshot.real(name + ".scale");
-  if (!(std::isnormal(saved) && saved > 0.0)) Snapshot::refuse(name + ".scale", "is not a positive number");
-  scale_warm_start(scale_ / saved);
+  solver_->persist(visit.part("solver"));
+  if (!visit.loads()) return;
+  visit.require(std::isnormal(scale) && scale > 0.0, "scale", "is not a positive number");
+  scale_warm_start(scale_ / scale);
   contact_solution_.reaction = solver_->warm_start();
   if (contact_solution_.reaction.size() == 0) contact_solution_.reaction.setZero(contact_.row_offset.back());
 }

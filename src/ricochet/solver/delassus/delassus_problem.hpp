@@ -39,10 +39,9 @@ class DelassusProblem {
   /// Renews columns and W, with the rows of the next stage, after the factor has been made anew.
   void invalidate_columns();
 
-  /// Save and load the candidates in the order in which they were added, which decides the bits of W, and the contact
+  /// Saves and loads the candidates in the order in which they were added, which decides the bits of W, and the contact
   /// solver's warm start.
-  void save(Snapshot& snapshot, const std::string& name) const;
-  void load(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit);
 
   /// Shows the contact problem of a solved stage, if it had one, to the observer (one that could not be solved is shown
   /// at once).

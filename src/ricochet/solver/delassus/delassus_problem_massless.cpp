@@ -70,9 +70,9 @@ void DelassusProblem::use_condensed(Matrix w) {
   append_supported();
   set_contact_operator(std::move(w));
   Snapshot memory;
-  solver_->save(memory, "solver");
+  solver_->persist(memory.saver("solver"));
   solver_->analyse(contact_);
-  solver_->load(memory, "solver");
+  solver_->persist(memory.loader("solver"));
 }
 
 /// If B_T has no trace in a direction (a support holds the body there), any positive diagonal keeps W definite and

@@ -31,8 +31,7 @@ class DirectStage final : public StageSolver {
   void refactorize(const Vector& displacement) override;
   void show_contact() const override { stage_.report(); }
   void observe_contact(const ContactObserver& observer) override { stage_.observe(observer); }
-  void save(Snapshot& snapshot, const std::string& name) const override { stage_.save(snapshot, name); }
-  void load(const Snapshot& snapshot, const std::string& name) override { stage_.load(snapshot, name); }
+  void persist(const SnapshotVisitor& visit) override { stage_.persist(visit); }
   [[nodiscard]] double contact_seconds() const override { return stage_.contact_seconds(); }
   [[nodiscard]] std::size_t factor_entries() const override { return stage_.factor_entries(); }
   [[nodiscard]] FactoredStage* factored() override { return &stage_; }

@@ -33,9 +33,8 @@ class FactoredStage {
   /// Dofs in the order of the factor.
   [[nodiscard]] const std::vector<int>& dofs() const { return dof_at_; }
   [[nodiscard]] SparseCholesky& factor() { return factor_; }
-  /// Save and load the data that the contact conditions leave for later stages.
-  void save(Snapshot& snapshot, const std::string& name) const { contact_.save(snapshot, name); }
-  void load(const Snapshot& snapshot, const std::string& name) { contact_.load(snapshot, name); }
+  /// Saves and loads the data that the contact conditions leave for later stages.
+  void persist(const SnapshotVisitor& visit) { contact_.persist(visit); }
   void report() const { contact_.report(); }
   void observe(const ContactObserver& observer) { contact_.observe(observer); }
   [[nodiscard]] double contact_seconds() const { return contact_.solver_seconds(); }

@@ -31,13 +31,12 @@ class GatheredStage final : public StageSolver {
   void observe_contact(const ContactObserver& observer) override {
     if (stage_) stage_->observe_contact(observer);
   }
-  void save(Snapshot& snapshot, const std::string& name) const override {
-    if (stage_) stage_->save(snapshot, name);
-  }
-  void load(const Snapshot& snapshot, const std::string& name) override {
-    problem_.ranks->run_collectively([&] {
-      if (stage_) stage_->load(snapshot, name);
-    });
+  void persist(const SnapshotVisitor& visit) override {
+    const auto at_root = [&] {
+      if (stage_) stage_->persist(visit);
+    };
+    if (!visit.loads()) return at_root();
+    problem_.ranks->run_collectively(at_root);
   }
   [[nodiscard]] double contact_seconds() const override { return stage_ ? stage_->contact_seconds() : 0.0; }
   [[nodiscard]] std::size_t factor_entries() const override { return stage_ ? stage_->factor_entries() : 0; }

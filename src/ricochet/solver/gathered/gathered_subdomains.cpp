@@ -31,13 +31,11 @@ class GatheredSubdomains final : public ContactRegion {
   void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
                    Vector& motion) override;
 
-  void save(Snapshot& snapshot, const std::string& name) const override {
-    visit([&](const Subdomains& subdomains) { subdomains.save(snapshot, name); });
-  }
-  void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) override {
+  void persist(const SnapshotVisitor& state, const std::vector<Index>& points) override {
+    if (!state.loads()) return visit([&](Subdomains& subdomains) { subdomains.persist(state, points); });
     make(points);
     body_.problem.ranks->run_collectively(
-        [&] { visit([&](Subdomains& subdomains) { subdomains.load_made(snapshot, name); }); });
+        [&] { visit([&](Subdomains& subdomains) { subdomains.persist_made(state); }); });
   }
   void report() const override {
     visit([](const Subdomains& subdomains) { subdomains.report(); });

@@ -24,9 +24,8 @@ class StageSolver {
   /// Refactorizes as StepSolver does.
   virtual void refactorize(const Vector& displacement) = 0;
   virtual void observe_contact(const ContactObserver& observer) = 0;
-  /// Save and load as StepSolver does.
-  virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
-  virtual void load(const Snapshot& snapshot, const std::string& name) = 0;
+  /// Saves and loads as StepSolver does.
+  virtual void persist(const SnapshotVisitor& visit) = 0;
   [[nodiscard]] virtual double contact_seconds() const = 0;
   [[nodiscard]] virtual std::size_t factor_entries() const = 0;
   [[nodiscard]] virtual IterationCounts iteration_counts() const { return {}; }

@@ -27,9 +27,8 @@ class ContactRegion {
   virtual void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
                            Vector& motion) = 0;
 
-  virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
-  /// Makes subdomains for these points, as they were saved.
-  virtual void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) = 0;
+  /// Saves and loads the subdomains of these points; loading makes them.
+  virtual void persist(const SnapshotVisitor& visit, const std::vector<Index>& points) = 0;
   virtual void report() const = 0;
   virtual void observe(const ContactObserver& observer) = 0;
   [[nodiscard]] virtual double contact_seconds() const = 0;

@@ -36,9 +36,8 @@ class Subdomain {
   /// Restricts a subdomain solution to the points it owns.
   void restrict_to_own(const StageSolution& local, StageSolution& solution) const;
 
-  /// Save and load the data that the contact conditions leave for later stages.
-  void save(Snapshot& snapshot, const std::string& name) const { stage_->save(snapshot, name); }
-  void load(const Snapshot& snapshot, const std::string& name) { stage_->load(snapshot, name); }
+  /// Saves and loads the data that the contact conditions leave for later stages.
+  void persist(const SnapshotVisitor& visit) { stage_->persist(visit); }
   void report() const { stage_->report(); }
   void observe(const ContactObserver& observer) { stage_->observe(observer); }
   [[nodiscard]] double contact_seconds() const { return stage_->contact_seconds(); }

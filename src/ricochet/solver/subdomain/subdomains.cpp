@@ -129,19 +129,14 @@ void Subdomains::solve(const LinearStage& stage, const Vector& residual, Vector&
   }
 }
 
-void Subdomains::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name + ".layers", layers_);
-  for (std::size_t i = 0; i < subdomains_.size(); ++i) subdomains_[i]->save(snapshot, fmt::format("{}.{}", name, i));
+void Subdomains::persist(const SnapshotVisitor& visit, const std::vector<Index>& points) {
+  visit("layers", layers_, {1, ContactNeighbourhood::max_layers});
+  if (visit.loads()) make(points);
+  persist_made(visit);
 }
 
-void Subdomains::load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) {
-  layers_ = static_cast<int>(snapshot.integers(name + ".layers", 1, ContactNeighbourhood::max_layers).at(0));
-  make(points);
-  load_made(snapshot, name);
-}
-
-void Subdomains::load_made(const Snapshot& snapshot, const std::string& name) {
-  for (std::size_t i = 0; i < subdomains_.size(); ++i) subdomains_[i]->load(snapshot, fmt::format("{}.{}", name, i));
+void Subdomains::persist_made(const SnapshotVisitor& visit) {
+  for (std::size_t i = 0; i < subdomains_.size(); ++i) subdomains_[i]->persist(visit.part(i));
 }
 
 void Subdomains::report() const {

@@ -46,10 +46,9 @@ class Subdomains final : public ContactRegion {
   [[nodiscard]] int layers() const { return layers_; }
   [[nodiscard]] std::size_t count() const { return subdomains_.size(); }
 
-  void save(Snapshot& snapshot, const std::string& name) const override;
-  void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) override;
-  /// Loads the data of subdomains that are made.
-  void load_made(const Snapshot& snapshot, const std::string& name);
+  void persist(const SnapshotVisitor& visit, const std::vector<Index>& points) override;
+  /// Saves and loads the data of subdomains that are made.
+  void persist_made(const SnapshotVisitor& visit);
   void report() const override;
   void observe(const ContactObserver& observer) override;
   [[nodiscard]] double contact_seconds() const override;

@@ -97,7 +97,7 @@ TEST_P(ContactSolverData, RefuseMemoriesThatAreNotTheirs) {
   solver->solve(problem, options, cold);
   ASSERT_TRUE(cold.solved()) << cold.reason;
   Snapshot saved;
-  solver->save(saved, "solver");
+  solver->persist(saved.saver("solver"));
   const auto second = static_cast<Index>(dimension());
   const auto with = [&](const std::map<std::string, Snapshot::Value>& changes) {
     Snapshot changed = saved;
@@ -106,8 +106,8 @@ TEST_P(ContactSolverData, RefuseMemoriesThatAreNotTheirs) {
   };
   const auto expect_refused = [&](const std::string& what, const std::map<std::string, Snapshot::Value>& changes) {
     SCOPED_TRACE(what);
-    solver->load(saved, "solver");
-    EXPECT_THROW(solver->load(with(changes), "solver"), Error);
+    solver->persist(saved.loader("solver"));
+    EXPECT_THROW(solver->persist(with(changes).loader("solver")), Error);
     solver->solve(problem, options, solution);
     EXPECT_EQ(solution.reaction, cold.reaction);
     EXPECT_EQ(solution.iterations, cold.iterations);
@@ -131,7 +131,7 @@ TEST_P(ContactSolverData, RefuseMemoriesThatAreNotTheirs) {
     expect_refused("not in order", unknowns({second, 0}, {1, 1}));
     expect_refused("a size is missing", unknowns({0, second}, {1}));
     expect_refused("a value is missing", {{"unknowns.values", Vector(Vector::Ones(6))}});
-    solver->load(with(unknowns({second}, {1})), "solver");
+    solver->persist(with(unknowns({second}, {1})).loader("solver"));
   }
   if (keeps_costs) {
     expect_refused("one cost", {{"costs", Vector(Vector::Ones(1))}});
@@ -140,7 +140,7 @@ TEST_P(ContactSolverData, RefuseMemoriesThatAreNotTheirs) {
       expect_refused(fmt::format("active row {}", row), {{"active_set", Integers{row}}});
     expect_refused("twice", {{"active_set", Integers{0, 0}}});
     expect_refused("not in order", {{"active_set", Integers{second, 0}}});
-    solver->load(with({{"active_set", Integers{0, second}}}), "solver");
+    solver->persist(with({{"active_set", Integers{0, second}}}).loader("solver"));
   }
   // Its own memory is accepted.
   solver->solve(problem, options, solution);
@@ -159,8 +159,8 @@ TEST_P(ContactSolverData, TakeTheMemoryTheySave) {
     ContactSolution solution, expected;
     for (int k = 0; k < 2; ++k) {
       Snapshot saved;
-      solver->save(saved, "solver");
-      other->load(saved, "solver");
+      solver->persist(saved.saver("solver"));
+      other->persist(saved.loader("solver"));
       solver->solve(problem, {.tolerance = 1e-6}, expected);
       other->solve(problem, {.tolerance = 1e-6}, solution);
       EXPECT_EQ(solution.reaction, expected.reaction);
