@@ -42,7 +42,7 @@ struct Arguments {
   program::BenchmarkArguments benchmark;
   program::InfoArguments info;
   std::string shell;
-  bool markdown = false;
+  bool markdown = false, columns = false;
   std::string log_level = "info";
   int threads = 1;
 };
@@ -312,6 +312,8 @@ int dispatch(int argc, char** argv) {
 
   CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the case file");
   schema->add_flag("--markdown", arguments.markdown, "print the reference page of the case file instead");
+  schema->add_flag("--columns", arguments.columns, "print the tables of the columns of history.csv instead")
+      ->excludes("--markdown");
 
   CLI::App* completion =
       app.add_subcommand("completion", "Print the script with which a shell completes the words of a ricochet command");
@@ -350,7 +352,7 @@ int dispatch(int argc, char** argv) {
     std::fputs(program::completion_script(arguments.shell).c_str(), stdout);
     return 0;
   }
-  return program::schema(arguments.markdown);
+  return program::schema(arguments.markdown, arguments.columns);
 }
 
 /// Returns the exit status; reports errors.

@@ -172,24 +172,9 @@ py::array_t<double> contact_force(OpenSession& open) {
 }
 
 py::dict energies(OpenSession& open) {
-  EnergyAccount& account = open.simulation().account();
-  const Energies now = account.energies(open.session.state());
-  const Works& works = account.works();
   py::dict result;
-  result["kinetic_energy"] = now.kinetic;
-  result["elastic_energy"] = now.elastic;
-  result["load_potential"] = now.load_potential;
-  result["algorithmic_energy"] = now.algorithmic;
-  result["total_energy"] = now.total();
-  result["load_work"] = works.load;
-  result["contact_work"] = works.contact;
-  result["friction_work"] = works.friction;
-  result["support_work"] = works.support;
-  result["obstacle_work"] = works.obstacle;
-  result["damping_work"] = works.damping;
-  result["numerical_dissipation"] = works.numerical_dissipation;
-  result["viscous_dissipation"] = works.viscous_dissipation;
-  result["energy_residual"] = account.residual(now);
+  EnergyAccount& account = open.simulation().account();
+  for (const auto& [name, value] : balance_of(open.session.state(), account)) result[py::str(name)] = value;
   return result;
 }
 

@@ -1,21 +1,24 @@
 """A case of cases/ holds: it is valid, its run succeeds with all its [[expect]] entries, its energy account closes, and
 its history has exactly the documented columns. The case file is the first argument."""
 
+import itertools
 import json
 import pathlib
 import sys
 import tomllib
 import unittest
 
-from harness import OTHER_ROW, History, TestCase, run
+from harness import OTHER_ROW, SOURCE, History, TestCase, run
+
+sys.path.insert(0, str(SOURCE / "bench"))
+
+import page  # noqa: E402
 
 CASE = pathlib.Path(sys.argv.pop(1))
 
-AXES = "xyz"
-
-
-def vector_columns(name, dimension):
-    return [f"{name}_{axis}" for axis in AXES[:dimension]]
+def columns_of(quantities, dimension, old="", new=""):
+    axes = {"one": [""], "vector": ["_x", "_y", "_z"][:dimension], "axial": ["_z"] if dimension == 2 else ["_x", "_y", "_z"]}
+    return [name.replace(old, new) + axis for name, components, *_ in quantities for axis in axes[components]]
 
 
 def boundary_groups(case):
@@ -25,61 +28,37 @@ def boundary_groups(case):
     return {name for entry in entries for name in ([entry] if isinstance(entry, str) else entry)}
 
 
-def boundary_columns(name, dimension):
-    columns = []
-    for force, moment in (("force", "moment"), ("support", "support_moment")):
-        columns += vector_columns(f"{name}.{force}", dimension)
-        columns += [f"{name}.{moment}_z"] if dimension == 2 else vector_columns(f"{name}.{moment}", dimension)
-    return columns
-
-
-def probe_columns(probe, dimension, on_contact_boundary, of_facets, finite):
-    """Returns the columns of a [[probe]] entry: of a contact, of a boundary, of a group, or of a point."""
-    name = probe["name"]
-    if "contact" in probe:
-        areas = ["area", "nominal_area"] if finite else ["area"]
-        return (vector_columns(name + ".force", dimension) + vector_columns(name + ".centre", dimension) +
-                [f"{name}.{area}" for area in areas])
-    if "boundary" in probe:
-        return boundary_columns(name, dimension)
-    if "group" in probe:
-        columns = [column for quantity in ("displacement", "velocity") for kind in ("average", "minimum", "maximum")
-                   for column in vector_columns(f"{name}.{quantity}_{kind}", dimension)]
-        return columns + ([] if of_facets else [f"{name}.von_mises_{kind}" for kind in ("average", "minimum", "maximum")])
-    columns = vector_columns(name + ".displacement", dimension) + vector_columns(name + ".velocity", dimension)
-    if on_contact_boundary:
-        columns += [f"{name}.{column}" for column in ("gap", "pressure", "reaction_normal")]
-        columns += vector_columns(name + ".reaction_tangential", dimension)
-        columns += [f"{name}.nominal_pressure"] if finite else []
-    return columns
-
-
 def documented_columns(dimension, case, points):
-    columns = ["step", "time", "kinetic_energy", "elastic_energy", "load_potential", "algorithmic_energy",
-               "total_energy", "load_work", "contact_work", "friction_work", "support_work", "obstacle_work",
-               "damping_work", "numerical_dissipation", "energy_residual"]
-    columns += vector_columns("contact_force", dimension) + vector_columns("momentum", dimension)
-    columns += ["angular_momentum_z"] if dimension == 2 else vector_columns("angular_momentum", 3)
-    columns += ["max_rotation", "active_contacts", "sticking", "slipping", "max_penetration", "iterations"]
-    bodies = list(case.get("part", {}))
-    tied = any(contact.get("tied", False) for contact in case.get("contact", []))  # the cases with ties are one body
-    if len(bodies) > 1 and not tied:
-        for body in bodies:
-            columns += vector_columns(f"momentum.{body}", dimension)
+    """Returns the columns of a case, in the order of the table: those whose conditions hold, for all bodies and probes."""
+    contacts = case.get("contact", [])
     finite = any(material.get("law", "linear") != "linear" for material in case["material"])
-    if finite:
-        columns += ["integration_error", "newton_rounds"]
-    if any("relaxation" in material for material in case["material"]):
-        columns += ["viscous_dissipation"]
-    if any(contact.get("sliding") == "large" for contact in case.get("contact", [])):
-        columns += ["re_pairing_work", "unsettled_gap"]
-    for number, contact in enumerate(case.get("contact", [])):
-        if "against" in contact and not contact.get("tied", False):
-            columns += vector_columns(f"pair_force.{number}", dimension)
-    facets, on_contact_boundary = boundary_groups(case), {point["name"] for point in points if point["in_contact_boundary"]}
+    tied = any(contact.get("tied", False) for contact in contacts)  # the cases with ties are one body
+    bodies = [] if tied or len(case.get("part", {})) < 2 else list(case["part"])
+    holds = {"": True, "laws of finite strain": finite,
+             "`relaxation` of a material": any("relaxation" in material for material in case["material"]),
+             "large sliding between bodies": any(contact.get("sliding") == "large" for contact in contacts),
+             "surfaces that touch themselves": any(contact.get("against") == contact["group"] for contact in contacts)}
+    names = {"meshes of 2 to 20 bodies": ("BODY", bodies),
+             "contacts between bodies": ("N", [str(number) for number, contact in enumerate(contacts)
+                                               if "against" in contact and not contact.get("tied", False)]),
+             "rigid bodies that move freely": ("NAME", [name for name, obstacle in case.get("obstacle", {}).items()
+                                                        if {"mass", "density"} & obstacle.keys()])}
+    columns = []
+    for condition, rows in itertools.groupby(page.documented_columns(), key=lambda row: row[3]):
+        rows = list(rows)
+        if condition in names:
+            placeholder, own = names[condition]
+            columns += [column for name in own for column in columns_of(rows, dimension, placeholder, name)]
+        elif not condition.startswith("probes with"):
+            columns += columns_of(rows, dimension) if holds[condition] else []
+    facets, on_contact = boundary_groups(case), {point["name"] for point in points if point["in_contact_boundary"]}
     for probe in case.get("probe", []):
-        columns += probe_columns(probe, dimension, probe["name"] in on_contact_boundary, probe.get("group") in facets,
-                                 finite)
+        holds |= {"on a contact boundary": probe["name"] in on_contact, "with laws of finite strain": finite,
+                  "groups of cells": probe.get("group") not in facets}
+        for row in page.documented_columns():
+            kind, *conditions = row[3].split(", ")
+            if kind in {f"probes with `{key}`" for key in probe} and all(holds[each] for each in conditions):
+                columns += columns_of([row], dimension, "NAME", probe["name"])
     return columns
 
 

@@ -48,7 +48,7 @@ class CommandLine(TestCase):
         for command, words in (("run", ("-o", "--set", "--threads", "--log-level", "--quiet", "--force",
                                         "--export-contact", "--export-contact-to")),
                                ("contact", ("--solver", "--tolerance", "-o", "--record", "--list")),
-                               ("validate", ("CASE.toml",)), ("info", ("FILE_OR_DIR",)), ("schema", ("--markdown",))):
+                               ("validate", ("CASE.toml",)), ("info", ("FILE_OR_DIR",)), ("schema", ("--markdown", "--columns"))):
             process = self.expect_status(0, run(command, "--help"))
             for word in words:
                 self.assertIn(word, process.stdout)

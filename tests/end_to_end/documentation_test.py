@@ -15,6 +15,12 @@ class Documentation(TestCase):
         written = (SOURCE / "docs" / "case-file.md").read_text(encoding="utf-8")
         self.assertEqual(written, printed, "write it anew: build/ricochet schema --markdown > docs/case-file.md")
 
+    def test_tables_of_columns(self):
+        printed = self.expect_status(0, run("schema", "--columns")).stdout
+        page = (SOURCE / "docs" / "results.md").read_text(encoding="utf-8")
+        written = re.search(r"<!-- columns -->\n(.*?)<!-- end -->", page, re.DOTALL)[1]
+        self.assertEqual(written, printed, "write it anew: build/ricochet schema --columns | python3 bench/page.py docs/results.md columns")
+
     def test_names_of_code_are_in_the_files_that_pages_link(self):
         """`name` in [file](path), or [file](path), `name`: a renamed function must not live on in a page."""
         named = re.compile(r"`([A-Za-z_:]+)(?:\(\))?`\s+in\s+\[[^\]]*\]\(([^)#]+\.[hc]pp)\)"

@@ -95,7 +95,7 @@ class Streams(TestCase):
 
     def test_full_standard_output(self):
         output = self.simulate(self.case)
-        for command in (("schema",), ("schema", "--markdown"), ("info", output), ("info", self.case),
+        for command in (("schema",), ("schema", "--markdown"), ("schema", "--columns"), ("info", output), ("info", self.case),
                         ("validate", self.case), ("--help",), ("run", "--help"), ("--version",), ("contact", "--list"),
                         ("run", self.case, "-o", output, "--force", "--quiet")):
             answer = self.expect_status(4, redirected(">/dev/full", *command))

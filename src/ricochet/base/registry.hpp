@@ -29,8 +29,12 @@ struct Registration {
 [[nodiscard]] long registry_revision();
 void raise_registry_revision();
 /// Throws Error(invalid_input) that names `owner` if a type's own keys are of a kind that Parameters do not hold: only
-/// numbers, integers, vectors, texts and choices are allowed, and vectors have no default.
-void check_parameter_keys(const std::vector<Key>& keys, const std::string& owner);
+/// numbers, integers, vectors, texts, choices and, if they are read, groups are allowed, and vectors have no default.
+void check_parameter_keys(const std::vector<Key>& keys, const std::string& owner, bool reads_groups);
+
+/// Whether groups of the mesh may be among the keys of a type.
+template <class Type>
+inline constexpr bool reads_groups = false;
 
 template <class Type>
 class Registry {
@@ -38,14 +42,14 @@ class Registry {
   /// `noun` names the kind of type in messages ("scheme").
   Registry(std::string noun, std::vector<Registration<Type>> entries)
       : noun_(std::move(noun)), all_(std::move(entries)) {
-    for (const Registration<Type>& entry : all_) check_parameter_keys(entry.keys, quoted(entry.name));
+    for (const Registration<Type>& entry : all_) check_keys(entry);
   }
 
   /// Adds a type of the user's own program, which case files that are read from then on may name. Throws
   /// Error(invalid_input) if the name is taken or a key is not admissible for a type. Invalidates references returned
   /// by `find`.
   void add(Registration<Type> added) {
-    check_parameter_keys(added.keys, quoted(added.name));
+    check_keys(added);
     for (const Registration<Type>& entry : all_) {
       if (entry.name == added.name)
         throw Error(ErrorKind::invalid_input, "there is a " + quoted(added.name) + " already");
@@ -82,6 +86,9 @@ class Registry {
   }
 
  private:
+  void check_keys(const Registration<Type>& entry) const {
+    check_parameter_keys(entry.keys, quoted(entry.name), reads_groups<Type>);
+  }
   [[nodiscard]] std::string quoted(const std::string& name) const { return noun_ + " \"" + name + '"'; }
 
   std::string noun_;

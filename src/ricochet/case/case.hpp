@@ -161,17 +161,11 @@ struct TimeSection {
 /// Number of steps to the end time; the last step ends at or after it. Adaptive steps count as if all were the longest.
 [[nodiscard]] long step_count(const TimeSection& time);
 
-/// Probe of one of: a point, a segment, a boundary, a group, a contact.
 struct ProbeSection {
   std::string name;
-  std::vector<double> at;        ///< a point
-  std::vector<double> from, to;  ///< a segment
-  std::optional<double> within;  ///< distance of its nodes from the segment
-  std::string boundary;          ///< a group of facets: force and moment
-  std::vector<double> about;     ///< of the moment; empty: the origin
-  std::string group;             ///< of cells or facets: averages and extrema
-  std::optional<long> contact;   ///< an index of [[contact]]
-  long every = 0;                ///< steps, in a separate file; 0: with the rows of history.csv
+  std::string kind;   ///< of probe_registry()
+  Parameters values;  ///< of the keys of this kind
+  long every = 0;     ///< steps, in a separate file; 0: with the rows of history.csv
 };
 
 struct OutputSection {

@@ -1,5 +1,6 @@
 #include "ricochet/case/keys_table.hpp"
 #include "ricochet/case/names.hpp"
+#include "ricochet/simulation/history/probe_kind.hpp"
 
 // Keys on results: recorded, written, checked and expected quantities.
 namespace ricochet {
@@ -15,10 +16,9 @@ std::vector<std::string> field_choices() {
 }  // namespace
 
 Section probe_section() {
-  return {
+  Section section{
       .name = "probe",
       .kind = SectionKind::list,
-      .alternatives = {{"at"}, {"from", "to"}, {"boundary"}, {"group"}, {"contact"}},
       .doc =
           "A quantity to record in columns NAME.… of history.csv: the motion of the node nearest to a point or of all "
           "nodes along a segment, the force and moment on a boundary, averages and extrema of a group, or the "
@@ -27,53 +27,18 @@ Section probe_section() {
           {.name = "name",
            .required = true,
            .doc = "Prefix of its columns: letters, digits, _ and -; not the name of a standard column."},
-          {.name = "at",
-           .type = KeyType::vector,
-           .unit = "length",
-           .doc = "A point: the probe uses the nearest node and reports its distance. Columns NAME.displacement_x …, "
-                  "velocity_x …, and on a contact boundary gap, pressure, reaction_normal, reaction_tangential_x …. If "
-                  "nodes of two bodies in contact coincide there, it uses the node on the side with the multipliers."},
-          {.name = "from",
-           .type = KeyType::vector,
-           .unit = "length",
-           .doc = "One end of a segment. All nodes along it, numbered from this end, have the columns of a point: "
-                  "NAME.0.displacement_x and so on."},
-          {.name = "to", .type = KeyType::vector, .unit = "length", .doc = "The other end of the segment."},
-          {.name = "within",
-           .type = KeyType::number,
-           .unit = "length",
-           .range = positive,
-           .doc = "Nodes within this distance of the segment belong to it. Default: 1e-6 of the body's size."},
-          {.name = "boundary",
-           .type = KeyType::groups,
-           .doc = "Group of boundary facets, or a list of groups. Columns: force and moment on the body at its nodes, "
-                  "from supports and contacts together (prescribed loads are not included), NAME.force_x …, "
-                  "NAME.moment_z, in 3D NAME.moment_x …; and from the supports alone, NAME.support_x …, "
-                  "NAME.support_moment_z, in 3D NAME.support_moment_x …"},
-          {.name = "about",
-           .type = KeyType::vector,
-           .unit = "length",
-           .doc = "Reference point of the moment on a boundary, in the reference configuration. Default: the origin."},
-          {.name = "group",
-           .type = KeyType::groups,
-           .doc = "Group of cells or of boundary facets, or a list of groups. Columns NAME.displacement_average_x …, "
-                  "_minimum_, _maximum_, the same for the velocity, and for cells von_mises_average, _minimum, "
-                  "_maximum. Averages are over volume or area."},
-          {.name = "contact",
-           .type = KeyType::integer,
-           .unit = "1",
-           .range = nonnegative,
-           .doc = "Number of an entry of [[contact]], counted from 0. Columns: its force on the body NAME.force_x … "
-                  "(between bodies, on the body of its \"group\"), its centre of pressure NAME.centre_x … (0 while it "
-                  "is open) and its area in contact NAME.area (a length in 2D)."},
           {.name = "every",
            .type = KeyType::integer,
            .unit = "steps",
            .range = {.at_least = 1.0},
            .doc = "Steps between rows. The probe is then written to probes-EVERY.csv, together with all probes of the "
-                  "same "
-                  "interval, instead of history.csv."},
+                  "same interval, instead of history.csv."},
       }};
+  for (const Registration<ProbeKind>& kind : probe_registry().all()) {
+    section.alternatives.push_back(kind.alternatives.front());
+    section.keys.insert(section.keys.end() - 1, kind.keys.begin(), kind.keys.end());
+  }
+  return section;
 }
 
 Section output_section() {

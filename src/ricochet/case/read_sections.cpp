@@ -13,6 +13,7 @@
 #include "ricochet/case/read_bodies.hpp"
 #include "ricochet/case/read_obstacle.hpp"
 #include "ricochet/case/section_reader.hpp"
+#include "ricochet/simulation/history/probe_kind.hpp"
 #include "ricochet/simulation/step_control.hpp"
 
 namespace ricochet {
@@ -247,23 +248,22 @@ InitialSection read_initial(const SectionReader& reader) {
 ProbeSection read_probe(const SectionReader& reader, Case& result) {
   ProbeSection probe;
   probe.name = reader.text("name");
-  probe.at = reader.vector("at");
-  probe.from = reader.vector("from");
-  probe.to = reader.vector("to");
-  probe.within = reader.optional_number("within");
-  probe.boundary = reader.groups("boundary", result.group_lists);
-  probe.about = reader.vector("about");
-  probe.group = reader.groups("group", result.group_lists);
-  probe.contact = reader.optional_integer("contact");
   probe.every = reader.optional_integer("every").value_or(0);
-  const auto only_with = [&](const char* key, const char* other) {
-    if (reader.is_given(key) && !reader.is_given(other))
-      reader.add_problem(key, fmt::format("\"{}\" is for probes with \"{}\" only", key, other));
-  };
-  only_with("within", "from");
-  only_with("about", "boundary");
-  std::vector<std::string> columns = history_column_names();
-  for (const char* name : {"momentum", "pair_force"}) columns.emplace_back(name);  // of bodies and pairs, before a dot
+  const auto* const kind = find_probe_kind([&](const std::string& key) { return reader.is_given(key); });
+  if (kind != nullptr) {
+    probe.kind = kind->name;
+    probe.values = reader.parameters(kind->keys, result.group_lists);
+  }
+  for (const Registration<ProbeKind>& other : probe_registry().all()) {
+    for (const Key& key : other.keys) {
+      const std::string& first = other.alternatives.front().front();
+      const auto& needed = other.alternatives.front();
+      if (std::find(needed.begin(), needed.end(), key.name) == needed.end() && reader.is_given(key.name) &&
+          !reader.is_given(first))
+        reader.add_problem(key.name, fmt::format("\"{}\" is for probes with \"{}\" only", key.name, first));
+    }
+  }
+  const std::vector<std::string> columns = reserved_probe_names();
   if (reader.is_usable("name") && !is_plain_name(probe.name)) {
     reader.add_problem("name", fmt::format("the name \"{}\" can only contain letters, digits, _ and -", probe.name));
   } else if (std::find(columns.begin(), columns.end(), probe.name) != columns.end()) {

@@ -197,18 +197,25 @@ void SectionReader::add_info(const std::string& name, const std::string& message
 }
 
 Parameters SectionReader::type_parameters(const Section& section) const {
+  const TypeKeys* const type = find_type(section, text(section.type_key));
+  std::map<std::string, std::vector<std::string>> none;  // types have no groups
+  Parameters values = parameters(type == nullptr ? std::vector<Key>() : type->keys, none);
+  if (type != nullptr && type->check) type->check(*this, values);
+  return values;
+}
+
+Parameters SectionReader::parameters(const std::vector<Key>& keys,
+                                     std::map<std::string, std::vector<std::string>>& lists) const {
   Parameters values;
   values.set_constants(constants());
-  const TypeKeys* const type = find_type(section, text(section.type_key));
-  if (type == nullptr) return values;
-  for (const Key& key : type->keys) {
+  for (const Key& key : keys) {
     if (!is_usable(key.name)) continue;
     if (key.type == KeyType::number) values.set(key.name, number(key.name));
     if (key.type == KeyType::integer) values.set(key.name, static_cast<double>(integer(key.name)));
     if (key.type == KeyType::vector) values.set(key.name, vector(key.name));
     if (key.type == KeyType::text || key.type == KeyType::choice) values.set(key.name, text(key.name));
+    if (key.type == KeyType::groups) values.set(key.name, groups(key.name, lists));
   }
-  if (type->check) type->check(*this, values);
   return values;
 }
 

@@ -66,6 +66,9 @@ class SectionReader final : public ParameterCheck {
 
   /// Values of the type that a key names, checked by the type; empty if the type was refused.
   [[nodiscard]] Parameters type_parameters(const Section& section) const;
+  /// Values of some keys, without those that were refused; lists of groups as `groups` returns them.
+  [[nodiscard]] Parameters parameters(const std::vector<Key>& keys,
+                                      std::map<std::string, std::vector<std::string>>& lists) const;
 
  private:
   [[nodiscard]] const TomlNode* usable(const std::string& name) const;

@@ -19,6 +19,7 @@
 #include "ricochet/io/summary_expectations.hpp"
 #include "ricochet/io/summary_method.hpp"
 #include "ricochet/io/summary_results.hpp"
+#include "ricochet/simulation/history/history_columns.hpp"
 
 namespace ricochet {
 
@@ -114,7 +115,7 @@ namespace {
 template <class Columns>
 double largest_size(const RunSummary& summary, const Columns& columns) {
   double largest = 0.0;
-  for (const char* column : columns) {
+  for (const std::string& column : columns) {
     const ColumnDigest digested = summary.digest(column);
     largest = std::max({largest, std::abs(digested.minimum), std::abs(digested.maximum)});
   }
@@ -147,7 +148,7 @@ double RunSummary::delay_of(const std::string& column) const {
 }
 
 double RunSummary::energy_scale() const {
-  return largest_size(*this, std::array{"total_energy", "kinetic_energy", "elastic_energy"});
+  return largest_size(*this, std::array<std::string, 3>{"total_energy", "kinetic_energy", "elastic_energy"});
 }
 
 double RunSummary::loss_by_method() const {
@@ -170,7 +171,7 @@ double RunSummary::deepest_penetration() const {
 }
 
 double RunSummary::work_scale() const {
-  return largest_size(*this, work_columns);
+  return largest_size(*this, column_names_of(ColumnGroup::work));
 }
 
 std::string to_json(const RunSummary& s) {

@@ -110,9 +110,10 @@ void check_dimensions(const Case& input, int dimension) {
   check_motions(input, dimension);
   for (std::size_t i = 0; i < input.probes.size(); ++i) {
     const ProbeSection& probe = input.probes[i];
-    for (const auto& [key, value] : {std::pair{"at", &probe.at}, std::pair{"from", &probe.from},
-                                     std::pair{"to", &probe.to}, std::pair{"about", &probe.about}})
-      check_length(input, fmt::format("probe.{}.{}", i, key), value->size(), dimension);
+    for (const Key& key : probe_registry().find(probe.kind).keys) {
+      if (key.type != KeyType::vector || !probe.values.has(key.name)) continue;
+      check_length(input, fmt::format("probe.{}.{}", i, key.name), probe.values.vector(key.name).size(), dimension);
+    }
   }
 }
 

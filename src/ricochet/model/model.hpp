@@ -10,21 +10,13 @@
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/simulation/history/history.hpp"
+#include "ricochet/simulation/history/probe_kind.hpp"
 #include "ricochet/simulation/statics/starting_state.hpp"
 #include "ricochet/simulation/step_control.hpp"
 #include "ricochet/solver/step_solver.hpp"
 
 /// @file A case together with its mesh: everything a run needs, built and checked.
 namespace ricochet {
-
-/// Nodes, columns and boundary of a [[probe]], found in the mesh.
-struct ProbeTargets {
-  std::vector<Probe> probes;      ///< per node, including the nodes of segments
-  std::vector<Vector> positions;  ///< per probe
-  std::vector<Columns> columns;   ///< per probe, the columns of its sensor
-  std::vector<Index> nodes;       ///< nodes of the boundary
-  std::string sums;               ///< the forces that its columns sum, in words; empty if none
-};
 
 /// Contact between two surfaces or with an obstacle: a [[contact]] of the case, or one of the pairs of bodies that such
 /// an entry expands to.

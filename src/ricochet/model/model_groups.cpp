@@ -153,9 +153,16 @@ void complete_groups(const Case& input, Mesh& mesh) {
   }
   for (std::size_t i = 0; i < input.probes.size(); ++i) {
     const ProbeSection& probe = input.probes[i];
-    if (!probe.boundary.empty())
-      groups.require(fmt::format("probe.{}.boundary", i), probe.boundary, mesh.dimension - 1);
-    if (!probe.group.empty()) groups.require_any(fmt::format("probe.{}.group", i), probe.group);
+    const Registration<ProbeKind>& kind = probe_registry().find(probe.kind);
+    for (const Key& key : kind.keys) {
+      if (key.type != KeyType::groups || !probe.values.has(key.name)) continue;
+      const std::string path = fmt::format("probe.{}.{}", i, key.name);
+      if (kind.type.of_boundary) {
+        groups.require(path, probe.values.text(key.name), mesh.dimension - 1);
+      } else {
+        groups.require_any(path, probe.values.text(key.name));
+      }
+    }
   }
   groups.raise();
 }

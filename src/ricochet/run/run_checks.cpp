@@ -33,7 +33,7 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
       momentum_column_(column_index(columns, "momentum_x")),
       angular_column_(
           column_index(columns, model.problem.dimension == 2 ? "angular_momentum_z" : "angular_momentum_x")) {
-  for (const char* work : work_columns) works_.push_back(column_index(columns, work));
+  for (const std::string& work : column_names_of(ColumnGroup::work)) works_.push_back(column_index(columns, work));
   const auto of_bodies = [](const std::string& column) { return column.starts_with("momentum."); };
   const auto first = std::find_if(columns.begin(), columns.end(), of_bodies);
   body_momenta_ = static_cast<std::size_t>(first - columns.begin());

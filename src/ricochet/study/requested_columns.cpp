@@ -68,7 +68,7 @@ bool columns_vary(const StudyPlan& plan) {
 /// Returns true if a run has the column whatever its mesh.
 bool is_always_there(const std::string& column) {
   const auto in = [&](int dimension) {
-    const Names names = names_of(HistoryRecorder::standard_columns(dimension));
+    const Names names = standard_column_names(dimension);
     return std::count(names.begin(), names.end(), column) > 0;
   };
   return in(2) && in(3);

@@ -153,7 +153,8 @@ TEST(ReadCase, ReadsProbesAndExpectations) {
   const Case read = read_text(full_case);
   ASSERT_EQ(read.probes.size(), 1U);
   EXPECT_EQ(read.probes[0].name, "lowest-1_a");
-  EXPECT_EQ(read.probes[0].at, (std::vector<double>{0.0, 0.001}));
+  EXPECT_EQ(read.probes[0].kind, "at");
+  EXPECT_EQ(read.probes[0].values.vector("at"), (std::vector<double>{0.0, 0.001}));
   ASSERT_EQ(read.expectations.size(), 2U);
   EXPECT_EQ(read.expectations[0].value, 0.0376);
   EXPECT_EQ(read.expectations[0].relative, 0.01);

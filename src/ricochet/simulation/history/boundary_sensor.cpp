@@ -1,16 +1,26 @@
-#include <Eigen/Geometry>
+#include <fmt/format.h>
 
-#include "ricochet/simulation/history/sensor.hpp"
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/fem/tied_nodes.hpp"
+#include "ricochet/simulation/history/probe_kind.hpp"
+#include "ricochet/simulation/history/quantity_sensor.hpp"
 
 namespace ricochet {
 
 namespace {
 
-class BoundarySensor final : public Sensor {
+class BoundarySensor final : public QuantitySensor<BoundarySensor> {
  public:
-  BoundarySensor(std::string name, const SemidiscreteProblem& problem, const std::vector<Index>& nodes,
+  BoundarySensor(const std::string& name, const SemidiscreteProblem& problem, const std::vector<Index>& nodes,
                  const Vector& about)
-      : name_(std::move(name)), problem_(problem), deforms_(!problem.internal_force->is_linear()), about_(about) {
+      : QuantitySensor(name + ".", problem),
+        problem_(problem),
+        deforms_(!problem.internal_force->is_linear()),
+        about_(about) {
     const Index d = problem.dimension;
     inside_.assign(static_cast<std::size_t>(problem.nodes.cols()), 0);
     for (const Index node : nodes) inside_[static_cast<std::size_t>(node)] = 1;
@@ -36,50 +46,47 @@ class BoundarySensor final : public Sensor {
     }
   }
 
-  [[nodiscard]] Columns columns() const override {
-    Columns columns;
-    add_columns(".force", ".moment", columns);
-    add_columns(".support", ".support_moment", columns);
-    return columns;
+  static const Quantities& quantities() {
+    using Self = BoundarySensor;
+    static const Quantities all{
+        {{"force", "force", "total force that supports and contacts, also those of other bodies, exert on its nodes",
+          Components::vector},
+         of(&Self::force_)},
+        {{"moment", "force·length", "moment of these forces; 0 for axisymmetric bodies", Components::axial},
+         of(&Self::moment_)},
+        {{"support", "force", "[force of the supports alone](#supports-and-contacts)", Components::vector},
+         of(&Self::support_force_)},
+        {{"support_moment", "force·length", "moment of the supports alone", Components::axial},
+         of(&Self::support_moment_)},
+    };
+    return all;
   }
 
-  void observe(const Observation& observation, std::vector<double>& row) override {
+  void evaluate(const Observation& observation) {
     const Index d = problem_.dimension;
     const State& state = observation.state;
     const StepForces& forces = state.forces;
-    Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
+    force_ = moment_ = Eigen::Vector3d::Zero();
     for (const auto& [number, dof] : supports_) {
       const Eigen::Vector3d own = forces.support_reaction[number] * Eigen::Vector3d::Unit(dof % d);
-      force += own;
-      moment += arm_of(dof / d, state).cross(own);
+      force_ += own;
+      moment_ += arm_of(dof / d, state).cross(own);
     }
-    const Eigen::Vector3d support_force = force, support_moment = moment;
+    support_force_ = force_;
+    support_moment_ = moment_;
     for (const Point& point : points_) {
       Eigen::Vector3d own = Eigen::Vector3d::Zero();
       own.head(d) = contact_force(forces, point.number);
-      force += point.part * own;
-      moment += point.arm.cross(own);
+      force_ += point.part * own;
+      moment_ += point.arm.cross(own);
     }
-    add_by_nodes(state, force, moment);
-    append_values(force, moment, row);
-    append_values(support_force, support_moment, row);
+    add_by_nodes(state);
+    if (!problem_.axisymmetric) return;
+    moment_ *= 0.0;  // moments cancel over the ring
+    support_moment_ *= 0.0;
   }
 
  private:
-  void add_columns(const char* force, const char* moment, Columns& columns) const {
-    add_vector_columns(columns, name_ + force, problem_.dimension);
-    if (problem_.dimension == 2) columns.emplace_back(name_ + moment + "_z");
-    if (problem_.dimension == 3) add_vector_columns(columns, name_ + moment, 3);
-  }
-
-  void append_values(const Eigen::Vector3d& force, const Eigen::Vector3d& moment, std::vector<double>& row) const {
-    const Index d = problem_.dimension;
-    append(force.head(d), row);
-    // Moments cancel over the ring of an axisymmetric body.
-    const double part = problem_.axisymmetric ? 0.0 : 1.0;
-    append(part * moment.tail(d == 2 ? 1 : 3), row);
-  }
-
   /// Vector from `about` to a position.
   template <class Position>
   [[nodiscard]] Eigen::Vector3d arm(const Position& position) const {
@@ -96,14 +103,14 @@ class BoundarySensor final : public Sensor {
   }
 
   /// Adds, node by node, the forces of points whose nodes move or whose rows reach other nodes in large sliding.
-  void add_by_nodes(const State& state, Eigen::Vector3d& force, Eigen::Vector3d& moment) const {
+  void add_by_nodes(const State& state) {
     const StepForces& forces = state.forces;
     const Index d = problem_.dimension, tangents = d - 1;
     const auto add = [&](Index dof, double value) {
       if (inside_[static_cast<std::size_t>(dof / d)] == 0) return;
       const Eigen::Vector3d own = value * Eigen::Vector3d::Unit(dof % d);
-      force += own;
-      moment += arm_of(dof / d, state).cross(own);
+      force_ += own;
+      moment_ += arm_of(dof / d, state).cross(own);
     };
     for (const Index point : by_nodes_) {
       const double normal = forces.normal_reaction[point];
@@ -124,7 +131,6 @@ class BoundarySensor final : public Sensor {
     double part;
     Eigen::Vector3d arm;
   };
-  std::string name_;
   const SemidiscreteProblem& problem_;
   bool deforms_;
   Vector about_;
@@ -132,9 +138,69 @@ class BoundarySensor final : public Sensor {
   std::vector<Point> points_;
   std::vector<Index> by_nodes_;  ///< points evaluated node by node
   std::vector<char> inside_;     ///< per node
+  Eigen::Vector3d force_, moment_, support_force_, support_moment_;
 };
 
+/// Describes which forces act at these nodes. At nodes that contact and a support share, only the sum of both is known.
+std::string describe_boundary_forces(const SemidiscreteProblem& problem, const std::vector<Index>& nodes) {
+  const auto among = [&nodes](Index node) { return std::binary_search(nodes.begin(), nodes.end(), node); };
+  const std::vector<Index>& dofs = problem.supports.dofs();
+  const bool is_supported =
+      std::any_of(dofs.begin(), dofs.end(), [&](Index dof) { return among(dof / problem.dimension); });
+  const std::vector<Index> touching = problem.contact.unique_nodes();
+  const auto shared = std::count_if(touching.begin(), touching.end(), among);
+  if (!is_supported && shared == 0)
+    return "neither a support nor a contact acts at its nodes, and its force is zero (loads are not counted)";
+  if (shared == 0) return "its force is that of the supports at its nodes (loads are not counted)";
+  if (!is_supported)
+    return "its force is that of the contacts at its nodes, which no support holds (loads are not counted)";
+  return fmt::format(
+      "its force and moment are the sum of supports and of contacts, which share {} with it; support and "
+      "support_moment are those of the supports alone (loads are not counted)",
+      counted(shared, "node"));
+}
+
+void find_boundary(const ProbeSetting& probe, ProbeTargets& targets) {
+  targets.nodes = facet_nodes(*probe.body.space, probe.boundary("boundary"));
+  const TiedNodes* const tied = probe.body.tied;
+  if (tied != nullptr &&
+      std::any_of(targets.nodes.begin(), targets.nodes.end(), [tied](Index node) { return tied->is_tied(node); })) {
+    log::warning(
+        fmt::format("probe \"{}\": forces transmitted by a tie are not included in the force of boundary \"{}\": "
+                    "they are internal to one body",
+                    probe.name, probe.values.text("boundary")));
+  }
+  targets.sums = describe_boundary_forces(probe.problem, targets.nodes);
+  log::info(fmt::format("probe \"{}\": {}", probe.name, targets.sums));
+}
+
+SensorList make_boundary_probe(const ProbeSetting& probe, const ProbeTargets& targets) {
+  return {make_boundary_sensor(probe.name, probe.problem, targets.nodes, probe.vector("about"))};
+}
+
 }  // namespace
+
+Registration<ProbeKind> boundary_probe() {
+  return {
+      .name = "boundary",
+      .type = {.quantities = BoundarySensor::descriptions(),
+               .of_boundary = true,
+               .find = find_boundary,
+               .make = make_boundary_probe},
+      .keys =
+          {{.name = "boundary",
+            .type = KeyType::groups,
+            .doc = "Group of boundary facets, or a list of groups. Columns: force and moment on the body at its nodes, "
+                   "from supports and contacts together (prescribed loads are not included), NAME.force_x …, "
+                   "NAME.moment_z, in 3D NAME.moment_x …; and from the supports alone, NAME.support_x …, "
+                   "NAME.support_moment_z, in 3D NAME.support_moment_x …"},
+           {.name = "about",
+            .type = KeyType::vector,
+            .unit = "length",
+            .doc =
+                "Reference point of the moment on a boundary, in the reference configuration. Default: the origin."}},
+      .alternatives = {{"boundary"}}};
+}
 
 std::unique_ptr<Sensor> make_boundary_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                              const std::vector<Index>& nodes, const Vector& about) {

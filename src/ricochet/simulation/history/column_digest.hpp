@@ -1,14 +1,9 @@
 #pragma once
 
-#include <array>
 #include <tuple>
 
 /// @file Digests of the columns of a history.
 namespace ricochet {
-
-/// Columns of cumulative works.
-inline constexpr std::array work_columns{"load_work",    "contact_work",  "friction_work",
-                                         "support_work", "obstacle_work", "damping_work"};
 
 /// Summary of a column over a run.
 struct ColumnDigest {

@@ -1,5 +1,9 @@
+#include <fmt/format.h>
+
+#include "ricochet/base/text.hpp"
 #include "ricochet/contact/contact_surface.hpp"
-#include "ricochet/simulation/history/sensor.hpp"
+#include "ricochet/simulation/history/probe_kind.hpp"
+#include "ricochet/simulation/history/quantity_sensor.hpp"
 
 namespace ricochet {
 
@@ -36,49 +40,70 @@ SpaceVector force_on_first(const State& state, const std::vector<PairPoints>& pa
   return sum;
 }
 
-class PairForceSensor final : public Sensor {
+class PairForceSensor final : public QuantitySensor<PairForceSensor> {
  public:
   PairForceSensor(const SemidiscreteProblem& problem, int contact, bool exchanged)
-      : name_("pair_force." + std::to_string(contact)),
+      : QuantitySensor("pair_force." + std::to_string(contact), problem),
         problem_(problem),
         pairs_(points_of(problem.contact, {SensedPair{contact, exchanged}})) {}
 
-  [[nodiscard]] Columns columns() const override {
-    Columns columns;
-    add_vector_columns(columns, name_, problem_.dimension);
-    return columns;
+  static const Quantities& quantities() {
+    static const Quantities all{
+        {{"", "force", "[force of contact N](#forces-between-bodies) on the body of its `group`", Components::vector,
+          Reduction::sum, "contacts between bodies"},
+         of(&PairForceSensor::force_)}};
+    return all;
   }
 
-  void observe(const Observation& observation, std::vector<double>& row) override {
-    append(force_on_first(observation.state, pairs_, problem_.dimension), row);
+  void evaluate(const Observation& observation) {
+    force_ = force_on_first(observation.state, pairs_, problem_.dimension);
   }
 
  private:
-  std::string name_;
   const SemidiscreteProblem& problem_;
   std::vector<PairPoints> pairs_;
+  SpaceVector force_;
 };
 
-class ContactSensor final : public Sensor {
+class ContactSensor final : public QuantitySensor<ContactSensor> {
  public:
-  ContactSensor(std::string name, const SemidiscreteProblem& problem, const std::vector<SensedPair>& pairs)
-      : name_(std::move(name)), problem_(problem), sensed_(pairs), pairs_(points_of(problem.contact, pairs)) {}
+  ContactSensor(const std::string& name, const SemidiscreteProblem& problem, const std::vector<SensedPair>& pairs)
+      : QuantitySensor(name + ".", problem),
+        problem_(problem),
+        sensed_(pairs),
+        pairs_(points_of(problem.contact, pairs)) {}
 
-  [[nodiscard]] Columns columns() const override {
-    Columns columns;
-    add_vector_columns(columns, name_ + ".force", problem_.dimension);
-    add_vector_columns(columns, name_ + ".centre", problem_.dimension, Reduction::same);
-    columns.emplace_back(name_ + ".area");
-    if (problem_.contact.surface->deforms()) columns.emplace_back(name_ + ".nominal_area");
-    return columns;
+  static const Quantities& quantities() {
+    using Self = ContactSensor;
+    static const Quantities all{
+        {{"force", "force",
+          "contact force on the body. Between bodies it is that on the body of `group`; of many pairs it is the sum of "
+          "the forces on the first body of each pair",
+          Components::vector},
+         of(&Self::force_)},
+        {{"centre", "length",
+          "centre of pressure, 0 where the contact is open; between bodies it lies on the side that carries the "
+          "multipliers",
+          Components::vector, Reduction::same},
+         of(&Self::centre_)},
+        {{"area", "area",
+          "[area in contact](#area-in-contact), in 2D a length; with laws of finite strain that of the deformed "
+          "surface"},
+         [](const Self& self, Index) { return self.area_.now; }},
+        {{"nominal_area", "area", "area in contact of the undeformed surface", Components::one, Reduction::sum,
+          "with laws of finite strain"},
+         [](const Self& self, Index) { return self.area_.nominal; },
+         [](const Self& self) { return self.problem_.contact.surface->deforms(); }},
+    };
+    return all;
   }
 
-  void observe(const Observation& observation, std::vector<double>& row) override {
+  void evaluate(const Observation& observation) {
     const Index d = problem_.dimension;
     const ContactBoundary& contact = problem_.contact;
     const State& state = observation.state;
-    const SpaceVector force = force_on_first(state, pairs_, d);
-    SpaceVector centre = SpaceVector::Zero(d);
+    force_ = force_on_first(state, pairs_, d);
+    centre_ = SpaceVector::Zero(d);
     double pressing = 0.0;
     for (const PairPoints& pair : pairs_) {
       for (const Index point : pair.points) {
@@ -86,39 +111,102 @@ class ContactSensor final : public Sensor {
         if (!(normal > 0.0)) continue;
         pressing += normal;
         contact.visit_own_nodes(point, [&](Index node, double weight) {
-          centre += normal * weight * problem_.nodes.col(node);
-          if (contact.surface->deforms()) centre += normal * weight * state.displacement.segment(node * d, d);
+          centre_ += normal * weight * problem_.nodes.col(node);
+          if (contact.surface->deforms()) centre_ += normal * weight * state.displacement.segment(node * d, d);
         });
       }
     }
     // A ratio of sums cannot be reduced as a column, so the sensor sums over ranks itself.
     pressing = problem_.ranks->sum(pressing);
-    for (double& component : centre) component = problem_.ranks->sum(component);
-    if (pressing > 0.0) centre /= pressing;
-    append(force, row);
-    append(centre, row);
+    for (double& component : centre_) component = problem_.ranks->sum(component);
+    if (pressing > 0.0) centre_ /= pressing;
     const ContactView view{contact,         *state.forces.rows,           state.forces.normal_reaction,
                            observation.gap, observation.nominal_pressure, state.displacement,
                            *problem_.ranks};
-    ContactSurface::Area area;
+    area_ = {};
     for (const SensedPair& pair : sensed_) {
       const ContactSurface::Area of_pair = contact.surface->pressed_area(pair.number, view, work_);
-      area.now += of_pair.now;
-      area.nominal += of_pair.nominal;
+      area_.now += of_pair.now;
+      area_.nominal += of_pair.nominal;
     }
-    row.push_back(area.now);
-    if (contact.surface->deforms()) row.push_back(area.nominal);
   }
 
  private:
-  std::string name_;
   const SemidiscreteProblem& problem_;
   std::vector<SensedPair> sensed_;
   std::vector<PairPoints> pairs_;
   ContactSurface::Work work_;
+  SpaceVector force_, centre_;
+  ContactSurface::Area area_;
 };
 
+/// Returns the numbers of the pairs of the [[contact]] of a probe.
+std::vector<std::size_t> pairs_of(const ProbeSetting& probe) {
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < probe.entry_of_pair.size(); ++i) {
+    if (static_cast<double>(probe.entry_of_pair[i]) == probe.values.number("contact")) result.push_back(i);
+  }
+  return result;
+}
+
+std::string describe_contact_forces(const ProbeSetting& probe, std::size_t entry) {
+  const std::vector<std::size_t> pairs = pairs_of(probe);
+  if (pairs.size() != 1)
+    return fmt::format(
+        "its force is the sum, over {} of contact {}, of the force on the body of the first group; its area is that "
+        "of the pressed parts of the sides that carry the multipliers",
+        counted(pairs.size(), "pair"), entry);
+  const ContactPair& pair = probe.pairs[pairs.front()];
+  const std::string on =
+      pair.between_bodies() ? fmt::format("the body of \"{}\"", pair.first_group()) : std::string("the body");
+  return fmt::format(
+      "its force is that of all points of contact {} on {}; its area is that of the pressed part of the facets of "
+      "\"{}\"",
+      entry, on, pair.group);
+}
+
+void check_contact(const ProbeSetting& probe, ProbeTargets& targets) {
+  const auto entry = static_cast<std::size_t>(probe.values.number("contact"));
+  const std::size_t count = probe.entry_is_tied.size();
+  if (entry >= count) {
+    probe.refuse("contact",
+                 fmt::format("there is no contact {}: the case has {} of them, numbered from 0", entry, count));
+  }
+  if (probe.entry_is_tied[entry]) {
+    probe.refuse("contact",
+                 fmt::format("contact {} is tied: it has no contact points whose forces could be recorded; use a probe "
+                             "with \"group\" for stresses near the surface",
+                             entry));
+  }
+  targets.sums = describe_contact_forces(probe, entry);
+}
+
+SensorList make_contact_probe(const ProbeSetting& probe, const ProbeTargets&) {
+  std::vector<SensedPair> sensed;
+  for (const std::size_t i : pairs_of(probe)) sensed.push_back({static_cast<int>(i), probe.pairs[i].exchanged});
+  return {make_contact_sensor(probe.name, probe.problem, sensed)};
+}
+
 }  // namespace
+
+Registration<ProbeKind> contact_probe() {
+  return {
+      .name = "contact",
+      .type = {.quantities = ContactSensor::descriptions(), .find = check_contact, .make = make_contact_probe},
+      .keys =
+          {{.name = "contact",
+            .type = KeyType::integer,
+            .unit = "1",
+            .range = nonnegative,
+            .doc = "Number of an entry of [[contact]], counted from 0. Columns: its force on the body NAME.force_x … "
+                   "(between bodies, on the body of its \"group\"), its centre of pressure NAME.centre_x … (0 while it "
+                   "is open) and its area in contact NAME.area (a length in 2D)."}},
+      .alternatives = {{"contact"}}};
+}
+
+std::vector<RowQuantity> pair_force_quantities() {
+  return PairForceSensor::descriptions();
+}
 
 std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                             const std::vector<SensedPair>& pairs) {

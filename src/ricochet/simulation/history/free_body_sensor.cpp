@@ -2,43 +2,48 @@
 #include <cmath>
 #include <numbers>
 
-#include "ricochet/simulation/history/sensor.hpp"
+#include "ricochet/simulation/history/quantity_sensor.hpp"
 
 namespace ricochet {
 
 namespace {
 
 /// Sensor of a free rigid body.
-class FreeBodySensor final : public Sensor {
+class FreeBodySensor final : public QuantitySensor<FreeBodySensor> {
  public:
   FreeBodySensor(const std::string& name, const SemidiscreteProblem& problem, const Obstacle& obstacle)
-      : name_(name), problem_(problem), obstacle_(obstacle), body_(*obstacle.free_motion()) {}
+      : QuantitySensor(name + ".", problem), problem_(problem), obstacle_(obstacle), body_(*obstacle.free_motion()) {}
 
-  [[nodiscard]] Columns columns() const override {
-    Columns result;
-    const std::vector<std::string> axes{"x", "y", "z"};
-    for (const char* const what : {"displacement", "velocity", "rotation", "spin", "contact_force"}) {
-      const bool is_rotation = std::string(what) == "rotation" || std::string(what) == "spin";
-      for (std::size_t k = is_rotation && problem_.dimension == 2 ? 2 : 0;
-           k < (is_rotation ? 3 : static_cast<std::size_t>(problem_.dimension)); ++k)
-        result.push_back({name_ + "." + what + "_" + axes[k], Reduction::same});
-    }
-    return result;
+  static const Quantities& quantities() {
+    using Self = FreeBodySensor;
+    static const Quantities all{
+        {{"displacement", "length", "displacement of its centre of mass", Components::vector, Reduction::same},
+         of(&Self::displacement_)},
+        {{"velocity", "length/time", "velocity of its centre of mass", Components::vector, Reduction::same},
+         of(&Self::velocity_)},
+        {{"rotation", "angle",
+          "rotation: in 2D the angle, whole turns included, in 3D the rotation vector, of length π at most",
+          Components::axial, Reduction::same},
+         of(&Self::rotation_)},
+        {{"spin", "angle/time", "angular velocity", Components::axial, Reduction::same}, of(&Self::spin_)},
+        {{"contact_force", "force", "resultant of the contact forces on it", Components::vector, Reduction::same},
+         of(&Self::force_)},
+    };
+    return all;
   }
 
-  void observe(const Observation& observation, std::vector<double>& row) override {
+  void evaluate(const Observation& observation) {
     const State& state = observation.state;
     const Index d = problem_.dimension, first = body_.centre_node() * d;
-    append(state.displacement.segment(first, d), row);
-    append(state.velocity.segment(first, d), row);
-    append(rotation(state.displacement), row);
-    append(body_.angular_velocity(state.displacement, state.velocity), row);
-    SpaceVector force = SpaceVector::Zero(d);
+    displacement_ = state.displacement.segment(first, d);
+    velocity_ = state.velocity.segment(first, d);
+    rotation_ = rotation(state.displacement);
+    spin_ = body_.angular_velocity(state.displacement, state.velocity);
+    force_ = SpaceVector::Zero(d);
     for (Index i = 0; i < problem_.contact.size(); ++i) {
       if (carries_force(state.forces, i) && problem_.obstacle_of_point(i) == &obstacle_)
-        force -= contact_force(state.forces, i);
+        force_ -= contact_force(state.forces, i);
     }
-    append(force, row);
   }
 
  private:
@@ -55,13 +60,17 @@ class FreeBodySensor final : public Sensor {
     return SpaceVector::Constant(1, angle + whole * std::round((near - angle) / whole));
   }
 
-  std::string name_;
   const SemidiscreteProblem& problem_;
   const Obstacle& obstacle_;
   const FreeMotion& body_;
+  SpaceVector displacement_, velocity_, rotation_, spin_, force_;
 };
 
 }  // namespace
+
+std::vector<RowQuantity> free_body_quantities() {
+  return FreeBodySensor::descriptions();
+}
 
 std::unique_ptr<Sensor> make_free_body_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                               const Obstacle& obstacle) {

@@ -5,7 +5,8 @@
 
 #include "ricochet/fem/cell_integration.hpp"
 #include "ricochet/fem/stress.hpp"
-#include "ricochet/simulation/history/sensor.hpp"
+#include "ricochet/simulation/history/probe_kind.hpp"
+#include "ricochet/simulation/history/quantity_sensor.hpp"
 
 namespace ricochet {
 
@@ -51,11 +52,28 @@ std::vector<WeightedNode> weighted_nodes(const Body& body, const std::vector<Cel
   return result;
 }
 
-class GroupSensor final : public Sensor {
+/// Statistics of the components of a quantity over a group.
+struct Statistics {
+  SpaceVector average, least, largest;
+
+  void start(Index components) {
+    average = SpaceVector::Zero(components);
+    least = SpaceVector::Constant(components, std::numeric_limits<double>::infinity());
+    largest = -least;
+  }
+  template <class Values>
+  void enter(double weight, const Values& own) {
+    average += weight * own;
+    least = least.cwiseMin(own);
+    largest = largest.cwiseMax(own);
+  }
+};
+
+class GroupSensor final : public QuantitySensor<GroupSensor> {
  public:
-  GroupSensor(std::string name, const Body& body, std::vector<WeightedNode> nodes,
+  GroupSensor(const std::string& name, const Body& body, std::vector<WeightedNode> nodes,
               std::optional<std::vector<Index>> cells, const Ranks& ranks)
-      : name_(std::move(name)),
+      : QuantitySensor(name + ".", body.mesh->dimension),
         dimension_(body.mesh->dimension),
         nodes_(std::move(nodes)),
         is_of_cells_(cells.has_value()),
@@ -69,62 +87,59 @@ class GroupSensor final : public Sensor {
     for (const Index cell : cells_) cell_weights_.push_back(volumes[cell] / sum);
   }
 
-  [[nodiscard]] Columns columns() const override {
-    Columns columns;
-    const std::array<Column, 3> statistics{
-        {{"_average"}, {"_minimum", Reduction::minimum}, {"_maximum", Reduction::maximum}}};
-    for (const char* motion : {".displacement", ".velocity"}) {
-      for (const Column& statistic : statistics)
-        add_vector_columns(columns, name_ + motion + statistic.name, dimension_, statistic.by);
-    }
-    if (is_of_cells_) {
-      for (const Column& statistic : statistics)
-        columns.emplace_back(name_ + ".von_mises" + statistic.name, statistic.by);
-    }
-    return columns;
+  static const Quantities& quantities() {
+    static const Quantities all = [] {
+      Quantities result;
+      add_statistics({"displacement", "length", "displacement", Components::vector}, &GroupSensor::displacement_,
+                     result);
+      add_statistics({"velocity", "length/time", "velocity", Components::vector}, &GroupSensor::velocity_, result);
+      add_statistics({"von_mises", "stress", "von Mises stress", Components::one, Reduction::sum, "groups of cells"},
+                     &GroupSensor::von_mises_, result);
+      return result;
+    }();
+    return all;
   }
 
-  void observe(const Observation& observation, std::vector<double>& row) override {
-    observe_vector(observation.state.displacement, row);
-    observe_vector(observation.state.velocity, row);
-    if (is_of_cells_) observe_stress(observation.state, row);
+  void evaluate(const Observation& observation) {
+    enter_nodes(observation.state.displacement, displacement_);
+    enter_nodes(observation.state.velocity, velocity_);
+    if (is_of_cells_) enter_stress(observation.state);
   }
 
  private:
-  void observe_vector(const Vector& values, std::vector<double>& row) const {
-    const Index d = dimension_;
-    SpaceVector average = SpaceVector::Zero(d);
-    SpaceVector least = SpaceVector::Constant(d, std::numeric_limits<double>::infinity());
-    SpaceVector largest = -least;
-    for (const auto& [node, weight] : nodes_) {
-      const auto own = values.segment(node * d, d);
-      average += weight * own;
-      least = least.cwiseMin(own);
-      largest = largest.cwiseMax(own);
-    }
-    append(average, row);
-    append(least, row);
-    append(largest, row);
-  }
-  void observe_stress(const State& state, std::vector<double>& row) {
-    if (!cells_.empty()) stress_of_.evaluate(state.displacement, stress_, energy_density_, state.internal_strain);
-    double average = 0.0, least = std::numeric_limits<double>::infinity(), largest = 0.0;
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      const double own = von_mises_stress(stress_.data() + tensor_components * cells_[i]);
-      average += cell_weights_[i] * own;
-      least = std::min(least, own);
-      largest = std::max(largest, own);
-    }
-    for (const double value : {average, least, largest}) row.push_back(value);
+  static void add_statistics(const RowQuantity& of, Statistics GroupSensor::*statistics, Quantities& result) {
+    const auto add = [&](const char* name, const char* text, Reduction by, SpaceVector Statistics::*values) {
+      auto& added = result.emplace_back(ValuedQuantity<GroupSensor>{
+          of, [statistics, values](const GroupSensor& self, Index k) { return (self.*statistics.*values)[k]; }});
+      added.name += name;
+      added.by = by;
+      added.text = text + of.text + " in the group";
+      if (!of.where.empty()) added.exists = [](const GroupSensor& self) { return self.is_of_cells_; };
+    };
+    add("_average", "mean, over volume or area, of the ", Reduction::sum, &Statistics::average);
+    add("_minimum", "least value of the ", Reduction::minimum, &Statistics::least);
+    add("_maximum", "largest value of the ", Reduction::maximum, &Statistics::largest);
   }
 
-  std::string name_;
+  void enter_nodes(const Vector& values, Statistics& statistics) const {
+    statistics.start(dimension_);
+    for (const auto& [node, weight] : nodes_) statistics.enter(weight, values.segment(node * dimension_, dimension_));
+  }
+  void enter_stress(const State& state) {
+    if (!cells_.empty()) stress_of_.evaluate(state.displacement, stress_, energy_density_, state.internal_strain);
+    von_mises_.start(1);
+    for (std::size_t i = 0; i < cells_.size(); ++i)
+      von_mises_.enter(cell_weights_[i],
+                       SpaceVector::Constant(1, von_mises_stress(stress_.data() + tensor_components * cells_[i])));
+  }
+
   int dimension_;
   std::vector<WeightedNode> nodes_;  ///< weights sum to 1
   bool is_of_cells_;                 ///< otherwise of facets
   std::vector<Index> cells_;         ///< those on this rank, for a group of cells
   std::vector<double> cell_weights_, stress_, energy_density_;
   CellStress stress_of_;
+  Statistics displacement_, velocity_, von_mises_;
 };
 
 template <int d>
@@ -143,7 +158,30 @@ std::vector<WeightedNode> nodes_of_facets(const Body& body, const std::vector<In
                         });
 }
 
+SensorList make_group_probe(const ProbeSetting& probe, const ProbeTargets&) {
+  const Mesh& mesh = *probe.body.mesh;
+  const std::string& name = probe.values.text("group");
+  const bool is_of_facets =
+      mesh.find_group(name, mesh.dimension - 1) != nullptr && mesh.find_group(name, mesh.dimension) == nullptr;
+  const Group& group = probe.group("group", is_of_facets ? mesh.dimension - 1 : mesh.dimension);
+  const auto make = is_of_facets ? make_facet_group_sensor : make_cell_group_sensor;
+  return {make(probe.name, probe.body, group.members, *probe.problem.ranks)};
+}
+
 }  // namespace
+
+Registration<ProbeKind> group_probe() {
+  return {
+      .name = "group",
+      .type = {.quantities = GroupSensor::descriptions(), .find = nullptr, .make = make_group_probe},
+      .keys = {{.name = "group",
+                .type = KeyType::groups,
+                .doc =
+                    "Group of cells or of boundary facets, or a list of groups. Columns NAME.displacement_average_x …, "
+                    "_minimum_, _maximum_, the same for the velocity, and for cells von_mises_average, _minimum, "
+                    "_maximum. Averages are over volume or area."}},
+      .alternatives = {{"group"}}};
+}
 
 std::unique_ptr<Sensor> make_cell_group_sensor(const std::string& name, const Body& body,
                                                const std::vector<Index>& cells, const Ranks& ranks) {

@@ -37,6 +37,14 @@ Momenta momenta_of(const Vector& weight, const Points& arm, const Vector& values
   return result;
 }
 
+/// Returns the columns with those of the sensors after them.
+Columns with_columns_of(const std::vector<std::shared_ptr<Sensor>>& sensors, Columns columns) {
+  for (const auto& sensor : sensors) {
+    for (Column& column : sensor->columns()) columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
 }  // namespace
 
 std::size_t column_index(const std::vector<std::string>& columns, const std::string& name) {
@@ -45,53 +53,13 @@ std::size_t column_index(const std::vector<std::string>& columns, const std::str
   return static_cast<std::size_t>(found - columns.begin());
 }
 
-Columns HistoryRecorder::standard_columns(int dimension) {
-  Columns columns{{"step", Reduction::same}, {"time", Reduction::same}, "kinetic_energy", "elastic_energy",
-                  "load_potential",          "algorithmic_energy",      "total_energy"};
-  for (const char* const work : work_columns) columns.emplace_back(work);
-  for (const char* const name : {"numerical_dissipation", "energy_residual"}) columns.emplace_back(name);
-  add_vector_columns(columns, "contact_force", dimension);
-  add_vector_columns(columns, "momentum", dimension);
-  if (dimension == 2) columns.emplace_back("angular_momentum_z");
-  if (dimension == 3) add_vector_columns(columns, "angular_momentum", 3);
-  columns.emplace_back("max_rotation", Reduction::maximum);
-  for (const char* const name : {"active_contacts", "sticking", "slipping"}) columns.emplace_back(name);
-  columns.emplace_back("max_penetration", Reduction::maximum);
-  columns.emplace_back("iterations", Reduction::same);
-  return columns;
-}
-
-Columns HistoryRecorder::finite_strain_columns() {
-  return {"integration_error", {"newton_rounds", Reduction::same}};
-}
-
-Columns HistoryRecorder::relaxation_columns() {
-  return {"viscous_dissipation"};
-}
-
-Columns HistoryRecorder::sliding_columns(bool touches_itself) {
-  Columns columns = {"re_pairing_work", {"unsettled_gap", Reduction::maximum}};
-  if (touches_itself) columns.emplace_back("left_out_points");
-  return columns;
-}
-
 Columns HistoryRecorder::columns_of(const SemidiscreteProblem& problem,
                                     const std::vector<std::shared_ptr<Sensor>>& sensors, const HistoryBodies& bodies) {
-  Columns columns = standard_columns(problem.dimension);
-  for (const std::string& label : bodies.labels) add_vector_columns(columns, "momentum." + label, problem.dimension);
-  if (!problem.internal_force->is_linear()) {
-    for (const Column& column : finite_strain_columns()) columns.push_back(column);
-  }
-  if (problem.internal_force->viscous() != nullptr) {
-    for (const Column& column : relaxation_columns()) columns.push_back(column);
-  }
-  if (problem.contact.has_sliding_pairs()) {
-    for (const Column& column : sliding_columns(problem.contact.touches_itself)) columns.push_back(column);
-  }
-  for (const auto& sensor : sensors) {
-    for (const Column& column : sensor->columns()) columns.push_back(column);
-  }
-  return columns;
+  HistoryRow row;
+  row.problem = &problem;
+  Columns columns;
+  add_columns(history_quantities(), row, "", problem.dimension, columns, bodies.labels);
+  return with_columns_of(sensors, std::move(columns));
 }
 
 HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const CellRotations& rotation,
@@ -101,10 +69,11 @@ HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const CellR
       observer_(problem),
       sensors_(std::move(sensors)),
       bodies_(std::move(bodies)),
-      body_momentum_(bodies_.labels.size() * static_cast<std::size_t>(problem.dimension)),
       finite_strain_(!problem.internal_force->is_linear()),
       columns_(names_of(columns_of(problem, sensors_, bodies_))),
       reductions_(reductions_of(columns_of(problem, sensors_, bodies_))) {
+  now_.problem = &problem;
+  now_.body_momenta.resize(bodies_.labels.size() * static_cast<std::size_t>(problem.dimension));
   row_.reserve(columns_.size());
   weigh_nodes();
 }
@@ -141,42 +110,28 @@ void HistoryRecorder::weigh_positions() {
 }
 
 const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccount& account) {
-  const Energies energies = account.energies(state);
-  const Works& works = account.works();
-  row_.assign({static_cast<double>(state.step), state.time, energies.kinetic, energies.elastic, energies.load_potential,
-               energies.algorithmic, energies.total(), works.load, works.contact, works.friction, works.support,
-               works.obstacle, works.damping, works.numerical_dissipation, account.residual(energies)});
-  add_contact_force(state);
-  add_momentum(state, account.velocity(state));
+  now_.enter(state, account);
+  find_contact_force();
+  find_momenta(account.velocity(state));
   const Observation observation = observer_.observe(state);
-  add_contact_state(observation);
-  row_.insert(row_.end(), body_momentum_.begin(), body_momentum_.end());
-  if (finite_strain_) {
-    row_.push_back(works.integration_error);
-    row_.push_back(state.newton_iterations);
-  }
-  if (problem_.internal_force->viscous() != nullptr) row_.push_back(works.viscous_dissipation);
-  if (problem_.contact.has_sliding_pairs()) row_.insert(row_.end(), {works.re_pairing, account.unsettled_gap()});
-  if (problem_.contact.touches_itself) row_.push_back(left_out_points());
+  find_contact_state(observation.gap);
+  row_.clear();
+  append_values(history_quantities(), now_, problem_.dimension, row_, bodies_.labels.size());
   for (const auto& sensor : sensors_) sensor->observe(observation, row_);
   problem_.ranks->reduce(row_, reductions_);
   return row_;
 }
 
-double HistoryRecorder::left_out_points() {
-  is_active_.assign(static_cast<std::size_t>(problem_.contact.size()), 1);
-  problem_.contact.geometry->deactivate_points(is_active_);
-  return static_cast<double>(std::count(is_active_.begin(), is_active_.end(), 0));
-}
-
-void HistoryRecorder::add_contact_force(const State& state) {
+void HistoryRecorder::find_contact_force() {
   SpaceVector force = SpaceVector::Zero(problem_.dimension);
   // Forces between bodies cancel.
-  for (Index i = 0; i < problem_.contact.size(); ++i) force += problem_.contact.net[i] * contact_force(state.forces, i);
-  append(force, row_);
+  for (Index i = 0; i < problem_.contact.size(); ++i)
+    force += problem_.contact.net[i] * contact_force(now_.state->forces, i);
+  now_.contact_force.head(problem_.dimension) = force;
 }
 
-void HistoryRecorder::add_momentum(const State& state, const Vector& velocity) {
+void HistoryRecorder::find_momenta(const Vector& velocity) {
+  const State& state = *now_.state;
   if (finite_strain_) {
     position_ = problem_.nodes.reshaped() + state.displacement;
     weigh_positions();
@@ -198,40 +153,38 @@ void HistoryRecorder::add_momentum(const State& state, const Vector& velocity) {
     sum.linear[0] = 0.0;
     sum.angular.setZero();
   }
-  // Appended in the order of the columns.
-  append(sum.linear.head(problem_.dimension), row_);
-  append(problem_.dimension == 2 ? sum.angular.tail(1) : sum.angular.head(3), row_);
+  now_.momentum = sum.linear;
+  now_.angular_momentum = sum.angular;
   if (!bodies_.labels.empty()) sum_of_bodies(values);
 }
 
 void HistoryRecorder::sum_of_bodies(const Vector& values) {
   const auto d = static_cast<std::size_t>(problem_.dimension);
-  std::fill(body_momentum_.begin(), body_momentum_.end(), 0.0);
+  std::fill(now_.body_momenta.begin(), now_.body_momenta.end(), 0.0);
   for (Index node = 0; node < node_weight_.size(); ++node) {
     if (problem_.is_of_free_body(node)) break;
     double* const own =
-        body_momentum_.data() + d * static_cast<std::size_t>(bodies_.of_node[static_cast<std::size_t>(node)]);
+        now_.body_momenta.data() + d * static_cast<std::size_t>(bodies_.of_node[static_cast<std::size_t>(node)]);
     for (std::size_t k = problem_.axisymmetric ? 1 : 0; k < d; ++k)
       own[k] += node_weight_[node] * values[node * problem_.dimension + static_cast<Index>(k)];
   }
 }
 
-void HistoryRecorder::add_contact_state(const Observation& observation) {
-  const State& state = observation.state;
-  row_.push_back(rotation_.largest(state.displacement));
+void HistoryRecorder::find_contact_state(const Vector& gap) {
+  now_.rotation = rotation_.largest(now_.state->displacement);
   // Points without friction neither stick nor slip.
-  double active = 0.0;
-  double sticking = 0.0;
-  double slipping = 0.0;
-  for (const ContactStatus status : state.contact_status) {
-    active += status != ContactStatus::open ? 1.0 : 0.0;
-    sticking += status == ContactStatus::stick ? 1.0 : 0.0;
-    slipping += status == ContactStatus::slip ? 1.0 : 0.0;
+  now_.active = now_.sticking = now_.slipping = 0.0;
+  for (const ContactStatus status : now_.state->contact_status) {
+    now_.active += status != ContactStatus::open ? 1.0 : 0.0;
+    now_.sticking += status == ContactStatus::stick ? 1.0 : 0.0;
+    now_.slipping += status == ContactStatus::slip ? 1.0 : 0.0;
   }
-  double penetration = 0.0;
-  for (const double gap : observation.gap) penetration = std::max(penetration, -gap);  // false for NaN
-  for (const double value : {active, sticking, slipping, penetration, static_cast<double>(state.iterations)})
-    row_.push_back(value);
+  now_.penetration = 0.0;
+  for (const double value : gap) now_.penetration = std::max(now_.penetration, -value);  // false for NaN
+  if (!problem_.contact.touches_itself) return;
+  is_active_.assign(static_cast<std::size_t>(problem_.contact.size()), 1);
+  problem_.contact.geometry->deactivate_points(is_active_);
+  now_.left_out = static_cast<double>(std::count(is_active_.begin(), is_active_.end(), 0));
 }
 
 Observation Observer::observe(const State& state) {
@@ -248,10 +201,7 @@ Observation Observer::observe(const State& state) {
 
 SensorRecorder::SensorRecorder(const SemidiscreteProblem& problem, std::vector<std::shared_ptr<Sensor>> sensors)
     : problem_(problem), observer_(problem), sensors_(std::move(sensors)) {
-  Columns columns{{"step", Reduction::same}, {"time", Reduction::same}};
-  for (const auto& sensor : sensors_) {
-    for (const Column& column : sensor->columns()) columns.push_back(column);
-  }
+  const Columns columns = with_columns_of(sensors_, {{"step", Reduction::same}, {"time", Reduction::same}});
   columns_ = names_of(columns);
   reductions_ = reductions_of(columns);
   row_.reserve(columns_.size());

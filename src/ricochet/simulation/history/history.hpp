@@ -6,7 +6,7 @@
 
 #include "ricochet/fem/cell_rotations.hpp"
 #include "ricochet/simulation/history/column_digest.hpp"
-#include "ricochet/simulation/history/energy_account.hpp"
+#include "ricochet/simulation/history/history_columns.hpp"
 #include "ricochet/simulation/history/sensor.hpp"
 
 /// @file One row of numbers per step: energies, works, forces, momenta, counts, probes.
@@ -62,12 +62,6 @@ class HistoryRecorder {
   [[nodiscard]] static Columns columns_of(const SemidiscreteProblem& problem,
                                           const std::vector<std::shared_ptr<Sensor>>& sensors,
                                           const HistoryBodies& bodies = {});
-  /// Columns of every history of a body of this dimension. The following functions return those of finite strain, of
-  /// viscoelastic branches and of large sliding; probes must not have their names.
-  [[nodiscard]] static Columns standard_columns(int dimension);
-  [[nodiscard]] static Columns finite_strain_columns();
-  [[nodiscard]] static Columns relaxation_columns();
-  [[nodiscard]] static Columns sliding_columns(bool touches_itself);
   /// Row of a state. The reference stays valid until the next call.
   [[nodiscard]] const std::vector<double>& row(const State& state, EnergyAccount& account);
 
@@ -75,21 +69,20 @@ class HistoryRecorder {
   void weigh_nodes();
   void weigh_positions();
   void update_free_bodies(const State& state);
-  [[nodiscard]] double left_out_points();
-  void add_contact_force(const State& state);
-  void add_momentum(const State& state, const Vector& velocity);
+  void find_contact_force();
+  void find_momenta(const Vector& velocity);
   void sum_of_bodies(const Vector& values);
-  void add_contact_state(const Observation& observation);
+  void find_contact_state(const Vector& gap);
 
   const SemidiscreteProblem& problem_;
   const CellRotations& rotation_;
   Observer observer_;
   std::vector<std::shared_ptr<Sensor>> sensors_;
   HistoryBodies bodies_;
-  std::vector<double> body_momentum_;  ///< d entries of each body
   bool finite_strain_;
   std::vector<std::string> columns_;
   std::vector<Reduction> reductions_;
+  HistoryRow now_;
   std::vector<double> row_;
   std::vector<char> is_active_;
   /// Momentum and angular momentum are Σ node_weight_ p and Σ node_arm_ × p over the nodes. If M = m ⊗ I, as for a

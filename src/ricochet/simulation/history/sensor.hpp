@@ -10,8 +10,8 @@
 #include "ricochet/simulation/history/column.hpp"
 #include "ricochet/simulation/history/probe.hpp"
 
-/// @file Sensors: quantities of points, boundaries, groups and contacts in the history. To add a kind: a file with a
-/// class, its function here, and its keys in the section [[probe]] of a case.
+/// @file Sensors: quantities of points, boundaries, groups and contacts in the history. Those of a [[probe]] are
+/// registered (probe_kind.hpp).
 namespace ricochet {
 
 /// State, and quantities that several sensors need.
@@ -34,9 +34,6 @@ class Sensor {
 
 /// Motion of a node and, on the contact boundary, its gap, pressure and contact force.
 [[nodiscard]] std::unique_ptr<Sensor> make_point_sensor(const SemidiscreteProblem& problem, const Probe& probe);
-
-/// Sensor with these columns, all of them sums, which appends zeros: for a node that other ranks hold.
-[[nodiscard]] std::unique_ptr<Sensor> make_absent_sensor(Columns columns);
 
 /// Force and moment on the body at the nodes of some facets, of supports and contacts together, and of the supports
 /// alone: where contact and facets share nodes, only the latter are the reaction of the support. Moments are about
@@ -69,10 +66,12 @@ struct SensedPair {
 /// Force of a contact between bodies alone, in the columns pair_force.N_x … of contact N.
 [[nodiscard]] std::unique_ptr<Sensor> make_pair_force_sensor(const SemidiscreteProblem& problem, int contact,
                                                              bool exchanged);
+[[nodiscard]] std::vector<RowQuantity> pair_force_quantities();
 
 /// Motion of a free rigid body and the contact force on it.
 [[nodiscard]] std::unique_ptr<Sensor> make_free_body_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                                             const Obstacle& obstacle);
+[[nodiscard]] std::vector<RowQuantity> free_body_quantities();
 
 // Functions for the implementation of sensors:
 
@@ -86,10 +85,6 @@ struct SensedPair {
 [[nodiscard]] bool carries_acting_force(const StepForces& forces, Index point);
 [[nodiscard]] inline SpaceVector acting_contact_force(const StepForces& forces, Index point) {
   return forces.rows->force(point, forces.acting_normal(), forces.acting_tangential());
-}
-template <class Values>
-void append(const Values& values, std::vector<double>& row) {
-  for (Index k = 0; k < values.size(); ++k) row.push_back(values[k]);
 }
 
 }  // namespace ricochet

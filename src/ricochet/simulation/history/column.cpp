@@ -1,0 +1,36 @@
+#include "ricochet/simulation/history/column.hpp"
+
+namespace ricochet {
+
+void add_columns(const RowQuantity& quantity, const std::string& prefix, int dimension, Columns& columns,
+                 const std::vector<std::string>& bodies) {
+  if (quantity.components == Components::bodies) {
+    RowQuantity own = quantity;
+    own.components = Components::vector;
+    for (const std::string& body : bodies) {
+      own.name = quantity.name.substr(0, quantity.name.find("BODY")) + body;
+      add_columns(own, prefix, dimension, columns);
+    }
+    return;
+  }
+  const auto range = component_range(quantity.components, dimension);
+  for (Index k = range.first; k < range.second; ++k) {
+    std::string name = prefix + quantity.name;
+    if (quantity.components != Components::one) name += std::string("_") + "xyz"[k];
+    columns.push_back({std::move(name), quantity.by});
+  }
+}
+
+std::vector<std::string> names_of(const Columns& columns) {
+  std::vector<std::string> names;
+  for (const Column& column : columns) names.push_back(column.name);
+  return names;
+}
+
+std::vector<Reduction> reductions_of(const Columns& columns) {
+  std::vector<Reduction> result;
+  for (const Column& column : columns) result.push_back(column.by);
+  return result;
+}
+
+}  // namespace ricochet
