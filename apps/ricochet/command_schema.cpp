@@ -2,11 +2,12 @@
 
 #include "commands.hpp"
 #include "ricochet/case/read_case.hpp"
+#include "ricochet/io/summary.hpp"
 
 namespace ricochet::program {
 
-int schema(bool markdown) {
-  std::fputs((markdown ? case_reference() : case_schema()).c_str(), stdout);
+int schema(bool markdown, bool of_summary) {
+  std::fputs((of_summary ? summary_schema() : markdown ? case_reference() : case_schema()).c_str(), stdout);
   return 0;
 }
 

@@ -82,7 +82,7 @@ struct BenchmarkArguments {
 int run(const RunArguments& arguments);
 int validate(const ValidateArguments& arguments);
 int info(const InfoArguments& arguments);
-int schema(bool markdown);
+int schema(bool markdown, bool of_summary);
 int contact(const ContactArguments& arguments);
 int report(const ReportArguments& arguments);
 int plot(const PlotArguments& arguments);

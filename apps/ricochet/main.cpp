@@ -42,7 +42,7 @@ struct Arguments {
   program::BenchmarkArguments benchmark;
   program::InfoArguments info;
   std::string shell;
-  bool markdown = false;
+  bool markdown = false, of_summary = false;
   std::string log_level = "info";
   int threads = 1;
 };
@@ -310,8 +310,10 @@ int dispatch(int argc, char** argv) {
   add_study(app, arguments.study, arguments.log_level);
   add_benchmark(app, arguments.benchmark, arguments.log_level);
 
-  CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the case file");
-  schema->add_flag("--markdown", arguments.markdown, "print the reference page of the case file instead");
+  CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the case file, or of summary.json");
+  CLI::Option* markdown =
+      schema->add_flag("--markdown", arguments.markdown, "print the reference page of the case file instead");
+  schema->add_flag("--summary", arguments.of_summary, "print the schema of summary.json instead")->excludes(markdown);
 
   CLI::App* completion =
       app.add_subcommand("completion", "Print the script with which a shell completes the words of a ricochet command");
@@ -350,7 +352,7 @@ int dispatch(int argc, char** argv) {
     std::fputs(program::completion_script(arguments.shell).c_str(), stdout);
     return 0;
   }
-  return program::schema(arguments.markdown);
+  return program::schema(arguments.markdown, arguments.of_summary);
 }
 
 /// Returns the exit status; reports errors.

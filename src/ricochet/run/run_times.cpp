@@ -51,8 +51,7 @@ void RunTimes::load(const Snapshot& snapshot, const std::string& name) {
   add("penetration_watch", watch);
   add("checkpoints", checkpoints);
   add("total", earlier_total_);
-  // Checkpoints of versions that did not measure it: with one thread it equals the wall-clock time.
-  add(snapshot.has(name + ".processor") ? "processor" : "total", earlier_processor_);
+  add("processor", earlier_processor_);
 }
 
 }  // namespace ricochet

@@ -217,9 +217,7 @@ void SlidingWatch::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".far", sliding);
 }
 
-/// Loads nothing from checkpoints of earlier versions, which contain no record of contacts with large sliding.
 void SlidingWatch::load_large_sliding(const Snapshot& snapshot, const std::string& name) {
-  if (!snapshot.has(name)) return;
   const Vector& numbers = snapshot.reals(name, 9 * static_cast<Index>(large_sliding_.size()));
   for (std::size_t i = 0; i < large_sliding_.size(); ++i) {
     const auto of = numbers.segment<9>(9 * static_cast<Index>(i));
