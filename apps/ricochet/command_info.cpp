@@ -152,12 +152,8 @@ std::vector<CheckpointFile> checkpoints_of(const std::string& directory) {
 
 /// Returns the summary; none if the directory has checkpoints but no readable summary.
 std::optional<RunSummary> summary_of(const std::string& directory) {
-  try {
-    return read_summary_of_run(directory);
-  } catch (const Error&) {
-    if (checkpoints_of(directory).empty()) throw;
-    return {};
-  }
+  if (!checkpoints_of(directory).empty()) return find_intact_summary(directory);
+  return read_summary_of_run(directory);
 }
 
 void describe_result(const std::string& directory) {

@@ -79,10 +79,15 @@ struct BenchmarkArguments {
   bool list = false, resume = false, force = false, quiet = false;
 };
 
+/// What `schema` prints; nothing: the JSON Schema of the case file.
+struct SchemaArguments {
+  bool markdown = false, columns = false, summary = false;
+};
+
 int run(const RunArguments& arguments);
 int validate(const ValidateArguments& arguments);
 int info(const InfoArguments& arguments);
-int schema(bool markdown, bool columns);
+int schema(const SchemaArguments& arguments);
 int contact(const ContactArguments& arguments);
 int report(const ReportArguments& arguments);
 int plot(const PlotArguments& arguments);

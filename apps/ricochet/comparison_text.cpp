@@ -26,8 +26,9 @@ struct Run {
 /// Returns the variation of the force at the first probe on a contact boundary; if there is none, of the resultant in
 /// its largest direction.
 double force_variation(const RunSummary& s) {
-  const auto probe = std::find_if(s.probes.begin(), s.probes.end(), [](const Probe& p) { return p.contact_node >= 0; });
-  if (probe != s.probes.end()) return s.digest(probe->name + ".reaction_normal").total_variation;
+  const auto probe =
+      std::find_if(s.probes.begin(), s.probes.end(), [](const auto& each) { return each.probe.contact_node >= 0; });
+  if (probe != s.probes.end()) return s.digest(probe->probe.name + ".reaction_normal").total_variation;
   double variation = 0.0;
   for (const std::string& column : s.columns) {
     if (column.starts_with("contact_force_") || column.starts_with("pair_force."))
@@ -60,7 +61,7 @@ void print_methods(const std::vector<Run>& runs, int width) {
         "(output.history_every)\n");
   for (const auto& [directory, s] : runs) {
     std::vector<std::string> notes;
-    if (!s.mass_built.empty() && s.mass_built != s.mass) notes.push_back("mass " + s.mass_text());
+    if (s.mass_built != s.mass) notes.push_back("mass " + s.mass_text());
     if (const std::string reactions = reactions_text(s); !reactions.empty()) notes.push_back("reactions: " + reactions);
     if (!notes.empty()) fmt::print("  {}: {}\n", directory, fmt::join(notes, "; "));
   }
@@ -120,9 +121,7 @@ class ResultCells {
   [[nodiscard]] bool rotated_too_far_in(ImpactIterator impact) const {
     return !s_.small_strain_holds_in(static_cast<std::size_t>(impact - s_.impacts.begin()));
   }
-  [[nodiscard]] bool rotated_too_far_by(double time) const {
-    return s_.rotation ? s_.rotation->time_beyond <= time : s_.digest("max_rotation").maximum > s_.largest_rotation();
-  }
+  [[nodiscard]] bool rotated_too_far_by(double time) const { return s_.rotation.time_beyond <= time; }
   [[nodiscard]] std::string mark(const char* sign, bool applies) const {
     if (!applies) return "";
     marks_.insert(sign);

@@ -42,7 +42,7 @@ struct Arguments {
   program::BenchmarkArguments benchmark;
   program::InfoArguments info;
   std::string shell;
-  bool markdown = false, columns = false;
+  program::SchemaArguments schema;
   std::string log_level = "info";
   int threads = 1;
 };
@@ -310,10 +310,15 @@ int dispatch(int argc, char** argv) {
   add_study(app, arguments.study, arguments.log_level);
   add_benchmark(app, arguments.benchmark, arguments.log_level);
 
-  CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the case file");
-  schema->add_flag("--markdown", arguments.markdown, "print the reference page of the case file instead");
-  schema->add_flag("--columns", arguments.columns, "print the tables of the columns of history.csv instead")
-      ->excludes("--markdown");
+  CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the case file, or of summary.json");
+  CLI::Option* markdown =
+      schema->add_flag("--markdown", arguments.schema.markdown, "print the reference page of the case file instead");
+  CLI::Option* columns =
+      schema->add_flag("--columns", arguments.schema.columns, "print the tables of the columns of history.csv instead")
+          ->excludes(markdown);
+  schema->add_flag("--summary", arguments.schema.summary, "print the schema of summary.json instead")
+      ->excludes(markdown)
+      ->excludes(columns);
 
   CLI::App* completion =
       app.add_subcommand("completion", "Print the script with which a shell completes the words of a ricochet command");
@@ -352,7 +357,7 @@ int dispatch(int argc, char** argv) {
     std::fputs(program::completion_script(arguments.shell).c_str(), stdout);
     return 0;
   }
-  return program::schema(arguments.markdown, arguments.columns);
+  return program::schema(arguments.schema);
 }
 
 /// Returns the exit status; reports errors.

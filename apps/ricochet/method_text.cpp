@@ -18,30 +18,28 @@ constexpr double rounding_of_energies = 1e-8;
 constexpr double beside = 0.01;
 
 std::string energy_text(const RunSummary& summary) {
-  const double lost = summary.loss_by_method(), created = summary.creation_by_method();
+  const double lost = summary.method_energy.lost, created = summary.method_energy.created;
   const double most = std::max(lost, created);
   if (!(most > rounding_of_energies))
     return fmt::format("the method conserved the energy to within {:.1e} of the largest", most);
   const bool both = std::min(lost, created) > beside * most;
   // Omitted if it equals the number just reported.
-  const bool gave_back =
-      summary.method_energy && std::abs(std::abs(summary.method_energy->at_end) - most) > beside * most;
+  const double at_end = summary.method_energy.at_end;
+  const bool gave_back = std::abs(std::abs(at_end) - most) > beside * most;
   const char* const up_to = both || gave_back ? "up to " : "";
   std::string text = "the method";
   if (both || created > lost) text += fmt::format(" created {}{}", up_to, percent(created));
   if (both) text += " and";
   if (both || lost >= created) text += fmt::format(" lost {}{}", up_to, percent(lost));
   text += " of the largest energy";
-  if (gave_back)
-    text += fmt::format(", {}{} at the end", summary.method_energy->at_end > 0.0 ? "+" : "",
-                        percent(summary.method_energy->at_end));
+  if (gave_back) text += fmt::format(", {}{} at the end", at_end > 0.0 ? "+" : "", percent(at_end));
   return text + " (contact work and numerical dissipation)";
 }
 
 }  // namespace
 
 std::string method_energy_mark(const RunSummary& summary) {
-  const double lost = summary.loss_by_method(), created = summary.creation_by_method();
+  const double lost = summary.method_energy.lost, created = summary.method_energy.created;
   if (!(std::max(lost, created) > rounding_of_energies)) return "0";
   return created > lost ? "+" + percent(created) : "-" + percent(lost);
 }

@@ -54,8 +54,7 @@ std::string unsettled_text(const UnsettledContact& unsettled, const RunSummary& 
 
 /// Returns the time from which cells have rotated too far. Rotations after the last impact do not affect its results.
 std::string beyond_text(const RunSummary& s) {
-  if (!s.rotation) return " (BEYOND SMALL STRAIN)";
-  const std::string since = fmt::format("t = {:.6g} on", s.rotation->time_beyond);
+  const std::string since = fmt::format("t = {:.6g} on", s.rotation.time_beyond);
   if (s.impacts.empty()) return fmt::format(" (BEYOND SMALL STRAIN from {})", since);
   if (s.cells_turn_little_in_impacts())
     return fmt::format(" (beyond small strain from {}, after the last impact had ended)", since);
@@ -68,13 +67,11 @@ std::string beyond_text(const RunSummary& s) {
 std::string deformation_text(const RunSummary& s) {
   const double rotation = s.digest("max_rotation").maximum;
   std::string text =
-      fmt::format("  deepest interpenetration {:.3g}{}, largest rotation of a cell {:.3g} rad{}",
-                  s.digest("max_penetration").maximum,
-                  s.penetration.checked ? " of contact nodes" : " of contact nodes (no other nodes were checked)",
-                  rotation, rotation > s.largest_rotation() ? beyond_text(s) : "");
+      fmt::format("  deepest interpenetration {:.3g} of contact nodes, largest rotation of a cell {:.3g} rad{}",
+                  s.digest("max_penetration").maximum, rotation, rotation > s.rotation.limit ? beyond_text(s) : "");
   for (const UnwatchedPenetration& found : s.penetration.found) text += found_text(found);
   for (const std::string& what : s.penetration.not_watched)
-    if (s.penetration.checked) text += fmt::format("\n  not checked for interpenetration: {}", what);
+    text += fmt::format("\n  not checked for interpenetration: {}", what);
   for (const ContactBeyondRim& rim : s.penetration.rims)
     text += fmt::format("\n  the contact of \"{}\" with \"{}\" extends beyond its group", rim.group, rim.obstacle);
   for (const PairSliding& pair : s.sliding) text += sliding_text(pair, s);

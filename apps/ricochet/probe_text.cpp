@@ -23,7 +23,7 @@ struct ProbeNodes {
 std::vector<ProbeNodes> probes_of(const RunSummary& summary) {
   std::vector<ProbeNodes> result;
   for (std::size_t i = 0; i < summary.probes.size(); ++i) {
-    const std::string& full = summary.probes[i].name;
+    const std::string& full = summary.probes[i].probe.name;
     const std::string name = full.substr(0, full.find('.'));
     const bool is_segment = name.size() < full.size();
     if (is_segment && !result.empty() && result.back().is_segment && result.back().name == name) {
@@ -36,7 +36,7 @@ std::vector<ProbeNodes> probes_of(const RunSummary& summary) {
 }
 
 std::string probe_position_text(const RunSummary& summary, std::size_t probe) {
-  const std::vector<double>& at = summary.probe_positions[probe];
+  const std::vector<double>& at = summary.probes[probe].position;
   return vector_text(Eigen::Map<const Vector>(at.data(), static_cast<Index>(at.size())));
 }
 
@@ -55,13 +55,13 @@ void print_probes(const RunSummary& summary) {
                  probe_position_text(summary, probe.first), probe_position_text(summary, probe.last - 1));
     } else {
       fmt::print("  probe \"{}\": its node is {:.3g} from the requested position", probe.name,
-                 summary.probes[probe.first].distance);
+                 summary.probes[probe.first].probe.distance);
     }
     ColumnDigest hardest;
     bool any = false;
     for (std::size_t i = probe.first; i < probe.last; ++i) {
-      if (!has_force(summary, summary.probes[i])) continue;
-      const ColumnDigest force = summary.digest(summary.probes[i].name + ".reaction_normal");
+      if (!has_force(summary, summary.probes[i].probe)) continue;
+      const ColumnDigest force = summary.digest(summary.probes[i].probe.name + ".reaction_normal");
       if (!any || force.maximum > hardest.maximum) hardest = force;
       any = true;
     }

@@ -112,11 +112,11 @@ std::string resolution_text(const Impact& impact) {
 
 /// Returns, for a run in which cells rotate too far, whether they had done so when this impact ended.
 std::string rotation_text(std::size_t impact, const RunSummary& summary) {
-  if (!summary.rotation || !std::isfinite(summary.rotation->time_beyond)) return "";
-  if (impact >= summary.rotation->until_impact_end.size()) return "";
-  return fmt::format(", cells rotated by up to {:.3g} rad until {}{}", summary.rotation->until_impact_end[impact],
+  const RotationReport& rotation = summary.rotation;
+  if (!std::isfinite(rotation.time_beyond) || impact >= rotation.until_impact_end.size()) return "";
+  return fmt::format(", cells rotated by up to {:.3g} rad until {}{}", rotation.until_impact_end[impact],
                      summary.impacts[impact].ended ? "its end" : "now",
-                     summary.cells_turn_little_in(impact) ? "" : " (BEYOND SMALL STRAIN)");
+                     rotation.holds_in_impact(impact) ? "" : " (BEYOND SMALL STRAIN)");
 }
 
 /// Returns a note if the energy error of the method is large compared with the loss that the restitution implies.
@@ -188,8 +188,7 @@ std::string impact_text(std::size_t number, const RunSummary& summary) {
 }
 
 void print_no_contact(const RunSummary& summary) {
-  // Results of a version without impacts list no bodies either: nothing is known about contact.
-  if (summary.contacts.empty() || summary.bodies.empty() || summary.steps == 0) return;
+  if (summary.contacts.empty() || summary.steps == 0) return;
   if (!summary.impacts.empty() || summary.impacts_left_out > 0) return;
   // As if a body touches itself.
   if (summary.digest("active_contacts").maximum > 0.0) {

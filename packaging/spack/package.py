@@ -1,6 +1,6 @@
 # A recipe for Spack. What was tried: its body runs, and what it says is consistent (tests/end_to_end/recipes_test.py). What was
 # not: Spack itself. The versions are those of Debian 12, with which Ricochet is tested; newer ones of Basix have another
-# interface. It builds the working copy: `spack develop --path REPOSITORY ricochet@0.2.0`.
+# interface. It builds the working copy: `spack develop --path REPOSITORY ricochet@0.3.0`.
 from spack.package import *
 
 
@@ -9,7 +9,7 @@ class Ricochet(CMakePackage):
 
     license("BSD-3-Clause AND GPL-3.0-or-later")
 
-    version("0.2.0")
+    version("0.3.0")
 
     variant("figures", default=True, description="Draw figures by Python's matplotlib (ricochet plot)")
     variant("meshes", default=True, description="Mesh geometries by Gmsh, and convert meshes of other formats by Python")

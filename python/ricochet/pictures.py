@@ -38,7 +38,7 @@ def scene_of(frames, field, scale=1.0):
             touching = numpy.flatnonzero(frame["contact_pressure"][nodes] > 0.0)
         shots.append(Shot(frame.time, points, on_triangles(run, frame, field, cells, nodes, triangles),
                           None if obstacles is None else obstacles[1], touching))
-    axisymmetric = run.summary.get("parameters", {}).get("mesh.plane") == "axisymmetric"
+    axisymmetric = run.summary["parameters"].get("mesh.plane") == "axisymmetric"
     return Scene(run.dimension, field, triangles, reference, of_obstacles, axisymmetric), shots
 
 

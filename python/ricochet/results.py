@@ -3,7 +3,7 @@
 import json
 import os
 from collections.abc import Mapping
-from typing import NamedTuple, Optional, Tuple
+from typing import TYPE_CHECKING, NamedTuple, Optional, Tuple
 
 import numpy
 
@@ -11,6 +11,9 @@ from . import _core
 from .errors import Error, ExpectationError, InputError, UsageError, unknown_name
 from .files import library_path
 from .messages import logger
+
+if TYPE_CHECKING:
+    from ._summary import Summary
 
 
 def unknown_field(what, name, written, known):
@@ -153,6 +156,8 @@ class Frames:
 class Run:
     """Results of a run, finished or in progress, in its directory."""
 
+    summary: "Summary"
+
     def __init__(self, directory):
         self.directory = library_path(directory, "open")
         self.reload()
@@ -231,8 +236,8 @@ class Run:
         """Returns the largest value of a field, with its time and position, or of a column of the history, with its time. The
         search covers all states that the run evaluated for the von Mises stress, and only the frames for other fields. Vectors
         are compared by their lengths."""
-        if name == "von_mises" and self.summary.get("peak_stress"):
-            peak = self.summary["peak_stress"]
+        peak = self.summary["peak_stress"]
+        if name == "von_mises" and peak:
             return Maximum(peak["von_mises"], peak["time"], tuple(peak["place"]), "every state" if peak["states_looked_at"] ==
                            peak["states"] else f"{peak['states_looked_at']} of {peak['states']} states")
         if name in self.fields:

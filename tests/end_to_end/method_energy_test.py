@@ -154,20 +154,6 @@ class MethodEnergy(TestCase):
         self.assertIn(f"{folders['end']}: mass equivalent, built as ", text)
         self.assertRegex(text, r"built as \S+; reactions: those at the end of the step\n")
 
-    def test_results_of_older_versions_are_read(self):
-        folder = self.simulate(DISC, "old", LONG | {"time.reaction_weight": "end"})
-        found, history = summary(folder), History(folder / "history.csv")
-        loss = found["energy_budget"]["lost_by_method"]
-        for entry in ("energy_budget", "reactions"):
-            del found[entry]
-        for impact in found["impacts"]:
-            del impact["method_energy"], impact["restitution_inexact"]
-        (folder / "summary.json").write_text(json.dumps(found))
-        self.assertIn(f"the method lost {percent(loss)} of the largest energy", self.said(folder))
-        self.assertNotIn("reactions", self.said(folder))
-        self.expect_status(0, run("report", folder))
-        self.assertGreater(len(history.rows), 1)
-
 
 if __name__ == "__main__":
     unittest.main()

@@ -77,22 +77,22 @@ class Penetration(TestCase):
         text = self.expect_status(0, run("info", output)).stdout
         self.assertIn(f"PENETRATION WITHOUT CONTACT: the body in \"foundation\", {found['depth']:.3g} deep", text)
         # The table of several runs has the worst of both, and states which results were not checked.
-        other = self.folder / "old"
+        other = self.folder / "unwatched"
         shutil.copytree(output, other)
-        old = summary_of(other)
-        del old["unwatched_penetration"]
-        (other / "summary.json").write_text(json.dumps(old), encoding="utf-8")
+        unwatched = summary_of(other)
+        unwatched["unwatched_penetration"] |= {"found": [], "contact_beyond_rim": [], "not_watched": ["the rest"]}
+        (other / "summary.json").write_text(json.dumps(unwatched), encoding="utf-8")
         rows = self.expect_status(0, run("info", output, other)).stdout.split("\n")[2:4]
         self.assertIn(f" {found['depth']:.3g} ", rows[0])
         self.assertIn(" ≥ ", rows[1])
-        self.assertIn("no other nodes were checked", self.expect_status(0, run("info", other)).stdout)
+        self.assertIn("not checked for interpenetration: the rest", self.expect_status(0, run("info", other)).stdout)
         # The report judges the same.
         for directory, checked in ((output, True), (other, False)):
             self.expect_status(0, run("report", directory))
             page = (directory / "report.html").read_text(encoding="utf-8")
             data = re.search(r'<script type="[^"]*" id="ricochet-runs">(.*?)</script>', page, re.DOTALL)[1]
             judgement = json.loads(data)["runs"][0]["judgement"]
-            self.assertEqual(judgement["penetration_checked"], checked)
+            self.assertEqual(judgement["penetration_not_watched"], "" if checked else "the rest")
             if checked:
                 self.assertEqual(judgement["penetration"], found["depth"])
                 self.assertIn("foundation", judgement["unwatched_penetration"])

@@ -11,7 +11,7 @@ import numpy
 
 from harness import PROGRAM, TIME_LIMIT, TestCase, run
 
-VIEWER = ("<!doctype html><!-- ricochet report --><!-- data format 5 --><html><body><p>a viewer</p><!--RICOCHET-DATA--><script>$&\\1</script>"
+VIEWER = ("<!doctype html><!-- ricochet report --><!-- data format 6 --><html><body><p>a viewer</p><!--RICOCHET-DATA--><script>$&\\1</script>"
           "</body></html>\n")
 SHORT = {"time.end": 0.02, "output.fields_every": 10}
 

@@ -155,7 +155,7 @@ class Refusals(ResumeTestCase):
             content[8:12] = struct.pack("<I", 1)
             path.write_bytes(content)
         process = self.expect_status(2, run("run", self.disc, "-o", output, "--resume", *settings(values)))
-        self.assertIn("another version of the program wrote it (format 1; this version reads format 12)", process.stderr)
+        self.assertIn("written by another version of Ricochet (format 1)", process.stderr)
         self.assertIn("--force", process.stderr)
 
     def test_a_directory_knows_its_case(self):

@@ -97,14 +97,12 @@ class StudyMisuse(TestCase):
             "nothing varies": lambda study: study.__setitem__("axes", []),
             "expected a text": lambda study: study["axes"][0]["keys"].__setitem__(0, {}),
             '"time.end" does not vary': lambda study: study["questions"].__setitem__("order", "time.end"),
-            "is not a quantity": lambda study: study["questions"].__setitem__("quantities", ["steps"]),
-            "has format 77": lambda study: study.__setitem__("ricochet_study", 77)}
+            "is not a quantity": lambda study: study["questions"].__setitem__("quantities", ["steps"])}
         for said, change in changes.items():
             (self.output / "study.json").write_text(original)
             self.edit(change)
-            status = 4 if "format" in said else 2
             for command in (("study", "--resume", self.output), ("info", self.output), ("report", self.output)):
-                self.refused(status, (str(self.output / "study.json"), said, "choose another directory"), *command)
+                self.refused(2, (str(self.output / "study.json"), said, "choose another directory"), *command)
         (self.output / "study.json").write_text(original[:len(original) // 2])
         self.refused(2, ("is damaged", "line "), "study", "--resume", self.output)
 

@@ -1,7 +1,7 @@
 import { runColour } from "./colours";
 import type { Run } from "./data/run";
 import { el } from "./elements";
-import { count, number, seconds } from "./format";
+import { count, number, seconds, toNumber } from "./format";
 import { reactionsWords } from "./glance";
 import { impactTable } from "./results/outcomes";
 import type { Store } from "./store";
@@ -87,7 +87,7 @@ function messages(runs: Run[]): HTMLElement {
     if (summary.message) list.push([summary.status, summary.message]);
     for (const warning of summary.warnings) list.push(["warning", warning]);
     for (const [name, check] of Object.entries(summary.checks))
-      if (check.limit > 0 && check.largest > check.limit) list.push(["check failed", `${name} reaches ${number(check.largest, 2)}, above its limit ${number(check.limit, 2)}`]);
+      if (check.limit > 0 && toNumber(check.largest) > check.limit) list.push(["check failed", `${name} reaches ${number(check.largest, 2)}, above its limit ${number(check.limit, 2)}`]);
     for (const expected of summary.expectations)
       if (expected.checked && !expected.holds) list.push(["expectation does not hold", `${expected.quantity} is ${number(expected.value)}, expected ${expected.wanted}`]);
     for (const sentence of run.data.thinned) list.push(["note", sentence]);

@@ -48,14 +48,14 @@ interface EnergyChange {
   whole: string;
 }
 
-/** Change of the energy if only contact acts on the body; otherwise the change by the method, from the budget over all steps if the run has one. */
+/** Change of the energy if only contact acts on the body; otherwise the change by the method, from the budget over all steps. */
 function energyChange(j: Judgement, { energy_budget: budget }: Summary): EnergyChange {
-  if (!j.is_isolated && budget) return { gain: toNumber(budget.created_by_method), loss: toNumber(budget.lost_by_method), whole: "the largest energy" };
+  if (!j.is_isolated) return { gain: toNumber(budget.created_by_method), loss: toNumber(budget.lost_by_method), whole: "the largest energy" };
   return { gain: j.energy_gain / j.energy_scale, loss: j.energy_loss / j.energy_scale, whole: "the energy at the start" };
 }
 
 const budgetWords = ({ energy_budget: budget }: Summary): string =>
-  budget ? `; the method created at most ${percent(toNumber(budget.created_by_method))} and lost at most ${percent(toNumber(budget.lost_by_method))} of the largest energy` : "";
+  `; the method created at most ${percent(toNumber(budget.created_by_method))} and lost at most ${percent(toNumber(budget.lost_by_method))} of the largest energy`;
 
 export function energyFinding(j: Judgement, summary: Summary): Finding {
   const what = j.is_isolated ? "Energy" : "Energy in contact";
@@ -77,7 +77,7 @@ const doubtful = 0.01;
 
 /** The contact with the largest share of its force at stake, among those with large sliding; null if no share is too large. */
 function doubtfulContact({ unsettled_contacts: contacts }: Summary) {
-  const [worst] = [...(contacts ?? [])].sort((a, b) => toNumber(b.share_of_force) - toNumber(a.share_of_force));
+  const [worst] = [...contacts].sort((a, b) => toNumber(b.share_of_force) - toNumber(a.share_of_force));
   return worst && toNumber(worst.share_of_force) > doubtful ? worst : null;
 }
 
@@ -120,9 +120,6 @@ export function penetrationFinding(j: Judgement): Finding {
     ? `depth up to ${number(j.penetration, 3)}; the body's size is unknown, as the run wrote no fields`
     : `depth up to ${number(j.penetration, 3)}, ${number(relative, 2)} of the body's size`;
   const none = relative === null ? j.penetration === 0 : relative < 1e-9;
-  if (!j.penetration_checked) {
-    return { what, grade: "none", words: `${none ? "none" : size} at contact points, elsewhere not checked`, short: `${none ? "none" : share}, partly checked`, detail: `${detail}; the version that wrote these results checked contact points only` };
-  }
   if (j.penetration_not_watched !== "") {
     return { what, grade: "none", words: `${none ? "none" : size} where checked; not checked: ${j.penetration_not_watched}`, short: `${none ? "none" : share}, partly checked`, detail: `${detail}; not checked: ${j.penetration_not_watched}` };
   }

@@ -249,7 +249,7 @@ test("an infinite depth is reported, not shown as none", async () => {
   const run = shortDisc("infinite");
   const file = join(run, "summary.json");
   const summary = JSON.parse(readFileSync(file, "utf8"));
-  const found = { obstacle: "floor", bodies: ["body 0"], depth: "inf", relative_depth: "inf", time: 0.005, place: [0, 0], first_time: 0.005, groups: [] };
+  const found = { obstacle: "floor", bodies: ["body 0"], depth: "inf", relative_depth: "inf", time: 0.005, place: [0, 0], first_time: 0.005, groups: [], contact: null, passed_through: false, through_groups: [] };
   summary.unwatched_penetration = { ...summary.unwatched_penetration, depth: "inf", relative_depth: "inf", found: [found] };
   writeFileSync(file, JSON.stringify(summary));
   const view = await open(report("infinite", run));
@@ -295,7 +295,7 @@ test("unchecked penetration has no good mark", async () => {
   assert.match(await words("watched", {}), /^good: .?none$/);
   assert.match(await words("unwatched", { not_watched: ["bodies against themselves"] }),
     /^none: .?none where checked; not checked: bodies against themselves$/);
-  const found = { obstacle: null, bodies: ["the body"], depth: 0.01, relative_depth: 0.125, time: 0.005, place: [0, 0], first_time: 0.005, groups: [] };
+  const found = { obstacle: null, bodies: ["the body"], depth: 0.01, relative_depth: 0.125, time: 0.005, place: [0, 0], first_time: 0.005, groups: [], contact: null, passed_through: false, through_groups: [] };
   assert.match(await words("itself", { depth: 0.01, relative_depth: 0.125, found: [found] }), /^poor: .?12.5 % of the body's size/);
 });
 

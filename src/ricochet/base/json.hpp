@@ -63,6 +63,7 @@ class Json {
   /// Writes on one line if `indent` is negative. Invalid UTF-8 in a text is replaced.
   [[nodiscard]] std::string dump(int indent = -1) const;
 
+  [[nodiscard]] bool is_null() const { return std::holds_alternative<std::nullptr_t>(value_); }
   [[nodiscard]] bool is_object() const { return std::holds_alternative<Object>(value_); }
   [[nodiscard]] bool is_array() const { return std::holds_alternative<Array>(value_); }
   [[nodiscard]] bool is_string() const { return std::holds_alternative<std::string>(value_); }

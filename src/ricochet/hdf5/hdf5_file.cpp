@@ -224,6 +224,19 @@ std::int64_t Hdf5Reader::attribute(const std::string& group, const std::string& 
   return value;
 }
 
+std::string Hdf5Reader::text_attribute(const std::string& group, const std::string& name) const {
+  if (H5Aexists_by_name(file_, group.c_str(), name.c_str(), H5P_DEFAULT) <= 0) return "";
+  const Hdf5Handle found(H5Aopen_by_name(file_, group.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle type(found >= 0 ? H5Aget_type(found) : -1, H5Tclose);
+  const Hdf5Handle space(found >= 0 ? H5Aget_space(found) : -1, H5Sclose);
+  if (type < 0 || space < 0 || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 ||
+      H5Sget_simple_extent_npoints(space) != 1)
+    fail(group, fmt::format("has no attribute \"{}\" that is a text of fixed length", name));
+  std::string text(H5Tget_size(type), '\0');
+  if (H5Aread(found, type, text.data()) < 0) fail(group, "cannot be read: the file is damaged");
+  return text.substr(0, text.find('\0'));
+}
+
 std::vector<std::int64_t> Hdf5Reader::integers(const std::string& name, std::int64_t expected_size) const {
   const Dataset set(*this, name);
   std::vector<std::int64_t> result;

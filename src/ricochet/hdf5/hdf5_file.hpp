@@ -40,6 +40,8 @@ class Hdf5Reader {
   [[nodiscard]] std::int64_t integer(const std::string& name) const;
   /// Value of an attribute of a group.
   [[nodiscard]] std::int64_t attribute(const std::string& group, const std::string& name) const;
+  /// Attribute of a group that is a text of fixed length; empty if there is none.
+  [[nodiscard]] std::string text_attribute(const std::string& group, const std::string& name) const;
   /// Number of entries of a data set of one dimension (1 for a scalar).
   [[nodiscard]] std::int64_t size(const std::string& name) const;
   [[nodiscard]] std::vector<std::int64_t> integers(const std::string& name, std::int64_t expected_size) const;

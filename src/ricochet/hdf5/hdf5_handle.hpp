@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 /// @file Functions that all HDF5 files of the program share. HDF5's own header stays in the .cpp files.
 namespace ricochet {
@@ -28,6 +29,10 @@ void quiet_hdf5();
 /// Returns creation properties of a file, group or data set (`of_class`: H5P_FILE_CREATE, …) without its time of
 /// creation: the same data give the same file.
 [[nodiscard]] Hdf5Handle timeless_hdf5_properties(std::int64_t of_class);
+
+/// Writes an attribute of an object: a text of fixed length without a terminating zero, as VTK's reader requires.
+/// Returns false if this failed.
+[[nodiscard]] bool write_hdf5_text_attribute(std::int64_t object, const char* name, const std::string& text);
 
 /// Returns false if the group could not be created.
 [[nodiscard]] bool make_hdf5_group(std::int64_t file, const char* name);

@@ -22,6 +22,15 @@ constexpr hsize_t chunk_entries = 1 << 17;
 
 }  // namespace
 
+bool write_hdf5_text_attribute(std::int64_t object, const char* name, const std::string& text) {
+  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, text.size());
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  return attribute >= 0 && H5Awrite(attribute, type, text.c_str()) >= 0;
+}
+
 Hdf5Writer::Hdf5Writer(std::string path) : path_(std::move(path)), temporary_(path_ + ".part") {
   quiet_hdf5();
   // This format puts a checksum on everything but the data themselves.

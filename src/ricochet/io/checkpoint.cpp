@@ -10,10 +10,12 @@
 
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/file_version.hpp"
 #include "ricochet/base/input_file.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/io/durable_file.hpp"
+#include "ricochet/version.hpp"
 
 namespace ricochet {
 
@@ -137,9 +139,11 @@ Snapshot decode_snapshot(const std::string& text) {
   if (text.size() < head_size + sizeof(std::uint32_t)) throw Error(ErrorKind::invalid_input, "it is truncated");
   Cursor head(std::string_view(text).substr(magic.size()));
   if (const auto found = head.number<std::uint32_t>(); found != format) {
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("another version of the program wrote it (format {}; this version reads format {})", found,
-                            format));
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("written by another version of Ricochet (format {}); this is Ricochet {}, which reads format "
+                    "{}: repeat the run, or continue it with the version that wrote it",
+                    found, version, format));
   }
   if (head.number<std::uint64_t>() != text.size() - head_size - sizeof(std::uint32_t))
     throw Error(ErrorKind::invalid_input, "its length is wrong: it is truncated, or something was appended");
@@ -192,11 +196,14 @@ Snapshot read_checkpoint(const std::string& path) {
       throw Error(ErrorKind::invalid_input, fmt::format("{}: it is not a checkpoint", path));
   }
   const std::string text = read_file(path);
+  Snapshot snapshot;
   try {
-    return decode_snapshot(text);
+    snapshot = decode_snapshot(text);
   } catch (const Error& problem) {
     throw Error(problem.kind(), fmt::format("{}: {}", path, problem.what()));
   }
+  if (snapshot.has("identity.version")) require_readable_version(path, snapshot.text("identity.version"));
+  return snapshot;
 }
 
 std::optional<Snapshot> newest_checkpoint(const std::string& directory) {

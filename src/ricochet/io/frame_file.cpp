@@ -12,8 +12,10 @@
 
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/file_version.hpp"
 #include "ricochet/hdf5/hdf5_handle.hpp"
 #include "ricochet/io/durable_file.hpp"
+#include "ricochet/version.hpp"
 
 namespace ricochet {
 
@@ -142,6 +144,7 @@ void FrameFile::create(const std::string& path, const std::vector<FixedDataset>&
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, properties, access);
   check_written(path, file >= 0, "the file");
   try {
+    check_written(path, write_hdf5_text_attribute(file, version_attribute, version), version_attribute);
     for (const FixedDataset& set : fixed) write_fixed(file, path, set);
     // The indices of HDF5 1.10 grow without a change of existing data. Older ones split their nodes in place: if killed
     // in between, a run would leave a file whose steps cannot be found. (The file itself keeps the format of 1.8, since

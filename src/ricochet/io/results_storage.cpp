@@ -8,6 +8,7 @@
 #include <array>
 #include <map>
 
+#include "ricochet/base/file_version.hpp"
 #include "ricochet/hdf5/hdf5_rows.hpp"
 #include "ricochet/io/file_lock.hpp"
 #include "ricochet/io/vtk_order.hpp"
@@ -20,7 +21,9 @@ ResultsStorage::ResultsStorage(const std::string& directory, const std::string& 
     : path_(directory + "/" + name),
       lock_(directory + "/" + lock_of_results(format)),
       reader_(path_),
-      identity_(identify(path_)) {}
+      identity_(identify(path_)) {
+  require_readable_version(path_, reader_->text_attribute("/", version_attribute));
+}
 
 ResultsStorage::Identity ResultsStorage::identify(const std::string& path) {
   struct statx file {};

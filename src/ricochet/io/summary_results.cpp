@@ -1,11 +1,6 @@
-#include "ricochet/io/summary_results.hpp"
-
 #include <fmt/format.h>
 
-#include <cmath>
-
-#include "ricochet/base/error.hpp"
-#include "ricochet/base/json.hpp"
+#include "ricochet/io/summary_visitor.hpp"
 #include "ricochet/simulation/impact/restitution.hpp"
 #include "ricochet/simulation/impact/rotation_growth.hpp"
 #include "ricochet/simulation/monitor/stress_raisers.hpp"
@@ -14,373 +9,249 @@ namespace ricochet {
 
 namespace {
 
-Json numbers(const std::vector<double>& values) {
-  Json result = Json::array();
-  for (const double value : values) result.push_back(Json::number(value));
-  return result;
-}
-
-std::vector<double> to_numbers(const Json& values) {
-  std::vector<double> result;
-  for (const Json& value : values) result.push_back(value.to_number());
-  return result;
-}
-
-/// Two components in the plane.
-Json components(const Eigen::Vector3d& values, int dimension) {
-  Json result = Json::array();
-  for (int k = 0; k < dimension; ++k) result.push_back(Json::number(values[k]));
-  return result;
-}
-
-/// Angular velocity; in the plane its component about z.
-Json turning(const Eigen::Vector3d& values, int dimension) {
-  return dimension == 2 ? Json::number(values[2]) : components(values, 3);
-}
-
-Json bodies_to_json(const RunSummary& summary) {
-  Json result = Json::array();
-  for (const BodyDescription& body : summary.bodies) {
-    Json inertia = Json::number(body.rigid.inertia(2, 2));
-    if (summary.dimension == 3) {
-      inertia = Json::array();
-      for (int k = 0; k < 3; ++k) inertia.push_back(components(body.rigid.inertia.row(k), 3));
-    }
-    result.push_back({{"name", body.name},
-                      {"mass", Json::number(body.rigid.mass)},
-                      {"centre", components(body.rigid.centre, summary.dimension)},
-                      {"moment_of_inertia", inertia},
-                      {"separation_time", Json::number(body.separation)},
-                      {"held", body.rigid.held}});
-  }
-  return result;
-}
-
-/// Other body of an impact of two bodies.
-Json other_to_json(const Impact& impact, int dimension) {
-  const OtherBody& other = *impact.other;
-  const auto if_ended = [&](const Json& value) { return impact.ended ? value : Json(); };
-  return {{"body", other.number},
-          {"other_impulse", if_ended(components(impact.other_impulse_on_other(), dimension))},
-          {"velocity_before", components(other.before.velocity, dimension)},
-          {"velocity_after", if_ended(components(other.after.velocity, dimension))},
-          {"spin_before", turning(other.before.spin, dimension)},
-          {"spin_after", if_ended(turning(other.after.spin, dimension))},
-          {"kinetic_energy_before", Json::number(other.before.kinetic_energy)},
-          {"kinetic_energy_after", if_ended(Json::number(other.after.kinetic_energy))},
-          {"rigid_kinetic_energy_before", Json::number(other.before.rigid_kinetic_energy)},
-          {"rigid_kinetic_energy_after", if_ended(Json::number(other.after.rigid_kinetic_energy))}};
-}
-
-/// Ratio after / before, for both bodies if there are two.
-Json kinetic_energy_ratio(const Impact& impact) {
-  const double before = impact.before.kinetic_energy + (impact.other ? impact.other->before.kinetic_energy : 0.0);
-  const double after = impact.after.kinetic_energy + (impact.other ? impact.other->after.kinetic_energy : 0.0);
-  return impact.ended && before > 0.0 ? Json::number(after / before) : Json();
-}
-
-Json impact_to_json(const Impact& impact, int dimension) {
-  // Unknown or non-existent values are null.
-  const auto if_ended = [&](const Json& value) { return impact.ended ? value : Json(); };
-  const auto of_obstacle = [&](const Json& value) { return impact.other ? Json() : value; };
-  const std::optional<double> restitution = impact.restitution();
-  Json result = {{"body", impact.body},
-                 {"obstacle", of_obstacle(impact.obstacle)},
-                 {"begin", Json::number(impact.begin)},
-                 {"end", if_ended(Json::number(impact.end))},
-                 {"duration", Json::number(impact.end - impact.begin)},
-                 {"ended", impact.ended},
-                 {"from_start", impact.from_start},
-                 {"from_inside", impact.from_inside},
-                 {"intervals", impact.intervals},
-                 {"contact_time", Json::number(impact.contact_time)},
-                 {"impulse", components(impact.impulse, dimension)},
-                 {"normal", components(impact.normal(), dimension)},
-                 {"normal_impulse", Json::number(impact.normal_impulse.norm())},
-                 {"other_impulse", if_ended(components(impact.other_impulse(), dimension))},
-                 {"largest_force", Json::number(impact.largest_force)},
-                 {"largest_force_time", Json::number(impact.largest_force_time)},
-                 {"mean_force", Json::number(impact.mean_force())},
-                 {"contact_points", impact.contact_points},
-                 {"all_contact_points", impact.all_contact_points},
-                 {"coarse", impact.is_coarse()},
-                 {"first_place", numbers(impact.first_position)},
-                 {"restitution", restitution ? Json::number(*restitution) : Json()},
-                 {"restitution_inexact", restitution_error(impact).is_large},
-                 {"method_energy", impact.method_energy ? Json::number(*impact.method_energy) : Json()},
-                 {"turn_growth", Json::number(impact.rotation_growth)},
-                 {"restitution_by_turning", Json::number(restitution_excess(impact))},
-                 {"why_no_restitution", restitution ? Json() : Json(why_no_restitution(impact))},
-                 {"normal_velocity_before", Json::number(impact.normal_velocity_before())},
-                 {"normal_velocity_after", if_ended(Json::number(impact.normal_velocity_after()))},
-                 {"obstacle_normal_velocity", of_obstacle(Json::number(impact.obstacle_velocity))},
-                 {"obstacle_sliding_velocity", of_obstacle(components(impact.obstacle_sliding, dimension))},
-                 {"tangential_velocity_before", components(impact.tangential_velocity_before(), dimension)},
-                 {"tangential_velocity_after", if_ended(components(impact.tangential_velocity_after(), dimension))},
-                 {"velocity_before", components(impact.before.velocity, dimension)},
-                 {"velocity_after", if_ended(components(impact.after.velocity, dimension))},
-                 {"spin_before", turning(impact.before.spin, dimension)},
-                 {"spin_after", if_ended(turning(impact.after.spin, dimension))},
-                 {"kinetic_energy_before", Json::number(impact.before.kinetic_energy)},
-                 {"kinetic_energy_after", if_ended(Json::number(impact.after.kinetic_energy))},
-                 {"rigid_kinetic_energy_before", Json::number(impact.before.rigid_kinetic_energy)},
-                 {"rigid_kinetic_energy_after", if_ended(Json::number(impact.after.rigid_kinetic_energy))},
-                 {"kinetic_energy_ratio", kinetic_energy_ratio(impact)}};
-  if (impact.other) result["against"] = other_to_json(impact, dimension);
-  return result;
-}
-
-Json impacts_to_json(const RunSummary& summary) {
-  Json result = Json::array();
-  for (const Impact& impact : summary.impacts) result.push_back(impact_to_json(impact, summary.dimension));
-  return result;
-}
-
-Json found_to_json(const UnwatchedPenetration& p) {
-  return {{"obstacle", p.obstacle.empty() ? Json() : Json(p.obstacle)},
-          {"bodies", p.bodies},
-          {"depth", Json::number(p.depth)},
-          {"relative_depth", Json::number(p.relative_depth)},
-          {"time", Json::number(p.time)},
-          {"place", numbers(p.position)},
-          {"first_time", Json::number(p.first_time)},
-          {"groups", p.groups},
-          {"contact", p.contact.empty() ? Json() : Json(p.contact)},
-          {"passed_through", p.passed_through},
-          {"through_groups", p.through_groups}};
-}
-
-/// Writes the deepest penetration separately, so that it has a path (summary.unwatched_penetration.depth), then all.
-Json penetration_to_json(const PenetrationReport& report) {
-  Json found = Json::array(), rims = Json::array();
-  for (const UnwatchedPenetration& p : report.found) found.push_back(found_to_json(p));
-  for (const ContactBeyondRim& rim : report.rims) {
-    rims.push_back({{"group", rim.group},
-                    {"obstacle", rim.obstacle},
-                    {"time", Json::number(rim.time)},
-                    {"place", numbers(rim.position)},
-                    {"groups", rim.groups}});
-  }
-  const UnwatchedPenetration* deepest = report.deepest();
-  return {{"checked", report.checked},
-          {"looks_at_obstacles", report.obstacle_checks},
-          {"looks_at_bodies", report.body_checks},
-          {"looks_at_themselves", report.self_penetration_checks},
-          {"not_watched", report.not_watched},
-          {"depth", Json::number(deepest != nullptr ? deepest->depth : 0.0)},
-          {"relative_depth", Json::number(deepest != nullptr ? deepest->relative_depth : 0.0)},
-          {"found", found},
-          {"contact_beyond_rim", rims}};
-}
-
-Json sliding_to_json(const RunSummary& summary) {
-  Json result = Json::array();
-  for (const PairSliding& pair : summary.sliding) {
-    result.push_back({{"contact", pair.contact},
-                      {"slip", Json::number(pair.slip)},
-                      {"limit", Json::number(pair.limit)},
-                      {"time", Json::number(pair.time)},
-                      {"place", numbers(pair.position)},
-                      {"time_beyond", std::isfinite(pair.time_beyond) ? Json::number(pair.time_beyond) : Json()}});
-  }
-  return result;
-}
-
-Json rotation_to_json(const RunSummary& summary) {
-  if (!summary.rotation) return {};
-  const RotationReport& rotation = *summary.rotation;
-  return {{"limit", Json::number(rotation.limit)},
-          {"time_beyond", std::isfinite(rotation.time_beyond) ? Json::number(rotation.time_beyond) : Json()},
-          {"until_impact_end", numbers(rotation.until_impact_end)}};
-}
-
-Json peak_stress_to_json(const RunSummary& summary) {
-  if (!summary.peak_stress) return {};
-  const PeakStressDescription& d = *summary.peak_stress;
-  return {{"von_mises", Json::number(d.peak.von_mises)},
-          {"time", Json::number(d.peak.time)},
-          {"step", d.peak.step},
-          {"place", numbers(d.position)},
-          {"material", d.material},
-          {"cell", d.peak.cell},
-          {"element", d.element},
-          {"states_looked_at", d.peak.evaluations},
-          {"states", d.peak.states},
-          {"grows_with_refinement", d.peak.raised_by != StressRaiser::none},
-          {"sits_on", d.peak.raised_by != StressRaiser::none ? Json(name_of(d.peak.raised_by)) : Json()}};
-}
-
-Eigen::Vector3d vector_from(const Json& values) {
-  Eigen::Vector3d result = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < values.size() && k < 3; ++k) result[static_cast<Index>(k)] = values.at(k).to_number();
-  return result;
-}
-
-RigidMotionState motion_from(const Json& impact, const std::string& when) {
-  const Json& spin = impact.at("spin_" + when);
-  return {vector_from(impact.at("velocity_" + when)),
-          spin.is_array() ? vector_from(spin) : Eigen::Vector3d(0.0, 0.0, spin.to_number()),
-          impact.at("kinetic_energy_" + when).to_number(), impact.at("rigid_kinetic_energy_" + when).to_number()};
-}
-
-const RigidBody& rigid_body(int body, const std::vector<BodyDescription>& bodies, const std::string& path) {
-  if (body < 0 || body >= static_cast<int>(bodies.size()))
-    throw Error(
-        ErrorKind::invalid_input,
-        fmt::format("{}: not a summary of a run: an impact refers to body {}, which is not listed", path, body));
-  return bodies[static_cast<std::size_t>(body)].rigid;
-}
-
-OtherBody other_from(const Json& json, bool ended, const std::vector<BodyDescription>& bodies,
-                     const std::string& path) {
-  OtherBody other;
-  other.number = json.at("body");
-  const RigidBody& rigid = rigid_body(other.number, bodies, path);
-  other.mass = rigid.mass;
-  other.held = rigid.held;
-  other.before = motion_from(json, "before");
-  if (ended) other.after = motion_from(json, "after");
-  return other;
-}
-
-Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies, const std::string& path) {
-  Impact impact;
-  impact.body = json.at("body");
-  if (json.at("obstacle").is_string()) impact.obstacle = json.at("obstacle");
-  impact.begin = json.at("begin").to_number();
-  impact.end = impact.begin + json.at("duration").to_number();
-  impact.ended = json.at("ended");
-  impact.from_start = json.at("from_start");
-  impact.from_inside = json.value("from_inside", false);
-  impact.intervals = json.at("intervals");
-  impact.contact_time = json.at("contact_time").to_number();
-  impact.impulse = vector_from(json.at("impulse"));
-  impact.normal_impulse = json.at("normal_impulse").to_number() * vector_from(json.at("normal"));
-  impact.largest_force = json.at("largest_force").to_number();
-  impact.largest_force_time = json.at("largest_force_time").to_number();
-  impact.contact_points = json.value("contact_points", 0L);
-  impact.all_contact_points = json.value("all_contact_points", 0L);
-  impact.first_position = to_numbers(json.value("first_place", Json::array()));
-  const Json method_energy = json.value("method_energy", Json());
-  if (method_energy.is_number() || method_energy.is_string()) impact.method_energy = method_energy.to_number();
-  impact.rotation_growth = json.value("turn_growth", Json(0.0)).to_number();
-  const RigidBody& rigid = rigid_body(impact.body, bodies, path);
-  impact.mass = rigid.mass;
-  impact.held = rigid.held;
-  if (json.contains("against")) {
-    impact.other = other_from(json.at("against"), impact.ended, bodies, path);
-  } else {
-    impact.obstacle_velocity = json.at("obstacle_normal_velocity").to_number();
-    impact.obstacle_sliding = vector_from(json.value("obstacle_sliding_velocity", Json::array()));
-  }
-  impact.before = motion_from(json, "before");
-  if (impact.ended) impact.after = motion_from(json, "after");
-  return impact;
-}
-
-BodyDescription body_from(const Json& json) {
-  BodyDescription body;
-  body.rigid.mass = json.at("mass").to_number();
-  body.rigid.centre = vector_from(json.at("centre"));
-  const Json& inertia = json.at("moment_of_inertia");
-  if (!inertia.is_array()) body.rigid.inertia(2, 2) = inertia.to_number();
-  for (std::size_t k = 0; inertia.is_array() && k < 3; ++k)
-    body.rigid.inertia.row(static_cast<Index>(k)) = vector_from(inertia.at(k));
-  body.separation = json.at("separation_time").to_number();
-  body.rigid.held = json.value("held", false);
-  body.name = json.value("name", "");
-  return body;
-}
-
-PenetrationReport penetration_from(const Json& json) {
-  PenetrationReport report{json.at("checked"), json.at("looks_at_obstacles"), json.at("looks_at_bodies")};
-  for (const Json& p : json.at("found")) {
-    report.found.push_back({p.at("obstacle").is_string() ? p.at("obstacle").get<std::string>() : "",
-                            p.at("bodies"),
-                            p.at("depth").to_number(),
-                            p.at("relative_depth").to_number(),
-                            p.at("time").to_number(),
-                            to_numbers(p.at("place")),
-                            p.at("first_time").to_number(),
-                            p.at("groups"),
-                            {}});
-    if (p.contains("contact") && p.at("contact").is_array()) report.found.back().contact = p.at("contact");
-    if (p.contains("passed_through")) report.found.back().passed_through = p.at("passed_through");
-    if (p.contains("through_groups")) report.found.back().through_groups = p.at("through_groups");
-  }
-  for (const Json& rim : json.at("contact_beyond_rim"))
-    report.rims.push_back({rim.at("group"), rim.at("obstacle"), rim.at("time").to_number(), to_numbers(rim.at("place")),
-                           rim.at("groups")});
-  report.self_penetration_checks = json.value("looks_at_themselves", 0L);
-  report.not_watched = json.value("not_watched", std::vector<std::string>{bodies_in_themselves});
-  return report;
-}
-
-PairSliding sliding_from(const Json& json) {
-  PairSliding pair;
-  pair.contact = json.at("contact");
-  pair.slip = json.at("slip").to_number();
-  pair.limit = json.at("limit").to_number();
-  pair.time = json.at("time").to_number();
-  pair.position = to_numbers(json.at("place"));
-  if (json.at("time_beyond").is_number()) pair.time_beyond = json.at("time_beyond").to_number();
-  return pair;
-}
-
-RotationReport rotation_from(const Json& json) {
-  RotationReport result;
-  result.limit = json.at("limit").to_number();
-  if (json.at("time_beyond").is_number()) result.time_beyond = json.at("time_beyond").to_number();
-  result.until_impact_end = to_numbers(json.at("until_impact_end"));
-  return result;
-}
-
-StressRaiser raiser_named(const Json& name) {
-  for (int k = 1; k < stress_raisers && name.is_string(); ++k) {
-    const auto raiser = static_cast<StressRaiser>(k);
-    if (name_of(raiser) == name.get<std::string>()) return raiser;
-  }
-  return StressRaiser::none;
-}
-
-PeakStressDescription peak_stress_from(const Json& json) {
-  PeakStressDescription result;
-  result.peak = {json.at("von_mises").to_number(),
-                 json.at("time").to_number(),
-                 json.at("step"),
-                 json.at("cell"),
-                 json.at("states_looked_at"),
-                 json.at("states"),
-                 raiser_named(json.value("sits_on", Json()))};
-  result.position = to_numbers(json.at("place"));
-  result.element = json.at("element");
-  result.material = json.at("material");
-  return result;
+/// Text that is null if it is empty.
+template <class Text>
+IfKnown<Text&> unless_empty(Text& text) {
+  return {!text.empty(), text};
 }
 
 }  // namespace
 
-Json summary_results_to_json(const RunSummary& summary) {
-  return {{"unwatched_penetration", penetration_to_json(summary.penetration)},
-          {"bodies", bodies_to_json(summary)},
-          {"impacts", impacts_to_json(summary)},
-          {"impacts_left_out", summary.impacts_left_out},
-          {"sliding", sliding_to_json(summary)},
-          {"rotation", rotation_to_json(summary)},
-          {"peak_stress", peak_stress_to_json(summary)}};
+void describe(SummaryVisitor& visit, UnwatchedPenetration& found) {
+  visit.type("UnwatchedPenetration");
+  visit("obstacle", unless_empty(found.obstacle), "name of the obstacle; null for bodies");
+  visit("bodies", found.bodies, "names of the bodies; one without an obstacle is inside itself");
+  visit("depth", Real{found.depth}, "largest depth");
+  visit("relative_depth", Real{found.relative_depth},
+        "depth relative to the diameter of the smallest ball around the body, of two bodies the smaller one");
+  visit("time", found.time, "time of the largest depth");
+  visit("place", found.position, "position of the node at that time");
+  visit("first_time", found.first_time, "time when the penetration was found first");
+  visit("groups", found.groups, "boundary groups of the mesh that the node belongs to");
+  visit("contact", unless_empty(found.contact), "both groups of the contact at the node; null if none");
+  visit("passed_through", found.passed_through, "whether the node went through the obstacle within one step");
+  visit("through_groups", found.through_groups, "in a body itself: boundary groups of the facet that the node crossed");
 }
 
-void read_summary_results(const Json& json, const std::string& path, RunSummary& summary) {
-  if (json.contains("unwatched_penetration")) summary.penetration = penetration_from(json.at("unwatched_penetration"));
-  for (const Json& body : json.value("bodies", Json::array())) summary.bodies.push_back(body_from(body));
-  for (const Json& impact : json.value("impacts", Json::array()))
-    summary.impacts.push_back(impact_from(impact, summary.bodies, path));
-  for (const Json& pair : json.value("sliding", Json::array())) summary.sliding.push_back(sliding_from(pair));
-  summary.impacts_left_out = json.value("impacts_left_out", 0L);
-  if (json.contains("rotation") && json.at("rotation").is_object())
-    summary.rotation = rotation_from(json.at("rotation"));
-  if (json.contains("peak_stress") && json.at("peak_stress").is_object())
-    summary.peak_stress = peak_stress_from(json.at("peak_stress"));
+void describe(SummaryVisitor& visit, ContactBeyondRim& rim) {
+  visit.type("ContactBeyondRim");
+  visit("group", rim.group, "group of the contact");
+  visit("obstacle", rim.obstacle, "name of the obstacle");
+  visit("time", rim.time, "time when this was found");
+  visit("place", rim.position, "position of the pressed node at the border of the group");
+  visit("groups", rim.groups, "boundary groups of the facets beyond the group");
+}
+
+void describe(SummaryVisitor& visit, PenetrationReport& report) {
+  const UnwatchedPenetration* const deepest = report.deepest();
+  visit.type("PenetrationReport");
+  visit.derived("checked", true, "always true");
+  visit("looks_at_obstacles", report.obstacle_checks, "number of checks of nodes against obstacles");
+  visit("looks_at_bodies", report.body_checks, "number of checks of bodies against each other");
+  visit("looks_at_themselves", report.self_penetration_checks, "number of checks of bodies against themselves");
+  visit("not_watched", report.not_watched, "omitted checks, in words");
+  visit.derived("depth", Real{deepest != nullptr ? deepest->depth : 0.0},
+                "depth of the relatively deepest one; 0 if none was found");
+  visit.derived("relative_depth", Real{deepest != nullptr ? deepest->relative_depth : 0.0},
+                "its depth relative to the body");
+  visit("found", report.found, "penetrations for each obstacle, each pair of bodies and each body in itself");
+  visit("contact_beyond_rim", report.rims,
+        "contacts that have reached the border of their group: a node there is pressed, and a neighbouring facet "
+        "outside the group rises from the obstacle with a slope of less than a quarter");
+}
+
+void describe(SummaryVisitor& visit, BodyDescription& body) {
+  RigidBody& rigid = body.rigid;
+  visit.type("Body");
+  visit("name", body.name, "name in messages");
+  visit("mass", Real{rigid.mass}, "mass; in the plane per unit of thickness");
+  visit("centre", Components{rigid.centre}, "centre of mass of the undeformed body");
+  visit("moment_of_inertia", Inertia{rigid.inertia}, "about the centre of mass: in the plane a number");
+  visit("separation_time", Real{body.separation}, "time for which contact must be lost for an impact to end");
+  visit("held", rigid.held, "whether supports at rest leave the body no rigid motion");
+}
+
+namespace {
+
+/// Motion at the beginning of the first step in which the force acts, and at the end of the last one.
+void describe_motion(SummaryVisitor& visit, RigidMotionState& before, RigidMotionState& after, bool ended) {
+  visit("velocity_before", Components{before.velocity}, "velocity of the centre of mass; not relative to the obstacle");
+  visit("velocity_after", IfKnown{ended, Components{after.velocity}}, "after the impact");
+  visit("spin_before", Spin{before.spin},
+        "angular momentum about the centre of mass, solved with the inertia about it, in rad per time: one number in "
+        "the plane, positive counter-clockwise, otherwise a right-handed vector");
+  visit("spin_after", IfKnown{ended, Spin{after.spin}}, "after the impact");
+  visit("kinetic_energy_before", Real{before.kinetic_energy}, "kinetic energy of the whole motion");
+  visit("kinetic_energy_after", IfKnown{ended, Real{after.kinetic_energy}}, "after the impact");
+  visit("rigid_kinetic_energy_before", Real{before.rigid_kinetic_energy}, "kinetic energy without that of vibrations");
+  visit("rigid_kinetic_energy_after", IfKnown{ended, Real{after.rigid_kinetic_energy}}, "after the impact");
+}
+
+const RigidBody& rigid_body(SummaryVisitor& visit, int body) {
+  const std::vector<BodyDescription>& bodies = visit.run().bodies;
+  if (body < 0 || body >= static_cast<int>(bodies.size()))
+    throw Json::Exception(fmt::format("an impact refers to body {}, which is not listed", body));
+  return bodies[static_cast<std::size_t>(body)].rigid;
+}
+
+/// Other body of an impact between two bodies.
+struct OpponentOf {
+  Impact& impact;
+};
+
+void describe(SummaryVisitor& visit, OpponentOf& opponent) {
+  Impact& impact = opponent.impact;
+  OtherBody& other = impact.other ? *impact.other : impact.other.emplace();
+  visit.type("OtherBody");
+  visit("body", other.number, "number of the body, an index of `bodies`");
+  visit.derived("other_impulse", IfKnown{impact.ended, Components{impact.other_impulse_on_other()}},
+                "change of momentum by everything else");
+  describe_motion(visit, other.before, other.after, impact.ended);
+  if (!visit.reads()) return;
+  const RigidBody& rigid = rigid_body(visit, other.number);
+  other.mass = rigid.mass;
+  other.held = rigid.held;
+}
+
+/// Ratio after / before, for both bodies if there are two.
+std::optional<double> kinetic_energy_ratio(const Impact& impact) {
+  const double before = impact.before.kinetic_energy + (impact.other ? impact.other->before.kinetic_energy : 0.0);
+  const double after = impact.after.kinetic_energy + (impact.other ? impact.other->after.kinetic_energy : 0.0);
+  return impact.ended && before > 0.0 ? std::optional(after / before) : std::nullopt;
+}
+
+void describe_forces(SummaryVisitor& visit, Impact& impact) {
+  Eigen::Vector3d normal = impact.normal();
+  double normal_impulse = impact.normal_impulse.norm();
+  visit("impulse", Components{impact.impulse}, "impulse of all contact forces of this impact on the body");
+  visit("normal", Components{normal}, "mean direction of their normal parts, towards the body");
+  visit("normal_impulse", Real{normal_impulse}, "size of the impulse of the normal parts");
+  if (visit.reads()) impact.normal_impulse = normal_impulse * normal;
+  visit.derived("other_impulse", IfKnown{impact.ended, Components{impact.other_impulse()}},
+                "change of momentum by everything else");
+  visit("largest_force", Real{impact.largest_force}, "largest resultant over a step, friction included");
+  visit("largest_force_time", impact.largest_force_time, "its time");
+  visit.derived("mean_force", Real{impact.mean_force()}, "size of `impulse` divided by `contact_time`");
+  visit("contact_points", impact.contact_points, "largest number of contact points that carried a force at once");
+  visit("all_contact_points", impact.all_contact_points, "number of contact points of the body there");
+  visit.derived("coarse", impact.is_coarse(),
+                "whether at most 3 of more points carried a force at once: the contact zone is too coarse for a "
+                "reliable `largest_force` and `duration`");
+  visit("first_place", impact.first_position, "reference position of the point that first carried a force");
+}
+
+void describe_restitution(SummaryVisitor& visit, Impact& impact) {
+  const std::optional<double> restitution = impact.restitution();
+  visit.derived("restitution", IfKnown{restitution.has_value(), Real{restitution.value_or(0.0)}},
+                "−`normal_velocity_after` / `normal_velocity_before`; null if this does not characterize the impact");
+  visit.derived("restitution_inexact", restitution_error(impact).is_large,
+                "whether `method_energy` is a large part of the loss");
+  visit("method_energy", Real{impact.method_energy}, "energy that the method put into all bodies meanwhile");
+  visit("turn_growth", Real{impact.rotation_growth},
+        "with the law `linear`: mean speed over the impulse at which a rotating body grows towards the surface");
+  visit.derived("restitution_by_turning", Real{restitution_excess(impact)},
+                "amount by which the restitution is too large");
+  visit.derived("why_no_restitution", IfKnown{!restitution, why_no_restitution(impact)}, "reason why there is none");
+}
+
+void describe_velocities(SummaryVisitor& visit, Impact& impact) {
+  const bool has_obstacle = !impact.other;
+  visit.derived("normal_velocity_before", Real{impact.normal_velocity_before()},
+                "velocity along `normal`, relative to the obstacle or other body");
+  visit.derived("normal_velocity_after", IfKnown{impact.ended, Real{impact.normal_velocity_after()}},
+                "after the impact");
+  visit("obstacle_normal_velocity", IfKnown{has_obstacle, Real{impact.obstacle_velocity}},
+        "mean velocity of the obstacle's material along `normal`");
+  visit("obstacle_sliding_velocity", IfKnown{has_obstacle, Components{impact.obstacle_sliding}},
+        "the same across `normal`");
+  visit.derived("tangential_velocity_before", Components{impact.tangential_velocity_before()},
+                "velocity across `normal`, not relative");
+  visit.derived("tangential_velocity_after", IfKnown{impact.ended, Components{impact.tangential_velocity_after()}},
+                "after the impact");
+}
+
+}  // namespace
+
+void describe(SummaryVisitor& visit, Impact& impact) {
+  double duration = impact.end - impact.begin;
+  visit.type("Impact");
+  visit("body", impact.body, "number of the body, an index of `bodies`; of two that of the `group` of their contact");
+  visit("obstacle", IfKnown{!impact.other, impact.obstacle}, "name of the obstacle; null between bodies");
+  visit("begin", impact.begin, "half a step before the first instant with a force");
+  visit.derived("end", IfKnown{impact.ended, impact.end}, "half a step after the last instant with a force");
+  visit("duration", duration, "time from `begin` to the end, or so far");
+  if (visit.reads()) impact.end = impact.begin + duration;
+  visit("ended", impact.ended, "false if the body still touches at the end of the run");
+  visit("from_start", impact.from_start, "whether the body touched when the run began");
+  visit("from_inside", impact.from_inside, "whether the body was inside the obstacle when the run began");
+  visit("intervals", impact.intervals, "number of intervals of contact that are taken together");
+  visit("contact_time", impact.contact_time, "total time of these intervals");
+  describe_forces(visit, impact);
+  describe_restitution(visit, impact);
+  describe_velocities(visit, impact);
+  describe_motion(visit, impact.before, impact.after, impact.ended);
+  visit.derived("kinetic_energy_ratio",
+                IfKnown{kinetic_energy_ratio(impact).has_value(), Real{kinetic_energy_ratio(impact).value_or(0)}},
+                "kinetic energy after / before, of both bodies together if there are two; null if there was none");
+  if (visit.reads()) {
+    const RigidBody& rigid = rigid_body(visit, impact.body);
+    impact.mass = rigid.mass;
+    impact.held = rigid.held;
+  }
+  visit.optional("against", impact.other.has_value(), OpponentOf{impact}, "between bodies: the other one");
+}
+
+void describe(SummaryVisitor& visit, PairSliding& pair) {
+  visit.type("PairSliding");
+  visit("contact", pair.contact, "number of the entry of `[[contact]]`");
+  visit("slip", Real{pair.slip},
+        "motion of one side against the other along the surface since the pairing, at the pressed point where it is "
+        "largest relative to its limit; 0 if no point was ever pressed");
+  visit("limit", Real{pair.limit}, "half of the smallest facet there, on either side");
+  visit("time", pair.time, "time of this slip");
+  visit("place", pair.position, "position of the point in the undeformed body");
+  visit("time_beyond", IfKnown{std::isfinite(pair.time_beyond), pair.time_beyond},
+        "when the slip first exceeded a limit");
+}
+
+void describe(SummaryVisitor& visit, RotationReport& rotation) {
+  visit.type("Rotation");
+  visit("limit", Real{rotation.limit}, "0.1 rad; \"inf\" if the laws hold for any rotation");
+  visit("time_beyond", IfKnown{std::isfinite(rotation.time_beyond), rotation.time_beyond},
+        "when it was first exceeded");
+  visit("until_impact_end", rotation.until_impact_end,
+        "largest rotation up to the end of each impact, to one hundredth");
+}
+
+void describe(SummaryVisitor& visit, PeakStressDescription& stress) {
+  PeakStressResult& peak = stress.peak;
+  const bool grows = peak.raised_by != StressRaiser::none;
+  std::string raiser = name_of(peak.raised_by);
+  visit.type("PeakStress");
+  visit("von_mises", Real{peak.von_mises}, "largest von Mises stress, a mean over a cell");
+  visit("time", peak.time, "its time");
+  visit("step", peak.step, "its step");
+  visit("place", stress.position, "centre of its cell in the undeformed body");
+  visit("material", stress.material, "group of its material");
+  visit("cell", peak.cell, "number of its cell in the files of fields, from 0");
+  visit("element", stress.element, "number of its cell in the mesh file");
+  visit("states_looked_at", peak.evaluations, "number of states that were evaluated");
+  visit("states", peak.states, "number of all states; if more than were evaluated, a peak in between may be higher");
+  visit.derived("grows_with_refinement", grows, "whether the value depends on the mesh");
+  visit("sits_on", IfKnown{grows, raiser}, "reason for this, or null");
+  for (int k = 1; visit.reads() && k < stress_raisers; ++k) {
+    if (name_of(static_cast<StressRaiser>(k)) == raiser) peak.raised_by = static_cast<StressRaiser>(k);
+  }
+}
+
+void describe_results(SummaryVisitor& visit, RunSummary& run) {
+  visit("unwatched_penetration", run.penetration, "penetration that no contact prevents");
+  visit("bodies", run.bodies, "bodies of the mesh, from the mass matrix of the run");
+  visit("impacts", run.impacts, "collisions of each body with each obstacle and of each two bodies, by their begin");
+  visit("impacts_left_out", run.impacts_left_out, "number of later impacts, which are only counted");
+  visit("sliding", run.sliding, "relative sliding of each contact between bodies without `sliding = \"large\"`");
+  visit("rotation", run.rotation, "when cells had rotated too far for small strain, from the rows of the history");
+  visit("peak_stress", run.peak_stress, "largest von Mises stress of the run; null if there is none");
 }
 
 }  // namespace ricochet

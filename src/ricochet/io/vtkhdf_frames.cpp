@@ -35,16 +35,6 @@ bool write_attribute(std::int64_t object, const char* name, std::int64_t type_in
   return attribute >= 0 && H5Awrite(attribute, type, values.data()) >= 0;
 }
 
-/// Writes text of fixed length without a terminating zero, as VTK's reader requires.
-bool write_text_attribute(std::int64_t object, const char* name, const std::string& text) {
-  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type, text.size());
-  H5Tset_strpad(type, H5T_STR_NULLPAD);
-  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Hdf5Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  return attribute >= 0 && H5Awrite(attribute, type, text.c_str()) >= 0;
-}
-
 /// Creates a dataset without rows and without a limit on their number.
 bool make_growing(std::int64_t group, const std::string& name, std::int64_t type, Index columns,
                   std::int64_t properties) {
@@ -93,7 +83,7 @@ class VtkHdfFrames : public FrameArrangement {
     const Hdf5Handle root(H5Gopen2(file, root_name, H5P_DEFAULT), H5Gclose);
     check_written(path,
                   root >= 0 && write_attribute(root, "Version", H5T_STD_I64LE, H5T_NATIVE_INT64, {2, 0}) &&
-                      write_text_attribute(root, "Type", "UnstructuredGrid") && make_hdf5_group(file, steps_name),
+                      write_hdf5_text_attribute(root, "Type", "UnstructuredGrid") && make_hdf5_group(file, steps_name),
                   root_name);
     for (const char* group :
          {"/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/Steps/PointDataOffsets", "/VTKHDF/Steps/CellDataOffsets"}) {

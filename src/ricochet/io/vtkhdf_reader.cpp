@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ricochet/base/file_version.hpp"
 #include "ricochet/hdf5/hdf5_rows.hpp"
 #include "ricochet/io/fields/field_source.hpp"
 
@@ -41,6 +42,7 @@ ResultFrames read_vtkhdf_frames(const Hdf5Reader& file) {
 
 std::vector<ObstacleFrame> read_vtkhdf_obstacles(const std::string& path) {
   const Hdf5Reader file(path);
+  require_readable_version(path, file.text_attribute("/", version_attribute));
   const auto whole_numbers = [&file](const std::string& name, double limit) {
     std::vector<int> result;
     for (const std::int64_t value : file.integers(name, file.size(name))) {

@@ -5,7 +5,9 @@
 #include <cerrno>
 #include <filesystem>
 
+#include "ricochet/base/file_version.hpp"
 #include "ricochet/io/durable_file.hpp"
+#include "ricochet/version.hpp"
 
 namespace ricochet {
 
@@ -21,6 +23,7 @@ XdmfFile::XdmfFile(std::string path, const std::string& collection, const std::s
   change_detector_.emplace(path_);
   std::string head =
       "<?xml version=\"1.0\"?>\n<Xdmf xmlns:xi=\"http://www.w3.org/2001/XInclude\" Version=\"3.0\">\n  <Domain>\n";
+  head += fmt::format("    <Information Name=\"{}\" Value=\"{}\"/>\n", version_attribute, version);
   // The include comes first: readers that support only one collection use the last.
   if (!included.empty())
     head += fmt::format("    <xi:include href=\"{}\" xpointer=\"xpointer(/Xdmf/Domain/Grid)\"/>\n", included);

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/file_version.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/io/durable_file.hpp"
 
@@ -18,7 +19,11 @@ namespace {
 /// Sequential scanner for documents written by XdmfFile.
 class Scanner {
  public:
-  explicit Scanner(const std::string& path) : path_(path), text_(read_file(path)) {}
+  explicit Scanner(const std::string& path) : path_(path), text_(read_file(path)) {
+    if (!find("<Domain>")) return;  // the run has not written anything yet
+    const bool is_stated = find(fmt::format("<Information Name=\"{}\" Value=\"", version_attribute), next("<Grid"));
+    require_readable_version(path, is_stated ? std::string(until("\"")) : "");
+  }
 
   /// Moves behind the next occurrence; returns false (and does not move) if there is none before `end`.
   bool find(std::string_view what, std::size_t end = std::string::npos) {

@@ -168,7 +168,6 @@ void judge_penetration(const RunData& run, Judgement& result) {
     if (size > 0.0) result.relative_penetration = result.penetration / size;
   }
   const PenetrationReport& report = run.summary.penetration;
-  result.penetration_checked = report.checked;
   result.penetration_not_watched = fmt::format("{}", fmt::join(report.not_watched, ", "));
   if (!report.rims.empty()) result.contact_beyond_rim = report.rims.front().group;
   const UnwatchedPenetration* deepest = report.deepest();
@@ -185,8 +184,8 @@ void judge_penetration(const RunData& run, Judgement& result) {
 double rotation_limit_of(std::size_t number, const RunSummary& summary) {
   const Impact& impact = summary.impacts[number];
   if (!is_distorted_by_rotation(impact)) return std::numeric_limits<double>::infinity();
-  const bool known = summary.rotation && number < summary.rotation->until_impact_end.size();
-  const double rotation = known ? summary.rotation->until_impact_end[number] : summary.digest("max_rotation").maximum;
+  const std::vector<double>& known = summary.rotation.until_impact_end;
+  const double rotation = number < known.size() ? known[number] : summary.digest("max_rotation").maximum;
   return rotation * std::sqrt(restitution_excess_limit / std::abs(restitution_excess(impact)));
 }
 
@@ -207,7 +206,7 @@ Judgement judge(const RunData& run) {
   const bool has_rotation = !broken_at(run, {"max_rotation"});
   result.rotation =
       has_rotation ? largest_magnitude(run.column("max_rotation")) : std::numeric_limits<double>::quiet_NaN();
-  result.rotation_limit = run.summary.largest_rotation();
+  result.rotation_limit = run.summary.rotation.limit;
   for (std::size_t i = 0; i < run.summary.impacts.size(); ++i)
     result.rotation_limit = std::min(result.rotation_limit, rotation_limit_of(i, run.summary));
   result.rotation_after_impacts =

@@ -43,7 +43,6 @@ struct Judgement {
   /// smallest ball around the smaller body; none if the body is not known.
   std::optional<double> relative_penetration;
   /// True if boundaries without contact and pairs of bodies were examined as well.
-  bool penetration_checked = false;
   /// Other items that were not examined, in words; empty if none.
   std::string penetration_not_watched;
   /// Penetration that no contact prevents: the obstacle, or the bodies; empty if none.

@@ -26,7 +26,7 @@ namespace {
 constexpr std::string_view data_begin = "<script type=\"application/json\" id=\"ricochet-runs\">";
 constexpr std::string_view data_mark = "<!--RICOCHET-DATA-->", report_mark = "<!-- ricochet report -->";
 /// Format of the data; the viewer's page begins with the one that it reads.
-constexpr int data_format = 5;
+constexpr int data_format = 6;
 /// Limit for all bodies together, and the number that each may have in any case.
 constexpr Index most_triangles = 200'000, always_triangles = 20'000;
 
@@ -87,7 +87,6 @@ Json to_json(const Judgement& j) {
           {"node_roughness", to_json(j.node_roughness)},
           {"penetration", to_json(j.penetration)},
           {"relative_penetration", to_json(j.relative_penetration)},
-          {"penetration_checked", j.penetration_checked},
           {"penetration_not_watched", j.penetration_not_watched},
           {"unwatched_penetration", j.unwatched_penetration},
           {"contact_beyond_rim", j.contact_beyond_rim},

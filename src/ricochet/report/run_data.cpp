@@ -165,10 +165,10 @@ std::vector<std::string> RunData::column_names() const {
 }
 
 const Probe* RunData::contact_probe() const {
-  const auto found = std::find_if(summary.probes.begin(), summary.probes.end(), [this](const Probe& probe) {
-    return probe.contact_node >= 0 && has_column(probe.name + ".reaction_normal");
+  const auto found = std::find_if(summary.probes.begin(), summary.probes.end(), [this](const auto& each) {
+    return each.probe.contact_node >= 0 && has_column(each.probe.name + ".reaction_normal");
   });
-  return found == summary.probes.end() ? nullptr : &*found;
+  return found == summary.probes.end() ? nullptr : &found->probe;
 }
 
 std::vector<RunData> read_runs(const std::vector<std::string>& directories, bool with_results) {

@@ -71,12 +71,8 @@ namespace {
 
 /// Returns an empty origin if neither summary nor checkpoint states it.
 RunOrigin read_origin(const std::string& directory) {
-  const std::string summary_path = (std::filesystem::path(directory) / "summary.json").string();
-  try {
-    const RunSummary summary = read_summary(summary_path);
-    if (!summary.case_path.empty()) return {summary.case_path, summary.settings};
-  } catch (const Error&) {  // the summary may be damaged, as it is not synced to the disk; checkpoints are
-  }
+  if (const std::optional<RunSummary> summary = find_intact_summary(directory); summary && !summary->case_path.empty())
+    return {summary->case_path, summary->settings};
   std::optional<Snapshot> snapshot = newest_checkpoint(directory);
   if (!snapshot) snapshot = newest_checkpoint(checkpoint_folder_of_first_rank(directory));
   if (!snapshot) return {};

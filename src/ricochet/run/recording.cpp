@@ -223,9 +223,9 @@ void Recording::describe(RunSummary& summary) const {
   summary.penetration = penetration_.report();
   summary.sliding = sliding_.report();
   summary.unsettled = sliding_.unsettled();
-  summary.rotation = RotationReport{rotation_.limit(), rotation_.time_beyond_limit(), {}};
+  summary.rotation = {rotation_.limit(), rotation_.time_beyond_limit(), {}};
   for (const Impact& impact : summary.impacts)
-    summary.rotation->until_impact_end.push_back(rotation_.largest_until(impact.end));
+    summary.rotation.until_impact_end.push_back(rotation_.largest_until(impact.end));
   describe_bodies(summary);
   describe_peak_stress(summary);
 }

@@ -25,11 +25,12 @@ std::string spurious_strain(double rotation) {
   return fmt::format("a spurious strain of {:.2g} % (1 - cos of the angle)", 100.0 * (1.0 - std::cos(rotation)));
 }
 
+double limit_of_rotation(const Body& body) {
+  return has_finite_strain(body) ? std::numeric_limits<double>::infinity() : rotation_limit;
+}
+
 RotationWatch::RotationWatch(const Body& body, const Ranks& ranks, std::size_t column)
-    : body_(body),
-      ranks_(ranks),
-      column_(column),
-      limit_(has_finite_strain(body) ? std::numeric_limits<double>::infinity() : rotation_limit) {
+    : body_(body), ranks_(ranks), column_(column), limit_(limit_of_rotation(body)) {
   // No rotation exceeds π.
   const double most = std::log(std::numbers::pi / least_noted) / std::log(noted_growth);
   records_.reserve(static_cast<std::size_t>(most) + 3);

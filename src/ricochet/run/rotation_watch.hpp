@@ -13,15 +13,17 @@ namespace ricochet {
 /// Returns a text such as "a strain of 0.5 % that is not there (1 - cos of the angle)".
 [[nodiscard]] std::string spurious_strain(double rotation);
 
+/// Rotation beyond which small strain does not hold; infinite if the laws of the body are those of finite strain.
+[[nodiscard]] double limit_of_rotation(const Body& body);
+
 class RotationWatch {
  public:
-  /// `column` is the index of max_rotation in a row. At finite strain there is no limit. Keeps references.
+  /// `column` is the index of max_rotation in a row. Keeps references.
   RotationWatch(const Body& body, const Ranks& ranks, std::size_t column);
   void persist(const SnapshotVisitor& visit);
 
   /// Enters a row of history.csv. Warns the first time that a cell has rotated too far. Allocates nothing.
   void watch(const std::vector<double>& row, const State& state);
-  /// Rotation beyond which small strain does not hold; infinite at finite strain.
   [[nodiscard]] double limit() const { return limit_; }
   /// Time of the first row in which a cell has rotated too far; infinite if none.
   [[nodiscard]] double time_beyond_limit() const;

@@ -104,13 +104,9 @@ RunSummary Run::finish() {
 
 /// Returns true if the run in the directory is complete, so that nothing is left to do.
 bool Run::is_complete() {
-  if (!std::filesystem::exists(summary_path())) return false;
-  try {
-    summary_ = read_summary(summary_path());
-  } catch (const Error&) {
-    return false;  // the summary may be damaged, as it is not synced to the disk; checkpoints are
-  }
-  if (summary_.parameters.empty()) return false;
+  std::optional<RunSummary> before = find_intact_summary(options_.output_directory);
+  if (!before) return false;
+  summary_ = std::move(*before);
   has_matching_summary_ = true;
   require_same_case(input_, summary_.version, summary_.parameters, options_.output_directory);
   if (input_.time.adaptive) {

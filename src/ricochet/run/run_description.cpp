@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "ricochet/linear_algebra/library_versions.hpp"
+#include "ricochet/run/rotation_watch.hpp"
 #include "ricochet/run/run_case.hpp"
 #include "ricochet/version.hpp"
 
@@ -85,6 +86,7 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   summary.critical_step = scheme.critical_step();
   summary.energy_instant = scheme.traits().energy_instant;
   summary.force_instant = scheme.traits().force_instant;
+  summary.rotation.limit = limit_of_rotation(model.body);
   for (const ModelContact& contact : model.contacts)
     summary.contacts.push_back(describe_contact(input, contact, contact.all_pairs_group));
   for (std::size_t i = 0; i < summary.contacts.size(); ++i) summary.contacts[i].facing = describe_facing(model, i);
@@ -92,10 +94,9 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
     const ProbeTargets& targets = model.probe_targets[number];
     if (!targets.sums.empty()) summary.probe_sums.emplace_back(input.probes[number].name, targets.sums);
     for (std::size_t i = 0; i < targets.probes.size(); ++i) {
-      Probe& probe = summary.probes.emplace_back(targets.probes[i]);
-      probe.node = probe.number;
       const Vector& at = targets.positions[i];
-      summary.probe_positions.emplace_back(at.data(), at.data() + at.size());
+      summary.probes.push_back({targets.probes[i], {at.data(), at.data() + at.size()}});
+      summary.probes.back().probe.node = targets.probes[i].number;
     }
   }
   return summary;

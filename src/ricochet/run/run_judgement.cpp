@@ -45,7 +45,7 @@ bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, co
 void judge_loss(const RunSummary& summary, const Scheme& scheme, const SemidiscreteProblem& problem,
                 const State& state) {
   constexpr double most = 0.05;
-  const double loss = summary.loss_by_method(), energy = summary.energy_scale(), work = summary.work_scale();
+  const double loss = summary.method_energy.lost, energy = summary.energy_scale(), work = summary.work_scale();
   if (!(loss > most) || is_rounding_of_energy(energy, problem, state)) return;
   const bool rebounds = std::any_of(summary.impacts.begin(), summary.impacts.end(),
                                     [](const Impact& impact) { return impact.restitution().has_value(); });
@@ -70,10 +70,10 @@ void judge_loss(const RunSummary& summary, const Scheme& scheme, const Semidiscr
 void judge_energy(const RunSummary& summary, const Scheme& scheme, const SemidiscreteProblem& problem,
                   const State& state) {
   const double scale = summary.energy_scale();
-  const bool contact_creates = summary.creation_by_method() > 0.01;
+  const bool contact_creates = summary.method_energy.created > 0.01;
   const bool friction_creates = summary.digest("friction_work").maximum > 0.01 * scale;
   const double rotation = summary.digest("max_rotation").maximum;
-  const bool is_small = std::isfinite(summary.largest_rotation());  // small strain
+  const bool is_small = std::isfinite(summary.rotation.limit);  // small strain
   // Rotations in free flight after the impacts do not affect their results.
   const bool rotates = is_small && rotation > large_rotation && !summary.cells_turn_little_in_impacts();
   if (summary.adaptive && summary.adaptive->counts.tolerated > 0) {
@@ -90,7 +90,7 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
     log::warning(fmt::format(
         "{} created energy, {:.2g} times the largest energy (contact_work less numerical_dissipation "
         "of the history); {} scheme \"reduced-kane\" with mass \"equivalent\", which creates none",
-        problem.contact.size() > 0 ? "contact forces have" : "the time scheme has", summary.creation_by_method(),
+        problem.contact.size() > 0 ? "contact forces have" : "the time scheme has", summary.method_energy.created,
         helps ? "use a smaller time.step, below the time in which a wave crosses a cell, or"
               : "it comes from the time scheme: use"));
   }
@@ -162,7 +162,7 @@ void judge_rotation_growth(const RunSummary& summary) {
   for (std::size_t i = 0; i < summary.impacts.size(); ++i) {
     const double error = std::abs(restitution_excess(summary.impacts[i]));
     // A warning at the time when cells rotated too far has covered the others.
-    if (!(error > largest) || !summary.cells_turn_little_in(i)) continue;
+    if (!(error > largest) || !summary.rotation.holds_in_impact(i)) continue;
     worst = i;
     largest = error;
   }

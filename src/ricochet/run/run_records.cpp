@@ -235,8 +235,7 @@ void Run::write_end() {
   }
   describe_progress(summary_);
   // An energy that is mere rounding has no meaningful parts.
-  if (summary_.method_energy &&
-      is_rounding_of_energy(summary_.energy_scale(), session_.model().problem, session_.simulation().state()))
+  if (is_rounding_of_energy(summary_.energy_scale(), session_.model().problem, session_.simulation().state()))
     summary_.method_energy = MethodEnergy{};
   // A step that cannot be solved often ends a motion that has gained energy.
   const bool fails_to_converge = failure_ && failure_->kind() == ErrorKind::not_converged;

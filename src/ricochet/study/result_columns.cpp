@@ -34,7 +34,7 @@ bool concerns_validity(const std::string& warning) {
 
 /// Returns true if cells had rotated so far that small strain does not describe that impact.
 bool is_strained(const RunSummary& s, Impacts::const_iterator impact) {
-  return !s.cells_turn_little_in(static_cast<std::size_t>(impact - s.impacts.begin()));
+  return !s.rotation.holds_in_impact(static_cast<std::size_t>(impact - s.impacts.begin()));
 }
 
 /// Returns a coordinate of the position of the largest stress, for each of the dimensions.
@@ -81,8 +81,8 @@ const std::vector<ResultColumn>& all_columns() {
       of_summary({"steps"}, [](Summary s) { return TableCell(s.steps); }),
       of_summary({"time", false}, [](Summary s) { return TableCell(s.time()); }),
       of_summary({"processor_seconds", true, 3}, [](Summary s) { return TableCell(s.processor_seconds); }),
-      of_summary({"lost_by_method", true, 3}, [](Summary s) { return TableCell(s.loss_by_method()); }),
-      of_summary({"created_by_method", true, 3}, [](Summary s) { return TableCell(s.creation_by_method()); }),
+      of_summary({"lost_by_method", true, 3}, [](Summary s) { return TableCell(s.method_energy.lost); }),
+      of_summary({"created_by_method", true, 3}, [](Summary s) { return TableCell(s.method_energy.created); }),
       of_summary({"max_penetration", true, 3}, [](Summary s) { return TableCell(s.deepest_penetration()); }),
       of_summary({"impacts", false},
                  [](Summary s) { return TableCell(static_cast<long>(s.impacts.size()) + s.impacts_left_out); }),

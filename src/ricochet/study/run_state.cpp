@@ -69,24 +69,16 @@ NextAction next_action(const RunState& state) {
 
 RunState read_run_state(const std::string& directory) {
   RunState state;
-  const std::string summary_path = (std::filesystem::path(directory) / "summary.json").string();
   std::error_code ignored;
-  if (std::filesystem::exists(summary_path, ignored)) {
-    try {
-      RunSummary summary = read_summary(summary_path);
-      state.summary_json = read_file(summary_path);
-      state.summary = std::move(summary);
-    } catch (const Error&) {  // the summary may be damaged, as it is not synced to the disk; checkpoints are
-    }
-  }
+  state.summary = find_intact_summary(directory);
+  if (state.summary) state.summary_json = summary_text_of_run(directory);
   state.has_checkpoint = std::filesystem::is_directory(directory, ignored) && !checkpoint_files(directory).empty();
   if (!std::filesystem::exists(exit_status_path(directory), ignored)) return state;
   try {
     const Json json = Json::parse(read_file(exit_status_path(directory)));
     // A summary that has changed means that somebody has resumed the run by hand, and the status of the earlier process
-    // no longer matters. (Some versions did not record the checksum of the summary.)
-    const std::string of_summary = json.value("summary", "");
-    if (of_summary.empty() ? is_done(state) : of_summary != summary_checksum(directory)) return state;
+    // no longer matters.
+    if (json.at("summary").get<std::string>() != summary_checksum(directory)) return state;
     state.exit_status = json.at("exit_status").get<int>();
     state.message = json.at("message").get<std::string>();
   } catch (const Json::Exception&) {  // the status is unknown, and the run is tried again

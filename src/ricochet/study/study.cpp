@@ -37,7 +37,7 @@ void require_one_valid_case(const Study& study) {
 void require_runs_of_this_case(const Study& study) {
   for (const StudyRun& run : study.runs) {
     const RunState state = read_run_state(study.path(run));
-    if (!state.summary || state.summary->parameters.empty()) continue;
+    if (!state.summary) continue;
     try {
       require_same_case(read_case(study.plan.case_path, run.planned.settings), state.summary->version,
                         state.summary->parameters, study.path(run));

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/file_version.hpp"
 #include "ricochet/base/json.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/keys_override.hpp"
@@ -15,12 +16,12 @@
 #include "ricochet/io/durable_file.hpp"
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/study/run_folders.hpp"
+#include "ricochet/version.hpp"
 
 namespace ricochet {
 
 namespace {
 
-constexpr int study_format = 1;
 using Texts = std::vector<std::string>;
 
 Json axes_to_json(const StudyPlan& plan) {
@@ -123,15 +124,6 @@ void require_study(const std::string& directory) {
                                                   directory, why, is_there ? "DIR" : directory));
 }
 
-void require_format(const Json& json, const std::string& path) {
-  const int format = json.at("ricochet_study");
-  if (format == study_format) return;
-  throw Error(ErrorKind::file_access,
-              fmt::format("{}: has format {}, but this version of Ricochet reads format {}: continue with the version "
-                          "that wrote it, or choose another directory for the study with -o",
-                          path, format, study_format));
-}
-
 /// Refuses a plan that no command line could have made. Throws Json::Exception or Error.
 void require_sound(const StudyPlan& plan) {
   for (const StudyAxis& axis : plan.axes) {
@@ -177,7 +169,7 @@ Study read_study(const std::string& directory) {
   const std::string path = study.path("study.json"), text = read_file(path);
   try {
     const Json json = Json::parse(text);
-    require_format(json, path);
+    require_readable_version(path, json.value(version_attribute, ""));
     study.plan = plan_from(json);
     require_sound(study.plan);
     study.questions = questions_from(json.at("questions"));
@@ -192,8 +184,9 @@ Study read_study(const std::string& directory) {
     for (std::size_t i = 0; i < folders.size(); ++i) study.runs[i].folder = folders[i];
   } catch (const Json::Exception& problem) {
     refuse_damaged_plan(path, problem.what(), "study");
+  } catch (const VersionError&) {
+    throw;
   } catch (const Error& problem) {
-    if (problem.kind() == ErrorKind::file_access) throw;  // another version
     refuse_damaged_plan(path, problem.what(), "study");
   }
   return study;
@@ -202,7 +195,7 @@ Study read_study(const std::string& directory) {
 void write_study(const Study& study) {
   Texts folders;
   for (const StudyRun& run : study.runs) folders.push_back(run.folder);
-  const Json json{{"ricochet_study", study_format},
+  const Json json{{version_attribute, version},
                   {"case", study.plan.case_path},
                   {"settings", study.plan.settings},
                   {"axes", axes_to_json(study.plan)},

@@ -190,7 +190,7 @@ TEST(Restitution, OfABodyThatMeetsAHeldOneIsItsOwn) {
 /// At an approach of 1 the energy of a body of mass 2 is 1, and at a restitution of 0.5 it has lost 0.75.
 TEST(Restitution, IsInexactWhereTheMethodDidATenthOfIt) {
   Impact lossy = impact(3.0, 1.0);
-  EXPECT_FALSE(restitution_error(lossy).is_large) << "results that do not tell";
+  EXPECT_FALSE(restitution_error(lossy).is_large) << "the method did nothing";
   for (const double sign : {-1.0, 1.0}) {
     lossy.method_energy = sign * 0.07;
     EXPECT_FALSE(restitution_error(lossy).is_large);

@@ -79,7 +79,7 @@ TEST(TurnGrowth, ChangesARestitutionByTwiceItsPartOfTheApproach) {
   impact.before.velocity = -0.5 * up;
   impact.after.velocity = 0.25 * up;
   impact.impulse = impact.normal_impulse = 1.5 * up;
-  EXPECT_EQ(restitution_excess(impact), 0.0) << "of older results";
+  EXPECT_EQ(restitution_excess(impact), 0.0) << "no growth";
   for (const double sign : {-1.0, 1.0}) {
     impact.rotation_growth = sign * 0.002;
     EXPECT_NEAR(restitution_excess(impact), sign * 0.008, 1e-16);

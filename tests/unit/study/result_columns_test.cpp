@@ -39,7 +39,7 @@ RunState finished_run() {
   s.peak_stress->position = {0.1, 0.2};
   s.penetration.found.push_back({});
   s.penetration.found.back().depth = 0.03;
-  s.rotation.emplace().limit = 0.1;
+  s.rotation.limit = 0.1;
   s.warnings = {"one", "two"};
   return state;
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "ricochet/base/temporary_folder.hpp"
+#include "ricochet/version.hpp"
 
 namespace ricochet {
 namespace {
@@ -63,6 +64,7 @@ TEST(RunState, IsReadFromItsDirectory) {
   record_exit_status(directory, 0, "");
   EXPECT_FALSE(read_run_state(directory).exit_status.has_value());
   RunSummary summary;
+  summary.version = version;
   summary.expectations.push_back({.quantity = "q", .expected = "≤ 1", .holds = false});
   write_summary(folder.file("summary.json"), summary);
   EXPECT_EQ(read_run_state(directory).final_status(), 5);

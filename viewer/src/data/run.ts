@@ -91,8 +91,7 @@ export class Run {
     private readonly blobs: Blobs,
   ) {
     this.name = data.name;
-    // Defaults for entries that older versions did not write.
-    this.summary = { ...{ checks: {}, expectations: [], parameters: {}, warnings: [], solver: "–", libraries: "–", factor_entries: 0, bodies: [], impacts: [], impacts_left_out: 0, peak_stress: null }, ...data.summary };
+    this.summary = data.summary;
   }
 
   /** The run's own name of a column: "@force" is the column by which its contact force is judged. */
@@ -249,7 +248,7 @@ export function readPage(): Run[] {
   const text = document.getElementById("ricochet-runs")?.textContent;
   if (!text) throw new Error("this page is the viewer without data. Run `ricochet report` to write a page with runs");
   const page = JSON.parse(text) as PageData;
-  if (page.format !== 5) throw new Error(`this viewer does not support data format ${page.format}`);
+  if (page.format !== 6) throw new Error(`this viewer does not support data format ${page.format}`);
   const blobs = new Blobs();
   return page.runs.map((run, number) => new Run(number, { ...run, judgement: withNumbers(run.judgement) }, blobs));
 }

@@ -1,5 +1,12 @@
 /** The data of a report, written by src/ricochet/report/page.cpp. */
 
+import type { Real, Summary } from "./summary";
+
+export type { Expectation, Impact, OtherBody, PeakStress, Real, Summary } from "./summary";
+
+/** A number of a summary, or null if it is unknown or does not exist. */
+export type Value = Real | null;
+
 export interface PackedArray {
   blob: number;
   rows: number;
@@ -35,9 +42,7 @@ export interface Judgement {
   penetration: number;
   /** null if the size of the body is unknown. */
   relative_penetration: number | null;
-  /** Whether the boundary outside of contact groups, and bodies against each other, were checked. */
-  penetration_checked: boolean;
-  /** Other parts that were not checked, in words; empty if none. */
+  /** Parts that were not checked, in words; empty if none. */
   penetration_not_watched: string;
   /** Penetration that no contact prevents: the body and the obstacle, or the bodies; empty if there is none. */
   unwatched_penetration: string;
@@ -99,151 +104,6 @@ export interface ObstacleData {
   offsets: PackedArray | null;
 }
 
-export interface CheckOutcome {
-  limit: number;
-  largest: number;
-}
-
-export interface Expectation {
-  quantity: string;
-  value: number;
-  wanted: string;
-  checked: boolean;
-  holds: boolean;
-  note: string;
-}
-
-/** A number that is not finite is a word in JSON, "inf", "-inf" or "nan"; an unknown one is null. */
-export type Value = number | string | null;
-
-/** The other body of an impact between two bodies. */
-export interface OtherBody {
-  body: number;
-  velocity_before: Value[];
-  velocity_after: Value[] | null;
-  spin_before: Value | Value[];
-  spin_after: Value | Value[];
-  kinetic_energy_before: Value;
-}
-
-/** A collision of a body with an obstacle or another body; see docs/impacts.md. */
-export interface Impact {
-  body: number;
-  /** null if two bodies met. */
-  obstacle: string | null;
-  against?: OtherBody;
-  begin: number;
-  end: number | null;
-  duration: number;
-  ended: boolean;
-  from_start: boolean;
-  restitution: Value;
-  /** A sentence, if the restitution is null. */
-  why_no_restitution?: string | null;
-  /** Energy that the method added to the bodies during the impact, and whether it makes the restitution inexact; not in older results. */
-  method_energy?: Value;
-  restitution_inexact?: boolean;
-  /** Largest number of contact points that carried a force at once, and number of all; not in results of older versions. */
-  contact_points?: number;
-  all_contact_points?: number;
-  /** Whether these are too few for a reliable largest force and duration. */
-  coarse?: boolean;
-  /** Impulse of all contact forces, including friction. */
-  impulse: Value[];
-  normal_impulse: Value;
-  largest_force: Value;
-  largest_force_time: number;
-  normal_velocity_before: Value;
-  normal_velocity_after: Value;
-  tangential_velocity_before: Value[] | null;
-  tangential_velocity_after: Value[] | null;
-  /** One number in the plane, about z. */
-  spin_before: Value | Value[];
-  spin_after: Value | Value[];
-  kinetic_energy_before: Value;
-  kinetic_energy_ratio: Value;
-}
-
-/** The largest von Mises stress of a run, also between frames. */
-export interface PeakStress {
-  von_mises: Value;
-  time: number;
-  step: number;
-  /** Initial centre of the cell. */
-  place: number[];
-  material: string;
-  cell: number;
-  states_looked_at: number;
-  states: number;
-  /** The reason why it grows with refinement, such as "a re-entrant edge of the body"; null or absent if none is known. */
-  sits_on?: string | null;
-}
-
-/** Changes of the energy by the method itself, as fractions of the largest energy. */
-export interface EnergyBudget {
-  largest_energy: Value;
-  lost_by_method: Value;
-  created_by_method: Value;
-  at_end: Record<string, Value>;
-}
-
-/** Which reactions acted over the steps. */
-export interface Reactions {
-  acting: "end" | "mean" | "adaptive";
-  /** null if no mean acted. */
-  least_end_weight: Value;
-  largest_end_weight: Value;
-  steps_of_means: number;
-  steps_without_mean: number;
-}
-
-/** summary.json of a run; see docs/results.md. */
-export interface Summary {
-  status: string;
-  message: string;
-  title: string;
-  case: string;
-  ricochet_version: string;
-  libraries: string;
-  scheme: string;
-  mass: string;
-  dimension: number;
-  degree: number;
-  nodes: number;
-  cells: number;
-  dofs: number;
-  contact_points: number;
-  supported_dofs: number;
-  solver: string;
-  factor_entries: number;
-  time_step: number;
-  /** null if all steps have one length. */
-  adaptive_steps?: { shortest: number; longest: number; refused: number } | null;
-  end_time: number;
-  steps: number;
-  steps_asked_for: number;
-  frames: number;
-  instants: { energy: string; force: string };
-  timings_seconds: Record<string, number>;
-  seconds_per_step: number;
-  /** Not in results of older versions; the reactions of schemes without a choice are null. */
-  energy_budget?: EnergyBudget | null;
-  reactions?: Reactions | null;
-  contacts: { group: string; obstacle?: string; against?: string; multipliers: string; friction: number; friction_bound: number }[];
-  probes: { name: string; position: number[]; distance: number; in_contact_boundary: boolean }[];
-  checks: Record<string, CheckOutcome>;
-  warnings: string[];
-  /** `held`: held by supports at rest; not in results of older versions. */
-  bodies: { mass: Value; name?: string; held?: boolean }[];
-  impacts: Impact[];
-  impacts_left_out: number;
-  /** Contacts with large sliding in which frozen steps have left gaps; not in results of older versions. */
-  unsettled_contacts?: { contact: number; share_of_force: Value; steps: number; first_time: Value; time: Value; gap: Value }[];
-  peak_stress: PeakStress | null;
-  expectations: Expectation[];
-  parameters: Record<string, string>;
-}
-
 export interface RunData {
   name: string;
   directory: string;
@@ -262,7 +122,7 @@ export interface RunData {
 }
 
 export interface PageData {
-  format: 5;
+  format: 6;
   version: string;
   runs: RunData[];
 }

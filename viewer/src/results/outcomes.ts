@@ -8,7 +8,7 @@ import { restitutionRemark } from "./restitution";
 
 /** Results of a run: its impacts and its largest stress. */
 
-const bodyName = (run: Run, number: number) => run.summary.bodies[number]?.name ?? `body ${number}`;
+const bodyName = (run: Run, number: number) => run.summary.bodies[number].name;
 
 /** Name of the obstacle or of the other body. */
 const opponent = (run: Run, { obstacle, against }: Impact): string => (against ? bodyName(run, against.body) : obstacle ?? "");
@@ -26,8 +26,8 @@ const turns = ({ spin_before, spin_after }: Pick<Impact, "spin_before" | "spin_a
 /** The normal impulse, and the impulse of all contact forces if friction makes it differ in the digits shown. */
 function impulseWords({ impulse, normal_impulse }: Impact): string {
   const normal = number(normal_impulse, 3);
-  const whole = number(spin(impulse ?? null), 3);
-  return `normal impulse ${normal}${impulse && whole !== normal ? ` (with friction ${whole})` : ""}`;
+  const whole = number(spin(impulse), 3);
+  return `normal impulse ${normal}${whole !== normal ? ` (with friction ${whole})` : ""}`;
 }
 
 /** Restitution as text; "" if there is none. */
@@ -88,7 +88,7 @@ export function outcomeElements(run: Run, show: { time: (time: number) => void; 
 
 const columns: [string, (impact: Impact, run: Run) => string | HTMLElement][] = [
   ["obstacle or other body", (impact, run) => opponent(run, impact)],
-  ["body", ({ body }, run) => run.summary.bodies[body]?.name ?? String(body)],
+  ["body", ({ body }, run) => bodyName(run, body)],
   ["begin", ({ begin, from_start }) => `${number(begin, 5)}${from_start ? " (start)" : ""}`],
   ["duration", ({ duration, ended }) => `${number(duration, 4)}${ended ? "" : " so far"}`],
   ["restitution", (impact, run) => {

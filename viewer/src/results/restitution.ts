@@ -21,14 +21,16 @@ const acts = (run: Run, work: string): boolean => {
 
 /** Mass in the energy of the approach: m₁m₂/(m₁ + m₂) for two free bodies, the body's own mass if the other is held. */
 function approachMass(run: Run, { body, against }: Impact): number {
-  const [own, opposite] = [run.summary.bodies[body], against ? run.summary.bodies[against.body] : undefined];
-  const mass = toNumber(own?.mass);
-  const other = against ? toNumber(opposite?.mass) : Infinity;
-  if (against && Boolean(own?.held) !== Boolean(opposite?.held)) return own?.held ? other : mass;
+  const own = run.summary.bodies[body];
+  const mass = toNumber(own.mass);
+  if (!against) return mass;
+  const opposite = run.summary.bodies[against.body];
+  const other = toNumber(opposite.mass);
+  if (own.held !== opposite.held) return own.held ? other : mass;
   return Number.isFinite(other) ? (mass * other) / (mass + other) : mass;
 }
 
-const squared = (vector: Impact["tangential_velocity_before"]) => (vector ?? []).map(toNumber).reduce((sum, v) => sum + v * v, 0);
+const squared = (vector: Impact["tangential_velocity_after"]) => (vector ?? []).map(toNumber).reduce((sum, v) => sum + v * v, 0);
 
 /** Whether the body leaves faster than its whole energy on arrival allows. */
 function exceedsEnergy(run: Run, impact: Impact): boolean {
@@ -59,7 +61,7 @@ const muchEnergy = 0.1;
 function inexact(run: Run, impact: Impact): RestitutionRemark | null {
   if (!impact.restitution_inexact) return null;
   const approach = 0.5 * approachMass(run, impact) * toNumber(impact.normal_velocity_before) ** 2;
-  const method = toNumber(impact.method_energy ?? null) / approach;
+  const method = toNumber(impact.method_energy) / approach;
   const body = 1 - toNumber(impact.restitution) ** 2;
   const share = (part: number) => `${number(100 * Math.abs(part), 2)} %`;
   const change = `${impact.against ? "the bodies" : "the body"} ${body < 0 ? "gained" : "lost"} ${share(body)}`;

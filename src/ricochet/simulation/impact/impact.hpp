@@ -34,7 +34,7 @@ struct Impact {
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();         ///< of all contact forces on the body
   Eigen::Vector3d normal_impulse = Eigen::Vector3d::Zero();  ///< of their normal parts
   double largest_force = 0.0, largest_force_time = 0.0;      ///< magnitude of the resultant
-  long contact_points = 0;                                   ///< largest number with a force at once; 0 if unknown
+  long contact_points = 0;                                   ///< largest number with a force at once
   long all_contact_points = 0;                               ///< of this body with this obstacle or body
   std::vector<double> first_position = {};                   ///< reference position of the first contact, if known
   double obstacle_velocity = 0.0;                            ///< along the normal, mean over the normal impulse
@@ -44,10 +44,10 @@ struct Impact {
   bool held = false;               ///< RigidBody::held
   RigidMotionState before, after;  ///< `after`: zero if the impact has not ended
   /// Energy that the time discretization has put into all bodies meanwhile (EnergyAccount::method_energy), negative if
-  /// it has removed energy; null if unknown, in older results.
-  std::optional<double> method_energy = {};
+  /// it has removed energy.
+  double method_energy = 0.0;
   /// Speed at which the linear law makes the bodies grow towards each other as they rotate, mean over the impulse
-  /// (rotation_growth.hpp). 0 if the impact has not ended, and in older results.
+  /// (rotation_growth.hpp). 0 if the impact has not ended.
   double rotation_growth = 0.0;
 
   /// Mean direction of the normal impulse, out of the obstacle or the other body; zero without an impulse.

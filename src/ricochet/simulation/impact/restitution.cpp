@@ -82,10 +82,10 @@ RestitutionError restitution_error(const Impact& impact) {
   // Large is a tenth of the loss in the impact, but nothing that the first three digits of e do not show.
   constexpr double large_beside_impact = 0.1, visible = 1e-3;
   const std::optional<double> restitution = impact.restitution();
-  if (!restitution || !impact.method_energy) return {};
+  if (!restitution) return {};
   const double velocity = impact.normal_velocity_before();
   RestitutionError result;
-  result.by_method = *impact.method_energy / (0.5 * impact.approach_mass() * velocity * velocity);
+  result.by_method = impact.method_energy / (0.5 * impact.approach_mass() * velocity * velocity);
   result.by_impact = 1.0 - *restitution * *restitution;
   result.is_large = std::abs(result.by_method) > std::max(visible, large_beside_impact * std::abs(result.by_impact));
   return result;

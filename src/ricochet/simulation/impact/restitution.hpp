@@ -20,7 +20,7 @@ struct RestitutionError {
   /// True if the method's part obscures the loss of the impact itself.
   bool is_large = false;
 };
-/// Returns zeros if there is no restitution or the method's part is unknown.
+/// Returns zeros if there is no restitution.
 [[nodiscard]] RestitutionError restitution_error(const Impact& impact);
 
 }  // namespace ricochet

@@ -38,7 +38,6 @@ struct ContactBeyondRim {
 };
 
 struct PenetrationReport {
-  bool checked = false;  ///< false: results of a version without this check
   long obstacle_checks = 0, body_checks = 0;
   std::vector<UnwatchedPenetration> found = {};
   std::vector<ContactBeyondRim> rims = {};
@@ -46,7 +45,7 @@ struct PenetrationReport {
   std::vector<std::string> not_watched = {};  ///< objects that were not checked, in words
 
   /// Returns whether everything was checked.
-  [[nodiscard]] bool is_complete() const { return checked && not_watched.empty(); }
+  [[nodiscard]] bool is_complete() const { return not_watched.empty(); }
 
   /// Deepest penetration; nullptr if none was found.
   [[nodiscard]] const UnwatchedPenetration* deepest() const;

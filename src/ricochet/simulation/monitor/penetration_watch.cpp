@@ -295,7 +295,7 @@ ContactBeyondRim PenetrationWatch::beyond(const RimContact& rim) const {
 }
 
 PenetrationReport PenetrationWatch::report() const {
-  PenetrationReport result{true, checks_, body_watch_.checks()};
+  PenetrationReport result{checks_, body_watch_.checks()};
   for (std::size_t k = 0; k < named_.size(); ++k) {
     if (obstacles_.deepest()[k].found()) result.found.push_back(in_obstacle(k));
     if (passages_.passages()[k].found()) result.found.push_back(through_obstacle(k));

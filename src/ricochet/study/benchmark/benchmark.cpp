@@ -86,9 +86,9 @@ void remove_old_runs(const BenchmarkPlan& plan, const BenchmarkOptions& options)
   if (!holds_benchmarks(plan.directory)) return;
   const auto is_kept = [&](const BenchmarkRun& old) {
     if (!options.resume || std::find(plan.runs.begin(), plan.runs.end(), old) == plan.runs.end()) return false;
-    const RunState state = read_run_state(plan.path(old));
-    if (!state.summary || state.summary->parameters.empty()) return false;
     try {
+      const RunState state = read_run_state(plan.path(old));
+      if (!state.summary) return false;
       require_same_case(read_case(old.benchmark.case_path, old.settings), state.summary->version,
                         state.summary->parameters, plan.path(old));
     } catch (const Error&) {

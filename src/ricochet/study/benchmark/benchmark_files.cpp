@@ -5,15 +5,15 @@
 #include <filesystem>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/file_version.hpp"
 #include "ricochet/base/json.hpp"
 #include "ricochet/io/durable_file.hpp"
 #include "ricochet/study/run_folders.hpp"
+#include "ricochet/version.hpp"
 
 namespace ricochet {
 
 namespace {
-
-constexpr int benchmark_format = 1;
 
 Json run_to_json(const BenchmarkRun& run) {
   return {{"name", run.benchmark.name},
@@ -66,8 +66,7 @@ BenchmarkPlan read_benchmark_plan(const std::string& directory) {
     throw Error(ErrorKind::file_access, fmt::format("{}: holds no benchmarks: benchmark.json is missing", directory));
   try {
     const Json json = Json::parse(read_file(path));
-    if (const int format = json.at("ricochet_benchmark"); format != benchmark_format)
-      throw Error(ErrorKind::invalid_input, fmt::format("{}: was written by another version of Ricochet", path));
+    require_readable_version(path, json.value(version_attribute, ""));
     plan.is_scorecard = json.at("scorecard");
     for (const Json& run : json.at("runs")) plan.runs.push_back(run_from(run));
   } catch (const Json::Exception& problem) {
@@ -84,7 +83,7 @@ BenchmarkPlan read_benchmark_plan(const std::string& directory) {
 void write_benchmark_plan(const BenchmarkPlan& plan) {
   Json runs = Json::array();
   for (const BenchmarkRun& run : plan.runs) runs.push_back(run_to_json(run));
-  const Json json{{"ricochet_benchmark", benchmark_format}, {"scorecard", plan.is_scorecard}, {"runs", runs}};
+  const Json json{{version_attribute, version}, {"scorecard", plan.is_scorecard}, {"runs", runs}};
   write_durably(plan.path("benchmark.json"), json.dump(2) + "\n");
 }
 

@@ -26,8 +26,8 @@ bool is_done(const BenchmarkRunResult& result) {
 /// Returns a text such as "14/15 +0.1 −3 %", with the energy created and lost if large enough to show.
 std::string done_text(const BenchmarkRunResult& result) {
   std::string text = fmt::format("{}/{}", result.holds(), result.applies());
-  const double created = 100.0 * result.state.summary->creation_by_method();
-  const double lost = 100.0 * result.state.summary->loss_by_method();
+  const double created = 100.0 * result.state.summary->method_energy.created;
+  const double lost = 100.0 * result.state.summary->method_energy.lost;
   if (created >= shown_percent) text += " +" + percent_text(created);
   if (lost >= shown_percent) text += " −" + percent_text(lost);
   return text + (created >= shown_percent || lost >= shown_percent ? " %" : "");
@@ -104,8 +104,8 @@ void MatrixMaker::add_totals(const std::string& method) {
     applies += result.applies();
     all_right += is_done(result) && result.holds() == result.applies();
     if (!is_done(result)) continue;
-    created = std::max(created, 100.0 * result.state.summary->creation_by_method());
-    lost = std::max(lost, 100.0 * result.state.summary->loss_by_method());
+    created = std::max(created, 100.0 * result.state.summary->method_energy.created);
+    lost = std::max(lost, 100.0 * result.state.summary->method_energy.lost);
   }
   matrix_.totals.rows.push_back({plan_.runs[runs_of(method).front()].scheme, masses_of(method), run, all_right, failed,
                                  refused, run > 0 ? TableCell(fmt::format("{}/{}", holds, applies)) : TableCell(),
@@ -170,7 +170,7 @@ ResultTable scorecard_table(const BenchmarkPlan& plan, const BenchmarkResults& r
       row.insert(row.end(), {static_cast<long>(result.holds()), static_cast<long>(result.applies())});
     }
     if (const auto& s = result.state.summary; s) {
-      row.insert(row.end(), {100.0 * s->creation_by_method(), 100.0 * s->loss_by_method(), result.status_text(),
+      row.insert(row.end(), {100.0 * s->method_energy.created, 100.0 * s->method_energy.lost, result.status_text(),
                              s->processor_seconds, s->steps, s->step});
     } else {
       row.insert(row.end(), {TableCell(), TableCell(), result.status_text(), TableCell(), TableCell(), TableCell()});

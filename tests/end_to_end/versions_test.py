@@ -1,0 +1,166 @@
+"""The version in every file of a run, files of other versions, and what is written of the entries of summary.json: its schema,
+its page, and the types of the viewer and of Python."""
+
+import importlib.util
+import json
+import shutil
+import struct
+import unittest
+import zlib
+
+import h5py
+
+from harness import DISC, SOURCE, TestCase, run, settings
+
+SHORT = {"time.step": 1e-3, "time.end": 0.01, "output.fields_every": 5, "output.checkpoint_every": 5}
+OTHERS = ("0.2.9", "1000.0.0")
+
+specification = importlib.util.spec_from_file_location("summary_files", SOURCE / "docs" / "summary_files.py")
+summary_files = importlib.util.module_from_spec(specification)
+specification.loader.exec_module(summary_files)
+
+
+def types_of(value):
+    if value is None:
+        return {"null"}
+    if isinstance(value, bool):
+        return {"boolean"}
+    return {int: {"integer", "number"}, float: {"number"}, str: {"string"}, list: {"array"}, dict: {"object"}}[type(value)]
+
+
+class Versions(TestCase):
+    def setUp(self):
+        super().setUp()
+        self.version = run("--version").stdout.split()[1]
+
+    def refused(self, *command, file, version):
+        process = self.expect_status(2, run(*command))
+        for part in (str(file) + ": written by ", f"Ricochet {version}" if version else "before 0.3.0", f"this is Ricochet {self.version}"):
+            self.assertIn(part, process.stderr)
+
+    def simulated(self, kind):
+        return self.simulate(DISC, kind, SHORT | {"output.format": kind}, ("--quiet", "--export-contact", "8"))
+
+    def test_fields(self):
+        for kind, names in (("xdmf", ("results.h5", "results.xdmf", "obstacles.xdmf")), ("vtkhdf", ("results.vtkhdf", "obstacles.vtkhdf"))):
+            output = self.simulated(kind)
+            self.assertEqual({path.name for path in output.glob("*.xdmf")} | {path.name for path in output.glob("*.h*5")}
+                             | {path.name for path in output.glob("*.vtkhdf")}, set(names))
+            for name in names:
+                for other in (*OTHERS, None):
+                    changed = self.folder / "changed"
+                    shutil.rmtree(changed, ignore_errors=True)
+                    shutil.copytree(output, changed)
+                    file = changed / name
+                    if name.endswith("xdmf"):
+                        line = f'    <Information Name="ricochet_version" Value="{self.version}"/>\n'
+                        text = file.read_text(encoding="utf-8")
+                        self.assertEqual(text.count(line), 1)
+                        file.write_text(text.replace(line, line.replace(self.version, other) if other else ""), encoding="utf-8")
+                    else:
+                        with h5py.File(file, "r+") as data:
+                            self.assertEqual(data.attrs["ricochet_version"].decode(), self.version)
+                            del data.attrs["ricochet_version"]
+                            if other:
+                                data.attrs.create("ricochet_version", other, dtype=f"S{len(other)}")
+                    self.refused("report", changed, file=file, version=other)
+
+    def test_summary(self):
+        output = self.simulated("xdmf")
+        file = output / "summary.json"
+        summary = json.loads(file.read_text(encoding="utf-8"))
+        self.assertEqual(summary["ricochet_version"], self.version)
+        for other in OTHERS:
+            file.write_text(json.dumps(summary | {"ricochet_version": other}), encoding="utf-8")
+            for command in (("info", output), ("info", output, output), ("report", output), ("plot", output, "--what", "energy", "-o", self.folder / "a.svg"),
+                            ("run", "--resume", output, "--quiet"), ("run", DISC, "-o", output, "--resume", "--quiet", *settings(SHORT))):
+                self.refused(*command, file=file, version=other)
+        # Results of another version can be replaced.
+        self.expect_status(0, run("run", DISC, "-o", output, "--force", "--quiet", *settings(SHORT)))
+
+    def test_checkpoints(self):
+        output = self.simulated("xdmf")
+        for file in output.glob("*.ckpt"):
+            content = file.read_bytes()
+            for other in OTHERS:
+                text = other.encode()
+                at = content.index(b"identity.version")
+                begin = content.index(self.version.encode(), at)
+                body = content[20:begin - 4] + struct.pack("<I", len(text)) + text + content[begin + len(self.version):-4]
+                changed = content[:12] + struct.pack("<Q", len(body)) + body
+                file.write_bytes(changed + struct.pack("<I", zlib.crc32(changed)))
+                self.refused("info", file, file=file, version=other)
+        (output / "summary.json").unlink()
+        process = self.expect_status(2, run("run", DISC, "-o", output, "--resume", "--quiet", *settings(SHORT)))
+        self.assertIn(f"written by Ricochet {OTHERS[-1]}", process.stderr)
+        self.assertIn("no checkpoint can be read; start anew with --force", process.stderr)
+
+    def test_contact_problems(self):
+        [file] = (self.simulated("xdmf") / "contact").iterdir()
+        with h5py.File(file) as data:
+            self.assertIn(f"Ricochet {self.version}", data["fclib_local/info/description"][()].decode())
+
+    def test_studies_and_benchmarks(self):
+        output = self.folder / "study"
+        self.expect_status(0, run("study", DISC, "--vary", "time.step=1e-3,2e-3", "-o", output, "--quiet", *settings(
+            {"time.end": 0.01, "output.fields_every": 0})))
+        benchmarks = self.folder / "benchmarks"
+        self.expect_status(0, run("benchmark", "rod", "-o", benchmarks, "--quiet"))
+        for file, command in ((output / "study.json", ("study", "--resume", output)), (benchmarks / "benchmark.json", ("report", benchmarks)),
+                              (output / "study.json", ("report", output))):
+            plan = json.loads(file.read_text(encoding="utf-8"))
+            self.assertEqual(plan["ricochet_version"], self.version)
+            for other in (*OTHERS, None):
+                file.write_text(json.dumps(plan | {"ricochet_version": other or ""}), encoding="utf-8")
+                self.refused(*command, file=file, version=other)
+            file.write_text(json.dumps(plan), encoding="utf-8")
+        page = self.folder / "study.html"
+        self.expect_status(0, run("report", output, "-o", page))
+        self.assertIn(f"Ricochet {self.version}", page.read_text(encoding="utf-8"))
+
+
+class SummarySchema(TestCase):
+    def schema(self):
+        return json.loads(self.expect_status(0, run("schema", "--summary")).stdout)
+
+    def check(self, value, schema, where):
+        """Everything that is written is described, and the reverse."""
+        self.assertTrue(types_of(value) & set(summary_files.kinds(schema)), f"{where}: {value!r} is not {schema.get('type')}")
+        if isinstance(value, list):
+            for number, element in enumerate(value):
+                self.check(element, schema["items"], f"{where}.{number}")
+        if not isinstance(value, dict):
+            return
+        if "properties" not in schema:
+            for name, entry in value.items():
+                self.check(entry, schema["additionalProperties"], f"{where}.{name}")
+            return
+        self.assertEqual(set(schema["required"]) - set(value), set(), where)
+        self.assertEqual(list(value), [name for name in schema["properties"] if name in value], where)
+        for name, entry in value.items():
+            self.check(entry, schema["properties"][name], f"{where}.{name}")
+
+    def test_runs_keep_to_it(self):
+        schema = self.schema()
+        for case, values in ((DISC, {"time.step": 1e-3, "time.end": 0.05}),
+                             (SOURCE / "cases" / "cradle" / "cradle.toml", {"time.end": 0.5}),
+                             (SOURCE / "cases" / "ball" / "ball.toml", {"time.step": 1e-3, "time.end": 2e-3}),
+                             (SOURCE / "cases" / "stack" / "stack.toml", {"time.step": 0.01, "time.end": 0.1})):
+            output = self.folder / case.stem
+            self.assertIn(run("run", case, "-o", output, "--quiet", *settings(values)).returncode, (0, 5), case)
+            self.check(json.loads((output / "summary.json").read_text(encoding="utf-8")), schema, case.stem)
+
+    def test_every_entry_has_a_text(self):
+        for title, schema in summary_files.objects(self.schema()).items():
+            for name, entry in schema["properties"].items():
+                self.assertGreater(len(entry["description"]), 5, f"{title}.{name}")
+        self.expect_status(1, run("schema", "--summary", "--markdown"))
+
+    def test_generated_files(self):
+        for path, content in summary_files.files(self.schema()).items():
+            with self.subTest(path=path):
+                self.assertEqual((SOURCE / path).read_text(encoding="utf-8"), content, "write it anew: docs/summary_files.py build/ricochet")
+
+
+if __name__ == "__main__":
+    unittest.main()
