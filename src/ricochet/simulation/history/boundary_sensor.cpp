@@ -50,13 +50,13 @@ class BoundarySensor final : public QuantitySensor<BoundarySensor> {
     using Self = BoundarySensor;
     static const Quantities all{
         {{"force", "force", "total force that supports and contacts, also those of other bodies, exert on its nodes",
-          Components::vector},
+          ColumnComponents::vector},
          of(&Self::force_)},
-        {{"moment", "force·length", "moment of these forces; 0 for axisymmetric bodies", Components::axial},
+        {{"moment", "force·length", "moment of these forces; 0 for axisymmetric bodies", ColumnComponents::axial},
          of(&Self::moment_)},
-        {{"support", "force", "[force of the supports alone](#supports-and-contacts)", Components::vector},
+        {{"support", "force", "[force of the supports alone](#supports-and-contacts)", ColumnComponents::vector},
          of(&Self::support_force_)},
-        {{"support_moment", "force·length", "moment of the supports alone", Components::axial},
+        {{"support_moment", "force·length", "moment of the supports alone", ColumnComponents::axial},
          of(&Self::support_moment_)},
     };
     return all;

@@ -4,9 +4,9 @@ namespace ricochet {
 
 void add_columns(const RowQuantity& quantity, const std::string& prefix, int dimension, Columns& columns,
                  const std::vector<std::string>& bodies) {
-  if (quantity.components == Components::bodies) {
+  if (quantity.components == ColumnComponents::bodies) {
     RowQuantity own = quantity;
-    own.components = Components::vector;
+    own.components = ColumnComponents::vector;
     for (const std::string& body : bodies) {
       own.name = quantity.name.substr(0, quantity.name.find("BODY")) + body;
       add_columns(own, prefix, dimension, columns);
@@ -16,7 +16,7 @@ void add_columns(const RowQuantity& quantity, const std::string& prefix, int dim
   const auto range = component_range(quantity.components, dimension);
   for (Index k = range.first; k < range.second; ++k) {
     std::string name = prefix + quantity.name;
-    if (quantity.components != Components::one) name += std::string("_") + "xyz"[k];
+    if (quantity.components != ColumnComponents::one) name += std::string("_") + "xyz"[k];
     columns.push_back({std::move(name), quantity.by});
   }
 }

@@ -13,7 +13,7 @@
 namespace ricochet {
 
 /// Columns of a quantity.
-enum class Components : char {
+enum class ColumnComponents : char {
   one,     ///< a single one
   vector,  ///< "_x", "_y", in 3D "_z"
   axial,   ///< of a rotation: "_z" in 2D, "_x", "_y" and "_z" in 3D
@@ -33,7 +33,7 @@ struct RowQuantity {
   std::string name;
   std::string unit;  ///< the kind of unit, as for keys of a case file
   std::string text;  ///< its meaning, in Markdown
-  Components components = Components::one;
+  ColumnComponents components = ColumnComponents::one;
   Reduction by = Reduction::sum;
   std::string where = {};  ///< runs that have it, in words; empty: all
   ColumnGroup group = ColumnGroup::none;
@@ -58,10 +58,11 @@ using Columns = std::vector<Column>;
 [[nodiscard]] std::vector<Reduction> reductions_of(const Columns& columns);
 
 /// Range of the components of a quantity, the last one excluded.
-[[nodiscard]] inline std::pair<Index, Index> component_range(Components components, Index dimension, Index bodies = 1) {
-  if (components == Components::one) return {0, 1};
-  if (components == Components::axial) return {dimension == 2 ? 2 : 0, 3};
-  return {0, dimension * (components == Components::bodies ? bodies : 1)};
+[[nodiscard]] inline std::pair<Index, Index> component_range(ColumnComponents components, Index dimension,
+                                                             Index bodies = 1) {
+  if (components == ColumnComponents::one) return {0, 1};
+  if (components == ColumnComponents::axial) return {dimension == 2 ? 2 : 0, 3};
+  return {0, dimension * (components == ColumnComponents::bodies ? bodies : 1)};
 }
 
 /// Appends the columns of a quantity.

@@ -49,8 +49,8 @@ class PairForceSensor final : public QuantitySensor<PairForceSensor> {
 
   static const Quantities& quantities() {
     static const Quantities all{
-        {{"", "force", "[force of contact N](#forces-between-bodies) on the body of its `group`", Components::vector,
-          Reduction::sum, "contacts between bodies"},
+        {{"", "force", "[force of contact N](#forces-between-bodies) on the body of its `group`",
+          ColumnComponents::vector, Reduction::sum, "contacts between bodies"},
          of(&PairForceSensor::force_)}};
     return all;
   }
@@ -79,18 +79,18 @@ class ContactSensor final : public QuantitySensor<ContactSensor> {
         {{"force", "force",
           "contact force on the body. Between bodies it is that on the body of `group`; of many pairs it is the sum of "
           "the forces on the first body of each pair",
-          Components::vector},
+          ColumnComponents::vector},
          of(&Self::force_)},
         {{"centre", "length",
           "centre of pressure, 0 where the contact is open; between bodies it lies on the side that carries the "
           "multipliers",
-          Components::vector, Reduction::same},
+          ColumnComponents::vector, Reduction::same},
          of(&Self::centre_)},
         {{"area", "area",
           "[area in contact](#area-in-contact), in 2D a length; with laws of finite strain that of the deformed "
           "surface"},
          [](const Self& self, Index) { return self.area_.now; }},
-        {{"nominal_area", "area", "area in contact of the undeformed surface", Components::one, Reduction::sum,
+        {{"nominal_area", "area", "area in contact of the undeformed surface", ColumnComponents::one, Reduction::sum,
           "with laws of finite strain"},
          [](const Self& self, Index) { return self.area_.nominal; },
          [](const Self& self) { return self.problem_.contact.surface->deforms(); }},

@@ -17,16 +17,16 @@ class FreeBodySensor final : public QuantitySensor<FreeBodySensor> {
   static const Quantities& quantities() {
     using Self = FreeBodySensor;
     static const Quantities all{
-        {{"displacement", "length", "displacement of its centre of mass", Components::vector, Reduction::same},
+        {{"displacement", "length", "displacement of its centre of mass", ColumnComponents::vector, Reduction::same},
          of(&Self::displacement_)},
-        {{"velocity", "length/time", "velocity of its centre of mass", Components::vector, Reduction::same},
+        {{"velocity", "length/time", "velocity of its centre of mass", ColumnComponents::vector, Reduction::same},
          of(&Self::velocity_)},
         {{"rotation", "angle",
           "rotation: in 2D the angle, whole turns included, in 3D the rotation vector, of length π at most",
-          Components::axial, Reduction::same},
+          ColumnComponents::axial, Reduction::same},
          of(&Self::rotation_)},
-        {{"spin", "angle/time", "angular velocity", Components::axial, Reduction::same}, of(&Self::spin_)},
-        {{"contact_force", "force", "resultant of the contact forces on it", Components::vector, Reduction::same},
+        {{"spin", "angle/time", "angular velocity", ColumnComponents::axial, Reduction::same}, of(&Self::spin_)},
+        {{"contact_force", "force", "resultant of the contact forces on it", ColumnComponents::vector, Reduction::same},
          of(&Self::force_)},
     };
     return all;

@@ -90,11 +90,13 @@ class GroupSensor final : public QuantitySensor<GroupSensor> {
   static const Quantities& quantities() {
     static const Quantities all = [] {
       Quantities result;
-      add_statistics({"displacement", "length", "displacement", Components::vector}, &GroupSensor::displacement_,
+      add_statistics({"displacement", "length", "displacement", ColumnComponents::vector}, &GroupSensor::displacement_,
                      result);
-      add_statistics({"velocity", "length/time", "velocity", Components::vector}, &GroupSensor::velocity_, result);
-      add_statistics({"von_mises", "stress", "von Mises stress", Components::one, Reduction::sum, "groups of cells"},
-                     &GroupSensor::von_mises_, result);
+      add_statistics({"velocity", "length/time", "velocity", ColumnComponents::vector}, &GroupSensor::velocity_,
+                     result);
+      add_statistics(
+          {"von_mises", "stress", "von Mises stress", ColumnComponents::one, Reduction::sum, "groups of cells"},
+          &GroupSensor::von_mises_, result);
       return result;
     }();
     return all;

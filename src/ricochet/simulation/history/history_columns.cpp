@@ -26,13 +26,13 @@ constexpr const char* self_contact = "[surfaces that touch themselves](sliding.m
 constexpr const char* one = "1";
 
 ValuedQuantity<HistoryRow> energy(const char* name, double Energies::*member, const char* text) {
-  return {{name, "energy", text, Components::one, Reduction::sum, "", ColumnGroup::energy},
+  return {{name, "energy", text, ColumnComponents::one, Reduction::sum, "", ColumnGroup::energy},
           [member](const HistoryRow& row, Index) { return row.energies.*member; }};
 }
 ValuedQuantity<HistoryRow> work(const char* name, double Works::*member, const char* text,
                                 ColumnGroup group = ColumnGroup::work, const char* where = "",
                                 bool (*exists)(const HistoryRow&) = nullptr) {
-  return {{name, "energy", text, Components::one, Reduction::sum, where, group},
+  return {{name, "energy", text, ColumnComponents::one, Reduction::sum, where, group},
           [member](const HistoryRow& row, Index) { return row.works->*member; },
           exists};
 }
@@ -42,9 +42,9 @@ ValuedQuantity<HistoryRow> work(const char* name, double Works::*member, const c
 const std::vector<ValuedQuantity<HistoryRow>>& history_quantities() {
   using Row = const HistoryRow&;
   static const std::vector<ValuedQuantity<HistoryRow>> all{
-      {{"step", "steps", "number of the step; 0 for the initial state", Components::one, Reduction::same},
+      {{"step", "steps", "number of the step; 0 for the initial state", ColumnComponents::one, Reduction::same},
        [](Row row, Index) { return static_cast<double>(row.state->step); }},
-      {{"time", "time", "time of the state", Components::one, Reduction::same},
+      {{"time", "time", "time of the state", ColumnComponents::one, Reduction::same},
        [](Row row, Index) { return row.state->time; }},
       energy("kinetic_energy", &Energies::kinetic, "$`\\tfrac12 V^TMV`$"),
       energy("elastic_energy", &Energies::elastic,
@@ -54,7 +54,7 @@ const std::vector<ValuedQuantity<HistoryRow>>& history_quantities() {
       energy("algorithmic_energy", &Energies::algorithmic,
              "a further term, which Newmark's scheme conserves together with the energy"),
       {{"total_energy", "energy",
-        "sum of the kinetic energy, the elastic energy and the potential of the constant loads", Components::one,
+        "sum of the kinetic energy, the elastic energy and the potential of the constant loads", ColumnComponents::one,
         Reduction::sum, "", ColumnGroup::energy},
        [](Row row, Index) { return row.energies.total(); }},
       work("load_work", &Works::load,
@@ -69,25 +69,26 @@ const std::vector<ValuedQuantity<HistoryRow>>& history_quantities() {
       work("numerical_dissipation", &Works::numerical_dissipation, "energy that the scheme itself has dissipated",
            ColumnGroup::balance),
       {{"energy_residual", "energy", "residual of the balance of all these energies and works; zero to rounding",
-        Components::one, Reduction::sum, "", ColumnGroup::balance},
+        ColumnComponents::one, Reduction::sum, "", ColumnGroup::balance},
        [](Row row, Index) { return row.energy_residual; }},
       {{"contact_force", "force",
-        "resultant of the contact forces that obstacles exert; forces between bodies cancel in it", Components::vector},
+        "resultant of the contact forces that obstacles exert; forces between bodies cancel in it",
+        ColumnComponents::vector},
        [](Row row, Index k) { return row.contact_force[k]; }},
       {{"momentum", "mass·length/time",
         "linear momentum; of [axisymmetric bodies](axisymmetric.md#what-it-is) only that along y, all other momenta "
         "are 0",
-        Components::vector},
+        ColumnComponents::vector},
        [](Row row, Index k) { return row.momentum[k]; }},
       {{"angular_momentum", "mass·length²/time",
         "angular momentum about the origin with reference positions, at [finite strain](finite-strain.md) with current "
         "ones",
-        Components::axial},
+        ColumnComponents::axial},
        [](Row row, Index k) { return row.angular_momentum[k]; }},
       {{"max_rotation", "angle",
         "largest rotation of a cell, in rad. With the law `linear` the run warns above 0.1 that small strain no longer "
         "holds: it takes a rotation θ for a strain of 1 − cos θ",
-        Components::one, Reduction::maximum},
+        ColumnComponents::one, Reduction::maximum},
        [](Row row, Index) { return row.rotation; }},
       {{"active_contacts", one, "number of contact points that carry a force"},
        [](Row row, Index) { return row.active; }},
@@ -99,19 +100,19 @@ const std::vector<ValuedQuantity<HistoryRow>>& history_quantities() {
         "deepest penetration of contact nodes at this instant ([elsewhere on the boundary](#unwatched-penetration)): "
         "zero with nodal multipliers; with `p1`, `dual` and `p0` the mean gap over facets vanishes, and nodes may "
         "penetrate by a part of the deformation of a facet",
-        Components::one, Reduction::maximum},
+        ColumnComponents::one, Reduction::maximum},
        [](Row row, Index) { return row.penetration; }},
-      {{"iterations", one, "iterations of the contact solver in this step", Components::one, Reduction::same},
+      {{"iterations", one, "iterations of the contact solver in this step", ColumnComponents::one, Reduction::same},
        [](Row row, Index) { return static_cast<double>(row.state->iterations); }},
       {{"momentum.BODY", "mass·length/time",
         "momentum of each body: BODY is the name in [`bodies`](impacts.md#bodies) without \"body\" and quotes if that "
         "is one plain name, otherwise the number",
-        Components::bodies, Reduction::sum, "meshes of 2 to 20 bodies"},
+        ColumnComponents::bodies, Reduction::sum, "meshes of 2 to 20 bodies"},
        [](Row row, Index k) { return row.body_momenta[static_cast<std::size_t>(k)]; }},
       work("integration_error", &Works::integration_error,
            "difference between the work of the internal forces and the change of the elastic energy",
            ColumnGroup::balance, finite_strain, has_finite_strain),
-      {{"newton_rounds", one, "Newton iterations of the step, all its attempts included", Components::one,
+      {{"newton_rounds", one, "Newton iterations of the step, all its attempts included", ColumnComponents::one,
         Reduction::same, finite_strain},
        [](Row row, Index) { return static_cast<double>(row.state->newton_iterations); },
        has_finite_strain},
@@ -123,11 +124,11 @@ const std::vector<ValuedQuantity<HistoryRow>>& history_quantities() {
            "`kane` it and `unsettled_gap` are zero to rounding, except in steps in which the pairing was held",
            ColumnGroup::none, large_sliding, has_large_sliding),
       {{"unsettled_gap", "length", "the largest gap or overlap at which a point carries a force at the end of a step",
-        Components::one, Reduction::maximum, large_sliding},
+        ColumnComponents::one, Reduction::maximum, large_sliding},
        [](Row row, Index) { return row.unsettled_gap; },
        has_large_sliding},
-      {{"left_out_points", one, "number of points whose contact condition another point enforces", Components::one,
-        Reduction::sum, self_contact},
+      {{"left_out_points", one, "number of points whose contact condition another point enforces",
+        ColumnComponents::one, Reduction::sum, self_contact},
        [](Row row, Index) { return row.left_out; },
        touches_itself},
   };

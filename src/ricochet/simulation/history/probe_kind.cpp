@@ -43,7 +43,9 @@ std::string column_rows(const std::vector<RowQuantity>& quantities, const std::s
   std::string text;
   for (const RowQuantity& quantity : quantities) {
     const auto by_components = [&](const char* one, const char* axial, const char* vector) {
-      return quantity.components == Components::one ? one : quantity.components == Components::axial ? axial : vector;
+      return quantity.components == ColumnComponents::one     ? one
+             : quantity.components == ColumnComponents::axial ? axial
+                                                              : vector;
     };
     text += fmt::format("| `{}{}{}`{} | {} | {}{}{} | {} |\n", prefix, quantity.name, by_components("", "_z", "_x"),
                         by_components("", " (in 3D three)", " …"), quantity.unit, where,
