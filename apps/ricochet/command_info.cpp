@@ -36,11 +36,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns "triangles", "tetrahedra", …; for a single cell "triangle".
 std::string shape_text(const CellBlock& block) {
-  const std::string singular = name(block.shape);
-  if (block.size() == 1) return singular;
-  return singular.ends_with("hedron") ? singular.substr(0, singular.size() - 2) + "a" : singular + "s";
+  return block.size() == 1 ? name(block.shape) : plural_name(block.shape);
 }
 
 /// Returns true for a file for which gmsh may run shell commands; only `run` and `validate --mesh` pass it to gmsh.

@@ -4,7 +4,9 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/io/results_reader.hpp"
 #include "ricochet/io/run_directory.hpp"
-#include "ricochet/io/vtk_order.hpp"
+#include "ricochet/mesh/converter_files.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/mesh/shapes/cell_shape_description.hpp"
 #include "ricochet/report/figure.hpp"
 #include "ricochet/report/page.hpp"
 #include "ricochet/report/reading_runs.hpp"
@@ -56,35 +58,19 @@ py::array read_field(const RunData& run, Index frame, const std::string& name) {
   return owned_array(std::move(values), rows, field.components > 1 ? field.components : 0);
 }
 
-/// Returns meshio's name of a shape.
-std::string kind_of(const CellBlock& block) {
-  switch (block.shape) {
-    case CellShape::interval:
-      return block.nodes_per_cell == 2 ? "line" : "line3";
-    case CellShape::triangle:
-      return block.nodes_per_cell == 3 ? "triangle" : "triangle6";
-    case CellShape::quadrilateral:
-      return block.nodes_per_cell == 4 ? "quad" : "quad9";
-    case CellShape::tetrahedron:
-      return block.nodes_per_cell == 4 ? "tetra" : "tetra10";
-    case CellShape::hexahedron:
-      return block.nodes_per_cell == 8 ? "hexahedron" : "hexahedron27";
-  }
-  return "";
-}
-
 /// Returns (meshio's name, cells × nodes in VTK's order) for each block.
 py::list cells_of(const std::vector<CellBlock>& blocks, int degree) {
   py::list result;
   for (const CellBlock& block : blocks) {
-    const std::vector<int> order = vtk_cell(block.shape, degree).from_ours;
+    const std::vector<int>& order = vtk_nodes(block.shape, degree);
     std::vector<std::int64_t> nodes;
     nodes.reserve(block.nodes.size());
     for (Index cell = 0; cell < block.size(); ++cell) {
       for (const int own : order) nodes.push_back(block.cell(cell)[own]);
     }
     const Index count = block.size();
-    result.append(py::make_tuple(kind_of(block), owned_array(std::move(nodes), count, block.nodes_per_cell)));
+    result.append(py::make_tuple(file_type(block.shape, degree).meshio_name,
+                                 owned_array(std::move(nodes), count, block.nodes_per_cell)));
   }
   return result;
 }
@@ -175,6 +161,7 @@ void bind_run(py::module_& module) {
       .def("surface", &surface_of, py::arg("most"))
       .def("obstacles", &obstacles_of, py::arg("frame"));
   module.def("read_run", &read_run, py::arg("directory"));
+  module.def("cell_types", &gmsh::converter_cell_types);
   module.def("holds_run", &holds_run, py::arg("directory"));
   module.def("is_in_use", &RunDirectory::is_in_use, py::arg("directory"));
 }

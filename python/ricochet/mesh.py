@@ -67,7 +67,7 @@ class Mesh:
         if not isinstance(kind, str):
             raise InputError(f"mesh: {what}: the kind {kind!r} is not a name; kinds are {', '.join(TYPES)}")
         nodes = whole_numbers(nodes, f"mesh: {what}", "nodes")
-        wanted = len(TYPES[kind].places) if kind in TYPES else None
+        wanted = TYPES[kind].nodes if kind in TYPES else None
         if nodes.size == 0:
             nodes = numpy.zeros((0, wanted or 1), dtype=numpy.int64)
         if nodes.ndim != 2 or (wanted is not None and nodes.shape[1] != wanted):
@@ -160,7 +160,7 @@ class Mesh:
                     if int(kind) not in GMSH_KINDS:
                         raise InputError(f"mesh: elements of Gmsh's type {kind} are not supported")
                     name = GMSH_KINDS[int(kind)]
-                    table = number[of_kind.astype(numpy.int64)].reshape(-1, len(TYPES[name].places))
+                    table = number[of_kind.astype(numpy.int64)].reshape(-1, TYPES[name].nodes)
                     placed[dimension, entity].append((len(cells), len(table)))
                     cells.append((name, in_our_order(name, table)))
             return placed[dimension, entity]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, Optional, Tuple
 import numpy
 
 from . import _core
+from .converter.file_mesh import TYPES
 from .errors import Error, ExpectationError, InputError, UsageError, unknown_name
 from .files import library_path
 from .messages import logger
@@ -267,10 +268,9 @@ class Run:
         return Maximum(best[0], best[1], tuple(float(x) for x in place), "frames")
 
     def _centre(self, cell):
-        corners = {"triangle": 3, "quad": 4, "tetra": 4, "hexahedron": 8}
         for kind, nodes in self.cells:
             if cell < len(nodes):
-                own = nodes[cell][:corners[kind.rstrip("0123456789")]]
+                own = nodes[cell][:TYPES[kind].vertices]
                 return self.points[own].mean(axis=0)
             cell -= len(nodes)
         raise IndexError(cell)

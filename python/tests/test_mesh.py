@@ -7,6 +7,7 @@ import numpy
 import pytest
 
 import ricochet as rc
+from ricochet.converter.file_mesh import TYPES
 
 CASE = {
     "material": [{"group": "all", "density": 1000.0, "young": 1e6, "poisson": 0.3}],
@@ -179,3 +180,19 @@ def test_a_case_with_a_file_takes_no_mesh(cases):
         rc.Case(cases / "puck/puck.toml", mesh=mesh)
     with pytest.raises(rc.UsageError, match="already defines the mesh"):
         rc.Case({**CASE, "mesh": {"file": "a.msh"}}, mesh=mesh)
+
+
+def test_types_of_cells_agree_with_meshio():
+    """The table comes from the C++ descriptions of the shapes; meshio has its own."""
+    from meshio.gmsh import common
+
+    for kind, cell in TYPES.items():
+        assert common._gmsh_to_meshio_type[cell.gmsh] == kind
+        assert cell.nodes == meshio._mesh.num_nodes_per_cell[kind]
+        assert cell.dimension == meshio._mesh.topological_dimension[kind]
+        numbers = numpy.arange(cell.nodes).reshape(1, -1)
+        assert common._meshio_to_gmsh_order(kind, numbers)[0].tolist() == cell.order
+        for own, nodes in cell.facets:
+            assert TYPES[own].dimension == cell.dimension - 1 and len(nodes) == TYPES[own].nodes
+            assert len(set(nodes)) == len(nodes) and max(nodes) < cell.nodes
+            assert max(nodes[:TYPES[own].vertices]) < cell.vertices

@@ -43,7 +43,7 @@ class Builder {
     mesh_.dimension = dimension_;
     mesh_.degree = box.geometry_degree;
     mesh_.cells.push_back({box.shape, node_count(box.shape, box.geometry_degree), {}, {}});
-    const CellShape facet = facet_shape(box.shape);
+    const CellShape facet = facet_shape(box.shape, 0);
     mesh_.facets.push_back({facet, node_count(facet, box.geometry_degree), {}, {}});
     mesh_.groups.push_back({"body", 1, dimension_, {}});
     for (int axis = 0; axis < dimension_; ++axis) {

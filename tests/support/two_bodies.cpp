@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "ricochet/mesh/gmsh_elements.hpp"
 #include "ricochet/mesh/merge_parts.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/mesh/shapes/cell_shape_description.hpp"
 #include "support/case_run.hpp"
 
 namespace ricochet::test_support {
@@ -25,18 +26,6 @@ Mesh make_stack(const StackedBoxes& stack) {
   return merge_parts({{"lower", lower}, {"upper", upper}});
 }
 
-namespace {
-
-int gmsh_type(CellShape shape, int degree) {
-  for (int number = 1; number <= 20; ++number) {
-    const gmsh::ElementType* const type = gmsh::find_element_type(number);
-    if (type != nullptr && type->shape == shape && type->degree == degree) return number;
-  }
-  return 0;
-}
-
-}  // namespace
-
 /// Groups of facets that contain the whole boundary of a body are left out, as elements belong to one group each.
 std::string write_mesh(const std::string& name, const Mesh& mesh) {
   std::string names, elements, nodes;
@@ -48,11 +37,9 @@ std::string write_mesh(const std::string& name, const Mesh& mesh) {
     for (const Index member : group.members) {
       const IndexInBlocks place = locate_in_blocks(blocks, member);
       const CellBlock& block = blocks[place.block];
-      const std::vector<int>& order = gmsh::node_order(block.shape, mesh.degree);
-      std::vector<Index> ordered(order.size());
-      for (std::size_t i = 0; i < order.size(); ++i)
-        ordered[static_cast<std::size_t>(order[i])] = block.cell(place.local)[i] + 1;
-      elements += fmt::format("{} {} 2 {} {} {}\n", ++count, gmsh_type(block.shape, mesh.degree), groups, groups,
+      std::vector<Index> ordered;
+      for (const int node : gmsh_nodes(block.shape, mesh.degree)) ordered.push_back(block.cell(place.local)[node] + 1);
+      elements += fmt::format("{} {} 2 {} {} {}\n", ++count, file_type(block.shape, mesh.degree).gmsh, groups, groups,
                               fmt::join(ordered, " "));
     }
   }

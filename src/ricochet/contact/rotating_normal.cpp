@@ -48,7 +48,7 @@ void RotatingNormal::add_facet(const DisplacementSpace& space, Index facet, cons
   Cross area;
   if (space.dimension == 2) {
     area = {{nodes[0], nodes[1]}, {}, 1.0};
-  } else if (block.shape == CellShape::triangle) {
+  } else if (is_simplex(block.shape)) {
     area = {{nodes[0], nodes[1]}, {nodes[0], nodes[2]}, 0.5};
   } else {
     // The diagonals; vertices of quadrilaterals are numbered row by row (reference_cell.hpp).

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <tuple>
 
@@ -24,13 +25,16 @@ struct RidgeSide {
 class RidgeSides {
  public:
   RidgeSides(const Body& body, std::vector<RidgeSide>& result) : body_(body), result_(result) {
-    for (const CellBlock& block : body.space->cells) shapes_.emplace_back(facet_shape(block.shape), body.mesh->degree);
+    for (const CellShape shape : cell_shapes()) {
+      if (dimension(shape) == body.mesh->dimension - 1)
+        shapes_.emplace(shape, PolynomialShape(shape, body.mesh->degree));
+    }
   }
 
   void add(std::size_t number, const CellFacet& facet) {
     const CellBlock& block = body_.space->cells[facet.block];
     const std::vector<int>& corners = outward_facet_vertices(block.shape)[facet.local];
-    const PolynomialMap<3> map(shapes_[facet.block], positions(facet));
+    const PolynomialMap<3> map(shapes_.at(facet_shape(block.shape, facet.local)), positions(facet));
     const std::size_t count = corners.size();
     for (std::size_t k = 0; k < count; ++k) {
       const int first = corners[k], second = count == 2 ? first : corners[(k + 1) % count];
@@ -62,12 +66,10 @@ class RidgeSides {
   }
   /// Reference coordinates on the facet of a vertex of its cell.
   [[nodiscard]] Eigen::Vector2d reference_point(const CellFacet& facet, int vertex) const {
-    const CellShape shape = body_.space->cells[facet.block].shape, own = facet_shape(shape);
+    const CellShape shape = body_.space->cells[facet.block].shape;
     const std::vector<int>& nodes = facet_nodes(shape, 1)[facet.local];
     const auto local = static_cast<int>(std::find(nodes.begin(), nodes.end(), vertex) - nodes.begin());
-    Eigen::Vector2d result = Eigen::Vector2d::Zero();
-    for (int axis = 0; axis + 1 < body_.mesh->dimension; ++axis) result[axis] = vertex_coordinate(own, local, axis);
-    return result;
+    return reference_position(facet_shape(shape, facet.local), {local}).head<2>();
   }
   /// Outward normal, oriented by the order of the facet's corners.
   [[nodiscard]] Eigen::Vector3d normal(const CellFacet& facet, const PolynomialMap<3>::Evaluation& at) const {
@@ -84,7 +86,7 @@ class RidgeSides {
 
   const Body& body_;
   std::vector<RidgeSide>& result_;
-  std::vector<PolynomialShape> shapes_;
+  std::map<CellShape, PolynomialShape> shapes_;  ///< of facets
 };
 
 }  // namespace

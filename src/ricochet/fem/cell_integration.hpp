@@ -48,8 +48,8 @@ struct BlockIntegration {
 /// which the same degree is adequate.
 [[nodiscard]] inline int product_quadrature_degree(CellShape shape, int geometry_degree, int displacement_degree,
                                                    bool axisymmetric = false) {
-  const bool simplex = shape == CellShape::triangle || shape == CellShape::tetrahedron || shape == CellShape::interval;
-  const int determinant = simplex ? dimension(shape) * (geometry_degree - 1) : dimension(shape) * geometry_degree - 1;
+  const int determinant =
+      is_simplex(shape) ? dimension(shape) * (geometry_degree - 1) : dimension(shape) * geometry_degree - 1;
   return 2 * displacement_degree + determinant + (axisymmetric ? geometry_degree : 0);
 }
 
@@ -58,8 +58,7 @@ struct BlockIntegration {
 [[nodiscard]] inline int stiffness_quadrature_degree(CellShape shape, int geometry_degree, int displacement_degree,
                                                      bool axisymmetric = false) {
   if (axisymmetric) return product_quadrature_degree(shape, geometry_degree, displacement_degree, true);
-  const bool simplex = shape == CellShape::triangle || shape == CellShape::tetrahedron;
-  if (simplex && geometry_degree == 1) return displacement_degree == 1 ? 1 : 2;
+  if (is_simplex(shape) && geometry_degree == 1) return displacement_degree == 1 ? 1 : 2;
   return product_quadrature_degree(shape, geometry_degree, displacement_degree);
 }
 

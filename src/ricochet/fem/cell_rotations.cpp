@@ -283,9 +283,8 @@ CellRotations::CellRotations(const Body& body) : dimension_(body.mesh->dimension
   for (std::size_t b = 0; b < body.space->cells.size(); ++b) {
     const CellBlock& geometry = body.mesh->cells[b];
     const CellBlock& cells = body.space->cells[b];
-    const bool simplex = geometry.shape == CellShape::triangle || geometry.shape == CellShape::tetrahedron;
     blocks_.push_back({&cells, {}, {}});
-    if (simplex && body.mesh->degree == 1 && body.space->degree == 1) {
+    if (is_simplex(geometry.shape) && body.mesh->degree == 1 && body.space->degree == 1) {
       blocks_.back().vertices = sorted_vertices(cells, dimension_);
       continue;
     }

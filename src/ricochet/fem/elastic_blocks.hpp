@@ -94,8 +94,7 @@ struct ElasticCells::Blocks {
       }
     }
   }
-  /// Linear on quadrilaterals and hexahedra of degree 2, else constant. (Linear ones are
-  /// unstable on triangles of degree 2.)
+  /// Constant on simplices and with degree 1, else linear. (Linear ones are unstable on triangles of degree 2.)
   [[nodiscard]] Matrix dilatation_functions(CellShape shape, const KernelBlock<d>& block) const {
     const bool linear = !is_simplex(shape) && body.space->degree == 2;
     Matrix result = Matrix::Ones(block.points, linear ? d + 1 : 1);
@@ -103,7 +102,6 @@ struct ElasticCells::Blocks {
     if (linear) result.rightCols(d) = (block.integration.rule.points.colwise() - centre).transpose();
     return result;
   }
-  static bool is_simplex(CellShape shape) { return shape == CellShape::triangle || shape == CellShape::tetrahedron; }
 };
 
 template <>

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ricochet/fem/cell_integration.hpp"
+#include "ricochet/fem/isotropic_elasticity.hpp"
 
 /// @file Mass and stiffness of one cell. Not part of the public interface.
 ///
@@ -31,8 +32,7 @@ struct MassIntegration {
   MassIntegration(CellShape shape, int geometry_degree, int displacement_degree, bool axisymmetric = false)
       : block(shape, geometry_degree, displacement_degree,
               product_quadrature_degree(shape, geometry_degree, displacement_degree, axisymmetric), axisymmetric),
-        affine(!axisymmetric && geometry_degree == 1 &&
-               (shape == CellShape::triangle || shape == CellShape::tetrahedron)) {
+        affine(!axisymmetric && geometry_degree == 1 && is_simplex(shape)) {
     const Matrix& values = block.displacement.values;
     for (Index j = 0; j < values.rows(); ++j) {
       for (Index i = 0; i <= j; ++i) {

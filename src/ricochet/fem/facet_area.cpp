@@ -11,14 +11,12 @@ namespace {
 
 /// Displacement nodes of a facet in the order of its border, or along a segment.
 std::vector<int> border_of(CellShape shape, int degree) {
-  const std::vector<int> corners = shape == CellShape::interval   ? std::vector<int>{0, 1}
-                                   : shape == CellShape::triangle ? std::vector<int>{0, 1, 2}
-                                                                  : std::vector<int>{0, 1, 3, 2};
+  const std::vector<int>& corners = vtk_nodes(shape, 1);  // around the facet
   std::vector<int> result;
   for (std::size_t k = 0; k < corners.size(); ++k) {
     result.push_back(corners[k]);
     const bool is_last = k + 1 == corners.size();
-    if (degree == 1 || (is_last && shape == CellShape::interval)) continue;
+    if (degree == 1 || (is_last && dimension(shape) == 1)) continue;
     result.push_back(node_at_mean(shape, {corners[k], corners[is_last ? 0 : k + 1]}));
   }
   return result;
@@ -29,8 +27,8 @@ std::vector<int> border_of(CellShape shape, int degree) {
 FacetShape make_facet_shape(CellShape shape, int geometry_degree, int displacement_degree, bool axisymmetric) {
   const QuadratureRule rule =
       quadrature(shape, product_quadrature_degree(shape, geometry_degree, displacement_degree, axisymmetric) + 1);
-  FacetShape result{shape == CellShape::interval,
-                    shape == CellShape::triangle,
+  FacetShape result{dimension(shape) == 1,
+                    dimension(shape) == 2 && is_simplex(shape),
                     PolynomialShape(shape, geometry_degree),
                     PolynomialShape(shape, displacement_degree),
                     rule.points,

@@ -154,13 +154,13 @@ namespace {
 
 /// Size of a straight facet from its vertices. A non-planar quadrilateral is cut along either diagonal; the mean of
 /// both does not depend on its first vertex.
-double facet_size(const Mesh& mesh, CellShape shape, const Index* cell, const std::vector<int>& vertices) {
+double facet_size(const Mesh& mesh, const Index* cell, const std::vector<int>& vertices) {
   const auto at = [&](std::size_t k) { return position(mesh, cell[vertices[k]]); };
-  if (shape == CellShape::interval) return (at(1) - at(0)).norm();
+  if (vertices.size() == 2) return (at(1) - at(0)).norm();
   const auto half = [&](std::size_t i, std::size_t j, std::size_t k) {
     return 0.5 * (at(j) - at(i)).cross(at(k) - at(i)).norm();
   };
-  if (shape == CellShape::triangle) return half(0, 1, 2);
+  if (vertices.size() == 3) return half(0, 1, 2);
   return 0.5 * (half(0, 1, 2) + half(3, 1, 2) + half(1, 0, 3) + half(2, 0, 3));
 }
 
@@ -175,13 +175,11 @@ class CellHeights {
   }
   [[nodiscard]] double of(const IndexInBlocks& location) const {
     const CellBlock& block = mesh_.cells[location.block];
-    const CellShape shape = facet_shape(block.shape);
-    const bool is_simplex = block.shape == CellShape::triangle || block.shape == CellShape::tetrahedron;
     double largest = 0.0;
     for (const std::vector<int>& vertices : facet_nodes(block.shape, 1))
-      largest = std::max(largest, facet_size(mesh_, shape, block.cell(location.local), vertices));
+      largest = std::max(largest, facet_size(mesh_, block.cell(location.local), vertices));
     const double size = integrate(mesh_, rules_[location.block], block, location.local).size;
-    return (is_simplex ? mesh_.dimension : 1.0) * size / largest;
+    return (is_simplex(block.shape) ? mesh_.dimension : 1.0) * size / largest;
   }
 
  private:

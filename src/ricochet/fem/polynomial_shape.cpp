@@ -14,9 +14,8 @@ double power(double x, int exponent) {
 
 /// Computes the coefficients of each shape function, which is 1 at its node, in the monomials of their space.
 PolynomialShape::PolynomialShape(CellShape shape, int degree) : dimension_(dimension(shape)) {
-  const bool simplex = shape != CellShape::quadrilateral;
   for (int j = 0; j <= (dimension_ == 2 ? degree : 0); ++j) {
-    for (int i = 0; i <= (simplex ? degree - j : degree); ++i, ++terms_) {
+    for (int i = 0; i <= (is_simplex(shape) ? degree - j : degree); ++i, ++terms_) {
       powers_[terms_][0] = i;
       powers_[terms_][1] = j;
     }

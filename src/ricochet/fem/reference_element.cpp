@@ -5,48 +5,35 @@
 #include <basix/finite-element.h>
 #include <basix/quadrature.h>
 
-#include <array>
-#include <cmath>
-#include <map>
-#include <memory>
-#include <mutex>
+#include <numeric>
 #include <span>
-#include <utility>
 
 #include "ricochet/base/blas.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/mesh/shapes/cell_shape_description.hpp"
 
 namespace ricochet {
 
 namespace {
 
+/// Basix's cell of the same dimension with as many vertices.
 basix::cell::type basix_cell(CellShape shape) {
-  switch (shape) {
-    case CellShape::interval:
-      return basix::cell::type::interval;
-    case CellShape::triangle:
-      return basix::cell::type::triangle;
-    case CellShape::quadrilateral:
-      return basix::cell::type::quadrilateral;
-    case CellShape::tetrahedron:
-      return basix::cell::type::tetrahedron;
-    case CellShape::hexahedron:
-      return basix::cell::type::hexahedron;
-  }
-  return basix::cell::type::point;
+  auto type = basix::cell::type::interval;
+  const auto fits = [&] {
+    return basix::cell::topological_dimension(type) == dimension(shape) &&
+           basix::cell::num_sub_entities(type, 0) == vertex_count(shape);
+  };
+  while (!fits()) type = static_cast<basix::cell::type>(static_cast<int>(type) + 1);
+  return type;
 }
 
 const basix::FiniteElement& basix_element(CellShape shape, int degree) {
-  static std::mutex guard;
-  static std::map<std::pair<CellShape, int>, basix::FiniteElement> elements;
-  const std::scoped_lock lock(guard);
-  const auto key = std::make_pair(shape, degree);
-  const auto found = elements.find(key);
-  if (found != elements.end()) return found->second;
-  prepare_blas();  // Basix solves a linear system for the coefficients of its shape functions
-  return elements
-      .emplace(key, basix::create_element(basix::element::family::P, basix_cell(shape), degree,
-                                          basix::element::lagrange_variant::gll_warped, false))
-      .first->second;
+  static const ShapeTable elements([](CellShape of, int k) {
+    prepare_blas();  // Basix solves a linear system for the coefficients of its shape functions
+    return basix::create_element(basix::element::family::P, basix_cell(of), k,
+                                 basix::element::lagrange_variant::gll_warped, false);
+  });
+  return elements.at(shape, degree);
 }
 
 }  // namespace
@@ -80,12 +67,8 @@ ReferenceElement::ReferenceElement(CellShape shape, int degree) : shape_(shape),
 }
 
 const ReferenceElement& ReferenceElement::get(CellShape shape, int degree) {
-  static std::mutex guard;
-  static std::map<std::pair<CellShape, int>, std::unique_ptr<ReferenceElement>> elements;
-  const std::scoped_lock lock(guard);
-  auto& slot = elements[{shape, degree}];
-  if (!slot) slot.reset(new ReferenceElement(shape, degree));
-  return *slot;
+  static const ShapeTable elements([](CellShape of, int k) { return ReferenceElement(of, k); });
+  return elements.at(shape, degree);
 }
 
 QuadratureRule quadrature(CellShape shape, int degree) {
@@ -99,8 +82,9 @@ QuadratureRule quadrature(CellShape shape, int degree) {
 }
 
 Vector reference_centre(CellShape shape) {
-  const bool simplex = shape == CellShape::triangle || shape == CellShape::tetrahedron;
-  return Vector::Constant(dimension(shape), simplex ? 1.0 / (dimension(shape) + 1) : 0.5);
+  std::vector<int> vertices(static_cast<std::size_t>(vertex_count(shape)));
+  std::iota(vertices.begin(), vertices.end(), 0);
+  return reference_position(shape, vertices).head(dimension(shape));
 }
 
 }  // namespace ricochet

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "ricochet/base/types.hpp"
-#include "ricochet/mesh/cell_type.hpp"
+#include "ricochet/mesh/shapes/cell_shape.hpp"
 
 /// @file Lagrange elements on reference cells and quadrature, from Basix (which only one source file includes).
 namespace ricochet {
@@ -43,7 +43,7 @@ class ReferenceElement {
 /// Quadrature rule, exact for polynomials of the given degree (on tensor-product cells: of that degree per variable).
 [[nodiscard]] QuadratureRule quadrature(CellShape shape, int degree);
 
-/// Centre of gravity of the reference cell.
+/// Mean of the vertices of the reference cell.
 [[nodiscard]] Vector reference_centre(CellShape shape);
 
 }  // namespace ricochet

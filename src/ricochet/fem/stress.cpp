@@ -93,8 +93,7 @@ Eigen::Matrix<double, d, d> simplex_strain(const Points& positions, const Index*
 /// Whether the strain is constant over each cell.
 bool has_straight_simplices(const Body& body, CellShape shape) {
   if (is_axisymmetric(body)) return false;
-  const bool simplex = shape == CellShape::triangle || shape == CellShape::tetrahedron;
-  return simplex && body.mesh->degree == 1 && body.space->degree == 1;
+  return is_simplex(shape) && body.mesh->degree == 1 && body.space->degree == 1;
 }
 
 }  // namespace

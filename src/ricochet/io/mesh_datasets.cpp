@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "ricochet/io/vtk_order.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/mesh/shapes/cell_shape_description.hpp"
 
 namespace ricochet {
 
@@ -30,10 +31,10 @@ FixedDataset connectivity(const DisplacementSpace& space, const std::string& nam
   FixedDataset set{name, 0, 0, {}, {}};
   const bool mixed = parts.size() > 1;
   for (const Part& part : parts) {
-    const VtkCell cell = vtk_cell(part.block->shape, space.degree);
+    const CellShape shape = part.block->shape;
     for (const Index i : part.members) {
-      if (mixed) set.integers.push_back(cell.xdmf_number);
-      for (const int k : cell.from_ours)
+      if (mixed) set.integers.push_back(file_type(shape, space.degree).xdmf_number);
+      for (const int k : vtk_nodes(shape, space.degree))
         set.integers.push_back(space.number[static_cast<std::size_t>(part.block->cell(i)[k])]);
     }
   }
@@ -106,11 +107,10 @@ std::vector<FixedDataset> mesh_datasets(const DisplacementSpace& space, const Co
 std::vector<FixedDataset> vtkhdf_mesh_datasets(const DisplacementSpace& space) {
   VtkHdfCells cells;
   for (const CellBlock& block : space.cells) {
-    const VtkCell kind = vtk_cell(block.shape, space.degree);
     for (Index i = 0; i < block.size(); ++i) {
-      for (const int k : kind.from_ours)
+      for (const int k : vtk_nodes(block.shape, space.degree))
         cells.connectivity.integers.push_back(space.number[static_cast<std::size_t>(block.cell(i)[k])]);
-      cells.end_cell(kind.vtk_number);
+      cells.end_cell(file_type(block.shape, space.degree).vtk);
     }
   }
   std::vector<FixedDataset> result = cells.datasets(space.node_count());

@@ -9,21 +9,16 @@
 #include "ricochet/hdf5/hdf5_file.hpp"
 #include "ricochet/io/file_lock.hpp"
 #include "ricochet/io/results_storage.hpp"
-#include "ricochet/io/vtk_order.hpp"
 #include "ricochet/io/vtkhdf_reader.hpp"
 #include "ricochet/io/xdmf_reader.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/mesh/shapes/cell_shape_description.hpp"
 
 namespace ricochet {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<CellShape> shapes_of(int dimension) {
-  if (dimension == 1) return {CellShape::interval};
-  if (dimension == 2) return {CellShape::triangle, CellShape::quadrilateral};
-  return {CellShape::tetrahedron, CellShape::hexahedron};
-}
 
 /// Reads connectivity as written by mesh_datasets.cpp: a table of cells of one shape, or XDMF's mixed list.
 class Connectivity {
@@ -43,7 +38,7 @@ class Connectivity {
       for (std::size_t at = 0; at < list.size();) {
         const std::int64_t number = list[at++];
         const CellShape shape =
-            shape_of([this, number](CellShape s) { return vtk_cell(s, degree_).xdmf_number == number; },
+            shape_of([this, number](CellShape s) { return file_type(s, degree_).xdmf_number == number; },
                      fmt::format("cells of XDMF type {}", number));
         const auto size = static_cast<std::size_t>(node_count(shape, degree_));
         if (at + size > list.size()) file_.fail(name_, "the last cell is incomplete");
@@ -57,8 +52,8 @@ class Connectivity {
  private:
   template <class Predicate>
   [[nodiscard]] CellShape shape_of(const Predicate& fits, const std::string& what) const {
-    for (const CellShape shape : shapes_of(dimension_)) {
-      if (fits(shape)) return shape;
+    for (const CellShape shape : cell_shapes()) {
+      if (dimension(shape) == dimension_ && fits(shape)) return shape;
     }
     file_.fail(name_, fmt::format("there are no {} in dimension {} with degree {}", what, dimension_, degree_));
   }
@@ -66,7 +61,7 @@ class Connectivity {
   void append(CellShape shape, const std::int64_t* in_file) {
     if (blocks_.empty() || blocks_.back().shape != shape) {
       blocks_.push_back({shape, node_count(shape, degree_), {}, {}});
-      order_ = vtk_cell(shape, degree_).from_ours;
+      order_ = vtk_nodes(shape, degree_);
     }
     CellBlock& block = blocks_.back();
     const std::size_t begin = block.nodes.size();

@@ -11,7 +11,6 @@
 #include "ricochet/base/file_version.hpp"
 #include "ricochet/hdf5/hdf5_rows.hpp"
 #include "ricochet/io/file_lock.hpp"
-#include "ricochet/io/vtk_order.hpp"
 #include "ricochet/io/vtkhdf_reader.hpp"
 #include "ricochet/io/xdmf_reader.hpp"
 

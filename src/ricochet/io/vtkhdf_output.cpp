@@ -3,7 +3,8 @@
 #include "ricochet/io/frame_output.hpp"
 #include "ricochet/io/mesh_datasets.hpp"
 #include "ricochet/io/obstacle_surfaces.hpp"
-#include "ricochet/io/vtk_order.hpp"
+#include "ricochet/io/vtkhdf_reader.hpp"
+#include "ricochet/mesh/shapes/cell_shape_description.hpp"
 
 namespace ricochet {
 
@@ -117,7 +118,7 @@ class VtkHdfOutput : public FrameOutput {
     FileOfFrames file{
         "obstacles.vtkhdf",
         "obstacles",
-        vtkhdf_cell_datasets(obstacles_.point_count(), obstacles_.cells(), vtk_cell(shape, 1).vtk_number, corners),
+        vtkhdf_cell_datasets(obstacles_.point_count(), obstacles_.cells(), file_type(shape, 1).vtk, corners),
         {{"Points", false, obstacles_.point_count(), 3}}};
     const std::vector<int>& numbers = obstacles_.numbers();
     file.fixed.push_back(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,10 @@
 
 /// @file Reader for results.vtkhdf and obstacles.vtkhdf. Supports only the files that vtkhdf_output.cpp writes.
 namespace ricochet {
+
+/// For each component of a symmetric tensor in VTK's order, xx, yy, zz, xy, yz, xz, its index in ours, xx, xy, xz, yy,
+/// yz, zz, which is XDMF's.
+constexpr std::array<int, 6> vtk_tensor_from_ours = {0, 3, 5, 1, 4, 2};
 
 /// Throws Error(invalid_input).
 [[nodiscard]] ResultFrames read_vtkhdf_frames(const Hdf5Reader& file);

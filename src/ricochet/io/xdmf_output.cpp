@@ -6,8 +6,8 @@
 #include "ricochet/io/frame_output.hpp"
 #include "ricochet/io/mesh_datasets.hpp"
 #include "ricochet/io/obstacle_surfaces.hpp"
-#include "ricochet/io/vtk_order.hpp"
 #include "ricochet/io/xdmf_file.hpp"
+#include "ricochet/mesh/shapes/cell_shape_description.hpp"
 
 namespace ricochet {
 
@@ -21,7 +21,7 @@ std::string topology_of(const DisplacementSpace& space, const FixedDataset& cell
   return fmt::format(
       "        <Topology TopologyType=\"{}\" NumberOfElements=\"{}\"><DataItem Format=\"HDF\" NumberType=\"Int\" "
       "Precision=\"8\" Dimensions=\"{}\">results.h5:/mesh/cells</DataItem></Topology>\n",
-      mixed ? "Mixed" : vtk_cell(space.cells.front().shape, space.degree).xdmf_name, count,
+      mixed ? "Mixed" : file_type(space.cells.front().shape, space.degree).xdmf, count,
       mixed ? fmt::format("{}", cells.rows) : fmt::format("{} {}", cells.rows, cells.columns));
 }
 

@@ -14,9 +14,9 @@ namespace {
 /// Vertices of a facet, ascending; leading entries are −1 if there are fewer than four.
 using Key = std::array<Index, 4>;
 
-Key key_of(const Index* cell, CellShape shape, const std::vector<int>& local) {
+Key key_of(const Index* cell, const std::vector<int>& local) {
   Key key{-1, -1, -1, -1};
-  const auto count = static_cast<std::size_t>(vertex_count(facet_shape(shape)));
+  const std::size_t count = local.size();
   for (std::size_t k = 0; k < count; ++k) key[4 - count + k] = cell[local[k]];
   std::sort(key.begin(), key.end());
   return key;
@@ -38,7 +38,7 @@ void for_each_facet(const std::vector<CellBlock>& cells, const Visit& visit) {
     const std::vector<std::vector<int>>& locals = facet_nodes(all.shape, 1);
     for (Index cell = 0; cell < all.size(); ++cell) {
       for (std::size_t local = 0; local < locals.size(); ++local)
-        visit(CellFacet{block, cell, local}, key_of(all.cell(cell), all.shape, locals[local]));
+        visit(CellFacet{block, cell, local}, key_of(all.cell(cell), locals[local]));
     }
   }
 }
@@ -72,7 +72,7 @@ void for_each_distinct_facet(const std::vector<CellBlock>& cells, const Visit& v
     for (std::size_t i = start[node]; i < start[node + 1]; ++i) {
       const CellBlock& block = cells[sorted[i].block];
       const std::vector<int>& local = facet_nodes(block.shape, 1)[sorted[i].local];
-      bucket.emplace_back(key_of(block.cell(sorted[i].cell), block.shape, local), sorted[i]);
+      bucket.emplace_back(key_of(block.cell(sorted[i].cell), local), sorted[i]);
     }
     std::sort(bucket.begin(), bucket.end(), by_key_and_cell);
     for (std::size_t i = 0; i < bucket.size();) {

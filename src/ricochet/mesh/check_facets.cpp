@@ -30,10 +30,13 @@ class FacetFinder {
   }
 
   void search(const CellBlock& cells) {
-    if (facet_shape(cells.shape) != facets_.shape) return;
     std::vector<Index> nodes(static_cast<std::size_t>(facets_.nodes_per_cell));
+    std::vector<std::vector<int>> locals;
+    for (std::size_t facet = 0; facet < facet_nodes(cells.shape, degree_).size(); ++facet) {
+      if (facet_shape(cells.shape, facet) == facets_.shape) locals.push_back(facet_nodes(cells.shape, degree_)[facet]);
+    }
     for (Index i = 0; i < cells.size(); ++i) {
-      for (const std::vector<int>& local : facet_nodes(cells.shape, degree_)) {
+      for (const std::vector<int>& local : locals) {
         if (!candidate(cells.cell(i), local)) continue;
         for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] = cells.cell(i)[local[k]];
         compare(nodes);

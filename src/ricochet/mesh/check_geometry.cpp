@@ -13,6 +13,7 @@
 #include "ricochet/mesh/disjoint_sets.hpp"
 #include "ricochet/mesh/offenders.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/mesh/shapes/cell_shape_description.hpp"
 
 namespace ricochet::gmsh {
 
@@ -22,64 +23,19 @@ namespace {
 constexpr double flatness_tolerance = 1e-12;
 constexpr double coincidence_tolerance = 1e-10;  // Gmsh places nodes on curves to about 1e-12
 
-/// Gradients of the geometry's shape functions at a point of the reference simplex, one column per node.
-Matrix simplex_gradients(CellShape shape, int degree, const Vector& point) {
-  const int dimensions = dimension(shape);
-  Vector barycentric(dimensions + 1);
-  barycentric << 1.0 - point.sum(), point;
-  Matrix of_barycentric(dimensions, dimensions + 1);
-  of_barycentric << Vector::Constant(dimensions, -1.0), Matrix::Identity(dimensions, dimensions);
-  const auto& nodes = node_vertices(shape, degree);
-  Matrix gradients(dimensions, static_cast<Index>(nodes.size()));
-  for (std::size_t node = 0; node < nodes.size(); ++node) {
-    const int i = nodes[node].front();
-    const int j = nodes[node].back();
-    Vector gradient = of_barycentric.col(i);
-    if (degree == 2 && i == j) gradient *= 4.0 * barycentric(i) - 1.0;
-    if (degree == 2 && i != j) gradient = 4.0 * (barycentric(j) * gradient + barycentric(i) * of_barycentric.col(j));
-    gradients.col(static_cast<Index>(node)) = gradient;
-  }
-  return gradients;
-}
-
-double node_coordinate(CellShape shape, const std::vector<int>& vertices, int axis) {
-  double sum = 0.0;
-  for (const int vertex : vertices) sum += vertex_coordinate(shape, vertex, axis);
-  return sum / static_cast<double>(vertices.size());
-}
-
-/// Value and derivative at x of the Lagrange polynomial on [0, 1] that is one at `node` (0, ½ or 1).
-std::pair<double, double> lagrange(int degree, double node, double x) {
-  if (degree == 1) return node == 0.0 ? std::pair{1.0 - x, -1.0} : std::pair{x, 1.0};
-  if (node == 0.0) return {(2.0 * x - 1.0) * (x - 1.0), 4.0 * x - 3.0};
-  if (node == 1.0) return {x * (2.0 * x - 1.0), 4.0 * x - 1.0};
-  return {4.0 * x * (1.0 - x), 4.0 - 8.0 * x};
-}
-
-Matrix tensor_gradients(CellShape shape, int degree, const Vector& point) {
-  const int dimensions = dimension(shape);
-  const auto& nodes = node_vertices(shape, degree);
-  Matrix gradients = Matrix::Ones(dimensions, static_cast<Index>(nodes.size()));
-  for (std::size_t node = 0; node < nodes.size(); ++node) {
-    for (int axis = 0; axis < dimensions; ++axis) {
-      const auto [value, derivative] = lagrange(degree, node_coordinate(shape, nodes[node], axis), point(axis));
-      for (int component = 0; component < dimensions; ++component) {
-        gradients(component, static_cast<Index>(node)) *= component == axis ? derivative : value;
-      }
-    }
-  }
-  return gradients;
-}
-
-/// Gradients at each point where the Jacobian is evaluated: all nodes, or only one on a straight simplex.
+/// Gradients of the geometry's shape functions, one column per node, at each point where the Jacobian is evaluated: all
+/// nodes, or only one on a straight simplex.
 std::vector<Matrix> gradients_at_nodes(CellShape shape, int degree) {
-  const bool simplex = shape == CellShape::triangle || shape == CellShape::tetrahedron;
+  const auto& nodes = node_vertices(shape, degree);
   std::vector<Matrix> result;
-  for (const std::vector<int>& vertices : node_vertices(shape, degree)) {
-    Vector point(dimension(shape));
-    for (int axis = 0; axis < dimension(shape); ++axis) point(axis) = node_coordinate(shape, vertices, axis);
-    result.push_back(simplex ? simplex_gradients(shape, degree, point) : tensor_gradients(shape, degree, point));
-    if (simplex && degree == 1) break;
+  for (const std::vector<int>& point : nodes) {
+    Matrix& gradients = result.emplace_back(dimension(shape), static_cast<Index>(nodes.size()));
+    for (Index k = 0; k < gradients.cols(); ++k) {
+      const Eigen::Vector3d node = reference_position(shape, nodes[static_cast<std::size_t>(k)]);
+      const LagrangeValue function = describe(shape).lagrange(degree, node, reference_position(shape, point));
+      gradients.col(k) = function.gradient.head(dimension(shape));
+    }
+    if (is_simplex(shape) && degree == 1) break;
   }
   return result;
 }

@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <vector>
 
@@ -24,17 +26,33 @@ struct Edge {
   int begin, end, middle;
 };
 
-/// Per vertex of a shape, the edges that begin there.
-std::vector<std::vector<Edge>> edges_at_vertices(CellShape shape, int degree) {
-  std::vector<std::vector<Edge>> result(static_cast<std::size_t>(vertex_count(shape)));
-  const auto& nodes = node_vertices(shape, 2);
-  for (std::size_t node = 0; node < nodes.size(); ++node) {
-    if (nodes[node].size() != 2 || nodes[node][0] == nodes[node][1]) continue;
-    int middle = -1;
-    if (degree == 2) middle = static_cast<int>(node);
-    const int one = nodes[node][0], other = nodes[node][1];
-    result[static_cast<std::size_t>(one)].push_back({one, other, middle});
-    result[static_cast<std::size_t>(other)].push_back({other, one, middle});
+using Cone = std::vector<Edge>;
+
+/// Per vertex of a shape, the cones between edges that fill it: one with two edges in the plane; in space each has
+/// three, of which the first is the same, and the others are those of a facet.
+std::vector<std::vector<Cone>> cones_at_vertices(CellShape shape, int degree) {
+  std::vector<std::vector<Cone>> result(static_cast<std::size_t>(vertex_count(shape)));
+  std::vector<Cone> edges(result.size());
+  for (const std::vector<int>& ends : node_vertices(shape, 2)) {
+    if (ends.size() != 2) continue;
+    const int middle = degree == 2 ? node_at_mean(shape, ends) : -1;
+    edges[static_cast<std::size_t>(ends[0])].push_back({ends[0], ends[1], middle});
+    edges[static_cast<std::size_t>(ends[1])].push_back({ends[1], ends[0], middle});
+  }
+  if (dimension(shape) == 2) {
+    for (std::size_t vertex = 0; vertex < edges.size(); ++vertex) result[vertex].push_back(edges[vertex]);
+    return result;
+  }
+  for (const std::vector<int>& facet : facet_nodes(shape, 1)) {
+    for (const int vertex : facet) {
+      const Cone& all = edges[static_cast<std::size_t>(vertex)];
+      Cone cone{all.front()};
+      std::copy_if(all.begin(), all.end(), std::back_inserter(cone), [&facet](const Edge& edge) {
+        return std::find(facet.begin(), facet.end(), edge.end) != facet.end();
+      });
+      const bool has_first = cone.size() > 1 && cone[1].end == cone[0].end;
+      if (!has_first) result[static_cast<std::size_t>(vertex)].push_back(std::move(cone));
+    }
   }
   return result;
 }
@@ -64,14 +82,15 @@ double solid_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eig
 std::vector<double> sums_of_angles(const Mesh& mesh) {
   std::vector<double> sums(static_cast<std::size_t>(mesh.node_count()), 0.0);
   for (const CellBlock& block : mesh.cells) {
-    const auto vertices = edges_at_vertices(block.shape, mesh.degree);
+    const auto cones = cones_at_vertices(block.shape, mesh.degree);
     for (Index k = 0; k < block.size(); ++k) {
       const Index* cell = block.cell(k);
-      for (std::size_t vertex = 0; vertex < vertices.size(); ++vertex) {
-        const std::vector<Edge>& edges = vertices[vertex];
-        const Eigen::Vector3d a = direction(mesh, cell, edges[0]), b = direction(mesh, cell, edges[1]);
-        sums[static_cast<std::size_t>(cell[vertex])] +=
-            mesh.dimension == 2 ? angle(a, b) : solid_angle(a, b, direction(mesh, cell, edges[2]));
+      for (std::size_t vertex = 0; vertex < cones.size(); ++vertex) {
+        for (const Cone& cone : cones[vertex]) {
+          const Eigen::Vector3d a = direction(mesh, cell, cone[0]), b = direction(mesh, cell, cone[1]);
+          sums[static_cast<std::size_t>(cell[vertex])] +=
+              mesh.dimension == 2 ? angle(a, b) : solid_angle(a, b, direction(mesh, cell, cone[2]));
+        }
       }
     }
   }

@@ -6,6 +6,7 @@
 #include "ricochet/mesh/build_mesh.hpp"
 #include "ricochet/mesh/gmsh_elements.hpp"
 #include "ricochet/mesh/offenders.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
 #include "ricochet/mesh/vertex_set_table.hpp"
 
 namespace ricochet::gmsh {
@@ -20,7 +21,7 @@ bool same_nodes(const Index* one, const Index* other, int count) {
 class BlockCollector {
  public:
   BlockCollector(CellShape shape, int degree, std::size_t capacity, const NodeNumbering& numbering)
-      : order_(node_order(shape, degree)), numbering_(numbering), table_(vertex_count(shape), capacity) {
+      : order_(gmsh_nodes(shape, degree)), numbering_(numbering), table_(vertex_count(shape), capacity) {
     block_.shape = shape;
     block_.nodes_per_cell = node_count(shape, degree);
     block_.nodes.reserve(capacity * order_.size());
@@ -58,10 +59,10 @@ class BlockCollector {
     const std::int64_t* tags = elements.nodes.data() + element * order_.size();
     bool complete = true;
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      const std::int64_t tag = tags[order_[i]];
-      nodes[i] = numbering_.find(tag);
-      if (nodes[i] >= 0) continue;
-      unknown_nodes_.add(tag);
+      Index& node = nodes[static_cast<std::size_t>(order_[i])];
+      node = numbering_.find(tags[i]);
+      if (node >= 0) continue;
+      unknown_nodes_.add(tags[i]);
       complete = false;
     }
     if (!complete) elements_at_fault_.add(elements.tags[element]);

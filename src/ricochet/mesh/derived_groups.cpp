@@ -83,7 +83,7 @@ template <class Selects>
 void add_boundary(Mesh& mesh, const std::string& name, const Selects& selects) {
   std::map<CellShape, std::vector<CellFacet>> by_shape;
   for (const CellFacet& facet : boundary_facets(mesh.cells)) {
-    if (selects(facet)) by_shape[facet_shape(mesh.cells[facet.block].shape)].push_back(facet);
+    if (selects(facet)) by_shape[facet_shape(mesh.cells[facet.block].shape, facet.local)].push_back(facet);
   }
   Group boundary{name, free_tag(mesh, mesh.dimension - 1), mesh.dimension - 1, {}};
   for (const auto& [shape, facets] : by_shape) (void)block_of(mesh, shape);

@@ -1,47 +1,68 @@
 #include "ricochet/mesh/flat_pieces.hpp"
 
+#include <Eigen/LU>
+#include <algorithm>
+#include <tuple>
+
 #include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/mesh/shapes/cell_shape_description.hpp"
 
 namespace ricochet {
 
 namespace {
 
-std::vector<FlatPiece> pieces_of_interval(int degree) {
-  if (degree == 1) return {{0, 1, -1}};
-  return {{0, 2, -1}, {2, 1, -1}};
+using Child = CellShapeDescription::Child;
+
+/// Parts with one piece between each of their vertices: the cell itself for degree 1, its subdivision for degree 2.
+/// Those at its vertices are in the order around it.
+std::vector<Child> parts_of_cell(CellShape shape, int degree) {
+  const CellShapeDescription& cell = describe(shape);
+  if (degree == 1) return {{shape, node_vertices(shape, 1)}};
+  std::vector<Child> result = cell.subdivisions.front().children;
+  const auto rank = [&](const Child& child) {
+    return std::find_if(cell.file_vertices.begin(), cell.file_vertices.end(), [&](int vertex) {
+      return std::find(child.vertices.begin(), child.vertices.end(), VertexSet{vertex}) != child.vertices.end();
+    });
+  };
+  std::stable_sort(result.begin(), result.end(), [&](const Child& a, const Child& b) { return rank(a) < rank(b); });
+  return result;
 }
 
-std::vector<FlatPiece> pieces_of_triangle(int degree) {
-  if (degree == 1) return {{0, 1, 2}};
-  const CellShape shape = CellShape::triangle;
-  const int a = node_at_mean(shape, {0, 1}), b = node_at_mean(shape, {1, 2}), c = node_at_mean(shape, {0, 2});
-  return {{0, a, c}, {a, 1, b}, {c, b, 2}, {a, b, c}};
+/// Orients the corners of a piece of a cell positively. Triangles begin at their lowest corner.
+void orient_piece(CellShape shape, VertexSets& corners) {
+  const auto at = [&](const VertexSet& corner) { return reference_position(shape, corner); };
+  const int d = dimension(shape);
+  Eigen::Matrix3d edges = Eigen::Matrix3d::Identity();
+  for (int k = 0; k < d; ++k) edges.col(k) = at(corners[static_cast<std::size_t>(k) + 1]) - at(corners[0]);
+  if (edges.determinant() < 0.0) std::swap(corners[corners.size() - 2], corners.back());
+  if (d != 2) return;
+  const auto is_lower = [&](const VertexSet& one, const VertexSet& other) {
+    const Eigen::Vector3d a = at(one), b = at(other);
+    return std::tie(a[1], a[0]) < std::tie(b[1], b[0]);
+  };
+  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), is_lower), corners.end());
 }
 
-/// Vertices are numbered lexicographically: around the quadrilateral they are 0, 1, 3, 2.
-std::vector<FlatPiece> pieces_of_quadrilateral(int degree) {
-  if (degree == 1) return {{0, 1, 3}, {0, 3, 2}};
-  const CellShape shape = CellShape::quadrilateral;
-  const int lower = node_at_mean(shape, {0, 1}), left = node_at_mean(shape, {0, 2}),
-            right = node_at_mean(shape, {1, 3}), upper = node_at_mean(shape, {2, 3}),
-            middle = node_at_mean(shape, {0, 1, 2, 3});
-  std::vector<FlatPiece> pieces;
-  for (const std::array<int, 4>& quarter : {std::array{0, lower, middle, left}, std::array{lower, 1, right, middle},
-                                            std::array{middle, right, 3, upper}, std::array{left, middle, upper, 2}}) {
-    pieces.push_back({quarter[0], quarter[1], quarter[2]});
-    pieces.push_back({quarter[0], quarter[2], quarter[3]});
+std::vector<FlatPiece> make_pieces(CellShape shape, int degree) {
+  std::vector<FlatPiece> result;
+  for (const Child& part : parts_of_cell(shape, degree)) {
+    for (const VertexSet& simplex : describe(part.shape).simplices) {
+      VertexSets corners;
+      for (const int vertex : simplex) corners.push_back(part.vertices[static_cast<std::size_t>(vertex)]);
+      orient_piece(shape, corners);
+      FlatPiece& piece = result.emplace_back(FlatPiece{-1, -1, -1, -1});
+      for (std::size_t k = 0; k < corners.size(); ++k)
+        piece[k] = degree == 1 ? corners[k].front() : node_at_mean(shape, corners[k]);
+    }
   }
-  return pieces;
+  return result;
 }
 
 }  // namespace
 
-const std::vector<FlatPiece>& flat_pieces(CellShape facet, int degree) {
-  static const std::array<std::vector<FlatPiece>, 6> table{pieces_of_interval(1),      pieces_of_interval(2),
-                                                           pieces_of_triangle(1),      pieces_of_triangle(2),
-                                                           pieces_of_quadrilateral(1), pieces_of_quadrilateral(2)};
-  const std::size_t shape = facet == CellShape::interval ? 0 : facet == CellShape::triangle ? 2 : 4;
-  return table[shape + (degree == 1 ? 0 : 1)];
+const std::vector<FlatPiece>& flat_pieces(CellShape shape, int degree) {
+  static const ShapeTable table(make_pieces);
+  return table.at(shape, degree);
 }
 
 }  // namespace ricochet

@@ -2,16 +2,15 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "ricochet/mesh/cell_type.hpp"
+#include "ricochet/mesh/shapes/cell_shape.hpp"
 
-/// @file Gmsh's element types and their node numbering. Private to mesh/.
+/// @file Gmsh's element types. Private to mesh/.
 namespace ricochet::gmsh {
 
 struct ElementType {
   int number = 0;
-  const char* name = "";
+  std::string name;
   int dimension = 0;
   int degree = 0;
   int node_count = 0;              ///< 0 if it varies from element to element
@@ -23,8 +22,5 @@ struct ElementType {
 
 /// Returns "type 17 (20-node hexahedron)".
 [[nodiscard]] std::string describe_type(int number);
-
-/// For a usable shape: node i in Basix's order is node node_order(…)[i] in Gmsh's.
-[[nodiscard]] const std::vector<int>& node_order(CellShape shape, int degree);
 
 }  // namespace ricochet::gmsh

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ricochet/base/types.hpp"
-#include "ricochet/mesh/cell_type.hpp"
+#include "ricochet/mesh/shapes/cell_shape.hpp"
 
 /// @file The mesh: nodes, cells, boundary facets, named groups. A mesh returned by read_mesh is complete and checked.
 namespace ricochet {

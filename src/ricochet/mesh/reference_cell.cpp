@@ -2,176 +2,156 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cstddef>
+#include <numeric>
+
+#include "ricochet/mesh/shapes/cell_shape_description.hpp"
 
 namespace ricochet {
 
 namespace {
 
-using VertexSets = std::vector<std::vector<int>>;
-
-constexpr std::size_t shape_count = 5;
-
-// Basix numbers the edges of simplices by the opposite vertex, and those of tensor cells lexicographically.
-VertexSets edges(CellShape shape) {
-  switch (shape) {
-    case CellShape::interval:
-      return {{0, 1}};
-    case CellShape::triangle:
-      return {{1, 2}, {0, 2}, {0, 1}};
-    case CellShape::quadrilateral:
-      return {{0, 1}, {0, 2}, {1, 3}, {2, 3}};
-    case CellShape::tetrahedron:
-      return {{2, 3}, {1, 3}, {1, 2}, {0, 3}, {0, 2}, {0, 1}};
-    case CellShape::hexahedron:
-      return {{0, 1}, {0, 2}, {0, 4}, {1, 3}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 6}, {5, 7}, {6, 7}};
-  }
-  return {};
+template <class Value>
+int index_of(const std::vector<Value>& all, const Value& one) {
+  return static_cast<int>(std::find(all.begin(), all.end(), one) - all.begin());
 }
 
-VertexSets facets(CellShape shape) {
-  switch (shape) {
-    case CellShape::interval:
-      return {};
-    case CellShape::triangle:
-    case CellShape::quadrilateral:
-      return edges(shape);
-    case CellShape::tetrahedron:
-      return {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
-    case CellShape::hexahedron:
-      return {{0, 1, 2, 3}, {0, 1, 4, 5}, {0, 2, 4, 6}, {1, 3, 5, 7}, {2, 3, 6, 7}, {4, 5, 6, 7}};
-  }
-  return {};
+/// Renumbers vertices and sorts them.
+VertexSet renumbered(const VertexSet& set, const std::vector<int>& numbers) {
+  VertexSet result;
+  for (const int vertex : set) result.push_back(numbers[static_cast<std::size_t>(vertex)]);
+  std::sort(result.begin(), result.end());
+  return result;
 }
 
+VertexSet all_vertices(CellShape shape) {
+  VertexSet result(static_cast<std::size_t>(vertex_count(shape)));
+  std::iota(result.begin(), result.end(), 0);
+  return result;
+}
+
+/// Basix numbers nodes by the dimension of what they lie on: vertices, edges, facets, the cell.
 VertexSets make_node_vertices(CellShape shape, int degree) {
+  const CellShapeDescription& cell = describe(shape);
   VertexSets nodes;
   for (int vertex = 0; vertex < vertex_count(shape); ++vertex) nodes.push_back({vertex});
   if (degree == 1) return nodes;
-  for (const std::vector<int>& edge : edges(shape)) nodes.push_back(edge);
-  if (shape == CellShape::quadrilateral) nodes.push_back({0, 1, 2, 3});
-  if (shape == CellShape::hexahedron) {
-    for (const std::vector<int>& face : facets(shape)) nodes.push_back(face);
-    nodes.push_back({0, 1, 2, 3, 4, 5, 6, 7});
+  nodes.insert(nodes.end(), cell.edges.begin(), cell.edges.end());
+  for (std::size_t facet = 0; facet < cell.facets.size(); ++facet) {
+    if (describe(facet_shape(shape, facet)).has_centre_node) nodes.push_back(cell.facets[facet]);
   }
+  if (cell.has_centre_node) nodes.push_back(all_vertices(shape));
   return nodes;
 }
 
 VertexSets make_facet_nodes(CellShape shape, int degree) {
   VertexSets result;
-  if (shape == CellShape::interval) return result;
-  const VertexSets& cell_nodes = node_vertices(shape, degree);
-  for (const std::vector<int>& facet : facets(shape)) {
-    std::vector<int> nodes;
-    for (const std::vector<int>& local : node_vertices(facet_shape(shape), degree)) {
-      std::vector<int> vertices;
-      for (const int vertex : local) vertices.push_back(facet[static_cast<std::size_t>(vertex)]);
-      std::sort(vertices.begin(), vertices.end());
-      const auto found = std::find(cell_nodes.begin(), cell_nodes.end(), vertices);
-      nodes.push_back(static_cast<int>(found - cell_nodes.begin()));
-    }
-    result.push_back(nodes);
+  for (const VertexSet& facet : describe(shape).facets) {
+    std::vector<int>& nodes = result.emplace_back();
+    for (const VertexSet& local : node_vertices(facet_shape(shape, result.size() - 1), degree))
+      nodes.push_back(index_of(node_vertices(shape, degree), renumbered(local, facet)));
   }
   return result;
 }
 
-Eigen::Vector3d vertex_position(CellShape shape, int vertex) {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  for (int axis = 0; axis < dimension(shape); ++axis) position(axis) = vertex_coordinate(shape, vertex, axis);
-  return position;
-}
-
 VertexSets make_outward_facet_vertices(CellShape shape) {
-  VertexSets result = facets(shape);
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (int vertex = 0; vertex < vertex_count(shape); ++vertex) centre += vertex_position(shape, vertex);
-  centre /= vertex_count(shape);
-  for (std::vector<int>& facet : result) {
-    if (facet.size() == 4) std::swap(facet[2], facet[3]);  // from Basix's row-wise order to one around the facet
-    const Eigen::Vector3d first = vertex_position(shape, facet[0]);
-    const Eigen::Vector3d along = vertex_position(shape, facet[1]) - first;
-    const Eigen::Vector3d across =
-        facet.size() == 2 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d(vertex_position(shape, facet.back()) - first);
-    if (along.cross(across).dot(first - centre) < 0.0) std::reverse(facet.begin(), facet.end());
+  VertexSets result;
+  const Eigen::Vector3d centre = reference_position(shape, all_vertices(shape));
+  for (const VertexSet& facet : describe(shape).facets) {
+    VertexSet& around = result.emplace_back();
+    for (const int vertex : describe(facet_shape(shape, result.size() - 1)).file_vertices)
+      around.push_back(facet[static_cast<std::size_t>(vertex)]);
+    const Eigen::Vector3d first = reference_position(shape, {around[0]});
+    const Eigen::Vector3d along = reference_position(shape, {around[1]}) - first;
+    const Eigen::Vector3d across = around.size() == 2
+                                       ? Eigen::Vector3d::UnitZ()
+                                       : Eigen::Vector3d(reference_position(shape, {around.back()}) - first);
+    if (along.cross(across).dot(first - centre) < 0.0) std::reverse(around.begin(), around.end());
   }
   return result;
 }
 
 std::vector<int> make_mirrored_nodes(CellShape shape, int degree) {
-  // The vertices at e₁ and e₂ are 1 and 2 in every shape; those above them in a hexahedron are 5 and 6.
-  constexpr std::array<int, 8> mirrored_vertex{0, 2, 1, 3, 4, 6, 5, 7};
+  std::vector<int> mirrored_vertex;
+  for (Eigen::Vector3d vertex : describe(shape).vertices) {
+    std::swap(vertex[0], vertex[1]);
+    mirrored_vertex.push_back(index_of(describe(shape).vertices, vertex));
+  }
   const VertexSets& nodes = node_vertices(shape, degree);
   std::vector<int> result;
-  if (shape == CellShape::interval) return result;
-  for (std::vector<int> vertices : nodes) {
-    for (int& vertex : vertices) vertex = mirrored_vertex[static_cast<std::size_t>(vertex)];
-    std::sort(vertices.begin(), vertices.end());
-    result.push_back(static_cast<int>(std::find(nodes.begin(), nodes.end(), vertices) - nodes.begin()));
-  }
+  if (dimension(shape) == 1) return result;
+  for (const VertexSet& vertices : nodes) result.push_back(index_of(nodes, renumbered(vertices, mirrored_vertex)));
   return result;
 }
 
-/// Table with one entry per shape and degree, made at first use: entries are looked up once per block of cells.
-template <class Make>
-auto make_table(Make make) {
-  std::array<decltype(make(CellShape::triangle, 1)), 2 * shape_count> table;
-  for (std::size_t i = 0; i < table.size(); ++i)
-    table[i] = make(static_cast<CellShape>(i / 2), static_cast<int>(i % 2) + 1);
-  return table;
-}
-
-std::size_t table_index(CellShape shape, int degree) {
-  return 2 * static_cast<std::size_t>(shape) + (degree == 1 ? 0 : 1);
+std::vector<int> nodes_of_file(CellShape shape, int degree, const FileNodes& further) {
+  const std::vector<int>& vertices = describe(shape).file_vertices;
+  std::vector<int> result = vertices;
+  if (degree == 1) return result;
+  for (const VertexSets* all : {&further.edges, &further.faces}) {
+    for (const VertexSet& node : *all) result.push_back(node_at_mean(shape, renumbered(node, vertices)));
+  }
+  if (describe(shape).has_centre_node) result.push_back(node_at_mean(shape, vertices));
+  return result;
 }
 
 }  // namespace
 
 const VertexSets& node_vertices(CellShape shape, int degree) {
-  static const auto table = make_table(make_node_vertices);
-  return table[table_index(shape, degree)];
+  static const ShapeTable table(make_node_vertices);
+  return table.at(shape, degree);
+}
+
+int node_count(CellShape shape, int degree) {
+  return static_cast<int>(node_vertices(shape, degree).size());
 }
 
 int node_at_mean(CellShape shape, std::vector<int> vertices) {
-  const VertexSets& all = node_vertices(shape, 2);
   std::sort(vertices.begin(), vertices.end());
-  return static_cast<int>(std::find(all.begin(), all.end(), vertices) - all.begin());
+  return index_of(node_vertices(shape, 2), vertices);
 }
 
 int degree_of(CellShape shape, int nodes) {
   return nodes == vertex_count(shape) ? 1 : 2;
 }
 
-CellShape facet_shape(CellShape shape) {
-  switch (shape) {
-    case CellShape::tetrahedron:
-      return CellShape::triangle;
-    case CellShape::hexahedron:
-      return CellShape::quadrilateral;
-    default:
-      return CellShape::interval;
-  }
+CellShape facet_shape(CellShape shape, std::size_t facet) {
+  const auto fits = [&](CellShape each) {
+    return dimension(each) == dimension(shape) - 1 &&
+           describe(each).vertices.size() == describe(shape).facets[facet].size();
+  };
+  return *std::find_if(cell_shapes().begin(), cell_shapes().end(), fits);
 }
 
 const VertexSets& facet_nodes(CellShape shape, int degree) {
-  static const auto table = make_table(make_facet_nodes);
-  return table[table_index(shape, degree)];
+  static const ShapeTable table(make_facet_nodes);
+  return table.at(shape, degree);
 }
 
 const VertexSets& outward_facet_vertices(CellShape shape) {
-  static const auto table = make_table([](CellShape of, int) { return make_outward_facet_vertices(of); });
-  return table[table_index(shape, 1)];
+  static const ShapeTable table([](CellShape of, int) { return make_outward_facet_vertices(of); });
+  return table.at(shape, 1);
 }
 
 const std::vector<int>& mirrored_nodes(CellShape shape, int degree) {
-  static const auto table = make_table(make_mirrored_nodes);
-  return table[table_index(shape, degree)];
+  static const ShapeTable table(make_mirrored_nodes);
+  return table.at(shape, degree);
 }
 
-double vertex_coordinate(CellShape shape, int vertex, int axis) {
-  const bool simplex = shape == CellShape::triangle || shape == CellShape::tetrahedron;
-  const bool one = simplex ? vertex == axis + 1 : ((vertex >> axis) & 1) != 0;
-  return one ? 1.0 : 0.0;
+Eigen::Vector3d reference_position(CellShape shape, const std::vector<int>& vertices) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const int vertex : vertices) sum += describe(shape).vertices[static_cast<std::size_t>(vertex)];
+  return sum / static_cast<double>(vertices.size());
+}
+
+const std::vector<int>& gmsh_nodes(CellShape shape, int degree) {
+  static const ShapeTable table([](CellShape of, int k) { return nodes_of_file(of, k, describe(of).gmsh); });
+  return table.at(shape, degree);
+}
+
+const std::vector<int>& vtk_nodes(CellShape shape, int degree) {
+  static const ShapeTable table([](CellShape of, int k) { return nodes_of_file(of, k, describe(of).vtk); });
+  return table.at(shape, degree);
 }
 
 }  // namespace ricochet

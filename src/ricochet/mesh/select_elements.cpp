@@ -19,7 +19,7 @@ std::string advice(int number, int degree) {
   if (number == 16 || number == 17)
     return "set Mesh.SecondOrderIncomplete = 0 in Gmsh to get the full second-order element";
   if (degree > 2) return "mesh with order 1 or 2";
-  return "cells must be triangles, quadrilaterals, tetrahedra or hexahedra of order 1 or 2";
+  return fmt::format("cells must be {} of order 1 or 2", names_of_cells());
 }
 
 void refuse_unsupported(const RawMesh& raw, int dimension, const std::string& source) {

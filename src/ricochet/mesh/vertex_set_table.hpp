@@ -15,7 +15,8 @@ namespace ricochet {
 /// An open-addressing hash table of cells of one shape, equal if they have the same vertices in any order.
 class VertexSetTable {
  public:
-  VertexSetTable(int vertex_count, std::size_t capacity)
+  /// Makes room for `capacity` cells, which may be exceeded.
+  explicit VertexSetTable(int vertex_count, std::size_t capacity = 0)
       : vertex_count_(static_cast<std::size_t>(vertex_count)), slots_(std::bit_ceil(2 * capacity + 2)) {
     keys_.reserve(capacity * vertex_count_);
   }
@@ -26,8 +27,9 @@ class VertexSetTable {
     return slots_[slot_of(key)].number;
   }
   /// Returns the number of the equal cell; if there is none, adds the cell with the next number, from 0 on, and returns
-  /// −1. Holds at most `capacity` cells.
+  /// −1.
   Index find_or_add(const Index* vertices) {
+    if (2 * static_cast<std::size_t>(size_) + 2 > slots_.size()) grow();
     const Key key = sorted(vertices);
     Slot& slot = slots_[slot_of(key)];
     if (slot.number >= 0) return slot.number;
@@ -42,6 +44,17 @@ class VertexSetTable {
     std::uint64_t hash = 0;
     Index number = -1;
   };
+
+  void grow() {
+    std::vector<Slot> before(2 * slots_.size());
+    before.swap(slots_);
+    for (const Slot& slot : before) {
+      if (slot.number < 0) continue;
+      std::size_t at = static_cast<std::size_t>(slot.hash) & (slots_.size() - 1);
+      while (slots_[at].number >= 0) at = (at + 1) & (slots_.size() - 1);
+      slots_[at] = slot;
+    }
+  }
 
   Key sorted(const Index* vertices) const {
     Key key{};

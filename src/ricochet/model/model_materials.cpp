@@ -24,10 +24,8 @@ constexpr double mean_from = 0.4, locks_from = 0.45 * (1.0 - 1e-9);
 /// Returns true if some cells have a mean dilatation that differs from its point values, which cells with one
 /// quadrature point do not.
 bool has_cells_with_mean(const Case& input, const Mesh& mesh) {
-  const auto is_simplex = [](const CellBlock& block) {
-    return block.shape == CellShape::triangle || block.shape == CellShape::tetrahedron;
-  };
-  return input.mesh.degree > 1 || !std::all_of(mesh.cells.begin(), mesh.cells.end(), is_simplex);
+  const auto is_of_simplices = [](const CellBlock& block) { return is_simplex(block.shape); };
+  return input.mesh.degree > 1 || !std::all_of(mesh.cells.begin(), mesh.cells.end(), is_of_simplices);
 }
 
 void choose_dilatation(const Case& input, std::size_t i, Model& model) {

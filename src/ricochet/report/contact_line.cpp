@@ -48,7 +48,7 @@ Index next_start(const Neighbours& neighbours, const Points& nodes, const std::s
 ContactLine make_contact_line(const Points& nodes, const std::vector<CellBlock>& facets) {
   ContactLine line;
   if (facets.empty()) return line;
-  if (facets.front().shape != CellShape::interval) {
+  if (dimension(facets.front().shape) > 1) {
     std::set<Index> all;
     for (const CellBlock& block : facets) all.insert(block.nodes.begin(), block.nodes.end());
     line.nodes.assign(all.begin(), all.end());

@@ -63,15 +63,17 @@ std::vector<Triangle> plane_triangles(const std::vector<CellBlock>& blocks) {
 
 std::vector<Triangle> boundary_triangles(const std::vector<CellBlock>& blocks) {
   std::vector<Index> first_cell{0};
-  std::vector<std::vector<FacetPattern>> patterns;
+  std::map<CellShape, std::vector<FacetPattern>> patterns;
   for (const CellBlock& block : blocks) {
     first_cell.push_back(first_cell.back() + block.size());
-    patterns.push_back(facet_patterns(facet_shape(block.shape), degree_of(block.shape, block.nodes_per_cell)));
+    for (const CellShape shape : cell_shapes()) {
+      if (dimension(shape) == 2) patterns[shape] = facet_patterns(shape, degree_of(block.shape, block.nodes_per_cell));
+    }
   }
   std::vector<Triangle> result;
   for (const CellFacet& facet : boundary_facets(blocks)) {
     const std::vector<Index> nodes = nodes_of_facet(blocks, facet);
-    for (const auto& [corners, edges] : patterns[facet.block]) {
+    for (const auto& [corners, edges] : patterns.at(facet_shape(blocks[facet.block].shape, facet.local))) {
       const auto corner = [&, &corners = corners](std::size_t k) {
         return nodes[static_cast<std::size_t>(corners[k])];
       };

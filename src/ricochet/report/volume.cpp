@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "ricochet/mesh/flat_pieces.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 #include "ricochet/report/node_grid.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 
 /// A tetrahedron inside a cell, in the local nodes of the element.
 struct CellPattern {
-  std::array<int, 4> corners;
+  FlatPiece corners;
   int faces;
 };
 
@@ -24,7 +25,7 @@ struct Tetrahedron {
 };
 
 /// Returns which faces lie on facets of the cell: those with all three nodes on the facet.
-int faces_of(CellShape shape, int degree, const std::array<int, 4>& corners) {
+int faces_of(CellShape shape, int degree, const FlatPiece& corners) {
   int faces = 0;
   for (const std::vector<int>& facet : facet_nodes(shape, degree)) {
     int inside = 0;
@@ -38,53 +39,10 @@ int faces_of(CellShape shape, int degree, const std::array<int, 4>& corners) {
   return faces;
 }
 
-/// Returns four tetrahedra at the corners, and four in the octahedron between them around the line that joins the
-/// midpoints of two opposite edges.
-std::vector<std::array<int, 4>> quadratic_tetrahedron() {
-  const auto middle = [](int a, int b) { return node_at_mean(CellShape::tetrahedron, {a, b}); };
-  const int a = middle(0, 1), b = middle(0, 2), c = middle(0, 3), d = middle(1, 2), e = middle(1, 3), f = middle(2, 3);
-  return {{0, a, b, c}, {1, a, d, e}, {2, b, d, f}, {3, c, e, f},
-          {a, f, b, c}, {a, f, c, e}, {a, f, e, d}, {a, f, d, b}};
-}
-
-/// Divides a box of the lattice of nodes, given by its first corner, into six tetrahedra around its diagonal, so that
-/// neighbouring boxes conform.
-void add_box(const std::array<int, 3>& first, int degree, std::vector<std::array<int, 4>>& result) {
-  const auto node = [&](std::array<int, 3> at) {
-    // On each axis a lattice node is either at the vertices with bit 0 or those with bit 1, or midway between them.
-    std::vector<int> vertices;
-    for (int v = 0; v < 8; ++v) {
-      bool is_included = true;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const int bit = v >> k & 1, coordinate = first[k] + at[k];
-        is_included = is_included && (degree == 2 && coordinate == 1 ? true : bit == coordinate / degree);
-      }
-      if (is_included) vertices.push_back(v);
-    }
-    return degree == 1 ? vertices.front() : node_at_mean(CellShape::hexahedron, vertices);
-  };
-  std::array<std::size_t, 3> axes{0, 1, 2};
-  do {
-    std::array<int, 3> at{0, 0, 0};
-    std::array<int, 4> corners{node(at), 0, 0, 0};
-    for (std::size_t k = 0; k < 3; ++k) {
-      at[axes[k]] = 1;
-      corners[k + 1] = node(at);
-    }
-    result.push_back(corners);
-  } while (std::next_permutation(axes.begin(), axes.end()));
-}
-
 std::vector<CellPattern> cell_patterns(CellShape shape, int degree) {
-  std::vector<std::array<int, 4>> all;
-  if (shape == CellShape::tetrahedron) {
-    if (degree == 1) all = {{0, 1, 2, 3}};
-    if (degree == 2) all = quadratic_tetrahedron();
-  } else {
-    for (int box = 0; box < (degree == 1 ? 1 : 8); ++box) add_box({box & 1, box >> 1 & 1, box >> 2 & 1}, degree, all);
-  }
   std::vector<CellPattern> result;
-  for (const std::array<int, 4>& corners : all) result.push_back({corners, faces_of(shape, degree, corners)});
+  for (const FlatPiece& corners : flat_pieces(shape, degree))
+    result.push_back({corners, faces_of(shape, degree, corners)});
   return result;
 }
 

@@ -85,7 +85,7 @@ TEST(ContactBoundary, LeavesOutMultipliersThatSupportsHoldAlongTheNormal) {
         for (const Index node : nodes) {
           if (is_held(node)) trace.col(node).setZero();
         }
-        if (!is_stable(multipliers, facet_shape(shape), degree)) continue;
+        if (!is_stable(multipliers, facet_shape(shape, 0), degree)) continue;
         EXPECT_EQ((trace * trace.transpose()).llt().info(), Eigen::Success);
         EXPECT_GT((trace * trace.transpose()).ldlt().vectorD().minCoeff(), 1e-4);
       }
@@ -148,7 +148,7 @@ TEST(ContactBoundary, HasIndependentConditionsWhateverIsHeld) {
       const int d = test->mesh.dimension;
       const auto obstacle = plane(d == 2 ? Vector(Eigen::Vector2d(0.6, 0.8)) : Vector(Eigen::Vector3d(0.3, -0.4, 1.2)));
       for (const std::string& multipliers : multiplier_space_names()) {
-        if (!is_stable(multipliers, facet_shape(shape), degree)) continue;
+        if (!is_stable(multipliers, facet_shape(shape, 0), degree)) continue;
         for (int mask = 0; mask < (1 << d); ++mask) {
           SCOPED_TRACE(name(shape) + std::to_string(degree) + multipliers + " held " + std::to_string(mask));
           std::vector<int> held;
@@ -279,7 +279,7 @@ TEST(ContactBoundary, HasTheSizesOfThePage) {
       counts.back() = 1;
       const auto test = make_meshed_body(make_box_mesh({shape, counts, 1, 0.1, {}}), degree);
       const auto floor = plane(Vector::Unit(d, d - 1));
-      std::string row = "| " + name(facet_shape(shape)) + "s, degree " + std::to_string(degree) + " |";
+      std::string row = "| " + name(facet_shape(shape, 0)) + "s, degree " + std::to_string(degree) + " |";
       for (const std::string& multipliers : multiplier_space_names()) {
         const ContactBoundary boundary =
             make_contact_boundary(test->body, {pair_of(*test, d == 2 ? "y0" : "z0", *floor, multipliers)}, all_free);

@@ -11,7 +11,7 @@ namespace {
 /// Degree of the rule on segments: exact for products of two shape functions on simplices and on parallelograms.
 int degree_on_segments(const Body& body) {
   const bool simplices = std::all_of(body.mesh->facets.begin(), body.mesh->facets.end(),
-                                     [](const CellBlock& block) { return block.shape != CellShape::quadrilateral; });
+                                     [](const CellBlock& block) { return is_simplex(block.shape); });
   return (simplices ? 2 : 4) * body.space->degree;
 }
 

@@ -10,13 +10,13 @@ import stat
 
 import numpy
 
-from file_mesh import TYPES, Block, FileMesh, Refusal
+from file_mesh import TYPES, Block, FileMesh, Refusal, dimension_of
 
-SOLIDS = {"4": "tetra", "10": "tetra10", "8": "hexahedron", "20": "hexahedron20", "6": "wedge", "15": "wedge15",
-          "5": "pyramid", "13": "pyramid13"}
-PLANES = {"3": "triangle", "6": "triangle6", "4": "quad", "8": "quad8"}
-LINES = {"2": "line", "3": "line3"}
-NODE_COUNTS = {"quad8": 8, "hexahedron20": 20, "wedge": 6, "wedge15": 15, "pyramid": 5, "pyramid13": 13}
+# Numbers of nodes of the kinds that Abaqus has, which are those without nodes on faces: some are refused by name later.
+SIZES = {"quad8": 8, "hexahedron20": 20, "wedge": 6, "wedge15": 15, "pyramid": 5, "pyramid13": 13,
+         **{name: kind.nodes for name, kind in TYPES.items() if not kind.has_face_nodes}}
+LINES, PLANES, SOLIDS = ({str(size): kind for kind, size in SIZES.items() if dimension_of(kind) == dimension}
+                         for dimension in (1, 2, 3))
 # Keywords that generate nodes, elements or sets in ways not read here: ignoring them would give another mesh.
 GENERATORS = {"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SUBSTRUCTURE PATH", "SYMMETRIC MODEL GENERATION"}
 # A number with more digits does not fit into 64 bits; Abaqus itself accepts nine.
@@ -199,7 +199,7 @@ class InpReader:
                     self.aside_elements[name] = self.aside_elements.get(name, 0) + 1
             return count
         self.kinds[name] = kind
-        size = NODE_COUNTS.get(kind) or len(TYPES[kind].places)
+        size = SIZES[kind]
         rows, made, pending = self.elements.setdefault(name, []), [], []
 
         def handle(line):

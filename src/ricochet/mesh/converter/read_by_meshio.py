@@ -4,7 +4,7 @@ import os
 
 import numpy
 
-from file_mesh import Block, FileMesh, Missing, Refusal
+from file_mesh import TYPES, Block, FileMesh, Missing, Refusal
 
 MOST_VALUES = 256
 
@@ -26,10 +26,6 @@ def add_families(mesh, source):
         for name in names:
             groups.setdefault(name.strip("\0 "), []).append(numpy.nonzero(numpy.asarray(tags) == family)[0])
     mesh.node_groups += [(name, numpy.concatenate(parts)) for name, parts in groups.items()]
-
-
-# Facets of Exodus' sides 1, 2, ... by kind of cell.
-EXODUS_SIDES = {"triangle": [0, 1, 2], "quad": [0, 1, 2, 3], "tetra": [1, 2, 3, 0], "hexahedron": [2, 3, 4, 5, 0, 1]}
 
 
 def add_exodus_sets(mesh, path):
@@ -56,9 +52,9 @@ def add_exodus_sets(mesh, path):
             sides = file.variables[f"side_ss{number + 1}"][:] - 1
             blocks, parts = numpy.searchsorted(firsts, elements, side="right") - 1, []
             for block in numpy.unique(blocks):
-                kind = mesh.blocks[block].kind.rstrip("0123456789")
-                table = EXODUS_SIDES.get(kind)
-                if table is None:
+                kind = mesh.blocks[block].kind
+                table = TYPES[kind].exodus_sides if kind in TYPES else []
+                if not table:
                     continue  # refused by name later, or of a lower dimension
                 for side in numpy.unique(sides[blocks == block]):
                     if side >= len(table):
@@ -114,7 +110,7 @@ def read_by_meshio(path):
         first += len(cells.data)
     extension = os.path.splitext(path)[1].lower()
     if extension in (".e", ".exo", ".ex2"):
-        if any(block.kind in ("hexahedron27", "quad9") for block in mesh.blocks):
+        if any(block.kind in TYPES and TYPES[block.kind].has_face_nodes for block in mesh.blocks):
             raise Refusal("cells of the Exodus types HEX27 and QUAD9 are not supported: their node order differs; "
                           "use HEX8, QUAD4, TETRA10 or TRI6")
         try:

@@ -4,9 +4,9 @@ Used by the converter and by the Python package.
 """
 
 if __package__:
-    from .file_mesh import FACET_TYPES, TYPES, Refusal, numpy
+    from .file_mesh import NAMES_OF_CELLS, TYPES, Refusal, numpy
 else:
-    from file_mesh import FACET_TYPES, TYPES, Refusal, numpy
+    from file_mesh import NAMES_OF_CELLS, TYPES, Refusal, numpy
 
 
 def unique_rows(rows):
@@ -40,11 +40,8 @@ def boundary_facets(mesh, dimension):
     for block in mesh.blocks:
         if block.dimension != dimension:
             continue
-        kind = TYPES[block.kind]
-        for number in range(len(kind.facets)):
-            local = kind.facet_nodes(number)
-            found.setdefault(FACET_TYPES[len(kind.facets[number]), len(local) > len(kind.facets[number])], []).append(
-                block.nodes[:, local])
+        for kind, local in TYPES[block.kind].facets:
+            found.setdefault(kind, []).append(block.nodes[:, local])
     result = {}
     for kind, parts in found.items():
         nodes = numpy.concatenate(parts)
@@ -74,10 +71,8 @@ def collect_facets(mesh, dimension):
         names.add(name)
         for number, indices, facet in parts:
             block = mesh.blocks[number]
-            kind = TYPES[block.kind]
-            for side in range(len(kind.facets)) if facet is None else [facet]:
-                local = kind.facet_nodes(side)
-                own = FACET_TYPES[len(kind.facets[side]), len(local) > len(kind.facets[side])]
+            all_facets = TYPES[block.kind].facets
+            for own, local in all_facets if facet is None else [all_facets[facet]]:
                 nodes = block.nodes[indices][:, local]
                 if facet is None:  # the free surface of these cells
                     corners = TYPES[own].vertices
@@ -192,8 +187,8 @@ def refuse_kinds(mesh, dimension):
         return
     listed = ", ".join(f"{count} of type {name}" for name, count in counts.items())
     kinds = {block.kind for block in mesh.blocks if block.name in counts}
-    advice = ("cells must be triangles, quadrilaterals, tetrahedra or hexahedra; mesh the part with these, for example "
-              "with tetrahedra (C3D4 or C3D10 in Abaqus)")
+    advice = (f"cells must be {NAMES_OF_CELLS}; mesh the part with these, for example with tetrahedra (C3D4 or C3D10 in "
+              "Abaqus)")
     if kinds <= {"quad8", "hexahedron20"}:
         advice = ("second-order quadrilaterals and hexahedra need nodes on their faces and inside, too (9 and 27 "
                   "nodes); write the mesh with cells of the first order (C3D8, CPS4, CPE4 in Abaqus), or with "

@@ -19,9 +19,8 @@ double evaluation_work(const Body& body) {
   double work = 0.0;
   for (const CellBlock& block : body.space->cells) {
     const int d = body.mesh->dimension, geometry = body.mesh->degree, degree = body.space->degree;
-    const bool is_simplex = block.shape == CellShape::triangle || block.shape == CellShape::tetrahedron;
     double per_cell = d == 2 ? 70.0 : 120.0;
-    if (!is_simplex || geometry > 1 || degree > 1) {
+    if (!is_simplex(block.shape) || geometry > 1 || degree > 1) {
       const QuadratureRule rule = quadrature(block.shape, stiffness_quadrature_degree(block.shape, geometry, degree));
       const double per_point = d == 2 ? 60.0 + 6.0 * block.nodes_per_cell : 100.0 + 30.0 * block.nodes_per_cell;
       per_cell = static_cast<double>(rule.weights.size()) * per_point;

@@ -74,7 +74,7 @@ SelfWatch::WatchedBody SelfWatch::watch_body(const Body& body, const std::vector
   const std::vector<CellBlock>& cells = body.space->cells;
   WatchedBody watched(BodySurface(positions_, surface_pieces(positions_, cells, facets)));
   for (const CellFacet& facet : facets) {
-    const CellShape shape = facet_shape(cells[facet.block].shape);
+    const CellShape shape = facet_shape(cells[facet.block].shape, facet.local);
     watched.facets.push_back({shape, nodes_of_facet(cells, facet)});
     const int degree = degree_of(shape, static_cast<int>(watched.facets.back().nodes.size()));
     watched.facet_of_piece.insert(watched.facet_of_piece.end(), flat_pieces(shape, degree).size(),
@@ -294,7 +294,7 @@ double SelfWatch::sagitta_of(const Facet& facet, const Vector& displacement) con
   };
   const auto vertices = static_cast<std::size_t>(vertex_count(facet.shape));
   if (facet.nodes.size() == vertices)
-    return facet.shape == CellShape::quadrilateral ? 0.25 * (at(0) - at(1) - at(2) + at(3)).norm() : 0.0;
+    return is_simplex(facet.shape) ? 0.0 : 0.25 * (at(0) - at(1) - at(2) + at(3)).norm();
   const std::vector<std::vector<int>>& vertices_of = node_vertices(facet.shape, 2);
   double most = 0.0;
   for (std::size_t k = vertices; k < facet.nodes.size(); ++k) {

@@ -7,7 +7,7 @@
 
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
-#include "ricochet/mesh/cell_type.hpp"
+#include "ricochet/mesh/shapes/cell_shape.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/simulation/monitor/deepest_point.hpp"
 #include "ricochet/simulation/monitor/facet_sizes.hpp"

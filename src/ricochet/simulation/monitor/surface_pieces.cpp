@@ -12,7 +12,7 @@ namespace {
 void add_pieces(const Points& positions, const std::vector<CellBlock>& cells, const CellFacet& facet,
                 std::vector<BodySurface::Piece>& pieces) {
   const CellBlock& block = cells[facet.block];
-  const CellShape shape = facet_shape(block.shape);
+  const CellShape shape = facet_shape(block.shape, facet.local);
   const std::vector<Index> nodes = nodes_of_facet(cells, facet);
   const auto at = [&](Index node) {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
@@ -20,8 +20,8 @@ void add_pieces(const Points& positions, const std::vector<CellBlock>& cells, co
     return position;
   };
   const Eigen::Vector3d origin = at(nodes[0]), along = at(nodes[1]) - origin;
-  const Eigen::Vector3d normal = shape == CellShape::interval ? Eigen::Vector3d(along[1], -along[0], 0.0)
-                                                              : Eigen::Vector3d(along.cross(at(nodes[2]) - origin));
+  const Eigen::Vector3d normal = positions.rows() == 2 ? Eigen::Vector3d(along[1], -along[0], 0.0)
+                                                       : Eigen::Vector3d(along.cross(at(nodes[2]) - origin));
   double side = 0.0;  // positive if the cell is on the side of the normal
   for (int v = 0; v < vertex_count(block.shape); ++v) side += normal.dot(at(block.cell(facet.cell)[v]) - origin);
   const int degree = degree_of(shape, static_cast<int>(nodes.size()));
