@@ -265,14 +265,14 @@ TEST(Impacts, GoOnFromASnapshot) {
         resumed.back().persist(snapshot.loader("impacts"));
       },
       false);
-  const auto numbers = [](const ImpactRecorder& of) {
+  const auto numbers = [](ImpactRecorder& of) {
     Snapshot snapshot;
     of.persist(snapshot.saver("impacts"));
     return snapshot.values();
   };
   ASSERT_GT(recorder.impacts().size(), 0u);
   ASSERT_GT(resumed.size(), 4u);
-  for (const ImpactRecorder& other : resumed) EXPECT_TRUE(numbers(other) == numbers(recorder));
+  for (ImpactRecorder& other : resumed) EXPECT_TRUE(numbers(other) == numbers(recorder));
 }
 
 /// If the time share allows it, every state is evaluated; otherwise the states of frames and some others, within the

@@ -43,7 +43,7 @@ void expect_same(const Snapshot& expected, const Snapshot& found, const std::str
   }
 }
 
-Snapshot snapshot_of(const Simulation& simulation) {
+Snapshot snapshot_of(Simulation& simulation) {
   Snapshot snapshot;
   simulation.save(snapshot);
   return snapshot;
