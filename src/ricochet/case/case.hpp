@@ -181,7 +181,7 @@ struct OutputSection {
   std::optional<long> fields_every;       ///< steps; null: chosen for about a hundred frames; 0: no frames
   std::optional<double> fields_interval;  ///< time, instead of fields_every
   std::vector<std::string> fields;        ///< names, also "all"; empty: the default ones
-  bool vtkhdf = false;                    ///< otherwise XDMF
+  std::string format = "xdmf";            ///< of the files of fields
   bool single_precision = false;          ///< of fields
   int compression = 0;
   std::optional<long> history_every;  ///< null: chosen by the scheme

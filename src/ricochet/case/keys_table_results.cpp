@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include "ricochet/case/keys_table.hpp"
 #include "ricochet/case/names.hpp"
+#include "ricochet/io/results_format.hpp"
 
 // Keys on results: recorded, written, checked and expected quantities.
 namespace ricochet {
@@ -10,6 +13,10 @@ std::vector<std::string> field_choices() {
   std::vector<std::string> names = field_names();
   names.emplace_back("all");
   return names;
+}
+
+std::string files_of_values() {
+  return any_format([](const ResultsFormat& format) { return format.files.front(); });
 }
 
 }  // namespace
@@ -69,17 +76,16 @@ Section output_section() {
       key("fields", &OutputSection::fields, {.choices = field_choices()},
           "The fields that are written (docs/results.md describes them); \"all\" selects every field. Default: "
           "displacement, velocity, the contact fields, and von_mises."),
-      key("format", {is_choice(&OutputSection::vtkhdf, "vtkhdf")},
-          {.default_value = "xdmf", .choices = {"xdmf", "vtkhdf"}},
-          "Format of the field files: results.h5 with results.xdmf, which ParaView and meshio read, or results.vtkhdf, "
-          "one file with all frames for ParaView 5.12 and later."),
+      key("format", &OutputSection::format, {.default_value = "xdmf", .choices = results_format_registry().names()},
+          fmt::format("Format of the field files: {}.",
+                      any_format([](const ResultsFormat& format) { return format.description; }, ", or "))),
       key("fields_precision", {is_choice(&OutputSection::single_precision, "single")},
           {.default_value = "double", .choices = {"double", "single"}},
-          "Precision of the fields in results.h5 or results.vtkhdf: 64 or 32 bits. The mesh always has 64."),
+          fmt::format("Precision of the fields in {}: 64 or 32 bits. The mesh always has 64.", files_of_values())),
       key("compression", &OutputSection::compression,
           {.unit = "1", .default_value = "0", .range = {.at_least = 0.0, .at_most = 9.0}},
-          "zlib level of results.h5 or results.vtkhdf, from 0 (off) to 9. Double precision compresses little, single "
-          "precision more."),
+          fmt::format("zlib level of {}, from 0 (off) to 9. Double precision compresses little, single precision more.",
+                      files_of_values())),
       key("history_every", &OutputSection::history_every, {.unit = "steps", .range = {.at_least = 1.0}},
           "Steps between rows of history.csv; the end of the run always has a row. Default: 1, and 2 with the scheme "
           "semi-explicit, whose steps cost little more than a row. Independently of this key, impacts, impulses and "

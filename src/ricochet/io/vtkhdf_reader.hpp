@@ -1,19 +1,14 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include "ricochet/io/results_storage.hpp"
 
-#include "ricochet/hdf5/hdf5_file.hpp"
-#include "ricochet/io/result_frames.hpp"
-
-/// @file Reader for results.vtkhdf and obstacles.vtkhdf. Supports only the files that vtkhdf_output.cpp writes.
+/// @file Reader for results.vtkhdf and obstacles.vtkhdf. Supports only the files that vtkhdf_output.cpp writes. Both
+/// functions are those of ResultsFormat.
 namespace ricochet {
 
-/// Throws Error(invalid_input).
-[[nodiscard]] ResultFrames read_vtkhdf_frames(const Hdf5Reader& file);
-/// Dataset with the values of a field, frame after frame.
-[[nodiscard]] std::string vtkhdf_name(const ResultField& field);
-/// Throws Error(file_access) or Error(invalid_input).
-[[nodiscard]] std::vector<ObstacleFrame> read_vtkhdf_obstacles(const std::string& path);
+[[nodiscard]] std::unique_ptr<ResultsStorage> open_vtkhdf_results(const std::string& directory,
+                                                                  const ResultsFormat& format);
+[[nodiscard]] std::vector<ObstacleFrame> read_vtkhdf_obstacles(const std::string& directory,
+                                                               const ResultsFormat& format);
 
 }  // namespace ricochet
