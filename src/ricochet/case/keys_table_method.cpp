@@ -1,8 +1,19 @@
 #include "ricochet/case/keys_table.hpp"
 #include "ricochet/case/names.hpp"
+#include "ricochet/linear_algebra/preconditioner_factory.hpp"
 
 // Keys on the numerical method: mass matrix, time scheme, solver of a step.
 namespace ricochet {
+
+namespace {
+
+std::vector<std::string> preconditioner_choices() {
+  std::vector<std::string> names = preconditioner_registry().names();
+  names.insert(names.begin(), "auto");
+  return names;
+}
+
+}  // namespace
 
 Section mass_section() {
   Section section{.name = "mass", .doc = "The mass matrix."};
@@ -63,7 +74,7 @@ Section solver_section() {
       key("memory", &SolverSection::memory, {.unit = "GB", .range = positive},
           "Memory that factors may occupy when \"auto\" selects the method. Default: half of the machine's memory."),
       key("preconditioner", &SolverSection::preconditioner,
-          {.default_value = "auto", .choices = {"auto", "block-jacobi", "gamg", "boomeramg", "mumps"}},
+          {.default_value = "auto", .choices = preconditioner_choices()},
           "Preconditioner of the iterative method. \"block-jacobi\": the diagonal blocks of the nodes. The others are "
           "available in `ricochet-mpi` only: \"gamg\" and \"boomeramg\", algebraic multigrid of PETSc and hypre, and "
           "\"mumps\", a factor of the whole body that all processes compute together. \"auto\": diagonal blocks; with "
