@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <typeinfo>
 #include <vector>
 
 /// @file Keys of a case file and their admissible values. A type that has parameters (a scheme, an obstacle, a material
@@ -40,8 +41,18 @@ struct Range {
 inline const Range positive{.above = 0.0};
 inline const Range nonnegative{.at_least = 0.0};
 
+class SectionReader;  // of case
+struct Key;
+
+/// Member of a struct in which the value of a key is stored (case/key_member.hpp).
+struct KeyMember {
+  const std::type_info* owner = nullptr;  ///< the struct
+  /// Stores the value in the member of an object.
+  std::function<void(const SectionReader& section, const Key& key, void* object)> store = {};
+};
+
 struct Key {
-  std::string name;
+  std::string name = {};
   KeyType type = KeyType::text;
   std::string unit = {};  ///< the kind of unit ("length", "stress"; "1": dimensionless); empty if none
   bool required = false;
@@ -53,9 +64,10 @@ struct Key {
   bool decides = false;        ///< its value decides which other keys exist: if it is refused, no other key is checked
   /// Section whose entries replace this key: if it has any, the key is refused; otherwise it may be required.
   std::string replaced_by = {};
-  std::string doc;  ///< one line of documentation
+  std::string doc = {};  ///< one line of documentation
   /// Types that have this key, filled in by the table; empty: it belongs to the section whatever the type.
   std::vector<std::string> only_for = {};
+  std::vector<KeyMember> members = {};  ///< empty: other code reads the value
 };
 
 [[nodiscard]] inline std::vector<std::string> names_of(const std::vector<Key>& keys) {

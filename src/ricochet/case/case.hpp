@@ -65,7 +65,18 @@ struct MaterialSection {
   RelaxationSection relaxation;  ///< lists of equal length; may be empty
 };
 
-struct ObstacleSection {
+/// Keys of an obstacle that is a free rigid body, whose `velocity` is the initial one.
+struct FreeBodySection {
+  std::optional<double> mass, density;
+  std::vector<double> inertia, centre_of_mass;  ///< empty: those of its shape
+  std::vector<double> spin;                     ///< initial; may be empty
+  std::vector<Expression> force, torque;        ///< of t; may be empty
+  std::vector<double> spring, damper;           ///< to the initial position, per direction; may be empty
+  double rotation_spring = 0.0, rotation_damper = 0.0;
+  std::vector<std::string> hold;  ///< "x", "y", "z", "rotation"
+};
+
+struct ObstacleSection : FreeBodySection {
   std::string name;
   std::string type;
   Parameters parameters;  ///< of the type
@@ -77,14 +88,6 @@ struct ObstacleSection {
   std::vector<double> about;         ///< empty: its own centre
   std::string table;                 ///< file of displacements and rotations; may be empty
   bool is_steered = false;           ///< a program changes its motion during the run (Session)
-  // Free rigid body, whose `velocity` is the initial one:
-  std::optional<double> mass, density;
-  std::vector<double> inertia, centre_of_mass;  ///< empty: those of its shape
-  std::vector<double> spin;                     ///< initial; may be empty
-  std::vector<Expression> force, torque;        ///< of t; may be empty
-  std::vector<double> spring, damper;           ///< to the initial position, per direction; may be empty
-  double rotation_spring = 0.0, rotation_damper = 0.0;
-  std::vector<std::string> hold;  ///< "x", "y", "z", "rotation"
   [[nodiscard]] bool is_free() const { return mass || density; }
 };
 
@@ -172,7 +175,7 @@ struct OutputSection {
   std::optional<long> fields_every;       ///< steps; null: chosen for about a hundred frames; 0: no frames
   std::optional<double> fields_interval;  ///< time, instead of fields_every
   std::vector<std::string> fields;        ///< names, also "all"; empty: the default ones
-  bool vtkhdf = false;                    ///< otherwise XDMF
+  std::string format = "xdmf";            ///< of the files of fields
   bool single_precision = false;          ///< of fields
   int compression = 0;
   std::optional<long> history_every;  ///< null: chosen by the scheme

@@ -9,7 +9,7 @@
 
 /// @file Table of all sections and keys of a case file. It drives reading, checking, the JSON Schema and the
 /// documentation page. A key of a registered type (a scheme, an obstacle, a law) is declared with the type; every other
-/// key is one entry in keys_table*.cpp and one line in read_sections.cpp that stores it in the Case.
+/// key is one entry in keys_table*.cpp, which names the member of the Case that stores its value (key_member.hpp).
 namespace ricochet {
 
 struct TomlNode;
@@ -38,8 +38,8 @@ struct Section {
   /// Tests for entries that need none of the alternatives, and their description for messages; null if there are none.
   bool (*stands_alone)(const TomlNode& entry) = nullptr;
   std::string alone = {};
-  std::string doc;
-  std::vector<Key> keys;  ///< including those of all types
+  std::string doc = {};
+  std::vector<Key> keys = {};  ///< including those of all types
   /// Key that names a registered type, and the types with their own keys; empty if there are none.
   std::string type_key = {};
   std::vector<TypeKeys> types = {};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
 
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/keys_check.hpp"
@@ -12,16 +13,6 @@ namespace ricochet {
 namespace {
 
 using Kind = TomlNode::Kind;
-
-void refuse(TomlNode& value, const std::string& message, Problems& problems) {
-  value.is_refused = true;
-  problems.add(value.location, message);
-}
-
-void refuse_type(const Key& key, TomlNode& value, Problems& problems) {
-  refuse(value, fmt::format("\"{}\" must be {}; found {}", key.name, admissible_with_unit(key), describe(value)),
-         problems);
-}
 
 // Accepts integers as numbers and converts them, so that 1 and 1.0 have the same text.
 bool make_finite_number(TomlNode& value) {
@@ -90,180 +81,177 @@ bool has_decimal_commas(const TomlNode& list) {
   return is_any_certain;
 }
 
-void check_choice(const Key& key, TomlNode& value, Problems& problems) {
-  if (value.kind == Kind::text && is_choice(value.text, key.choices)) return;
-  std::string more = suggestion(value, key.choices);
-  if (key.decides && more.empty()) more = ". " + key.doc;
-  refuse(value, fmt::format("\"{}\" must be {}; found {}{}", key.name, admissible_values(key), describe(value), more),
-         problems);
+/// Checks one value.
+class ValueCheck {
+ public:
+  ValueCheck(const Key& key, TomlNode& value, Problems& problems) : key_(key), value_(value), problems_(problems) {}
+  void run();
+
+ private:
+  void check_choice();
+  void check_number();
+  void check_integer();
+  void check_vector(bool with_expressions);
+  void check_numbers();
+  void check_axial(bool allows_expressions);
+  /// Requires distinct names that `is_name` accepts; otherwise one "must be" what `expected` says.
+  void check_names(const std::function<bool(const std::string& name)>& is_name, const std::string& expected);
+  void check_parameters();
+  /// Refuses the value for a problem at the position of a part of it.
+  void refuse(const SourceLocation& location, const std::string& message) {
+    value_.is_refused = true;
+    problems_.add(location, message);
+  }
+  void refuse_unless(bool good) {
+    if (!good) refuse_as(admissible_with_unit(key_), describe(value_));
+  }
+  void refuse_as(const std::string& expected, const std::string& found, const std::string& more = "") {
+    refuse(value_.location, fmt::format("\"{}\" must be {}; found {}{}", key_.name, expected, found, more));
+  }
+
+  const Key& key_;
+  TomlNode& value_;
+  Problems& problems_;
+};
+
+void ValueCheck::check_choice() {
+  if (value_.kind == Kind::text && is_choice(value_.text, key_.choices)) return;
+  std::string more = suggestion(value_, key_.choices);
+  if (key_.decides && more.empty()) more = ". " + key_.doc;
+  refuse_as(admissible_values(key_), describe(value_), more);
 }
 
-void check_number(const Key& key, TomlNode& value, Problems& problems) {
-  const TomlNode found = value;
-  if (make_finite_number(value) && is_within(key.range, value.real)) return;
-  value.is_refused = true;
-  const char* finite = found.kind == Kind::real && !std::isfinite(found.real) ? ", which is not finite" : "";
-  problems.add(value.location, fmt::format("\"{}\" must be {}; found {}{}", key.name, admissible_with_unit(key),
-                                           describe(found), finite));
+void ValueCheck::check_number() {
+  const std::string found = describe(value_);
+  if (make_finite_number(value_) && is_within(key_.range, value_.real)) return;
+  const bool is_finite = value_.kind != Kind::real || std::isfinite(value_.real);
+  refuse_as(admissible_with_unit(key_), found, is_finite ? "" : ", which is not finite");
 }
 
-void check_integer(const Key& key, TomlNode& value, Problems& problems) {
-  const bool is_good =
-      value.kind == Kind::integer && (key.choices.empty() ? is_within(key.range, static_cast<double>(value.integer))
-                                                          : is_choice(std::to_string(value.integer), key.choices));
-  if (!is_good) refuse_type(key, value, problems);
+void ValueCheck::check_integer() {
+  refuse_unless(value_.kind == Kind::integer &&
+                (key_.choices.empty() ? is_within(key_.range, static_cast<double>(value_.integer))
+                                      : is_choice(std::to_string(value_.integer), key_.choices)));
 }
 
 // Checks the entries of a vector. Expressions are compiled later, when their parameters are known.
-void check_vector(const Key& key, TomlNode& value, bool with_expressions, Problems& problems) {
-  const bool is_vector = value.kind == Kind::list && !value.is_list_of_tables();
-  if (!is_vector) {
-    refuse(value,
-           fmt::format("\"{}\" must be {}; found {}{}", key.name, admissible_with_unit(key), describe(value),
-                       suggestion(value, key.choices)),
-           problems);
-    return;
+void ValueCheck::check_vector(bool with_expressions) {
+  const bool is_vector = value_.kind == Kind::list && !value_.is_list_of_tables();
+  if (!is_vector || (value_.children.size() != 2 && value_.children.size() != 3)) {
+    const char* const commas = "; if their commas are decimal ones, use decimal points";
+    return refuse_as(admissible_with_unit(key_), describe(value_),
+                     !is_vector                   ? suggestion(value_, key_.choices)
+                     : has_decimal_commas(value_) ? commas
+                                                  : "");
   }
-  if (value.children.size() != 2 && value.children.size() != 3) {
-    refuse(value,
-           fmt::format("\"{}\" must be {}; found {}{}", key.name, admissible_with_unit(key), describe(value),
-                       has_decimal_commas(value) ? "; if their commas are decimal ones, use decimal points" : ""),
-           problems);
-    return;
-  }
-  for (std::size_t i = 0; i < value.children.size(); ++i) {
-    TomlNode& component = value.children[i];
+  for (std::size_t i = 0; i < value_.children.size(); ++i) {
+    TomlNode& component = value_.children[i];
     if (make_finite_number(component) || (with_expressions && component.kind == Kind::text)) continue;
-    value.is_refused = true;
-    problems.add(component.location,
-                 fmt::format("entry {} of \"{}\" must be a finite number{}; found {}", i + 1, key.name,
-                             with_expressions ? " or an expression" : "", describe(component)));
+    refuse(component.location, fmt::format("entry {} of \"{}\" must be a finite number{}; found {}", i + 1, key_.name,
+                                           with_expressions ? " or an expression" : "", describe(component)));
   }
 }
 
-void check_numbers(const Key& key, TomlNode& value, Problems& problems) {
-  if (value.kind != Kind::list || value.children.empty()) return refuse_type(key, value, problems);
-  Key of_entry = key;
+void ValueCheck::check_numbers() {
+  if (value_.kind != Kind::list || value_.children.empty()) return refuse_unless(false);
+  Key of_entry = key_;
   of_entry.type = KeyType::number;
-  for (std::size_t i = 0; i < value.children.size(); ++i) {
-    TomlNode& entry = value.children[i];
-    const TomlNode found = entry;
-    if (make_finite_number(entry) && is_within(key.range, entry.real)) continue;
-    value.is_refused = true;
-    problems.add(entry.location, fmt::format("entry {} of \"{}\" must be {}; found {}", i + 1, key.name,
-                                             admissible_with_unit(of_entry), describe(found)));
+  for (std::size_t i = 0; i < value_.children.size(); ++i) {
+    TomlNode& entry = value_.children[i];
+    const std::string found = describe(entry);
+    if (make_finite_number(entry) && is_within(key_.range, entry.real)) continue;
+    refuse(entry.location, fmt::format("entry {} of \"{}\" must be {}; found {}", i + 1, key_.name,
+                                       admissible_with_unit(of_entry), found));
   }
 }
 
-void check_axial(const Key& key, TomlNode& value, bool allows_expressions, Problems& problems) {
-  if (value.kind == Kind::list && value.children.size() == 3)
-    return check_vector(key, value, allows_expressions, problems);
-  if (allows_expressions && value.kind == Kind::text) return;
-  if (!value.is_number() || !make_finite_number(value)) refuse_type(key, value, problems);
+void ValueCheck::check_axial(bool allows_expressions) {
+  if (value_.kind == Kind::list && value_.children.size() == 3) return check_vector(allows_expressions);
+  if (allows_expressions && value_.kind == Kind::text) return;
+  refuse_unless(value_.is_number() && make_finite_number(value_));
 }
 
-void check_directions(const Key& key, TomlNode& value, Problems& problems) {
-  if (value.kind != Kind::list || value.children.empty()) return refuse_type(key, value, problems);
+void ValueCheck::check_names(const std::function<bool(const std::string& name)>& is_name, const std::string& expected) {
+  if (value_.kind != Kind::list || value_.children.empty()) return refuse_unless(false);
   std::vector<std::string> accepted;
-  for (const TomlNode& name : value.children) {
+  for (const TomlNode& name : value_.children) {
     std::string reason;
-    if (name.kind != Kind::text || !is_choice(name.text, key.choices)) {
-      reason = fmt::format("must be {}; found {}{}", join_names(key.choices, " or "), describe(name),
-                           suggestion(name, key.choices));
+    if (name.kind != Kind::text || !is_name(name.text)) {
+      reason = fmt::format("must be {}; found {}{}", expected, describe(name), suggestion(name, key_.choices));
     } else if (is_choice(name.text, accepted)) {
       reason = fmt::format("repeats \"{}\"", name.text);
     }
     accepted.push_back(name.text);
-    if (reason.empty()) continue;
-    value.is_refused = true;
-    problems.add(name.location, fmt::format("an entry of \"{}\" {}", key.name, reason));
+    if (!reason.empty()) refuse(name.location, fmt::format("an entry of \"{}\" {}", key_.name, reason));
   }
 }
 
-void check_groups(const Key& key, TomlNode& value, Problems& problems) {
-  if (value.kind == Kind::text && !value.text.empty()) return;
-  if (value.kind != Kind::list || value.children.empty()) return refuse_type(key, value, problems);
-  std::vector<std::string> accepted;
-  for (const TomlNode& name : value.children) {
-    std::string reason;
-    if (name.kind != Kind::text || name.text.empty()) {
-      reason = fmt::format("must be the name of a group; found {}", describe(name));
-    } else if (is_choice(name.text, accepted)) {
-      reason = fmt::format("repeats \"{}\"", name.text);
-    }
-    accepted.push_back(name.text);
-    if (reason.empty()) continue;
-    value.is_refused = true;
-    problems.add(name.location, fmt::format("an entry of \"{}\" {}", key.name, reason));
-  }
-}
-
-void check_parameters(const Key& key, TomlNode& value, Problems& problems) {
-  if (!value.is_table()) return refuse_type(key, value, problems);
-  for (TomlNode& parameter : value.children) {
+void ValueCheck::check_parameters() {
+  if (!value_.is_table()) return refuse_unless(false);
+  for (TomlNode& parameter : value_.children) {
     const std::string& name = parameter.key;
     const bool is_identifier =
         is_plain_name(name) && name.find('-') == std::string::npos && !(name[0] >= '0' && name[0] <= '9');
     if (!is_identifier || is_choice(name, {"x", "y", "z", "t", "pi"})) {
-      value.is_refused = true;
-      problems.add(parameter.key_location,
-                   fmt::format("\"{}\" cannot be the name of a parameter: {}", name,
-                               is_identifier ? "x, y, z, t and pi are reserved"
-                                             : "it must consist of letters, digits and _, and not begin with a digit"));
+      refuse(parameter.key_location,
+             fmt::format("\"{}\" cannot be the name of a parameter: {}", name,
+                         is_identifier ? "x, y, z, t and pi are reserved"
+                                       : "it must consist of letters, digits and _, and not begin with a digit"));
     } else if (!make_finite_number(parameter)) {
-      value.is_refused = true;
-      problems.add(parameter.location,
-                   fmt::format("the parameter \"{}\" must be a finite number; found {}", name, describe(parameter)));
+      refuse(parameter.location,
+             fmt::format("the parameter \"{}\" must be a finite number; found {}", name, describe(parameter)));
     }
+  }
+}
+
+void ValueCheck::run() {
+  const bool is_text = value_.kind == Kind::text;
+  switch (key_.type) {
+    case KeyType::text:
+      return refuse_unless(is_text && !(key_.required && value_.text.empty()));
+    case KeyType::choice:
+      return check_choice();
+    case KeyType::number:
+      if (!is_text || !is_choice(value_.text, key_.choices)) check_number();
+      return;
+    case KeyType::integer:
+      return check_integer();
+    case KeyType::flag:
+      return refuse_unless(value_.kind == Kind::boolean);
+    case KeyType::vector:
+      return check_vector(false);
+    case KeyType::numbers:
+      return check_numbers();
+    case KeyType::axial:
+    case KeyType::axial_formulas:
+      return check_axial(key_.type == KeyType::axial_formulas);
+    case KeyType::formula:
+      if (!is_text) check_number();
+      return;
+    case KeyType::formulas:
+      if (!is_text || !is_choice(value_.text, key_.choices)) check_vector(true);
+      return;
+    case KeyType::components:
+    case KeyType::names:
+      return check_names([&](const std::string& name) { return is_choice(name, key_.choices); },
+                         join_names(key_.choices, " or "));
+    case KeyType::groups:
+      if (is_text && !value_.text.empty()) return;
+      return check_names([](const std::string& name) { return !name.empty(); }, "the name of a group");
+    case KeyType::parameters:
+      return check_parameters();
+    case KeyType::conditions:
+    case KeyType::table:  // their content is checked by check_tree, which has the whole document
+      return refuse_unless(value_.is_table());
+    case KeyType::tables:
+      return refuse_unless(value_.is_table() || value_.is_list_of_tables());
   }
 }
 
 }  // namespace
 
 void check_value(const Key& key, TomlNode& value, Problems& problems) {
-  switch (key.type) {
-    case KeyType::text:
-      if (value.kind != Kind::text || (key.required && value.text.empty())) refuse_type(key, value, problems);
-      return;
-    case KeyType::choice:
-      return check_choice(key, value, problems);
-    case KeyType::number:
-      if (value.kind == Kind::text && is_choice(value.text, key.choices)) return;
-      return check_number(key, value, problems);
-    case KeyType::integer:
-      return check_integer(key, value, problems);
-    case KeyType::flag:
-      if (value.kind != Kind::boolean) refuse_type(key, value, problems);
-      return;
-    case KeyType::vector:
-      return check_vector(key, value, false, problems);
-    case KeyType::numbers:
-      return check_numbers(key, value, problems);
-    case KeyType::axial:
-      return check_axial(key, value, false, problems);
-    case KeyType::axial_formulas:
-      return check_axial(key, value, true, problems);
-    case KeyType::formula:
-      if (value.kind != Kind::text) check_number(key, value, problems);
-      return;
-    case KeyType::formulas:
-      if (value.kind == Kind::text && is_choice(value.text, key.choices)) return;
-      return check_vector(key, value, true, problems);
-    case KeyType::components:
-    case KeyType::names:
-      return check_directions(key, value, problems);
-    case KeyType::groups:
-      return check_groups(key, value, problems);
-    case KeyType::parameters:
-      return check_parameters(key, value, problems);
-    case KeyType::conditions:
-    case KeyType::table:  // their content is checked by check_tree, which has the whole document
-      if (!value.is_table()) refuse_type(key, value, problems);
-      return;
-    case KeyType::tables:
-      if (!value.is_table() && !value.is_list_of_tables()) refuse_type(key, value, problems);
-      return;
-  }
+  ValueCheck(key, value, problems).run();
 }
 
 }  // namespace ricochet

@@ -8,23 +8,28 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/keys_table.hpp"
 
-// The table: its sections in their order.
 namespace ricochet {
+
+// The sections in their order, each by a function in one of the files keys_table_*.cpp.
+// clang-format off
+#define RICOCHET_CASE_SECTIONS(section)                                                               \
+  section(mesh_section) section(part_section) section(material_section) section(obstacle_section)     \
+  section(contact_section) section(support_section) section(traction_section)                         \
+  section(pressure_section) section(load_section) section(initial_section) section(motion_section)    \
+  section(mass_section) section(time_section) section(solver_section) section(probe_section)          \
+  section(output_section) section(check_section) section(expect_section)
+// clang-format on
+#define RICOCHET_DECLARE_SECTION(section) Section section();
+#define RICOCHET_MAKE_SECTION(section) section(),
+RICOCHET_CASE_SECTIONS(RICOCHET_DECLARE_SECTION)
 
 namespace {
 
 Section top_section() {
-  return {.name = "",
-          .kind = SectionKind::top,
-          .doc = "Keys before the first section.",
-          .keys = {{.name = "title", .default_value = "", .doc = "One line about the case, repeated in its results."}}};
-}
-
-std::vector<Section> make_sections() {
-  return {top_section(),     mesh_section(),    part_section(),     material_section(), obstacle_section(),
-          contact_section(), support_section(), traction_section(), pressure_section(), load_section(),
-          initial_section(), motion_section(),  mass_section(),     time_section(),     solver_section(),
-          probe_section(),   output_section(),  check_section(),    expect_section()};
+  Section section{.name = "", .kind = SectionKind::top, .doc = "Keys before the first section."};
+  section.keys = {
+      key("title", &Case::title, {.default_value = ""}, "One line about the case, repeated in its results.")};
+  return section;
 }
 
 std::vector<std::string> types_with(const std::string& key, const std::vector<TypeKeys>& types) {
@@ -37,7 +42,7 @@ std::vector<std::string> types_with(const std::string& key, const std::vector<Ty
 
 }  // namespace
 
-void add_type_keys(Section& section, const std::string& type_key, std::vector<TypeKeys> types) {
+void add_type_keys(Section& section, const std::string& type_key, std::vector<TypeKeys> types, KeyMember parameters) {
   std::vector<Key> added;
   for (const TypeKeys& type : types) {
     for (Key key : type.keys) {
@@ -59,7 +64,8 @@ void add_type_keys(Section& section, const std::string& type_key, std::vector<Ty
   }
   const auto at =
       std::find_if(section.keys.begin(), section.keys.end(), [&](const Key& key) { return key.name == type_key; });
-  at->choices.clear();
+  at->type = KeyType::choice;
+  at->members.push_back(std::move(parameters));
   for (const TypeKeys& type : types) at->choices.push_back(type.name);
   section.keys.insert(at + 1, added.begin(), added.end());
   section.type_key = type_key;
@@ -74,7 +80,7 @@ const std::vector<Section>& case_sections() {
   const std::lock_guard<std::mutex> lock(in_use);
   if (revision != registry_revision()) {
     revision = registry_revision();
-    tables.push_back(make_sections());
+    tables.push_back({top_section(), RICOCHET_CASE_SECTIONS(RICOCHET_MAKE_SECTION)});
   }
   return tables.back();
 }

@@ -11,7 +11,6 @@
 #include "ricochet/case/names.hpp"
 #include "ricochet/case/quantity.hpp"
 #include "ricochet/case/read_bodies.hpp"
-#include "ricochet/case/read_obstacle.hpp"
 #include "ricochet/case/section_reader.hpp"
 #include "ricochet/simulation/history/probe_kind.hpp"
 #include "ricochet/simulation/step_control.hpp"
@@ -22,74 +21,63 @@ using namespace std::string_view_literals;
 
 namespace {
 
-// Readers of all entries of a list of sections; one reader for a plain section; none for refused entries.
-class Sections {
- public:
-  Sections(const TomlNode& root, Problems& problems) : root_(root), problems_(problems) {}
-
-  [[nodiscard]] SectionReader one(const std::string& name) const {
-    static const TomlNode absent;
-    const TomlNode* node = root_.find(name);
-    return {find_section(name)->keys, node != nullptr && node->is_table() ? *node : absent, problems_};
-  }
-  [[nodiscard]] std::vector<SectionReader> all(const std::string& name) const {
-    std::vector<SectionReader> readers;
-    const TomlNode* node = root_.find(name);
-    if (node == nullptr || node->is_refused) return readers;
-    for (const TomlNode& entry : node->children) {
-      if (!entry.is_refused) readers.emplace_back(find_section(name)->keys, entry, problems_);
-    }
-    return readers;
-  }
-
- private:
-  const TomlNode& root_;
-  Problems& problems_;
-};
-
-MaterialSection read_material(const SectionReader& reader, Case& result) {
-  MaterialSection material;
-  material.group = reader.groups("group", result.group_lists);
-  material.density = reader.number("density");
-  material.law = reader.text("law");
-  material.dilatation = reader.text("dilatation");
-  material.parameters = reader.type_parameters(*find_section("material"));
-  const SectionReader damping = reader.table("damping");
-  material.damping.mass = damping.number("mass");
-  material.damping.stiffness = damping.number("stiffness");
-  if (!reader.is_usable("relaxation")) return material;
-  const SectionReader relaxation = reader.table("relaxation");
-  material.relaxation = {relaxation.vector("modulus"), relaxation.vector("time")};
-  if (!relaxation.is_usable("modulus") || !relaxation.is_usable("time")) return material;
+void check_material(const SectionReader& reader, MaterialSection& material) {
+  if (!reader.is_usable("relaxation")) return;
+  const SectionReader relaxation = reader.tables("relaxation").front();
+  if (!relaxation.is_usable("modulus") || !relaxation.is_usable("time")) return;
   const std::size_t moduli = material.relaxation.modulus.size(), times = material.relaxation.time.size();
   if (moduli != times) {
     relaxation.add_problem(
         "time", fmt::format("\"modulus\" and \"time\" must have one entry for each branch, but have {} and {} entries",
                             moduli, times));
   }
-  return material;
 }
 
-ContactSection read_contact(const SectionReader& reader, Case& result) {
-  ContactSection contact;
-  contact.group = reader.groups("group", result.group_lists);
-  contact.obstacle = reader.text("obstacle");
-  contact.against = reader.groups("against", result.group_lists);
-  contact.friction = reader.number("friction");
+/// Refuses two keys with the same meaning.
+void refuse_both(const SectionReader& reader, const char* key, const char* other) {
+  if (reader.is_given(key) && reader.is_given(other))
+    reader.add_problem(key, fmt::format("the obstacle already has \"{}\": remove \"{}\"", other, key));
+}
+
+void check_motion(const SectionReader& reader) {
+  refuse_both(reader, "motion", "velocity");
+  for (const char* const key : {"velocity", "motion", "rotation"}) refuse_both(reader, "table", key);
+  if (reader.is_given("about") && !reader.is_given("rotation") && !reader.is_given("table"))
+    reader.add_problem("about", "\"about\" is the centre of a rotation: set \"rotation\", or remove \"about\"");
+}
+
+void check_free_body(const SectionReader& reader) {
+  refuse_both(reader, "density", "mass");
+  const bool is_free = reader.is_given("mass") || reader.is_given("density");
+  const auto only = [&](bool allowed, const char* key, const char* reason) {
+    if (!allowed && reader.is_given(key)) reader.add_problem(key, fmt::format("\"{}\" {}", key, reason));
+  };
+  for (const char* const key : {"inertia", "centre_of_mass", "spin", "force", "torque", "spring", "damper",
+                                "rotation_spring", "rotation_damper", "hold"})
+    only(is_free, key, "requires a rigid body that moves under the forces on it: set its \"mass\" or \"density\", too");
+  for (const char* const key : {"motion", "rotation", "table"})
+    only(!is_free, key, "prescribes a motion; an obstacle with a mass or density moves under the forces on it");
+  only(!is_free, "rotation_rate",
+       "prescribes a motion; an obstacle with a mass or density moves under the forces on it; for a driven roller that "
+       "a force presses, set \"spin\", a large \"inertia\" (a flywheel) and \"force\"");
+}
+
+void check_obstacle(const SectionReader& reader, ObstacleSection& obstacle) {
+  obstacle.name = reader.name();
+  if (obstacle.parameters.has("file")) obstacle.parameters.set("file", reader.path(obstacle.parameters.text("file")));
+  check_motion(reader);
+  reader.fill<FreeBodySection>(obstacle);
+  check_free_body(reader);
+}
+
+void check_contact(const SectionReader& reader, ContactSection& contact) {
   if (constexpr double unusual = 2.0; contact.friction > unusual)
     reader.add_warning("friction",
                        fmt::format("the coefficient of friction {:g} is unusually large; it is not per cent: 30 % is "
                                    "0.3",
                                    contact.friction));
-  contact.friction_bound = reader.number("friction_bound");
-  contact.multipliers = reader.text("multipliers");
-  if (contact.multipliers.empty()) contact.multipliers = contact.between_bodies() ? "p1" : "nodal";
-  contact.multipliers_on = reader.text("multipliers_on");
-  contact.closed_gaps = reader.text("initial_gap") == "closed";
-  contact.large_sliding =
-      reader.text("sliding") == "large" || (contact.is_of_all_pairs() && !reader.is_given("sliding"));
-  contact.pair_at = reader.vector("pair_at");
-  contact.tied = reader.flag("tied");
+  if (!reader.is_usable("multipliers") && contact.between_bodies()) contact.multipliers = "p1";
+  if (contact.is_of_all_pairs() && !reader.is_given("sliding")) contact.large_sliding = true;
   for (const char* const key : {"friction", "friction_bound", "multipliers", "initial_gap", "pair_at", "sliding"}) {
     if (!contact.tied || !reader.is_given(key)) continue;
     reader.add_problem(
@@ -122,8 +110,6 @@ ContactSection read_contact(const SectionReader& reader, Case& result) {
     reader.add_problem("multipliers_on",
                        "a surface that touches itself has no sides: the points that carry the multipliers are selected "
                        "where it touches; remove \"multipliers_on\"");
-  contact.allow_unstable_multipliers = reader.text("unstable_multipliers") == "allow";
-  return contact;
 }
 
 void check_obstacle_name(const SectionReader& reader, const char* key, const std::vector<std::string>& obstacles) {
@@ -157,9 +143,9 @@ void check_distinct(const std::vector<SectionReader>& readers, const std::string
 }
 
 /// Refuses the keys of adaptive steps for other steps.
-void read_adaptive_steps(const SectionReader& reader, TimeSection& time) {
-  time.adaptive = reader.is_usable("step") && reader.text("step") == adaptive_steps;
+void check_adaptive_steps(const SectionReader& reader, TimeSection& time) {
   if (!time.adaptive) {
+    time.tolerance = time.smallest = 0.0;
     for (const char* const key : {"tolerance", "largest", "smallest"}) {
       if (!reader.is_given(key) || !reader.is_usable("step")) continue;
       if (reader.is_override("step") && !reader.is_override(key)) {
@@ -170,7 +156,7 @@ void read_adaptive_steps(const SectionReader& reader, TimeSection& time) {
     }
     return;
   }
-  time.tolerance = reader.optional_number("tolerance").value_or(1e-3);
+  if (!reader.is_usable("tolerance")) time.tolerance = 1e-3;
   if (!reader.is_given("largest")) {
     reader.add_problem("step",
                        "adaptive steps require \"largest\", the largest length: at most the time between two rows that "
@@ -178,7 +164,7 @@ void read_adaptive_steps(const SectionReader& reader, TimeSection& time) {
     return;
   }
   time.step = reader.number("largest");
-  time.smallest = reader.optional_number("smallest").value_or(std::ldexp(time.step, -20));
+  if (!reader.is_usable("smallest")) time.smallest = std::ldexp(time.step, -20);
   if (reader.is_usable("largest") && reader.is_usable("smallest") && time.smallest > time.step)
     reader.add_problem("smallest", fmt::format("\"smallest\" is {}, above \"largest\", {}", time.smallest, time.step));
 }
@@ -202,16 +188,11 @@ void check_smallest(const SectionReader& reader, const TimeSection& time) {
                                  time.smallest, time.step, time.end, rounded_up(least, 2)));
 }
 
-TimeSection read_time(const SectionReader& reader) {
+void check_time(const SectionReader& reader, TimeSection& time) {
   constexpr double most_steps = 1e9;
-  TimeSection time;
-  time.scheme = reader.text("scheme");
-  time.parameters = reader.type_parameters(*find_section("time"));
-  read_adaptive_steps(reader, time);
-  if (!time.adaptive) time.step = reader.number("step");
-  time.end = reader.number("end");
+  check_adaptive_steps(reader, time);
   const char* const step = time.adaptive ? "largest" : "step";
-  if (!reader.is_usable(step) || !reader.is_usable("end") || time.step == 0.0) return time;
+  if (!reader.is_usable(step) || !reader.is_usable("end") || time.step == 0.0) return;
   if (!has_square(time.step)) {
     reader.add_problem(step, fmt::format("\"{}\" is {}: its square is outside the range of floating-point numbers; "
                                          "choose a unit of time in which steps are closer to 1",
@@ -226,41 +207,19 @@ TimeSection read_time(const SectionReader& reader) {
   } else if (time.adaptive) {
     check_smallest(reader, time);
   }
-  return time;
 }
 
-SupportSection read_support(const SectionReader& reader, Case& result) {
-  SupportSection support;
-  support.group = reader.groups("group", result.group_lists);
-  support.components = reader.choice_numbers("components");
-  support.value = reader.formula("value");
-  return support;
-}
-
-InitialSection read_initial(const SectionReader& reader) {
-  InitialSection initial;
-  initial.static_equilibrium = reader.text("displacement") == "static";
-  initial.displacement = reader.formulas("displacement");
-  initial.velocity = reader.formulas("velocity");
-  return initial;
-}
-
-ProbeSection read_probe(const SectionReader& reader, Case& result) {
-  ProbeSection probe;
-  probe.name = reader.text("name");
-  probe.every = reader.optional_integer("every").value_or(0);
-  const auto* const kind = find_probe_kind([&](const std::string& key) { return reader.is_given(key); });
-  if (kind != nullptr) {
+void check_probe(const SectionReader& reader, ProbeSection& probe) {
+  if (const auto* const kind = find_probe_kind([&](const std::string& key) { return reader.is_given(key); })) {
     probe.kind = kind->name;
-    probe.values = reader.parameters(kind->keys, result.group_lists);
+    probe.values = reader.parameters(kind->keys);
   }
   for (const Registration<ProbeKind>& other : probe_registry().all()) {
+    const std::vector<std::string>& needed = other.alternatives.front();
     for (const Key& key : other.keys) {
-      const std::string& first = other.alternatives.front().front();
-      const auto& needed = other.alternatives.front();
       if (std::find(needed.begin(), needed.end(), key.name) == needed.end() && reader.is_given(key.name) &&
-          !reader.is_given(first))
-        reader.add_problem(key.name, fmt::format("\"{}\" is for probes with \"{}\" only", key.name, first));
+          !reader.is_given(needed.front()))
+        reader.add_problem(key.name, fmt::format("\"{}\" is for probes with \"{}\" only", key.name, needed.front()));
     }
   }
   const std::vector<std::string> columns = reserved_probe_names();
@@ -270,10 +229,9 @@ ProbeSection read_probe(const SectionReader& reader, Case& result) {
     reader.add_problem("name",
                        fmt::format("the name \"{}\" is already that of a standard column of history.csv", probe.name));
   }
-  return probe;
 }
 
-void check_expectation(const SectionReader& reader) {
+void check_expectation(const SectionReader& reader, ExpectSection& expectation) {
   const bool has_value = reader.is_given("value");
   const bool has_tolerance = reader.is_given("relative") || reader.is_given("absolute");
   const bool has_bounds = reader.is_given("minimum") || reader.is_given("maximum");
@@ -289,10 +247,9 @@ void check_expectation(const SectionReader& reader) {
                        "[[expect]] expects nothing: set \"value\" with \"relative\" or \"absolute\", or bounds "
                        "(\"minimum\", \"maximum\")");
   }
-  if (reader.is_usable("minimum") && reader.is_usable("maximum") &&
-      reader.number("minimum") > reader.number("maximum")) {
-    reader.add_problem("minimum", fmt::format("\"minimum\" is {}, above \"maximum\", which is {}",
-                                              reader.number("minimum"), reader.number("maximum")));
+  if (expectation.minimum && expectation.maximum && *expectation.minimum > *expectation.maximum) {
+    reader.add_problem("minimum", fmt::format("\"minimum\" is {}, above \"maximum\", which is {}", *expectation.minimum,
+                                              *expectation.maximum));
   }
   for (const std::string key : {"quantity", "over"}) {
     if (!reader.is_given(key) || !reader.is_usable(key)) continue;
@@ -304,43 +261,24 @@ void check_expectation(const SectionReader& reader) {
   }
 }
 
-ExpectSection read_expectation(const SectionReader& reader) {
-  ExpectSection expectation;
-  expectation.name = reader.text("name");
-  expectation.quantity = reader.text("quantity");
-  expectation.over = reader.text("over");
-  expectation.times = reader.number("times");
-  expectation.value = reader.number("value");
-  expectation.relative = reader.optional_number("relative");
-  expectation.absolute = reader.optional_number("absolute");
-  expectation.minimum = reader.optional_number("minimum");
-  expectation.maximum = reader.optional_number("maximum");
-  expectation.published = reader.text("published");
-  expectation.when = reader.conditions("when");
-  check_expectation(reader);
-  return expectation;
-}
-
 void read_obstacles_and_contacts(const TomlNode& root, const Sections& sections, Case& result) {
   const TomlNode* obstacles = root.find("obstacle");
   std::vector<std::string> names;  // including refused ones: a contact that names one is not a separate problem
   if (obstacles != nullptr) {
     for (const TomlNode& obstacle : obstacles->children) names.push_back(obstacle.key);
   }
-  for (const SectionReader& reader : sections.all("obstacle"))
-    result.obstacles.push_back(read_obstacle(reader, result.path));
-  const std::vector<SectionReader> contacts = sections.all("contact");
-  for (const SectionReader& reader : contacts) {
-    result.contacts.push_back(read_contact(reader, result));
-    if (obstacles == nullptr || !obstacles->is_refused) check_obstacle_name(reader, "obstacle", names);
-  }
-  std::vector<SectionReader> bodies = sections.all("part");
-  bodies.push_back(sections.one("mesh"));
-  for (const SectionReader& reader : bodies) {
-    if (obstacles == nullptr || !obstacles->is_refused) check_obstacle_name(reader, "rest_on", names);
-  }
+  sections.read("obstacle", result.obstacles, check_obstacle);
+  const auto check_name = [&](const SectionReader& reader, const char* key) {
+    if (obstacles == nullptr || !obstacles->is_refused) check_obstacle_name(reader, key, names);
+  };
+  sections.read("contact", result.contacts, [&](const SectionReader& reader, ContactSection& contact) {
+    check_contact(reader, contact);
+    check_name(reader, "obstacle");
+  });
+  for (const SectionReader& reader : sections.all("part")) check_name(reader, "rest_on");
+  check_name(sections.one("mesh"), "rest_on");
   std::vector<SectionReader> of_kind[3];
-  for (const SectionReader& reader : contacts)
+  for (const SectionReader& reader : sections.all("contact"))
     of_kind[reader.is_given("obstacle") ? 0 : reader.is_given("against") ? 1 : 2].push_back(reader);
   check_distinct(of_kind[0], "contact", "group", "obstacle");
   check_distinct(of_kind[1], "contact", "group", "against");
@@ -350,50 +288,31 @@ void read_obstacles_and_contacts(const TomlNode& root, const Sections& sections,
 }  // namespace
 
 void read_sections(const TomlNode& root, Case& result, Problems& problems) {
-  const Sections sections(root, problems);
-  result.title = SectionReader(case_sections().front().keys, root, problems).text("title");
-  result.mesh = read_mesh(sections.one("mesh"), result.path);
-  for (const SectionReader& reader : sections.all("part")) result.parts.push_back(read_part(reader, result.path));
-  for (const SectionReader& reader : sections.all("material"))
-    result.materials.push_back(read_material(reader, result));
+  const Sections sections(root, result, problems);
+  SectionReader(case_sections().front().keys, root, result, problems).fill(result);
+  read_bodies(sections, result);
+  sections.read("material", result.materials, check_material);
   check_distinct(sections.all("material"), "material", "group");
   read_obstacles_and_contacts(root, sections, result);
-  for (const SectionReader& reader : sections.all("support")) result.supports.push_back(read_support(reader, result));
-  for (const SectionReader& reader : sections.all("traction")) {
-    result.tractions.push_back({reader.groups("group", result.group_lists), reader.formulas("value")});
-  }
-  for (const SectionReader& reader : sections.all("pressure"))
-    result.pressures.push_back({reader.groups("group", result.group_lists), reader.formula("value")});
-  const SectionReader load = sections.one("load");
-  result.load = {load.vector("gravity"), load.formulas("body_force")};
-  result.initial = read_initial(sections.one("initial"));
-  read_motions(sections.one("mesh"), sections.all("part"), sections.all("motion"), result);
-  const SectionReader mass = sections.one("mass");
-  result.mass = {mass.text("type"), mass.type_parameters(*find_section("mass"))};
-  result.time = read_time(sections.one("time"));
-  for (const SectionReader& reader : sections.all("probe")) result.probes.push_back(read_probe(reader, result));
+  sections.read("support", result.supports);
+  sections.read("traction", result.tractions);
+  sections.read("pressure", result.pressures);
+  sections.one("load").fill(result.load);
+  sections.one("initial").fill(result.initial);
+  read_motions(sections, result);
+  sections.one("mass").fill(result.mass);
+  sections.one("time").fill(result.time);
+  check_time(sections.one("time"), result.time);
+  sections.read("probe", result.probes, check_probe);
   check_distinct(sections.all("probe"), "probe", "name");
-  const SectionReader solver = sections.one("solver");
-  result.solver = {solver.text("method"), solver.number("tolerance"), solver.optional_number("memory"),
-                   solver.text("preconditioner"), solver.text("contact_points")};
-  const SectionReader output = sections.one("output");
-  result.output = {.fields_every = output.optional_integer("fields_every"),
-                   .fields_interval = output.optional_number("fields_interval"),
-                   .fields = output.chosen("fields"),
-                   .vtkhdf = output.text("format") == "vtkhdf",
-                   .single_precision = output.text("fields_precision") == "single",
-                   .compression = static_cast<int>(output.integer("compression")),
-                   .history_every = output.optional_integer("history_every"),
-                   .checkpoint_every = output.integer("checkpoint_every"),
-                   .checkpoint_seconds = output.number("checkpoint_seconds")};
-  const SectionReader check = sections.one("check");
-  result.check = {check.number("energy_residual"), check.number("momentum"), check.number("angular_momentum"),
-                  check.text("on_failure") == "stop"};
+  sections.one("solver").fill(result.solver);
+  sections.one("output").fill(result.output);
+  sections.one("check").fill(result.check);
   if (result.output.fields_every && result.output.fields_interval) {
-    output.add_problem("fields_interval",
-                       "\"fields_every\" and \"fields_interval\" exclude each other: use one of them");
+    sections.one("output").add_problem("fields_interval",
+                                       "\"fields_every\" and \"fields_interval\" exclude each other: use one of them");
   }
-  for (const SectionReader& reader : sections.all("expect")) result.expectations.push_back(read_expectation(reader));
+  sections.read("expect", result.expectations, check_expectation);
 }
 
 }  // namespace ricochet

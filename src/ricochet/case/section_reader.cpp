@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "ricochet/base/error.hpp"
 
@@ -18,8 +19,12 @@ bool SectionReader::is_override(const std::string& name) const {
   return node != nullptr && node->is_override();
 }
 
-bool SectionReader::is_usable(const std::string& name) const {
-  return usable(name) != nullptr;
+void SectionReader::fill(const std::type_info& owner, void* object) const {
+  for (const Key& key : keys_) {
+    for (const KeyMember& member : key.members) {
+      if (*member.owner == owner && is_usable(key.name)) member.store(*this, key, object);
+    }
+  }
 }
 
 const TomlNode* SectionReader::usable(const std::string& name) const {
@@ -38,73 +43,61 @@ std::string SectionReader::value(const std::string& name) const {
 }
 
 double SectionReader::number(const std::string& name) const {
-  return optional_number(name).value_or(0.0);
-}
-
-std::optional<double> SectionReader::optional_number(const std::string& name) const {
   const TomlNode* node = usable(name);
-  return node != nullptr ? std::optional<double>(node->real) : std::nullopt;
+  return node != nullptr ? node->real : 0.0;
 }
 
-long SectionReader::integer(const std::string& name) const {
-  return optional_integer(name).value_or(0);
+std::string SectionReader::path(const std::string& file) const {
+  return (std::filesystem::path(result_.path).parent_path() / file).lexically_normal().string();
 }
 
-std::optional<long> SectionReader::optional_integer(const std::string& name) const {
-  const TomlNode* node = usable(name);
-  return node != nullptr ? std::optional<long>(node->integer) : std::nullopt;
-}
-
-bool SectionReader::flag(const std::string& name) const {
-  const TomlNode* node = usable(name);
-  return node != nullptr && node->boolean;
-}
-
-std::vector<double> SectionReader::vector(const std::string& name) const {
-  std::vector<double> values;
-  if (const TomlNode* node = usable(name)) {
-    for (const TomlNode& component : node->children) values.push_back(component.real);
-  }
-  return values;
-}
-
-std::vector<double> SectionReader::axial(const std::string& name) const {
-  const TomlNode* const node = usable(name);
-  return node != nullptr && node->is_number() ? std::vector<double>{node->real} : vector(name);
-}
-
-std::vector<int> SectionReader::choice_numbers(const std::string& name) const {
-  const std::vector<std::string>& choices = find_key(keys_, name)->choices;
-  std::vector<int> numbers;
-  if (const TomlNode* node = usable(name)) {
-    for (const TomlNode& entry : node->children) {
-      numbers.push_back(static_cast<int>(std::find(choices.begin(), choices.end(), entry.text) - choices.begin()));
-    }
-  }
-  std::sort(numbers.begin(), numbers.end());
-  return numbers;
-}
-
-std::vector<std::string> SectionReader::chosen(const std::string& name) const {
+void SectionReader::read(const Key& key, std::string& value) const {
+  const TomlNode& node = *usable(key.name);
   std::vector<std::string> names;
-  if (const TomlNode* node = usable(name)) {
-    for (const TomlNode& entry : node->children) names.push_back(entry.text);
-  }
-  return names;
+  read(key, names);
+  value = names.empty() ? node.text : names.size() == 1 ? names.front() : value_text(node);
+  if (names.size() < 2) return;
+  // ["a, b", "c"] and ["a", "b, c"] have the same text.
+  std::map<std::string, std::vector<std::string>>& lists = result_.group_lists;
+  for (auto other = lists.find(value); other != lists.end() && other->second != names; other = lists.find(value))
+    value += "'";
+  lists[value] = names;
 }
 
-std::string SectionReader::groups(const std::string& name,
-                                  std::map<std::string, std::vector<std::string>>& lists) const {
-  const TomlNode* node = usable(name);
-  if (node == nullptr || node->children.empty()) return text(name);
-  const std::vector<std::string> names = chosen(name);
-  if (names.size() == 1) return names.front();
-  std::string list = value_text(*node);
-  // ["a, b", "c"] and ["a", "b, c"] have the same text.
-  for (auto other = lists.find(list); other != lists.end() && other->second != names; other = lists.find(list))
-    list += "'";
-  lists[list] = names;
-  return list;
+void SectionReader::read(const Key& key, std::vector<double>& value) const {
+  const TomlNode& node = *usable(key.name);
+  value.clear();
+  if (node.is_number()) value.push_back(node.real);
+  for (const TomlNode& component : node.children) value.push_back(component.real);
+}
+
+void SectionReader::read(const Key& key, std::vector<int>& value) const {
+  value.clear();
+  for (const TomlNode& entry : usable(key.name)->children) {
+    const auto choice = std::find(key.choices.begin(), key.choices.end(), entry.text);
+    value.push_back(static_cast<int>(choice - key.choices.begin()));
+  }
+  std::sort(value.begin(), value.end());
+}
+
+void SectionReader::read(const Key& key, std::vector<std::string>& value) const {
+  value.clear();
+  for (const TomlNode& entry : usable(key.name)->children) value.push_back(entry.text);
+}
+
+void SectionReader::read(const Key& key, Expression& value) const {
+  value = expression(key, *usable(key.name));
+}
+
+void SectionReader::read(const Key& key, std::vector<Expression>& value) const {
+  const TomlNode& node = *usable(key.name);
+  value.clear();
+  if (node.kind != TomlNode::Kind::list && key.type == KeyType::axial_formulas) value.push_back(expression(key, node));
+  for (const TomlNode& component : node.children) value.push_back(expression(key, component));
+}
+
+void SectionReader::read(const Key& key, std::map<std::string, std::string>& value) const {
+  for (const TomlNode& condition : usable(key.name)->children) value[condition.key] = value_text(condition);
 }
 
 std::map<std::string, double> SectionReader::constants() const {
@@ -137,45 +130,13 @@ Expression SectionReader::expression(const Key& key, const TomlNode& node) const
   }
 }
 
-Expression SectionReader::formula(const std::string& name) const {
-  const TomlNode* node = usable(name);
-  return node != nullptr ? expression(*find_key(keys_, name), *node) : Expression();
-}
-
-std::vector<Expression> SectionReader::formulas(const std::string& name) const {
-  std::vector<Expression> values;
-  if (const TomlNode* node = usable(name)) {
-    for (const TomlNode& component : node->children) values.push_back(expression(*find_key(keys_, name), component));
-  }
-  return values;
-}
-
-std::vector<Expression> SectionReader::axial_formulas(const std::string& name) const {
-  const TomlNode* const node = usable(name);
-  if (node == nullptr || node->kind == TomlNode::Kind::list) return formulas(name);
-  return {expression(*find_key(keys_, name), *node)};
-}
-
-std::map<std::string, std::string> SectionReader::conditions(const std::string& name) const {
-  std::map<std::string, std::string> values;
-  if (const TomlNode* node = usable(name)) {
-    for (const TomlNode& condition : node->children) values[condition.key] = value_text(condition);
-  }
-  return values;
-}
-
-SectionReader SectionReader::table(const std::string& name) const {
-  static const TomlNode absent;
-  const TomlNode* node = usable(name);
-  return {find_key(keys_, name)->keys, node != nullptr ? *node : absent, problems_};
-}
-
 std::vector<SectionReader> SectionReader::tables(const std::string& name) const {
   const TomlNode* const node = usable(name);
   if (node == nullptr) return {};
-  if (node->is_table()) return {table(name)};
+  const std::vector<Key>& keys = find_key(keys_, name)->keys;
+  if (node->is_table()) return {{keys, *node, result_, problems_}};
   std::vector<SectionReader> result;
-  for (const TomlNode& entry : node->children) result.emplace_back(find_key(keys_, name)->keys, entry, problems_);
+  for (const TomlNode& entry : node->children) result.emplace_back(keys, entry, result_, problems_);
   return result;
 }
 
@@ -184,39 +145,48 @@ SourceLocation SectionReader::where(const std::string& name) const {
   return node != nullptr ? node->location : table_.location;
 }
 
-void SectionReader::add_problem(const std::string& name, const std::string& message) const {
-  problems_.add(where(name), message);
-}
-
-void SectionReader::add_warning(const std::string& name, const std::string& message) const {
-  problems_.add_warning(where(name), message);
-}
-
-void SectionReader::add_info(const std::string& name, const std::string& message) const {
-  problems_.add_info(where(name), message);
-}
-
 Parameters SectionReader::type_parameters(const Section& section) const {
   const TypeKeys* const type = find_type(section, text(section.type_key));
-  std::map<std::string, std::vector<std::string>> none;  // types have no groups
-  Parameters values = parameters(type == nullptr ? std::vector<Key>() : type->keys, none);
+  Parameters values = parameters(type == nullptr ? std::vector<Key>() : type->keys);
   if (type != nullptr && type->check) type->check(*this, values);
   return values;
 }
 
-Parameters SectionReader::parameters(const std::vector<Key>& keys,
-                                     std::map<std::string, std::vector<std::string>>& lists) const {
+Parameters SectionReader::parameters(const std::vector<Key>& keys) const {
   Parameters values;
   values.set_constants(constants());
   for (const Key& key : keys) {
     if (!is_usable(key.name)) continue;
     if (key.type == KeyType::number) values.set(key.name, number(key.name));
-    if (key.type == KeyType::integer) values.set(key.name, static_cast<double>(integer(key.name)));
-    if (key.type == KeyType::vector) values.set(key.name, vector(key.name));
-    if (key.type == KeyType::text || key.type == KeyType::choice) values.set(key.name, text(key.name));
-    if (key.type == KeyType::groups) values.set(key.name, groups(key.name, lists));
+    if (key.type == KeyType::integer) values.set(key.name, static_cast<double>(usable(key.name)->integer));
+    if (key.type == KeyType::vector) {
+      std::vector<double> components;
+      read(key, components);
+      values.set(key.name, components);
+    }
+    if (key.type == KeyType::text || key.type == KeyType::choice || key.type == KeyType::groups) {
+      std::string text;
+      read(key, text);
+      values.set(key.name, text);
+    }
   }
   return values;
+}
+
+SectionReader Sections::one(const std::string& name) const {
+  static const TomlNode absent;
+  const TomlNode* const node = root_.find(name);
+  return {find_section(name)->keys, node != nullptr && node->is_table() ? *node : absent, result_, problems_};
+}
+
+std::vector<SectionReader> Sections::all(const std::string& name) const {
+  std::vector<SectionReader> readers;
+  const TomlNode* const node = root_.find(name);
+  if (node == nullptr || node->is_refused) return readers;
+  for (const TomlNode& entry : node->children) {
+    if (!entry.is_refused) readers.emplace_back(find_section(name)->keys, entry, result_, problems_);
+  }
+  return readers;
 }
 
 }  // namespace ricochet

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <petscpc.h>
 
-#include <array>
+#include <sstream>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/distributed/petsc_session.hpp"
@@ -50,13 +50,14 @@ struct Entries {
 
 class PetscPreconditioner final : public Preconditioner {
  public:
-  PetscPreconditioner(const std::string& kind, const SparseMatrix& part, const std::vector<char>& solved,
+  PetscPreconditioner(const std::string& name, const SparseMatrix& part, const std::vector<char>& solved,
                       const Points& nodes, const Ranks& ranks)
       : ranks_(ranks), d_(static_cast<int>(nodes.rows())), numbering_(number_nodes(nodes.cols(), d_, ranks)) {
     for (Index dof = 0; dof < part.cols(); ++dof) {
       if (solved[static_cast<std::size_t>(dof)] == 0) unsolved_.push_back(dof);
     }
-    check(set_up(kind, entries_of(part, solved), nodes), kind);
+    const std::string& options = preconditioner_registry().find(name).type.petsc_options;
+    check(set_up(options, entries_of(part, solved), nodes), name);
   }
   ~PetscPreconditioner() override {
     PCDestroy(&preconditioner_);
@@ -101,7 +102,7 @@ class PetscPreconditioner final : public Preconditioner {
     return entries;
   }
 
-  PetscErrorCode set_up(const std::string& kind, Entries entries, const Points& nodes) {
+  PetscErrorCode set_up(const std::string& options, Entries entries, const Points& nodes) {
     PetscFunctionBeginUser;
     const auto own = static_cast<PetscInt>(numbering_.own.size()) * d_;
     PetscCall(MatCreate(PETSC_COMM_WORLD, &matrix_));
@@ -118,37 +119,28 @@ class PetscPreconditioner final : public Preconditioner {
     PetscCall(PCCreate(PETSC_COMM_WORLD, &preconditioner_));
     PetscCall(PCSetOptionsPrefix(preconditioner_, "ricochet_"));
     PetscCall(PCSetOperators(preconditioner_, matrix_, matrix_));
-    if (kind == "mumps") {
-      PetscCall(PCSetType(preconditioner_, PCCHOLESKY));
-      PetscCall(PCFactorSetMatSolverType(preconditioner_, MATSOLVERMUMPS));
-    } else if (kind == "boomeramg") {
-      PetscCall(PCSetType(preconditioner_, PCHYPRE));
-      PetscCall(PCHYPRESetType(preconditioner_, "boomeramg"));
-      PetscCall(set_lean_coarsening());
-    } else if (kind == "gamg") {
-      PetscCall(PCSetType(preconditioner_, PCGAMG));
-    } else {
-      PetscFunctionReturn(PETSC_ERR_ARG_UNKNOWN_TYPE);
-    }
-    PetscCall(PCSetFromOptions(preconditioner_));
+    PetscCall(set_from_options(options));
     PetscCall(PCSetUp(preconditioner_));
     PCFailedReason failed = PC_NOERROR;
     PetscCall(PCGetFailedReason(preconditioner_, &failed));
     PetscFunctionReturn(failed == PC_NOERROR ? 0 : PETSC_ERR_MAT_CH_ZRPVT);
   }
 
-  /// Sets options of BoomerAMG, whose defaults for three dimensions take four times as long on elastic bodies. Options
-  /// of the user take precedence.
-  static PetscErrorCode set_lean_coarsening() {
+  /// Options of the user take precedence over these: names and values in turn, without the prefix.
+  PetscErrorCode set_from_options(const std::string& options) {
     PetscFunctionBeginUser;
-    constexpr std::array<std::pair<const char*, const char*>, 4> options{
-        {{"strong_threshold", "0.5"}, {"coarsen_type", "HMIS"}, {"interp_type", "ext+i"}, {"P_max", "4"}}};
-    for (const auto& [name, value] : options) {
-      const std::string option = std::string("-ricochet_pc_hypre_boomeramg_") + name;
+    std::istringstream words(options);
+    std::vector<std::string> added;
+    for (std::string name, value; words >> name >> value;) {
+      const std::string option = "-ricochet_" + name.substr(1);
       PetscBool is_set = PETSC_FALSE;
       PetscCall(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &is_set));
-      if (is_set == PETSC_FALSE) PetscCall(PetscOptionsSetValue(nullptr, option.c_str(), value));
+      if (is_set == PETSC_TRUE) continue;
+      PetscCall(PetscOptionsSetValue(nullptr, option.c_str(), value.c_str()));
+      added.push_back(option);
     }
+    PetscCall(PCSetFromOptions(preconditioner_));
+    for (const std::string& option : added) PetscCall(PetscOptionsClearValue(nullptr, option.c_str()));
     PetscFunctionReturn(0);
   }
 
@@ -201,10 +193,10 @@ class PetscPreconditioner final : public Preconditioner {
 
 class PetscPreconditioners final : public PreconditionerFactory {
  public:
-  [[nodiscard]] std::unique_ptr<Preconditioner> make(const std::string& kind, const SparseMatrix& part,
+  [[nodiscard]] std::unique_ptr<Preconditioner> make(const std::string& name, const SparseMatrix& part,
                                                      const std::vector<char>& solved, const Points& nodes,
                                                      const Ranks& ranks) const override {
-    return std::make_unique<PetscPreconditioner>(kind, part, solved, nodes, ranks);
+    return std::make_unique<PetscPreconditioner>(name, part, solved, nodes, ranks);
   }
 
  private:

@@ -8,8 +8,7 @@
 #include "ricochet/io/fields/field_source.hpp"
 #include "ricochet/io/frame_file.hpp"
 
-/// @file Files of frames in one of the formats. docs/developers/add-a-format-of-fields.md describes what else a further
-/// format requires, above all its reader (results_storage.hpp).
+/// @file Files of frames in one of the formats (results_format.hpp).
 namespace ricochet {
 
 struct FrameOutputContext {
@@ -34,7 +33,10 @@ class FrameOutput {
   [[nodiscard]] virtual std::vector<std::string> paths() const = 0;
 };
 
-[[nodiscard]] std::unique_ptr<FrameOutput> make_xdmf_output(const FrameOutputContext& context);
-[[nodiscard]] std::unique_ptr<FrameOutput> make_vtkhdf_output(const FrameOutputContext& context);
+/// ResultsFormat::write of a class.
+template <class Output>
+[[nodiscard]] std::unique_ptr<FrameOutput> write_as(const FrameOutputContext& context) {
+  return std::make_unique<Output>(context);
+}
 
 }  // namespace ricochet

@@ -34,13 +34,14 @@ class LockedFrames {
 struct ResultsWriter::Implementation {
   Implementation(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
                  const ResultsOptions& options, const SnapshotVisitor* saved, const GlobalBody& global_body);
-  void open(const FrameOutputContext& context, ResultsFormat format);
+  void open(const FrameOutputContext& context);
 
   const Ranks& ranks;
   std::vector<std::unique_ptr<FieldSource>> sources;
   std::unique_ptr<GatheredFields> gathered;  ///< on several ranks
   long frame_count = 0;
   std::vector<Field> fields;
+  ResultsFormat format;
   std::string lock_path;
   std::optional<FileLock> lock;
   std::unique_ptr<FrameOutput> output;
@@ -51,12 +52,13 @@ ResultsWriter::Implementation::Implementation(const std::string& directory, cons
                                               const SnapshotVisitor* saved, const GlobalBody& global_body)
     : ranks(*problem.ranks),
       sources(make_field_sources({body, problem, expand_field_names(options.fields)})),
-      lock_path(directory + "/" + lock_of_results(options.format)) {
+      format(results_format_registry().find(options.format).type),
+      lock_path(directory + "/" + format.lock) {
   for (const auto& source : sources) {
     for (const Field& field : source->fields()) fields.push_back(field);
   }
   if (!ranks.are_several()) {
-    open({directory, body, problem, fields, options.file, saved}, options.format);
+    open({directory, body, problem, fields, options.file, saved});
     return;
   }
   if (saved != nullptr) (*saved)("frame_count", frame_count);
@@ -64,21 +66,18 @@ ResultsWriter::Implementation::Implementation(const std::string& directory, cons
                                               global_body.nodes, global_body.cells);
   ranks.run_collectively([&] {
     if (!ranks.is_first()) return;
-    open({directory, *global_body.body, *global_body.problem, gathered->fields(), options.file, saved}, options.format);
+    open({directory, *global_body.body, *global_body.problem, gathered->fields(), options.file, saved});
   });
 }
 
-void ResultsWriter::Implementation::open(const FrameOutputContext& context, ResultsFormat format) {
-  const auto make = [&] {
-    output = format == ResultsFormat::vtkhdf ? make_vtkhdf_output(context) : make_xdmf_output(context);
-  };
+void ResultsWriter::Implementation::open(const FrameOutputContext& context) {
   if (context.saved == nullptr) {
-    make();
+    output = format.write(context);
     return;
   }
   lock.emplace(lock_path);
   const LockedFrames locked(*lock);
-  make();
+  output = format.write(context);
 }
 
 ResultsWriter::ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,

@@ -6,9 +6,8 @@
 
 #include "ricochet/io/fields/field_source.hpp"
 #include "ricochet/io/frame_file.hpp"
-#include "ricochet/io/results_format.hpp"
 
-/// @file Fields over time, in one of two formats.
+/// @file Fields over time, in one of the formats of results_format.hpp.
 ///
 /// xdmf: results.h5 has the mesh (mesh_datasets.hpp) and the fields /frames/NNNNNN/… (fields/field_source.hpp and
 /// docs/results.md); results.xdmf describes them to readers of XDMF 3.0. obstacles.xdmf has the surfaces of the
@@ -20,7 +19,7 @@ namespace ricochet {
 struct ResultsOptions {
   std::vector<std::string> fields;  ///< names, also "all"; empty: the default ones
   FrameFileOptions file = {};
-  ResultsFormat format = ResultsFormat::xdmf;
+  std::string format = "xdmf";  ///< a name of results_format_registry()
 };
 
 /// Whole body of which each rank has a part: the first rank writes it.

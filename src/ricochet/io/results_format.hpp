@@ -1,17 +1,44 @@
 #pragma once
 
-/// @file Formats of fields (`output.format`).
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ricochet/base/registry.hpp"
+
+/// @file Formats of fields (`output.format`). A format is a registration at the end of the file of its reader
+/// (xdmf_reader.cpp), which names its files and the functions that write and read them.
 namespace ricochet {
 
-enum class ResultsFormat {
-  xdmf,   ///< results.h5 with results.xdmf and obstacles.xdmf
-  vtkhdf  ///< results.vtkhdf and obstacles.vtkhdf
+class FrameOutput;
+struct FrameOutputContext;
+struct ObstacleFrame;
+class ResultsStorage;
+
+struct ResultsFormat {
+  std::string description;         ///< for the documentation of `output.format`
+  std::vector<std::string> files;  ///< of the body, first the one with the values
+  std::string obstacles;           ///< file of the surfaces of the obstacles
+  /// File of a run that is locked while its frames are written or read. It is not an HDF5 file, as HDF5 locks its files
+  /// itself.
+  std::string lock;
+  std::unique_ptr<FrameOutput> (*write)(const FrameOutputContext& context) = nullptr;
+  /// Opens the results in a directory, whose lock the caller holds. Throws Error(file_access) if files are missing,
+  /// Error(invalid_input) if they are damaged.
+  std::unique_ptr<ResultsStorage> (*open)(const std::string& directory, const ResultsFormat& format) = nullptr;
+  /// Reads the file of the obstacles in a directory. Throws Error(file_access) or Error(invalid_input).
+  std::vector<ObstacleFrame> (*read_obstacles)(const std::string& directory, const ResultsFormat& format) = nullptr;
+
+  /// Names of the files, for messages: "results.h5 and results.xdmf".
+  [[nodiscard]] std::string file_names() const { return join_names(files, " and ", false); }
 };
 
-/// File of a run that is locked while its frames are written or read. It is not an HDF5 file, as HDF5 locks its files
-/// itself.
-[[nodiscard]] constexpr const char* lock_of_results(ResultsFormat format) {
-  return format == ResultsFormat::xdmf ? "results.xdmf" : "history.csv";
-}
+Registry<ResultsFormat>& results_format_registry();
+/// Returns these texts of all formats, joined by "or", for messages and the documentation.
+[[nodiscard]] std::string any_format(std::string (*text)(const ResultsFormat& format), const char* separator = " or ");
+/// Names of the files that runs of any format leave.
+[[nodiscard]] std::vector<std::string> files_of_all_formats();
+/// Format of the files in a directory; null if there are no files of fields.
+[[nodiscard]] const ResultsFormat* find_results_format(const std::string& directory);
 
 }  // namespace ricochet

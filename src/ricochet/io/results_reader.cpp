@@ -3,22 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/hdf5/hdf5_file.hpp"
 #include "ricochet/io/file_lock.hpp"
 #include "ricochet/io/results_storage.hpp"
-#include "ricochet/io/vtkhdf_reader.hpp"
-#include "ricochet/io/xdmf_reader.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 #include "ricochet/mesh/shapes/cell_shape_description.hpp"
 
 namespace ricochet {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Reads connectivity as written by mesh_datasets.cpp: a table of cells of one shape, or XDMF's mixed list.
 class Connectivity {
@@ -82,38 +77,19 @@ class Connectivity {
   std::vector<int> order_;
 };
 
+const ResultsFormat& format_in(const std::string& directory) {
+  const ResultsFormat* const found = find_results_format(directory);
+  return found != nullptr ? *found : results_format_registry().all().front().type;
+}
+
 }  // namespace
 
-std::optional<ResultsFormat> find_results(const std::string& directory) {
-  const auto has = [&directory](const char* name) { return fs::exists(fs::path(directory) / name); };
-  if (has("results.vtkhdf")) return ResultsFormat::vtkhdf;
-  if (has("results.xdmf") && has("results.h5")) return ResultsFormat::xdmf;
-  return std::nullopt;
-}
-
-std::string files_of_results(ResultsFormat format) {
-  return format == ResultsFormat::vtkhdf ? "results.vtkhdf" : "results.h5 and results.xdmf";
-}
-
-std::string file_of_obstacles(ResultsFormat format) {
-  return format == ResultsFormat::vtkhdf ? "obstacles.vtkhdf" : "obstacles.xdmf";
-}
-
-std::vector<ObstacleFrame> read_obstacle_frames(const std::string& directory, ResultsFormat format) {
-  const std::string path = directory + "/" + file_of_obstacles(format);
-  if (!fs::exists(path)) return {};
-  if (format == ResultsFormat::xdmf) return read_xdmf_obstacles(path);
-  FileLock lock(directory + "/" + lock_of_results(format));
-  lock.acquire(FileLock::Kind::shared, longest_wait_of_a_reader);
-  return read_vtkhdf_obstacles(path);
-}
-
 ResultsReader::ResultsReader(const std::string& directory, int dimension, int degree)
-    : format_(find_results(directory).value_or(ResultsFormat::xdmf)), dimension_(dimension), degree_(degree) {
+    : format_(format_in(directory)), dimension_(dimension), degree_(degree) {
   // Data read under this lock remain valid when the run continues.
-  FileLock lock(directory + "/" + lock_of_results(format_));
+  FileLock lock(directory + "/" + format_.lock);
   lock.acquire(FileLock::Kind::shared, longest_wait_of_a_reader);
-  storage_ = open_results(directory, format_);
+  storage_ = format_.open(directory, format_);
   const Hdf5Reader& file = storage_->file();
   const std::string name = "/mesh/nodes";
   const auto [rows, columns] = file.extents(name);

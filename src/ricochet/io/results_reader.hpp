@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,16 +10,6 @@
 
 /// @file Reader for the files of ResultsWriter: mesh, contact boundary and the fields of each frame.
 namespace ricochet {
-
-/// Format of the files in a directory; nullopt if there are no files of fields.
-[[nodiscard]] std::optional<ResultsFormat> find_results(const std::string& directory);
-/// Names of the files, for messages.
-[[nodiscard]] std::string files_of_results(ResultsFormat format);
-[[nodiscard]] std::string file_of_obstacles(ResultsFormat format);
-/// Obstacle surfaces of each frame; empty if there is no such file. Throws Error(file_access) or Error(invalid_input).
-[[nodiscard]] std::vector<ObstacleFrame> read_obstacle_frames(const std::string& directory, ResultsFormat format);
-
-class ResultsStorage;
 
 /// Nodes have the order of the files (that of the mesh file), cells Basix's order, as everywhere in the program.
 class ResultsReader {
@@ -32,7 +21,7 @@ class ResultsReader {
   ResultsReader(const ResultsReader&) = delete;
   ResultsReader& operator=(const ResultsReader&) = delete;
 
-  [[nodiscard]] ResultsFormat format() const { return format_; }
+  [[nodiscard]] const ResultsFormat& format() const { return format_; }
   /// Closes the file until the next read: a process that has a file open for reading cannot write to it. Later reads
   /// throw Error(invalid_input) if the file has been replaced.
   void release();
@@ -45,7 +34,7 @@ class ResultsReader {
   [[nodiscard]] const std::vector<ResultField>& fields() const;
   /// Returns nullptr if there is no such field.
   [[nodiscard]] const ResultField* find_field(const std::string& name) const;
-  /// Values of a field in a frame, row by row; symmetric tensors as xx, xy, xz, yy, yz, zz in both formats. Throws
+  /// Values of a field in a frame, row by row; symmetric tensors as xx, xy, xz, yy, yz, zz in every format. Throws
   /// Error(invalid_input) if they are missing.
   void read(Index frame, const ResultField& field, std::vector<float>& values) const;
   void read(Index frame, const ResultField& field, std::vector<double>& values) const;

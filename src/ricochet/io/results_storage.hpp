@@ -10,7 +10,7 @@
 #include "ricochet/io/result_frames.hpp"
 #include "ricochet/io/results_format.hpp"
 
-/// @file File with the mesh and the fields of a run, in either format: the part of reading that depends on the format.
+/// @file File with the mesh and the fields of a run, in any format: the part of reading that depends on the format.
 namespace ricochet {
 
 /// Longest time that a reader waits for the lock. A run in progress delays its next frame while readers hold it.
@@ -32,7 +32,8 @@ class ResultsStorage {
   virtual void read(Index frame, const ResultField& field, Index rows, std::vector<double>& values) = 0;
 
  protected:
-  ResultsStorage(const std::string& directory, const std::string& name, ResultsFormat format);
+  /// The file is the first one of the format.
+  ResultsStorage(const std::string& directory, const ResultsFormat& format);
   /// Stores the positions of all data to be read later, from a newly opened file: a run in progress may change them.
   virtual void look_up(const Hdf5Reader& file) = 0;
   virtual void forget() {}
@@ -52,9 +53,5 @@ class ResultsStorage {
   std::optional<Hdf5Reader> reader_;
   Identity identity_;
 };
-
-/// Opens the results in a directory, whose lock the caller holds. Throws Error(file_access) if files are missing,
-/// Error(invalid_input) if they are damaged.
-[[nodiscard]] std::unique_ptr<ResultsStorage> open_results(const std::string& directory, ResultsFormat format);
 
 }  // namespace ricochet

@@ -17,16 +17,13 @@
 #include "ricochet/io/durable_file.hpp"
 #include "ricochet/io/failure_bundle.hpp"
 #include "ricochet/io/rank_checkpoints.hpp"
+#include "ricochet/io/results_format.hpp"
 
 namespace ricochet {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Files that a run leaves in its directory, except checkpoints.
-constexpr const char* result_files[] = {"history.csv",    "summary.json",   "results.h5",      "results.xdmf",
-                                        "obstacles.xdmf", "results.vtkhdf", "obstacles.vtkhdf"};
 
 int open_directory(const std::string& path) {
   return open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -81,8 +78,9 @@ std::string RunDirectory::file(const std::string& name) const {
 }
 
 std::vector<std::string> RunDirectory::results() const {
-  std::vector<std::string> result;
-  for (const char* name : result_files) {
+  std::vector<std::string> names = files_of_all_formats(), result;
+  names.insert(names.begin(), {"history.csv", "summary.json"});
+  for (const std::string& name : names) {
     if (fs::exists(file(name))) result.push_back(file(name));
   }
   std::error_code problem;
@@ -94,9 +92,9 @@ std::vector<std::string> RunDirectory::results() const {
 }
 
 std::vector<std::string> RunDirectory::leftover_files(long step) const {
-  std::vector<std::string> result;
-  for (const char* name :
-       {"summary.json.new", "results.h5.pattern", "results.vtkhdf.pattern", "obstacles.vtkhdf.pattern"}) {
+  std::vector<std::string> names{"summary.json.new"}, result;
+  for (const std::string& name : files_of_all_formats()) names.push_back(name + ".pattern");
+  for (const std::string& name : names) {
     if (fs::exists(file(name))) result.push_back(file(name));
   }
   for (const std::string& failure : failure_files(path_)) result.push_back(failure);

@@ -135,8 +135,15 @@ class VtkHdfOutput : public FrameOutput {
 
 }  // namespace
 
-std::unique_ptr<FrameOutput> make_vtkhdf_output(const FrameOutputContext& context) {
-  return std::make_unique<VtkHdfOutput>(context);
+Registration<ResultsFormat> vtkhdf_format() {
+  return {"vtkhdf",
+          {.description = "results.vtkhdf, one file with all frames for ParaView 5.12 and later",
+           .files = {"results.vtkhdf"},
+           .obstacles = "obstacles.vtkhdf",
+           .lock = "history.csv",
+           .write = write_as<VtkHdfOutput>,
+           .open = open_vtkhdf_results,
+           .read_obstacles = read_vtkhdf_obstacles}};
 }
 
 }  // namespace ricochet

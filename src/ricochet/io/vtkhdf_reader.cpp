@@ -1,10 +1,13 @@
 #include "ricochet/io/vtkhdf_reader.hpp"
 
 #include <algorithm>
+#include <array>
+#include <map>
 
 #include "ricochet/base/file_version.hpp"
 #include "ricochet/hdf5/hdf5_rows.hpp"
 #include "ricochet/io/fields/field_source.hpp"
+#include "ricochet/io/file_lock.hpp"
 
 namespace ricochet {
 
@@ -19,8 +22,7 @@ std::vector<double> times_of(const Hdf5Reader& file) {
   return {times.begin(), times.end()};
 }
 
-}  // namespace
-
+/// Dataset with the values of a field, frame after frame.
 std::string vtkhdf_name(const ResultField& field) {
   return (field.on_nodes ? "/VTKHDF/PointData/" : "/VTKHDF/CellData/") + field.name;
 }
@@ -40,7 +42,54 @@ ResultFrames read_vtkhdf_frames(const Hdf5Reader& file) {
   return result;
 }
 
-std::vector<ObstacleFrame> read_vtkhdf_obstacles(const std::string& path) {
+/// results.vtkhdf, one dataset per field with the rows of all frames in sequence.
+class RowsStorage : public ResultsStorage {
+ public:
+  RowsStorage(const std::string& directory, const ResultsFormat& format) : ResultsStorage(directory, format) {
+    frames_ = read_vtkhdf_frames(file());
+    look_up(file());
+  }
+
+  void read(Index frame, const ResultField& field, Index rows, std::vector<float>& values) override {
+    read_numbers(frame, field, rows, values);
+  }
+  void read(Index frame, const ResultField& field, Index rows, std::vector<double>& values) override {
+    read_numbers(frame, field, rows, values);
+  }
+
+ private:
+  void look_up(const Hdf5Reader& file) final {
+    for (const ResultField& field : frames_.fields) {
+      const std::string name = vtkhdf_name(field);
+      values_of_.try_emplace(name, file, name);
+    }
+  }
+  void forget() override { values_of_.clear(); }
+  template <class Number>
+  void read_numbers(Index frame, const ResultField& field, Index rows, std::vector<Number>& values) {
+    static_cast<void>(file());
+    values_of_.at(vtkhdf_name(field)).read(frame * rows, rows, values);
+    if (field.components != static_cast<int>(vtk_tensor_from_ours.size())) return;
+    std::array<Number, vtk_tensor_from_ours.size()> tensor;
+    for (auto row = values.begin(); row != values.end(); row += tensor.size()) {
+      std::copy_n(row, tensor.size(), tensor.begin());
+      for (std::size_t k = 0; k < tensor.size(); ++k) row[vtk_tensor_from_ours[k]] = tensor[k];
+    }
+  }
+
+  std::map<std::string, Hdf5Rows> values_of_;
+};
+
+}  // namespace
+
+std::unique_ptr<ResultsStorage> open_vtkhdf_results(const std::string& directory, const ResultsFormat& format) {
+  return std::make_unique<RowsStorage>(directory, format);
+}
+
+std::vector<ObstacleFrame> read_vtkhdf_obstacles(const std::string& directory, const ResultsFormat& format) {
+  FileLock lock(directory + "/" + format.lock);
+  lock.acquire(FileLock::Kind::shared, longest_wait_of_a_reader);
+  const std::string path = directory + "/" + format.obstacles;
   const Hdf5Reader file(path);
   require_readable_version(path, file.text_attribute("/", version_attribute));
   const auto whole_numbers = [&file](const std::string& name, double limit) {

@@ -7,6 +7,7 @@
 #include "ricochet/io/mesh_datasets.hpp"
 #include "ricochet/io/obstacle_surfaces.hpp"
 #include "ricochet/io/xdmf_file.hpp"
+#include "ricochet/io/xdmf_reader.hpp"
 #include "ricochet/mesh/shapes/cell_shape_description.hpp"
 
 namespace ricochet {
@@ -125,8 +126,15 @@ std::string XdmfOutput::grid(double time, long frame) const {
 
 }  // namespace
 
-std::unique_ptr<FrameOutput> make_xdmf_output(const FrameOutputContext& context) {
-  return std::make_unique<XdmfOutput>(context);
+Registration<ResultsFormat> xdmf_format() {
+  return {"xdmf",
+          {.description = "results.h5 with results.xdmf, which ParaView and meshio read",
+           .files = {"results.h5", "results.xdmf"},
+           .obstacles = "obstacles.xdmf",
+           .lock = "results.xdmf",
+           .write = write_as<XdmfOutput>,
+           .open = open_xdmf_results,
+           .read_obstacles = read_xdmf_obstacles}};
 }
 
 }  // namespace ricochet

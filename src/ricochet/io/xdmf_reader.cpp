@@ -11,6 +11,7 @@
 #include "ricochet/base/file_version.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/io/durable_file.hpp"
+#include "ricochet/io/results_storage.hpp"
 
 namespace ricochet {
 
@@ -93,8 +94,6 @@ ResultField field_of(Scanner& file) {
   return field;
 }
 
-}  // namespace
-
 ResultFrames read_xdmf_frames(const std::string& path) {
   Scanner file(path);
   ResultFrames result;
@@ -108,8 +107,44 @@ ResultFrames read_xdmf_frames(const std::string& path) {
   return result;
 }
 
-std::vector<ObstacleFrame> read_xdmf_obstacles(const std::string& path) {
-  Scanner file(path);
+/// results.h5, one group per frame; results.xdmf describes their content. Groups do not move in the file.
+class GroupsStorage : public ResultsStorage {
+ public:
+  GroupsStorage(const std::string& directory, const ResultsFormat& format) : ResultsStorage(directory, format) {
+    frames_ = read_xdmf_frames(directory + "/results.xdmf");
+    groups_ = file().members("/frames");
+    if (groups_.size() < frames_.times.size()) {
+      file().fail("/frames",
+                  fmt::format("has {} frames, but results.xdmf has {}", groups_.size(), frames_.times.size()));
+    }
+  }
+
+  void read(Index frame, const ResultField& field, Index rows, std::vector<float>& values) override {
+    read_numbers(frame, field, rows, values);
+  }
+  void read(Index frame, const ResultField& field, Index rows, std::vector<double>& values) override {
+    read_numbers(frame, field, rows, values);
+  }
+
+ private:
+  void look_up(const Hdf5Reader& /*file*/) override {}
+  template <class Number>
+  void read_numbers(Index frame, const ResultField& field, Index rows, std::vector<Number>& values) {
+    file().table(groups_[static_cast<std::size_t>(frame)], field.name, rows,
+                 field.components > 1 ? field.components : 0, values);
+  }
+
+  std::vector<Hdf5Member> groups_;
+};
+
+}  // namespace
+
+std::unique_ptr<ResultsStorage> open_xdmf_results(const std::string& directory, const ResultsFormat& format) {
+  return std::make_unique<GroupsStorage>(directory, format);
+}
+
+std::vector<ObstacleFrame> read_xdmf_obstacles(const std::string& directory, const ResultsFormat& format) {
+  Scanner file(directory + "/" + format.obstacles);
   std::vector<ObstacleFrame> result;
   while (file.find(obstacle_grid) && file.has_next("</Grid>")) {
     ObstacleFrame frame;

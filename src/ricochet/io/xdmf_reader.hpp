@@ -1,18 +1,13 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include "ricochet/io/results_storage.hpp"
 
-#include "ricochet/io/result_frames.hpp"
-
-/// @file Reader for results.xdmf and obstacles.xdmf: the content of each frame, and the surfaces of the obstacles.
-/// Supports only the documents that XdmfFile writes.
+/// @file Reader for results.h5 with results.xdmf, and for obstacles.xdmf. Supports only the documents that XdmfFile
+/// writes. Both functions are those of ResultsFormat.
 namespace ricochet {
 
-/// Throws Error(file_access) or Error(invalid_input).
-[[nodiscard]] ResultFrames read_xdmf_frames(const std::string& path);
-
-/// Throws Error(file_access) or Error(invalid_input).
-[[nodiscard]] std::vector<ObstacleFrame> read_xdmf_obstacles(const std::string& path);
+[[nodiscard]] std::unique_ptr<ResultsStorage> open_xdmf_results(const std::string& directory,
+                                                                const ResultsFormat& format);
+[[nodiscard]] std::vector<ObstacleFrame> read_xdmf_obstacles(const std::string& directory, const ResultsFormat& format);
 
 }  // namespace ricochet

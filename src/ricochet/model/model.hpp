@@ -54,7 +54,7 @@ struct Model {
   /// Sensors with a file of their own, by the number of steps between its rows.
   std::map<long, std::vector<std::shared_ptr<Sensor>>> sampled_sensors;
   std::unique_ptr<CellRotations> rotation;
-  std::shared_ptr<const PreconditionerFactory> preconditioners;  ///< preconditioners of other libraries; null if none
+  std::shared_ptr<const PreconditionerFactory> preconditioners;  ///< those of PETSc; null without it
   std::shared_ptr<const void> rank_data;                         ///< data of the ranks, if the body is divided
   /// Positions of a divided body's nodes and cells in the output files and, on the first rank, the whole body.
   struct GlobalOutput {

@@ -241,8 +241,7 @@ void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_by
     note(run, json, "the interior is omitted to keep the file small: there are no cuts");
   if (!body.left_out.empty()) {
     note(run, json,
-         fmt::format("fields that are only in {}: {}",
-                     run.results->format() == ResultsFormat::vtkhdf ? "results.vtkhdf" : "results.h5",
+         fmt::format("fields that are only in {}: {}", run.results->format().files.front(),
                      fmt::join(body.left_out, ", ")));
   }
   json["body"] = to_json(body, *run.results);

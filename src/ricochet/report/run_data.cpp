@@ -43,27 +43,27 @@ void check_rows(const std::string& path, const HistoryTable& table) {
 }
 
 void read_results(RunData& run) {
-  const std::optional<ResultsFormat> format = find_results(run.directory);
-  if (format) {
+  const ResultsFormat* const format = find_results_format(run.directory);
+  if (format != nullptr) {
     run.results = std::make_unique<ResultsReader>(run.directory, run.summary.dimension, run.summary.degree);
-    const std::string name = file_of_obstacles(*format);
-    if (fs::exists(fs::path(run.directory) / name)) {
-      run.obstacles = read_obstacle_frames(run.directory, *format);
+    if (fs::exists(fs::path(run.directory) / format->obstacles)) {
+      run.obstacles = format->read_obstacles(run.directory, *format);
       if (run.obstacles.size() < run.results->times().size()) {
-        run.notes.push_back(fmt::format("{} has {} of {} frames: it is damaged", name, run.obstacles.size(),
-                                        run.results->times().size()));
+        run.notes.push_back(fmt::format("{} has {} of {} frames: it is damaged", format->obstacles,
+                                        run.obstacles.size(), run.results->times().size()));
       }
     }
     if (run.results->times().empty()) run.results.reset();
   }
   const auto found = static_cast<long>(run.results ? run.results->times().size() : 0);
   if (run.summary.status != "running" && found < run.summary.frames) {
-    const std::string files =
-        format ? files_of_results(*format) : "the field files (results.h5 and results.xdmf, or results.vtkhdf)";
-    run.notes.push_back(fmt::format("{} {} {} of the {} frames that were written: {} {}", files,
-                                    format == ResultsFormat::vtkhdf ? "has" : "have", found, run.summary.frames,
-                                    format == ResultsFormat::vtkhdf ? "it is" : "they are",
-                                    found > 0 ? "damaged" : "missing or damaged"));
+    const auto names = [](const ResultsFormat& each) { return each.file_names(); };
+    const bool is_one_file = format != nullptr && format->files.size() == 1;
+    run.notes.push_back(fmt::format(
+        "{} {} {} of the {} frames that were written: {} {}",
+        format != nullptr ? names(*format) : fmt::format("the field files ({})", any_format(names, ", or ")),
+        is_one_file ? "has" : "have", found, run.summary.frames, is_one_file ? "it is" : "they are",
+        found > 0 ? "damaged" : "missing or damaged"));
   }
 }
 

@@ -37,9 +37,7 @@ std::string size_text(double bytes) {
 }
 
 ResultsOptions results_options(const OutputSection& output) {
-  return {output.fields,
-          {output.single_precision, output.compression},
-          output.vtkhdf ? ResultsFormat::vtkhdf : ResultsFormat::xdmf};
+  return {output.fields, {output.single_precision, output.compression}, output.format};
 }
 
 FieldSchedule::FieldSchedule(const Case& input, const Model& model, long steps, const Snapshot* snapshot) {

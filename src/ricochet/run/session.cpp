@@ -23,7 +23,9 @@ StepSolverOptions solver_options(const Case& input, const Model& model) {
   StepSolverOptions options = step_solver_options(input);
   options.preconditioners = model.preconditioners;
   const std::string& name = options.preconditioner;
-  if (model.preconditioners != nullptr || name == "auto" || name == "block-jacobi") return options;
+  if (model.preconditioners != nullptr || name == "auto" ||
+      preconditioner_registry().find(name).type.petsc_options.empty())
+    return options;
   throw Error(
       ErrorKind::invalid_input,
       fmt::format(

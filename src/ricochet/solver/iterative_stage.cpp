@@ -31,7 +31,6 @@ constexpr double astray = 10.0;
 /// If a stage takes so many iterations with diagonal blocks, multigrid takes two thirds of the time
 /// (docs/distributed.md).
 constexpr int iterations_for_multigrid = 600;
-constexpr const char *block_jacobi = "block-jacobi", *multigrid = "gamg";
 
 /// Stages of one operator without a factor of it: conjugate gradients on the whole body and the contact subdomains in
 /// turn. The subdomains come last: contact and friction hold to rounding, and the residual is a force of at most
@@ -76,7 +75,7 @@ class IterativeStage final : public StageSolver {
   std::vector<int> unsolved_;  ///< dofs
   StageProduct product_;       ///< with A
   std::unique_ptr<Preconditioner> preconditioner_;
-  std::string kind_ = block_jacobi;  ///< of the preconditioner
+  std::string kind_ = preconditioner_registry().all().front().name;  ///< of the preconditioner
   IterationCounts counts_;
   long gradients_before_ = 0;  ///< of the previous stages
   ConjugateGradients gradients_;
@@ -141,11 +140,11 @@ void IterativeStage::refactorize(const Vector& displacement) {
 void IterativeStage::make_preconditioner() {
   single_.reset();
   preconditioner_.reset();
-  if (kind_ != block_jacobi) {
+  if (!preconditioner_registry().find(kind_).type.is_block_diagonal) {
     std::vector<Index> all(static_cast<std::size_t>(problem_.nodes.cols()));
     std::iota(all.begin(), all.end(), Index{0});
-    preconditioner_ =
-        options_.preconditioners->make(kind_, product_.principal(all), solved_, problem_.nodes, *problem_.ranks);
+    preconditioner_ = make_named_preconditioner(kind_, product_.principal(all), solved_, problem_.nodes,
+                                                *problem_.ranks, options_.preconditioners.get());
     return;
   }
   Vector blocks = product_.diagonal_blocks();
@@ -158,9 +157,10 @@ void IterativeStage::make_preconditioner() {
 
 /// Replaces diagonal blocks, which need too many iterations, by multigrid. All ranks see the same number.
 bool IterativeStage::switch_to_multigrid() {
+  const std::string& multigrid = preconditioner_of_long_steps();
   if (options_.preconditioner != "auto" || !options_.preconditioners || kind_ == multigrid) return false;
-  log::info("the step is long for the mesh: iterations are preconditioned by multigrid (gamg) from now on");
   kind_ = multigrid;
+  log::info("the step is long for the mesh: iterations are preconditioned by multigrid (" + kind_ + ") from now on");
   make_preconditioner();
   return true;
 }
@@ -205,7 +205,7 @@ void IterativeStage::persist(const SnapshotVisitor& visit) {
   visit("has_previous", has_previous_);
   std::string kind = kind_;
   visit("preconditioner", kind);
-  if (visit.loads() && kind == multigrid) switch_to_multigrid();
+  if (visit.loads() && kind == preconditioner_of_long_steps()) switch_to_multigrid();
   bool has_subdomains = subdomains_->are_made();
   visit("has_zone", has_subdomains);
   if (has_subdomains) {

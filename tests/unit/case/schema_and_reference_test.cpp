@@ -124,6 +124,24 @@ TEST(CaseKeys, AreDocumentedAndHaveUnits) {
   }
 }
 
+/// Adds the keys that nothing binds to a member, except named numbers for expressions and the keys of types.
+void add_unbound_keys(const Section& section, const std::vector<Key>& keys, std::vector<std::string>& names) {
+  for (const Key& key : keys) {
+    const bool is_of_a_type = std::any_of(section.types.begin(), section.types.end(), [&](const TypeKeys& type) {
+      return find_key(type.keys, key.name) != nullptr;
+    });
+    if (key.members.empty() && !is_of_a_type && key.type != KeyType::parameters)
+      names.push_back(section.name + "." + key.name);
+    add_unbound_keys(section, key.keys, names);
+  }
+}
+
+TEST(CaseKeys, FillMembers) {
+  std::vector<std::string> names;
+  for (const Section& section : case_sections()) add_unbound_keys(section, section.keys, names);
+  EXPECT_EQ(names, (std::vector<std::string>{"time.largest"})) << "read_sections.cpp reads it";
+}
+
 TEST(CaseReference, IsTheDocumentationPage) {
   EXPECT_EQ(file_text(test_support::source_path("docs/case-file.md")), case_reference())
       << "docs/case-file.md is generated: write case_reference() into it";

@@ -26,10 +26,10 @@ struct StepSolverOptions {
   /// Expected number of solves of each operator, which decides whether a factorization pays. 0: unknown, counts as a
   /// thousand.
   long solves = 0;
-  /// Preconditioner of iterations: "block-jacobi", or a name known to `preconditioners`; "auto": the one that is
-  /// expected to take less time.
+  /// Preconditioner of iterations: a name of preconditioner_registry(); "auto": the one that is expected to take less
+  /// time.
   std::string preconditioner = "auto";
-  std::shared_ptr<const PreconditionerFactory> preconditioners = {};  ///< null if there are no others
+  std::shared_ptr<const PreconditionerFactory> preconditioners = {};  ///< those of PETSc; null without it
   /// Methods chosen earlier for these operators, one by one, which a resumed run keeps. Empty: chosen anew.
   std::vector<SolverMethod> chosen = {};
 };
