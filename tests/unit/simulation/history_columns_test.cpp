@@ -26,7 +26,7 @@ TEST(HistoryColumns, AreDocumentedAndUnique) {
     EXPECT_TRUE(names.insert(quantity.name).second) << quantity.name;
     const bool is_conditional = !quantity.where.empty();
     const std::vector<std::string> standard = standard_column_names(2);
-    if (quantity.components != Components::one) continue;
+    if (quantity.components != ColumnComponents::one) continue;
     EXPECT_NE(std::count(standard.begin(), standard.end(), quantity.name) > 0, is_conditional) << quantity.name;
   }
   EXPECT_EQ(standard_column_names(3).size(), standard_column_names(2).size() + 4);  // two vectors and one axial vector
