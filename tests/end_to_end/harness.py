@@ -9,6 +9,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -19,6 +20,7 @@ MESHES = SOURCE / "tests" / "data" / "meshes"
 # Time limit in seconds for a run of the program: much longer with the sanitizers.
 TIME_LIMIT = float(os.environ.get("RICOCHET_TIME_LIMIT", "500"))
 DISC = SOURCE / "cases" / "disc" / "disc.toml"
+sys.path.insert(0, str(SOURCE / "benchmarks"))  # closed forms
 
 # In a quantity, a row that is neither the first nor the last: it belongs to another time once the step is changed.
 OTHER_ROW = re.compile(r"\[(?!0\]|-1\])")

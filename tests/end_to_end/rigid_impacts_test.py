@@ -6,6 +6,7 @@ import unittest
 import numpy
 
 from harness import History, TestCase
+from hertz import CONTACT_TIME, PointImpact, contact_modulus
 
 QUARTER = """SetFactory("OpenCASCADE");
 Box(1) = {0, 0, -3, 3, 3, 3};
@@ -63,10 +64,9 @@ class Hertz(Impacts):
     def test_a_ball_that_bounces(self):
         (self.folder / "plate.geo").write_text(QUARTER)
         young, poisson, depth, duration = 1000.0, 0.3, 0.005, 1.0
-        velocity = 2.943275 * depth / duration
-        modulus = young / (1.0 - poisson**2)
+        velocity, modulus = CONTACT_TIME * depth / duration, contact_modulus((young, poisson))
         mass = 16.0 * modulus * depth**2.5 / (15.0 * velocity**2)
-        force = 4.0 / 3.0 * modulus * depth**1.5
+        force = PointImpact(modulus, 1.0, mass, velocity).force
         history = self.history(
             f'[mesh]\nfile = "plate.geo"\n[[material]]\ngroup = "plate"\ndensity = 0.01\nyoung = {young}\npoisson = {poisson}\n'
             + "".join(f'[[support]]\ngroup = "{group}"\ncomponents = ["{axis}"]\n'
