@@ -1,13 +1,12 @@
 """A case of cases/ holds: it is valid, its run succeeds with all its [[expect]] entries, its energy account closes, and
 its history has exactly the documented columns. The case file is the first argument."""
 
-import json
 import pathlib
 import sys
 import tomllib
 import unittest
 
-from harness import OTHER_ROW, History, TestCase, run
+from harness import OTHER_ROW, History, TestCase, run, summary_of
 
 CASE = pathlib.Path(sys.argv.pop(1))
 
@@ -89,7 +88,7 @@ class CaseTest(TestCase):
         self.assertRegex(validated.stdout, r"estimate, stage 1 of a step, \d+ unknowns: method direct; a factor of \S+ entries")
         results = self.simulate(CASE)
         history = History(results / "history.csv")
-        summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+        summary = summary_of(results)
         self.assertEqual(summary["status"], "done")
         self.check_columns(history, summary)
         self.check_rows(history, summary)

@@ -18,7 +18,3 @@ class ClosedForms(unittest.TestCase):
 
     def test_the_table_of_the_tests_in_cpp_is_up_to_date(self):
         self.assertEqual(closed_forms.TABLE.read_text(encoding="ascii"), closed_forms.table(), "run benchmarks/closed_forms.py --table")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@ the other."""
 import pathlib
 import re
 import shlex
-import unittest
 
 from harness import SOURCE, TestCase, run
 
@@ -42,7 +41,3 @@ class Documentation(TestCase):
                 self.assertNotIn(output, taken, f"{page}: {line.strip()} and {taken.get(output)} write into {output}")
                 taken[output] = f"{page}: {line.strip()}"
         self.assertGreater(len(taken), 15)
-
-
-if __name__ == "__main__":
-    unittest.main()

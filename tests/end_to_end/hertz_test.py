@@ -4,14 +4,12 @@ The cases are cases/hertz/*.toml, where the formulas are derived (README.md). Th
 body: its mass comes from its momentum, the load from the contact force, and both from the half or quarter that is
 meshed."""
 
-import json
 import math
-import unittest
 
 import meshio
 import numpy
 
-from harness import SOURCE, History, TestCase, run, settings
+from harness import SOURCE, History, TestCase, run, settings, summary_of
 from hertz import LineContact, LineImpact, PointContact, PointImpact, contact_modulus
 
 CASES = SOURCE / "cases" / "hertz"
@@ -69,7 +67,7 @@ class Hertz(TestCase):
             values["contact.0.unstable_multipliers"] = "allow"
         results = self.simulate(CASES / f"{body}{suffix}.toml", f"{body}{suffix}-{space}-{degree}", values)
         history = History(results / "history.csv")
-        summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+        summary = summary_of(results)
         self.assertEqual(summary["status"], "done")
         return results, history
 
@@ -134,7 +132,7 @@ class Hertz(TestCase):
 
     def simulate_section(self, case, space):
         results = self.simulate(SECTIONS / f"{case}-axisymmetric.toml", f"{case}-{space}", {"contact.0.multipliers": space})
-        return results, History(results / "history.csv"), json.loads((results / "summary.json").read_text(encoding="utf-8"))
+        return results, History(results / "history.csv"), summary_of(results)
 
     def test_pressed_section(self):
         self.misses, self.report = [], []
@@ -166,7 +164,7 @@ class Hertz(TestCase):
         self.misses, self.report = [], []
         found = []
         for case in (SECTIONS / "ball-axisymmetric.toml", SOURCE / "cases" / "ball" / "ball.toml"):
-            summary = json.loads((self.simulate(case, case.stem) / "summary.json").read_text(encoding="utf-8"))
+            summary = summary_of(self.simulate(case, case.stem))
             mass, impact = summary["bodies"][0]["mass"], summary["impacts"][0]
             found.append((impact["normal_impulse"] / mass, impact["restitution"], impact["duration"], impact["largest_force"]))
         for what, section, solid, tolerance in zip(("impulse over mass", "restitution", "duration", "largest force"), *found,
@@ -174,7 +172,3 @@ class Hertz(TestCase):
             self.check(what, section, solid, tolerance)
         print(*self.report, sep="\n")
         self.assertFalse(self.misses, "\n".join(self.misses))
-
-
-if __name__ == "__main__":
-    unittest.main()

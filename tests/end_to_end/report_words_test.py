@@ -4,11 +4,10 @@ import json
 import os
 import shutil
 import subprocess
-import unittest
 
 import h5py
 
-from harness import DISC, PROGRAM, block_case
+from harness import DISC, PROGRAM, block_case, summary_of
 from report_page import SHORT, VIEWER, Page, ReportTestCase
 
 
@@ -39,7 +38,7 @@ class ReportWords(ReportTestCase):
         results = self.simulate(DISC, "disc", SHORT)
         history = results / "history.csv"
         text = history.read_text()
-        summary = json.loads((results / "summary.json").read_text())
+        summary = summary_of(results)
         summary["status"] = "interrupted"
         (results / "summary.json").write_text(json.dumps(summary))
         history.write_text(text[:-9])  # the last row is being written
@@ -151,7 +150,7 @@ class ReportWords(ReportTestCase):
 
     def test_an_infinite_depth_is_not_left_out(self):
         results = self.simulate(DISC, "disc", SHORT)
-        summary = json.loads((results / "summary.json").read_text())
+        summary = summary_of(results)
         summary["unwatched_penetration"]["found"] = [
             {"obstacle": "floor", "bodies": ["body 0"], "depth": "inf", "relative_depth": "inf", "time": 0.005,
              "place": [0.0, 0.0], "first_time": 0.005, "groups": []}]
@@ -187,6 +186,3 @@ class ReportWords(ReportTestCase):
         self.assertIn("/frames/000003/displacement", self.report(results, status=2).stderr)
         (results / "obstacles.xdmf").write_text('<Grid Name="obstacles" GridType="Uniform"><Time Value="x"/></Grid>')
         self.assertIn("obstacles.xdmf:1: 'x' is not a number", self.report(results, status=2).stderr)
-
-if __name__ == "__main__":
-    unittest.main()

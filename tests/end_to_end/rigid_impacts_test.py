@@ -1,8 +1,6 @@
 """Rigid and elastic bodies that strike one another, compared with closed forms: Hertz, a cradle, bounces in a bowl, a
 peg in a hole."""
 
-import unittest
-
 import numpy
 
 from harness import History, TestCase
@@ -153,7 +151,3 @@ class PegInHole(Impacts):
         self.assertLess(max(history["friction_work"]), 1e-12)
         self.assertLess(max(history["contact_work"]), 1e-12)
         self.assertLess(max(history["max_penetration"]), 1e-10)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,12 +1,10 @@
 """Bodies that slide along each other without limit: closed forms, momenta, energy, resumed runs, refusals."""
 
-import json
 import math
-import unittest
 
 import numpy
 
-from harness import History, TestCase, run
+from harness import History, TestCase, run, summary_of
 from closed_forms_of_contacts import BlockInBowl
 
 BOWL = 0.25  # height = BOWL x^2
@@ -134,10 +132,6 @@ fields_every = 0
 
 def material(group, law="neo-hookean", young=1000.0):
     return f'[[material]]\ngroup = "{group}"\ndensity = 1.0\nyoung = {young}\npoisson = 0.3\nlaw = "{law}"\n'
-
-
-def summary(folder):
-    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
 
 
 class Sliding(TestCase):
@@ -300,7 +294,7 @@ class Refusals(Sliding):
 
         def force_and_summary(step):
             folder = self.simulate(case, values={"time.step": step}, options=("--quiet", "--force"))
-            return History(folder / "history.csv")["fit.force_y"][-1], summary(folder)
+            return History(folder / "history.csv")["fit.force_y"][-1], summary_of(folder)
 
         right, found = force_and_summary(4e-5)
         self.assertEqual(found["unsettled_contacts"], [])
@@ -323,7 +317,3 @@ class Refusals(Sliding):
             self.assertIn("FORCE IN DOUBT", self.expect_status(0, run("info", self.folder / "out")).stdout)
             break
         self.assertGreater(wrong, 0, "no step leaves an overlap any more: this test needs another case")
-
-
-if __name__ == "__main__":
-    unittest.main()
