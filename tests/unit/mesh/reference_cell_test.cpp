@@ -6,7 +6,7 @@
 
 #include "support.hpp"
 
-namespace ricochet::test {
+namespace ricochet::test_support {
 namespace {
 
 basix::cell::type basix_cell(CellShape shape) {
@@ -114,4 +114,4 @@ TEST(ReferenceCell, VerticesOfTensorCellsAreLexicographic) {
 }
 
 }  // namespace
-}  // namespace ricochet::test
+}  // namespace ricochet::test_support
