@@ -23,7 +23,7 @@
 namespace {
 
 using namespace ricochet;
-using namespace ricochet::test;
+using namespace ricochet::test_support;
 
 using Generator = std::function<FrictionProblem(unsigned seed)>;
 

@@ -1,10 +1,11 @@
 """Recomputes the reference values of the benchmarks from the data in their case files, by closed forms.
 
-    python3 benchmarks/closed_forms.py
+    python3 benchmarks/closed_forms.py [--table]
 
 reads every [[expect]] with a `value` in benchmarks/*/*.toml and in the cases of cases/ that have a closed form, computes the
 value anew and prints both. The status is 0 when all agree to the digits written, and every value in benchmarks/ has a closed form
-or is listed in NOT_CLOSED with its origin. Nothing but Python's own library is needed; the derivations are in the README.md of each folder.
+or is listed in NOT_CLOSED with its origin. With --table it writes tests/data/closed_forms.csv, with which tests in C++ compare the
+closed forms that they need everywhere in a body and at all times. Nothing but Python's own library is needed; the derivations are in the README.md of each folder.
 """
 
 import math
@@ -82,6 +83,28 @@ def references(name, case, expect):
     return form(case, expect["quantity"])
 
 
+TABLE = ROOT / "tests" / "data" / "closed_forms.csv"
+
+
+def table():
+    """Returns values of closed forms that verification tests have in C++, too: problem, quantity, position, time, value."""
+    rows = []
+    for k in range(8):
+        time = 0.2 * k + 0.101  # not at a jump
+        for x in (0.0, 3.0, 10.0):
+            rows.append(("impact", "displacement", x, time, waves.STRIKING_BAR.displacement(x, time)))
+            rows.append(("impact", "velocity", x, time, waves.STRIKING_BAR.velocity(x, time)))
+        rows.append(("impact", "pressure", 0.0, time, waves.STRIKING_BAR.force_at(time) / 0.5))
+        for problem, form in (("bounce", waves.bouncing_bar), ("rod", waves.released_rod)):
+            displacement, pressure = form(time)
+            rows += [(problem, "displacement", 0.0, time, displacement), (problem, "pressure", 0.0, time, pressure)]
+        for a in (0.15, 0.2, 0.3, 0.45, 1.5):
+            layer = waves.SlidingLayer(a)
+            rows += [(f"layer {a}", "velocity", 0.0, 5.0 * time, layer.velocity(5.0 * time)), (f"layer {a}", "traction", 0.0, 5.0 * time, layer.traction(5.0 * time))]
+    rows += [(f"layer {a}", "slip", 0.0, 100.0, waves.SlidingLayer(a).slip(100.0)) for a in (0.15, 0.2, 0.3, 0.45, 1.5)]
+    return "".join(f"{problem},{quantity},{x:g},{time:.12g},{value:.12g}\n" for problem, quantity, x, time, value in rows)
+
+
 class Comparison:
     """A reference value of a case file beside its closed form (None if there is none) or its origin."""
 
@@ -119,6 +142,8 @@ def comparisons():
 
 
 def main():
+    if sys.argv[1:] == ["--table"]:
+        TABLE.write_text(table(), encoding="ascii")
     wrong = 0
     for comparison in comparisons():
         wrong += not comparison.holds

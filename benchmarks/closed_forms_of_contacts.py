@@ -4,12 +4,13 @@ quantity, which return its value, or None. The derivations are in the README.md 
 import math
 import re
 
+from hertz import LineContact, LineImpact, PointContact, PointImpact, contact_modulus, relative_radius
 from history_quantity import column_and_time
 
 WEDGE_AREA = 4.0 * (1.0 + 0.6) / 2.0  # cgs-4/wedges.geo
 WEDGE_PUSHED = 0.8
 SLOPE = 0.1
-HERTZ_MODULUS = 1.0 / (1.0 - 0.3**2)  # E = rho = R = 1
+HERTZ_MODULUS = contact_modulus((1.0, 0.3))  # E = rho = R = 1
 
 
 def wedge_force(friction, weight):
@@ -36,76 +37,71 @@ def cgs_4(case, quantity):
     return impulse * (cosine - friction * SLOPE * cosine) / mass * cosine
 
 
+def elastic(material):
+    return material["young"], material["poisson"]
+
+
+def expected(case, quantity):
+    """A value that the case states as measured."""
+    return next(e["value"] for e in case["expect"] if e["quantity"] == quantity)
+
+
+class PartialSlip(LineContact):
+    """A cylinder pressed by `load` and then pushed by a force Q, which rises within 200: it sticks in the middle."""
+
+    def __init__(self, case, load, modulus, radius, time):
+        super().__init__(load, modulus, radius)
+        self.friction = case["contact"][0]["friction"]
+        self.force = case["traction"][0]["parameters"]["Q"] * min(time / 200.0, 1.0)
+        self.stick = self.width * math.sqrt(1.0 - self.force / (self.friction * load))
+
+
 def cattaneo_mindlin(case, quantity):
-    material, radius = case["material"][0], 1.0
-    modulus = material["young"] / (1.0 - material["poisson"] ** 2)
-    friction = case["contact"][0]["friction"]
-    load = next(e["value"] for e in case["expect"] if e["quantity"] == "history.contact_force_y[-1]")
-    push = case["traction"][0]["parameters"]["Q"]
-    half_width = math.sqrt(4.0 * load * radius / (math.pi * modulus))
-    largest = 2.0 * load / (math.pi * half_width)
-    facet = 2.0 * 0.096 * radius / 64  # half-disc.geo; degree 2 has a node in its middle
-
-    def stick(force):
-        return half_width * math.sqrt(1.0 - force / (friction * load))
-
     column, time = column_and_time(case, quantity)
-    force = push * min(time / 200.0, 1.0)
+    slip = PartialSlip(case, expected(case, "history.contact_force_y[-1]"), contact_modulus(elastic(case["material"][0])), 1.0, time)
+    facet = 2.0 * 0.096 / 64  # half-disc.geo; degree 2 has a node in its middle
     return {
-        "contact.area": 2.0 * half_width,
-        "middle.pressure": largest,
-        "sticking": 2.0 * stick(force) / (facet / 2.0),
-        "middle.reaction_tangential_x": -friction * largest * (1.0 - stick(force) / half_width) * facet / 3.0,
-        "contact_force_x": -force,
+        "contact.area": 2.0 * slip.width,
+        "middle.pressure": slip.peak,
+        "sticking": 2.0 * slip.stick / (facet / 2.0),
+        "middle.reaction_tangential_x": -slip.friction * slip.peak * (1.0 - slip.stick / slip.width) * facet / 3.0,
+        "contact_force_x": -slip.force,
     }.get(column)
 
 
 def cattaneo_mindlin_pair(case, quantity):
     """Two equal cylinders of radius 1."""
-    material = case["material"][0]
-    modulus, radius = 0.5 * material["young"] / (1.0 - material["poisson"] ** 2), 0.5
-    friction = case["contact"][0]["friction"]
-    load = next(e["value"] for e in case["expect"] if e["quantity"] == "history.contact.force_y[-1]")
-    push = case["traction"][0]["parameters"]["Q"]
-    half_width = math.sqrt(4.0 * load * radius / (math.pi * modulus))
     column, time = column_and_time(case, quantity)
-    force = push * min(time / 200.0, 1.0)
-    stick = half_width * math.sqrt(1.0 - force / (friction * load))
+    load, both = expected(case, "history.contact.force_y[-1]"), [elastic(case["material"][0])] * 2
+    slip = PartialSlip(case, load, contact_modulus(*both), 0.5, time)
     return {
-        "contact.area": 2.0 * half_width,
-        "middle.pressure": 2.0 * load / (math.pi * half_width),
-        "sticking": 2.0 * stick / (2.0 * 0.03 / 48),  # half-disc.geo
+        "contact.area": 2.0 * slip.width,
+        "middle.pressure": slip.peak,
+        "sticking": 2.0 * slip.stick / (2.0 * 0.03 / 48),  # half-disc.geo
         # divided by the normal reaction, 1 in these units
-        "middle.reaction_tangential_x": friction * (1.0 - stick / half_width),
+        "middle.reaction_tangential_x": slip.friction * (1.0 - slip.stick / slip.width),
         "middle.reaction_normal": 1.0,
-        "contact.force_x": -force,
+        "contact.force_x": -slip.force,
     }.get(column)
 
 
-def hertz_cylinders(case, quantity):
-    """A load per length, and pressures at probes of the two bodies."""
+def pressed_cylinders(case, quantity, radius, share):
+    """A load per length, of which the mesh has a share, as of the contact, and pressures at probes of both bodies."""
     load = case["traction"][0]["parameters"]["P"]
-    modulus = 1.0 / sum((1.0 - m["poisson"] ** 2) / m["young"] for m in case["material"])
-    radius = 1.0 / sum(1.0 / part["scale"] for part in case["part"].values())
-    half_width = math.sqrt(4.0 * load * radius / (math.pi * modulus))
+    contact = LineContact(load, contact_modulus(*map(elastic, case["material"])), radius)
     column, _ = column_and_time(case, quantity)
     if column and column.endswith(".pressure"):
-        place = next(probe["at"][0] for probe in case["probe"] if probe["name"] == column.split(".")[0])
-        return 2.0 * load / (math.pi * half_width) * math.sqrt(1.0 - (place / half_width) ** 2)
-    return {"contact.force_y": load, "contact.area": 2.0 * half_width}.get(column)
+        return contact.pressure(next(probe["at"][0] for probe in case["probe"] if probe["name"] == column.split(".")[0]))
+    return {"contact.force_y": share * load, "contact.area": share * 2.0 * contact.width}.get(column)
+
+
+def hertz_cylinders(case, quantity):
+    return pressed_cylinders(case, quantity, relative_radius(*(part["scale"] for part in case["part"].values())), 1.0)
 
 
 def roller(case, quantity):
-    """Hertz' contact of a cylinder of radius 50 and a block; half of the load, and pressures at probes."""
-    load, radius = case["traction"][0]["parameters"]["P"], 50.0
-    modulus = 1.0 / sum((1.0 - m["poisson"] ** 2) / m["young"] for m in case["material"])
-    half_width = math.sqrt(4.0 * load * radius / (math.pi * modulus))
-    largest = 2.0 * load / (math.pi * half_width)
-    column, _ = column_and_time(case, quantity)
-    if column and column.endswith(".pressure"):
-        place = next(probe["at"][0] for probe in case["probe"] if probe["name"] == column.split(".")[0])
-        return largest * math.sqrt(1.0 - (place / half_width) ** 2)
-    return {"contact.force_y": load / 2.0, "contact.area": half_width}.get(column)
+    """A cylinder of radius 50 and a block."""
+    return pressed_cylinders(case, quantity, 50.0, 0.5)
 
 
 def patch_test(case, quantity):
@@ -150,60 +146,43 @@ def held(case, quantity):
 
 
 def cylinder(case, quantity):
-    gravity = -case["load"]["gravity"][1]
-    weight = math.pi * gravity
-    half_width = math.sqrt(4.0 * weight / (math.pi * HERTZ_MODULUS))
-    return 2.0 * weight / (math.pi * half_width) if quantity == "history.lowest.pressure[-1]" else None
+    weight = -math.pi * case["load"]["gravity"][1]
+    return LineContact(weight, HERTZ_MODULUS).peak if quantity == "history.lowest.pressure[-1]" else None
 
 
 def sphere(case, quantity):
-    load = 4.0 * next(e["value"] for e in case["expect"] if e["quantity"] == "history.contact_force_z[-1]")
-    radius = (3.0 * load / (4.0 * HERTZ_MODULUS)) ** (1.0 / 3.0)
-    return 3.0 * load / (2.0 * math.pi * radius**2) if quantity == "history.lowest.pressure[-1]" else None
-
-
-def energy_of(case):
-    return next(e["value"] for e in case["expect"] if e["quantity"] == "max(history.total_energy)")
+    load = 4.0 * expected(case, "history.contact_force_z[-1]")
+    return PointContact(load, HERTZ_MODULUS).peak if quantity == "history.lowest.pressure[-1]" else None
 
 
 def sphere_impact(case, quantity):
-    """Four quarters of the mesh's mass on Hertz' spring, 4/3 E* d^(3/2)."""
-    if quantity != "max(history.contact_force_z)":
-        return None
-    energy = 4.0 * energy_of(case)
-    approach = (15.0 * energy / (8.0 * HERTZ_MODULUS)) ** 0.4
-    return HERTZ_MODULUS * approach**1.5 / 3.0
+    """A quarter of the mesh's mass."""
+    speed = -case["initial"]["velocity"][2]
+    mass = 4.0 * 2.0 * expected(case, "max(history.total_energy)") / speed**2
+    return PointImpact(HERTZ_MODULUS, 1.0, mass, speed).force / 4.0 if quantity == "max(history.contact_force_z)" else None
 
 
-class PointImpact:
-    """Hertz' impact of two balls (radius inf: a half-space of a body with the mass): the force 4/3 E* sqrt(R) d^(3/2) is a spring
-    between the masses. Half of m v^2 is its work at the largest compression, and contact lasts 2.943 compressions over the speed."""
+def cylinder_impact(case, quantity):
+    """A half."""
+    speed = -case["initial"]["velocity"][1]
+    return 0.5 * LineImpact(HERTZ_MODULUS, 1.0, 0.3, math.pi, speed).force if quantity == "max(history.contact_force_y)" else None
 
-    def __init__(self, moduli, radii, masses, speed):
-        self.modulus = 1.0 / sum((1.0 - poisson**2) / young for young, poisson in moduli)
-        self.radius, mass = 1.0 / sum(1.0 / r for r in radii), masses[0] * masses[1] / sum(masses)
-        self.compression = (15.0 * mass * speed**2 / (16.0 * self.modulus * math.sqrt(self.radius))) ** 0.4
-        self.force = 4.0 / 3.0 * self.modulus * math.sqrt(self.radius) * self.compression**1.5
-        self.duration = 0.8 * math.sqrt(math.pi) * math.gamma(0.4) / math.gamma(0.9) * self.compression / speed
-        self.area = math.pi * self.radius * self.compression
-        self.impulse = 2.0 * masses[1] / sum(masses)  # over that of the first body
 
-    def of_a_quarter(self, quantity):
-        """The reference values of a case that has a quarter of each body: only the area is a quarter."""
-        return {
-            "max(history.contact.force_z)": self.force,
-            "last_time(history.contact.force_z > 0.5)": self.duration,
-            "max(history.contact.area)": self.area / 4.0,
-            "integral(history.contact.force_z)": self.impulse,
-        }.get(quantity)
+def of_a_quarter(impact, masses, quantity):
+    """The reference values of a case that has a quarter of each body: only the area is a quarter."""
+    return {
+        "max(history.contact.force_z)": impact.force,
+        "last_time(history.contact.force_z > 0.5)": impact.duration,
+        "max(history.contact.area)": impact.area / 4.0,
+        "integral(history.contact.force_z)": 2.0 * masses[1] / sum(masses),  # over that of the first body
+    }.get(quantity)
 
 
 def two_balls(case, quantity):
     material, radii = case["material"][0], [part["scale"] for part in case["part"].values()]
-    elastic = (material["young"], material["poisson"])
     masses = [material["density"] * 4.0 / 3.0 * math.pi * radius**3 for radius in radii]
-    impact = PointImpact((elastic, elastic), radii, masses, -case["part"]["upper"]["velocity"][2])
-    return impact.of_a_quarter(quantity)
+    impact = PointImpact.of_bodies([elastic(material)] * 2, radii, masses, -case["part"]["upper"]["velocity"][2])
+    return of_a_quarter(impact, masses, quantity)
 
 
 def ball_block(case, quantity):
@@ -211,19 +190,25 @@ def ball_block(case, quantity):
     ball, block = case["material"]
     radius, side = case["part"]["ball"]["scale"], 4.0 * case["part"]["block"]["scale"]
     masses = [ball["density"] * 4.0 / 3.0 * math.pi * radius**3, block["density"] * side**3]
-    impact = PointImpact([(m["young"], m["poisson"]) for m in (ball, block)], (radius, math.inf), masses, -case["part"]["ball"]["velocity"][2])
-    return impact.of_a_quarter(quantity)
+    impact = PointImpact.of_bodies([elastic(ball), elastic(block)], (radius, math.inf), masses, -case["part"]["ball"]["velocity"][2])
+    return of_a_quarter(impact, masses, quantity)
 
 
-def cylinder_impact(case, quantity):
-    """W(P) = P^2/(pi E*) (K/2 - 1/4 - ln(P)/2) is the energy at the largest force P; two halves."""
-    if quantity != "max(history.contact_force_y)":
-        return None
-    energy = 0.5 * math.pi * case["initial"]["velocity"][1] ** 2
-    constant = math.log(math.pi * HERTZ_MODULUS) - 1.0 / (4.0 * (1.0 - 0.3))
-    low, high = 1e-9, 1e-1
-    while high - low > 1e-12 * high:
-        force = 0.5 * (low + high)
-        work = force**2 / (math.pi * HERTZ_MODULUS) * (0.5 * constant - 0.25 - 0.5 * math.log(force))
-        low, high = (force, high) if work < energy else (low, force)
-    return 0.5 * high
+class BlockInBowl:
+    """A rigid block whose lower corners slide on y = bowl x^2: one degree of freedom, the x of the middle of the chord."""
+
+    def __init__(self, bowl=0.25, half=0.2, thick=0.15):
+        self.bowl, self.half, self.thick = bowl, half, thick
+
+    def place(self, x):
+        """Returns the centre of mass and the angle."""
+        turn = math.atan(2.0 * self.bowl * x)
+        chord = self.bowl * (x**2 + (self.half * math.cos(turn)) ** 2)
+        return x - 0.5 * self.thick * math.sin(turn), chord + 0.5 * self.thick * math.cos(turn), turn
+
+    def rate(self, x, h=1e-6):
+        return tuple((after - before) / (2.0 * h) for before, after in zip(self.place(x - h), self.place(x + h)))
+
+    def inertia(self, rate):
+        """Returns twice the kinetic energy per mass of a unit rate of x."""
+        return rate[0] ** 2 + rate[1] ** 2 + ((2.0 * self.half) ** 2 + self.thick**2) / 12.0 * rate[2] ** 2

@@ -151,19 +151,24 @@ def sdnl111(case, quantity):
     }.get(column, lambda: None)()
 
 
-def rod(case, quantity):
-    """E = rho = L = 1: u(0, t) has the period 3; height 0.1."""
-    column, time = column_and_time(case, quantity)
+def released_rod(time):
+    """Returns the displacement and the pressure of the tip of a rod of E = rho = L = 1, compressed by half: u(0, t) has the period 3."""
     time %= 3.0
-    return {
-        "tip.displacement_x": max(0.5 - 0.5 * time, 0.0, 0.5 * (time - 2.0)),
-        "tip.pressure": 0.5 if 1.0 < time < 2.0 else 0.0,
-        "contact_force_x": 0.05 if 1.0 < time < 2.0 else 0.0,
-    }.get(column)
+    return max(0.5 - 0.5 * time, 0.0, 0.5 * (time - 2.0)), 0.5 if 1.0 < time < 2.0 else 0.0
+
+
+def rod(case, quantity):
+    """Height 0.1."""
+    column, time = column_and_time(case, quantity)
+    displacement, pressure = released_rod(time)
+    return {"tip.displacement_x": displacement, "tip.pressure": pressure, "contact_force_x": 0.1 * pressure}.get(column)
+
+
+STRIKING_BAR = BarImpact(10.0, 0.5, 900.0, 1.0, 10.0, 5.0)  # of cases/bar
 
 
 def bar_impact(case, quantity):
-    impact = BarImpact(10.0, 0.5, 900.0, 1.0, 10.0, 5.0)
+    impact = STRIKING_BAR
     column, time = column_and_time(case, quantity)
     return {
         "bottom.pressure": impact.force_at(time) / 0.5,
@@ -175,55 +180,84 @@ def bar_impact(case, quantity):
     }.get(column)
 
 
+def bouncing_bar(time):
+    """Returns the displacement and the pressure of the lower end of the same bar, dropped: period 16/3; contact from 1 to 5/3, and its
+    time reverse from 11/3 to 13/3."""
+    time %= 16.0 / 3.0
+    mirrored = min(time, 16.0 / 3.0 - time)
+    if mirrored <= 1.0:
+        return -5.0 * mirrored**2, 0.0
+    if mirrored < 5.0 / 3.0:
+        return -5.0, 300.0 * mirrored
+    flight = time - 5.0 / 3.0
+    wave = flight % (2.0 / 3.0)
+    return -5.0 + 10.0 * flight - 5.0 * flight**2 - 10.0 * wave * (2.0 / 3.0 - wave), 0.0
+
+
 def bar_bounce(case, quantity):
-    """Period 16/3; contact from 1 to 5/3, and its time reverse from 11/3 to 13/3."""
     column, time = column_and_time(case, quantity)
-    if column == "bottom.pressure":
-        since = (time - 1.0) % (16.0 / 3.0)
-        return 300.0 + 300.0 * since if since < 2.0 / 3.0 else 300.0 + 300.0 * (10.0 / 3.0 - since)
-    if column == "bottom.displacement_y":
-        if 1.0 < time < 5.0 / 3.0:
-            return -5.0
-        flight = time - 5.0 / 3.0
-        wave = flight % (2.0 / 3.0)
-        return -5.0 + 10.0 * flight - 5.0 * flight**2 - 10.0 * wave * (2.0 / 3.0 - wave)
-    return None
+    return dict(zip(("bottom.displacement_y", "bottom.pressure"), bouncing_bar(time))).get(column)
+
+
+class SlidingLayer:
+    """A layer of H = c = rho = 1 with a free top that comes at `speed`, on a base with the friction traction a: phase k slides at
+    V - (1 + 2k) a for a time of 2; then the base sticks."""
+
+    def __init__(self, a, speed=1.0):
+        self.a, self.speed = a, speed
+        self.phases = math.ceil((speed / a - 1.0) / 2.0 - 1e-9)
+        self.left = speed - 2.0 * self.phases * a
+
+    def sticks(self, time):
+        return time >= 2.0 * self.phases
+
+    def velocity(self, time):
+        return 0.0 if self.sticks(time) else self.speed - (1 + 2 * int(time // 2.0)) * self.a
+
+    def traction(self, time):
+        """Of the base on the layer."""
+        return -self.left * (-1) ** int((time - 2.0 * self.phases) // 2.0) if self.sticks(time) else -self.a
+
+    def slip(self, time):
+        return sum(min(max(time - 2.0 * k, 0.0), 2.0) * self.velocity(2.0 * k) for k in range(self.phases))
 
 
 def layer(case, quantity, friction):
-    """H = c = rho = 1, V = p = 0.01, width 0.5. Phase k slides at V - (1 + 2k) a for a time of 2; then it sticks."""
-    speed = 0.01
-    a = friction * 0.01
-    phases = math.ceil((speed / a - 1.0) / 2.0 - 1e-9)
+    """V = p = 0.01, width 0.5."""
+    sliding = SlidingLayer(friction * 0.01, 0.01)
     column, time = column_and_time(case, quantity)
-    slip = sum(min(max(time - 2.0 * k, 0.0), 2.0) * (speed - (1 + 2 * k) * a) for k in range(phases))
-    left = speed - 2.0 * phases * a
-    sticks = time > 2.0 * phases
-    traction = -left * (-1) ** int((time - 2.0 * phases) // 2.0) if sticks else -a
+    slip = sliding.slip(time)
     return {
-        "contact_force_x": 0.5 * traction,
+        "contact_force_x": 0.5 * sliding.traction(time),
         "left.displacement_x": slip,
         "right.displacement_x": slip,
-        "friction_work": -0.5 * a * slip,
-        "total_energy": 0.25 * left**2 if sticks else None,
+        "friction_work": -0.5 * sliding.a * slip,
+        "total_energy": 0.25 * sliding.left**2 if sliding.sticks(time) else None,
     }.get(column)
 
 
-def stack(case, quantity):
-    """Two plates with H/c = 1, impedances z1 and z2 and free backs; V of the upper one, width 0.5. What arrives at the faces is D; the
-    upper face moves at D1 - q/z1, the lower one at D2 + q/z2, with q = F p while that slides, else what makes them equal."""
-    z = [math.sqrt(m["density"] * m["young"] / 2.0) for m in case["material"]]
-    width, bound = 0.5, case["contact"][0]["friction"] * case["traction"][0]["parameters"]["p"]
+def sliding_plates(z, speed, bound):
+    """Friction q and velocities of the faces in four phases of two plates with H/c = 1, impedances z1 and z2 and free backs; the upper
+    one comes at `speed`. What arrives at the faces is D; the upper face moves at D1 - q/z1, the lower one at D2 + q/z2, with q = F p
+    while that slides, else what makes them equal."""
     relative = z[0] * z[1] / (z[0] + z[1])
-    arriving, phases = [case["part"]["upper"]["velocity"][0], 0.0], []
+    arriving, phases = [speed, 0.0], []
     for _ in range(4):
         needed = relative * (arriving[0] - arriving[1])
         friction = needed if abs(needed) <= bound else math.copysign(bound, needed)
         phases.append((friction, arriving[0] - friction / z[0], arriving[1] + friction / z[1]))
         arriving = [arriving[0] - 2.0 * friction / z[0], arriving[1] + 2.0 * friction / z[1]]
+    return phases
+
+
+def stack(case, quantity):
+    """Width 0.5."""
+    z = [math.sqrt(m["density"] * m["young"] / 2.0) for m in case["material"]]
+    width, bound, speed = 0.5, case["contact"][0]["friction"] * case["traction"][0]["parameters"]["p"], case["part"]["upper"]["velocity"][0]
+    phases = sliding_plates(z, speed, bound)
     column, time = column_and_time(case, quantity)
     moved = [sum(min(max(time - 2.0 * k, 0.0), 2.0) * phase[face] for k, phase in enumerate(phases)) for face in (1, 2)]
-    energy = 0.5 * z[0] * width * case["part"]["upper"]["velocity"][0] ** 2
+    energy = 0.5 * z[0] * width * speed**2
     work = -width * bound * (moved[0] - moved[1])
     return {
         "contact.force_x": -width * phases[min(int(time / 2.0), 3)][0],
@@ -231,7 +265,7 @@ def stack(case, quantity):
         "lower.displacement_average_x": moved[1],
         "friction_work": work,
         "total_energy": energy + work,
-        "momentum_x": z[0] * width * case["part"]["upper"]["velocity"][0],
+        "momentum_x": z[0] * width * speed,
     }.get(column)
 
 

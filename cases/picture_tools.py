@@ -1,6 +1,8 @@
 """Code shared by the pictures of the cases: runs, and files."""
 import csv
+import pathlib
 import subprocess
+import sys
 
 import matplotlib
 
@@ -8,6 +10,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "benchmarks"))  # closed forms
 EXACT = {"color": "0.6", "linewidth": 4, "solid_capstyle": "butt"}
 
 

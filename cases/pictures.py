@@ -11,6 +11,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from picture_tools import EXACT, run, save
+from closed_forms_of_waves import STRIKING_BAR, SlidingLayer, bouncing_bar, released_rod
+from hertz import PointImpact, contact_modulus
 from pictures_at_finite_strain import balloon, golf_ball, rubber_ball, tumbling_block
 from pictures_of_pairs import ball_block, balls, bars_pair, cradle, slide, stack, tied
 
@@ -59,9 +61,9 @@ def disc():
 def rod():
     figure, (displacement, pressure) = plt.subplots(1, 2, figsize=(10, 3.4))
     time = np.linspace(0, 6, 6001)
-    phase = time % 3
-    displacement.plot(time, np.select([phase < 1, phase < 2], [0.5 - phase / 2, 0 * phase], (phase - 2) / 2), **EXACT)
-    pressure.plot(time, np.where((phase > 1) & (phase < 2), 0.5, 0), label="closed form", **EXACT)
+    exact = np.array([released_rod(t) for t in time]).T
+    displacement.plot(time, exact[0], **EXACT)
+    pressure.plot(time, exact[1], label="closed form", **EXACT)
     for case, label in (("quadrilaterals", "quadrilaterals"), ("rod", "triangles (one period)")):
         history = run(f"rod/{case}", f"rod-{case}")
         displacement.plot(history["time"], history["tip.displacement_x"], linewidth=1)
@@ -76,22 +78,13 @@ def bar():
     figure, axes = plt.subplots(2, 2, figsize=(10, 5.6))
     impact = run("bar/impact", "bar-impact")
     time = np.linspace(0, 2, 4001)
-    axes[0, 0].plot(time, np.select([time < 1 / 2, time < 7 / 6], [5 - 10 * time, 0 * time], 10 * (time - 7 / 6)), **EXACT)
-    axes[0, 1].plot(time, np.where((time > 1 / 2) & (time < 7 / 6), 300, 0), label="closed form", **EXACT)
+    axes[0, 0].plot(time, [5 + STRIKING_BAR.displacement(0.0, t) for t in time], **EXACT)
+    axes[0, 1].plot(time, [STRIKING_BAR.force_at(t) / 0.5 for t in time], label="closed form", **EXACT)
     bounce = run("bar/bounce", "bar-bounce")
     time = np.linspace(0, 7.5, 15001)
-    phase = time % (16 / 3)
-    mirrored = np.minimum(phase, 16 / 3 - phase)
-    contact = (mirrored > 1) & (mirrored <= 5 / 3)
-    flight = phase - 5 / 3
-    vibration = flight % (2 / 3)
-    height = np.select(
-        [mirrored <= 1, contact],
-        [5 - 5 * mirrored**2, 0 * mirrored],
-        10 * flight - 5 * flight**2 - 10 * vibration * (2 / 3 - vibration),
-    )
-    axes[1, 0].plot(time, height, **EXACT)
-    axes[1, 1].plot(time, np.where(contact, 300 * mirrored, 0), label="closed form", **EXACT)
+    exact = np.array([bouncing_bar(t) for t in time]).T
+    axes[1, 0].plot(time, 5 + exact[0], **EXACT)
+    axes[1, 1].plot(time, exact[1], label="closed form", **EXACT)
     for row, history, name in ((0, impact, "impact"), (1, bounce, "bounce")):
         axes[row, 0].plot(history["time"], 5 + history["bottom.displacement_y"], linewidth=1)
         axes[row, 1].plot(history["time"], history["contact_force_y"] / 0.5, linewidth=1, label="computed")
@@ -103,19 +96,6 @@ def bar():
     save(figure, "cases/bar/bar.png")
 
 
-def hertz(mass, speed, gravity=9.81, radius=0.05, young=1.0e7, poisson=0.4, step=1e-6):
-    """Force over time of a rigid mass on Hertz's spring, from first touch to release."""
-    stiffness = 4 / 3 * young / (1 - poisson**2) * radius**0.5
-    time, approach, times, forces = 0.0, 0.0, [0.0], [0.0]
-    while approach >= 0:
-        speed += step * (gravity - stiffness * approach**1.5 / mass)
-        approach += step * speed
-        time += step
-        times.append(time)
-        forces.append(stiffness * max(approach, 0) ** 1.5)
-    return np.array(times), np.array(forces)
-
-
 def ball():
     history = run("ball/ball", "ball")
     figure, (height, force) = plt.subplots(1, 2, figsize=(10, 3.6))
@@ -124,8 +104,8 @@ def ball():
     height.plot(milliseconds, 5 + 1e3 * history["centre.displacement_z"], "--", label="centre, less the radius")
     mass, drop = 0.5643067, 0.005
     touch = (2 * drop / 9.81) ** 0.5
-    times, forces = hertz(mass, (2 * 9.81 * drop) ** 0.5)
-    force.plot(1e3 * (touch + times), forces, label="Hertz, with gravity", **EXACT)
+    times, forces = PointImpact(contact_modulus((1.0e7, 0.4)), 0.05, mass, (2 * 9.81 * drop) ** 0.5).course(gravity=9.81)
+    force.plot(1e3 * (touch + np.array(times)), forces, label="Hertz, with gravity", **EXACT)
     force.plot(milliseconds, history["contact_force_z"], label="computed")
     force.axhline(mass * 9.81, linestyle=":", color="k", linewidth=1, label="weight")
     height.set(xlabel="time, ms", title="height over the plane, mm", ylim=(-1.2, 7.5))
@@ -140,12 +120,9 @@ def layer():
     figure, axes = plt.subplots(2, 3, figsize=(12, 5.4), sharex=True)
     for column, friction in enumerate((0.15, 0.3, 0.45)):
         history = run("layer/layer", f"layer-{friction}", f"contact.0.friction={friction}")
-        time = np.arange(0, 8, 0.005)
-        phase = np.floor(time / 2)
-        sliding = np.ceil((1 / friction - 1) / 2)  # phases
-        arriving = np.where(phase < sliding, 1 - 2 * friction * phase, (1 - 2 * friction * sliding) * (-1) ** (phase - sliding))
-        axes[0, column].plot(time, np.where(phase < sliding, arriving - friction, 0), **EXACT)
-        axes[1, column].plot(time, np.where(phase < sliding, -friction, -arriving), label="closed form", **EXACT)
+        time, exact = np.arange(0, 8, 0.005), SlidingLayer(friction)
+        axes[0, column].plot(time, [exact.velocity(t) for t in time], **EXACT)
+        axes[1, column].plot(time, [exact.traction(t) for t in time], label="closed form", **EXACT)
         base = 0.5 * (history["left.displacement_x"] + history["right.displacement_x"])
         middle = 0.5 * (history["time"][1:] + history["time"][:-1])
         axes[0, column].plot(middle, np.diff(base) / np.diff(history["time"]) / 0.01, linewidth=1)

@@ -3,6 +3,9 @@ import numpy as np
 import matplotlib.pyplot as plt
 
 from picture_tools import EXACT, run, save
+from closed_forms_of_contacts import BlockInBowl
+from closed_forms_of_waves import TwoBars, sliding_plates
+from hertz import PointImpact
 
 
 def steps(axis, breaks, values, **style):
@@ -13,15 +16,14 @@ def steps(axis, breaks, values, **style):
 def bars_pair():
     figure, axes = plt.subplots(2, 2, figsize=(11, 6.4))
     speed, height = 0.01, 0.05
-    forms = (("pair", ("one", "two"), (3.0, 1.0), [0, 0.05, 2.05, 3], [0, 0.75, 0]),
-             ("hammer", ("hammer", "pile"), (3.0, 4.0), [0, 0.05, 2.05, 4.05, 6.05, 8.05, 10], [0, 3 / 4, 3 / 8, 3 / 16, 3 / 32, 0]))
-    for row, (case, bodies, masses, breaks, pressures) in enumerate(forms):
+    for row, (case, bodies, transit, end) in enumerate((("pair", ("one", "two"), (2.0, 2.0), 3.0), ("hammer", ("hammer", "pile"), (2.0, 8.0), 10.0))):
         history = run(f"bars-pair/{case}", f"bars-pair-{case}")
-        steps(axes[row, 0], breaks, pressures, label="closed form")
+        bars = TwoBars((3.0, 1.0), transit, (1.0, 0.0), 0.05, end)
+        breaks = [piece[0] for piece in bars.pieces] + [end]
+        steps(axes[row, 0], breaks, [piece[2] for piece in bars.pieces], label="closed form")
         axes[row, 0].plot(history["time"], history["contact.force_x"] / height / speed, linewidth=1, label="computed")
-        impulse = np.concatenate([[0.0], np.cumsum(np.diff(breaks) * pressures)])
-        for body, start, mass, sign in zip(bodies, (1.0, 0.0), masses, (-1, 1)):
-            axes[row, 1].plot(breaks, start + sign * impulse / mass, label="closed form" if sign < 0 else None, **EXACT)
+        for number, body in enumerate(bodies):
+            axes[row, 1].plot(breaks, [bars.mean_velocity(number, time) for time in breaks], label=None if number else "closed form", **EXACT)
             axes[row, 1].plot(history["time"], history[f"{body}.velocity_average_x"] / speed, linewidth=1.2, label=body)
         axes[row, 0].set(title=f"{case}: contact pressure / V")
         axes[row, 1].set(title=f"{case}: velocities of the centres of mass / V")
@@ -66,22 +68,10 @@ def cradle():
     save(figure, "cases/cradle/cradle.png")
 
 
-def point_impact(stiffness, mass, speed, steps=4000):
-    """Force over time of a spring, force = stiffness × compression^1.5, that a mass meets at this speed, until release."""
-    largest = (1.25 * mass * speed**2 / stiffness) ** 0.4
-    step, compression, velocity, forces = 2.943275 * largest / speed / steps, 0.0, speed, [0.0]
-    while compression >= 0.0:
-        velocity -= step * stiffness * compression**1.5 / mass
-        compression += step * velocity
-        forces.append(stiffness * max(compression, 0.0) ** 1.5)
-    return step * np.arange(len(forces)), np.array(forces)
-
-
-def impact_of_two(axes, history, moduli, radius, masses, color, label):
+def impact_of_two(axes, history, elastic, radii, masses, color, label):
     """Force and velocities of two bodies, a quarter of which is computed, beside Hertz; the first one comes with 1 m/s."""
     force, velocity = axes
-    modulus = 1 / sum((1 - poisson**2) / young for young, poisson in moduli)
-    times, forces = point_impact(4 / 3 * modulus * radius**0.5, masses[0] * masses[1] / sum(masses), 1.0)
+    times, forces = map(np.array, PointImpact.of_bodies(elastic, radii, masses, 1.0).course())
     computed = 4 * history["contact.force_z"]
     force.plot(1e6 * times, forces, label="Hertz" if color == 0 else None, **EXACT)
     force.plot(1e6 * history["time"], computed, f"C{color}", linewidth=1.3, label=label[0])
@@ -96,7 +86,7 @@ def balls():
     figure, axes = plt.subplots(1, 2, figsize=(11, 3.8))
     steel, density = (2.1e11, 0.3), 7800 * 4 / 3 * np.pi
     for color, (case, radius) in enumerate((("balls", 0.01), ("unequal", 0.02))):
-        impact_of_two(axes, run(f"balls/{case}", f"balls-{case}"), (steel, steel), 0.01 * radius / (0.01 + radius),
+        impact_of_two(axes, run(f"balls/{case}", f"balls-{case}"), (steel, steel), (0.01, radius),
                       (density * 0.01**3, density * radius**3), color,
                       (f"radii 10 and {1000 * radius:.0f} mm", f"the striking ball, 10 mm ({case})", f"the struck ball, {1000 * radius:.0f} mm ({case})"))
     axes[0].set(xlabel="time, µs", title="contact force, N")
@@ -108,7 +98,7 @@ def balls():
 
 def ball_block():
     figure, axes = plt.subplots(1, 2, figsize=(11, 3.8))
-    impact_of_two(axes, run("ball-block/ball-block", "ball-block"), ((2.1e11, 0.3), (7e10, 0.33)), 0.01,
+    impact_of_two(axes, run("ball-block/ball-block", "ball-block"), ((2.1e11, 0.3), (7e10, 0.33)), (0.01, np.inf),
                   (7800 * 4 / 3 * np.pi * 0.01**3, 2700 * 0.04**3), 0, ("computed", "ball", "block"))
     axes[0].set(xlabel="time, µs", title="contact force, N")
     axes[1].set(xlabel="time, µs", title="velocities of the centres of mass, m/s")
@@ -120,10 +110,9 @@ def ball_block():
 def stack():
     history = run("stack/stack", "stack")
     figure, (velocity, friction) = plt.subplots(1, 2, figsize=(11, 3.8))
-    breaks = [0, 2, 4, 6, 8]
-    steps(velocity, breaks, [0.775, 0.325, 0.25, 0.25], label="closed form")
-    steps(velocity, breaks, [0.075, 0.225, 0.25, 0.25])
-    steps(friction, breaks, [0.225, 0.225, -0.15, 0.15], label="closed form")
+    breaks, phases = [0, 2, 4, 6, 8], sliding_plates((1.0, 3.0), 1.0, 0.225)
+    for axis, number in ((velocity, 1), (velocity, 2), (friction, 0)):
+        steps(axis, breaks, [phase[number] for phase in phases], label=None if number == 2 else "closed form")
     middle = 0.5 * (history["time"][1:] + history["time"][:-1])
     for body in ("upper", "lower"):
         face = np.diff(history[f"{body}.displacement_average_x"]) / np.diff(history["time"])
@@ -136,27 +125,20 @@ def stack():
     save(figure, "cases/stack/stack.png")
 
 
-def quarter_swing(start=0.6, bowl=0.25, half=0.2, thick=0.15, gravity=9.81, count=4000):
-    """Times and velocities of a rigid block whose lower corners are on y = bowl x^2, from rest at -start to the bottom."""
+def quarter_swing(bowl, start=0.6, gravity=9.81, count=4000):
+    """Times and velocities of the block in the bowl, from rest at -start to the bottom."""
     phase = (np.arange(count) + 0.5) * np.pi / 2 / count
-    x, h = -start * np.cos(phase), 1e-6
-
-    def place(x):
-        turn = np.arctan(2 * bowl * x)
-        chord = bowl * x**2 + bowl * (half * np.cos(turn))**2
-        return np.array([x - 0.5 * thick * np.sin(turn), chord + 0.5 * thick * np.cos(turn), turn])
-
-    rate = (place(x + h) - place(x - h)) / (2 * h)
-    inertia = rate[0]**2 + rate[1]**2 + ((2 * half)**2 + thick**2) / 12 * rate[2]**2
-    speed = np.sqrt(2 * gravity * (place(-start)[1] - place(x)[1]) / inertia)
-    time = np.cumsum(start * np.sin(phase) / speed) * np.pi / 2 / count
-    return time, speed * rate[0]
+    x = -start * np.cos(phase)
+    heights, rates = zip(*((bowl.place(each)[1], bowl.rate(each)) for each in x))
+    inertia = np.array([bowl.inertia(rate) for rate in rates])
+    speed = np.sqrt(2 * gravity * (bowl.place(-start)[1] - np.array(heights)) / inertia)
+    return np.cumsum(start * np.sin(phase) / speed) * np.pi / 2 / count, speed * np.array([rate[0] for rate in rates])
 
 
 def slide():
     figure, (velocity, force) = plt.subplots(1, 2, figsize=(11, 3.8))
     history = run("slide/slide", "slide")
-    time, speed = quarter_swing()
+    time, speed = quarter_swing(BlockInBowl())
     half = np.concatenate([time, 2 * time[-1] - time[::-1]]), np.concatenate([speed, speed[::-1]])
     velocity.plot(np.concatenate([half[0], 2 * time[-1] + half[0]]), np.concatenate([half[1], -half[1]]), label="rigid", **EXACT)
     velocity.plot(history["time"], history["momentum.block_x"] / 0.06, linewidth=1.2, label="computed")

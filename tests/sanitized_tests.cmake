@@ -5,7 +5,7 @@
 set(RICOCHET_SANITIZE_TESTS
   unit.base.archive unit.base.blas_kernels unit.base.child_process unit.base.child_processes
   unit.base.dense_decompositions unit.base.expression unit.base.json unit.base.number_lines unit.base.parallel
-  unit.base.text unit.case.malformed_references unit.case.malformed_structure unit.case.malformed_values
+  unit.base.text unit.case.malformed_case
   unit.case.override unit.case.quantity unit.case.read_case unit.case.read_parts unit.case.read_time
   unit.contact.curved_contact unit.contact.rotating_normal unit.contact.sticking_normal unit.fclib.fclib_file
   unit.fclib.malformed_fclib unit.fem.material_law unit.fem.mesh_measures unit.fem.packed_law unit.fem.relaxation

@@ -18,9 +18,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "bench"))
-from page import blas_kernels, processor, write_parts
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from measurement import BUILD, ROOT, blas_kernels, processor, table, write_parts
 
 DEFAULT = ("ricochet", "automatic", False)
 INFINITE = float("inf")
@@ -76,8 +75,6 @@ def number(value, form="{:.1e}"):
 
 def solver_table(results, dimension, tolerance):
     names = results.names(dimension)
-    lines = ["| solver | failures | median time, ms | time / ours, median | fastest in | largest residual | largest distance |",
-             "|---|---|---|---|---|---|---|"]
     fastest = {}
     for name in names:
         times = {key: results.seconds(name, key, tolerance) for key in results.solvers(dimension)}
@@ -97,16 +94,12 @@ def solver_table(results, dimension, tolerance):
             label(key), f"{sum(not r['solved'] for r in records)} of {len(records)}", milliseconds(statistics.median(times)),
             number(statistics.median(ratios) if ratios else None, "{:.2f}"), str(fastest.get(key, 0)),
             number(max((r["residual"] for r in good), default=None)), number(max((r["distance_r"] for r in good), default=None))]))
-    for _, key, cells in sorted(rows, key=lambda row: (row[0], row[1])):
-        if key == DEFAULT:
-            cells = [f"**{cell}**" for cell in cells]
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines)
+    return table(["solver", "failures", "median time, ms", "time / ours, median", "fastest in", "largest residual", "largest distance"],
+                 [[f"**{cell}**" for cell in cells] if key == DEFAULT else cells for _, key, cells in sorted(rows, key=lambda row: (row[0], row[1]))])
 
 
 def ratio_table(results):
-    lines = ["| | problems | tolerance | failures of the default solver | Siconos' best solver for each problem / ours: quartiles "
-             "| Siconos' best single solver / ours, medians |", "|---|---|---|---|---|---|"]
+    rows = []
     for dimension in (2, 3):
         names = results.names(dimension)
         for tolerance in results.tolerances:
@@ -120,9 +113,10 @@ def ratio_table(results):
             best = min(single, default=(INFINITE, ("siconos", "none", False)))
             median = statistics.median(ours.values())
             failures = sum(value == INFINITE for value in ours.values())
-            lines.append(f"| {dimension}D | {len(names)} | {tolerance:g} | {failures} | {quartiles} | "
-                         f"{milliseconds(best[0])} ms ({best[1][1]}) / {milliseconds(median)} ms = {best[0] / median:.2f} |")
-    return "\n".join(lines)
+            rows.append([f"{dimension}D", len(names), f"{tolerance:g}", failures, quartiles,
+                         f"{milliseconds(best[0])} ms ({best[1][1]}) / {milliseconds(median)} ms = {best[0] / median:.2f}"])
+    return table(["", "problems", "tolerance", "failures of the default solver", "Siconos' best solver for each problem / ours: quartiles",
+                  "Siconos' best single solver / ours, medians"], rows)
 
 
 GROUPS = ["below 30", "30 to 2000", "above 2000", "not computed"]
@@ -134,8 +128,7 @@ def group_of(entry):
 
 
 def group_table(results, tolerance=1e-8):
-    lines = ["| | cond W | problems | points | Siconos' best / ours, median | Siconos' fastest solvers, number of problems |",
-             "|---|---|---|---|---|---|"]
+    rows = []
     for dimension in (2, 3):
         groups = {}
         for name in results.names(dimension):
@@ -153,15 +146,13 @@ def group_table(results, tolerance=1e-8):
             points = sorted(results.problems[name]["points"] for name in names)
             often = ", ".join(f"{name} {count}" for name, count in sorted(winners.items(), key=lambda item: -item[1])[:4])
             if ratios:
-                lines.append(f"| {dimension}D | {group} | {len(names)} | {points[0]} to {points[-1]} | {statistics.median(ratios):.2f} | {often} |")
-    return "\n".join(lines)
+                rows.append([f"{dimension}D", group, len(names), f"{points[0]} to {points[-1]}", f"{statistics.median(ratios):.2f}", often])
+    return table(["", "cond W", "problems", "points", "Siconos' best / ours, median", "Siconos' fastest solvers, number of problems"], rows)
 
 
 def claims_table(results):
     """Table of the claims of solvers without scaling, which use the tolerance unchanged."""
-    lines = ["| solver, W and q unscaled | tolerance | reported as solved | of these not solved | largest true residual "
-             "| largest distance |",
-             "|---|---|---|---|---|---|"]
+    rows = []
     for dimension in (2, 3):
         names = results.names(dimension) + results.names(dimension, rescaled=True)
         for key in results.solvers(dimension):
@@ -170,19 +161,15 @@ def claims_table(results):
             for tolerance in results.tolerances:
                 claimed = [r for name in names if (r := results.cells.get((name, key, tolerance))) and r.get("status") == 0]
                 wrong = [r for r in claimed if not r["solved"]]
-                lines.append(f"| {dimension}D {key[1]} | {tolerance:g} | {len(claimed)} of {len(names)} | {len(wrong)} | "
-                             f"{number(max((r['residual'] for r in claimed), default=None))} | "
-                             f"{number(max((r['distance_r'] for r in claimed), default=None))} |")
-    return "\n".join(lines)
+                rows.append([f"{dimension}D {key[1]}", f"{tolerance:g}", f"{len(claimed)} of {len(names)}", len(wrong),
+                             *(number(max((r[size] for r in claimed), default=None)) for size in ("residual", "distance_r"))])
+    return table(["solver, W and q unscaled", "tolerance", "reported as solved", "of these not solved", "largest true residual", "largest distance"], rows)
 
 
 def sequence_table(path):
     if not path.exists():
         return ""
-    lines = ["| 50 steps of | points | one product W r, ms | Ricochet, ms per step | Siconos' fastest, ms per step | ratio | failures, ours and theirs |",
-             "|---|---|---|---|---|---|---|"]
-    records = json.loads(path.read_text())
-    ratios = []
+    records, rows, ratios = json.loads(path.read_text()), [], []
     for name in sorted({record["sequence"] for record in records}):
         ours = next(r for r in records if r["sequence"] == name and r["by"] == "ricochet")
         theirs = [r for r in records if r["sequence"] == name and r["by"] == "siconos"]
@@ -190,22 +177,21 @@ def sequence_table(path):
         if best is None:
             continue
         ratios.append(best["median"] / ours["median"])
-        lines.append(f"| {name} | {ours['points']} | {ours['product'] * 1e3:.2g} | {ours['median'] * 1e3:.3g} | {best['median'] * 1e3:.3g} ({best['solver']}) | "
-                     f"{ratios[-1]:.2f} | {ours['failures']}, {best['failures']} |")
+        rows.append([name, ours["points"], f"{ours['product'] * 1e3:.2g}", f"{ours['median'] * 1e3:.3g}", f"{best['median'] * 1e3:.3g} ({best['solver']})",
+                     f"{ratios[-1]:.2f}", f"{ours['failures']}, {best['failures']}"])
     if ratios:
-        lines.append(f"| median | | | | | {statistics.median(ratios):.2f} | |")
-    return "\n".join(lines)
+        rows.append(["median", "", "", "", "", f"{statistics.median(ratios):.2f}", ""])
+    return table(["50 steps of", "points", "one product W r, ms", "Ricochet, ms per step", "Siconos' fastest, ms per step", "ratio",
+                  "failures, ours and theirs"], rows)
 
 
 def problem_table(results):
-    lines = ["| problem | points | F | cond W | open | sticking or closed | slipping | ours at 1e-8, ms | Siconos' best, ms |",
-             "|---|---|---|---|---|---|---|---|---|"]
+    rows = []
     for name in sorted(results.problems):
         entry = results.problems[name]
-        lines.append(f"| {name} | {entry['points']} | {entry['friction']:g} | {number(entry['condition'], '{:.3g}')} | {entry['open']} | "
-                     f"{entry['sticking']} | {entry['slipping']} | {milliseconds(results.seconds(name, DEFAULT, 1e-8))} | "
-                     f"{milliseconds(results.best_of_theirs(name, 1e-8))} |")
-    return "\n".join(lines)
+        rows.append([name, entry["points"], f"{entry['friction']:g}", number(entry["condition"], "{:.3g}"), entry["open"], entry["sticking"],
+                     entry["slipping"], milliseconds(results.seconds(name, DEFAULT, 1e-8)), milliseconds(results.best_of_theirs(name, 1e-8))])
+    return table(["problem", "points", "F", "cond W", "open", "sticking or closed", "slipping", "ours at 1e-8, ms", "Siconos' best, ms"], rows)
 
 
 COLOURS = ["#2b6cb0", "#2f855a", "#b7791f", "#6b46c1", "#0f766e", "#9d174d", "#4a5568", "#c05621"]
@@ -266,7 +252,7 @@ def report(directory, results="results.json", sequences="sequences.json", only_p
     if only_print:
         print("\n\n".join(parts.values()))
         return
-    write_parts(ROOT / "docs/contact-solvers.md", parts)
+    write_parts("contact-solvers.md", parts)
     profile(results, ROOT / "docs/figures/contact-solvers.png")
 
 
@@ -280,7 +266,7 @@ def machine(libraries):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="tables and plots of the contact benchmark, from the results of run.py")
-    parser.add_argument("--directory", type=pathlib.Path, default=ROOT / "build/bench-contact")
+    parser.add_argument("--directory", type=pathlib.Path, default=BUILD / "bench-contact")
     parser.add_argument("--print", action="store_true", help="only print the tables")
     options = parser.parse_args()
     report(options.directory, only_print=options.print)

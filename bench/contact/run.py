@@ -7,7 +7,6 @@ Writes DIRECTORY/results.json, one record for each problem, solver and tolerance
 tables and plots of them. Siconos' results are kept from run to run (theirs.json) until the file of a problem changes.
 """
 
-import argparse
 import json
 import os
 import pathlib
@@ -33,7 +32,7 @@ from siconos_solvers import RAW, SOLVERS
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from page import blas_kernels, libraries, with_kernels
+from measurement import Arguments, blas_kernels, libraries, output_of, with_kernels
 
 TOLERANCES = (1e-4, 1e-8, 1e-12)
 LIMIT = 20.0  # seconds for one call
@@ -313,11 +312,9 @@ def sequence_record(name, problem, by, solver, tolerance, answers):
 
 
 def parse():
-    root = HERE.parents[1]
-    parser = argparse.ArgumentParser(
-        prog="./dev bench contact",
-        description="Ricochet's contact solvers against Siconos': makes the set of problems, runs everything, and writes the tables "
-                    "and the plot of docs/contact-solvers.md. With any option that omits a part, the tables are only printed.")
+    parser = Arguments("contact", "Ricochet's contact solvers against Siconos': makes the set of problems, runs everything, and writes the tables\n"
+                       "and the plot of docs/contact-solvers.md. With any option that omits a part, the tables are only printed.",
+                       directory=True, build="ricochet and of its benchmark programs")
     parser.add_argument("--only", default="", metavar="NAME", help="only the cases whose name contains this text (case_table.py)")
     parser.add_argument("--default-only", action="store_true", help="of Ricochet's solvers only the default one")
     parser.add_argument("--ours-only", action="store_true", help="without Siconos' solvers")
@@ -330,12 +327,7 @@ def parse():
     parser.add_argument("--again-solvers", nargs="*", default=[], metavar="SOLVER",
                         help="also time all results of these solvers again")
     parser.add_argument("--write", action="store_true", help="write the page even if parts are omitted, with the cached results")
-    parser.add_argument("--directory", type=pathlib.Path, default=root / "build/bench-contact",
-                        help="directory of problems and results")
-    parser.add_argument("--build", type=pathlib.Path, default=root / "build",
-                        help="folder of ricochet and of its benchmark programs")
-    parser.add_argument("--check", action="store_true", help="only check the arguments")
-    arguments = parser.parse_args()
+    arguments = parser.parse()
     if not any(arguments.only in case.name for case in CASES):
         parser.error(f"--only {arguments.only}: no case has a name that contains this; available: "
                      f"{', '.join(case.name for case in CASES)}")
@@ -348,12 +340,10 @@ def parse():
 
 def main():
     arguments = parse()
-    if arguments.check:
-        return
     directory = arguments.directory.resolve()
     arguments.libraries = libraries(arguments.program)
     make_set.make(arguments.program, directory, arguments.only)
-    listing = subprocess.run([arguments.program, "contact", "--list"], capture_output=True, text=True, check=True).stdout
+    listing = output_of([arguments.program, "contact", "--list"])
     our_solvers = ["automatic"] if arguments.default_only else [line.split()[0] for line in listing.splitlines() if line.strip()]
     in_part = bool(arguments.only or arguments.default_only or arguments.ours_only or tuple(arguments.tolerances) != TOLERANCES)
     if not arguments.no_problems:

@@ -3,6 +3,8 @@ such."""
 
 import math
 
+from measurement import table
+
 # Estimates that cannot be measured here.
 LATENCY = 1e-6          # s per message
 NEIGHBOURS = 14         # of a part
@@ -53,11 +55,10 @@ class Step:
         return m["iterations"] * self.iteration(dofs, cores), m["rounds"] * self.zones(dofs, cores)
 
 
-def table(steps, memory_per_dof):
+def extrapolation(steps, memory_per_dof):
     """`steps`: name and Step. Seconds of gradients + of contact."""
     cores = (10, 100, 1000, 10000)
-    lines = ["| dofs | memory | a wave crosses in a step | " + " | ".join(f"{c:,} cores" for c in cores) + " |",
-             "|---|---|---|" + "---|" * len(cores)]
+    rows = []
     for dofs in (1e7, 1e8, 1e9):
         for name, step in steps:
             cells = []
@@ -66,5 +67,5 @@ def table(steps, memory_per_dof):
                 cells.append(f"{gradients:.2g} + {contact:.2g} s" if dofs / count > 1000 else "too small")
             memory = dofs * memory_per_dof
             text = f"{memory / 1e9:,.0f} GB" if memory < 1e12 else f"{memory / 1e12:.1f} TB"
-            lines.append(f"| 10^{round(math.log10(dofs))} | {text} | {name} | " + " | ".join(cells) + " |")
-    return "\n".join(lines)
+            rows.append([f"10^{round(math.log10(dofs))}", text, name, *cells])
+    return table(["dofs", "memory", "a wave crosses in a step", *(f"{c:,} cores" for c in cores)], rows)

@@ -11,7 +11,6 @@ Model.solve, with MUMPS. Prints one JSON object; FILE (npz) has displacements an
 """
 
 import argparse
-import ctypes
 import json
 import os
 import sys
@@ -23,6 +22,7 @@ for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
 import getfem
 import numpy as np
 
+from measurement import loaded_kernels
 from problems import DENSITY, LAMBDA, MU, gap
 
 LOWER, TOP = 2, 3  # groups of the meshes, as numbered by Gmsh
@@ -168,13 +168,6 @@ def dynamic(arguments):
     return body, record, displacements, forces
 
 
-def kernels():
-    """Returns the kernels of the OpenBLAS that GetFEM's MUMPS and numpy use."""
-    function = ctypes.CDLL("libopenblas.so.0").openblas_get_corename
-    function.restype = ctypes.c_char_p
-    return function().decode()
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("action", choices=("static", "newmark", "trapezoidal", "midpoint"))
@@ -195,7 +188,7 @@ def main():
     weights = getfem.asm_boundary_source(LOWER, body.twice, one, one, np.ones((1, one.nbdof())))  # force over pressure
     np.savez(arguments.arrays, points=body.points.T, weights=weights[body.normal // body.dimension], displacement=np.array(displacements).reshape(-1, nodes, body.dimension),
              contact_points=body.points.T[body.normal // body.dimension], force=np.array(forces))
-    json.dump(record | {"dofs": body.dofs, "contact_points": len(body.normal), "kernels": kernels()}, sys.stdout)
+    json.dump(record | {"dofs": body.dofs, "contact_points": len(body.normal), "kernels": loaded_kernels()}, sys.stdout)
 
 
 if __name__ == "__main__":

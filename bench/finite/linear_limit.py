@@ -17,7 +17,6 @@ the same one, times the factor. Exceptions, which the table names:
 """
 
 import argparse
-import csv
 import json
 import pathlib
 import subprocess
@@ -26,7 +25,9 @@ import tomllib
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from measurement import BUILD, ROOT, history
+
 AGREEMENT = 1e-6
 LAWS = ("saint-venant-kirchhoff", "neo-hookean")
 # Parts that start at a distance, with the motion that closes (1 - factor) of the gap.
@@ -118,10 +119,7 @@ def run(path, settings, directory, seconds, program):
         return done.stderr.strip().split("\n")[-1]
     if not (directory / "history.csv").is_file():
         return f"not started within {seconds:g} s"
-    with open(directory / "history.csv", newline="") as file:
-        rows = csv.reader(file)
-        names = next(rows)
-        return dict(zip(names, np.array([[float(entry) for entry in row] for row in rows]).T))
+    return {name: np.array(column) for name, column in history(directory).items()}
 
 
 def differences(linear, other):
@@ -183,7 +181,7 @@ def main():
     parser.add_argument("--factors", type=float, nargs="+", default=[1e-7, 1e-8, 1e-4], help="factors of loads, motions and gaps; the first suitable one is used (default: %(default)s)")
     parser.add_argument("--seconds", type=float, default=120, help="time after which a run is stopped (default: %(default)s)")
     parser.add_argument("--output", type=pathlib.Path, default=ROOT / "out" / "linear-limit", help="directory of the runs (default: %(default)s)")
-    parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build" / "ricochet", help="(default: %(default)s)")
+    parser.add_argument("--program", type=pathlib.Path, default=BUILD / "ricochet", help="(default: %(default)s)")
     arguments = parser.parse_args()
     print("| case | factor | SVK: forces | displacements | steps | neo-Hookean: forces | displacements | steps | |\n|---|---|---|---|---|---|---|---|---|", flush=True)
     for path in arguments.cases or sorted((ROOT / "cases").glob("*/*.toml")):

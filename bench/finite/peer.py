@@ -1,17 +1,13 @@
 """Runs Ricochet and GetFEM on one problem, and compares their results."""
 
-import json
 import pathlib
-import resource
-import subprocess
-import sys
 
 import h5py
 import numpy as np
 
 import ours
-import page
 import problems
+from measurement import history, processor_seconds, record_of_peer
 
 HERE = pathlib.Path(__file__).resolve().parent
 FIELDS = '["displacement", "contact_pressure", "friction_traction"]'
@@ -49,16 +45,10 @@ def largest_stretch(points, cells, displacement):
 
 def getfem(action, mesh, dimension, friction, file, kernels, **options):
     """Returns the record that getfem_finite.py prints, or {"failed": why}; arrays are in `file`."""
-    command = [sys.executable, str(HERE / "getfem_finite.py"), action, str(mesh), str(dimension), "--friction", repr(friction), "--arrays", str(file)]
+    command = [HERE / "getfem_finite.py", action, mesh, dimension, "--friction", repr(friction), "--arrays", file]
     for name, value in options.items():
         command += [f"--{name}", repr(value)]
-    result = subprocess.run(command, capture_output=True, text=True, env=page.with_kernels(kernels) | {"PYTHONPATH": str(HERE.parent / "step")})
-    if result.returncode != 0:
-        return {"failed": result.stderr.strip().splitlines()[-1] if result.stderr else f"exit status {result.returncode}"}
-    record = json.loads(result.stdout[result.stdout.index("{"):])
-    if record["kernels"] != kernels:
-        return {"failed": f"OpenBLAS uses the kernels for {record['kernels']}, ours those for {kernels}"}
-    return record
+    return record_of_peer(command, kernels)
 
 
 def differences(mine, file, first, bound):
@@ -96,36 +86,25 @@ def at_bound(force, friction, bound):
     return int((np.linalg.norm(friction[pressed], axis=1) > bound * force[pressed] * (1.0 - 1e-6)).sum())
 
 
-def processor_seconds(case, directory, settings):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    ours.run(case, directory, settings, fields=False)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-
 def step_seconds(case, directory, steps):
     """Returns the processor time of a step with contact: a run of all steps less one of the steps before contact, with
     rows of the history only at the end."""
-    settings = {"output.history_every": 1000000}
-    short = processor_seconds(case, directory, settings | {"time.end": repr(problems.FLIGHT * problems.STEP)})
-    return (processor_seconds(case, directory, settings) - short) / (steps - problems.FLIGHT)
+    def seconds(**more):
+        return processor_seconds(ours.run, case, directory, {"output.history_every": 1000000} | more, fields=False)
+
+    short = seconds(**{"time.end": repr(problems.FLIGHT * problems.STEP)})
+    return (seconds() - short) / (steps - problems.FLIGHT)
 
 
 def newton_rounds(directory):
     """Returns the Newton iterations of the steps with contact of a run with all rows."""
-    with open(directory / "history.csv", newline="") as file:
-        names = file.readline().strip().split(",")
-        return [int(row) for row in np.loadtxt(file, delimiter=",", usecols=names.index("newton_rounds"), ndmin=1)[problems.FLIGHT + 1:]]
+    return [int(rounds) for rounds in history(directory)["newton_rounds"][problems.FLIGHT + 1:]]
 
 
 def rounds_by_phase(directory):
     """Returns the iterations by whether contact is open, changes or is unchanged, as ricochet_step_bench classifies
     steps."""
-    with open(directory / "history.csv", newline="") as file:
-        names = file.readline().strip().split(",")
-        rows = np.loadtxt(file, delimiter=",", usecols=(names.index("newton_rounds"), names.index("active_contacts")), ndmin=2).astype(int)
-    phases = {"open": [], "changing": [], "closed": []}
-    for k in range(2, len(rows)):
-        active, before = rows[k, 1], rows[k - 1, 1]
-        phases["open" if active == before == 0 else "closed" if active == before else "changing"].append(int(rows[k, 0]))
+    columns, phases = history(directory), {"open": [], "changing": [], "closed": []}
+    for rounds, active, before in list(zip(columns["newton_rounds"], columns["active_contacts"], [0] + columns["active_contacts"]))[2:]:
+        phases["open" if active == before == 0 else "closed" if active == before else "changing"].append(int(rounds))
     return phases

@@ -7,7 +7,6 @@ Makes the meshes (gmsh), runs Ricochet and getfem_finite.py, writes DIRECTORY/re
 docs/performance.md. The programs take turns, so that the load of the machine affects both.
 """
 
-import argparse
 import datetime
 import json
 import os
@@ -18,11 +17,10 @@ import sys
 
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ[variable] = "1"
-HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "bench" / "step"), str(ROOT / "bench" / "peers")]
+BENCH = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(BENCH), str(BENCH / "step"), str(BENCH / "peers")]
+import measurement
 import ours
-import page
 import peer
 import problems
 import where
@@ -156,35 +154,18 @@ PARTS = {"statics": measure_statics, "dynamics": measure_dynamics, "times": meas
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="./dev bench finite", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", choices=PARTS, nargs="+", default=list(PARTS), help="only these parts; the others are kept")
-    parser.add_argument("--report", action="store_true", help="only rewrite the pages from the stored measurements")
-    parser.add_argument("--repeat", type=int, default=3, help="number of runs, which take turns; times are their medians (default: %(default)s)")
-    parser.add_argument("--directory", type=pathlib.Path, default=ROOT / "build/bench-finite", help="directory of meshes and results")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="folder of ricochet and ricochet_step_bench")
+    parser = measurement.Arguments("finite", __doc__, repeat=3, directory=True, build="ricochet and ricochet_step_bench")
+    measurement.add_parts(parser, PARTS)
     parser.add_argument("--program", type=pathlib.Path, help="path of ricochet, if it is elsewhere")
-    parser.add_argument("--check", action="store_true", help="only check the arguments")
-    arguments = parser.parse_args()
-    if arguments.check:
-        return
-    program = arguments.program or arguments.build / "ricochet"
-    ours.PROGRAM = program
-    arguments.kernels = page.blas_kernels(page.libraries(program))
-    directory = arguments.directory.resolve()
-    directory.mkdir(parents=True, exist_ok=True)
-    results = directory / "results.json"
-    everything = json.loads(results.read_text()) if results.exists() else {}
-    for part in [] if arguments.report else arguments.only:
-        everything[part] = {"date": str(datetime.date.today()), "libraries": page.libraries(program), "records": []}
-        for record in PARTS[part](arguments, directory):
-            everything[part]["records"].append(record)
-            print(part, {key: value for key, value in record.items() if not isinstance(value, list) or len(value) < 4}, file=sys.stderr, flush=True)
-            results.write_text(json.dumps(everything, indent=1))
-    if not everything:
-        sys.exit(f"{results}: nothing has been measured yet; run without --report")
+    arguments = parser.parse()
+    ours.PROGRAM = arguments.program or arguments.build / "ricochet"
+    libraries = measurement.libraries(ours.PROGRAM)
+    arguments.kernels = measurement.blas_kernels(libraries)
+    everything = measurement.measure_parts(
+        arguments, PARTS, lambda records: {"date": str(datetime.date.today()), "libraries": libraries, "records": records})
     import tables
 
-    sys.exit(0 if tables.report(everything, ROOT / "docs") else 1)
+    sys.exit(0 if tables.report(everything) else 1)
 
 
 if __name__ == "__main__":

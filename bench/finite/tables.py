@@ -2,14 +2,9 @@
 
 import statistics
 
-import page
+from measurement import PHASES, processor, table, write_parts
 
 AGREE = 1e-6  # of forces, relative to the largest one
-PHASES = (("open", "open"), ("changing", "closing"), ("closed", "closed"))
-
-
-def table(head, rows):
-    return "\n".join(["| " + " | ".join(head) + " |", "|" + "---|" * len(head)] + ["| " + " | ".join(row) + " |" for row in rows])
 
 
 def percent(value):
@@ -29,7 +24,7 @@ def static_table(records):
         if "failed" in record:
             rows.append(row + [record["failed"]] + [""] * 7)
             continue
-        rows.append(row + [str(record["dofs"]), percent(record["strain"]), f"{record['pressed']:.0f}", f"{record['at_bound']:.0f}" if "at_bound" in record else "",
+        rows.append(row + [record["dofs"], percent(record["strain"]), f"{record['pressed']:.0f}", f"{record['at_bound']:.0f}" if "at_bound" in record else "",
                            f"{record['largest_force']:.8g}", small(record, "displacement"), small(record, "force"), small(record, "friction_force")])
     return table(["body", "pressed by", "F", "dofs", "largest strain", "nodes pressed", "of these at the friction bound", "force", "displacement", "nodal force",
                   "nodal friction"], rows)
@@ -39,12 +34,12 @@ def dynamic_table(records):
     rows = []
     for record in records:
         name, dimension, _ = record["body"]
-        row = [name, f"{record['speed']:g}", f"{record['friction_coefficient']:g}", record["scheme"], str(record["steps"]), percent(record["strain"])]
+        row = [name, f"{record['speed']:g}", f"{record['friction_coefficient']:g}", record["scheme"], record["steps"], percent(record["strain"])]
         if "failed" in record:
             rows.append(row + [record["failed"]] + [""] * 5)
             continue
         since = int(record["beyond"])
-        rows.append(row + [str(record["dofs"]), f"{record['pressed']:.0f}", small(record, "displacement"), small(record, "force"),
+        rows.append(row + [record["dofs"], f"{record['pressed']:.0f}", small(record, "displacement"), small(record, "force"),
                            small(record, "friction_force"), str(since) if since else "never"])
     return table(["body", "speed", "F", "scheme", "steps", "largest strain", "dofs", "nodes pressed", "displacement", "nodal force", "nodal friction",
                   "beyond 10⁻⁸ from step"], rows)
@@ -59,7 +54,7 @@ def time_table(records):
             rows.append(row + [record["failed"]] + [""] * 8)
             continue
         theirs = statistics.median(record["theirs"])
-        row += [str(record["steps"]), f"{statistics.mean(record['iterations']):.1f}", f"{1e3 * theirs:.4g}"]
+        row += [record["steps"], f"{statistics.mean(record['iterations']):.1f}", f"{1e3 * theirs:.4g}"]
         for scheme in ("newmark", "reduced-kane"):
             if scheme in record["stopped"]:
                 row += ["not finished", "–", "–"]
@@ -125,8 +120,8 @@ def forces_agree(everything):
     return agree
 
 
-def report(everything, docs):
-    note = {part: f"Measured {entry['date']} on a busy machine of two cores ({page.processor()}), one thread, with {entry['libraries']}." for part, entry in everything.items()}
+def report(everything):
+    note = {part: f"Measured {entry['date']} on a busy machine of two cores ({processor()}), one thread, with {entry['libraries']}." for part, entry in everything.items()}
     peers, performance = {}, {}
     if "statics" in everything:
         peers["finite statics"] = static_table(everything["statics"]["records"])
@@ -138,6 +133,6 @@ def report(everything, docs):
         performance["finite costs"] = f"{note['costs']}\n\n{cost_table(everything['costs']['records'])}"
     if everything.get("where", {}).get("records"):
         performance["finite where"] = where_table(everything["where"]["records"])
-    page.write_parts(docs / "peers.md", peers)
-    page.write_parts(docs / "performance.md", performance)
+    write_parts("peers.md", peers)
+    write_parts("performance.md", performance)
     return forces_agree(everything)

@@ -8,7 +8,6 @@ start of the program; the table shows its median and quartiles, and the size of 
 docs/reliability.md.
 """
 
-import argparse
 import pathlib
 import shutil
 import statistics
@@ -17,10 +16,10 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "bench" / "step")]
+BENCH = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(BENCH), str(BENCH / "step")]
 import bodies
-from page import write_parts
+from measurement import Arguments, table, write_parts
 
 VARIANTS = {
     "no fields": ["output.fields_every=0"],
@@ -64,17 +63,11 @@ def cell(ratios, size):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="./dev bench output", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--repeat", type=int, default=15, help="number of repetitions (default: %(default)s)")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="folder of the program")
-    parser.add_argument("--check", action="store_true", help="only check the arguments")
-    arguments = parser.parse_args()
+    parser = Arguments("output", __doc__, repeat=15, build="the program")
+    arguments = parser.parse()
     if arguments.repeat < 2:
-        parser.error("--repeat must be at least 2")
-    if arguments.check:
-        return 0
-    lines = [f"| body | without fields | {' | '.join(list(VARIANTS)[1:])} |", f"|{'---|' * (len(VARIANTS) + 1)}"]
+        parser.error("argument --repeat: must be at least 2")
+    rows = []
     with tempfile.TemporaryDirectory() as folder:
         directory = pathlib.Path(folder)
         for label, name, dimension, size, steps in (("disc, 1,060 dofs, 1500 steps", "disc", 2, 0.09, 1500),
@@ -84,12 +77,10 @@ def main():
             newmark = f'scheme = "newmark"\npreset = "trapezoidal"\nstep = {0.16 / steps!r}\nend = 0.16\n'
             path = bodies.case(directory, (name, dimension, size), time=newmark, output="")
             plain, ratios, sizes = measure(arguments.build / "ricochet", path, directory, arguments.repeat)
-            cells = [cell(ratios[variant], sizes[variant]) for variant in list(VARIANTS)[1:]]
-            lines.append(f"| {label} | {plain:.2f} s | {' | '.join(cells)} |")
-            print(lines[-1], flush=True)
-    write_parts(ROOT / "docs" / "reliability.md", {"output": "\n".join(lines)})
-    return 0
+            rows.append([label, f"{plain:.2f} s", *(cell(ratios[variant], sizes[variant]) for variant in list(VARIANTS)[1:])])
+            print(*rows[-1], sep=" | ", flush=True)
+    write_parts("reliability.md", {"output": table(["body", "without fields", *list(VARIANTS)[1:]], rows)})
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

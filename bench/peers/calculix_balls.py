@@ -13,7 +13,6 @@ import math
 import os
 import pathlib
 import re
-import resource
 import subprocess
 import sys
 import tempfile
@@ -22,6 +21,9 @@ import meshio
 import numpy as np
 
 import ours
+
+sys.path.insert(0, str(ours.ROOT / "benchmarks"))
+from hertz import PointImpact
 
 CASE = ours.ROOT / "cases" / "balls" / "balls.toml"
 RADIUS, YOUNG, POISSON, DENSITY, SPEED = 10.0, 2.1e5, 0.3, 7.8e-9, 1000.0  # mm, N, s, t
@@ -96,13 +98,6 @@ CELS
     return "\n".join(lines)
 
 
-def processor_seconds(action):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    action()
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-
 class Run:
     """Force and energies (elastic, kinetic and of the penalty) of whole balls at every step; N, s, mJ. `start`: the
     initial energy."""
@@ -122,7 +117,7 @@ def calculix(ball, directory, penalty, dynamic, start):
     if not (directory / "seconds").exists():
         (directory / "balls.inp").write_text(deck(ball, penalty, dynamic))
         with open(directory / "balls.log", "w") as log:
-            seconds = processor_seconds(lambda: subprocess.run(
+            seconds = ours.processor_seconds(lambda: subprocess.run(
                 [os.environ.get("CCX", "ccx"), "balls"], cwd=directory, stdout=log, stderr=log, check=True,
                 env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}))
         (directory / "seconds").write_text(f"{seconds}")
@@ -140,21 +135,16 @@ def calculix(ball, directory, penalty, dynamic, start):
 
 def ricochet(directory, step):
     settings = {"time.step": repr(step), "time.end": repr(END)}
-    seconds = processor_seconds(lambda: ours.run(CASE, directory / "run", settings, fields=False))
-    with open(directory / "run" / "history.csv", newline="") as file:
-        names = file.readline().strip().split(",")
-        columns = [names.index(name) for name in ("time", "contact.force_z", "elastic_energy", "kinetic_energy")]
-        values = np.loadtxt(file, delimiter=",", usecols=columns) * [1, 4, 4e3, 4e3] @ np.eye(4, 5)
+    seconds = ours.processor_seconds(ours.run, CASE, directory / "run", settings, fields=False)
+    columns = ours.history(directory / "run")
+    values = np.column_stack([columns[name] for name in ("time", "contact.force_z", "elastic_energy", "kinetic_energy")]) * [1, 4, 4e3, 4e3] @ np.eye(4, 5)
     return Run(seconds, 0, values[1:], values[0, 3])
 
 
 def hertz():
     """Returns the largest force, the duration, and the instant at which the force falls below LOW."""
-    modulus, radius, mass = YOUNG / (2 * (1 - POISSON**2)), RADIUS / 2, 2 * math.pi / 3 * RADIUS**3 * DENSITY
-    compression = (15 * mass * SPEED**2 / (16 * modulus * math.sqrt(radius))) ** 0.4
-    duration = 4 * math.sqrt(math.pi) / 5 * math.gamma(0.4) / math.gamma(0.9) * compression / SPEED
-    stiffness = 4 / 3 * modulus * math.sqrt(radius)
-    return stiffness * compression**1.5, duration, duration - (LOW / stiffness) ** (2 / 3) / SPEED
+    impact = PointImpact.of_bodies([(YOUNG, POISSON)] * 2, [RADIUS] * 2, [4 * math.pi / 3 * RADIUS**3 * DENSITY] * 2, SPEED)
+    return impact.force, impact.duration, impact.duration - (LOW / impact.stiffness) ** (2 / 3) / SPEED
 
 
 AUTOMATIC = f"*DYNAMIC\n1e-6, {END}"

@@ -296,12 +296,6 @@ ROWS = [
 OUR_MASS = {"consistent": "consistent", "lumped": "lumped", "nearest": "equivalent-nearest", "theirs": "equivalent-nearest"}
 
 
-def energies(directory):
-    with open(pathlib.Path(directory) / "history.csv", newline="") as file:
-        names = file.readline().strip().split(",")
-        return np.loadtxt(file, delimiter=",", usecols=names.index("total_energy"))
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--only", default="", help="only the rows whose name contains this text")
@@ -338,7 +332,7 @@ def main():
             ours.run(CASE, scratch + "/run", {**row.settings, "mass.type": OUR_MASS[row.mass], "time.step": repr(STEP),
                                               "time.end": repr(STEP * steps)})
             taken = ours.Steps(scratch + "/run", body, "lower")
-            mine = taken.displacement[1:, :, 1], taken.normal_force[1:], energies(scratch + "/run")[1:]
+            mine = taken.displacement[1:, :, 1], taken.normal_force[1:], ours.history(scratch + "/run")["total_energy"][1:]
             states = {"states": ours.states(scratch + "/run")} if row.from_ours else {}
             theirs = row.theirs(disc, mass, load, steps, **states)
             differences = [abs(a - b).reshape(steps, -1).max(axis=1) / max(abs(a).max(), 1e-300) for a, b in zip(mine, theirs)]

@@ -11,7 +11,6 @@ import argparse
 import contextlib
 import io
 import os
-import pathlib
 import runpy
 import sys
 import tempfile
@@ -58,11 +57,8 @@ def theirs(demo, settings):
 
 def mine(directory, settings, steps):
     ours.run(CASE, directory, {**settings, "time.step": repr(STEP), "time.end": repr(STEP * steps)}, fields=False)
-    with open(pathlib.Path(directory) / "history.csv", newline="") as file:
-        names = file.readline().strip().split(",")
-        rows = np.loadtxt(file, delimiter=",")
-    return (rows[:, names.index("tip.displacement_x")], rows[:, names.index("contact_force_x")] / HEIGHT,
-            rows[:, names.index("total_energy")] / HEIGHT)
+    columns = ours.history(directory)
+    return columns["tip.displacement_x"], columns["contact_force_x"] / HEIGHT, columns["total_energy"] / HEIGHT
 
 
 def main():

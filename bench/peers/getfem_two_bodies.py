@@ -12,7 +12,6 @@ RICOCHET=PROGRAM names a program elsewhere.
 import argparse
 import os
 import pathlib
-import resource
 import statistics
 import subprocess
 import sys
@@ -98,10 +97,7 @@ def write_case(directory, size=1.0):
 
 
 def processor_seconds(case, steps, settings):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    ours.run(case, case.parent / "run", {**settings, "time.end": repr(STEP * steps)}, fields=False)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return ours.processor_seconds(ours.run, case, case.parent / "run", {**settings, "time.end": repr(STEP * steps)}, fields=False)
 
 
 def times(case, steps, settings):
@@ -113,10 +109,7 @@ def times(case, steps, settings):
 def ricochet(case, steps, settings=None):
     """Returns the force after every step."""
     processor_seconds(case, steps + 1, settings or {})
-    with open(case.parent / "run" / "history.csv", newline="") as file:
-        names = file.readline().strip().split(",")
-        force = np.loadtxt(file, delimiter=",", usecols=names.index("contact.force_y"))
-    return force[1:steps + 1]
+    return ours.history(case.parent / "run")["contact.force_y"][1:steps + 1]
 
 
 def nodal(model, integration, space):

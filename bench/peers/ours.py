@@ -8,7 +8,10 @@ import sys
 import h5py
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import measurement
+from measurement import ROOT, processor_seconds
+
 PROGRAM = pathlib.Path(os.environ.get("RICOCHET", ROOT / "build" / "ricochet"))
 
 
@@ -44,6 +47,11 @@ class Steps:
             self.friction = np.zeros_like(self.displacement)
             if "friction_traction" in frames[0]:
                 self.friction = np.array([frame["friction_traction"][:][nodes, :2] for frame in frames]) * lengths[:, None]
+
+
+def history(directory):
+    """Returns the columns of history.csv as arrays."""
+    return {name: np.array(column) for name, column in measurement.history(directory).items()}
 
 
 def states(directory):

@@ -3,11 +3,16 @@
 import json
 import math
 import os
+import pathlib
 import re
 import subprocess
+import sys
 
-from page import documented_columns
 from quantities import LENGTH
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "docs"))
+
+from history_columns import documented_columns  # noqa: E402
 
 TIME_LIMIT = 300  # seconds
 OUT_OF_SIGHT = 100  # sizes of the model: a larger gap stands for none

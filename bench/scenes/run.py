@@ -9,26 +9,24 @@ Prints a line for each finding, with the seed, the property, its size and the fo
 the first 1,000 scenes are written into docs/energy.md. Status 1: there are findings.
 """
 
-import argparse
 import collections
 import concurrent.futures
 import os
 import pathlib
 import random
-import resource
 import shutil
 import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "bench" / "scenes")]
+BENCH = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(BENCH), str(BENCH / "scenes")]
 import energy
 import properties
 from draw import FAMILIES, scene_of
-from page import write_parts
+from measurement import BUILD, Arguments, positive, programs_seconds, table, write_parts
 
-PROGRAM = pathlib.Path(os.environ.get("RICOCHET_PROGRAM") or ROOT / "build" / "ricochet")
+PROGRAM = pathlib.Path(os.environ.get("RICOCHET_PROGRAM") or BUILD / "ricochet")
 TWINS = 5  # properties per scene
 DOCUMENTED = (0, 2, 3)  # statuses in which a run may end
 
@@ -55,9 +53,8 @@ def draw_names(choices, seed):
 
 def examine(seed, folder, wanted=None):
     """Returns (scene, its run, whether it touches, [(run, property, size, text)], properties, processor seconds)."""
-    scene = scene_of(seed)
+    scene, before = scene_of(seed), programs_seconds()
     folder.mkdir(parents=True, exist_ok=True)
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     twins = properties.Twins(scene, PROGRAM, folder)
     base, found = twins.base, judge_run(scene, twins.base, "base")
     names = []
@@ -73,10 +70,8 @@ def examine(seed, folder, wanted=None):
             found += judge_run(twin.scene, twin, name)
         elif twin.status not in DOCUMENTED:
             found.append((name, "status", float("inf"), f"{twin.status}: {twin.error()[:300]}"))
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     touches = max(base.columns.get("active_contacts", [0])) > 0
-    return scene, base, touches, found, names, seconds
+    return scene, base, touches, found, names, programs_seconds() - before
 
 
 def report_of(seed, folder, keep, wanted):
@@ -104,25 +99,19 @@ def seeds_of(options):
 
 
 def parse():
-    parser = argparse.ArgumentParser(prog="./dev bench scenes", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--count", type=int, default=1000, help="number of scenes (default: %(default)s)")
+    parser = Arguments("scenes", __doc__, build="")
+    parser.add_argument("--count", type=positive, default=1000, help="number of scenes (default: %(default)s)")
     parser.add_argument("--first", type=int, default=1, help="seed of the first scene (default: %(default)s)")
     parser.add_argument("--seed", type=int, help="only this scene")
     parser.add_argument("--only", nargs="+", choices=sorted(set(FAMILIES)), help="only these families of scenes")
     parser.add_argument("--properties", nargs="+", metavar="NAME", help="only these properties, wherever they apply")
     parser.add_argument("--keep", type=pathlib.Path, help="folder in which the cases and results of all scenes are kept")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="number of scenes at a time (default: %(default)s)")
-    parser.add_argument("--check", action="store_true", help="only check the arguments")
-    options = parser.parse_args()
-    if options.count < 1:
-        parser.error("--count must be at least 1")
-    return options
+    return parser.parse()
 
 
 def main():
     options = parse()
-    if options.check:
-        return 0
     folder = options.keep or pathlib.Path(tempfile.mkdtemp(prefix="ricochet-scenes-"))
     begin, total, bad = time.monotonic(), 0.0, 0
     families = collections.defaultdict(collections.Counter)
@@ -146,22 +135,19 @@ def main():
         shutil.rmtree(folder, ignore_errors=True)
     # Tables of other scenes would not match the text of the page.
     if options.count >= 1000 and options.first == 1 and options.seed is None and not options.only and not options.properties:
-        write_parts(ROOT / "docs" / "energy.md", {"random-scenes": tables[0], "random-scenes-properties": tables[1]})
+        write_parts("energy.md", {"random-scenes": tables[0], "random-scenes-properties": tables[1]})
     return 1 if bad else 0
 
 
 def family_table(families):
-    lines = ["| family | scenes | with contact | refused | stopped | with findings |", "|---|---|---|---|---|---|"]
-    for name in sorted(families):
-        c = families[name]
-        lines.append(f"| {name} | {c['scenes']} | {c['touch']} | {c['status 2']} | {c['status 3']} | {c['findings']} |")
-    return "\n".join(lines)
+    counts = ("scenes", "touch", "status 2", "status 3", "findings")
+    return table(["family", "scenes", "with contact", "refused", "stopped", "with findings"],
+                 [[name, *(families[name][count] for count in counts)] for name in sorted(families)])
 
 
 def property_table(compared, broken):
-    lines = ["| property | twins | scenes with findings |", "|---|---|---|"]
-    lines += [f"| {name} | {compared[name] or '–'} | {broken[name]} |" for name in sorted({*compared, *broken, *energy.PROPERTIES})]
-    return "\n".join(lines)
+    return table(["property", "twins", "scenes with findings"],
+                 [[name, compared[name] or "–", broken[name]] for name in sorted({*compared, *broken, *energy.PROPERTIES})])
 
 
 if __name__ == "__main__":

@@ -7,7 +7,6 @@ Runs ricochet_random_cases on all processors, on planes and, a quarter as many e
 obstacles, and writes the tables of docs/energy.md. A case is determined by its number, on every machine.
 """
 
-import argparse
 import collections
 import contextlib
 import csv
@@ -18,9 +17,8 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "bench"))
-from page import write_parts
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from measurement import Arguments, positive, table, write_parts
 
 REFERENCE = "reduced-kane end, equivalent"
 BINS = ((0.1, 1), (1, 3), (3, 10), (10, 30), (30, 1000))
@@ -63,9 +61,7 @@ def summary(rows):
     for row in rows:
         by_method[row["method"]].append(row)
     reference = {row["case"]: float(row["variation"]) for row in by_method[REFERENCE] if not row["failure"]}
-    lines = ["| scheme, mass | cases | refused | failed | created > 1e-8 | max. created | median lost | deepest, cells | variation, median | 90 % |",
-             "|---|---|---|---|---|---|---|---|---|---|"]
-    created_by_step = ["| scheme, mass | " + " | ".join(f"{low:g}–{high:g}" for low, high in BINS) + " |", "|---" * (len(BINS) + 1) + "|"]
+    lines, created_by_step = [], []
     for method, all_rows in by_method.items():
         if all(is_refusal(row["failure"]) for row in all_rows):
             continue
@@ -73,36 +69,28 @@ def summary(rows):
         ended = [row for row in all_rows if not row["failure"]]
         created = [float(row["created"]) for row in ended]
         variation = sorted(float(row["variation"]) / reference[row["case"]] for row in ended if reference.get(row["case"], 0) > 0)
-        lines.append(f"| {method} | {len(all_rows)} | {refused} | {len(all_rows) - refused - len(ended)} | "
-                     f"{sum(value > 1e-8 for value in created)} | {number(max(created))} | "
-                     f"{100 * statistics.median(float(row['lost']) for row in ended):.0f} % | "
-                     f"{number(max(float(row['penetration']) for row in ended))} | {statistics.median(variation):.2f} | "
-                     f"{variation[int(0.9 * len(variation))]:.2f} |")
-        cells = [part([float(row["created"]) > 0.01 for row in ended if low <= float(row["crossings"]) < high]) for low, high in BINS]
-        created_by_step.append(f"| {method} | {' | '.join(cells)} |")
-    return "\n".join(lines), "\n".join(created_by_step)
+        lines.append([method, len(all_rows), refused, len(all_rows) - refused - len(ended), sum(value > 1e-8 for value in created), number(max(created)),
+                      f"{100 * statistics.median(float(row['lost']) for row in ended):.0f} %", number(max(float(row["penetration"]) for row in ended)),
+                      f"{statistics.median(variation):.2f}", f"{variation[int(0.9 * len(variation))]:.2f}"])
+        created_by_step.append([method, *(part([float(row["created"]) > 0.01 for row in ended if low <= float(row["crossings"]) < high])
+                                          for low, high in BINS)])
+    return (table(["scheme, mass", "cases", "refused", "failed", "created > 1e-8", "max. created", "median lost", "deepest, cells", "variation, median",
+                   "90 %"], lines), table(["scheme, mass", *(f"{low:g}–{high:g}" for low, high in BINS)], created_by_step))
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="./dev bench schemes", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cases", type=int, default=2400, help="number of cases on planes (default: %(default)s)")
+    parser = Arguments("schemes", __doc__)
+    parser.add_argument("--cases", type=positive, default=2400, help="number of cases on planes (default: %(default)s)")
     parser.add_argument("--first", type=int, default=1, help="number of the first case (default: %(default)s)")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="folder of the programs")
-    parser.add_argument("--check", action="store_true", help="only check the arguments")
-    arguments = parser.parse_args()
-    if arguments.cases < 1:
-        parser.error("--cases must be at least 1")
-    if arguments.check:
-        return 0
+    arguments = parser.parse()
     program = str(arguments.build / "ricochet_random_cases")
     planes, by_step = summary(measure(program, "plane", arguments.first, arguments.cases))
     spheres, _ = summary(measure(program, "sphere", arguments.first, max(1, arguments.cases // 4)))
     turning, _ = summary(measure(program, "turn", arguments.first, max(1, arguments.cases // 4)))
     print("\n\n".join((planes, by_step, spheres, turning)))
-    write_parts(ROOT / "docs" / "energy.md", {"random-cases": planes, "random-cases-by-step": by_step,
+    write_parts("energy.md", {"random-cases": planes, "random-cases-by-step": by_step,
                                               "random-cases-on-spheres": spheres, "random-cases-on-turning-obstacles": turning})
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -11,9 +11,9 @@ SuperLU: GetFEM has no factor that can be kept but a "superlu" preconditioner, w
 """
 
 import argparse
-import ctypes
 import json
 import os
+import pathlib
 import sys
 import time
 
@@ -24,6 +24,9 @@ import getfem
 import numpy as np
 import scipy.sparse
 import scipy.sparse.linalg
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from measurement import loaded_kernels
 
 LAMBDA, MU, DENSITY, GRAVITY, VELOCITY, SLIDING, GAP, RADIUS = 1e4, 5e3, 1.0, 9.81, -1.0, 0.5, 0.1, 1.0
 
@@ -137,13 +140,6 @@ class Expert:
         return free, float(reaction.sum()), iteration
 
 
-def kernels():
-    """Returns the kernels of the OpenBLAS that GetFEM's MUMPS and numpy use."""
-    function = ctypes.CDLL("libopenblas.so.0").openblas_get_corename
-    function.restype = ctypes.c_char_p
-    return function().decode()
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("mesh")
@@ -175,7 +171,7 @@ def main():
         iterations.append(count)
     json.dump({"dofs": body.dofs, "contact_points": len(body.normal), "set_up_s": set_up, "step_ms": [1e3 * s for s in seconds],
                "force": forces, "iterations": iterations,
-               "end": [float(displacement[k::dimension].mean()) for k in range(dimension)], "kernels": kernels()}, sys.stdout)
+               "end": [float(displacement[k::dimension].mean()) for k in range(dimension)], "kernels": loaded_kernels()}, sys.stdout)
 
 
 if __name__ == "__main__":

@@ -12,14 +12,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from page import blas_kernels, processor, write_parts
+from measurement import PHASES, ROOT, blas_kernels, processor, table, write_parts
 
 COLOURS = {"2D": "#2b6cb0", "3D": "#c53030", "3D iterative": "#b7791f"}
-PHASES = (("open", "open"), ("changing", "closing"), ("closed", "closed"))
-
-
-def table(head, rows):
-    return "\n".join(["| " + " | ".join(head) + " |", "|" + "---|" * len(head)] + ["| " + " | ".join(row) + " |" for row in rows])
 
 
 def body_text(record):
@@ -35,7 +30,7 @@ def ratio_table(records):
             phase = record.get(key)
             if not phase or "ratio" not in phase:
                 continue
-            rows.append([body_text(record), f"{record['friction']:g}", name, str(phase["active"]), f"{phase['step_ms']:.3g}",
+            rows.append([body_text(record), f"{record['friction']:g}", name, phase["active"], f"{phase['step_ms']:.3g}",
                          f"{phase['library_solve_ms']:.3g}", f"**{phase['ratio']:.2f}**",
                          f"{phase['own_solve_ms'] / phase['library_solve_ms']:.2f}",
                          f"{1.0 + (phase['step_ms'] - phase['own_solve_ms']) / phase['library_solve_ms']:.2f}",
@@ -44,7 +39,7 @@ def ratio_table(records):
 
 
 def pairing_table(records):
-    rows = [[record["case"], str(record["dofs"]), str(record["contact_points"]), str(record["steps"]), f"{record['run_s']:.3g}", f"{record['pairing_s']:.2g}",
+    rows = [[record["case"], record["dofs"], record["contact_points"], record["steps"], f"{record['run_s']:.3g}", f"{record['pairing_s']:.2g}",
              f"**{100.0 * record['pairing_s'] / record['run_s']:.1f} %**"] for record in records]
     return table(["", "dofs", "contact points", "steps", "run, s", "pairing, s", "pairing / run"], rows)
 
@@ -135,7 +130,7 @@ def scaling_table(records):
     for name, group in scaling_groups(records).items():
         for record in group:
             set_up = record["read_s"] + record["assembly_s"] + record["start_s"]
-            rows.append([name, str(record["dofs"]), f"{last_phase(record)['step_ms']:.3g}", f"{record['peak_mb']:.0f}", f"{set_up:.3g}"])
+            rows.append([name, record["dofs"], f"{last_phase(record)['step_ms']:.3g}", f"{record['peak_mb']:.0f}", f"{set_up:.3g}"])
         powers = [exponent(group, value) for value in (lambda r: last_phase(r)["step_ms"], lambda r: r["peak_mb"],
                                                        lambda r: r["read_s"] + r["assembly_s"] + r["start_s"])]
         if None not in powers:
@@ -164,9 +159,9 @@ def iterative_table(records):
         set_up = record["read_s"] + record["assembly_s"] + record["start_s"]
         before = statistics.median(step for force, step in zip(one[tuple(record["body"])]["force"], one[tuple(record["body"])]["steps_ms"])
                                    if force > 0.0)
-        rows.append([str(record["dofs"]), f"{141 * 1e-3 / record['body'][2]:.1f}", str(record["threads"]), f"{step:.0f}",
+        rows.append([record["dofs"], f"{141 * 1e-3 / record['body'][2]:.1f}", record["threads"], f"{step:.0f}",
                      f"{statistics.median(step for _, step in deep):.0f}", f"{max(step for _, step in contact):.0f}",
-                     str(last_phase(record)["active"]), f"{record['peak_mb']:.0f}", f"{set_up:.0f}", f"{before / step:.2f}"])
+                     last_phase(record)["active"], f"{record['peak_mb']:.0f}", f"{set_up:.0f}", f"{before / step:.2f}"])
     return table(["dofs", "cells crossed", "threads", "step in contact, ms (median)", "deep", "slowest (subdomains are built)",
                   "closed points", "peak, MB", "set-up, s", "gain"], rows)
 
@@ -228,7 +223,7 @@ def machine(everything):
     return "\n".join(texts)
 
 
-def report(everything, docs):
+def report(everything):
     parts = {"machine": machine(everything)}
     if "ratios" in everything:
         parts["ratios"], parts["memory"] = ratio_table(everything["ratios"]), memory_table(everything["ratios"])
@@ -242,11 +237,11 @@ def report(everything, docs):
         parts["peer"] = peer_table(everything["peer"])
     if "scaling" in everything:
         parts["scaling"] = scaling_table(everything["scaling"])
-        plot_scaling(everything["scaling"], docs / "figures" / "step-scaling.png")
+        plot_scaling(everything["scaling"], ROOT / "docs" / "figures" / "step-scaling.png")
     if "threads" in everything:
         parts["threads"] = thread_table(everything["threads"])
     if "iterative" in everything:
         parts["iterative"] = iterative_table(everything["iterative"])
     if "factor" in everything:
         parts["factorization"], parts["solves"] = factorization_table(everything["factor"]), solve_table(everything["factor"])
-    write_parts(docs / "performance.md", parts)
+    write_parts("performance.md", parts)

@@ -8,11 +8,8 @@ Runs on all processors (20 minutes for 1,000) and prints a line for every throw 
 determined by its number, on every machine. Status 1: some throws have faults.
 """
 
-import argparse
 import collections
 import concurrent.futures
-import csv
-import json
 import os
 import pathlib
 import shutil
@@ -22,8 +19,10 @@ import tempfile
 
 from random_throw import Throw
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = pathlib.Path(os.environ.get("RICOCHET_PROGRAM") or ROOT / "build" / "ricochet")
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from measurement import BUILD, Arguments, history, summary, table
+
+PROGRAM = pathlib.Path(os.environ.get("RICOCHET_PROGRAM") or BUILD / "ricochet")
 ENERGY, DEPTH = 1e-10, 1e-9  # of the largest energy; of the body, whose size is 1
 # Relative to the largest energy; at finite strain a step may leave more (docs/finite-strain.md).
 ACCOUNT = {"linear": 1e-10, "neo-hookean": 1e-8}
@@ -32,16 +31,10 @@ TIME_LIMIT = 900  # seconds
 
 def judge(output, law):
     """Returns the errors of a run that has ended, as texts."""
-    summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
-    with open(output / "history.csv", newline="", encoding="utf-8") as file:
-        rows = csv.DictReader(file)
-        columns = collections.defaultdict(list)
-        for row in rows:
-            for name, value in row.items():
-                columns[name].append(float(value))
+    ended, columns = summary(output), history(output)
     largest = max(map(abs, columns["total_energy"] + columns["kinetic_energy"]))
     wrong = []
-    created = summary["energy_budget"]["created_by_method"]
+    created = ended["energy_budget"]["created_by_method"]
     if created > ENERGY:
         wrong.append(f"created {created:.1e} of the energy")
     residual = max(map(abs, columns["energy_residual"])) / largest
@@ -52,7 +45,7 @@ def judge(output, law):
         wrong.append(f"a node penetrates by {depth:.1e}")
     # All of the boundary is contact boundary; only a node inside the body that an edge reaches between its nodes is
     # exempt.
-    if any("gone through" in warning for warning in summary["warnings"]):
+    if any("gone through" in warning for warning in ended["warnings"]):
         wrong.append("a node has passed through an obstacle in one step")
     return wrong, max(columns["active_contacts"]) > 0
 
@@ -77,15 +70,11 @@ def throw(seed, folder, keep):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="./dev bench throws", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Arguments("throws", __doc__, build="")
     parser.add_argument("--cases", type=int, default=1000)
     parser.add_argument("--first", type=int, default=1)
     parser.add_argument("--keep", type=pathlib.Path, help="folder in which the files of the throws are kept")
-    parser.add_argument("--check", action="store_true", help="only check the arguments")
-    options = parser.parse_args()
-    if options.check:
-        return 0
+    options = parser.parse()
     counts = collections.defaultdict(lambda: [0, 0, 0])
     bad = 0
     with tempfile.TemporaryDirectory(prefix="ricochet-throws-") as temporary:
@@ -102,9 +91,8 @@ def main():
                     bad += 1
                     print(f"{made.seed}: {made.dimension}D {made.body}, {made.law}, friction {made.friction}, {' and '.join(made.kinds)}: "
                           f"{'; '.join(wrong)}", flush=True)
-    print("| obstacle, law | throws | with contact | with faults |\n|---|---|---|---|")
-    for kind in sorted(counts, key=lambda name: (name == "all", name)):
-        print("| {} | {} | {} | {} |".format(kind, *counts[kind]))
+    print(table(["obstacle, law", "throws", "with contact", "with faults"],
+                [[kind, *counts[kind]] for kind in sorted(counts, key=lambda name: (name == "all", name))]))
     return 1 if bad else 0
 
 

@@ -24,15 +24,8 @@
 
 // A time step allocates no memory once its work space has the size that the contact needs.
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::allocation_count;
-using test_support::CaseRun;
-using test_support::mesh_geometry;
-using test_support::thrown_bodies;
-using test_support::thrown_case;
-using test_support::ThrownBody;
 
 TEST(AllocationCount, CountsWhatIsAllocated) {
   const long before = allocation_count();
@@ -253,7 +246,7 @@ TEST(PenetrationReports, CostTheSameInAFinerMesh) {
 
 /// On one thread and on several: all storage that may be kept exists after the first factorization.
 TEST(FactorizationAllocations, AMatrixOfTheSamePatternIsFactorizedWithoutAny) {
-  const SparseMatrix matrix = test_support::grid_matrix(3, 14, 3, 7);
+  const SparseMatrix matrix = grid_matrix(3, 14, 3, 7);
   SparseCholesky factor(matrix);
   for (const int threads : {1, 3}) {
     set_thread_count(threads);
@@ -269,4 +262,4 @@ INSTANTIATE_TEST_SUITE_P(Schemes, StepAllocations, testing::ValuesIn(variants())
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

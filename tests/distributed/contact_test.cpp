@@ -11,7 +11,7 @@
 
 // Distributed bodies that meet obstacles: contact points anywhere, and obstacles across the boundaries of ranks.
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 struct ContactCase {
@@ -50,19 +50,18 @@ std::string toml_of(const ContactCase& test, const std::string& mesh) {
 
 std::string mesh_of(const ContactCase& test) {
   if (test.is_long)
-    return test_support::mesh_geometry("ranks-long",
-                                       "Rectangle(1)={0,0,0,40,0.2}; Physical Surface(\"block\")={1}; Physical "
-                                       "Curve(\"bottom\")={1}; Physical Curve(\"side\")={4};",
-                                       0.07, 1);
-  return test.dimension == 2
-             ? test_support::mesh_geometry("ranks-2d",
-                                           "Rectangle(1)={0,0,0,1,0.5}; Physical Surface(\"block\")={1}; Physical "
-                                           "Curve(\"bottom\")={1}; Physical Curve(\"side\")={4};",
-                                           0.07, 1)
-             : test_support::mesh_geometry("ranks-3d",
-                                           "Box(1)={0,0,0,1,0.8,0.4}; Physical Volume(\"block\")={1}; Physical "
-                                           "Surface(\"bottom\")={5}; Physical Surface(\"side\")={1};",
-                                           0.15, 1);
+    return mesh_geometry("ranks-long",
+                         "Rectangle(1)={0,0,0,40,0.2}; Physical Surface(\"block\")={1}; Physical "
+                         "Curve(\"bottom\")={1}; Physical Curve(\"side\")={4};",
+                         0.07, 1);
+  return test.dimension == 2 ? mesh_geometry("ranks-2d",
+                                             "Rectangle(1)={0,0,0,1,0.5}; Physical Surface(\"block\")={1}; Physical "
+                                             "Curve(\"bottom\")={1}; Physical Curve(\"side\")={4};",
+                                             0.07, 1)
+                             : mesh_geometry("ranks-3d",
+                                             "Box(1)={0,0,0,1,0.8,0.4}; Physical Volume(\"block\")={1}; Physical "
+                                             "Surface(\"bottom\")={5}; Physical Surface(\"side\")={1};",
+                                             0.15, 1);
 }
 
 class Contact : public testing::TestWithParam<std::tuple<ContactCase, PartitionMethod>> {};
@@ -75,7 +74,7 @@ TEST_P(Contact, IsThatOfOneRank) {
   std::string path;
   // One rank writes the files that all of them read.
   for (int rank = 0; rank < world.size(); ++rank) {
-    if (rank == world.rank()) path = test_support::write_temporary("case.toml", toml_of(test, mesh_of(test)));
+    if (rank == world.rank()) path = write_temporary("case.toml", toml_of(test, mesh_of(test)));
     wait();
   }
   Session whole(path), own(path, {std::string("solver.preconditioner=") + test.preconditioner});
@@ -221,4 +220,4 @@ INSTANTIATE_TEST_SUITE_P(StaticStarts, Contact,
                          name_of_scheme);
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -14,11 +14,8 @@
 
 // Every rank computes the data of all others here, and from these the result it expects.
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::BoxMesh;
-using test_support::make_box_mesh;
 
 const Communicator& world() {
   static const Communicator ranks = Communicator::world();
@@ -161,4 +158,4 @@ TEST(Partition, LeavesNobodyWithoutCells) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -11,7 +11,7 @@
 
 // Bodies in pieces move like undivided ones: schemes and accounts depend on no property of ranks.
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 using distributed_test::CutBody;
@@ -57,8 +57,7 @@ TEST_P(Motion, IsThatOfOneRank) {
   };
   const auto scheme = make(), own_scheme = make();
   InitialConditions initial, own_initial;
-  initial.displacement =
-      test_support::interpolate(whole_->space, [](const Vector& x) -> Vector { return 0.01 * x[0] * x; });
+  initial.displacement = interpolate(whole_->space, [](const Vector& x) -> Vector { return 0.01 * x[0] * x; });
   initial.velocity = 3.0 * initial.displacement;
   own_initial.displacement = part_of(initial.displacement);
   own_initial.velocity = part_of(initial.velocity);
@@ -100,4 +99,4 @@ INSTANTIATE_TEST_SUITE_P(All, Motion,
                          });
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -2,24 +2,18 @@
 lengths."""
 
 import csv
-import json
 import math
 import pathlib
 import signal
 import subprocess
 import tempfile
-import unittest
 
-from harness import PROGRAM, SOURCE, History, TestCase, run, settings, wait_for
+from harness import PROGRAM, SOURCE, History, TestCase, run, settings, summary_of, wait_for
 
 BAR = SOURCE / "cases" / "bar" / "impact.toml"
 LARGEST, END = 0.01, 2.0
 ADAPTIVE = {"time.step": "adaptive", "time.largest": LARGEST, "time.end": END}
 RUN = ADAPTIVE | {"time.tolerance": 1e-3, "output.checkpoint_every": 100}
-
-
-def summary(output):
-    return json.loads((output / "summary.json").read_text())
 
 
 class AdaptiveSteps(TestCase):
@@ -41,12 +35,12 @@ class AdaptiveSteps(TestCase):
         wait_for(lambda: list(output.glob("checkpoint-*.ckpt")))
         process.send_signal(number)
         process.wait()
-        self.assertIn(summary(output)["status"], ("running", "interrupted"), "the run was too fast for this test")
+        self.assertIn(summary_of(output)["status"], ("running", "interrupted"), "the run was too fast for this test")
         return output
 
     def test_the_run_says_which_steps_it_took(self):
         """Each is the longest step times a power of 1/2, and their sum is the end."""
-        said = summary(self.whole)
+        said = summary_of(self.whole)
         history = History(self.whole / "history.csv")
         lengths = [after - before for before, after in zip(history["time"], history["time"][1:])]
         self.assertEqual(said["steps"], len(lengths))
@@ -72,9 +66,9 @@ class AdaptiveSteps(TestCase):
             self.assertNotEqual((output / "history.csv").read_bytes(), expected)
             self.expect_status(0, run("run", "--resume", output, "--quiet"))
             self.assertEqual((output / "history.csv").read_bytes(), expected)
-            self.assertTrue(summary(output)["resumed_at"])
+            self.assertTrue(summary_of(output)["resumed_at"])
             for entry in ("adaptive_steps", "extrema", "impacts", "energy_budget"):
-                self.assertEqual(summary(output)[entry], summary(self.whole)[entry], entry)
+                self.assertEqual(summary_of(output)[entry], summary_of(self.whole)[entry], entry)
         # A complete run has nothing to do, and one to a later end resumes before the steps that its end has shortened.
         self.expect_status(0, run("run", "--resume", output, "--quiet"))
         self.assertEqual((output / "history.csv").read_bytes(), expected)
@@ -93,14 +87,14 @@ class AdaptiveSteps(TestCase):
         fixed = self.simulate(BAR, "fixed", {"time.end": END})
         table = self.expect_status(0, run("info", self.whole, fixed)).stdout
         for output in (self.whole, fixed):
-            self.assertRegex(table, rf'{output} +1 +{summary(output)["impacts"][0]["restitution"]:.4g} ')
+            self.assertRegex(table, rf'{output} +1 +{summary_of(output)["impacts"][0]["restitution"]:.4g} ')
         figure = self.folder / "figure.svg"
         self.expect_status(0, run("plot", self.whole, fixed, "--what", "energy", "--what", "force", "--what",
                                   "probe:top.displacement_y", "-o", figure))
         self.assertIn("<svg", figure.read_text())
         page = self.folder / "report.html"
         self.expect_status(0, run("report", self.whole, fixed, "-o", page))
-        self.assertIn(summary(self.whole)["title"], page.read_text())
+        self.assertIn(summary_of(self.whole)["title"], page.read_text())
 
     def test_a_study_of_tolerances(self):
         """A smaller tolerance takes more steps and comes closer to a run with a much smaller one."""
@@ -122,7 +116,3 @@ class AdaptiveSteps(TestCase):
         self.assertTrue((output / "runs.html").exists())
         # With nothing left to do, the table is the same except for times.
         self.expect_status(0, run("study", "--resume", output, "--quiet"))
-
-
-if __name__ == "__main__":
-    unittest.main()

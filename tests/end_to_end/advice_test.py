@@ -4,7 +4,6 @@ not checked."""
 import math
 import os
 import re
-import unittest
 
 import meshio
 import numpy
@@ -146,7 +145,3 @@ class Advice(TestCase):
             found = float(re.search(r"would reach it at t = (\S+) ", said)[1])
             meets = min(math.atan2(y, x + 2.0) / angle for x, y in ((0.1, 0.2), (1.3, 0.1)))
             self.assertAlmostEqual(found, meets, delta=1e-3 * meets)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,11 +1,9 @@
 """[[contact]] of every body with every other: the same as a contact for each pair, at any distance."""
 
-import json
 import math
 import shutil
-import unittest
 
-from harness import History, TestCase, run, settings
+from harness import History, TestCase, run, settings, summary_of
 
 RINGS, SECTORS = 3, 20
 
@@ -79,7 +77,7 @@ class AllPairs(TestCase):
             for row in range(len(found.rows)):
                 total = sum(found[f"pair_force.{number}_x"][row] for number in range(3))
                 self.assertAlmostEqual(found["all.force_x"][row], total, delta=1e-9)
-        summary = json.loads((self.folder / "pattern" / "summary.json").read_text())
+        summary = summary_of(self.folder / "pattern")
         self.assertEqual([(c["group"], c["against"], c["pair_of"]) for c in summary["contacts"]],
                          [(*pair, "disc-*") for pair in PAIRS])
         text = self.expect_status(0, run("info", self.folder / "pattern")).stdout
@@ -90,7 +88,7 @@ class AllPairs(TestCase):
         size = found.largest_energy()
         self.assertLess(max(map(abs, found["energy_residual"])), 1e-10 * size)
         self.assertLessEqual(max(found["total_energy"]), found["total_energy"][0] + 1e-10 * size)
-        summary = json.loads((self.folder / "all" / "summary.json").read_text())
+        summary = summary_of(self.folder / "all")
         self.assertEqual(len(summary["contacts"]), 6)
         text = self.expect_status(0, run("info", self.folder / "all")).stdout
         self.assertIn('every body of "all" against every other, 6 pairs', text)
@@ -99,7 +97,7 @@ class AllPairs(TestCase):
         own = '[[contact]]\ngroup = "disc-1.skin"\nagainst = "disc-2.skin"\nsliding = "large"\nfriction = 0.3\n'
         found = self.history("own", own + '[[contact]]\ngroup = "disc-*"\nfriction = 0.3\n')
         self.expect_alike(self.history("explicit", EXPLICIT), found)
-        contacts = json.loads((self.folder / "own" / "summary.json").read_text())["contacts"]
+        contacts = summary_of(self.folder / "own")["contacts"]
         self.assertEqual([(c["group"], c["against"]) for c in contacts][1:], PAIRS[1:])
 
     def test_a_run_that_goes_on_has_the_same_bits(self):
@@ -121,7 +119,3 @@ class AllPairs(TestCase):
         self.assertIn("is on 1 body, and there is no other",
                       message('[[contact]]\ngroup = "all"\n', part("alone", 0.0, 0.0, [0.0, 0.0])))
         self.assertIn("is only for contact between two groups", message('[[contact]]\ngroup = "all"\ntied = true\n'))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 
 import os
 import re
-import unittest
 import xml.etree.ElementTree
 
 import meshio
@@ -125,7 +124,3 @@ class Animation(TestCase):
         blind = self.disc("blind", **{"output.fields_every": 0})
         process = run("plot", blind, "--what", "animation", "-o", "a.gif", directory=self.folder)
         self.assertIn("wrote no fields", process.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,10 +1,8 @@
 """`ricochet benchmark`: its table agrees with the runs, failed expectations are marked, methods are compared."""
 
 import csv
-import json
-import unittest
 
-from harness import SOURCE, TestCase, run
+from harness import SOURCE, TestCase, run, summary_of
 
 SHORT = ("sdnv100", "rod", "incline-held")
 
@@ -39,7 +37,7 @@ class Benchmark(TestCase):
                                          "scheme", "mass", "holds"])
         self.assertEqual(list(dict.fromkeys(row["case"] for row in rows)), list(SHORT))
         for name in SHORT:
-            summary = json.loads((output / "runs" / name / "summary.json").read_text(encoding="utf-8"))
+            summary = summary_of(output / "runs" / name)
             expected = [entry for entry in summary["expectations"] if entry["checked"]]
             own = [row for row in rows if row["case"] == name]
             self.assertEqual(len(own), len(expected))
@@ -122,7 +120,7 @@ class Benchmark(TestCase):
                 self.assertIn("does not support friction", row["message"])
                 continue
             folder = next((output / "runs").glob(f"{name}-{scheme}*"))
-            summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+            summary = summary_of(folder)
             self.assertEqual((row["mass"], row["status"]), (summary["mass"], "done"))
             self.assertEqual(int(row["steps"]), summary["steps"])
             self.assertAlmostEqual(float(row["created_percent"]), 100 * summary["energy_budget"]["created_by_method"])
@@ -142,7 +140,3 @@ class Benchmark(TestCase):
         self.assertIn('1. scheme "mean-reaction" does not support friction', process.stdout)
         # Refusals do not count.
         self.benchmark("incline-held", "-o", self.folder / "refused", "--scheme", "mean-reaction")
-
-
-if __name__ == "__main__":
-    unittest.main()

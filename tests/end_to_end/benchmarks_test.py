@@ -1,12 +1,11 @@
 """A case of benchmarks/ holds: it is valid, its run succeeds with all its [[expect]] entries and without a warning, and
 its energy account closes. The case file is the first argument."""
 
-import json
 import pathlib
 import sys
 import unittest
 
-from harness import OTHER_ROW, History, TestCase, run
+from harness import OTHER_ROW, History, TestCase, run, summary_of
 
 CASE = pathlib.Path(sys.argv.pop(1))
 
@@ -15,7 +14,7 @@ class BenchmarkTest(TestCase):
     def test_holds(self):
         self.expect_status(0, run("validate", CASE))
         results = self.simulate(CASE)
-        summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+        summary = summary_of(results)
         self.assertEqual((summary["status"], summary["warnings"]), ("done", []))
         self.assertEqual((summary["scheme"], summary["mass"]), ("reduced-kane", "equivalent"), "no scheme is chosen for a case")
         self.assertGreater(len(summary["expectations"]), 4)

@@ -2,17 +2,16 @@
 its history has exactly the documented columns. The case file is the first argument."""
 
 import itertools
-import json
 import pathlib
 import sys
 import tomllib
 import unittest
 
-from harness import OTHER_ROW, SOURCE, History, TestCase, run
+from harness import OTHER_ROW, SOURCE, History, TestCase, run, summary_of
 
-sys.path.insert(0, str(SOURCE / "bench"))
+sys.path.insert(0, str(SOURCE / "docs"))
 
-import page  # noqa: E402
+from history_columns import documented_columns as table_of_columns  # noqa: E402
 
 CASE = pathlib.Path(sys.argv.pop(1))
 
@@ -44,7 +43,7 @@ def documented_columns(dimension, case, points):
              "rigid bodies that move freely": ("NAME", [name for name, obstacle in case.get("obstacle", {}).items()
                                                         if {"mass", "density"} & obstacle.keys()])}
     columns = []
-    for condition, rows in itertools.groupby(page.documented_columns(), key=lambda row: row[3]):
+    for condition, rows in itertools.groupby(table_of_columns(), key=lambda row: row[3]):
         rows = list(rows)
         if condition in names:
             placeholder, own = names[condition]
@@ -55,7 +54,7 @@ def documented_columns(dimension, case, points):
     for probe in case.get("probe", []):
         holds |= {"on a contact boundary": probe["name"] in on_contact, "with laws of finite strain": finite,
                   "groups of cells": probe.get("group") not in facets}
-        for row in page.documented_columns():
+        for row in table_of_columns():
             kind, *conditions = row[3].split(", ")
             if kind in {f"probes with `{key}`" for key in probe} and all(holds[each] for each in conditions):
                 columns += columns_of([row], dimension, "NAME", probe["name"])
@@ -68,7 +67,7 @@ class CaseTest(TestCase):
         self.assertRegex(validated.stdout, r"estimate, stage 1 of a step, \d+ unknowns: method direct; a factor of \S+ entries")
         results = self.simulate(CASE)
         history = History(results / "history.csv")
-        summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+        summary = summary_of(results)
         self.assertEqual(summary["status"], "done")
         self.check_columns(history, summary)
         self.check_rows(history, summary)

@@ -1,10 +1,8 @@
 """Another program changes a file that a run is writing: the run stops with a message, and nothing is lost silently."""
 
-import json
 import subprocess
-import unittest
 
-from harness import PROGRAM, TestCase, block_case, run, settings, wait_for
+from harness import PROGRAM, TestCase, block_case, run, settings, summary_of, wait_for
 
 ENDLESS = {"time.end": 1e4, "output.fields_every": 20, "output.checkpoint_every": 100}
 
@@ -40,7 +38,7 @@ class ChangedFiles(TestCase):
         self.assertIn(f"{path}: ", said)
         # In the middle of a frame HDF5 fails.
         self.assertRegex(said, r"another program has changed it|has another program changed the file\?")
-        summary = json.loads((output / "summary.json").read_text())
+        summary = summary_of(output)
         self.assertEqual(summary["status"], "failed")
         self.assertIn(name, summary["message"])
         return output, said
@@ -82,7 +80,3 @@ class ChangedFiles(TestCase):
                     path.touch()
             run("info", output)
         self.assertEqual(process.returncode, 0, process.stderr.read())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,6 +6,7 @@ import sys
 import unittest
 
 from harness import SOURCE
+import closed_forms
 
 
 class ClosedForms(unittest.TestCase):
@@ -15,6 +16,5 @@ class ClosedForms(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertGreater(len(done.stdout.splitlines()), 150)
 
-
-if __name__ == "__main__":
-    unittest.main()
+    def test_the_table_of_the_tests_in_cpp_is_up_to_date(self):
+        self.assertEqual(closed_forms.TABLE.read_text(encoding="ascii"), closed_forms.table(), "run benchmarks/closed_forms.py --table")

@@ -3,11 +3,10 @@
 import json
 import os
 import re
-import unittest
 
 import h5py
 
-from harness import DISC, History, MESHES, PROGRAM, TestCase, block_case, run, settings
+from harness import DISC, MESHES, PROGRAM, History, TestCase, block_case, run, settings, summary_of
 
 NOWHERE = "/nowhere/at/all"
 
@@ -193,7 +192,7 @@ class CommandLine(TestCase):
         process = self.expect_status(5, run("run", case, "-o", self.folder / "out", "--quiet"))
         self.assertRegex(process.stderr, r"expecting\.toml:\d+:\d+: expected history\.total_energy\[0\] to be 7 ")
         self.assertIn("DOES NOT HOLD", process.stdout)
-        summary = json.loads((self.folder / "out" / "summary.json").read_text(encoding="utf-8"))
+        summary = summary_of(self.folder / "out")
         self.assertEqual([summary["status"], summary["expectations"][0]["holds"]], ["done", False])
         self.assertEqual(len(History(self.folder / "out" / "history.csv").rows), 31)
         case.write_text(text.replace("value = 7.0", "value = 0.0").replace("relative", "absolute"), encoding="utf-8")
@@ -223,7 +222,7 @@ class CommandLine(TestCase):
         for listed in (process.stdout, self.expect_status(0, run("info", self.folder / "out")).stdout):
             self.assertIn("DOES NOT HOLD: the energy (expected 7 within 0.01 relative, found ", listed)
             self.assertIn("published: elsewhere: 6.9", listed)
-        found = json.loads((self.folder / "out" / "summary.json").read_text(encoding="utf-8"))["expectations"][0]
+        found = summary_of(self.folder / "out")["expectations"][0]
         self.assertEqual((found["name"], found["published"]), ("the energy", "elsewhere: 6.9"))
         self.assertEqual(found["quantity"], "2 * history.total_energy(t=0) / max(history.step)")
         self.assertEqual((found["wanted_value"], found["tolerance"]), (7.0, 0.07))
@@ -285,7 +284,7 @@ class CommandLine(TestCase):
         def steps(*arguments):
             output = self.folder / "out"
             self.expect_status(0, run("run", self.case, "-o", output, "--force", "--quiet", *arguments))
-            return json.loads((output / "summary.json").read_text(encoding="utf-8"))
+            return summary_of(output)
 
         summary = steps("--set", "time.step=0.02", "--set", "time.end=0.2", "--set", "time.scheme=klr-conserving",
                         "--set", "load.gravity=[0,-5]", "--set", "title=Changed")
@@ -388,13 +387,9 @@ class CommandLine(TestCase):
         self.assertRegex(process.stderr, r"ricochet: \S+/out: step \d+ \(t = [\d.]+\): \w+ is no longer finite")
         self.assertIn('use a stable scheme (reduced-kane with mass "equivalent")', process.stderr)
         self.assertNotIn("smaller time.step", process.stderr, "none helps")
-        summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
+        summary = summary_of(output)
         self.assertEqual(summary["status"], "failed")
         self.assertIn("no longer finite", summary["message"])
         history = History(output / "history.csv")  # all numbers are finite
         self.assertGreater(len(history.rows), 100)
         self.assertIn("(FAILED)", self.expect_status(0, run("info", output)).stdout)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -133,7 +133,3 @@ class Completion(TestCase):
         said = subprocess.run(["fish", "--no-config", "-c", f"set PATH {self.folder}/bin $PATH; source {script}; complete -C 'ricochet va'"],
                               text=True, capture_output=True)
         self.assertEqual(said.stdout.split("\t")[0].strip(), "validate", said.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 contact`; its results and refusals."""
 
 import subprocess
-import unittest
 
 import h5py
 import numpy
@@ -220,6 +219,3 @@ class Files(ContactTestCase):
         self.expect_status(4, process)
         self.assertIn("cannot write", process.stderr)
         self.assertEqual(sorted(item.name for item in self.folder.iterdir()), ["hand.hdf5"])
-
-if __name__ == "__main__":
-    unittest.main()

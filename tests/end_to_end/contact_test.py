@@ -1,8 +1,6 @@
 """Contact problems as FCLib files: exported by a run, read by h5py, checked against the contact law from the file
 alone, solved by `ricochet contact`."""
 
-import unittest
-
 import numpy
 
 from fclib_problem import ContactTestCase, Problem, by_point
@@ -213,6 +211,3 @@ class Exports(ContactTestCase):
         self.assertIn("contact.0.friction_bound", process.stderr)
         self.assertIn("FCLib", process.stderr)
         self.assertFalse((self.folder / "out").exists())
-
-if __name__ == "__main__":
-    unittest.main()

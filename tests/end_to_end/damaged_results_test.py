@@ -2,7 +2,6 @@
 
 import random
 import re
-import unittest
 
 from harness import TestCase, block_case, run
 
@@ -84,7 +83,3 @@ class DamagedResults(TestCase):
         for seed in range(20):
             problem.write_bytes(damaged(whole, random.Random(seed)))
             self.assertIn(run("contact", problem).returncode, (0, 2, 3), seed)
-
-
-if __name__ == "__main__":
-    unittest.main()

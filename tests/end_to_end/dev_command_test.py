@@ -181,7 +181,3 @@ class Bits(TestCase):
         for texts in (["no such case"], ["rod.toml newmark", "HEAD~3"]):
             with self.assertRaisesRegex(SystemExit, f'no run to compare whose name contains "{texts[-1]}"'):
                 bits.chosen(runs, texts)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,8 +2,6 @@
 force and interpenetration, at a time step of 1e-4 over 0.15 s. The semi-explicit scheme preserves the properties of the
 equivalent mass."""
 
-import unittest
-
 from harness import DISC, History, SCHEMES, TestCase, method, total_variation
 
 RADIUS = 0.02
@@ -65,7 +63,3 @@ class DiscClaims(TestCase):
         self.assertLessEqual(max(history["max_penetration"]), 1e-12 * RADIUS)
         self.assertGreater(max(history["lowest.reaction_normal"]), 10.0)
         self.assertLess(total_variation(history["lowest.reaction_normal"]), 60.0)  # 39 is the minimum
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,9 +4,13 @@ the other."""
 import pathlib
 import re
 import shlex
-import unittest
+import sys
 
 from harness import SOURCE, TestCase, run
+
+sys.path.insert(0, str(SOURCE / "docs"))
+
+import history_columns  # noqa: E402
 
 
 class Documentation(TestCase):
@@ -17,9 +21,7 @@ class Documentation(TestCase):
 
     def test_tables_of_columns(self):
         printed = self.expect_status(0, run("schema", "--columns")).stdout
-        page = (SOURCE / "docs" / "results.md").read_text(encoding="utf-8")
-        written = re.search(r"<!-- columns -->\n(.*?)<!-- end -->", page, re.DOTALL)[1]
-        self.assertEqual(written, printed, "write it anew: build/ricochet schema --columns | python3 bench/page.py docs/results.md columns")
+        self.assertEqual(history_columns.written_table(), printed, "write it anew: docs/history_columns.py build/ricochet")
 
     def test_names_of_code_are_in_the_files_that_pages_link(self):
         """`name` in [file](path), or [file](path), `name`: a renamed function must not live on in a page."""
@@ -48,7 +50,3 @@ class Documentation(TestCase):
                 self.assertNotIn(output, taken, f"{page}: {line.strip()} and {taken.get(output)} write into {output}")
                 taken[output] = f"{page}: {line.strip()}"
         self.assertGreater(len(taken), 15)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,8 +1,6 @@
 """The energy account, recomputed from the stored fields by another program: linear triangles in plane strain, assembled
 here, on the mesh in results.h5. history.csv only provides the values that are compared."""
 
-import unittest
-
 import h5py
 import numpy
 
@@ -130,7 +128,3 @@ class EnergyAccount(TestCase):
             with self.subTest(scheme):
                 contact, friction = self.check(scheme, recompute, friction=0.3)
                 self.assertLess(friction, -1e-5, "friction takes energy away")
-
-
-if __name__ == "__main__":
-    unittest.main()

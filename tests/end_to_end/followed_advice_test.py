@@ -6,7 +6,6 @@ TRIED_BY_RUNS of followed_advice_tables.py, whose advice is followed here; ELSEW
 which is to become shorter. New messages belong in the first two."""
 
 import re
-import unittest
 
 from advising_messages import advising_messages
 from followed_advice_cases import BLOCK, FILES, KANE, PRESSED_PAIR, STRUCK
@@ -120,7 +119,3 @@ def covers(pattern, message):
     """Returns whether the words of a pattern, in pieces between its placeholders, are those of a message."""
     words = [re.sub(r"\\(.)", r"\1", piece) for piece in re.split(r"\(\\S\+\)|\\\.\\S\+|\.\*", pattern)]
     return all(piece.strip() in message for piece in words)
-
-
-if __name__ == "__main__":
-    unittest.main()

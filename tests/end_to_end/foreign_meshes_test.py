@@ -5,7 +5,6 @@ Abaqus' manual (Elements > Continuum elements); the others by meshio, h5py and n
 """
 
 import os
-import unittest
 
 import meshio
 import numpy
@@ -368,7 +367,3 @@ class ForeignMeshes(TestCase):
             environment = dict(os.environ, PYTHONPATH=str(folder))
             process = self.expect_status(2, run("info", file, environment=environment))
             self.assertIn(f"apt-get install {package}", process.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

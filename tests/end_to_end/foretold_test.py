@@ -1,10 +1,8 @@
 """Predictions for a run: the size of its files, its memory and its time, compared with the actual values."""
 
-import json
 import re
-import unittest
 
-from harness import TestCase, block_case, run, settings
+from harness import TestCase, block_case, run, settings, summary_of
 
 UNITS = {"MB": 1e6, "GB": 1e9}
 REFINED = block_case().replace("[[material]]", "refine = 4\n[[material]]", 1)
@@ -21,7 +19,7 @@ class Foretold(TestCase):
         return self.expect_status(0, run("validate", case, *settings(values))).stdout
 
     def summary(self, folder):
-        return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        return summary_of(folder)
 
     def test_files(self):
         case = self.write("case.toml", REFINED)
@@ -79,7 +77,3 @@ class Foretold(TestCase):
             self.assertGreater(took, seconds[0] / 10)
             self.assertLess(took, 20 * seconds[2])
         self.assertGreater(least["neo-hookean"], 5 * least["linear"])
-
-
-if __name__ == "__main__":
-    unittest.main()

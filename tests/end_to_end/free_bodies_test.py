@@ -1,12 +1,10 @@
 """Rigid bodies that move freely: momenta, energy, closed forms, and resumed runs."""
 
-import json
 import math
-import unittest
 
 import numpy
 
-from harness import History, TestCase, run
+from harness import History, TestCase, run, summary_of
 from shaped_obstacles_test import block_on, box_stl
 
 PLANE = 'type = "plane"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]'
@@ -103,7 +101,7 @@ class Impacts(Bodies):
         text = self.case('type = "sphere"\ncentre = [0.5, 0.75]\nradius = 0.2\nmass = 0.5\nvelocity = [0.0, -0.5]', end=0.5,
                          friction=0.0)
         results = self.simulate(self.write("case.toml", text))
-        summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+        summary = summary_of(results)
         self.assertEqual([body["name"] for body in summary["bodies"]][-1], "floor")
         self.assertAlmostEqual(summary["bodies"][-1]["mass"], 0.5, delta=1e-15)
         impact = summary["impacts"][0]
@@ -166,7 +164,3 @@ class Runs(Bodies):
                       "time.scheme=midpoint", "--set", "mass.type=consistent")
         self.assertEqual(process.returncode, 2, process.stderr)
         self.assertIn("does not support rigid bodies that move freely", process.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,11 +1,9 @@
 """Built-in groups, lists of groups, positions of bodies, and reversed cells."""
 
-import json
-
 import meshio
 import numpy
 
-from harness import MESHES, History, TestCase, block_case, run
+from harness import MESHES, History, TestCase, block_case, run, summary_of
 
 MIXED = MESHES / "mixed_o1_msh41_ascii.msh"
 
@@ -64,7 +62,7 @@ value = ["7.0", "-3.0"]
         sides = numpy.roll(corners, -1, axis=0) - corners
         length = numpy.hypot(sides[:, 0], sides[:, 1]).sum()
         self.assertAlmostEqual(history["momentum_x"][-1], 7.0 * length * 0.05, delta=1e-9)
-        parameters = json.loads((output / "summary.json").read_text())["parameters"]
+        parameters = summary_of(output)["parameters"]
         self.assertEqual(parameters["probe.4.group"], "[bottom, sides]")
 
     def test_lists_on_the_command_line_and_in_conditions(self):
@@ -134,7 +132,7 @@ when = {{ "contact.0.group" = ["bottom", "sides"] }}
         text = block_case().replace("[[material]]", "scale = 2.0\nmove = [10.0, 0.0]\n[[material]]")
         text = text.replace("at = [1.3, 0.1]", "at = [12.6, 0.2]")
         output = self.simulate(self.write("case.toml", text), "out", {"time.end": 0.01})
-        foot = json.loads((output / "summary.json").read_text())["probes"][0]
+        foot = summary_of(output)["probes"][0]
         numpy.testing.assert_allclose(foot["position"], [2 * 1.3 + 10.0, 2 * 0.1], rtol=1e-15)
 
     def test_placements_that_make_no_sense(self):
@@ -187,9 +185,3 @@ when = {{ "contact.0.group" = ["bottom", "sides"] }}
                     self.assertGreater(area.min(), 0.0)
                 # The same operators, summed in another order of nodes: rounding.
                 self.expect_same(History(output / "history.csv"), reference, 1e-11)
-
-
-if __name__ == "__main__":
-    import unittest
-
-    unittest.main()

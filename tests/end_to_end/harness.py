@@ -1,14 +1,17 @@
 """Helpers of the end-to-end tests: running the program, reading a history, a small case to start from.
 
-The program and the source tree come from the environment (CTest sets both): RICOCHET_PROGRAM and RICOCHET_SOURCE_DIR.
+The program and the source tree come from the environment (CTest sets both): RICOCHET_PROGRAM and RICOCHET_SOURCE_DIR. By hand,
+`python3 -B -m unittest hertz_test.Hertz` runs the tests of a class.
 """
 
+import json
 import math
 import os
 import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -16,9 +19,13 @@ import unittest
 PROGRAM = pathlib.Path(os.environ["RICOCHET_PROGRAM"])
 SOURCE = pathlib.Path(os.environ["RICOCHET_SOURCE_DIR"])
 MESHES = SOURCE / "tests" / "data" / "meshes"
+SCRIPT = pathlib.Path(sys.argv[0])
+if SCRIPT.name.endswith("_test.py") and "__main__" not in SCRIPT.read_text(encoding="utf-8"):
+    sys.exit(f"{SCRIPT}: python3 -B -m unittest {SCRIPT.stem} runs its tests; as a program it would run none")
 # Time limit in seconds for a run of the program: much longer with the sanitizers.
 TIME_LIMIT = float(os.environ.get("RICOCHET_TIME_LIMIT", "500"))
 DISC = SOURCE / "cases" / "disc" / "disc.toml"
+sys.path.insert(0, str(SOURCE / "benchmarks"))  # closed forms
 
 # In a quantity, a row that is neither the first nor the last: it belongs to another time once the step is changed.
 OTHER_ROW = re.compile(r"\[(?!0\]|-1\])")
@@ -151,6 +158,18 @@ class History:
 
     def largest_energy(self):
         return max(abs(value) for name in ("total_energy", "kinetic_energy", "elastic_energy") for value in self[name])
+
+
+def summary_of(folder):
+    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+
+
+def write_msh(path, groups, nodes, cells):
+    """Writes a mesh in Gmsh's format 2.2: `groups` as '2 1 "body"', points of the plane, cells as (type, group, corners)."""
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(groups)), *groups, "$EndPhysicalNames", "$Nodes", str(len(nodes))]
+    lines += [f"{i} {x!r} {y!r} 0" for i, (x, y) in enumerate(nodes, start=1)] + ["$EndNodes", "$Elements", str(len(cells))]
+    lines += [f"{i} {kind} 2 {tag} {tag} {' '.join(map(str, corners))}" for i, (kind, tag, corners) in enumerate(cells, start=1)]
+    path.write_text("\n".join(lines + ["$EndElements"]) + "\n", encoding="ascii")
 
 
 def wait_for(condition, seconds=60):

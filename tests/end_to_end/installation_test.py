@@ -5,7 +5,6 @@ import os
 import pathlib
 import re
 import subprocess
-import unittest
 
 from harness import SOURCE, TestCase, block_case, run
 
@@ -80,7 +79,3 @@ class Installation(TestCase):
         one = self.write("all.cpp", "".join(f'#include "{header}"\n' for header in headers))
         eigen = self.command("pkg-config", "--cflags-only-I", "eigen3").split()
         self.command("c++", "-std=c++20", "-fsyntax-only", f"-I{include}", *eigen, one)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,14 +1,13 @@
 """Environment variable RICOCHET_INSTRUCTION_SET: selects the compiled versions of loops, ours and OpenBLAS', so that an
 older processor can be simulated."""
 
-import json
 import os
 import re
 import shutil
 import unittest
 from pathlib import Path
 
-from harness import DISC, History, SOURCE, TestCase, run, settings
+from harness import DISC, SOURCE, History, TestCase, run, settings, summary_of
 
 NAMES = ("x86-64", "x86-64-v3", "x86-64-v4")
 CORES = {"x86-64": "Prescott", "x86-64-v3": "Haswell", "x86-64-v4": "SkylakeX"}
@@ -42,7 +41,7 @@ class InstructionSets(TestCase):
         output = self.folder / f"{case.stem}-{name}"
         self.expect_status(0, run("run", case, "-o", output, "--quiet", "--force", *settings(values),
                                   environment=masked(name)))
-        return History(output / "history.csv"), json.loads((output / "summary.json").read_text(encoding="utf-8"))
+        return History(output / "history.csv"), summary_of(output)
 
     def test_a_bad_value_is_refused(self):
         for command in (("run", DISC, "-o", self.folder / "out"), ("schema",), ("info", DISC), ("validate", DISC)):
@@ -140,7 +139,3 @@ class InstructionSets(TestCase):
                     # Unit roundoff times some thousand unknowns, times some hundred steps.
                     self.assertLess(max(abs(a - b) for a, b in zip(first[column], other[column], strict=True)), 1e-10 * scale,
                                     f"{column} of {case.stem}")
-
-
-if __name__ == "__main__":
-    unittest.main()

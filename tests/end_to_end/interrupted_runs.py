@@ -1,9 +1,8 @@
 """Helpers of the tests of interrupted runs: a run worth interrupting, and the criteria for an identical resumed run."""
 
-import json
 import subprocess
 
-from harness import DISC, PROGRAM, TestCase, method, settings, with_more
+from harness import DISC, PROGRAM, TestCase, method, settings, summary_of, with_more
 
 RESULTS = {"history.csv", "results.h5", "results.xdmf", "obstacles.xdmf", "results.vtkhdf", "obstacles.vtkhdf", "probes-3.csv"}
 
@@ -37,7 +36,7 @@ def checkpoints(output):
 
 def told(output):
     """Returns the statements of a summary about the steps themselves."""
-    summary = json.loads((output / "summary.json").read_text())
+    summary = summary_of(output)
     return {name: summary[name] for name in ("extrema", "energy_budget", "reactions", "impacts")}
 
 
@@ -56,7 +55,7 @@ class ResumeTestCase(TestCase):
         for name in RESULTS & {path.name for path in expected.iterdir()}:
             self.assertEqual((expected / name).read_bytes(), (found / name).read_bytes(), f"{found}: {name}")
         self.assertEqual(told(expected), told(found))
-        self.assertEqual(json.loads((found / "summary.json").read_text())["status"], "done")
+        self.assertEqual(summary_of(found)["status"], "done")
         self.assertEqual(list(found.glob("*.new")) + list(found.glob("*.pattern")), [])
 
     def interrupted(self, values, name):

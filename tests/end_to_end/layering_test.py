@@ -119,7 +119,3 @@ class Layering(unittest.TestCase):
                     found[str(path.relative_to(SOURCE).parent)] += 1
             self.assertTrue(found, f"{name} is included nowhere: this test looks for something else")
             self.assertEqual(found, places, f"{name}: docs/developers/architecture.md must have the same numbers of files")
-
-
-if __name__ == "__main__":
-    unittest.main()

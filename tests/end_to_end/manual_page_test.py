@@ -4,7 +4,6 @@ import os
 import pathlib
 import re
 import subprocess
-import unittest
 
 from harness import SOURCE, TestCase, run
 
@@ -52,7 +51,3 @@ class ManualPage(TestCase):
         text = self.rendered()
         for name in read:
             self.assertIn(name, text)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 cheaper."""
 
 import re
-import unittest
 
 from harness import History, TestCase, run, settings
 
@@ -78,7 +77,3 @@ class ManyIterations(TestCase):
         said, history = self.squeeze(**{"time.step": 5e-4, "time.end": 3e-3})
         self.assertLess(max(history["newton_rounds"]), 200)
         self.assertNotRegex(said, "Newton's method has needed")
-
-
-if __name__ == "__main__":
-    unittest.main()

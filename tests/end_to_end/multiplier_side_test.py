@@ -2,7 +2,6 @@
 a block and slides without friction. No force then acts along the flat side, for any meshes."""
 
 import re
-import unittest
 
 from harness import History, TestCase, run
 
@@ -108,7 +107,3 @@ class Sides(TestCase):
         # Both sides agree within the accuracy that the advice states.
         _, other, _ = self.slide(0.2, size, 'multipliers_on = "against"')
         self.assertLess(abs(force / other - 1.0), 0.1)
-
-
-if __name__ == "__main__":
-    unittest.main()

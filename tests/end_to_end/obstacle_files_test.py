@@ -1,7 +1,6 @@
 """obstacles.xdmf: the surfaces of the obstacles, at their positions at the time of each frame."""
 
 import re
-import unittest
 import xml.etree.ElementTree
 
 import numpy
@@ -84,7 +83,3 @@ class ObstacleFiles(TestCase):
         self.assertGreater(covered.min(), -1e-12)  # no triangle is flipped
         middle = (a + b + c) / 3
         self.assertLess(numpy.abs(middle[:, 2] - height(middle[:, 0], middle[:, 1])).max(), 0.02)
-
-
-if __name__ == "__main__":
-    unittest.main()

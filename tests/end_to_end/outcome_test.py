@@ -1,22 +1,16 @@
 """Results of a run, in summary.json and in words: its impacts and its largest stress."""
 
-import json
 import math
 import re
-import unittest
 
 import h5py
 import numpy
 
-from harness import DISC, History, SOURCE, SPINNING, TestCase, block_case, run, settings, with_more
+from harness import DISC, SOURCE, SPINNING, History, TestCase, block_case, run, settings, summary_of, with_more
 
 # The puck of the first case strikes a wall once and leaves.
 PUCK = SOURCE / "cases" / "puck" / "puck.toml"
 OUTCOME = ("bodies", "impacts", "impacts_left_out", "rotation", "peak_stress")
-
-
-def summary(folder):
-    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
 
 
 def cube_mesh(cells):
@@ -57,7 +51,7 @@ end = 0.001
         for cells, built in ((3, "equivalent-nodewise"), (8, "equivalent-cellwise")):  # of 27, only one has no contact node
             self.write("cube.msh", cube_mesh(cells))
             folder = self.simulate(self.write("cube.toml", case), f"cube-{cells}")
-            found = summary(folder)
+            found = summary_of(folder)
             self.assertEqual(found["mass"], "equivalent")
             self.assertEqual(found["mass_built"], built)
             self.assertEqual(found["contact_points"], 6 * cells**2 + 2)
@@ -66,7 +60,7 @@ end = 0.001
 
     def test_impacts_balance_momentum_and_are_told(self):
         folder = self.simulate(PUCK, "puck")
-        found = summary(folder)
+        found = summary_of(folder)
         self.assertEqual(len(found["impacts"]), 1)
         impact = found["impacts"][0]
         body = found["bodies"][impact["body"]]
@@ -91,18 +85,18 @@ end = 0.001
         """A clamped block has its largest stress at the end of its support, a disc on a floor inside."""
         clamped = block_case() + '[[support]]\ngroup = "sides"\ncomponents = ["x", "y"]\n'
         marked = self.simulate(self.write("clamped.toml", clamped), "clamped", {"time.end": 0.1})
-        peak = summary(marked)["peak_stress"]
+        peak = summary_of(marked)["peak_stress"]
         self.assertEqual((peak["grows_with_refinement"], peak["sits_on"]), (True, "the edge of a support"))
         line = "it grows with refinement: it sits on the edge of a support"
         self.assertIn(line, self.expect_status(0, run("info", marked)).stdout)
         disc = self.simulate(DISC, "smooth", {"time.end": 0.02})
-        peak = summary(disc)["peak_stress"]
+        peak = summary_of(disc)["peak_stress"]
         self.assertEqual((peak["grows_with_refinement"], peak["sits_on"]), (False, None))
         self.assertNotIn("grows with refinement", self.expect_status(0, run("info", disc)).stdout)
 
     def test_they_tell_where_and_on_how_many_points(self):
         folder = self.simulate(PUCK, "puck", {"time.end": 7e-4, "output.history_every": 1})
-        impact = summary(folder)["impacts"][0]
+        impact = summary_of(folder)["impacts"][0]
         header, *rows = (folder / "history.csv").read_text(encoding="ascii").splitlines()
         column = header.split(",").index("active_contacts")
         self.assertEqual(impact["contact_points"], max(float(row.split(",")[column]) for row in rows))
@@ -116,7 +110,7 @@ end = 0.001
 
     def test_a_coarse_contact_zone_is_told(self):
         folder = self.simulate(self.write("block.toml", block_case()), "block")
-        impact = summary(folder)["impacts"][0]
+        impact = summary_of(folder)["impacts"][0]
         self.assertIn(impact["contact_points"], (1, 2, 3))
         self.assertLess(impact["contact_points"], impact["all_contact_points"])
         self.assertTrue(impact["coarse"])
@@ -131,7 +125,7 @@ end = 0.001
                 .replace("[load]\ngravity = [0.0, -10.0]", '[initial]\nvelocity = ["x", "0"]')
                 + '[[probe]]\nname = "wall"\ncontact = 0\n')
         folder = self.simulate(self.write("ring.toml", text), "ring", options=("--quiet", "--force"))
-        found = summary(folder)
+        found = summary_of(folder)
         self.assertEqual(found["impacts"][0]["largest_force"], 0.0)
         self.assertGreater(max(map(abs, History(folder / "history.csv")["wall.force_x"])), 0.1)
         [line] = [line for line in self.expect_status(0, run("info", folder)).stdout.splitlines() if line.startswith("  impact 1: ")]
@@ -157,7 +151,7 @@ end = 0.001
 
     def test_impulses_say_whether_friction_is_in_them(self):
         folder = self.simulate(SOURCE / "cases" / "oblique" / "oblique.toml", "oblique", {"time.step": 1e-4})
-        impact = summary(folder)["impacts"][0]
+        impact = summary_of(folder)["impacts"][0]
         whole = sum(component**2 for component in impact["impulse"])**0.5
         # Coulomb's cone holds in each step, and therefore for the sums.
         self.assertLessEqual(whole, (1 + 0.3**2)**0.5 * impact["normal_impulse"] * (1 + 1e-9))
@@ -165,11 +159,11 @@ end = 0.001
         self.assertIn(f"normal impulse {impact['normal_impulse']:.4g} (with friction {whole:.4g}),", said)
         folder = self.simulate(DISC, "disc", {"time.end": 0.03})
         said = self.expect_status(0, run("info", folder)).stdout
-        self.assertIn(f"normal impulse {summary(folder)['impacts'][0]['normal_impulse']:.4g}, largest force", said)
+        self.assertIn(f"normal impulse {summary_of(folder)['impacts'][0]['normal_impulse']:.4g}, largest force", said)
 
     def test_they_do_not_depend_on_what_else_is_written(self):
-        often = summary(self.simulate(DISC, "often", {"time.end": 0.03}))
-        rarely = summary(self.simulate(DISC, "rarely", {"time.end": 0.03, "output.history_every": 50}))
+        often = summary_of(self.simulate(DISC, "often", {"time.end": 0.03}))
+        rarely = summary_of(self.simulate(DISC, "rarely", {"time.end": 0.03, "output.history_every": 50}))
         self.assertEqual(often["impacts"], rarely["impacts"])
         self.assertFalse(often["impacts"][0]["ended"])
         self.assertIsNone(often["impacts"][0]["restitution"])
@@ -184,7 +178,7 @@ end = 0.001
     def test_a_grazing_impact_has_no_restitution(self):
         values = {"initial.velocity": "[200.0, -0.3]", "load.gravity": "[0.0, 0.0]", "time.end": 0.2}
         folder = self.simulate(DISC, "grazing", values)
-        impact = summary(folder)["impacts"][0]
+        impact = summary_of(folder)["impacts"][0]
         self.assertTrue(impact["ended"])
         self.assertAlmostEqual(impact["normal_velocity_before"], -0.3, delta=1e-9)
         self.assertIsNone(impact["restitution"])
@@ -193,7 +187,7 @@ end = 0.001
         self.assertIn(f"no restitution ({impact['why_no_restitution']})", said)
         # On a belt that runs along with it, it does not graze.
         carried = self.simulate(DISC, "carried", values | {"obstacle.foundation.velocity": "[200.0, 0.0]"})
-        impact = summary(carried)["impacts"][0]
+        impact = summary_of(carried)["impacts"][0]
         self.assertAlmostEqual(impact["obstacle_sliding_velocity"][0], 200.0, delta=1e-9)
         self.assertIsNone(impact["why_no_restitution"])
         self.assertIn(f"restitution {impact['restitution']:.4g}", self.expect_status(0, run("info", carried)).stdout)
@@ -204,7 +198,7 @@ end = 0.001
         self.assertIn('inside obstacle "foundation", the deepest by 0.999 at (0, -0.999)', deep.stderr)
         folder = self.simulate(DISC, "inside", {"mesh.move": "[0.0, -0.00102]", "time.end": 0.2, "load.gravity": "[0.0, 0.0]",
                                                 "initial.velocity": "[0.0, 0.0]"}, options=("--quiet", "--force"))
-        impact = summary(folder)["impacts"][0]
+        impact = summary_of(folder)["impacts"][0]
         self.assertTrue(impact["from_inside"])
         self.assertTrue(impact["ended"])
         self.assertIsNone(impact["restitution"])
@@ -212,7 +206,7 @@ end = 0.001
 
     def test_the_largest_stress_is_that_of_the_fields_and_more(self):
         every = self.simulate(DISC, "every", {"time.end": 0.02, "output.fields_every": 1})
-        peak = summary(every)["peak_stress"]
+        peak = summary_of(every)["peak_stress"]
         self.assertEqual(peak["states_looked_at"], 201)
         self.assertEqual(peak["states"], 201)
         with h5py.File(every / "results.h5") as file:
@@ -220,7 +214,7 @@ end = 0.001
         self.assertEqual(len(values), 201)
         self.assertEqual(max(values), peak["von_mises"])
         sampled = self.simulate(DISC, "few", {"time.end": 0.02, "output.fields_every": 100})
-        few = summary(sampled)["peak_stress"]
+        few = summary_of(sampled)["peak_stress"]
         self.assertLess(few["states_looked_at"], 100)
         self.assertLessEqual(few["von_mises"], peak["von_mises"])
         # A value that was not evaluated in every step may have been higher.
@@ -237,7 +231,7 @@ end = 0.001
         rows = {line.split()[0]: line for line in text.split("\n\n")[1].split("\n")[1:4]}
         for name, folder in runs.items():
             with self.subTest(name):
-                found = summary(folder)
+                found = summary_of(folder)
                 impacts, peak = found["impacts"], found["peak_stress"]
                 history = History(folder / "history.csv")
                 turned_at = next((t for t, turned in zip(history["time"], history["max_rotation"]) if turned > 0.1), math.inf)
@@ -265,7 +259,7 @@ end = 0.001
     def test_turning_after_the_last_impact_is_told_from_turning_in_it(self):
         """The puck leaves with a spin and rotates in free flight."""
         folder = self.simulate(PUCK, "puck", {"time.end": 6e-3, "time.step": 4e-6})
-        found = summary(folder)
+        found = summary_of(folder)
         [impact] = found["impacts"]
         rotation = found["rotation"]
         history = History(folder / "history.csv")
@@ -286,7 +280,7 @@ end = 0.001
         # The disc is pressed flat.
         folder = self.simulate(DISC, "disc", {"time.end": 0.02})
         said = self.expect_status(0, run("info", folder)).stdout
-        beyond = summary(folder)["rotation"]["time_beyond"]
+        beyond = summary_of(folder)["rotation"]["time_beyond"]
         self.assertIn(f"(BEYOND SMALL STRAIN from t = {beyond:.6g} on, before the last impact has ended)", said)
         self.expect_status(0, run("report", folder))
         self.assertIn('"rotation_after_impacts":false', (folder / "report.html").read_text(encoding="utf-8"))
@@ -297,7 +291,7 @@ end = 0.001
         outcomes = {}
         for law in ("linear", "neo-hookean"):
             process = self.expect_status(0, run("run", case, "-o", self.folder / law, *settings({"material.0.law": law})))
-            outcomes[law] = process, summary(self.folder / law)["impacts"][0]
+            outcomes[law] = process, summary_of(self.folder / law)["impacts"][0]
         (said, grown), (other, true) = outcomes["linear"], outcomes["neo-hookean"]
         error = grown["restitution"] - true["restitution"]
         self.assertGreater(error, 0.1)
@@ -329,12 +323,12 @@ end = 0.001
 
     def test_a_run_that_goes_on_ends_with_the_same(self):
         values = {"time.end": 0.03, "output.checkpoint_every": 130}
-        whole = summary(self.simulate(DISC, "whole", values))
+        whole = summary_of(self.simulate(DISC, "whole", values))
         broken = self.simulate(DISC, "broken", values)
         (broken / "summary.json").unlink()
         max(broken.glob("checkpoint-*.ckpt")).unlink()  # of its end
         self.expect_status(0, run("run", DISC, "-o", broken, "--resume", "--quiet", *settings(values)))
-        resumed = summary(broken)
+        resumed = summary_of(broken)
         self.assertEqual(resumed["resumed_at"], [260])
         for entry in OUTCOME:
             self.assertEqual(resumed[entry], whole[entry], entry)
@@ -348,7 +342,3 @@ end = 0.001
         case.write_text(text + '[[expect]]\nquantity = "summary.impacts.7.restitution"\nminimum = 2.0\n', encoding="utf-8")
         self.assertIn("7.restitution",
                       run("run", case, "-o", self.folder / "expects", "--quiet", "--force").stdout)
-
-
-if __name__ == "__main__":
-    unittest.main()

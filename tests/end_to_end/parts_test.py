@@ -2,12 +2,11 @@
 
 import json
 import os
-import unittest
 
 import meshio
 import numpy
 
-from harness import MESHES, History, TestCase, run
+from harness import MESHES, History, TestCase, run, summary_of
 
 WIDTH, HEIGHT = 3.0, 2.0
 CORNERS = (0.0, 1.4, WIDTH), (0.0, 0.9, HEIGHT)
@@ -173,7 +172,7 @@ class Parts(TestCase):
 
     def test_summary_names_the_files(self):
         output = self.simulate(self.write("case.toml", self.parts_case()))
-        parameters = json.loads((output / "summary.json").read_text())["parameters"]
+        parameters = summary_of(output)["parameters"]
         self.assertEqual(parameters["part.one.file"], "rectangle.msh")
         self.assertEqual(parameters["part.two.scale"], "2")
         self.assertEqual(parameters["part.one.velocity"], "[0.5, -1]")
@@ -262,7 +261,3 @@ class Parts(TestCase):
         process = self.expect_status(2, run("run", case, "-o", output, "--resume", "--set", "part.one.spin=0.5"))
         self.assertIn("part.one.spin was 0.25, now it is 0.5", process.stderr)
         self.expect_status(0, run("run", case, "-o", output, "--resume"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,11 +4,10 @@ other, contact at the rim of its group. The depths are computed here from the fi
 import json
 import re
 import shutil
-import unittest
 
 import meshio
 
-from harness import SOURCE, TestCase, body_case, gravity, run, settings
+from harness import SOURCE, TestCase, body_case, gravity, run, settings, summary_of, write_msh
 
 OBLIQUE = SOURCE / "cases" / "oblique" / "oblique.toml"
 # Faster than its contact group, 20 degrees about the lowest point, is wide enough for.
@@ -30,15 +29,7 @@ def blocks(path, gap=0.1):
         cells += [(3, tag, (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1))) for j in range(rows) for i in range(columns)]
         if tag == 1:
             cells += [(1, 3, (at(i, 0), at(i + 1, 0))) for i in range(columns)]
-    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "3", '2 1 "low"', '2 2 "high"', '1 3 "base"',
-             "$EndPhysicalNames", "$Nodes", str(len(nodes))]
-    lines += [f"{i} {x!r} {y!r} 0" for i, (x, y) in enumerate(nodes, start=1)] + ["$EndNodes", "$Elements", str(len(cells))]
-    lines += [f"{i} {kind} 2 {tag} {tag} {' '.join(map(str, corners))}" for i, (kind, tag, corners) in enumerate(cells, start=1)]
-    path.write_text("\n".join(lines + ["$EndElements"]) + "\n", encoding="ascii")
-
-
-def summary_of(output):
-    return json.loads((output / "summary.json").read_text(encoding="utf-8"))
+    write_msh(path, ['2 1 "low"', '2 2 "high"', '1 3 "base"'], nodes, cells)
 
 
 def found_in(output):
@@ -162,7 +153,3 @@ class Penetration(TestCase):
             self.assertTrue(resumed["resumed_at"])
             self.assertEqual(resumed["unwatched_penetration"], whole["unwatched_penetration"])
             self.assertEqual(resumed["warnings"], whole["warnings"])
-
-
-if __name__ == "__main__":
-    unittest.main()

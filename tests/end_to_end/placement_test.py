@@ -2,7 +2,6 @@
 closed forms."""
 
 import math
-import unittest
 
 import meshio
 import numpy
@@ -113,7 +112,3 @@ class Placement(TestCase):
     def volume(self):
         mesh = meshio.read(MESH)
         return sum(abs(numpy.linalg.det(cell[1:] - cell[0])) for cell in mesh.points[mesh.cells_dict["tetra"]]) / 6.0
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@ import os
 import re
 import shutil
 import struct
-import unittest
 import xml.etree.ElementTree
 
 import h5py
@@ -278,7 +277,3 @@ class Plot(TestCase):
         process = self.plot(results, "--what", "energy", "-o", "f.svg", status=4,
                             environment=os.environ | {"RICOCHET_PYTHON": str(self.folder / "none")})
         self.assertIn("which is not installed", process.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

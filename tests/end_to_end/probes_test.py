@@ -1,12 +1,9 @@
 """Probes and sensors: consistency with each other, with the fields and with physical laws."""
 
-import json
-import unittest
-
 import meshio
 import numpy
 
-from harness import DISC, MESHES, SOURCE, History, TestCase, block_case, run, with_more
+from harness import DISC, MESHES, SOURCE, History, TestCase, block_case, run, summary_of, with_more
 
 DISC_PROBES = """
 [[probe]]
@@ -105,7 +102,7 @@ class Probes(TestCase):
         for column in ("displacement_x", "displacement_y", "velocity_y", "reaction_normal", "reaction_tangential_x", "gap"):
             self.assertEqual(sampled[f"axis.{last}.{column}"], history[f"lowest.{column}"][::10])
         self.assertEqual(sampled["axis.0.displacement_y"], sampled["top.displacement_y"])
-        summary = json.loads((results / "summary.json").read_text())
+        summary = summary_of(results)
         along = [p for p in summary["probes"] if p["name"].startswith("axis.")]
         heights = [p["position"][1] for p in along]
         self.assertEqual(heights, sorted(heights, reverse=True))
@@ -119,7 +116,7 @@ class Probes(TestCase):
         case = self.write("case.toml", block_case() + bottom)
         results = self.simulate(case, values={"time.end": 1.0, "contact.0.friction": 0.4})
         history = History(results / "history.csv")
-        summary = json.loads((results / "summary.json").read_text())
+        summary = summary_of(results)
         nodes = [p for p in summary["probes"] if p["name"].startswith("edge.")]
         self.assertEqual(len(nodes), 4)
         normal = numpy.array([history[f"{p['name']}.reaction_normal"] for p in nodes])
@@ -190,7 +187,7 @@ class Probes(TestCase):
         self.assertFalse(numpy.array(history["sides.support_y"]).any())
         self.assertEqual(history["sides.force_x"], history["sides.support_x"])
         said = "its force and moment are the sum of supports and of contacts, which share 2 nodes with it; support and"
-        summary = json.loads((results / "summary.json").read_text())
+        summary = summary_of(results)
         self.assertEqual([entry["name"] for entry in summary["probe_sums"]], ["sides"])
         self.assertTrue(summary["probe_sums"][0]["sums"].startswith(said))
         self.assertIn(f'probe "sides": {said}', self.expect_status(0, run("info", results)).stdout)
@@ -295,7 +292,3 @@ contact = 0
         self.assertRegex(errors, r'sampled\.toml:\d+:\d+: history\.csv has no column "f\.displacement_x": probe "f" has '
                                  r'"every", so its columns are in probes-3\.csv; remove "every"')
         self.assertNotIn("did you mean", errors)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,16 +2,14 @@
 
 import contextlib
 import itertools
-import json
 import os
 import pathlib
 import re
 import signal
 import subprocess
 import time
-import unittest
 
-from harness import PROGRAM, TestCase, block_case, body_case, gravity, run, settings, wait_for
+from harness import PROGRAM, TestCase, block_case, body_case, gravity, run, settings, summary_of, wait_for
 
 # After a signal the process must end within two seconds, apart from the machine's own delays.
 AT_MOST = 2.0
@@ -67,7 +65,7 @@ class Streams(TestCase):
             self.expect_status(0, redirected(marks, "run", self.case, "-o", output))
             for name in RESULTS:
                 self.assertEqual((expected / name).read_bytes(), (output / name).read_bytes(), f"{name} with {marks}")
-            self.assertEqual(json.loads((output / "summary.json").read_text())["status"], "done")
+            self.assertEqual(summary_of(output)["status"], "done")
             problem = self.folder / "exported"
             self.expect_status(0, redirected(marks, "run", self.case, "-o", output, "--force", "--quiet", "--export-contact",
                                              "20", "--export-contact-to", problem))
@@ -101,7 +99,7 @@ class Streams(TestCase):
             answer = self.expect_status(4, redirected(">/dev/full", *command))
             self.assertIn("standard output", answer.stderr)
             self.assertIn("No space left on device", answer.stderr)
-        self.assertEqual(json.loads((output / "summary.json").read_text())["status"], "done")
+        self.assertEqual(summary_of(output)["status"], "done")
 
 
 class Files(TestCase):
@@ -182,7 +180,7 @@ class Messages(TestCase):
         wanted = "time.end = 0.025 is not a whole number of steps of 0.01: the run ends at t = 0.03, after step 3"
         answer = self.expect_status(0, run("run", case, "-o", self.folder / "out", *settings(values)))
         self.assertIn(wanted, answer.stderr)
-        self.assertEqual(json.loads((self.folder / "out" / "summary.json").read_text())["warnings"], [wanted])
+        self.assertEqual(summary_of(self.folder / "out")["warnings"], [wanted])
         self.assertIn(wanted, run("validate", case, *settings(values)).stderr)
         # Excludes steps that reach the end, up to rounding, in a whole number of steps.
         values = {"time.step": 0.1, "time.end": 0.3}
@@ -193,7 +191,7 @@ class Messages(TestCase):
         output = self.folder / "one of many"
         answer = self.expect_status(0, run("run", case, "-o", output, "--quiet", "--set", "time.end=0.025"))
         self.assertIn(f"warning: {output}: time.end", answer.stderr)
-        self.assertTrue(json.loads((output / "summary.json").read_text())["warnings"][0].startswith("time.end"))
+        self.assertTrue(summary_of(output)["warnings"][0].startswith("time.end"))
         answer = self.expect_status(4, run("run", case, "-o", output, "--quiet"))
         self.assertIn(f"ricochet: {output}: ", answer.stderr)
         # A position in the case says enough: every run of it has this error.
@@ -246,7 +244,7 @@ class Signals(TestCase):
         wait_for((output / "results.xdmf").exists)
         time.sleep(1.0)
         _, errors = self.end(process, signal.SIGTERM, 143)
-        summary = json.loads((output / "summary.json").read_text())
+        summary = summary_of(output)
         self.assertEqual(summary["status"], "interrupted")
         self.assertIn("stopped during a step", summary["message"])
         self.assertIn("continues from the last checkpoint, if there is one", errors)
@@ -263,7 +261,7 @@ class Signals(TestCase):
         history = output / "history.csv"
         wait_for(lambda: history.exists() and history.read_text().count("\n") >= 4)
         self.end(process, signal.SIGTERM, 143)
-        summary = json.loads((output / "summary.json").read_text())
+        summary = summary_of(output)
         self.assertEqual(summary["status"], "interrupted")
         # The end of the step if it was reached in time, else its start.
         step = int(sorted(output.glob("checkpoint-*.ckpt"))[-1].stem.split("-")[1])
@@ -319,8 +317,4 @@ class Signals(TestCase):
         time.sleep(0.3)
         self.assertIsNone(process.poll())
         self.end(process, signal.SIGTERM, 143)
-        self.assertEqual(json.loads((output / "summary.json").read_text())["status"], "interrupted")
-
-
-if __name__ == "__main__":
-    unittest.main()
+        self.assertEqual(summary_of(output)["status"], "interrupted")

@@ -6,7 +6,6 @@ import io
 import os
 import pathlib
 import subprocess
-import unittest
 
 from harness import TestCase
 
@@ -60,7 +59,3 @@ class RandomCases(TestCase):
         self.check_energy(rows, "reduced-kane")
         touched = [float(row["largest"]) > 0.0 for row in rows["reduced-kane, equivalent"]]
         self.assertGreater(sum(touched), CASES["pair"] // 2)
-
-
-if __name__ == "__main__":
-    unittest.main()

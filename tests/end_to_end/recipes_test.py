@@ -5,7 +5,6 @@ import re
 import subprocess
 import sys
 import types
-import unittest
 
 import jinja2
 import yaml
@@ -91,7 +90,3 @@ class Recipes(TestCase):
         recommended = set(re.search(r"RECOMMENDS ([^\n]*)", program)[1].split())
         self.assertLessEqual(recommended, added)
         self.assertLessEqual(added - recommended, set(re.search(r"SUGGESTS ([^\n]*)", program)[1].rstrip(")").split()))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,14 +2,12 @@
 thinning is reported. viewer/test tests the page itself in a browser."""
 
 import hashlib
-import json
 import re
-import unittest
 
 import h5py
 import numpy
 
-from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case, body_case, method, with_sphere
+from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case, body_case, method, summary_of, with_sphere
 from report_page import SHORT, VIEWER, Page, ReportTestCase
 
 
@@ -107,7 +105,7 @@ class Report(ReportTestCase):
         (data,) = page.runs
         self.assertEqual(data["name"], "disc")
         self.assertEqual(data["thinned"], [])
-        self.assertEqual(data["summary"], json.loads((results / "summary.json").read_text()))
+        self.assertEqual(data["summary"], summary_of(results))
         self.check_history(page, data, results)
         self.check_frames(page, data, results)
         # The obstacle does not move: its surface occurs once, on the line y = 0.
@@ -287,6 +285,3 @@ class BuiltViewer(TestCase):
         self.assertEqual(re.search(r"^<!-- sources (\w+) -->$", page, re.MULTILINE)[1], total.hexdigest(),
                          "viewer/ has changed: run ./dev viewer and commit viewer/built/viewer.html")
         self.assertEqual((PROGRAM.parent / "share" / "ricochet" / "viewer.html").read_text(encoding="utf-8"), page)
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,11 +5,10 @@ import os
 import re
 import shutil
 import subprocess
-import unittest
 
 import h5py
 
-from harness import DISC, PROGRAM, block_case
+from harness import DISC, PROGRAM, block_case, summary_of
 from report_page import SHORT, VIEWER, Page, ReportTestCase
 
 
@@ -40,7 +39,7 @@ class ReportWords(ReportTestCase):
         results = self.simulate(DISC, "disc", SHORT)
         history = results / "history.csv"
         text = history.read_text()
-        summary = json.loads((results / "summary.json").read_text())
+        summary = summary_of(results)
         summary["status"] = "interrupted"
         (results / "summary.json").write_text(json.dumps(summary))
         history.write_text(text[:-9])  # the last row is being written
@@ -152,7 +151,7 @@ class ReportWords(ReportTestCase):
 
     def test_an_infinite_depth_is_not_left_out(self):
         results = self.simulate(DISC, "disc", SHORT)
-        summary = json.loads((results / "summary.json").read_text())
+        summary = summary_of(results)
         summary["unwatched_penetration"]["found"] = [
             {"obstacle": "floor", "bodies": ["body 0"], "depth": "inf", "relative_depth": "inf", "time": 0.005,
              "place": [0.0, 0.0], "first_time": 0.005, "groups": [], "contact": None, "passed_through": False,
@@ -189,6 +188,3 @@ class ReportWords(ReportTestCase):
         self.assertIn("/frames/000003/displacement", self.report(results, status=2).stderr)
         (results / "obstacles.xdmf").write_text('<Grid Name="obstacles" GridType="Uniform"><Time Value="x"/></Grid>')
         self.assertIn("obstacles.xdmf:1: 'x' is not a number", self.report(results, status=2).stderr)
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,18 +1,16 @@
 """results.xdmf and results.h5, read by meshio and h5py, agree with history.csv on every kind of cell."""
 
-import json
 import os
 import signal
 import subprocess
 import time
-import unittest
 import xml.etree.ElementTree
 
 import h5py
 import meshio
 import numpy
 
-from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case, method, run
+from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case, method, run, summary_of
 from results_frames import falling, frames
 from vtk_cells import middles, volumes
 
@@ -74,7 +72,7 @@ class ResultsFiles(TestCase):
         """Checks that every frame equals the row of the history at its time, bit for bit. Returns how many saw
         contact."""
         history = History(results / "history.csv")
-        summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+        summary = summary_of(results)
         dimension = summary["dimension"]
         self.assertEqual(len(read), summary["frames"])
         in_contact = 0
@@ -349,7 +347,3 @@ class ResultsFiles(TestCase):
                 ratio = history["lowest.reaction_tangential_x"][row] / history["lowest.reaction_normal"][row]
                 self.assertAlmostEqual(traction[lowest, 0] / pressure[lowest], ratio, delta=1e-12)
         self.assertEqual(seen, {-1, 0, 2, 3}, "open, sticking and slipping nodes are seen")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,13 +1,11 @@
 """Refusals of `--resume`: another case, mesh or version, results that were changed, a directory that is in use."""
 
-import json
 import struct
-import unittest
 import zlib
 
 import h5py
 
-from harness import MESHES, block_case, run, settings, wait_for
+from harness import MESHES, block_case, run, settings, summary_of, wait_for
 from interrupted_runs import ResumeTestCase, busy, checkpoints, start
 
 
@@ -33,7 +31,7 @@ class Refusals(ResumeTestCase):
         """As if another version had written the checkpoint and summary.json."""
         values = busy("newmark")
         output = self.interrupted(values, "out")
-        version = json.loads((output / "summary.json").read_text())["ricochet_version"]
+        version = summary_of(output)["ricochet_version"]
         other = version[:-1] + chr(ord(version[-1]) ^ 1)
         newest = checkpoints(output)[-1]
         content = newest.read_bytes()
@@ -210,6 +208,3 @@ class Refusals(ResumeTestCase):
             self.assertIn("another run is writing into this directory", second.stderr)
         self.assertIn("running", run("info", output).stdout)
         self.assertIsNone(process.poll())
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@
 """
 
 import contextlib
-import json
 import os
 import random
 import signal
@@ -15,7 +14,7 @@ import unittest
 
 import h5py
 
-from harness import DISC, MESHES, SCHEMES, run, settings, wait_for
+from harness import DISC, MESHES, SCHEMES, run, settings, summary_of, wait_for
 from interrupted_runs import ResumeTestCase, busy, checkpoints, start
 
 KILLS = 50
@@ -65,7 +64,7 @@ class Resume(ResumeTestCase):
             text, errors = process.communicate()
             self.assertEqual(process.returncode, status, errors)
             self.assertIn("run --resume continues", text)
-            summary = json.loads((output / "summary.json").read_text())
+            summary = summary_of(output)
             self.assertEqual(summary["status"], "interrupted")
             # At the end of a step, with a checkpoint of it.
             self.assertEqual([int(path.stem.split("-")[1]) for path in checkpoints(output)], [summary["steps"]])
@@ -77,7 +76,7 @@ class Resume(ResumeTestCase):
             self.expect_status(0, run("run", self.disc, "-o", output, "--resume", "--quiet", "--threads", "2",
                                       *settings(values)))
             self.expect_same(expected, output)
-            self.assertEqual(json.loads((output / "summary.json").read_text())["resumed_at"], [summary["steps"]])
+            self.assertEqual(summary_of(output)["resumed_at"], [summary["steps"]])
 
     def test_stopped_while_it_starts(self):
         """This includes METIS, which catches SIGTERM while it orders a matrix."""
@@ -99,7 +98,7 @@ class Resume(ResumeTestCase):
             _, errors = process.communicate()
             self.assertEqual(process.returncode, 143, errors)
             if (output / "summary.json").exists():  # else there was nothing to keep yet
-                self.assertEqual(json.loads((output / "summary.json").read_text())["status"], "interrupted")
+                self.assertEqual(summary_of(output)["status"], "interrupted")
 
     def test_a_second_signal_stops_at_once(self):
         output = self.folder / "out"
@@ -113,7 +112,7 @@ class Resume(ResumeTestCase):
         process.communicate()
         self.assertIn(process.returncode, (130, 143))
         self.assertEqual(checkpoints(output), [])
-        self.assertEqual(json.loads((output / "summary.json").read_text())["status"], "running")
+        self.assertEqual(summary_of(output)["status"], "running")
 
     def test_two_checkpoints_are_kept_and_a_damaged_one_is_not_taken(self):
         values = busy("klr-conserving")
@@ -130,7 +129,7 @@ class Resume(ResumeTestCase):
             self.assertIn("checkpoint-000000800.ckpt", process.stderr)
             self.assertIn("resumed after step 760", process.stderr)
             self.expect_same(expected, output)
-            self.assertIn("cannot be used", "".join(json.loads((output / "summary.json").read_text())["warnings"]))
+            self.assertIn("cannot be used", "".join(summary_of(output)["warnings"]))
         output = self.interrupted(values, "hopeless")
         for path in checkpoints(output):
             path.write_bytes(path.read_bytes()[:-1])
@@ -156,10 +155,10 @@ class Resume(ResumeTestCase):
             output = self.folder / f"longer-{k}"
             self.expect_status(0, run("run", self.disc, "-o", output, "--quiet", *settings({**values, "time.end": ends[0]})))
             for end in ends[1:]:
-                self.assertEqual(json.loads((output / "summary.json").read_text())["status"], "done")
+                self.assertEqual(summary_of(output)["status"], "done")
                 self.expect_status(0, run("run", "--resume", output, "--quiet", "--set", f"time.end={end}"))
             self.expect_same(expected, output)
-            steps = json.loads((output / "summary.json").read_text())["resumed_at"]
+            steps = summary_of(output)["resumed_at"]
             self.assertEqual(steps, [round(end / 1e-4) for end in ends[:-1]])
         # Without settings of frames: as often as in the original run.
         values = busy("newmark")

@@ -1,7 +1,5 @@
 """A surface that touches itself: compared with the same surfaces as a pair; energy, momenta, resumed runs, refusals."""
 
-import unittest
-
 import numpy
 
 from harness import History, TestCase, run
@@ -138,7 +136,3 @@ class SelfContact(TestCase):
         text = text.replace('sliding = "large"', 'sliding = "large"\nmultipliers_on = "group"')
         result = self.expect_status(2, run("validate", self.write("sides.toml", text)))
         self.assertIn("a surface that touches itself has no sides", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

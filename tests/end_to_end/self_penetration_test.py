@@ -2,9 +2,8 @@
 if nothing was checked."""
 
 import json
-import unittest
 
-from harness import History, TestCase, run
+from harness import History, TestCase, run, summary_of, write_msh
 from report_page import Page
 from self_contact_test import CLAMP_GEO
 
@@ -77,15 +76,7 @@ def cracked(path):
     cells += [(1, 3, (at(i, rows), at(i + 1, rows))) for i in range(columns)]
     cells += [(1, 4, (at(i, 2), at(i + 1, 2))) for i in range(tip)]
     cells += [(1, 5, (over(i, 2), over(i + 1, 2))) for i in range(tip)]
-    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "5", '2 1 "body"', '1 2 "base"', '1 3 "roof"',
-             '1 4 "lower.lip"', '1 5 "upper.lip"', "$EndPhysicalNames", "$Nodes", str(len(nodes))]
-    lines += [f"{i} {x!r} {y!r} 0" for i, (x, y) in enumerate(nodes, start=1)] + ["$EndNodes", "$Elements", str(len(cells))]
-    lines += [f"{i} {kind} 2 {tag} {tag} {' '.join(map(str, corners))}" for i, (kind, tag, corners) in enumerate(cells, start=1)]
-    path.write_text("\n".join(lines + ["$EndElements"]) + "\n", encoding="ascii")
-
-
-def summary_of(output):
-    return json.loads((output / "summary.json").read_text(encoding="utf-8"))
+    write_msh(path, ['2 1 "body"', '1 2 "base"', '1 3 "roof"', '1 4 "lower.lip"', '1 5 "upper.lip"'], nodes, cells)
 
 
 def told(output):
@@ -207,7 +198,3 @@ class SelfPenetration(TestCase):
         self.expect_status(0, run("report", output))
         judgement = Page(output / "report.html").runs[0]["judgement"]
         self.assertTrue(judgement["penetration_not_watched"].startswith("bodies against themselves"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,14 +1,12 @@
 """Obstacles of any shape that move as a case prescribes: the same surface in several ways, the account, and
 refusals."""
 
-import json
 import math
 import re
-import unittest
 
 import numpy
 
-from harness import SOURCE, History, TestCase, body_case, gravity, initial_velocity, run, with_more
+from harness import SOURCE, History, TestCase, body_case, gravity, initial_velocity, run, summary_of, with_more
 
 BOWL = SOURCE / "cases" / "bowl" / "bowl.toml"
 FLOOR = 'type = "plane"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]'
@@ -220,7 +218,7 @@ class Passages(Blocks):
         output = self.folder / f"out{step}"
         process = run("run", self.write("case.toml", text), "-o", output, "--force")
         self.assertEqual(process.returncode, 0, process.stderr)
-        return process, json.loads((output / "summary.json").read_text())["unwatched_penetration"]
+        return process, summary_of(output)["unwatched_penetration"]
 
     def test_a_long_step_is_taken_in_parts(self):
         process, found = self.outcome(0.07, -0.39)
@@ -282,7 +280,3 @@ class Refusals(Blocks):
         (self.folder / "m.csv").write_text("t, ux, uy, uz\n0 0 0 0\n1 1 1 0.5\n")
         self.refuse(with_motion('table = "m.csv"'), 'm.csv:1: the fourth column is called "uz"')
         self.refuse(with_motion("spin = 1.0"), 'set its "mass" or "density", too')
-
-
-if __name__ == "__main__":
-    unittest.main()

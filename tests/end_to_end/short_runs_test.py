@@ -1,9 +1,6 @@
 """A short run of the disc through its first contact under every scheme: small enough for a build with sanitizers."""
 
-import json
-import unittest
-
-from harness import DISC, History, SCHEMES, TestCase, method, run
+from harness import DISC, SCHEMES, History, TestCase, method, run, summary_of
 
 
 class ShortRuns(TestCase):
@@ -20,7 +17,7 @@ class ShortRuns(TestCase):
     def test_the_critical_step_is_reported_and_refused(self):
         values = {"time.scheme": "semi-explicit", "mass.type": "equivalent-lumped", "time.step": 5e-4, "time.end": 0.005}
         results = self.simulate(DISC, values=values)
-        summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+        summary = summary_of(results)
         critical = summary["critical_time_step"]
         self.assertAlmostEqual(summary["critical_fraction"], 5e-4 / critical, delta=1e-12)
         described = self.expect_status(0, run("info", results)).stdout
@@ -30,8 +27,4 @@ class ShortRuns(TestCase):
         self.assertIn(f"1.2 times the critical step, {critical:.6g}", self.expect_status(2, refused).stderr)
         # Other schemes have none.
         implicit = self.simulate(DISC, "implicit", {"time.end": 0.001})
-        self.assertIsNone(json.loads((implicit / "summary.json").read_text(encoding="utf-8"))["critical_time_step"])
-
-
-if __name__ == "__main__":
-    unittest.main()
+        self.assertIsNone(summary_of(implicit)["critical_time_step"])

@@ -63,7 +63,3 @@ class ShowInParaView(TestCase):
         done = subprocess.run(["xvfb-run", "-a", "pvbatch", SCRIPT, self.folder], text=True, check=False, capture_output=True,
                               timeout=300)
         self.assertIn("neither results.xdmf nor", done.stdout + done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,12 +1,11 @@
 """Bodies that slide along each other without limit: closed forms, momenta, energy, resumed runs, refusals."""
 
-import json
 import math
-import unittest
 
 import numpy
 
-from harness import History, TestCase, run
+from harness import History, TestCase, run, summary_of
+from closed_forms_of_contacts import BlockInBowl
 
 BOWL = 0.25  # height = BOWL x^2
 HALF, THICK = 0.2, 0.15
@@ -135,10 +134,6 @@ def material(group, law="neo-hookean", young=1000.0):
     return f'[[material]]\ngroup = "{group}"\ndensity = 1.0\nyoung = {young}\npoisson = 0.3\nlaw = "{law}"\n'
 
 
-def summary(folder):
-    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-
-
 class Sliding(TestCase):
     def history(self, text, name="case.toml"):
         return History(self.simulate(self.write(name, text)) / "history.csv")
@@ -160,28 +155,15 @@ class Sliding(TestCase):
             self.assertLess(numpy.ptp(history[name]), 1e-11 * size, name)
 
 
-def block_in_bowl(x):
-    """Returns, for a rigid block whose two lower corners are on the parabola, the height of its centre, and the kinetic
-    energy per mass and squared velocity of x, the middle of the chord."""
-    def place(x):
-        turn = math.atan(2.0 * BOWL * x)
-        chord = BOWL * x**2 + BOWL * (HALF * math.cos(turn))**2
-        return numpy.array([x - 0.5 * THICK * math.sin(turn), chord + 0.5 * THICK * math.cos(turn), turn])
-    h = 1e-6
-    rate = (place(x + h) - place(x - h)) / (2.0 * h)
-    gyration = ((2.0 * HALF)**2 + THICK**2) / 12.0
-    return place(x), 0.5 * (rate[0]**2 + rate[1]**2 + gyration * rate[2]**2), rate
-
-
 class Bowl(Sliding):
     """A stiff block slides from rest down an elastic bowl: one degree of freedom, in closed form."""
 
-    START = -0.6
+    START, BLOCK = -0.6, BlockInBowl(BOWL, HALF, THICK)
 
     def case(self, *, size=0.06, friction=0.0, law="neo-hookean", step=0.004, end=1.2, gravity=10.0, more=""):
         (self.folder / "bowl.geo").write_text(BOWL_GEO.format(bowl=BOWL, size=size))
         (self.folder / "block.geo").write_text(BLOCK_GEO.format(left=-HALF, right=HALF, height=THICK, size=0.1))
-        place, _, _ = block_in_bowl(self.START)
+        place = self.BLOCK.place(self.START)
         turn = place[2]
         corner = (place[0] + 0.5 * THICK * math.sin(turn), place[1] - 0.5 * THICK * math.cos(turn) + 1e-4)
         return (f'[part.bowl]\nfile = "bowl.geo"\n[part.block]\nfile = "block.geo"\n'
@@ -197,9 +179,9 @@ class Bowl(Sliding):
         self.closes(history)
         mass = 2.0 * HALF * THICK
         velocity = max(abs(p) / mass for p in history["momentum.block_x"])
-        fall = block_in_bowl(self.START)[0][1] - block_in_bowl(0.0)[0][1]
-        _, inertia, rate = block_in_bowl(0.0)
-        expected = math.sqrt(10.0 * fall / inertia) * abs(rate[0])
+        fall = self.BLOCK.place(self.START)[1] - self.BLOCK.place(0.0)[1]
+        rate = self.BLOCK.rate(0.0)
+        expected = math.sqrt(2.0 * 10.0 * fall / self.BLOCK.inertia(rate)) * abs(rate[0])
         self.assertAlmostEqual(velocity, expected, delta=0.01 * expected)
 
     def test_friction_stops_it(self):
@@ -312,7 +294,7 @@ class Refusals(Sliding):
 
         def force_and_summary(step):
             folder = self.simulate(case, values={"time.step": step}, options=("--quiet", "--force"))
-            return History(folder / "history.csv")["fit.force_y"][-1], summary(folder)
+            return History(folder / "history.csv")["fit.force_y"][-1], summary_of(folder)
 
         right, found = force_and_summary(4e-5)
         self.assertEqual(found["unsettled_contacts"], [])
@@ -335,7 +317,3 @@ class Refusals(Sliding):
             self.assertIn("FORCE IN DOUBT", self.expect_status(0, run("info", self.folder / "out")).stdout)
             break
         self.assertGreater(wrong, 0, "no step leaves an overlap any more: this test needs another case")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@ import os
 import pathlib
 import subprocess
 import sys
-import unittest
 
 from harness import SOURCE, TestCase
 
@@ -29,7 +28,3 @@ class StepPrice(TestCase):
 
     def test_ball(self):
         self.price(("ball", 3, 0.13))
-
-
-if __name__ == "__main__":
-    unittest.main()

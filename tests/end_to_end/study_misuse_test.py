@@ -4,7 +4,6 @@ import json
 import pathlib
 import shutil
 import subprocess
-import unittest
 
 from harness import PROGRAM, RESPECTS_MODES, SOURCE, TestCase, run, settings
 
@@ -222,7 +221,3 @@ class StudyMisuse(TestCase):
         self.refused(1, "more than 10000 runs", "study", BAR, "--vary",
                      "time.step=" + ",".join(f"{i}e-5" for i in range(1, 10002)), "-o", self.folder / "no")
         self.assertFalse((self.folder / "no").exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

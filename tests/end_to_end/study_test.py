@@ -7,9 +7,8 @@ import os
 import pathlib
 import signal
 import subprocess
-import unittest
 
-from harness import PROGRAM, SOURCE, History, TestCase, run, settings, wait_for
+from harness import PROGRAM, SOURCE, History, TestCase, run, settings, summary_of, wait_for
 
 BAR = SOURCE / "cases" / "bar" / "impact.toml"
 ROD = SOURCE / "cases" / "rod" / "rod.toml"
@@ -38,7 +37,7 @@ class Study(TestCase):
         return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def summary(self, row):
-        return json.loads((self.output / "runs" / row["run"] / "summary.json").read_text())
+        return summary_of(self.output / "runs" / row["run"])
 
     def test_table_says_what_the_runs_say(self):
         self.study("a", "--vary", "time.scheme,mass.type=reduced-kane/equivalent,midpoint/consistent", "--vary",
@@ -283,7 +282,3 @@ class Study(TestCase):
             self.assertFalse(self.output.exists())
         self.simulate(BAR, "run", {"time.end": 0.1})
         self.assertIn("holds a run", self.study("run", "--vary", "time.step=1e-3", status=4).stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,11 +1,9 @@
 """Reports on two bodies in contact: impacts, forces and momenta of each, sliding, penetration, texts, resumption from a
 checkpoint. Two bars of equal length and wave speed return all of the approach; the rest are balances."""
 
-import json
 import re
-import unittest
 
-from harness import History, TestCase, run, settings
+from harness import History, TestCase, run, settings, summary_of
 
 CELLS = 40
 
@@ -51,10 +49,6 @@ BLOCKS = ('[part.slab]\nfile = "slab.msh"\n[part.block]\nfile = "block.msh"\nmov
           'components = ["x", "y"]\n[load]\ngravity = [0.0, -1.0]\n[time]\nstep = 0.005\nend = 0.1\n')
 
 
-def summary(folder):
-    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-
-
 class TwoBodies(TestCase):
     def bars(self, more=""):
         self.write("one.msh", strip(CELLS, 2, 0.05))
@@ -89,7 +83,7 @@ class TwoBodies(TestCase):
 
     def test_an_impact_names_both_bodies(self):
         out = self.simulate(self.bars(EXPECT))
-        found = summary(out)
+        found = summary_of(out)
         [impact] = found["impacts"]
         one, two = (body["mass"] for body in found["bodies"])
         self.assertAlmostEqual(one, 0.15, delta=1e-12)
@@ -124,13 +118,13 @@ class TwoBodies(TestCase):
         for whole, one, two in zip(history["momentum_x"], history["momentum.one_x"], history["momentum.two_x"]):
             self.assertAlmostEqual(one + two, whole, delta=1e-12 * largest)
         self.assertAlmostEqual(history["momentum.one_x"][0], 0.15, delta=1e-12)
-        self.assertAlmostEqual(history["momentum.two_x"][-1], summary(out)["bodies"][1]["mass"] * 1.5, delta=1e-3)
+        self.assertAlmostEqual(history["momentum.two_x"][-1], summary_of(out)["bodies"][1]["mass"] * 1.5, delta=1e-3)
         # In the opposite order in the case the force has the opposite sign, whichever side carries the multipliers.
         for side in ("group", "against"):
             turned = self.simulate(self.bars(), name=side, values={"contact.0.group": "two.left", "contact.0.against": "one.right",
                                                                    "contact.0.multipliers_on": side})
             self.assertGreater(max(History(turned / "history.csv")["pair_force.0_x"]), 0.05, side)
-            self.assertEqual(summary(turned)["impacts"][0]["body"], 1, side)
+            self.assertEqual(summary_of(turned)["impacts"][0]["body"], 1, side)
 
     def test_two_contacts_of_two_bodies_are_one_impact(self):
         for name in ("one.msh", "two.msh"):
@@ -139,9 +133,9 @@ class TwoBodies(TestCase):
         case = BARS.replace('[[contact]]\ngroup = "one.right"\nagainst = "two.left"\n', both).replace('boundary = "two.left"', 'boundary = "two.left0"')
         # Under Newmark's scheme the forces of the history are those that act.
         out = self.simulate(self.write("split.toml", case), values={"time.scheme": "newmark", "time.preset": "trapezoidal"})
-        [impact] = summary(out)["impacts"]
+        [impact] = summary_of(out)["impacts"]
         self.assertEqual((impact["body"], impact["against"]["body"]), (0, 1), "in the order of the first contact")
-        mass = summary(out)["bodies"][0]["mass"]
+        mass = summary_of(out)["bodies"][0]["mass"]
         self.assertAlmostEqual(mass * (impact["velocity_after"][0] - impact["velocity_before"][0]), impact["impulse"][0], delta=1e-12)
         history = History(out / "history.csv")
         low, high = history["pair_force.0_x"], history["pair_force.1_x"]
@@ -156,7 +150,7 @@ class TwoBodies(TestCase):
         parts = self.simulate(case, name="parts", values={"time.end": 1.0})
         self.expect_status(0, run("run", case, "-o", parts, "--resume", "--quiet"))
         for entry in ("impacts", "sliding", "extrema", "unwatched_penetration"):
-            self.assertEqual(summary(parts)[entry], summary(whole)[entry], entry)
+            self.assertEqual(summary_of(parts)[entry], summary_of(whole)[entry], entry)
         self.assertEqual((parts / "history.csv").read_bytes(), (whole / "history.csv").read_bytes())
 
     def test_texts_before_a_run(self):
@@ -172,7 +166,7 @@ class TwoBodies(TestCase):
 
     def test_sliding_beyond_half_a_facet_is_told_once(self):
         out = self.simulate(self.blocks())
-        found = summary(out)
+        found = summary_of(out)
         [sliding] = found["sliding"]
         self.assertAlmostEqual(sliding["limit"], 0.0625, delta=1e-12)
         self.assertGreater(sliding["slip"], sliding["limit"])
@@ -183,12 +177,12 @@ class TwoBodies(TestCase):
         self.assertIn('"slab.top" and "block.bottom"', told[0])
         self.assertIn("BEYOND SMALL SLIDING", self.expect_status(0, run("info", out)).stdout)
         short = self.simulate(self.blocks(), name="short", values={"time.end": 0.04})
-        self.assertIsNone(summary(short)["sliding"][0]["time_beyond"])
-        self.assertEqual([text for text in summary(short)["warnings"] if "slid" in text or "overlap" in text], [])
-        self.assertEqual(summary(short)["unwatched_penetration"]["found"], [])
+        self.assertIsNone(summary_of(short)["sliding"][0]["time_beyond"])
+        self.assertEqual([text for text in summary_of(short)["warnings"] if "slid" in text or "overlap" in text], [])
+        self.assertEqual(summary_of(short)["unwatched_penetration"]["found"], [])
         # The advice of the message.
         large = self.simulate(self.blocks(), name="large", values={"contact.0.sliding": "large"})
-        self.assertEqual([text for text in summary(large)["warnings"] if "slid" in text or "overlap" in text], [])
+        self.assertEqual([text for text in summary_of(large)["warnings"] if "slid" in text or "overlap" in text], [])
 
     def test_one_body_has_no_columns_of_bodies(self):
         self.write("one.msh", strip(CELLS, 2, 0.05))
@@ -199,9 +193,5 @@ class TwoBodies(TestCase):
         out = self.simulate(case)
         names = History(out / "history.csv").names
         self.assertEqual([name for name in names if re.search(r"pair_force|momentum\.", name)], [])
-        self.assertNotIn("against", summary(out)["impacts"][0])
-        self.assertEqual(summary(out)["sliding"], [])
-
-
-if __name__ == "__main__":
-    unittest.main()
+        self.assertNotIn("against", summary_of(out)["impacts"][0])
+        self.assertEqual(summary_of(out)["sliding"], [])

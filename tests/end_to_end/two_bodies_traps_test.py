@@ -1,15 +1,8 @@
 """Traps for users of several bodies: momenta that cancel, points that face nothing, corners against large facets, ties
 between bodies in motion, static starts of floating bodies, motions far away."""
 
-import json
-import unittest
-
-from harness import History, TestCase, run
+from harness import History, TestCase, run, summary_of
 from two_bodies_test import material, strip
-
-
-def summary(folder):
-    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
 
 
 def wedge(cells):
@@ -30,14 +23,14 @@ class TwoBodiesTraps(TestCase):
                           + material("one", 1.0) + material("two", 1.0) + more)
 
     def warnings(self, folder, part):
-        return [text for text in summary(folder)["warnings"] if part in text]
+        return [text for text in summary_of(folder)["warnings"] if part in text]
 
     def test_momenta_that_cancel(self):
         case = self.bodies(strip(8, 2, 0.25), strip(8, 3, 0.25), "[time]\nstep = 0.03\nend = 1.5\n")
         out = self.simulate(case, values={"part.one.velocity": "[0.1, 0.0]", "part.two.velocity": "[-0.1, 0.0]"})
         self.assertEqual(self.warnings(out, "is violated"), [])
-        self.assertLess(summary(out)["checks"]["momentum"]["largest"], 1e-10)
-        self.assertEqual(len(summary(out)["impacts"]), 1)
+        self.assertLess(summary_of(out)["checks"]["momentum"]["largest"], 1e-10)
+        self.assertEqual(len(summary_of(out)["impacts"]), 1)
         # Also for a body that only rotates.
         out = self.simulate(case, name="spin", values={"part.one.spin": 0.1, "check.on_failure": '"stop"'})
         self.assertEqual(self.warnings(out, "is violated"), [])
@@ -47,7 +40,7 @@ class TwoBodiesTraps(TestCase):
         speeds = {"part.one.velocity": "[0.1, 0.0]"}
         near = self.simulate(case, values=speeds)
         far = self.simulate(case, name="far", values={**speeds, "initial.displacement": "[1e3, 0.0]"})
-        lost = [summary(folder)["energy_budget"] for folder in (near, far)]
+        lost = [summary_of(folder)["energy_budget"] for folder in (near, far)]
         for part, value in lost[0].items():
             if isinstance(value, float):
                 self.assertAlmostEqual(lost[1][part], value, delta=1e-6 + 1e-3 * abs(value), msg=part)
@@ -101,7 +94,7 @@ class TwoBodiesTraps(TestCase):
         case = self.bodies(strip(8, 2, 0.25), strip(8, 3, 0.25), "[time]\nstep = 0.03\nend = 0.3\n", tied)
         together = self.simulate(case, values={"part.two.move": "[1.0, 0.0]"})
         self.assertEqual(self.warnings(together, "differ"), [])
-        self.assertTrue(summary(together)["contacts"][0]["tied"])
+        self.assertTrue(summary_of(together)["contacts"][0]["tied"])
         self.assertIn('"one.right" tied to "two.left"', self.expect_status(0, run("info", together)).stdout)
         torn = self.simulate(case, name="torn", values={"part.two.move": "[1.0, 0.0]", "part.one.velocity": "[0.1, 0.0]"})
         self.assertEqual(len(self.warnings(torn, "start with velocities that differ by up to 0.1")), 1)
@@ -144,7 +137,3 @@ class TwoBodiesTraps(TestCase):
         out = self.simulate(case)
         names = History(out / "history.csv").names  # which refuses duplicate columns
         self.assertEqual(len([name for name in names if name.startswith("momentum.")]), 4)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,7 +5,6 @@ description, whatever happens to the run.
 """
 
 import contextlib
-import json
 import random
 import resource
 import subprocess
@@ -17,7 +16,7 @@ import xml.etree.ElementTree
 import h5py
 import numpy
 
-from harness import DISC, MESHES, TestCase, block_case, run, settings, with_more, with_sphere
+from harness import DISC, MESHES, TestCase, block_case, run, settings, summary_of, with_more, with_sphere
 from interrupted_runs import ResumeTestCase, busy, start
 from obstacle_files_test import surfaces
 from report_page import Page
@@ -69,7 +68,7 @@ class VtkHdf(TestCase):
                 self.expect_same_bits(step.read(root, "element"), old["mesh/element"][()], "element")
                 for name, values in frame.items():
                     self.expect_same_bits(step.read(root, name), as_vtk(values[()]), f"{name} at {step.time}")
-        self.assertEqual(json.loads((vtkhdf / "summary.json").read_text())["frames"], len(times))
+        self.assertEqual(summary_of(vtkhdf)["frames"], len(times))
         return len(times)
 
     def check_grid(self, grid, xdmf, frame):

@@ -2,9 +2,8 @@
 
 import json
 import re
-import unittest
 
-from harness import MESHES, SOURCE, TWO_TRIANGLES, History, TestCase, block_case, body_case, run, settings, with_more
+from harness import MESHES, SOURCE, TWO_TRIANGLES, History, TestCase, block_case, body_case, run, settings, summary_of, with_more
 
 SUPPORT = '[[support]]\ngroup = "sides"\ncomponents = ["x"]\nvalue = "{}"\n'
 
@@ -12,7 +11,7 @@ SUPPORT = '[[support]]\ngroup = "sides"\ncomponents = ["x"]\nvalue = "{}"\n'
 class Warnings(TestCase):
     def warnings_of(self, text, **values):
         output = self.simulate(self.write("case.toml", text), values=values, options=("--quiet", "--force"))
-        return json.loads((output / "summary.json").read_text(encoding="utf-8"))["warnings"]
+        return summary_of(output)["warnings"]
 
     def test_supports_whose_velocity_jumps(self):
         ramp, smooth = "-0.01*min(t/0.1, 1)", "-0.005*(1-cos(pi*min(t/0.1, 1)))"
@@ -60,7 +59,7 @@ step = 0.01
 end = 3.0
 {time}'''), options=("--quiet", "--force"))
         force = [abs(value) for value in History(output / "history.csv")["all.support_x"]]
-        told = [line for line in json.loads((output / "summary.json").read_text(encoding="utf-8"))["warnings"] if "jumps" in line]
+        told = [line for line in summary_of(output)["warnings"] if "jumps" in line]
         response = "fades" if not told else "grows" if "grows with every step" in told[0] else "alternates"
         return max(force[5:30]), max(force[270:]), response
 
@@ -91,7 +90,7 @@ end = 3.0
         text += ('[obstacle.lid]\ntype = "plane"\npoint = [0.0, 1.99]\nnormal = [0.0, -1.0]\n'
                  '[[contact]]\ngroup = "boundary"\nobstacle = "lid"\n')
         output = self.simulate(self.write("case.toml", text), options=("--quiet", "--force"))
-        summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
+        summary = summary_of(output)
         self.assertEqual([line for line in summary["warnings"] if "momentum" in line], [])
         history = History(output / "history.csv")
         self.assertGreater(history["active_contacts"][-1], 1)
@@ -148,7 +147,7 @@ end = 3.0
         for weight, loses in (("end", True), ("adaptive", False)):
             output = self.folder / weight
             run("run", ball, "-o", output, "--quiet", "--set", "time.step=2e-4", "--set", f"time.reaction_weight={weight}")
-            told = json.loads((output / "summary.json").read_text(encoding="utf-8"))["warnings"]
+            told = summary_of(output)["warnings"]
             self.assertEqual(any("the scheme itself have removed" in line for line in told), loses, told)
 
     def test_jumps_anywhere_in_a_long_run(self):
@@ -210,7 +209,3 @@ end = 3.0
             self.assertEqual(len(found), 1 if told else 0, found)
             if told:
                 self.assertIn(told, found[0])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,9 +5,8 @@ import re
 import signal
 import subprocess
 import time
-import unittest
 
-from harness import DISC, PROGRAM, SCHEMES, SOURCE, History, TestCase, block_case, method, run, settings
+from harness import DISC, PROGRAM, SCHEMES, SOURCE, History, TestCase, block_case, method, run, settings, summary_of
 
 
 class Watching(TestCase):
@@ -103,7 +102,7 @@ class Watching(TestCase):
             self.assertEqual(process.stderr.count("is violated"), 1, process.stderr)
             self.assertIn(f"the balance of {name} is violated", process.stderr)
             self.assertIn(f"check.{check} = 1e-17", process.stderr)
-            result = json.loads((output / "summary.json").read_text())["checks"][check]
+            result = summary_of(output)["checks"][check]
             self.assertEqual(result["limit"], 1e-17)
             self.assertGreater(result["largest"], 1e-17)
             self.assertIn(f"CHECK FAILED: {check}", run("info", output).stdout)
@@ -118,7 +117,7 @@ class Watching(TestCase):
         for scheme in SCHEMES:
             values = method(scheme) | {"contact.0.friction": 0.3, "time.end": 0.05}
             output = self.simulate(DISC, f"closes-{scheme}", values)
-            for name, check in json.loads((output / "summary.json").read_text())["checks"].items():
+            for name, check in summary_of(output)["checks"].items():
                 self.assertEqual(check["limit"], 1e-8)
                 self.assertLess(check["largest"], 1e-11, f"{scheme}: {name}")
 
@@ -139,7 +138,7 @@ class Watching(TestCase):
         self.assertGreater(max(map(abs, history["friction_work"])), 1e4 * energy)
         self.assertGreater(max(map(abs, history["energy_residual"])), 1e-8 * energy)
         self.assertIn("of the largest work", process.stdout)
-        self.assertLess(json.loads((output / "summary.json").read_text())["checks"]["energy_residual"]["largest"], 1e-8)
+        self.assertLess(summary_of(output)["checks"]["energy_residual"]["largest"], 1e-8)
 
     def test_a_step_in_very_short_parts_is_reported_once(self):
         """A block far faster than its waves: no part of its first step has a solution."""
@@ -148,7 +147,7 @@ class Watching(TestCase):
             {"mass.type": "equivalent", "material.0.law": "neo-hookean", "initial.velocity": "[0.0, -100.0]", "time.end": 0.1})))
         told = "step 1 is computed in parts as short as 1/32 of it, and possibly shorter ones, since Newton's method found no solution"
         self.assertEqual(process.stderr.count(told), 1, process.stderr)
-        warnings = json.loads((self.folder / "out" / "summary.json").read_text())["warnings"]
+        warnings = summary_of(self.folder / "out")["warnings"]
         self.assertEqual(len([warning for warning in warnings if "as short as" in warning]), 1, warnings)
 
     def test_a_failed_step_leaves_its_state(self):
@@ -160,7 +159,7 @@ class Watching(TestCase):
         self.assertEqual(len(left), 1)
         self.assertIn(str(left[0]), process.stderr)
         self.assertIn("use a stable scheme", process.stderr)
-        summary = json.loads((output / "summary.json").read_text())
+        summary = summary_of(output)
         text = self.expect_status(0, run("info", left[0])).stdout
         self.assertIn(f"the state of step {summary['steps']}", text)
         # The step whose row is missing in the history.
@@ -174,7 +173,3 @@ class Watching(TestCase):
         self.assertEqual(list(output.glob("checkpoint-*")), [])
         self.expect_status(0, run("run", case, "-o", output, "--force", "--quiet"))
         self.assertEqual(list(output.glob("failure-*")), [])
-
-
-if __name__ == "__main__":
-    unittest.main()

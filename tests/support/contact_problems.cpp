@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace ricochet::test {
+namespace ricochet::test_support {
 
 FrictionProblem::FrictionProblem(const std::vector<Index>& sizes, double friction) {
   for (const Index size : sizes) row_offset.push_back(row_offset.back() + size);
@@ -140,4 +140,4 @@ void expect_law(const FrictionProblem& problem, const ContactSolution& solution,
   }
 }
 
-}  // namespace ricochet::test
+}  // namespace ricochet::test_support

@@ -8,19 +8,10 @@
 
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "support/sanitized.hpp"
+#include "support/uniform.hpp"
 
 /// @file Contact problems with friction for tests, and a judge of solutions that shares no code with the solver.
-namespace ricochet::test {
-
-inline double uniform(std::mt19937& random) {
-  return static_cast<double>(random()) / 2147483648.0 - 1.0;
-}
-
-inline Vector uniform(Index size, std::mt19937& random) {
-  Vector result(size);
-  for (double& value : result) value = uniform(random);
-  return result;
-}
+namespace ricochet::test_support {
 
 /// A contact problem that owns its data.
 struct FrictionProblem {
@@ -85,4 +76,4 @@ ContactSolution solve(const FrictionProblem& problem, const ContactOptions& opti
 /// up to `tolerance` times the size of the terms of u (W's diagonal is of order one in these problems).
 void expect_law(const FrictionProblem& problem, const ContactSolution& solution, double tolerance = 1e-12);
 
-}  // namespace ricochet::test
+}  // namespace ricochet::test_support

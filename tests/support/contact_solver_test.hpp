@@ -9,7 +9,7 @@
 #include "support/contact_problems.hpp"
 
 /// @file Fixture of the tests of every contact solver. Registered solvers are included automatically.
-namespace ricochet::test {
+namespace ricochet::test_support {
 
 /// The parameter is the name of a solver.
 class ContactSolverTest : public testing::TestWithParam<std::string> {
@@ -17,7 +17,7 @@ class ContactSolverTest : public testing::TestWithParam<std::string> {
   /// The active set method does not support slip in two directions.
   [[nodiscard]] Index dimension() const { return GetParam() == "active-set" ? 2 : 3; }
   [[nodiscard]] ContactSolution solve(const FrictionProblem& problem, const ContactOptions& options) const {
-    return test::solve(problem, options, GetParam());
+    return test_support::solve(problem, options, GetParam());
   }
   [[nodiscard]] ContactSolution solve(const ContactProblem& problem, const ContactOptions& options) const {
     const auto solver = make_contact_solver(GetParam());
@@ -40,4 +40,4 @@ inline std::string contact_solver_test_name(const testing::TestParamInfo<std::st
   return name;
 }
 
-}  // namespace ricochet::test
+}  // namespace ricochet::test_support

@@ -3,22 +3,21 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <iterator>
 #include <map>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "ricochet/base/error.hpp"
 #include "ricochet/fclib/fclib_file.hpp"
 #include "ricochet/hdf5/hdf5_file.hpp"
+#include "support/errors.hpp"
+#include "support/uniform.hpp"
 
 /// @file FCLib files for tests: complete ones, and ones written entry by entry, so that each entry can be wrong.
-namespace ricochet::test {
+namespace ricochet::test_support {
 
 struct TemporaryFile {
   std::string path;
@@ -36,23 +35,6 @@ struct TemporaryFile {
 inline std::string contents(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-inline void expect_error(const std::function<void()>& act, const std::string& part,
-                         ErrorKind kind = ErrorKind::invalid_input) {
-  try {
-    act();
-    ADD_FAILURE() << "no error; expected: " << part;
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what() << "\nexpected: " << part;
-    EXPECT_EQ(error.kind(), kind) << error.what();
-  }
-}
-
-inline Vector uniform(Index size, std::mt19937& random) {
-  Vector result(size);
-  for (double& value : result) value = static_cast<double>(random()) / 2147483648.0 - 1.0;
-  return result;
 }
 
 inline Matrix random_operator(Index size, std::mt19937& random) {
@@ -164,4 +146,4 @@ inline Raw raw_example() {
   return raw;
 }
 
-}  // namespace ricochet::test
+}  // namespace ricochet::test_support

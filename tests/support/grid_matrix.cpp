@@ -5,15 +5,9 @@
 
 namespace ricochet::test_support {
 
-double uniform(std::mt19937& random) {
-  return static_cast<double>(random()) / 2147483648.0 - 1.0;
-}
-
 Vector random_vector(Index size, unsigned seed) {
   std::mt19937 random(seed);
-  Vector result(size);
-  for (double& value : result) value = uniform(random);
-  return result;
+  return uniform(size, random);
 }
 
 SparseMatrix grid_matrix(int dimension, int side, int components, unsigned seed) {

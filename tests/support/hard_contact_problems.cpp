@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace ricochet::test {
+namespace ricochet::test_support {
 namespace {
 
 /// Projects on |r_T| ≤ F r_N.
@@ -242,4 +242,4 @@ Judgement judge(const ContactProblem& problem, const Vector& reaction) {
           static_cast<double>(outside)};
 }
 
-}  // namespace ricochet::test
+}  // namespace ricochet::test_support

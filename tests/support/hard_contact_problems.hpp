@@ -6,7 +6,7 @@
 #include "support/contact_problems.hpp"
 
 /// @file Contact problems that are hard by nature, and a judge in long double that shares no code with the solvers.
-namespace ricochet::test {
+namespace ricochet::test_support {
 
 // Rigid bodies.
 
@@ -69,4 +69,4 @@ struct Judgement {
 /// Returns |r − P_K(r − û/w)| √w with sums in long double, without bounds on friction. W dense or sparse.
 Judgement judge(const ContactProblem& problem, const Vector& reaction);
 
-}  // namespace ricochet::test
+}  // namespace ricochet::test_support

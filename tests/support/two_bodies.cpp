@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <Eigen/Geometry>
 
 #include "ricochet/mesh/merge_parts.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
@@ -51,6 +52,13 @@ std::string write_mesh(const std::string& name, const Mesh& mesh) {
       name, fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n{}\n{}$EndPhysicalNames\n$Nodes\n{}\n"
                         "{}$EndNodes\n$Elements\n{}\n{}$EndElements\n",
                         groups, names, mesh.node_count(), nodes, count, elements));
+}
+
+PointMap skew_motion(int dimension) {
+  const Matrix turn =
+      dimension == 2 ? Matrix(Eigen::Rotation2Dd(0.4).toRotationMatrix())
+                     : Matrix(Eigen::AngleAxisd(0.5, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix());
+  return affine_map(turn, Vector::LinSpaced(dimension, 0.3, -0.7));
 }
 
 }  // namespace ricochet::test_support

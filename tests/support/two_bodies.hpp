@@ -25,4 +25,7 @@ struct StackedBoxes {
 };
 [[nodiscard]] Mesh make_stack(const StackedBoxes& stack);
 
+/// A rotation about a skew axis, and a translation.
+[[nodiscard]] PointMap skew_motion(int dimension);
+
 }  // namespace ricochet::test_support

@@ -5,13 +5,7 @@
 
 // The acceleration reported by each scheme through impacts, which is zero at nodes without mass.
 
-namespace ricochet {
-namespace acceleration_test {
-
-using test_support::CaseRun;
-using test_support::dragged_case;
-using test_support::StepEnd;
-using test_support::thrown_bodies;
+namespace ricochet::test_support::acceleration_test {
 
 /// Expected V₁ − V₀ of a step, computed from the states at its two ends.
 using VelocityChange = std::function<Vector(const StepEnd& before, const StepEnd& after)>;
@@ -64,5 +58,4 @@ TEST(Acceleration, OfCentralDifferencesIsTheMeanOfBothEnds) {
   EXPECT_LT(largest_difference("equivalent-lumped", "scheme = \"semi-explicit\"\n", expected), 1e-11);
 }
 
-}  // namespace acceleration_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::acceleration_test

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 
 #include "ricochet/fem/connected_bodies.hpp"
@@ -14,11 +13,7 @@
 
 // Impacts of two bodies: bars with an exact solution, balances of momentum, a body in several contacts at a time.
 
-namespace ricochet {
-namespace body_impacts_test {
-
-using test_support::CaseRun;
-using test_support::strip_mesh;
+namespace ricochet::test_support::body_impacts_test {
 
 ImpactRecorder make_recorder(CaseRun& run) {
   const ConnectedBodies bodies = find_connected_bodies(run.model().space);
@@ -262,5 +257,4 @@ TEST(BodyImpacts, GoOnFromASnapshot) {
   EXPECT_NE(recorder.impacts()[0].other->after.velocity[0], 0.0);
 }
 
-}  // namespace body_impacts_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::body_impacts_test

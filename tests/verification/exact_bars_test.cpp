@@ -5,15 +5,13 @@
 #include <cmath>
 
 #include "support/case_run.hpp"
+#include "support/closed_forms.hpp"
 #include "support/strip.hpp"
 
 // Bars and a rod whose motion has a closed form: errors in displacement, velocity, stress and contact pressure, and
 // their observed orders when h and Δt are refined together. The fields have kinks and jumps, so low orders are right.
 
-namespace ricochet {
-namespace exact_bars_test {
-
-using test_support::CaseRun;
+namespace ricochet::test_support::exact_bars_test {
 
 /// Exact fields at a point of the undeformed bar and an instant.
 struct Exact {
@@ -128,9 +126,9 @@ constexpr const char* semi_explicit = "[mass]\ntype = \"equivalent-lumped\"\n[ti
 Errors solve(const Problem& problem, int cells, int degree, bool triangles, const char* scheme = trapezoidal) {
   const double h = problem.length / cells;
   const double step = 0.5 * h / problem.speed;
-  CaseRun run(test_support::strip_case(test_support::strip_mesh(problem.x0, problem.length, cells, triangles),
-                                       problem.young, problem.density, degree) +
-              problem.toml + scheme + fmt::format("step = {:.17g}\nend = {:.17g}\n", step, problem.end));
+  CaseRun run(
+      strip_case(strip_mesh(problem.x0, problem.length, cells, triangles), problem.young, problem.density, degree) +
+      problem.toml + scheme + fmt::format("step = {:.17g}\nend = {:.17g}\n", step, problem.end));
   const Points& nodes = run.problem().nodes;
   std::vector<Index> lower;  // the nodes of the lower side, in order of x
   for (Index i = 0; i < nodes.cols(); ++i) {
@@ -271,6 +269,19 @@ void expect_rebound(const std::vector<Errors>& all) {
   EXPECT_LT(std::abs(10.0 - all.back().end_velocity), 0.15);
 }
 
+TEST(ExactBars, HaveTheClosedFormsOfTheBenchmarks) {
+  for (const Problem& problem : {impact(), bounce(), rod()}) {
+    const Exact& exact = problem.exact;
+    for (const auto& [quantity, x, time, value] : closed_forms(problem.name)) {
+      const double found = quantity == "pressure"   ? exact.pressure(time)
+                           : quantity == "velocity" ? exact.velocity(x, time)
+                                                    : exact.displacement(x, time);
+      EXPECT_NEAR(found, value, 1e-10 * std::max(1.0, std::abs(value)))
+          << problem.name << ' ' << quantity << ' ' << time;
+    }
+  }
+}
+
 TEST(ExactBars, ImpactWithoutGravity) {
   for (const bool triangles : {false, true}) {
     const std::vector<int> cells{25, 50, 100, 200};
@@ -377,5 +388,4 @@ TEST(ExactBars, CompressedRod) {
   EXPECT_GT(mean_order(table(problem, {25, 50, 100}, 2, false), &Errors::displacement), 0.6);
 }
 
-}  // namespace exact_bars_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::exact_bars_test

@@ -6,34 +6,16 @@
 #include <cstring>
 #include <map>
 
-#include "ricochet/base/error.hpp"
 #include "ricochet/run/run_case.hpp"
 #include "ricochet/simulation/history/momentum_account.hpp"
+#include "support/block_flight.hpp"
 #include "support/case_run.hpp"
 #include "support/motion_totals.hpp"
 #include "support/same_snapshots.hpp"
 #include "support/thrown_body.hpp"
 
 /// @file The scheme semi-explicit at finite strain: its balances and its limit.
-namespace ricochet {
-namespace finite_explicit_test {
-
-using test_support::CaseRun;
-using test_support::energy_of;
-using test_support::expect_same;
-using test_support::mesh_geometry;
-using test_support::Momenta;
-
-std::string block(int dimension) {
-  return dimension == 2 ? mesh_geometry("finite-block-2d",
-                                        "Rectangle(1) = {0, 0, 0, 1, 0.5};\nPhysical Surface(\"body\") = {1};\n"
-                                        "Physical Curve(\"bottom\") = {1};\n",
-                                        0.125, 1)
-                        : mesh_geometry("finite-block-3d",
-                                        "Box(1) = {0, 0, 0, 1, 0.5, 0.6};\nPhysical Volume(\"body\") = {1};\n"
-                                        "Physical Surface(\"bottom\") = {3};\n",
-                                        0.15, 1);
-}
+namespace ricochet::test_support::finite_explicit_test {
 
 struct Flight {
   int dimension = 2;
@@ -46,7 +28,7 @@ struct Flight {
 /// A block of E = 100, ρ = 1 above a floor: waves cross a cell in about 0.01.
 std::string case_of(const Flight& flight, const std::string& displacement, const std::string& velocity) {
   const bool plane = flight.dimension == 2;
-  return "[mesh]\nfile = \"" + block(flight.dimension) +
+  return "[mesh]\nfile = \"" + finite_block(flight.dimension, 0.15) +
          "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 100.0\npoisson = " +
          fmt::format("{}", flight.poisson) + "\nlaw = \"" + flight.law +
          "\"\n[obstacle.floor]\ntype = \"plane\"\npoint = " +
@@ -55,19 +37,6 @@ std::string case_of(const Flight& flight, const std::string& displacement, const
          "[initial]\ndisplacement = " + displacement + "\nvelocity = " + velocity +
          "\n[mass]\ntype = \"equivalent-lumped\"\n[time]\nscheme = \"" + flight.scheme +
          fmt::format("\"\nstep = {:.17g}\nend = {:.17g}\n", flight.step, flight.steps * flight.step);
-}
-
-std::string stretched(int dimension) {
-  return dimension == 2 ? "[\"0.02*sin(5*x)\", \"0.02*sin(5*y)\"]"
-                        : "[\"0.02*sin(5*x)\", \"0.02*sin(5*y)\", \"0.02*sin(4*z+x)\"]";
-}
-std::string spinning(int dimension) {
-  return dimension == 2 ? "[\"0.3-2*(y-0.25)\", \"2*(x-0.5)\"]"
-                        : "[\"0.3-2*(y-0.25)+(z-0.3)\", \"2*(x-0.5)-0.5*(z-0.3)\", \"0.5*(y-0.25)-(x-0.5)\"]";
-}
-std::string falling(int dimension) {
-  return dimension == 2 ? "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\"]"
-                        : "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\", \"0.2\"]";
 }
 
 TEST(FiniteExplicit, FreeFlightKeepsMomenta) {
@@ -121,15 +90,9 @@ TEST(FiniteExplicit, TheEnergyOfALongFlightIsBounded) {
 }
 
 TEST(FiniteExplicit, IsOfSecondOrderInFlight) {
-  const auto end_of = [&](double step) {
-    CaseRun run(case_of({.step = step}, "[\"0.02*(x-0.5)\", \"-0.01*(y-0.25)\"]", "[\"-2*(y-0.25)\", \"2*(x-0.5)\"]"));
-    while (run.state().time < 0.016 * (1.0 - 1e-9)) run.session().step();
-    return run.state().displacement;
-  };
-  const Vector coarse = end_of(4e-4), middle = end_of(2e-4), fine = end_of(1e-4);
-  const double rate = (coarse - middle).norm() / (middle - fine).norm();
-  EXPECT_GT(rate, 3.5);
-  EXPECT_LT(rate, 4.5);
+  expect_second_order([](double step, const std::string& displacement,
+                         const std::string& velocity) { return case_of({.step = step}, displacement, velocity); },
+                      "semi-explicit");
 }
 
 TEST(FiniteExplicit, SmallMotionsAreLinear) {
@@ -143,18 +106,7 @@ TEST(FiniteExplicit, SmallMotionsAreLinear) {
                                                 : "[\"1e-9*sin(5*x)\", \"1e-9*sin(5*y)\", \"0\"]",
                                  dimension == 2 ? "[\"2e-9\", \"-1e-8\"]" : "[\"2e-9\", \"-1e-8\", \"0\"]"));
         };
-        CaseRun linear = run_law("linear"), finite = run_law(law);
-        double force = 0.0, difference = 0.0;
-        while (linear.session().step() && finite.session().step()) {
-          force = std::max(force, linear.state().forces.normal_reaction.sum());
-          difference = std::max(difference, std::abs(linear.state().forces.normal_reaction.sum() -
-                                                     finite.state().forces.normal_reaction.sum()));
-        }
-        EXPECT_GT(force, 0.0);
-        EXPECT_LT(difference, 1e-6 * force) << law;
-        const double size = linear.state().displacement.lpNorm<Eigen::Infinity>();
-        EXPECT_LT((linear.state().displacement - finite.state().displacement).lpNorm<Eigen::Infinity>(), 1e-6 * size)
-            << law;
+        expect_same_motion(run_law("linear"), run_law(law), law + friction);
       }
     }
   }
@@ -306,5 +258,4 @@ TEST(FiniteExplicit, ResumesToTheSameBits) {
   }
 }
 
-}  // namespace finite_explicit_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::finite_explicit_test

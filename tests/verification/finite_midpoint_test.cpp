@@ -7,16 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/base/error.hpp"
 #include "support/case_run.hpp"
+#include "support/errors.hpp"
 
 /// @file Schemes with the internal force at the middle of a step, at finite strain: its difference from the change of
 /// the elastic energy is in the account.
-namespace ricochet {
-namespace finite_midpoint_test {
-
-using test_support::CaseRun;
-using test_support::mesh_geometry;
+namespace ricochet::test_support::finite_midpoint_test {
 
 /// A block of E = 100, ρ = 1 that is stretched and spins, `height` above a floor.
 std::string block(const std::string& scheme, double step, double end, double height, const std::string& friction = {}) {
@@ -95,19 +91,11 @@ TEST(FiniteMidpoint, SchemesOfTheLinearLawAreRefused) {
   std::string text = block("midpoint", 1e-3, 1e-2, 10.0);
   const CaseRun run(text);
   const std::unique_ptr<Scheme> scheme = make_scheme("klr-conserving", 1e-3);
-  try {
-    const Simulation simulation(run.problem(), *scheme, run.model().initial);
-    ADD_FAILURE() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::invalid_input);
-    EXPECT_NE(std::string(error.what()).find("needs a linear material law: set material.law = \"linear\""),
-              std::string::npos)
-        << error.what();
-  }
+  expect_error({"needs a linear material law: set material.law = \"linear\""},
+               [&] { const Simulation simulation(run.problem(), *scheme, run.model().initial); });
   const std::string law = "neo-hookean";
   const CaseRun linear(text.replace(text.find(law), law.size(), "linear"));
   EXPECT_NO_THROW(Simulation(linear.problem(), *scheme, linear.model().initial));
 }
 
-}  // namespace finite_midpoint_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::finite_midpoint_test

@@ -12,14 +12,7 @@
 #include "support/same_snapshots.hpp"
 
 /// @file Contact between rotating bodies: the balances with contact rows that rotate with them.
-namespace ricochet {
-namespace finite_pairs_test {
-
-using test_support::CaseRun;
-using test_support::energy_of;
-using test_support::expect_same;
-using test_support::mesh_geometry;
-using test_support::Momenta;
+namespace ricochet::test_support::finite_pairs_test {
 
 /// Two blocks with non-matching meshes, one above the other; the upper one comes down, and both rotate.
 struct Blocks {
@@ -198,5 +191,4 @@ TEST(FinitePairs, GoOnFromACheckpointWithTheSameBits) {
   }
 }
 
-}  // namespace finite_pairs_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::finite_pairs_test

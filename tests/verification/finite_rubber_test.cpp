@@ -6,12 +6,7 @@
 #include "support/motion_totals.hpp"
 
 /// @file Steps whose operators are far from the tangent: rubber that is squeezed and cannot slide.
-namespace ricochet {
-namespace finite_rubber_test {
-
-using test_support::CaseRun;
-using test_support::energy_of;
-using test_support::mesh_geometry;
+namespace ricochet::test_support::finite_rubber_test {
 
 std::string grid(const std::string& sizes, const std::string& lines) {
   return "Rectangle(1) = {" + sizes + "};\n" + lines +
@@ -82,13 +77,13 @@ TEST(FiniteRubber, KeepsItsEnergyWhereNoStressBalancesAStep) {
         scheme + "\"\nstep = 0.0125\nend = 0.1625\n");
     const double start = energy_of(run);
     double before = start, force = 0.0;
-    const test_support::Momenta first(run);
+    const Momenta first(run);
     run.run(
         [&] {
           const double energy = energy_of(run);
           EXPECT_LT(energy, before + 1e-12 * start) << scheme << run.state().step;
           before = energy;
-          EXPECT_NEAR(test_support::Momenta(run).linear[0], first.linear[0], 1e-12 * first.linear.norm());
+          EXPECT_NEAR(Momenta(run).linear[0], first.linear[0], 1e-12 * first.linear.norm());
           force = std::max(force, run.state().forces.normal_reaction.sum());
         },
         false);
@@ -97,5 +92,4 @@ TEST(FiniteRubber, KeepsItsEnergyWhereNoStressBalancesAStep) {
   }
 }
 
-}  // namespace finite_rubber_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::finite_rubber_test

@@ -3,16 +3,12 @@
 
 #include <cmath>
 
-#include "ricochet/base/error.hpp"
 #include "ricochet/fem/stress.hpp"
 #include "support/case_run.hpp"
+#include "support/errors.hpp"
 
 /// @file Static equilibria at finite strain, compared with closed forms.
-namespace ricochet {
-namespace finite_statics_test {
-
-using test_support::CaseRun;
-using test_support::mesh_geometry;
+namespace ricochet::test_support::finite_statics_test {
 
 std::string cube() {
   return mesh_geometry(
@@ -215,16 +211,11 @@ TEST(FiniteStatics, FrictionHoldsABlockAsWithTheLinearLaw) {
 
 TEST(FiniteStatics, SaysHowFarItCame) {
   // Compressed to zero height.
-  try {
+  expect_error(ErrorKind::not_converged, {"times the loads"}, [&] {
     CaseRun run(body(cube(), "law = \"saint-venant-kirchhoff\"\nlambda = 1.3\nmu = 0.8\n",
                      "[[support]]\ngroup = \"x0\"\ncomponents = [\"x\", \"y\", \"z\"]\n" + support("x1", "x", -1.2) +
                          "[[support]]\ngroup = \"x1\"\ncomponents = [\"y\", \"z\"]\n"));
-    FAIL();
-  } catch (const Error& problem) {
-    EXPECT_EQ(problem.kind(), ErrorKind::not_converged);
-    EXPECT_NE(std::string(problem.what()).find("times the loads"), std::string::npos) << problem.what();
-  }
+  });
 }
 
-}  // namespace finite_statics_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::finite_statics_test

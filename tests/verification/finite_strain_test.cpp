@@ -4,32 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ricochet/base/error.hpp"
 #include "ricochet/simulation/history/history.hpp"
 #include "ricochet/simulation/history/momentum_account.hpp"
+#include "support/block_flight.hpp"
 #include "support/case_run.hpp"
 #include "support/motion_totals.hpp"
 #include "support/thrown_body.hpp"
 
 /// @file Finite rotations and strains: the balances of every step.
-namespace ricochet {
-namespace finite_strain_test {
-
-using test_support::CaseRun;
-using test_support::energy_of;
-using test_support::mesh_geometry;
-using test_support::Momenta;
-
-std::string block(int dimension) {
-  return dimension == 2 ? mesh_geometry("finite-block-2d",
-                                        "Rectangle(1) = {0, 0, 0, 1, 0.5};\nPhysical Surface(\"body\") = {1};\n"
-                                        "Physical Curve(\"bottom\") = {1};\n",
-                                        0.125, 1)
-                        : mesh_geometry("finite-block-3d",
-                                        "Box(1) = {0, 0, 0, 1, 0.5, 0.6};\nPhysical Volume(\"body\") = {1};\n"
-                                        "Physical Surface(\"bottom\") = {3};\n",
-                                        0.2, 1);
-}
+namespace ricochet::test_support::finite_strain_test {
 
 struct Flight {
   int dimension = 2;
@@ -42,7 +25,7 @@ struct Flight {
 /// A block of E = 100, ρ = 1 above a floor, stretched and spinning.
 std::string case_of(const Flight& flight, const std::string& displacement, const std::string& velocity) {
   const bool plane = flight.dimension == 2;
-  return "[mesh]\nfile = \"" + block(flight.dimension) +
+  return "[mesh]\nfile = \"" + finite_block(flight.dimension, 0.2) +
          "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 100.0\npoisson = 0.3\nlaw = \"" + flight.law +
          "\"\n[obstacle.floor]\ntype = \"plane\"\npoint = " + (plane ? "[0, -" : "[0, -") +
          std::to_string(flight.height) + (plane ? "]\nnormal = [0, 1]\n" : ", 0]\nnormal = [0, 1, 0]\n") +
@@ -51,15 +34,6 @@ std::string case_of(const Flight& flight, const std::string& displacement, const
          flight.mass + "\"\n[time]\nscheme = \"" + flight.scheme + "\"\n" +
          (flight.scheme == "newmark" ? "preset = \"trapezoidal\"\n" : "") + "step = " + std::to_string(flight.step) +
          "\nend = " + std::to_string(flight.steps * flight.step) + "\n";
-}
-
-std::string stretched(int dimension) {
-  return dimension == 2 ? "[\"0.02*sin(5*x)\", \"0.02*sin(5*y)\"]"
-                        : "[\"0.02*sin(5*x)\", \"0.02*sin(5*y)\", \"0.02*sin(4*z+x)\"]";
-}
-std::string spinning(int dimension) {
-  return dimension == 2 ? "[\"0.3-2*(y-0.25)\", \"2*(x-0.5)\"]"
-                        : "[\"0.3-2*(y-0.25)+(z-0.3)\", \"2*(x-0.5)-0.5*(z-0.3)\", \"0.5*(y-0.25)-(x-0.5)\"]";
 }
 
 const std::vector<std::string>& exact_schemes() {
@@ -106,9 +80,7 @@ TEST(FiniteStrain, BouncingBalances) {
       for (const std::string friction : {"", "friction = 0.4\n"}) {
         if (!friction.empty() && scheme != "reduced-kane") continue;
         Flight flight{.dimension = dimension, .scheme = scheme, .height = 0.05, .more = friction};
-        const std::string velocity = dimension == 2 ? "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\"]"
-                                                    : "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\", \"0.2\"]";
-        CaseRun run(case_of(flight, stretched(dimension), velocity));
+        CaseRun run(case_of(flight, stretched(dimension), falling(dimension)));
         const double start = energy_of(run);
         double before = start, largest_force = 0.0;
         const Momenta first(run);
@@ -189,24 +161,10 @@ TEST(FiniteStrain, ARigidSpinDoesNotSwell) {
 /// Superposed rotations of the whole motion change only the positions.
 TEST(FiniteStrain, AMotionThatIsTurnedIsTheSameMotion) {
   for (const std::string scheme : {"reduced-kane", "mean-reaction", "newmark", "generalized-alpha"}) {
-    const double angle = 0.7, c = std::cos(angle), s = std::sin(angle);
-    const auto number = [](double value) { return fmt::format("({:.17g})", value); };
-    const std::string u = "0.02*sin(5*x)", v = "0.02*sin(5*y)", x = "(x+" + u + ")", y = "(y+" + v + ")";
-    const std::string p = "(-2*(y-0.25))", q = "(2*(x-0.5)+0.3*x*y)";
-    Flight flight{.scheme = scheme};
-    CaseRun one(case_of(flight, "[\"" + u + "\", \"" + v + "\"]", "[\"" + p + "\", \"" + q + "\"]"));
-    CaseRun other(case_of(flight,
-                          "[\"" + number(c) + "*" + x + "-" + number(s) + "*" + y + "-x\", \"" + number(s) + "*" + x +
-                              "+" + number(c) + "*" + y + "-y\"]",
-                          "[\"" + number(c) + "*" + p + "-" + number(s) + "*" + q + "\", \"" + number(s) + "*" + p +
-                              "+" + number(c) + "*" + q + "\"]"));
-    one.run([] {});
-    other.run([] {});
-    const Matrix rotation = (Matrix(2, 2) << c, -s, s, c).finished();
-    const Index nodes = one.problem().nodes.cols();
-    const Points first = one.problem().nodes + one.state().displacement.reshaped(2, nodes);
-    const Points second = other.problem().nodes + other.state().displacement.reshaped(2, nodes);
-    EXPECT_LT((rotation * first - second).cwiseAbs().maxCoeff(), 1e-12) << scheme;
+    const auto of_motion = [&](const std::string& displacement, const std::string& velocity) {
+      return case_of({.scheme = scheme}, displacement, velocity);
+    };
+    expect_turned_motion(of_motion, "(-2*(y-0.25))", "(2*(x-0.5)+0.3*x*y)", scheme);
   }
 }
 
@@ -218,18 +176,7 @@ TEST(FiniteStrain, SmallMotionsAreLinear) {
         Flight flight{.scheme = scheme, .law = name, .height = 1e-9};
         return CaseRun(case_of(flight, "[\"1e-9*sin(5*x)\", \"1e-9*sin(5*y)\"]", "[\"0\", \"-1e-8\"]"));
       };
-      CaseRun linear = run_law("linear"), finite = run_law(law);
-      double force = 0.0, difference = 0.0;
-      while (linear.session().step() && finite.session().step()) {
-        force = std::max(force, linear.state().forces.normal_reaction.sum());
-        difference = std::max(difference, std::abs(linear.state().forces.normal_reaction.sum() -
-                                                   finite.state().forces.normal_reaction.sum()));
-      }
-      EXPECT_GT(force, 0.0);
-      EXPECT_LT(difference, 1e-6 * force) << scheme << " " << law;
-      const double size = linear.state().displacement.lpNorm<Eigen::Infinity>();
-      EXPECT_LT((linear.state().displacement - finite.state().displacement).lpNorm<Eigen::Infinity>(), 1e-6 * size)
-          << scheme << " " << law;
+      expect_same_motion(run_law("linear"), run_law(law), scheme + " " + law);
     }
   }
 }
@@ -238,18 +185,12 @@ TEST(FiniteStrain, SmallMotionsAreLinear) {
 TEST(FiniteStrain, IsOfSecondOrder) {
   for (const std::string scheme : {"reduced-kane", "mean-reaction", "newmark", "kane", "midpoint"}) {
     const bool has_inertia = scheme == "kane" || scheme == "midpoint";
-    const auto end_of = [&](double step) {
-      Flight flight{.scheme = scheme, .mass = has_inertia ? "consistent" : "equivalent", .step = step};
-      CaseRun run(case_of(flight, "[\"0.02*(x-0.5)\", \"-0.01*(y-0.25)\"]", "[\"-2*(y-0.25)\", \"2*(x-0.5)\"]"));
-      while (run.state().time < 0.016 * (1.0 - 1e-9)) run.session().step();
-      return run.state().displacement;
+    const auto of_step = [&](double step, const std::string& displacement, const std::string& velocity) {
+      const std::string mass = has_inertia ? "consistent" : "equivalent";
+      return case_of({.scheme = scheme, .mass = mass, .step = step}, displacement, velocity);
     };
-    const Vector coarse = end_of(4e-4), middle = end_of(2e-4), fine = end_of(1e-4);
-    const double rate = (coarse - middle).norm() / (middle - fine).norm();
-    EXPECT_GT(rate, 3.5) << scheme;
-    EXPECT_LT(rate, 4.5) << scheme;
+    expect_second_order(of_step, scheme);
   }
 }
 
-}  // namespace finite_strain_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::finite_strain_test

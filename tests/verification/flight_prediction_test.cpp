@@ -9,13 +9,7 @@
 #include "support/thrown_body.hpp"
 
 /// @file Predicted positions of bodies in free flight.
-namespace ricochet {
-namespace flight_prediction_test {
-
-using test_support::CaseRun;
-using test_support::thrown_bodies;
-using test_support::thrown_case;
-using test_support::ThrownBody;
+namespace ricochet::test_support::flight_prediction_test {
 
 /// Nodal values v̄ + ω × (x − X̄).
 Vector values_at_nodes(const SemidiscreteProblem& problem, const Eigen::Vector3d& velocity, const Eigen::Vector3d& spin,
@@ -71,5 +65,4 @@ TEST(FlightPrediction, TurnsRigidBodiesAsTheMidpointRule) {
   }
 }
 
-}  // namespace flight_prediction_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::flight_prediction_test

@@ -5,17 +5,14 @@
 #include <fstream>
 #include <sstream>
 
-#include "ricochet/base/error.hpp"
 #include "support/case_run.hpp"
+#include "support/errors.hpp"
 #include "support/paths.hpp"
 
 // Stiff blocks that slide like rigid ones: to rest, down a slope, along with a belt. The cases of cases/incline and
 // cases/conveyor with other schemes and masses, compared with the closed forms and with each other.
 
-namespace ricochet {
-namespace friction_blocks_test {
-
-using test_support::CaseRun;
+namespace ricochet::test_support::friction_blocks_test {
 
 constexpr double gravity = 9.81;
 constexpr double block_mass = 1000.0 * 0.2 * 0.1;  ///< mass of cases/incline/block.msh
@@ -26,7 +23,7 @@ const double passage = 0.1 / std::sqrt(5.0e6 / 1000.0);
 
 /// Runs a case of cases/ with overrides.
 CaseRun run_case_file(const std::string& name, std::vector<std::string> overrides) {
-  const std::string cases = test_support::source_path("cases/");
+  const std::string cases = source_path("cases/");
   std::ifstream file(cases + name);
   EXPECT_TRUE(file) << name;
   std::stringstream text;
@@ -204,18 +201,12 @@ TEST(Incline, StaticEquilibriumExistsBelowTheThresholdOnly) {
     EXPECT_LT(moved, 1e-7 * at_rest.lpNorm<Eigen::Infinity>()) << factor;
   }
   for (const double factor : {0.0, 0.5, 0.9, 0.99}) {
-    try {
+    // The force that exceeds friction is named.
+    const double missing = weight * std::sin(slope) * (1.0 - factor);
+    expect_error({"no equilibrium", fmt::format("({:.3g}, ", missing)}, [&] {
       run_case_file("incline/held.toml", {fmt::format("contact.0.friction={}", factor * std::tan(slope))});
-      ADD_FAILURE() << "an equilibrium for F = " << factor << " tan(slope)";
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::invalid_input) << error.what();
-      EXPECT_NE(std::string(error.what()).find("no equilibrium"), std::string::npos) << error.what();
-      // The force that exceeds friction.
-      const double missing = weight * std::sin(slope) * (1.0 - factor);
-      EXPECT_NE(std::string(error.what()).find(fmt::format("({:.3g}, ", missing)), std::string::npos) << error.what();
-    }
+    });
   }
 }
 
-}  // namespace friction_blocks_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::friction_blocks_test

@@ -11,16 +11,14 @@
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/run/run_case.hpp"
 #include "support/case_run.hpp"
+#include "support/errors.hpp"
 #include "support/paths.hpp"
 #include "support/thrown_body.hpp"
 
 // Oblique impacts: balances of momentum and angular momentum and Coulomb's law for any body, and stick and slip in
 // cases/oblique.
 
-namespace ricochet {
-namespace friction_impact_test {
-
-using test_support::CaseRun;
+namespace ricochet::test_support::friction_impact_test {
 
 struct Balance {
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();
@@ -61,7 +59,7 @@ struct Method {
 // In a step the momentum changes by h [(1−γ) f₀ + γ f₁], and the angular momentum by the moment of that force: linear
 // elasticity does not contribute, and friction only through its force.
 TEST(ObliqueImpact, MomentumAndAngularMomentumBalanceInEveryStep) {
-  for (const test_support::ThrownBody& body : test_support::thrown_bodies()) {
+  for (const ThrownBody& body : thrown_bodies()) {
     for (const Method& method :
          std::vector<Method>{{"scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "equivalent", 0.5},
                              {"scheme = \"newmark\"\npreset = \"textbook-half\"\n", "equivalent", 0.5},
@@ -73,7 +71,7 @@ TEST(ObliqueImpact, MomentumAndAngularMomentumBalanceInEveryStep) {
                              {"scheme = \"klr-conserving\"\n", "consistent", 1.0},
                              {"scheme = \"klr-conserving\"\n", "lumped", 1.0},
                              {"scheme = \"semi-explicit\"\n", "equivalent-lumped", 0.5}}) {
-      CaseRun run(test_support::thrown_case(body, method.mass, method.time, "friction = 0.3\n"));
+      CaseRun run(thrown_case(body, method.mass, method.time, "friction = 0.3\n"));
       Balance before(run.problem(), momentum(run));
       const double linear_size = before.linear.norm(), angular_size = linear_size;  // radius and height are 1
       Vector force_before = force(run);
@@ -100,7 +98,7 @@ TEST(ObliqueImpact, MomentumAndAngularMomentumBalanceInEveryStep) {
 }
 
 std::string cases() {
-  return test_support::source_path("cases/");
+  return source_path("cases/");
 }
 
 /// Results of throwing the disc of cases/oblique.
@@ -179,7 +177,7 @@ TEST(ObliqueImpact, ImpulseRatioIsAtMostTheCoefficient) {
 TEST(ObliqueImpact, SlipsSticksAndSlipsBack) {
   const Throw found = throw_disc(0.1, {});
   EXPECT_EQ(found.phases.front(), 's');
-  EXPECT_NE(found.phases.find('S'), std::string::npos);
+  EXPECT_TRUE(has(found.phases, "S"));
   EXPECT_EQ(found.phases.back(), 's');
   // The lowest point moves back: friction takes more than the third of v_x that would stop it on a rigid disc.
   EXPECT_LT(found.end[0], 0.6 * found.start[0]);
@@ -206,7 +204,7 @@ TEST(ObliqueImpact, SchemesThatConserveEnergyAgree) {
 // gravity adds to the velocity down the slope, so speed + velocity down the slope is constant.
 TEST(SlidingBlockInSpace, FrictionTurnsWithTheVelocity) {
   const double slope = 20.0 * M_PI / 180.0, gravity = 9.81, speed = 0.5, mass = 4.0;
-  const std::string mesh = test_support::mesh_geometry(
+  const std::string mesh = mesh_geometry(
       "block",
       "Box(1) = {-0.1, -0.1, 0, 0.2, 0.2, 0.1}; Physical Volume(\"body\") = {1}; Physical Surface(\"base\") = {5};",
       0.05, 1);
@@ -242,18 +240,17 @@ TEST(SlidingBlockInSpace, FrictionTurnsWithTheVelocity) {
 
 TEST(SpinningBall, RaisesTheWarningOfSmallStrain) {
   const std::filesystem::path directory =
-      std::filesystem::path(test_support::write_temporary("marker", "")).parent_path() / "results";
+      std::filesystem::path(write_temporary("marker", "")).parent_path() / "results";
   log::set_level(log::Level::error);
   const Case input = read_case(cases() + "ball-spin/ball-spin.toml", {"time.step=1e-3", "output.fields_every=0"});
   const RunSummary summary = run_case(input, {directory.string(), true, true});
   ASSERT_GE(summary.warnings.size(), 2U);
-  EXPECT_NE(summary.warnings[0].find("small strain no longer holds"), std::string::npos) << summary.warnings[0];
+  EXPECT_TRUE(has(summary.warnings[0], "small strain no longer holds"));
   const double rotation = summary.digest("max_rotation").maximum;
   EXPECT_GT(rotation, 0.3);
   // The warning at the end states the size of the error.
   const std::string strain = fmt::format("a spurious strain of {:.2g} %", 100.0 * (1.0 - std::cos(rotation)));
-  EXPECT_NE(summary.warnings.back().find(strain), std::string::npos) << summary.warnings.back();
+  EXPECT_TRUE(has(summary.warnings.back(), strain));
 }
 
-}  // namespace friction_impact_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::friction_impact_test

@@ -10,14 +10,7 @@
 // Coulomb's law and the effect of friction on the energy, step by step on any mesh. Rates, forces and energies are
 // computed here from the states, not taken from the solver or the energy account.
 
-namespace ricochet {
-namespace friction_law_test {
-
-using test_support::CaseRun;
-using test_support::StepEnd;
-using test_support::thrown_bodies;
-using test_support::thrown_case;
-using test_support::ThrownBody;
+namespace ricochet::test_support::friction_law_test {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
@@ -180,11 +173,11 @@ TEST(FrictionLaw, StickAndSlipAreBothSeen) {
 // At the corner two obstacles impose two conditions and two slips on two dofs: the Delassus operator is singular, and
 // the points press against each other until one of them slips.
 TEST(FrictionLaw, HoldsInACornerBetweenTwoObstacles) {
-  const std::string mesh = test_support::mesh_geometry(
-      "corner",
-      "Rectangle(1)={0,0,0,1,1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1}; "
-      "Physical Curve(\"left\")={4};",
-      0.1, 1);
+  const std::string mesh =
+      mesh_geometry("corner",
+                    "Rectangle(1)={0,0,0,1,1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1}; "
+                    "Physical Curve(\"left\")={4};",
+                    0.1, 1);
   for (const auto& [scheme, friction] : {std::pair{"newmark\"\npreset = \"trapezoidal", 0.5},
                                          {"newmark\"\npreset = \"trapezoidal", 3.0},
                                          {"reduced-kane", 0.5}}) {
@@ -264,7 +257,7 @@ TEST(FrictionEnergy, KlrLosesWhatFrictionTakesAndNeverGains) {
       Vector displacement, velocity;
       const auto energy = [&] {
         run.scheme().energy_state(run.state(), displacement, velocity);
-        return test_support::total_energy(run.problem(), displacement, velocity);
+        return total_energy(run.problem(), displacement, velocity);
       };
       double before = energy(), worst = 0.0, gain = 0.0, total = 0.0;
       const double first = before;
@@ -368,5 +361,4 @@ TEST(FrictionEnergy, AccountClosesWithMovingObstacles) {
   }
 }
 
-}  // namespace friction_law_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::friction_law_test

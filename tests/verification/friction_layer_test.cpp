@@ -4,15 +4,13 @@
 #include <cmath>
 
 #include "support/case_run.hpp"
+#include "support/closed_forms.hpp"
 #include "support/column.hpp"
 
 // An elastic layer that slides over a rough base until it sticks: base velocity, slip, time of sticking and traction,
 // and their observed orders when h and Δt are refined together. Velocity and traction jump, so low orders are right.
 
-namespace ricochet {
-namespace friction_layer_test {
-
-using test_support::CaseRun;
+namespace ricochet::test_support::friction_layer_test {
 
 /// Height, density and speed of shear waves 1, first velocity 1 along x, free top, friction traction at most a = F p.
 /// Waves carry v + τ downwards and v − τ upwards, so that D = v + τ arriving at the base is v − τ at the base two units
@@ -46,6 +44,15 @@ TEST(SlidingLayer, ClosedFormAgreesWithTheFormulasOfTheWaves) {
   EXPECT_DOUBLE_EQ(layer.slip(), 1.6);
   EXPECT_DOUBLE_EQ(layer.traction(5.0), 0.2);
   EXPECT_DOUBLE_EQ(layer.traction(7.0), -0.2);
+  for (const std::string a : {"0.15", "0.2", "0.3", "0.45", "1.5"}) {
+    const Layer other{std::stod(a)};
+    for (const auto& [quantity, x, time, value] : closed_forms("layer " + a)) {
+      const double found = quantity == "slip"       ? other.slip()
+                           : quantity == "velocity" ? other.velocity(time)
+                                                    : other.traction(time);
+      EXPECT_NEAR(found, value, 1e-10) << a << ' ' << quantity << ' ' << time;
+    }
+  }
   // Kinetic energy ½ at the start, D²/2 in the standing waves that remain; friction takes the difference, a × slip.
   for (const double a : {0.15, 0.2, 0.3, 0.45, 1.5}) {
     const Layer other{a};
@@ -143,7 +150,7 @@ double sticking_time(const Layer& layer, const std::vector<std::pair<double, dou
 Errors solve(const Layer& layer, const Method& method, int cells) {
   const double step = 0.5 / cells;
   const std::string contact = fmt::format("friction = {:.17g}", layer.a);  // pressure 1
-  CaseRun run(test_support::column_case(test_support::column_mesh(width, cells), 1.0, contact) +
+  CaseRun run(column_case(column_mesh(width, cells), 1.0, contact) +
               fmt::format("[initial]\nvelocity = [1.0, 0.0]\n[mass]\ntype = \"{}\"\n[time]\n{}step = {:.17g}\nend = "
                           "{:.17g}\n",
                           method.mass, method.time, step, end));
@@ -255,7 +262,7 @@ TEST(SlidingLayer, SticksAtOnce) {
   EXPECT_EQ(layer.phases(), 0);
   for (const int cells : refinements) {
     const double step = 0.5 / cells;
-    CaseRun run(test_support::column_case(test_support::column_mesh(width, cells), 1.0, "friction = 1.5") +
+    CaseRun run(column_case(column_mesh(width, cells), 1.0, "friction = 1.5") +
                 fmt::format("[initial]\nvelocity = [1.0, 0.0]\n[time]\n{}step = {:.17g}\nend = {:.17g}\n", newmark.time,
                             step, end));
     PhaseMeans traction;
@@ -312,5 +319,4 @@ TEST(SlidingLayer, TrapezoidalRuleWithInertiaOnContactNodesDoesNotStick) {
   }
 }
 
-}  // namespace friction_layer_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::friction_layer_test

@@ -11,14 +11,11 @@
 // − x²)/(a² − x²)), beyond it q = F p. Exact for a half-space with ν = ½, where pressure and friction are uncoupled (K.
 // L. Johnson, Contact Mechanics, 1985, section 7.2).
 
-namespace ricochet {
-namespace friction_partial_slip_test {
-
-using test_support::CaseRun;
+namespace ricochet::test_support::friction_partial_slip_test {
 
 /// The lower half of a disc of radius 1, with small cells where it touches.
 std::string half_disc(double fine) {
-  return test_support::mesh_geometry(
+  return mesh_geometry(
       fmt::format("half{}", fine),
       fmt::format("Point(1) = {{-1, 1, 0}}; Point(2) = {{0, 1, 0}}; Point(3) = {{1, 1, 0}}; Point(4) = {{0, 0, 0}};"
                   "Point(5) = {{-Sin(0.25), 1 - Cos(0.25), 0}}; Point(6) = {{Sin(0.25), 1 - Cos(0.25), 0}};"
@@ -136,5 +133,4 @@ TEST(PartialSlip, CylinderPushedAlongThePlane) {
   }
 }
 
-}  // namespace friction_partial_slip_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::friction_partial_slip_test

@@ -16,16 +16,7 @@
 // Impacts detected in a run: bars with exact solutions, momentum balances of thrown bodies, moving obstacles, several
 // bodies, checkpoints; and the largest stress.
 
-namespace ricochet {
-namespace impacts_test {
-
-using test_support::CaseRun;
-using test_support::mesh_geometry;
-using test_support::strip_case;
-using test_support::strip_mesh;
-using test_support::thrown_bodies;
-using test_support::thrown_case;
-using test_support::ThrownBody;
+namespace ricochet::test_support::impacts_test {
 
 const std::string trapezoidal = "scheme = \"newmark\"\npreset = \"trapezoidal\"\n";
 
@@ -316,5 +307,4 @@ TEST(PeakStress, IsThatOfTheStatesThatWereLookedAt) {
   EXPECT_LE(place.centre[0], 15.0);
 }
 
-}  // namespace impacts_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::impacts_test

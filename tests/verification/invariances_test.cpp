@@ -4,17 +4,13 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <fstream>
-#include <numeric>
 #include <sstream>
 
 #include "support/case_run.hpp"
 
 // Results must not depend on the units, the orientation, the numbering or the observer.
 
-namespace ricochet {
-namespace invariances_test {
-
-using test_support::CaseRun;
+namespace ricochet::test_support::invariances_test {
 
 /// A case of a body above an oblique plane with transformable numbers.
 struct Setting {
@@ -51,10 +47,10 @@ Setting setting(int dimension, double friction = 0.0) {
   s.dimension = dimension;
   s.friction = friction;
   if (dimension == 2) {
-    s.mesh = test_support::mesh_geometry(
+    s.mesh = mesh_geometry(
         "disc", "Disk(1)={0,1.02,0,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};", 0.3, 1);
   } else {
-    s.mesh = test_support::mesh_geometry(
+    s.mesh = mesh_geometry(
         "ball", "Sphere(1)={0,1.02,0,1}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={1};", 0.5, 1);
     s.normal = {0.1, 1.0, -0.05};
     s.velocity[2] = 0.07;
@@ -183,7 +179,7 @@ TEST(Invariance, MetreKilogramAgainstMillimetreTonne) {
 std::string transformed_mesh(const std::string& path, const std::string& name, const Eigen::Matrix3d& map,
                              bool renumber, bool flip) {
   // Meshes are shared: a file beside the mesh would be written by one test and read by another.
-  const std::string plain = test_support::write_temporary("plain.msh", "");
+  const std::string plain = write_temporary("plain.msh", "");
   if (std::system(("gmsh '" + path + "' -v 1 -save -format msh22 -o '" + plain + "'").c_str()) != 0)
     throw std::runtime_error("gmsh failed");
   std::ifstream in(plain);
@@ -224,7 +220,7 @@ std::string transformed_mesh(const std::string& path, const std::string& name, c
       }
     }
   }
-  return test_support::write_temporary(name, text);
+  return write_temporary(name, text);
 }
 
 /// Compares a case with itself under an orthogonal map of space.
@@ -377,5 +373,4 @@ TEST(Invariance, SameBitsTwice) {
   }
 }
 
-}  // namespace invariances_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::invariances_test

@@ -3,13 +3,10 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/step/stage_solve.hpp"
 #include "support/case_run.hpp"
+#include "support/errors.hpp"
 
 /// @file Message of a step that fails because an iteration has inverted a cell.
-namespace ricochet {
-namespace inverted_cells_test {
-
-using test_support::CaseRun;
-using test_support::mesh_geometry;
+namespace ricochet::test_support::inverted_cells_test {
 
 /// Contact nodes move so far into the body that they invert cells; a stage of the whole body then cannot be solved and
 /// reports why.
@@ -39,13 +36,7 @@ std::string message_of_step(CaseRun& run, double shift) {
   LostStages stages(run.problem(), shift);
   State state = run.state();
   Vector increment;
-  try {
-    run.scheme().advance(run.problem(), state, stages, increment);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::not_converged);
-    return error.what();
-  }
-  return "no error";
+  return message_of([&] { run.scheme().advance(run.problem(), state, stages, increment); }, ErrorKind::not_converged);
 }
 
 TEST(InvertedCells, AreNamedWhereTheContactProblemFailsForThem) {
@@ -60,10 +51,9 @@ TEST(InvertedCells, AreNamedWhereTheContactProblemFailsForThem) {
       "obstacle = \"floor\"\n[initial]\nvelocity = [0, -1]\n[time]\nstep = 1e-3\nend = 0.01\n");
   // Cells at the bottom are about 0.11 high.
   const std::string inverted = message_of_step(run, 0.2);
-  EXPECT_NE(inverted.find("cell "), std::string::npos) << inverted;
-  EXPECT_NE(inverted.find("is inverted"), std::string::npos) << inverted;
+  EXPECT_TRUE(has(inverted, "cell "));
+  EXPECT_TRUE(has(inverted, "is inverted"));
   EXPECT_EQ(message_of_step(run, 0.01), "W has non-finite entries");
 }
 
-}  // namespace inverted_cells_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::inverted_cells_test

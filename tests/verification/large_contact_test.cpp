@@ -10,15 +10,14 @@
 // A whole skin as contact boundary must not cost more than a small part of it: the counted quantities do not depend on
 // the machine.
 
-namespace ricochet {
-namespace large_contact_test {
+namespace ricochet::test_support::large_contact_test {
 
 /// A ball of degree 2: "skin" is its whole surface, "cap" the part near its lowest point.
 std::string ball_case(const std::string& group) {
   const std::string geometry =
       "cap = Pi/6; Sphere(1)={0,0,1.01,1,-Pi/2,-Pi/2+cap}; Sphere(2)={0,0,1.01,1,-Pi/2+cap,Pi/2}; Coherence; "
       "Physical Volume(\"ball\")={1,2}; Physical Surface(\"cap\")={1}; Physical Surface(\"skin\")={1,3};";
-  return "[mesh]\nfile = \"" + test_support::mesh_geometry("large_contact", geometry, 0.3, 2) +
+  return "[mesh]\nfile = \"" + mesh_geometry("large_contact", geometry, 0.3, 2) +
          "\"\ndegree = 2\n[[material]]\ngroup = \"ball\"\ndensity = 1000.0\nyoung = 1.0e7\npoisson = 0.3\n"
          "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]\n"
          "[[contact]]\ngroup = \"" +
@@ -27,21 +26,21 @@ std::string ball_case(const std::string& group) {
          "[time]\nscheme = \"newmark\"\npreset = \"trapezoidal\"\nstep = 1.0e-3\nend = 0.02\n";
 }
 
-double matrix_share(const test_support::CaseRun& run, const test_support::CaseRun& of) {
+double matrix_share(const CaseRun& run, const CaseRun& of) {
   return static_cast<double>(run.problem().mass.to_sparse().nonZeros()) /
          static_cast<double>(of.problem().mass.to_sparse().nonZeros());
 }
 
 TEST(LargeContact, AWholeSkinMakesNoLargerFactorThanACap) {
-  const test_support::CaseRun consistent(ball_case("cap"), {"mass.type=consistent"}), cap(ball_case("cap")),
-      skin(ball_case("skin")), wide(ball_case("skin"), {"mass.type=equivalent-nodewise"});
+  const CaseRun consistent(ball_case("cap"), {"mass.type=consistent"}), cap(ball_case("cap")), skin(ball_case("skin")),
+      wide(ball_case("skin"), {"mass.type=equivalent-nodewise"});
   ASSERT_GT(skin.problem().contact.size(), 5 * cap.problem().contact.size());
   EXPECT_LE(matrix_share(skin, consistent), 1.0);
   EXPECT_GE(matrix_share(wide, consistent), 2.0) << "the mesh is too small to tell";
 }
 
 TEST(LargeContact, TheFactorOfAWholeSkinIsThatOfTheConsistentMass) {
-  test_support::CaseRun consistent(ball_case("skin"), {"mass.type=consistent"}), skin(ball_case("skin")),
+  CaseRun consistent(ball_case("skin"), {"mass.type=consistent"}), skin(ball_case("skin")),
       compact(ball_case("skin"), {"mass.type=equivalent-compact"});
   EXPECT_EQ(skin.simulation().factor_entries(), consistent.simulation().factor_entries()) << "one pattern";
   EXPECT_LE(static_cast<double>(compact.simulation().factor_entries()),
@@ -50,7 +49,7 @@ TEST(LargeContact, TheFactorOfAWholeSkinIsThatOfTheConsistentMass) {
 
 /// The estimate from the symbolic analysis, compared with the computed factor and columns.
 TEST(LargeContact, EstimatesAreWhatIsMade) {
-  test_support::CaseRun run(ball_case("skin"));
+  CaseRun run(ball_case("skin"));
   const std::vector<OperatorCoefficients> operators = run.scheme().operators(run.problem());
   const std::vector<StageEstimate> estimates = estimate_step_solver(run.problem(), operators);
   ASSERT_EQ(estimates.size(), operators.size());
@@ -84,5 +83,4 @@ TEST(LargeContact, EstimatesAreWhatIsMade) {
   EXPECT_LE(estimates[0].bytes_per_point, 1.1 * made);
 }
 
-}  // namespace large_contact_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::large_contact_test

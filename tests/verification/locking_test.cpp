@@ -1,16 +1,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <map>
-
 #include "support/case_run.hpp"
 #include "support/two_bodies.hpp"
 
 /// @file Nearly incompressible bodies do not lock with mean dilatation, but lock without it: Cook's membrane at finite
 /// strain, Poisson's ratio 0.4999.
-namespace ricochet::test_support {
-namespace locking_test {
+namespace ricochet::test_support::locking_test {
 
 struct Membrane {
   CellShape shape = CellShape::quadrilateral;
@@ -75,5 +71,4 @@ TEST(Locking, CooksMembrane) {
   EXPECT_GT(missing({.shape = hexahedron, .cells = 4, .dilatation = "pointwise"}), 0.6);
 }
 
-}  // namespace locking_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::locking_test

@@ -13,11 +13,7 @@
 
 /// @file A body that meets its mirror image moves as if it met the plane between them without friction: the relative
 /// motion and W are doubled, the forces are the same.
-namespace ricochet {
-namespace mirror_test {
-
-using test_support::Discretization;
-using test_support::PointMap;
+namespace ricochet::test_support::mirror_test {
 
 struct MirroredBody {
   CellShape shape;
@@ -37,7 +33,7 @@ PointMap block_above(int up) {
 /// The mesh alone, or with its mirror image. Boxes of one shape have equal distortions, so images match node by node.
 std::string write_blocks(const MirroredBody& body, bool with_image) {
   const int up = dimension(body.shape) - 1;
-  test_support::StackedBoxes stack{body.shape, body.shape, body.counts, body.counts};
+  StackedBoxes stack{body.shape, body.shape, body.counts, body.counts};
   // On facets that are not parallelograms the quadrature is exact only to nine digits, and some schemes amplify the
   // error.
   if (body.shape == CellShape::hexahedron) stack.distortion = 0.0;
@@ -48,11 +44,9 @@ std::string write_blocks(const MirroredBody& body, bool with_image) {
     return y;
   };
   const std::string name = fmt::format("mirror{}{}.msh", up, with_image ? "pair" : "");
-  if (with_image) return test_support::write_mesh(name, test_support::make_stack(stack));
-  return test_support::write_mesh(
-      name,
-      merge_parts(
-          {{"upper", test_support::make_box_mesh({body.shape, body.counts, 1, stack.distortion, stack.upper_map})}}));
+  if (with_image) return write_mesh(name, make_stack(stack));
+  return write_mesh(
+      name, merge_parts({{"upper", make_box_mesh({body.shape, body.counts, 1, stack.distortion, stack.upper_map})}}));
 }
 
 std::string case_text(const MirroredBody& body, const std::string& mesh, bool with_image,
@@ -60,7 +54,7 @@ std::string case_text(const MirroredBody& body, const std::string& mesh, bool wi
   const bool flat = dimension(body.shape) == 2;
   const std::string face = flat ? "y0" : "z0";
   // Bodies do not slip on each other, however rough they are. The default of reduced-kane depends on friction.
-  const std::string rough = with_image && test_support::takes_friction(discretization.scheme) ? "friction = 0.4\n" : "";
+  const std::string rough = with_image && takes_friction(discretization.scheme) ? "friction = 0.4\n" : "";
   const std::string plane = "[obstacle.plane]\ntype = \"plane\"\n" +
                             std::string(flat ? "point = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
                                              : "point = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]\n");
@@ -70,7 +64,7 @@ std::string case_text(const MirroredBody& body, const std::string& mesh, bool wi
                             : fmt::format("velocity = [0.1, 0.05, {}]\nspin = [{}, {}, 0.0]\n", -0.5 * sign, 0.1 * sign,
                                           -0.05 * sign));
   };
-  const bool is_explicit = test_support::time_of(discretization.scheme).find("explicit") != std::string::npos ||
+  const bool is_explicit = time_of(discretization.scheme).find("explicit") != std::string::npos ||
                            discretization.scheme == "cd-lagrange" || discretization.scheme == "taylor-flanagan";
   return fmt::format(
       "[mesh]\nfile = \"{}\"\ndegree = {}\n[[material]]\ngroup = \"all\"\ndensity = 1.0\nlambda = 30.0\nmu = 20.0\n"
@@ -80,8 +74,7 @@ std::string case_text(const MirroredBody& body, const std::string& mesh, bool wi
       with_image ? fmt::format("against = \"lower.{}\"\nmultipliers_on = \"group\"", face) : "obstacle = \"plane\"",
       discretization.multipliers, rough, motion("upper.body", 1), with_image ? motion("lower.body", -1) : "",
       discretization.mass,
-      test_support::time_of(discretization.scheme) +
-          (discretization.scheme == "reduced-kane" ? "reaction_weight = \"end\"\n" : ""),
+      time_of(discretization.scheme) + (discretization.scheme == "reduced-kane" ? "reaction_weight = \"end\"\n" : ""),
       is_explicit ? 0.002 : 0.01, is_explicit ? 0.4 : 0.8);
 }
 
@@ -101,7 +94,7 @@ struct Difference {
   double largest_displacement = 0.0, largest_force = 0.0;
 };
 
-Difference compare(test_support::CaseRun& alone, test_support::CaseRun& pair) {
+Difference compare(CaseRun& alone, CaseRun& pair) {
   const int d = alone.problem().dimension;
   const std::vector<Index> place = find_nodes(alone.problem().nodes, pair.problem().nodes);
   Difference result;
@@ -135,7 +128,7 @@ TEST(MirroredBodies, MoveAsOneAgainstThePlaneBetweenThem) {
        {MirroredBody{CellShape::triangle, {5, 4}, 1}, MirroredBody{CellShape::quadrilateral, {4, 3}, 2},
         MirroredBody{CellShape::tetrahedron, {3, 2, 2}, 1}, MirroredBody{CellShape::hexahedron, {2, 3, 2}, 1}}) {
     const std::string one = write_blocks(body, false), two = write_blocks(body, true);
-    for (const Discretization& discretization : test_support::all_discretizations()) {
+    for (const Discretization& discretization : all_discretizations()) {
       // Under Nitsche's method points penetrate in proportion to the stress error of one side; here both sides share
       // it.
       if (!discretization.is_possible() || discretization.scheme == "nitsche") continue;
@@ -144,8 +137,8 @@ TEST(MirroredBodies, MoveAsOneAgainstThePlaneBetweenThem) {
       if (discretization.mass == "equivalent-lumped" && dimension(body.shape) == 3) continue;
       const std::string label =
           fmt::format("{} on {} degree {}", discretization.label(), name(body.shape), body.degree);
-      test_support::CaseRun alone(case_text(body, one, false, discretization));
-      test_support::CaseRun pair(case_text(body, two, true, discretization));
+      CaseRun alone(case_text(body, one, false, discretization));
+      CaseRun pair(case_text(body, two, true, discretization));
       const Difference found = compare(alone, pair);
       EXPECT_GT(found.largest_force, 0.0) << label;
       // Bathe's scheme amplifies rounding where contact nodes have inertia (docs/scorecard.md: it creates energy).
@@ -159,5 +152,4 @@ TEST(MirroredBodies, MoveAsOneAgainstThePlaneBetweenThem) {
   EXPECT_GT(compared, 400);
 }
 
-}  // namespace mirror_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::mirror_test

@@ -10,13 +10,7 @@
 // P(t) − P(0) is the impulse of the forces, to rounding, and likewise for moments: every scheme, mass and multiplier
 // space, with friction on a moving plane, varying loads, damping and supports.
 
-namespace ricochet {
-namespace momentum_account_test {
-
-using test_support::CaseRun;
-using test_support::dragged_case;
-using test_support::thrown_bodies;
-using test_support::ThrownBody;
+namespace ricochet::test_support::momentum_account_test {
 
 Resultant momentum(const CaseRun& run, const HistoryRecorder& recorder, const std::vector<double>& row) {
   Resultant result;
@@ -70,8 +64,8 @@ Difference largest_difference(const std::string& text) {
 
 TEST(MomentumAccount, BalancesInEverySchemeMassAndMultiplierSpace) {
   const std::vector<ThrownBody> bodies = thrown_bodies();
-  const ThrownBody block = test_support::one_sided_block();
-  for (const test_support::Discretization& each : test_support::all_discretizations()) {
+  const ThrownBody block = one_sided_block();
+  for (const Discretization& each : all_discretizations()) {
     const Difference found = largest_difference(dragged_case(block, each.mass, each.time(), each.contact()));
     EXPECT_EQ(found.momentum >= 0.0, each.is_possible()) << each.label();
     EXPECT_LT(found.momentum, 1e-13) << each.label();
@@ -89,12 +83,12 @@ TEST(MomentumAccount, BalancesInEverySchemeMassAndMultiplierSpace) {
 
 /// Contact presses at the start: the accounts begin with the scheme's state there.
 TEST(MomentumAccount, BalancesWithTheEnergyFromAStaticStart) {
-  const ThrownBody block = test_support::one_sided_block();
+  const ThrownBody block = one_sided_block();
   for (const std::string& scheme : scheme_names()) {
-    for (const std::string& mass : test_support::masses_of(scheme)) {
-      std::string time = test_support::time_of(scheme);
+    for (const std::string& mass : masses_of(scheme)) {
+      std::string time = time_of(scheme);
       if (scheme == "nonsmooth-generalized-alpha") time += "spectral_radius = 0.5\n";
-      std::string text = test_support::thrown_case(block, mass, time);
+      std::string text = thrown_case(block, mass, time);
       const auto replace = [&](const std::string& old, const std::string& now) {
         ASSERT_NE(text.find(old), std::string::npos) << old;
         text.replace(text.find(old), old.size(), now);
@@ -115,11 +109,11 @@ TEST(MomentumAccount, BalancesWithTheEnergyFromAStaticStart) {
 
 /// The forces of two obstacles cancel in the resultant, and the body does not move.
 TEST(MomentumAccount, IsRelativeToForcesThatCancel) {
-  const std::string mesh = test_support::mesh_geometry(
-      "squeezed",
-      "Rectangle(1)={0,0,0,2,1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1}; "
-      "Physical Curve(\"top\")={3};",
-      0.25, 1);
+  const std::string mesh =
+      mesh_geometry("squeezed",
+                    "Rectangle(1)={0,0,0,2,1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1}; "
+                    "Physical Curve(\"top\")={3};",
+                    0.25, 1);
   const Difference found = largest_difference(
       "[mesh]\nfile = \"" + mesh +
       "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 100.0\npoisson = 0.3\n"
@@ -163,7 +157,7 @@ TEST(MomentumAccount, BalancesUnderTrescasLaw) {
 }
 
 TEST(MomentumAccount, BalancesWithMovingSupports) {
-  for (const auto& [scheme, text] : test_support::moving_support_cases()) {
+  for (const auto& [scheme, text] : moving_support_cases()) {
     const Difference found = largest_difference(text);
     EXPECT_GE(found.momentum, 0.0) << scheme;
     EXPECT_LT(found.momentum, 1e-13) << scheme;
@@ -171,5 +165,4 @@ TEST(MomentumAccount, BalancesWithMovingSupports) {
   }
 }
 
-}  // namespace momentum_account_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::momentum_account_test

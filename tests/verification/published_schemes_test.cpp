@@ -11,24 +11,17 @@
 // The discrete energy identities of published schemes, over all masses that they are defined for. Energies, gaps and
 // works are computed here from states, not taken from the energy account. λ are normal forces, g₀ and g₁ the gaps.
 
-namespace ricochet {
-namespace published_schemes_test {
-
-using test_support::CaseRun;
-using test_support::expect_identity;
-using test_support::StepEnd;
-using test_support::thrown_case;
-using test_support::time_of;
+namespace ricochet::test_support::published_schemes_test {
 
 constexpr double rounding = 20.0 * std::numeric_limits<double>::epsilon();
 
 /// Runs a scheme on every body with every mass that it supports and that can be computed for the body.
 void each_run(const std::string& scheme, const std::string& keys,
               const std::function<void(CaseRun&, const std::string&)>& check, const std::string& contact = "") {
-  auto bodies = test_support::thrown_bodies();
-  bodies.push_back(test_support::one_sided_block());
+  auto bodies = thrown_bodies();
+  bodies.push_back(one_sided_block());
   for (const auto& body : bodies) {
-    for (const std::string& mass : test_support::masses_of(scheme)) {
+    for (const std::string& mass : masses_of(scheme)) {
       if (mass.starts_with("equivalent-") && body.name != bodies.back().name) continue;
       // The nodal areas at the vertices of six-node triangles are zero.
       const bool needs_area = scheme == "nitsche" && body.dimension == 3 && body.degree == 2;
@@ -303,7 +296,7 @@ void expect_half_step_identity(CaseRun& run, const std::string& name, double sti
     const Vector du = b.displacement - a.displacement, mean = 0.5 * (a.displacement + b.displacement);
     Vector force;
     problem.internal_force->evaluate(du, force);
-    return test_support::total_energy(problem, mean, v) + 0.5 * (stiffness - 0.25) * du.dot(force);
+    return total_energy(problem, mean, v) + 0.5 * (stiffness - 0.25) * du.dot(force);
   };
   std::vector<StepEnd> last;
   double worst = 0.0, touched = 0.0;
@@ -338,7 +331,7 @@ TEST(PublishedScheme, PaoliSchatzmanLosesForceTimesTheGapBefore) {
 }
 
 TEST(PublishedScheme, PaoliSchatzmanIsSoWithExplicitStiffness) {
-  for (const auto& body : test_support::thrown_bodies()) {
+  for (const auto& body : thrown_bodies()) {
     CaseRun run(thrown_case(body, "lumped", time_of("paoli-schatzman") + "stiffness = \"explicit\"\n"));
     expect_half_step_identity(run, body.name, 0.0, [](const StepEnd& a, const StepEnd& b, const StepEnd&) {
       return -0.5 * b.normal.dot(a.gap);
@@ -375,8 +368,8 @@ TEST(PublishedScheme, CdLagrangeChangesByTheImpulsesOnTheVelocitiesBefore) {
 /// identity of a single step shows.
 TEST(PublishedScheme, IsOfSecondOrderWhereNothingTouches) {
   for (const std::string& scheme : scheme_names()) {
-    for (const std::string& mass : test_support::masses_of(scheme)) {
-      std::string text = thrown_case(test_support::one_sided_block(), mass, time_of(scheme));
+    for (const std::string& mass : masses_of(scheme)) {
+      std::string text = thrown_case(one_sided_block(), mass, time_of(scheme));
       const auto replace = [&](const std::string& old, const std::string& now) {
         ASSERT_NE(text.find(old), std::string::npos) << old;
         text.replace(text.find(old), old.size(), now);
@@ -396,5 +389,4 @@ TEST(PublishedScheme, IsOfSecondOrderWhereNothingTouches) {
   }
 }
 
-}  // namespace published_schemes_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::published_schemes_test

@@ -6,7 +6,6 @@
 #include <limits>
 #include <tuple>
 
-#include "ricochet/base/error.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
@@ -14,14 +13,7 @@
 // Schemes with massless contact nodes in equilibrium at the end of each step: their balances of energy, derived in
 // docs/energy.md, from states alone. K_cc z = (K ΔU)_c, W_c = H K_cc⁻¹ Hᵀ.
 
-namespace ricochet {
-namespace reduced_schemes_test {
-
-using test_support::CaseRun;
-using test_support::StepEnd;
-using test_support::thrown_bodies;
-using test_support::thrown_case;
-using test_support::ThrownBody;
+namespace ricochet::test_support::reduced_schemes_test {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
@@ -60,7 +52,7 @@ Vector nodal(const CaseRun& run, const Vector& normal, const Vector& tangential)
 }
 
 std::vector<std::string> singular_masses() {
-  return test_support::masses_of("reduced-kane");
+  return masses_of("reduced-kane");
 }
 
 std::vector<double> steps() {
@@ -74,7 +66,7 @@ bool is_possible(const ThrownBody& body, const std::string& mass) {
 
 std::vector<ThrownBody> bodies() {
   std::vector<ThrownBody> result = thrown_bodies();
-  result.push_back(test_support::one_sided_block());
+  result.push_back(one_sided_block());
   return result;
 }
 
@@ -290,7 +282,7 @@ TEST(ReducedMidpoint, EnergyChangesWithTheStatusOnly) {
 
 /// A block of few cells on a plane tilted so that friction is at `part` of its limit.
 std::string block_on_slope(double part, double step, long count, const std::string& motion) {
-  const std::string mesh = test_support::mesh_geometry(
+  const std::string mesh = mesh_geometry(
       "little-block",
       "Rectangle(1)={0,0,0,1,0.5}; Transfinite Curve{1,3}=5; Transfinite Curve{2,4}=4; Transfinite Surface{1}; "
       "Recombine Surface{1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1};",
@@ -333,5 +325,4 @@ TEST(ReducedKane, SticksAtNearlyTheLimitWithoutCreep) {
   }
 }
 
-}  // namespace reduced_schemes_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::reduced_schemes_test

@@ -9,10 +9,7 @@
 
 /// @file Operators that depend on the displacement: stages are solved with the requested tangent, and solvers that rely
 /// on a constant one refuse.
-namespace ricochet {
-namespace refactorize_test {
-
-using test_support::CaseRun;
+namespace ricochet::test_support::refactorize_test {
 
 /// A force of the form (1 + |U|_∞) K U: solvers use its tangent only.
 class Stiffening final : public InternalForce {
@@ -42,8 +39,8 @@ class Stiffening final : public InternalForce {
 };
 
 std::string block_case(const std::string& more = "") {
-  return test_support::thrown_case(test_support::one_sided_block(), "consistent",
-                                   "scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "friction = 0.3\n") +
+  return thrown_case(one_sided_block(), "consistent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
+                     "friction = 0.3\n") +
          more;
 }
 
@@ -107,5 +104,4 @@ TEST(NonlinearForce, IsRefusedWhereATangentIsTakenForConstant) {
   }
 }
 
-}  // namespace refactorize_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::refactorize_test

@@ -10,11 +10,9 @@
 #include "support/viscous_block.hpp"
 
 /// @file Viscoelastic branches, compared with closed forms of the Prony series.
-namespace ricochet {
-namespace relaxation_closed_forms_test {
+namespace ricochet::test_support::relaxation_closed_forms_test {
 
-using namespace test_support::viscous;
-using test_support::CaseRun;
+using namespace viscous;
 
 /// A block that is stretched along x between two walls that hold its sides: uniform strain E = e + e²/2 of the
 /// engineering strain e(t), and negligible inertia.
@@ -110,5 +108,4 @@ TEST(RelaxationClosedForms, CyclesDissipateTheLossModulus) {
   EXPECT_NEAR(errors[1] / errors[2], 4.0, 0.3);
 }
 
-}  // namespace relaxation_closed_forms_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::relaxation_closed_forms_test

@@ -11,8 +11,7 @@
 #include "support/thrown_body.hpp"
 
 /// @file Velocities and motions of obstacles set by a program during a run.
-namespace ricochet::test_support {
-namespace session_steering_test {
+namespace ricochet::test_support::session_steering_test {
 
 class SessionSteeringTest : public ::testing::Test {
  protected:
@@ -151,5 +150,4 @@ TEST_F(SessionSteeringTest, RefusesWhatComesTooLateOrDoesNotFit) {
   EXPECT_THROW(late.set_obstacle_velocity("plane", Vector::Zero(2)), Error);
 }
 
-}  // namespace session_steering_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::session_steering_test

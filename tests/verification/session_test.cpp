@@ -11,8 +11,7 @@
 #include "support/thrown_body.hpp"
 
 /// @file Sessions: runs of a case controlled by the program that opens it.
-namespace ricochet::test_support {
-namespace session_test {
+namespace ricochet::test_support::session_test {
 
 std::string block_text() {
   return thrown_case(one_sided_block(), "equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
@@ -187,5 +186,4 @@ TEST_F(SessionTest, OwnsItsWarnings) {
   EXPECT_EQ(summary.warnings.front(), warned.warnings().front());
 }
 
-}  // namespace session_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::session_test

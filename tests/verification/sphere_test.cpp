@@ -8,8 +8,7 @@
 #include "support/case_run.hpp"
 
 /// @file Curved obstacles: a small block that slides in a bowl is a point mass on a circle.
-namespace ricochet::test_support {
-namespace sphere_test {
+namespace ricochet::test_support::sphere_test {
 
 constexpr double gravity = 9.81;
 constexpr double start_angle = 0.3;
@@ -243,5 +242,4 @@ INSTANTIATE_TEST_SUITE_P(All, BowlScheme,
                                            // While the block is slow, its projections are of the size of rounding.
                                            "scheme = \"contact-stabilized\"\n[mass]\ntype = \"consistent\"\n"));
 
-}  // namespace sphere_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::sphere_test

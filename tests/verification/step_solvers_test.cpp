@@ -1,20 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
 // The ways to solve a step, compared on the same cases: a factor of the whole body with the possible contact points,
 // the same with all contact points, and conjugate gradients around a patch. They must agree.
 
-namespace ricochet {
-namespace step_solvers_test {
-
-using test_support::CaseRun;
-using test_support::thrown_bodies;
-using test_support::thrown_case;
-using test_support::ThrownBody;
+namespace ricochet::test_support::step_solvers_test {
 
 struct Variant {
   std::string name, time, mass, contact;
@@ -108,7 +100,7 @@ TEST(StepSolversBySupports, Agree) {
   for (const std::string time : {"scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "scheme = \"reduced-kane\"\n"}) {
     SCOPED_TRACE(time);
     const std::string text =
-        "[mesh]\nfile = \"" + test_support::mesh_geometry("supported_square", square, 0.2, 1) +
+        "[mesh]\nfile = \"" + mesh_geometry("supported_square", square, 0.2, 1) +
         "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 100.0\npoisson = 0.3\n"
         "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
         "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.3\nmultipliers = \"p1\"\n"
@@ -125,7 +117,7 @@ TEST(StepSolversBySupports, Agree) {
 TEST(StepSolversAtRest, Agree) {
   const std::string square =
       "Rectangle(1)={0,0,0,1,1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1};";
-  const std::string text = "[mesh]\nfile = \"" + test_support::mesh_geometry("square", square, 0.2, 1) +
+  const std::string text = "[mesh]\nfile = \"" + mesh_geometry("square", square, 0.2, 1) +
                            "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 100.0\npoisson = 0.3\n"
                            "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
                            "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\n[load]\ngravity = [0.0, -1.0]\n"
@@ -139,5 +131,4 @@ TEST(StepSolversAtRest, Agree) {
 INSTANTIATE_TEST_SUITE_P(All, StepSolvers, testing::ValuesIn(variants()),
                          [](const auto& info) { return info.param.name; });
 
-}  // namespace step_solvers_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::step_solvers_test

@@ -12,8 +12,7 @@
 #include "support/two_bodies.hpp"
 
 /// @file Location of the largest stress: corners, supports, contact, and similar positions with finite stress.
-namespace ricochet::test_support {
-namespace stress_raisers_test {
+namespace ricochet::test_support::stress_raisers_test {
 
 std::string static_case(const std::string& mesh, const std::string& more, const std::string& body = "body") {
   return fmt::format(
@@ -194,5 +193,4 @@ TEST(StressRaisers, BlocksOnEachOther) {
   }
 }
 
-}  // namespace stress_raisers_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::stress_raisers_test

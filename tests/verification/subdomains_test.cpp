@@ -12,19 +12,16 @@
 
 // Contact of many points: subdomains that are solved separately, in the iterative path.
 
-namespace ricochet {
-namespace contact_zones_test {
-
-using test_support::CaseRun;
+namespace ricochet::test_support::contact_zones_test {
 
 /// A plate that comes down on a face of some 800 nodes, rotated slightly so that it first touches at one edge, and
 /// slides. A wave crosses about one cell in a step.
 std::string plate(const std::string& multipliers = "", double size = 0.042) {
   return "[mesh]\nfile = \"" +
-         test_support::mesh_geometry("contact-zones",
-                                     "Box(1)={0,0,0,1,1,0.12}; Physical Volume(\"plate\")={1}; Physical "
-                                     "Surface(\"bottom\")={5}; Physical Surface(\"side\")={1};",
-                                     size, 1) +
+         mesh_geometry("contact-zones",
+                       "Box(1)={0,0,0,1,1,0.12}; Physical Volume(\"plate\")={1}; Physical "
+                       "Surface(\"bottom\")={5}; Physical Surface(\"side\")={1};",
+                       size, 1) +
          "\"\n[[material]]\ngroup = \"plate\"\ndensity = 1000.0\nyoung = 1.0e7\npoisson = 0.3\n"
          "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.02, 0.03, 1.0]\n"
          "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.3\n" +
@@ -157,5 +154,4 @@ TEST(Subdomains, FindWhatOneFactorFinds) {
   }
 }
 
-}  // namespace contact_zones_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::contact_zones_test

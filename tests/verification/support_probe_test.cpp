@@ -10,8 +10,7 @@
 #include "support/two_bodies.hpp"
 
 /// @file The reaction of a support on a face that shares nodes with a contact, compared with statics.
-namespace ricochet::test_support {
-namespace support_probe_test {
+namespace ricochet::test_support::support_probe_test {
 
 constexpr double weight = 3.0;
 
@@ -132,5 +131,4 @@ TEST(SupportProbe, OfAxisymmetricBodies) {
   EXPECT_EQ(probe("support_moment_z"), 0.0);
 }
 
-}  // namespace support_probe_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::support_probe_test

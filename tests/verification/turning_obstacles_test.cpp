@@ -14,11 +14,7 @@
 // without reactions. Points are pressed in by a hundredth of the radius: velocities at the predicted position differ by
 // as much for every step length.
 
-namespace ricochet {
-namespace turning_obstacles_test {
-
-using test_support::BoxMesh;
-using test_support::CaseRun;
+namespace ricochet::test_support::turning_obstacles_test {
 
 struct Turning {
   std::string name;
@@ -45,16 +41,15 @@ std::vector<Turning> turning_obstacles() {
 std::string pressed_block(const Turning& turning, const std::string& law, const std::string& scheme,
                           const std::string& mass) {
   const bool flat = turning.dimension == 2;
-  BoxMesh box = test_support::box_of(flat ? CellShape::quadrilateral : CellShape::hexahedron,
-                                     flat ? std::vector{4, 4} : std::vector{2, 2, 4});
+  BoxMesh box =
+      box_of(flat ? CellShape::quadrilateral : CellShape::hexahedron, flat ? std::vector{4, 4} : std::vector{2, 2, 4});
   box.map = [](const Vector& x) -> Vector {
     Vector y = 0.2 * x;
     y.head(y.size() - 1).array() -= 0.08;
     y[y.size() - 1] += 0.0001;
     return y;
   };
-  const std::string mesh =
-      test_support::write_mesh(fmt::format("turned_block{}.msh", turning.dimension), test_support::make_box_mesh(box));
+  const std::string mesh = write_mesh(fmt::format("turned_block{}.msh", turning.dimension), make_box_mesh(box));
   const std::string up = flat ? "y" : "z";
   std::string text = fmt::format(
       "[mesh]\nfile = \"{}\"\n{}"
@@ -65,7 +60,7 @@ std::string pressed_block(const Turning& turning, const std::string& law, const 
       "[[support]]\ngroup = \"{}1\"\ncomponents = [\"{}\"]\nvalue = \"-0.01*min(t/0.02, 1)\"\n"
       "[mass]\ntype = \"{}\"\n[time]\nstep = {}\nend = 0.08\n{}",
       mesh, flat ? "plane = \"strain\"\n" : "", law, turning.obstacle, up, up, flat ? "\"x\"" : "\"x\", \"y\"", up, up,
-      mass, scheme == "semi-explicit" || scheme.find("cd-") == 0 ? 2e-4 : 1e-3, test_support::time_of(scheme));
+      mass, scheme == "semi-explicit" || scheme.find("cd-") == 0 ? 2e-4 : 1e-3, time_of(scheme));
   return text;
 }
 
@@ -156,5 +151,4 @@ TEST(TurningObstacles, FrictionGivesNoEnergy) {
   }
 }
 
-}  // namespace turning_obstacles_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::turning_obstacles_test

@@ -5,11 +5,7 @@
 #include "support/case_run.hpp"
 
 /// @file The velocity correction balances the energy of a step if no stress does.
-namespace ricochet {
-namespace velocity_correction_test {
-
-using test_support::CaseRun;
-using test_support::mesh_geometry;
+namespace ricochet::test_support::velocity_correction_test {
 
 struct Kind {
   std::string name, plane, supports;
@@ -93,5 +89,4 @@ TEST(VelocityCorrection, TakesNothingOfRigidMotion) {
   EXPECT_FALSE(correction.find(velocity, Vector::Zero(velocity.size()), -1e-9 * energy));
 }
 
-}  // namespace velocity_correction_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::velocity_correction_test

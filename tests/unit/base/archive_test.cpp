@@ -4,8 +4,7 @@
 
 #include "ricochet/base/contact_status.hpp"
 
-namespace ricochet {
-namespace archive_test {
+namespace ricochet::archive_test {
 
 struct Thing {
   std::string name;
@@ -82,5 +81,4 @@ TEST(Archive, RefusesWhatIsTooShort) {
   }
 }
 
-}  // namespace archive_test
-}  // namespace ricochet
+}  // namespace ricochet::archive_test

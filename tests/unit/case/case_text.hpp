@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -14,9 +13,12 @@
 #include "ricochet/case/keys_table.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/scheme/scheme.hpp"
+#include "support/errors.hpp"
 
 /// @file Case files made for one test.
 namespace ricochet::case_test {
+
+using namespace test_support;
 
 /// The shortest valid case. Tests of malformed files replace one of its 11 lines or append to it.
 inline const std::vector<std::string> shortest_case{
@@ -83,18 +85,6 @@ inline std::string keys_of_time() {
     if (section.name == "time") return join_names(names_of(section.keys));
   }
   return "";
-}
-
-/// An edit that makes the shortest case invalid, and all messages that follow from it.
-struct MalformedCase {
-  std::size_t line;
-  std::string text;
-  std::string problems;
-};
-
-inline void expect_problems(const MalformedCase& malformed) {
-  SCOPED_TRACE(edited_case(malformed.line, malformed.text));
-  EXPECT_EQ(problems_of(edited_case(malformed.line, malformed.text)), malformed.problems);
 }
 
 }  // namespace ricochet::case_test

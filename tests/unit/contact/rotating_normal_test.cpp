@@ -8,7 +8,7 @@
 #include "support/box_mesh.hpp"
 
 /// @file A direction that rotates with the facets around a point.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 /// Facets of a bent and distorted box around one of its corners, on several of its sides.
@@ -25,11 +25,11 @@ std::vector<Index> facets_around(const DisplacementSpace& space, Index node) {
 
 /// The order of the facets in a mesh file has no effect on the surface.
 TEST(RotatingNormal, NoOrderOfFacetsMatters) {
-  for (const CellShape shape : test_support::all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes) {
     const int d = dimension(shape);
-    test_support::BoxMesh box = test_support::box_of(shape, std::vector<int>(static_cast<std::size_t>(d), 3));
-    box.map = test_support::bend_map();
-    const auto body = test_support::make_meshed_body(test_support::make_box_mesh(box), 1);
+    BoxMesh box = box_of(shape, std::vector<int>(static_cast<std::size_t>(d), 3));
+    box.map = bend_map();
+    const auto body = make_meshed_body(make_box_mesh(box), 1);
     const DisplacementSpace& space = body->space;
     Vector direction(d), displacement(space.dof_count());
     for (Index k = 0; k < displacement.size(); ++k)
@@ -53,4 +53,4 @@ TEST(RotatingNormal, NoOrderOfFacetsMatters) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -10,19 +10,17 @@
 #include "support/two_bodies.hpp"
 
 /// @file Rows of contact between bodies that rotate with them.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
-using test_support::CaseRun;
-
-using Stack = test_support::PairOfBoxes;
+using Stack = PairOfBoxes;
 
 CaseRun stack_of(const Stack& of) {
   const bool plane = dimension(of.shape) == 2;
   const std::vector<int> lower = plane ? std::vector{3, 2} : std::vector{3, 2, 2};
   const std::vector<int> upper = plane ? std::vector{4, 2} : std::vector{2, 3, 2};
-  const Mesh mesh = test_support::make_stack(
-      {.lower_shape = of.shape, .upper_shape = of.shape, .lower_counts = lower, .upper_counts = upper});
+  const Mesh mesh =
+      make_stack({.lower_shape = of.shape, .upper_shape = of.shape, .lower_counts = lower, .upper_counts = upper});
   const std::string name = fmt::format("turning-{}-{}.msh", static_cast<int>(of.shape), of.degree);
   const std::string last = plane ? "y" : "z";
   return CaseRun(fmt::format(
@@ -30,13 +28,12 @@ CaseRun stack_of(const Stack& of) {
       "young = 100.0\npoisson = 0.3\nlaw = \"neo-hookean\"\n[[contact]]\ngroup = \"upper.{}0\"\nagainst = "
       "\"lower.{}1\"\nmultipliers = \"{}\"\nunstable_multipliers = \"allow\"\nfriction = 0.1\n[time]\nstep = 1e-3\n"
       "end = 1e-3\n",
-      test_support::write_mesh(name, mesh), of.degree, last, last, of.multipliers));
+      write_mesh(name, mesh), of.degree, last, last, of.multipliers));
 }
 
 std::vector<Stack> stacks() {
   std::vector<Stack> result;
-  for (const CellShape shape :
-       {CellShape::triangle, CellShape::quadrilateral, CellShape::tetrahedron, CellShape::hexahedron}) {
+  for (const CellShape shape : all_cell_shapes) {
     for (const std::string multipliers : {"p1", "dual", "p0", "nodal"}) result.push_back({shape, multipliers, 1});
     result.push_back({shape, "p1", 2});
   }
@@ -78,8 +75,7 @@ TEST(RotatingPairs, RowsAreTheDerivativesOfGaps) {
     Vector change;
     rows.normal_motion(direction, change);
     const double h = 1e-5;
-    const Vector difference =
-        (test_support::gaps(problem, at + h * direction) - test_support::gaps(problem, at - h * direction)) / (2.0 * h);
+    const Vector difference = (gaps(problem, at + h * direction) - gaps(problem, at - h * direction)) / (2.0 * h);
     EXPECT_LT((difference - change).lpNorm<Eigen::Infinity>(), 1e-8) << name_of(stack);
     EXPECT_GT(change.lpNorm<Eigen::Infinity>(), 1e-3);
   }
@@ -95,9 +91,7 @@ TEST(RotatingPairs, RowsOfAStepMeetBothEnds) {
     const ContactRows rows = rows_of(problem, second, &start);
     Vector change;
     rows.normal_motion(second - first, change);
-    EXPECT_LT(
-        (test_support::gaps(problem, second) - test_support::gaps(problem, first) - change).lpNorm<Eigen::Infinity>(),
-        1e-13)
+    EXPECT_LT((gaps(problem, second) - gaps(problem, first) - change).lpNorm<Eigen::Infinity>(), 1e-13)
         << name_of(stack);
     EXPECT_GT(change.lpNorm<Eigen::Infinity>(), 1e-3);
   }
@@ -108,18 +102,18 @@ TEST(RotatingPairs, RigidMotionsChangeNoGapAndRowsHaveNoResultant) {
     const CaseRun run = stack_of(stack);
     const SemidiscreteProblem& problem = run.problem();
     const Vector at = some_motion(problem, 5, 0.03);
-    const Vector gap = test_support::gaps(problem, at);
+    const Vector gap = gaps(problem, at);
     const ContactRows rows = rows_of(problem, at, nullptr);
     for (Index i = 0; i < rows.size(); ++i) {
-      const test_support::RowBalance left = test_support::balance_of_row(problem, rows, i, at);
+      const RowBalance left = balance_of_row(problem, rows, i, at);
       EXPECT_LT(left.force, 1e-14) << name_of(stack);
       EXPECT_LT(left.moment, 1e-14) << name_of(stack);
     }
-    const Vector displacement = test_support::moved_rigidly(problem, at);
-    EXPECT_LT((test_support::gaps(problem, displacement) - gap).lpNorm<Eigen::Infinity>(), 1e-13) << name_of(stack);
+    const Vector displacement = moved_rigidly(problem, at);
+    EXPECT_LT((gaps(problem, displacement) - gap).lpNorm<Eigen::Infinity>(), 1e-13) << name_of(stack);
     EXPECT_GT(gap.lpNorm<Eigen::Infinity>(), 1e-3);
   }
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -10,10 +10,8 @@
 #include "support/two_bodies.hpp"
 
 /// @file Choice of the points that carry the conditions of self-contact: here the faces of two boxes as one surface.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::CaseRun;
 
 struct Faces {
   CellShape shape;
@@ -22,12 +20,12 @@ struct Faces {
 
 CaseRun boxes_of(const Faces& of) {
   const bool plane = dimension(of.shape) == 2;
-  const Mesh mesh = test_support::make_stack({.lower_shape = of.shape,
-                                              .upper_shape = of.shape,
-                                              .lower_counts = plane ? std::vector{7, 2} : std::vector{4, 4, 2},
-                                              .upper_counts = plane ? std::vector{5, 2} : std::vector{3, 3, 2}});
+  const Mesh mesh = make_stack({.lower_shape = of.shape,
+                                .upper_shape = of.shape,
+                                .lower_counts = plane ? std::vector{7, 2} : std::vector{4, 4, 2},
+                                .upper_counts = plane ? std::vector{5, 2} : std::vector{3, 3, 2}});
   const std::string last = plane ? "y" : "z";
-  const std::string file = test_support::write_mesh("self-contact.msh", mesh);
+  const std::string file = write_mesh("self-contact.msh", mesh);
   return CaseRun(
       "[mesh]\nfile = \"" + file + "\"\ndegree = " + std::to_string(of.degree) +
       "\n[[material]]\ngroup = \"all\"\ndensity = 1.0\nyoung = 100.0\npoisson = 0.3\n[[contact]]\ngroup = \"upper." +
@@ -110,4 +108,4 @@ TEST(SelfContactSelection, HaveIndependentRowsAndLeaveOutThoseOfTheOtherSide) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -13,12 +13,10 @@
 #include "support/two_bodies.hpp"
 
 /// @file Rows of contact between bodies that slide far.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
-using test_support::CaseRun;
-
-using Sled = test_support::PairOfBoxes;
+using Sled = PairOfBoxes;
 
 /// A small box above a larger one; its whole base faces the larger one.
 CaseRun sled_of(const Sled& of) {
@@ -28,12 +26,11 @@ CaseRun sled_of(const Sled& of) {
   const std::vector<int> upper = plane ? std::vector{3, 2} : std::vector{2, 2, 2};
   Vector place = Vector::Constant(d, 0.3);
   place[d - 1] = 1.01;
-  const Mesh mesh =
-      test_support::make_stack({.lower_shape = of.shape,
+  const Mesh mesh = make_stack({.lower_shape = of.shape,
                                 .upper_shape = of.shape,
                                 .lower_counts = lower,
                                 .upper_counts = upper,
-                                .upper_map = test_support::affine_map(0.4 * Matrix::Identity(d, d), place)});
+                                .upper_map = affine_map(0.4 * Matrix::Identity(d, d), place)});
   const std::string name = fmt::format("sled-{}-{}.msh", static_cast<int>(of.shape), of.degree);
   const std::string last = plane ? "y" : "z";
   return CaseRun(
@@ -42,14 +39,13 @@ CaseRun sled_of(const Sled& of) {
                   "\"lower.{}1\"\nmultipliers = \"{}\"\n"
                   "multipliers_on = \"group\"\nsliding = \"large\"\nunstable_multipliers = \"allow\"\nfriction = 0.1\n"
                   "[time]\nstep = 1e-3\nend = 1e-3\n",
-                  test_support::write_mesh(name, mesh), of.degree, last, last, of.multipliers));
+                  write_mesh(name, mesh), of.degree, last, last, of.multipliers));
 }
 
 std::vector<Sled> sleds() {
-  if (test::is_sanitized) return {{CellShape::triangle, "p1", 2}, {CellShape::hexahedron, "p0", 1}};
+  if (is_sanitized) return {{CellShape::triangle, "p1", 2}, {CellShape::hexahedron, "p0", 1}};
   std::vector<Sled> result;
-  for (const CellShape shape :
-       {CellShape::triangle, CellShape::quadrilateral, CellShape::tetrahedron, CellShape::hexahedron}) {
+  for (const CellShape shape : all_cell_shapes) {
     for (const std::string multipliers : {"p1", "p0"}) result.push_back({shape, multipliers, 1});
     result.push_back({shape, "p1", 2});
   }
@@ -90,8 +86,7 @@ double error_of_rows(const SemidiscreteProblem& problem, const std::string& what
   Vector change;
   rows.normal_motion(direction, change);
   const double h = 1e-6;
-  const Vector difference =
-      (test_support::gaps(problem, at + h * direction) - test_support::gaps(problem, at - h * direction)) / (2.0 * h);
+  const Vector difference = (gaps(problem, at + h * direction) - gaps(problem, at - h * direction)) / (2.0 * h);
   EXPECT_GT(change.lpNorm<Eigen::Infinity>(), 1e-3) << what;
   return (difference - change).lpNorm<Eigen::Infinity>() / change.lpNorm<Eigen::Infinity>();
 }
@@ -116,13 +111,11 @@ TEST(SlidingContact, RowsOfAStepMeetBothEnds) {
     const ContactRows rows = sled_rows(problem, second, &start);
     Vector change;
     rows.normal_motion(second - first, change);
-    EXPECT_LT(
-        (test_support::gaps(problem, second) - test_support::gaps(problem, first) - change).lpNorm<Eigen::Infinity>(),
-        1e-13)
+    EXPECT_LT((gaps(problem, second) - gaps(problem, first) - change).lpNorm<Eigen::Infinity>(), 1e-13)
         << name_of(sled);
     EXPECT_GT(change.lpNorm<Eigen::Infinity>(), 1e-3);
     for (Index i = 0; i < rows.size(); ++i) {
-      const test_support::RowBalance left = test_support::balance_of_row(problem, rows, i, 0.5 * (first + second));
+      const RowBalance left = balance_of_row(problem, rows, i, 0.5 * (first + second));
       EXPECT_LT(left.force, 1e-13) << name_of(sled);
       EXPECT_LT(left.moment, 1e-13) << name_of(sled);
     }
@@ -134,15 +127,15 @@ TEST(SlidingContact, RigidMotionsChangeNoGapAndRowsHaveNoResultant) {
     const CaseRun run = sled_of(sled);
     const SemidiscreteProblem& problem = run.problem();
     const Vector at = some_slide(problem, 5, 0.01, 0.0);
-    const Vector gap = test_support::gaps(problem, at);
+    const Vector gap = gaps(problem, at);
     const ContactRows rows = sled_rows(problem, at, nullptr);
     for (Index i = 0; i < rows.size(); ++i) {
-      const test_support::RowBalance left = test_support::balance_of_row(problem, rows, i, at);
+      const RowBalance left = balance_of_row(problem, rows, i, at);
       EXPECT_LT(left.force, 1e-13) << name_of(sled);
       EXPECT_LT(left.moment, 1e-13) << name_of(sled);
     }
-    const Vector displacement = test_support::moved_rigidly(problem, at);
-    EXPECT_LT((test_support::gaps(problem, displacement) - gap).lpNorm<Eigen::Infinity>(), 1e-13) << name_of(sled);
+    const Vector displacement = moved_rigidly(problem, at);
+    EXPECT_LT((gaps(problem, displacement) - gap).lpNorm<Eigen::Infinity>(), 1e-13) << name_of(sled);
     EXPECT_GT(gap.lpNorm<Eigen::Infinity>(), 1e-3);
   }
 }
@@ -245,4 +238,4 @@ TEST(RigidPart, OnlyDeformationIsLeft) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -10,10 +10,8 @@
 #include "ricochet/mass/mass.hpp"
 #include "support/box_mesh.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using namespace test_support;
 
 /// Under sanitizers thousands of curved cells take minutes, so fewer are assembled.
 #ifdef __SANITIZE_ADDRESS__
@@ -182,4 +180,4 @@ TEST(CellRotations, FindsTheLargestOfAllCells) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

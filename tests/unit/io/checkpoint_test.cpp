@@ -10,11 +10,11 @@
 #include <random>
 
 #include "ricochet/base/checksum.hpp"
-#include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "support/case_run.hpp"
+#include "support/errors.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 Snapshot example() {
@@ -39,17 +39,11 @@ std::string with_checksum(std::string text) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    static_cast<void>(decode_snapshot(text));
-  } catch (const Error& problem) {
-    EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
-    return problem.what();
-  }
-  return "";
+  return message_of([&] { static_cast<void>(decode_snapshot(text)); });
 }
 
 std::string folder_of_test() {
-  return std::filesystem::path(test_support::write_temporary("x", "")).parent_path().string();
+  return std::filesystem::path(write_temporary("x", "")).parent_path().string();
 }
 
 TEST(Checkpoint, ComesBackBitByBit) {
@@ -126,28 +120,20 @@ TEST(Checkpoint, APipeInItsPlaceIsPassedOver) {
   const log::CollectWarnings collect(warnings);
   EXPECT_EQ(newest_checkpoint(folder)->integer("step"), 7);
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_NE(warnings.front().find("it is not a regular file"), std::string::npos);
+  EXPECT_TRUE(has(warnings.front(), "it is not a regular file"));
 }
 
 TEST(Snapshot, SaysWhatDoesNotFit) {
   const Snapshot snapshot = example();
-  const auto message = [](const auto& ask) -> std::string {
-    try {
-      ask();
-    } catch (const Error& problem) {
-      return problem.what();
-    }
-    return "";
-  };
-  EXPECT_EQ(message([&] { static_cast<void>(snapshot.reals("numbers", 99)); }),
+  EXPECT_EQ(message_of([&] { static_cast<void>(snapshot.reals("numbers", 99)); }),
             "the saved state does not fit: numbers has 100 numbers where 99 are expected");
-  EXPECT_EQ(message([&] { static_cast<void>(snapshot.real("other")); }),
+  EXPECT_EQ(message_of([&] { static_cast<void>(snapshot.real("other")); }),
             "the saved state does not fit: other is missing");
-  EXPECT_EQ(message([&] { static_cast<void>(snapshot.text("numbers")); }),
+  EXPECT_EQ(message_of([&] { static_cast<void>(snapshot.text("numbers")); }),
             "the saved state does not fit: numbers does not hold texts");
-  EXPECT_EQ(message([&] { static_cast<void>(snapshot.integers("points", 0, 10)); }),
+  EXPECT_EQ(message_of([&] { static_cast<void>(snapshot.integers("points", 0, 10)); }),
             "the saved state does not fit: points has -1, which is not from 0 to 10");
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/failure_bundle.hpp"
+#include "support/errors.hpp"
 #include "support/fclib_support.hpp"
 
-namespace ricochet::test {
+namespace ricochet::test_support {
 namespace {
 
 namespace fs = std::filesystem;
@@ -47,7 +47,7 @@ TEST(ContactExport, StepsThatAreNone) {
       {"99999999999999999999", "is too large for a step number"},
   };
   for (const auto& [text, expected] : cases)
-    expect_error([&, steps = text] { (void)parse_steps(steps); }, expected, ErrorKind::usage);
+    expect_error(ErrorKind::usage, {expected}, [steps = text] { (void)parse_steps(steps); });
 }
 
 /// Two points without friction, one of them eligible.
@@ -90,7 +90,7 @@ TEST(ContactExport, WritesTheStepsAskedForInUnitsOfTheCase) {
   EXPECT_EQ(read.solution->motion, Eigen::Vector2d(0.0, 0.0));
   EXPECT_EQ(read.title, "Title: step 2, t = 1");
   EXPECT_EQ(read_fclib(files[1]).title, "Title: step 3, stage 2, t = 1.5");
-  EXPECT_NE(read.description.find("origin"), std::string::npos);
+  EXPECT_TRUE(has(read.description, "origin"));
   EXPECT_EQ(contact_export.report(), "contact problems of 2 steps in " + directory.path +
                                          " (3 files); 1 had none (no point could touch); steps after 5 were not "
                                          "reached");
@@ -109,11 +109,9 @@ TEST(ContactExport, OnlyItsOwnFilesCount) {
 TEST(ContactExport, AFileInThePlaceOfTheDirectory) {
   const TemporaryFile file;
   std::ofstream(file.path) << "x";
-  expect_error(
-      [&] {
-        ContactExport({{1, 1}}, file.path, {});
-      },
-      file.path + ": cannot create this directory", ErrorKind::file_access);
+  expect_error(ErrorKind::file_access, {file.path + ": cannot create this directory"}, [&] {
+    ContactExport({{1, 1}}, file.path, {});
+  });
 }
 
 /// An unsolved contact problem can be read and solved later; a problem that FCLib cannot state is reported.
@@ -132,14 +130,13 @@ TEST(FailureBundle, HoldsTheStateAndTheProblem) {
   ASSERT_EQ(files.size(), 2u);
   EXPECT_TRUE(files[0].ends_with("/failure-000000007.ckpt"));
   EXPECT_TRUE(files[1].ends_with("/failure-000000007.hdf5"));
-  for (const std::string& file : files) EXPECT_NE(note.find(file), std::string::npos) << note;
+  for (const std::string& file : files) EXPECT_TRUE(has(note, file));
   const Snapshot read = read_checkpoint(files[0]);
   EXPECT_EQ(read.text("failure.message"), "step 7: what failed");
   EXPECT_EQ(read.integer("state.step"), 6);
   const FclibProblem stated = read_fclib(files[1]);
-  EXPECT_NE(stated.description.find("This problem was not solved: it circles."), std::string::npos)
-      << stated.description;
-  EXPECT_NE(stated.title.find("step 7, t = 3.5"), std::string::npos) << stated.title;
+  EXPECT_TRUE(has(stated.description, "This problem was not solved: it circles."));
+  EXPECT_TRUE(has(stated.title, "step 7, t = 3.5"));
   // The reactions at which the solver stopped, in the units of W: those of the case.
   EXPECT_FALSE(stated.solution.has_value());
   ASSERT_EQ(stated.guesses.size(), 1u);
@@ -150,7 +147,7 @@ TEST(FailureBundle, HoldsTheStateAndTheProblem) {
   bounded.friction_bound = Vector::Ones(2);
   FailureBundle other(directory.path, {"Title", "origin", 2, 0.5});
   other.write_problem(bounded, unsolved, 8);
-  EXPECT_NE(other.write(8, snapshot, "").find("the contact problem could not be written"), std::string::npos);
+  EXPECT_TRUE(has(other.write(8, snapshot, ""), "the contact problem could not be written"));
 }
 
 /// If a second attempt solves the step, no file of the first is left, and a later failure does not name one.
@@ -165,8 +162,8 @@ TEST(FailureBundle, ForgetsTheProblemOfAStepThatWasSolved) {
   bundle.remove_problem();
   EXPECT_TRUE(failure_files(directory.path).empty());
   Snapshot snapshot;
-  EXPECT_EQ(bundle.write(9, snapshot, "").find("contact problem"), std::string::npos);
+  EXPECT_FALSE(has(bundle.write(9, snapshot, ""), "contact problem"));
 }
 
 }  // namespace
-}  // namespace ricochet::test
+}  // namespace ricochet::test_support

@@ -12,7 +12,7 @@
 
 // Frames continued by a run that was interrupted anywhere: their bytes equal those of an uninterrupted run.
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 /// Number of nodes: large enough that displacements are compressed in single precision too, and small enough that
@@ -39,7 +39,7 @@ struct Writer {
       {"PointData/displacement", false, rows, 3}, {"PointData/status", true, rows, 0}, {"CellData/empty", false, 0, 0}};
 
   explicit Writer(const FrameFileOptions& with)
-      : path(test_support::write_temporary(with.vtkhdf ? "results.vtkhdf" : "results.h5", "")), options(with) {
+      : path(write_temporary(with.vtkhdf ? "results.vtkhdf" : "results.h5", "")), options(with) {
     if (options.vtkhdf) return;
     fixed.resize(2);
     for (DatasetLayout& each : layout) each.name = each.name.substr(each.name.find('/') + 1);
@@ -149,4 +149,4 @@ TEST(FrameFile, RefusesAFileThatIsMissingOrShorter) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

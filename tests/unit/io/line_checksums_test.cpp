@@ -9,8 +9,9 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/temporary_folder.hpp"
+#include "support/errors.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 std::string line(int number) {
@@ -21,13 +22,7 @@ class LineChecksumsTest : public testing::Test {
  protected:
   void write(const std::string& text) const { std::ofstream(folder_.file("rows.csv"), std::ios::binary) << text; }
   [[nodiscard]] std::string problem(const Snapshot& snapshot) const {
-    try {
-      require_same_files(folder_.path().string(), snapshot);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::file_access);
-      return error.what();
-    }
-    return "";
+    return message_of([&] { require_same_files(folder_.path().string(), snapshot); }, ErrorKind::file_access);
   }
 
   TemporaryFolder folder_{std::filesystem::temp_directory_path(), "ricochet-test"};
@@ -49,7 +44,7 @@ TEST_F(LineChecksumsTest, NamesTheLinesThatHaveChanged) {
     write(text + "what came after it\n");
     EXPECT_EQ(problem(snapshot), "") << count;
     write(text.substr(0, text.size() - 1));
-    EXPECT_NE(problem(snapshot).find("bytes"), std::string::npos) << count;
+    EXPECT_TRUE(has(problem(snapshot), "bytes")) << count;
     for (const int changed : {0, count / 3, count - 1}) {
       std::string other;
       for (int i = 0; i < count; ++i) other += line(i);
@@ -106,4 +101,4 @@ TEST_F(LineChecksumsTest, RefuseWhatTheyHaveNotSaved) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

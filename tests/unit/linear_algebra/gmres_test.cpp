@@ -8,12 +8,12 @@
 #include "ricochet/linear_algebra/dense_factor.hpp"
 #include "support/contact_problems.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 Matrix near_identity(Index size, std::mt19937& random) {
   Matrix matrix = Matrix::Identity(size, size);
-  for (double& value : matrix.reshaped()) value += 0.3 * test::uniform(random);
+  for (double& value : matrix.reshaped()) value += 0.3 * uniform(random);
   return matrix;
 }
 
@@ -25,7 +25,7 @@ TEST(Gmres, NeedsAsManyIterationsAsThereAreDifferences) {
   Matrix matrix = earlier;
   for (const Index column : {3, 17, 40}) matrix.col(column) = near_identity(size, random).col(column);
   const Eigen::PartialPivLU<Matrix> factor(earlier);
-  const Vector right = test::uniform(size, random);
+  const Vector right = uniform(size, random);
   Gmres gmres;
   Vector x;
   const double reached = gmres.solve([&](const Vector& v, Vector& w) { multiply_dense(matrix, v, w); },
@@ -40,7 +40,7 @@ TEST(Gmres, KnowsItsResidual) {
   std::mt19937 random(5);
   const Index size = 40;
   const Matrix matrix = near_identity(size, random);
-  const Vector right = test::uniform(size, random);
+  const Vector right = uniform(size, random);
   Gmres gmres;
   Vector x;
   const auto multiply = [&](const Vector& v, Vector& w) { multiply_dense(matrix, v, w); };
@@ -62,7 +62,7 @@ TEST(SingleLu, SolvesToSixDigits) {
   for (Index j = 0; j < size; ++j) {
     for (Index i = 0; i < size; ++i) matrix(i, j) *= std::pow(10.0, -1.5 * static_cast<double>(std::abs(i - j)));
   }
-  const Vector right = test::uniform(size, random);
+  const Vector right = uniform(size, random);
   SingleLu factor;
   ASSERT_TRUE(factor.compute(matrix));
   Vector x;
@@ -72,4 +72,4 @@ TEST(SingleLu, SolvesToSixDigits) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -12,13 +12,8 @@
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "support/box_mesh.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::BoxMesh;
-using test_support::make_box_mesh;
-using test_support::make_meshed_body;
-using test_support::MeshedBody;
 
 /// A body large enough for several parts.
 std::unique_ptr<MeshedBody> body_of(int d) {
@@ -269,4 +264,4 @@ TEST(NodeOrder, KeepsNeighboursTogether) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

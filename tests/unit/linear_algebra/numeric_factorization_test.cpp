@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <cmath>
 #include <limits>
 #include <random>
 
@@ -11,12 +10,9 @@
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
 #include "support/grid_matrix.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
-using test_support::grid_matrix;
-using test_support::random_vector;
-using test_support::uniform;
 using Arithmetic = SparseCholesky::Arithmetic;
 
 /// Expects the factor of CHOLMOD up to rounding.
@@ -179,4 +175,4 @@ TEST_F(DividedFactorization, StopsAtTheSameUnknownForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

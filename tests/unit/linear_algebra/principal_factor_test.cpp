@@ -6,7 +6,7 @@
 
 #include "support/contact_problems.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 Vector solve_afresh(const Matrix& w, const std::vector<Index>& indices, const Vector& right) {
@@ -17,7 +17,7 @@ Vector solve_afresh(const Matrix& w, const std::vector<Index>& indices, const Ve
 TEST(PrincipalFactor, FollowsItsIndices) {
   std::mt19937 random(1);
   const Index size = 80;
-  const Matrix w = test::random_operator(size, 2.0, random);
+  const Matrix w = random_operator(size, 2.0, random);
   std::vector<char> in(static_cast<std::size_t>(size), 0);
   for (std::size_t i = 10; i < 60; ++i) in[i] = 1;
   PrincipalFactor factor;
@@ -31,7 +31,7 @@ TEST(PrincipalFactor, FollowsItsIndices) {
     }
     ASSERT_TRUE(factor.set_indices(w, indices));
     factored += factor.has_factored() ? 1 : 0;
-    const Vector right = test::uniform(static_cast<Index>(indices.size()), random);
+    const Vector right = uniform(static_cast<Index>(indices.size()), random);
     Vector x;
     factor.solve(right, x);
     EXPECT_LE((x - solve_afresh(w, indices, right)).lpNorm<Eigen::Infinity>(), 1e-11 * x.lpNorm<Eigen::Infinity>());
@@ -43,7 +43,7 @@ TEST(PrincipalFactor, FollowsItsIndices) {
 /// A factor that is recomputed from the base set has the same bits.
 TEST(PrincipalFactor, IsMadeAgainFromItsBase) {
   std::mt19937 random(2);
-  const Matrix w = test::random_operator(50, 2.0, random);
+  const Matrix w = random_operator(50, 2.0, random);
   std::vector<Index> base, changed;
   for (Index i = 0; i < 50; i += 1) {
     if (i % 5 != 0) base.push_back(i);
@@ -56,7 +56,7 @@ TEST(PrincipalFactor, IsMadeAgainFromItsBase) {
   EXPECT_FALSE(factor.has_factored());
   ASSERT_TRUE(again.set_base(w, factor.base()));
   ASSERT_TRUE(again.set_indices(w, changed));
-  const Vector right = test::uniform(static_cast<Index>(changed.size()), random);
+  const Vector right = uniform(static_cast<Index>(changed.size()), random);
   Vector x, y;
   factor.solve(right, x);
   again.solve(right, y);
@@ -73,4 +73,4 @@ TEST(PrincipalFactor, SaysWhereAMatrixIsNotDefinite) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -11,8 +11,7 @@
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
-namespace ricochet {
-namespace single_gradients_test {
+namespace ricochet::test_support::single_gradients_test {
 
 /// An operator αM + K of a thrown body, with rows that are not solved for.
 struct Problem {
@@ -24,8 +23,8 @@ struct Problem {
 
 std::vector<Problem> problems() {
   std::vector<Problem> result;
-  for (const test_support::ThrownBody& body : test_support::thrown_bodies()) {
-    test_support::CaseRun run(test_support::thrown_case(body, "consistent", test_support::time_of("newmark")));
+  for (const ThrownBody& body : thrown_bodies()) {
+    CaseRun run(thrown_case(body, "consistent", time_of("newmark")));
     const double alpha = run.scheme().operators(run.problem()).front().mass;
     Problem& problem = result.emplace_back();
     problem.matrix = combine_operator(run.problem(), {alpha / 400.0, 1.0, 0.0});
@@ -139,5 +138,4 @@ TEST(SinglePrecisionCg, LeaveXAloneWithoutAResidual) {
   EXPECT_EQ(x, Vector(Vector::Ones(x.size())));
 }
 
-}  // namespace single_gradients_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::single_gradients_test

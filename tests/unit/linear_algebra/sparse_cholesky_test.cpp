@@ -7,11 +7,8 @@
 #include <cmath>
 #include <random>
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::random_vector;
-using test_support::uniform;
 
 /// A sparse symmetric positive definite matrix: the Laplacian of a weighted graph (a ring and random chords) plus a
 /// small diagonal, badly scaled on request.
@@ -148,4 +145,4 @@ TEST(SparseCholesky, MayBeMoved) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -14,12 +14,8 @@
 #include "ricochet/linear_algebra/wide_supernode.hpp"
 #include "support/grid_matrix.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::grid_matrix;
-using test_support::random_vector;
-using test_support::uniform;
 
 /// Numbers of a supernode in the order of the layout.
 std::vector<double> stream_of(const Matrix& factor) {
@@ -218,4 +214,4 @@ TEST_F(LargeFactor, GivesColumnsTheSameBitsInAnyCompany) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -8,7 +8,7 @@
 #include "ricochet/mesh/reference_cell.hpp"
 #include "support.hpp"
 
-namespace ricochet::test {
+namespace ricochet::test_support {
 namespace {
 
 using NodeSet = std::set<Index>;
@@ -120,4 +120,4 @@ TEST(DerivedGroups, AMeshWithoutGroupsHasThoseOfItsEntities) {
 }
 
 }  // namespace
-}  // namespace ricochet::test
+}  // namespace ricochet::test_support

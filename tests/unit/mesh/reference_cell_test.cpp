@@ -20,7 +20,7 @@
 #include "ricochet/mesh/shapes/cell_shape_description.hpp"
 #include "support.hpp"
 
-namespace ricochet::test {
+namespace ricochet::test_support {
 namespace {
 
 /// Basix's cell with these vertices.
@@ -322,4 +322,4 @@ TEST(CellsOfGmshFiles, VerticesOfTensorCellsAreLexicographic) {
 }
 
 }  // namespace
-}  // namespace ricochet::test
+}  // namespace ricochet::test_support

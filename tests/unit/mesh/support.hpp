@@ -9,18 +9,18 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/base/error.hpp"
 #include "ricochet/mesh/build_mesh.hpp"
 #include "ricochet/mesh/mesh_cache.hpp"
 #include "ricochet/mesh/raw_mesh.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
+#include "support/errors.hpp"
 #include "support/paths.hpp"
 
 /// @file Helpers for the tests of meshes.
-namespace ricochet::test {
+namespace ricochet::test_support {
 
 inline std::string mesh_path(const std::string& name) {
-  return test_support::data_path("meshes/" + name);
+  return data_path("meshes/" + name);
 }
 
 inline std::string mesh_content(const std::string& name) {
@@ -41,17 +41,6 @@ inline Mesh read_test_mesh(const std::string& name) {
 inline Mesh mesh_of(const std::string& content, double scale = 1.0, bool bodies_may_touch = false) {
   gmsh::BuildOptions options{"test.msh", scale, bodies_may_touch, false};
   return gmsh::build_mesh(gmsh::read_msh(content, "test.msh"), options);
-}
-
-/// Message of the error that the call throws, or "" if it does not throw.
-template <class Call>
-std::string message_of(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 /// Returns `text` with the first `what` replaced; an absent `what` is an error of the test.
@@ -82,4 +71,4 @@ class TemporaryDirectory {
   std::filesystem::path path_;
 };
 
-}  // namespace ricochet::test
+}  // namespace ricochet::test_support

@@ -4,40 +4,16 @@
 
 #include <Eigen/LU>
 #include <numbers>
-#include <random>
 
-#include "support/box_mesh.hpp"
+#include "support/bent_body.hpp"
 
 /// @file Forces of a pressure that follows the surface, on facets of all kinds.
 namespace ricochet::test_support {
 namespace {
 
-struct Kind {
-  ElementKind element;
-  PlaneState plane = PlaneState::strain;
-};
-
-std::vector<Kind> kinds() {
-  std::vector<Kind> all;
-  for (const ElementKind& element : all_element_kinds()) {
-    all.push_back({element});
-    if (element.dimension() == 2) all.push_back({element, PlaneState::axisymmetric});
-  }
-  return all;
-}
-
-class Pressed : public testing::TestWithParam<Kind> {
+class Pressed : public testing::TestWithParam<BodyKind> {
  protected:
-  void SetUp() override {
-    BoxMesh box = box_of(element().shape, std::vector<int>(static_cast<std::size_t>(dimension()), 2));
-    box.geometry_degree = element().geometry_degree;
-    if (box.geometry_degree == 2) box.map = bend_map();
-    if (is_axisymmetric()) {
-      const PointMap map = box.map;
-      box.map = [map](const Vector& x) { return Vector((map ? map(x) : x) + 2.0 * Vector::Unit(2, 0)); };
-    }
-    body_ = make_meshed_body(make_box_mesh(box), element().displacement_degree, GetParam().plane);
-  }
+  void SetUp() override { body_ = make_bent_body(element(), GetParam().plane); }
   static const ElementKind& element() { return GetParam().element; }
   static int dimension() { return element().dimension(); }
   static bool is_axisymmetric() { return GetParam().plane == PlaneState::axisymmetric; }
@@ -55,13 +31,7 @@ class Pressed : public testing::TestWithParam<Kind> {
     pressure.add_force(u, time, result);
     return result;
   }
-  [[nodiscard]] Vector random(double size, unsigned seed) const {
-    std::mt19937 generator(seed);
-    std::uniform_real_distribution<double> values(-size, size);
-    Vector result(body_->space.dof_count());
-    for (double& each : result) each = values(generator);
-    return result;
-  }
+  [[nodiscard]] Vector random(double size, unsigned seed) const { return random_displacement(*body_, size, seed); }
   /// Volume of the deformed body, summed over its cells.
   [[nodiscard]] double volume(const Vector& u) const { return dimension() == 2 ? volume_of<2>(u) : volume_of<3>(u); }
 
@@ -169,9 +139,8 @@ TEST_P(Pressed, TimeAndParts) {
   EXPECT_EQ(rising.last().part, 0.25);
 }
 
-INSTANTIATE_TEST_SUITE_P(FollowerPressure, Pressed, testing::ValuesIn(kinds()), [](const auto& tested) {
-  return tested.param.element.label() + (tested.param.plane == PlaneState::axisymmetric ? "_axisymmetric" : "");
-});
+INSTANTIATE_TEST_SUITE_P(FollowerPressure, Pressed, testing::ValuesIn(all_body_kinds()),
+                         [](const auto& info) { return info.param.label(); });
 
 }  // namespace
 }  // namespace ricochet::test_support

@@ -13,7 +13,7 @@
 #include "ricochet/problem/internal_force.hpp"
 #include "support/box_mesh.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 TEST(Loads, AreTheSumOfTheirParts) {
@@ -243,16 +243,15 @@ TEST(RigidMotion, LeavesTheDeformationOfEachBody) {
 /// The force is K U with the K of the operators, even if rigid rotations are not in the kernel of K (linear functions
 /// on curved cells).
 TEST(LinearElasticity, IsThatOfItsTangentOnCurvedCells) {
-  using test_support::make_box_mesh;
   for (const int d : {2, 3}) {
     for (const int degree : {1, 2}) {
-      const auto test = test_support::make_meshed_body(
-          make_box_mesh({d == 2 ? CellShape::triangle : CellShape::tetrahedron,
-                         std::vector<int>(static_cast<std::size_t>(d), 4), 2, 0.1, test_support::swirl_map(0.05)}),
-          degree);
+      const auto test =
+          make_meshed_body(make_box_mesh({d == 2 ? CellShape::triangle : CellShape::tetrahedron,
+                                          std::vector<int>(static_cast<std::size_t>(d), 4), 2, 0.1, swirl_map(0.05)}),
+                           degree);
       const SparseMatrix stiffness = assemble_stiffness(test->body, node_graph(test->space));
       const LinearElasticity elasticity(stiffness, test->space.nodes);
-      const Vector u = test_support::interpolate(test->space, [&](const Vector& x) {
+      const Vector u = interpolate(test->space, [&](const Vector& x) {
         Vector value = 0.1 * x.cwiseProduct(x);
         value[0] -= 3.0 * x[1];
         value[1] += 3.0 * x[0];
@@ -276,4 +275,4 @@ TEST(LinearElasticity, IsThatOfItsTangentOnCurvedCells) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -10,13 +10,8 @@
 #include "ricochet/simulation/monitor/surface_pieces.hpp"
 #include "support/box_mesh.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::box_of;
-using test_support::BoxMesh;
-using test_support::ElementKind;
-using test_support::make_box_mesh;
 
 /// Nodes in three rows, as in files.
 Points in_space(const Points& nodes) {
@@ -57,7 +52,7 @@ class SurfaceOf : public testing::TestWithParam<ElementKind> {};
 TEST_P(SurfaceOf, ABoxIsComplete) {
   const ElementKind& kind = GetParam();
   const BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 3));
-  const auto body = test_support::make_meshed_body(make_box_mesh(box), kind.displacement_degree);
+  const auto body = make_meshed_body(make_box_mesh(box), kind.displacement_degree);
   const Points nodes = in_space(body->space.nodes);
   const Surface surface = make_surface(nodes, body->space.cells, 1000000);
   EXPECT_FALSE(surface.is_thinned);
@@ -95,7 +90,7 @@ TEST_P(SurfaceOf, ABoxIsComplete) {
 TEST_P(SurfaceOf, TrianglesBelongToTheirCells) {
   const ElementKind& kind = GetParam();
   const BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 2));
-  const auto body = test_support::make_meshed_body(make_box_mesh(box), kind.displacement_degree);
+  const auto body = make_meshed_body(make_box_mesh(box), kind.displacement_degree);
   const Surface surface = make_surface(in_space(body->space.nodes), body->space.cells, 1000000);
   const CellBlock& block = body->space.cells.front();
   for (Index t = 0; t < surface.triangle_count(); ++t) {
@@ -112,7 +107,7 @@ TEST_P(SurfaceOf, TrianglesBelongToTheirCells) {
 TEST_P(SurfaceOf, ItIsTheOneThatContactSees) {
   const ElementKind& kind = GetParam();
   const BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 2));
-  const auto body = test_support::make_meshed_body(make_box_mesh(box), kind.displacement_degree);
+  const auto body = make_meshed_body(make_box_mesh(box), kind.displacement_degree);
   const DisplacementSpace& space = body->space;
   std::multiset<BodySurface::Piece> seen, shown;
   for (BodySurface::Piece piece : surface_pieces(space.nodes, space.cells, boundary_facets(space.cells))) {
@@ -139,7 +134,7 @@ TEST_P(SurfaceOf, ItIsTheOneThatContactSees) {
   EXPECT_EQ(shown, seen);
 }
 
-INSTANTIATE_TEST_SUITE_P(Elements, SurfaceOf, testing::ValuesIn(test_support::all_element_kinds()),
+INSTANTIATE_TEST_SUITE_P(Elements, SurfaceOf, testing::ValuesIn(all_element_kinds()),
                          [](const auto& info) { return info.param.label(); });
 
 TEST(Surface, IsThinnedToWhatIsAskedFor) {
@@ -156,7 +151,7 @@ TEST(Surface, IsThinnedToWhatIsAskedFor) {
 
 TEST(ContactLine, FollowsASideFromItsLeftEnd) {
   for (const int degree : {1, 2}) {
-    const auto body = test_support::make_meshed_body(make_box_mesh(box_of(CellShape::quadrilateral, {4, 3})), degree);
+    const auto body = make_meshed_body(make_box_mesh(box_of(CellShape::quadrilateral, {4, 3})), degree);
     // The facets of the bottom and the top, in any order.
     std::vector<CellBlock> facets{{CellShape::interval, degree + 1, {}, {}}};
     for (const char* name : {"y1", "y0"}) {
@@ -200,4 +195,4 @@ TEST(ContactLine, HasNoOrderInSpace) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

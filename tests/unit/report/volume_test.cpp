@@ -11,12 +11,8 @@
 #include "ricochet/report/surface.hpp"
 #include "support/box_mesh.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::box_of;
-using test_support::ElementKind;
-using test_support::make_box_mesh;
 
 /// Index in `volume.nodes` of corner k of a tetrahedron.
 int corner_of(const Volume& volume, Index t, int k) {
@@ -51,8 +47,7 @@ class VolumeOf : public testing::TestWithParam<ElementKind> {};
 /// The tetrahedra fill the unit cube without gap or overlap, also if the cells' vertices are displaced.
 TEST_P(VolumeOf, ACubeIsComplete) {
   const ElementKind& kind = GetParam();
-  const auto body =
-      test_support::make_meshed_body(make_box_mesh(box_of(kind.shape, {2, 2, 2})), kind.displacement_degree);
+  const auto body = make_meshed_body(make_box_mesh(box_of(kind.shape, {2, 2, 2})), kind.displacement_degree);
   const Points& nodes = body->space.nodes;
   const Volume volume = make_volume(nodes, body->space.cells, 1000000);
   EXPECT_FALSE(volume.is_thinned);
@@ -86,8 +81,7 @@ TEST_P(VolumeOf, ACubeIsComplete) {
 /// Without a cut, the boundary of the volume is the drawn surface, triangle by triangle.
 TEST_P(VolumeOf, ItsOutsideIsTheSurface) {
   const ElementKind& kind = GetParam();
-  const auto body =
-      test_support::make_meshed_body(make_box_mesh(box_of(kind.shape, {2, 2, 2})), kind.displacement_degree);
+  const auto body = make_meshed_body(make_box_mesh(box_of(kind.shape, {2, 2, 2})), kind.displacement_degree);
   const Volume volume = make_volume(body->space.nodes, body->space.cells, 1000000);
   const Surface surface = make_surface(body->space.nodes, body->space.cells, 1000000);
   const auto in_body = [](std::array<int, 3> corners, const std::vector<Index>& nodes) {
@@ -110,8 +104,7 @@ TEST_P(VolumeOf, ItsOutsideIsTheSurface) {
 /// The number of tetrahedra is limited: first only the vertices are used, which still fill the cube, then larger cells.
 TEST_P(VolumeOf, ManyCellsAreMadeFewer) {
   const ElementKind& kind = GetParam();
-  const auto body =
-      test_support::make_meshed_body(make_box_mesh(box_of(kind.shape, {4, 4, 4})), kind.displacement_degree);
+  const auto body = make_meshed_body(make_box_mesh(box_of(kind.shape, {4, 4, 4})), kind.displacement_degree);
   const Points& nodes = body->space.nodes;
   const Index of_vertices = body->space.cells.front().size() * (kind.shape == CellShape::hexahedron ? 6 : 1);
   const Volume plain = make_volume(nodes, body->space.cells, of_vertices);
@@ -135,11 +128,11 @@ INSTANTIATE_TEST_SUITE_P(Elements, VolumeOf,
                                          ElementKind{CellShape::hexahedron, 1, 2}));
 
 TEST(Volume, PlaneCellsHaveNone) {
-  const auto body = test_support::make_meshed_body(make_box_mesh(box_of(CellShape::triangle, {2, 2})), 1);
+  const auto body = make_meshed_body(make_box_mesh(box_of(CellShape::triangle, {2, 2})), 1);
   Points nodes = Points::Zero(3, body->space.nodes.cols());
   nodes.topRows(2) = body->space.nodes;
   EXPECT_EQ(make_volume(nodes, body->space.cells, 1000).count(), 0);
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -13,10 +13,11 @@
 #include "ricochet/mesh/search/closest_point.hpp"
 #include "ricochet/rigid/obstacle_shape.hpp"
 #include "ricochet/rigid/surface/facet_weight.hpp"
+#include "support/errors.hpp"
 #include "support/surface_files.hpp"
 
 /// @file Surfaces from files: distances compared with closed forms and with a search of all facets; invalid files.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 using Vector3 = Eigen::Vector3d;
@@ -296,33 +297,26 @@ TEST_F(RigidSurfaces, AreInThePlaneToo) {
 
 TEST_F(RigidSurfaces, RefuseWhatHasNoInside) {
   const auto problem = [&](const SurfaceFacets& facets, Parameters parameters = {}) {
-    try {
-      (void)shape(facets, std::move(parameters));
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::invalid_input);
-      return std::string(error.what());
-    }
-    return std::string("none");
+    return message_of([&] { (void)shape(facets, std::move(parameters)); });
   };
   const SurfaceFacets block = block_surface({0, 0, 0}, {1, 1, 1});
-  EXPECT_EQ(problem(block), "none");
+  EXPECT_EQ(problem(block), "");
   SurfaceFacets open = block;
   open.corners.erase(open.corners.begin() + 4);
-  EXPECT_EQ(problem(open), "none");
-  EXPECT_NE(problem(open, {{"side", std::string("inside")}})
-                .find("it is not closed: 3 of its edges belong to only one triangle"),
-            std::string::npos);
+  EXPECT_EQ(problem(open), "");
+  EXPECT_TRUE(has(problem(open, {{"side", std::string("inside")}}),
+                  "it is not closed: 3 of its edges belong to only one triangle"));
   SurfaceFacets turned = block;
   std::swap(turned.corners[4][0], turned.corners[4][1]);
-  EXPECT_NE(problem(turned).find("are neighbours with opposite orientations"), std::string::npos);
-  EXPECT_NE(problem(turned).find("triangle 5 at ("), std::string::npos);
+  EXPECT_TRUE(has(problem(turned), "are neighbours with opposite orientations"));
+  EXPECT_TRUE(has(problem(turned), "triangle 5 at ("));
   SurfaceFacets twice = block;
   twice.corners.push_back(block.corners[2]);
-  EXPECT_NE(problem(twice).find("triangle 3 at ("), std::string::npos);
-  EXPECT_NE(problem(twice).find("are identical"), std::string::npos);
+  EXPECT_TRUE(has(problem(twice), "triangle 3 at ("));
+  EXPECT_TRUE(has(problem(twice), "are identical"));
   SurfaceFacets joined = block;
   for (const auto& triangle : block_surface({1, 1, 0}, {2, 2, 1}).corners) joined.corners.push_back(triangle);
-  EXPECT_NE(problem(joined).find("4 triangles meet at the edge at (1, 1, 0.5)"), std::string::npos);
+  EXPECT_TRUE(has(problem(joined), "4 triangles meet at the edge at (1, 1, 0.5)"));
   // A surface that is inverted as a whole is reoriented.
   SurfaceFacets inside_out = block;
   for (auto& triangle : inside_out.corners) std::swap(triangle[0], triangle[1]);
@@ -341,51 +335,35 @@ TEST_F(RigidSurfaces, SayWhereAFileIsWrong) {
   const std::string file = folder_.file("bad.stl");
   const auto problem = [&](const std::string& text) {
     std::ofstream(file, std::ios::binary) << text;
-    try {
-      (void)read_stl(file, 1.0);
-    } catch (const Error& error) {
-      return std::string(error.what()).substr(folder_.path().string().size() + 1);
-    }
-    return std::string("none");
+    return message_of([&] { (void)read_stl(file, 1.0); });
   };
-  EXPECT_NE(problem("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 o 0\n")
-                .find("bad.stl:5:10: \"o\" is not a finite number"),
-            std::string::npos);
-  EXPECT_NE(problem("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n")
-                .find("expected \"vertex\" but found \"the end of the file\""),
-            std::string::npos);
+  EXPECT_TRUE(has(problem("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 o 0\n"),
+                  "bad.stl:5:10: \"o\" is not a finite number"));
+  EXPECT_TRUE(has(problem("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"),
+                  "expected \"vertex\" but found \"the end of the file\""));
   for (const std::string normal : {"0 0 1m", "x 0 1", "0 0 -"}) {
-    EXPECT_NE(problem("solid a\nfacet normal " + normal + "\nouter loop\nvertex 0 0 0\n")
-                  .find("is not a component of a normal"),
-              std::string::npos)
+    EXPECT_TRUE(has(problem("solid a\nfacet normal " + normal + "\nouter loop\nvertex 0 0 0\n"),
+                    "is not a component of a normal"))
         << normal;
   }
   // Some programs write such normals for triangles without area.
   const std::string triangle = "\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
   for (const std::string normal : {"nan nan nan", "-nan(ind) 0 NaN", "-1 +.5e3 0"})
-    EXPECT_EQ(problem("solid a\nfacet normal " + normal + triangle), "none") << normal;
-  EXPECT_NE(problem("solid a\nendsolid\n").find("no triangles"), std::string::npos);
-  EXPECT_NE(problem(std::string(80, ' ') + std::string("\5\0\0\0", 4) + std::string(100, '\1'))
-                .find("the file ends before the 5 triangles"),
-            std::string::npos);
-  EXPECT_NE(problem("").find("it is truncated, or not an STL file"), std::string::npos);
+    EXPECT_EQ(problem("solid a\nfacet normal " + normal + triangle), "") << normal;
+  EXPECT_TRUE(has(problem("solid a\nendsolid\n"), "no triangles"));
+  EXPECT_TRUE(has(problem(std::string(80, ' ') + std::string("\5\0\0\0", 4) + std::string(100, '\1')),
+                  "the file ends before the 5 triangles"));
+  EXPECT_TRUE(has(problem(""), "it is truncated, or not an STL file"));
   EXPECT_THROW((void)read_stl(folder_.file("absent.stl"), 1.0), Error);
   const auto problem_of_polygons = [&](const std::string& text) {
     std::ofstream(file, std::ios::binary) << text;
-    try {
-      (void)read_polygons(file, 1.0);
-    } catch (const Error& error) {
-      return std::string(error.what()).substr(folder_.path().string().size() + 1);
-    }
-    return std::string("none");
+    return message_of([&] { (void)read_polygons(file, 1.0); });
   };
-  EXPECT_EQ(problem_of_polygons("0 0\n1, 0 # a corner\n\n2;0\n3;1\n"), "none");
-  EXPECT_NE(problem_of_polygons("0 0\n1 0.0m\n").find("bad.stl:2:3: \"0.0m\" is not a finite number"),
-            std::string::npos);
-  EXPECT_NE(problem_of_polygons("x y\n0 0\n1 0\n").find("bad.stl:1:1: \"x\""), std::string::npos);
-  EXPECT_NE(problem_of_polygons("0 0\n1 0 2\n").find("bad.stl:2: a line of a polygon must have two numbers"),
-            std::string::npos);
+  EXPECT_EQ(problem_of_polygons("0 0\n1, 0 # a corner\n\n2;0\n3;1\n"), "");
+  EXPECT_TRUE(has(problem_of_polygons("0 0\n1 0.0m\n"), "bad.stl:2:3: \"0.0m\" is not a finite number"));
+  EXPECT_TRUE(has(problem_of_polygons("x y\n0 0\n1 0\n"), "bad.stl:1:1: \"x\""));
+  EXPECT_TRUE(has(problem_of_polygons("0 0\n1 0 2\n"), "bad.stl:2: a line of a polygon must have two numbers"));
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "ricochet/base/error.hpp"
+#include "support/errors.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 /// Rows at 0, 0.1, …, 0.5: a pulse from 0.1 to 0.4, the square of the time, and the number of the row.
@@ -29,13 +29,7 @@ double value(const std::string& text, const HistoryTable& history = pulse()) {
 }
 
 std::string problem(const std::string& text, const HistoryTable& history = pulse()) {
-  try {
-    static_cast<void>(value(text, history));
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::invalid_input);
-    return error.what();
-  }
-  return "";
+  return message_of([&] { static_cast<void>(value(text, history)); });
 }
 
 TEST(QuantityValue, IsThatOfARowOrOfTheSummary) {
@@ -134,4 +128,4 @@ TEST(QuantityValue, NeedsRows) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

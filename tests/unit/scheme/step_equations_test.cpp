@@ -6,15 +6,13 @@
 #include "support/thrown_body.hpp"
 
 /// @file Stages of the schemes, compared with their formulas in the matrices of the problem.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::CaseRun;
 
 class StepEquationsTest : public testing::Test {
  protected:
-  CaseRun run_{test_support::dragged_case(test_support::one_sided_block(), "consistent",
-                                          "scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "friction = 0.3\n")};
+  CaseRun run_{dragged_case(one_sided_block(), "consistent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
+                            "friction = 0.3\n")};
   const SemidiscreteProblem& problem_ = run_.problem();
   const Vector base_ = Vector::Random(problem_.dof_count());
   const Vector velocity_ = Vector::Random(problem_.dof_count());
@@ -56,7 +54,7 @@ TEST_F(StepEquationsTest, TakeTheSlipOfTheWholeStep) {
 }
 
 TEST(StepEquations, PrescribeWhatSupportsDo) {
-  for (const test_support::SupportedCase& supported : test_support::moving_support_cases()) {
+  for (const SupportedCase& supported : moving_support_cases()) {
     CaseRun run(supported.text);
     const SemidiscreteProblem& problem = run.problem();
     ASSERT_GT(problem.supports.size(), 0);
@@ -76,8 +74,7 @@ TEST(StepEquations, PrescribeWhatSupportsDo) {
 
 /// Dofs without inertia have no acceleration, and their velocity is the mean over the step.
 TEST(StepEquations, LetMasslessDofsFollow) {
-  CaseRun run(test_support::thrown_case(test_support::one_sided_block(), "equivalent",
-                                        "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"));
+  CaseRun run(thrown_case(one_sided_block(), "equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"));
   const SemidiscreteProblem& problem = run.problem();
   ASSERT_FALSE(problem.massless_dofs.empty());
   State state = run.state();
@@ -92,4 +89,4 @@ TEST(StepEquations, LetMasslessDofsFollow) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

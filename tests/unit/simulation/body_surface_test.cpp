@@ -13,14 +13,8 @@
 
 // The surface of a unit box, meshed with every cell shape: distances compared with the closed form.
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::all_cell_shapes;
-using test_support::BoxMesh;
-using test_support::make_box_mesh;
-using test_support::make_meshed_body;
-using test_support::MeshedBody;
 
 std::unique_ptr<MeshedBody> box_of(CellShape shape, int degree) {
   const int d = dimension(shape);
@@ -100,4 +94,4 @@ TEST(BodySurface, KnowsTheDistanceToABoxWhereverItHasMovedTo) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

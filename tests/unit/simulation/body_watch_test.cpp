@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 // Two squares of unit cells, one of which moves through the other as a rigid body: its position determines its depth.

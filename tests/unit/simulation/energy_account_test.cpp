@@ -7,10 +7,8 @@
 #include "support/thrown_body.hpp"
 
 /// @file Works of prescribed forces and motions: each part of the account compared with its formula.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::CaseRun;
 
 class Account : public testing::Test {
  protected:
@@ -29,8 +27,7 @@ class Account : public testing::Test {
   }
 
   // Midpoint's forces act over the whole step: the account counts those at its end once.
-  CaseRun run_{test_support::thrown_case(test_support::one_sided_block(), "consistent", "scheme = \"midpoint\"\n",
-                                         "friction = 0.3\n")};
+  CaseRun run_{thrown_case(one_sided_block(), "consistent", "scheme = \"midpoint\"\n", "friction = 0.3\n")};
   State state_;
   Vector increment_;
 };
@@ -76,8 +73,8 @@ TEST_F(Account, KnowsTheEnergyOfAFreeFlight) {
   EnergyAccount account(problem, run_.scheme(), run_.state());
   const Energies energies = account.energies(run_.state());
   const State& state = run_.state();
-  EXPECT_NEAR(energies.total(), test_support::total_energy(problem, state.displacement, state.velocity),
-              1e-12 * test_support::size_of_energy_terms(problem, state.displacement, state.velocity));
+  EXPECT_NEAR(energies.total(), total_energy(problem, state.displacement, state.velocity),
+              1e-12 * size_of_energy_terms(problem, state.displacement, state.velocity));
   EXPECT_GT(energies.kinetic, 0.0);
 }
 
@@ -99,4 +96,4 @@ TEST(DeepestPoint, KeepsTheWorstAndTheFirst) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -9,10 +9,8 @@
 #include "support/thrown_body.hpp"
 
 /// @file Results of a body distributed over processes.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::CaseRun;
 
 /// Two ranks with identical halves.
 class TwoAlike final : public Ranks {
@@ -39,8 +37,8 @@ TEST(Ranks, OneAloneChangesNothing) {
 /// Energies, works, forces, momenta and counts are summed, largest values are not; the step, the time and the
 /// iterations are equal on all ranks.
 TEST(Ranks, EveryColumnOfTheHistorySaysHowItIsReduced) {
-  CaseRun run(test_support::thrown_case(test_support::one_sided_block(), "equivalent",
-                                        "scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "friction = 0.3\n"));
+  CaseRun run(thrown_case(one_sided_block(), "equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
+                          "friction = 0.3\n"));
   for (int step = 0; step < 60; ++step) run.simulation().advance();
   SemidiscreteProblem divided = run.problem();
   const TwoAlike two;
@@ -73,4 +71,4 @@ TEST(Ranks, EveryColumnOfTheHistorySaysHowItIsReduced) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace ricochet {
-namespace self_overlap_test {
+namespace ricochet::self_overlap_test {
 
 using Two = Eigen::Vector2d;
 using Vector3 = Eigen::Vector3d;
@@ -204,5 +203,4 @@ TEST(SelfOverlap, IsNoneOfBodiesThatDoNotFold) {
   }
 }
 
-}  // namespace self_overlap_test
-}  // namespace ricochet
+}  // namespace ricochet::self_overlap_test

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "ricochet/base/log.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/simulation/monitor/penetration_watch.hpp"
@@ -13,11 +11,8 @@
 // A square of 4 × 4 cells on another one of 2 × 2, moved as a rigid body: its position determines its slip and its
 // depth.
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::CaseRun;
-using test_support::StackedBoxes;
 
 /// Distance of the two meshes: nodes of one file must not coincide.
 constexpr double gap = 1e-3;
@@ -28,8 +23,8 @@ std::string stack(const std::string& contact) {
   boxes.lower_counts = {2, 2};
   boxes.upper_counts = {4, 4};
   boxes.distortion = 0.0;
-  boxes.upper_map = test_support::affine_map(Matrix::Identity(2, 2), Eigen::Vector2d(0.0, 1.0 + gap));
-  const std::string mesh = test_support::write_mesh("stacked_boxes.msh", test_support::make_stack(boxes));
+  boxes.upper_map = affine_map(Matrix::Identity(2, 2), Eigen::Vector2d(0.0, 1.0 + gap));
+  const std::string mesh = write_mesh("stacked_boxes.msh", make_stack(boxes));
   std::string text = "[mesh]\nfile = \"" + mesh + "\"\n";
   for (const std::string body : {"lower", "upper"})
     text += "[[material]]\ngroup = \"" + body + ".body\"\nyoung = 1.0\npoisson = 0.0\ndensity = 1.0\n";
@@ -127,4 +122,4 @@ TEST(PenetrationWatch, LooksAtAllOtherNodesOfTwoBodiesInContact) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

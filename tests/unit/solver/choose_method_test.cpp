@@ -12,10 +12,8 @@
 #include "support/thrown_body.hpp"
 
 /// @file Direct or iterative: on both sides of every limit, and unchanged for the rest of a run.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::CaseRun;
 
 constexpr double enough_memory = 1e15;
 
@@ -109,10 +107,10 @@ int iterations_of(const SemidiscreteProblem& problem, const OperatorCoefficients
 }
 
 TEST(IterationEstimate, IsOfTheSizeOfTheCounts) {
-  for (const test_support::ThrownBody& body : test_support::thrown_bodies()) {
+  for (const ThrownBody& body : thrown_bodies()) {
     if (body.degree != 1) continue;
     for (const char* const mass : {"consistent", "equivalent"}) {
-      CaseRun run(test_support::thrown_case(body, mass, test_support::time_of("newmark")));
+      CaseRun run(thrown_case(body, mass, time_of("newmark")));
       const SemidiscreteProblem& problem = run.problem();
       const double alpha = run.scheme().operators(problem).front().mass;
       // Multiples of the case's step: waves cross two cells, or the whole body.
@@ -131,10 +129,10 @@ TEST(IterationEstimate, IsOfTheSizeOfTheCounts) {
 
 /// Laws of finite strain have the linear law's tangent at rest; a unit shear may invert their cells.
 TEST(IterationEstimate, DoesNotDependOnTheLaw) {
-  for (const test_support::ThrownBody& body : test_support::thrown_bodies()) {
+  for (const ThrownBody& body : thrown_bodies()) {
     std::vector<double> iterations;
     for (const char* const law : {"linear", "neo-hookean"}) {
-      CaseRun run(test_support::thrown_case(body, "equivalent", test_support::time_of("reduced-kane")),
+      CaseRun run(thrown_case(body, "equivalent", time_of("reduced-kane")),
                   {fmt::format("material.0.law=\"{}\"", law)});
       const OperatorCoefficients coefficients = run.scheme().operators(run.problem()).back();
       iterations.push_back(estimate_iterations(run.problem(), coefficients, 1e-10).iterations);
@@ -146,8 +144,7 @@ TEST(IterationEstimate, DoesNotDependOnTheLaw) {
 /// The choice at the start is kept, even if the rest of the run alone would lead to another one.
 TEST(ChooseMethod, IsKeptByARunThatGoesOn) {
   for (const bool began_with_iterations : {true, false}) {
-    CaseRun run(test_support::thrown_case(test_support::one_sided_block(), "equivalent",
-                                          test_support::time_of("newmark"), "friction = 0.3\n"));
+    CaseRun run(thrown_case(one_sided_block(), "equivalent", time_of("newmark"), "friction = 0.3\n"));
     StepSolverOptions little, much;
     little.memory = 1.0;
     much.memory = enough_memory;
@@ -170,4 +167,4 @@ TEST(ChooseMethod, IsKeptByARunThatGoesOn) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -3,14 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <random>
 
-namespace ricochet {
+#include "support/uniform.hpp"
+
+namespace ricochet::test_support {
 namespace {
-
-double uniform(std::mt19937& random) {
-  return static_cast<double>(random()) / 2147483648.0 - 1.0;
-}
 
 /// A chain of `size` unknowns with some long links, positive definite.
 SparseMatrix chain(Index size) {
@@ -107,4 +104,4 @@ TEST_F(ContactColumnsTest, OfRowsWithoutUnknownsAreNothing) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

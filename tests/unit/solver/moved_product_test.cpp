@@ -5,12 +5,8 @@
 #include "ricochet/fem/assembly.hpp"
 #include "support/box_mesh.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test_support::BoxMesh;
-using test_support::make_box_mesh;
-using test_support::make_meshed_body;
 
 /// A (x − x₀) for few nodes, whose columns are kept, and for many, where A is multiplied.
 TEST(MovedProduct, IsTheProductWithWhatHasMoved) {
@@ -50,4 +46,4 @@ TEST(MovedProduct, OfNoNodesIsZero) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

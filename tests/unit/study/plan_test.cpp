@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "ricochet/base/error.hpp"
+#include "support/errors.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -45,13 +46,8 @@ TEST(StudyPlan, SaysWhatIsWrong) {
       {"initial.velocity=[0,1", "a bracket or a quote is not closed"},
   };
   for (const auto& [text, reason] : all) {
-    try {
-      static_cast<void>(parse_axis(text));
-      ADD_FAILURE() << text;
-    } catch (const Error& problem) {
-      EXPECT_EQ(problem.kind(), ErrorKind::usage);
-      EXPECT_NE(std::string(problem.what()).find(reason), std::string::npos) << problem.what();
-    }
+    SCOPED_TRACE(text);
+    expect_error(ErrorKind::usage, {reason}, [&] { static_cast<void>(parse_axis(text)); });
   }
 }
 
@@ -109,4 +105,4 @@ TEST(StudyPlan, KnowsWhatIsNumeric) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

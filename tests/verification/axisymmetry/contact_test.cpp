@@ -18,11 +18,7 @@
 
 /// @file Contact of axisymmetric bodies: uniform pressures, closed balances of energy and momentum under every scheme,
 /// and a rod equivalent to a bar.
-namespace ricochet {
-namespace contact_test {
-
-using test_support::CaseRun;
-using test_support::StackedBoxes;
+namespace ricochet::test_support::contact_test {
 
 constexpr double pi = std::numbers::pi;
 
@@ -63,7 +59,7 @@ class AxisymmetricPressure : public testing::TestWithParam<Blocks> {
     stack.lower_counts = {4, 3};
     stack.upper_counts = {5, 4};
     stack.geometry_degree = given.geometry_degree;
-    return test_support::write_mesh("axisymmetric_" + given.label() + ".msh", test_support::make_stack(stack));
+    return write_mesh("axisymmetric_" + given.label() + ".msh", make_stack(stack));
   }
   [[nodiscard]] std::string head(const std::string& file) const {
     return fmt::format(
@@ -112,16 +108,14 @@ INSTANTIATE_TEST_SUITE_P(Blocks, AxisymmetricPressure, testing::ValuesIn(all_blo
 
 /// Section of a cylinder in contact with a plane below.
 struct Side {
-  std::unique_ptr<test_support::MeshedBody> test;
+  std::unique_ptr<MeshedBody> test;
   std::unique_ptr<Obstacle> obstacle;
   ContactBoundary boundary;
   Eigen::Vector2d normal = Eigen::Vector2d(0.2, 1.0).normalized();  ///< normal of the obstacle, a cone
 
-  Side(const test_support::ElementKind& kind, const std::string& multipliers) {
-    test = test_support::make_meshed_body(
-        test_support::make_checked_box_mesh(
-            {kind.shape, {2, 2}, kind.geometry_degree, 0.15, test_support::swirl_map(0.03)}),
-        kind.displacement_degree, PlaneState::axisymmetric);
+  Side(const ElementKind& kind, const std::string& multipliers) {
+    test = make_meshed_body(make_checked_box_mesh({kind.shape, {2, 2}, kind.geometry_degree, 0.15, swirl_map(0.03)}),
+                            kind.displacement_degree, PlaneState::axisymmetric);
     obstacle = make_plane(Eigen::Vector2d(0.0, -0.5), normal);
     const ContactPair pair{"y0", test->mesh.group("y0", 1).members, "plane", obstacle.get(), {}, multipliers};
     boundary = make_contact_boundary(test->body, {pair}, [](Index, int) { return true; });
@@ -129,7 +123,7 @@ struct Side {
 };
 
 void each_side(const std::function<void(const Side&, const std::string&)>& check) {
-  for (const test_support::ElementKind& kind : test_support::all_element_kinds()) {
+  for (const ElementKind& kind : all_element_kinds()) {
     if (kind.dimension() != 2 || !kind.contains_affine()) continue;
     for (const std::string& multipliers : multiplier_space_names())
       check(Side(kind, multipliers), kind.label() + ' ' + multipliers);
@@ -139,9 +133,9 @@ void each_side(const std::function<void(const Side&, const std::string&)>& check
 TEST(Axisymmetry, ContactStressIsExactForUniformStrains) {
   each_side([](const Side& side, const std::string& label) {
     const double a = 0.3, b = -0.2;
-    const Vector displacement = test_support::interpolate(
+    const Vector displacement = interpolate(
         side.test->space, [&](const Vector& x) -> Vector { return Eigen::Vector2d(a * x[0], b * x[1] + 0.7); });
-    const Material material = test_support::test_material();
+    const Material material = test_material();
     const double axial = material.lambda() * (2.0 * a + b) + 2.0 * material.mu() * b;
     const Vector expected = side.boundary.weights * (-axial * side.normal[1]);
     const Vector found = make_contact_stress(side.test->body, side.boundary).rows * displacement;
@@ -170,7 +164,7 @@ TEST(Axisymmetry, ContactStressIsBoundedByTheElasticEnergy) {
 TEST(Axisymmetry, ProbesOfGroupsTakeMeansOverRings) {
   const Side side({CellShape::triangle, 1, 2}, "nodal");
   State state;
-  state.displacement = test_support::interpolate(side.test->space, [](const Vector& x) -> Vector { return x; });
+  state.displacement = interpolate(side.test->space, [](const Vector& x) -> Vector { return x; });
   state.velocity = 2.0 * state.displacement;
   const Vector none;
   const Observation observation{state, none, none, none};
@@ -187,7 +181,7 @@ TEST(Axisymmetry, ProbesOfGroupsTakeMeansOverRings) {
 
 /// One half of the section of a ball of radius 1; the group "contact" includes its axis.
 std::string ball_mesh(int order) {
-  return test_support::mesh_geometry(
+  return mesh_geometry(
       fmt::format("half_section{}", order),
       "Point(1)={0,1.03,0}; Point(2)={0,0.03,0}; Point(3)={1,1.03,0}; Point(4)={0,2.03,0}; Circle(1)={2,1,3}; "
       "Circle(2)={3,1,4}; Line(3)={4,2}; Curve Loop(1)={1,2,3}; Plane Surface(1)={1}; "
@@ -249,8 +243,8 @@ void expect_balances(const std::string& text, const std::string& name) {
 
 TEST(Axisymmetry, BalancesHoldUnderEveryScheme) {
   for (const std::string& scheme : scheme_names()) {
-    for (const std::string& mass : test_support::masses_of(scheme)) {
-      expect_balances(ball_case(1, mass, test_support::time_of(scheme)), scheme + ", " + mass);
+    for (const std::string& mass : masses_of(scheme)) {
+      expect_balances(ball_case(1, mass, time_of(scheme)), scheme + ", " + mass);
     }
   }
 }
@@ -301,9 +295,8 @@ TEST(Axisymmetry, ARodWithoutLateralContractionIsAStrip) {
   stack.lower_counts = {3, 20};
   stack.distortion = 0.0;
   stack.lower_map = [](const Vector& x) -> Vector { return Eigen::Vector2d(0.4 * x[0], 0.1 + 2.0 * x[1]); };
-  const Mesh bar =
-      test_support::make_box_mesh({stack.lower_shape, stack.lower_counts, 1, stack.distortion, stack.lower_map});
-  const std::string mesh = test_support::write_mesh("rod_or_strip.msh", bar);
+  const Mesh bar = make_box_mesh({stack.lower_shape, stack.lower_counts, 1, stack.distortion, stack.lower_map});
+  const std::string mesh = write_mesh("rod_or_strip.msh", bar);
   const auto text = [&](const char* plane) {
     return fmt::format(
         "[mesh]\nfile = \"{}\"\nplane = \"{}\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 900.0\n"
@@ -330,8 +323,7 @@ TEST(Axisymmetry, ARodWithoutLateralContractionIsAStrip) {
 
 /// A tube, 1 < r < 2, shrunk on a pin and free to slide along it: p = E u/a / ((b² + a²)/(b² − a²) + ν).
 TEST(Axisymmetry, AShrunkTubePressesAsLameSays) {
-  const Mesh tube =
-      test_support::make_box_mesh({CellShape::quadrilateral, {16, 6}, 1, 0.0, [](const Vector& x) -> Vector {
+  const Mesh tube = make_box_mesh({CellShape::quadrilateral, {16, 6}, 1, 0.0, [](const Vector& x) -> Vector {
                                      return Eigen::Vector2d(1.0 + x[0], 0.5 * x[1]);
                                    }});
   const double young = 1000.0, poisson = 0.3, overlap = 0.001;
@@ -340,7 +332,7 @@ TEST(Axisymmetry, AShrunkTubePressesAsLameSays) {
       "young = {}\npoisson = {}\n[obstacle.pin]\ntype = \"plane\"\npoint = [{}, 0.0]\nnormal = [1.0, 0.0]\n"
       "[[contact]]\ngroup = \"x0\"\nobstacle = \"pin\"\nmultipliers = \"dual\"\n[initial]\n"
       "displacement = \"static\"\n[time]\nstep = 0.01\nend = 0.01\n",
-      test_support::write_mesh("tube.msh", tube), young, poisson, 1.0 + overlap));
+      write_mesh("tube.msh", tube), young, poisson, 1.0 + overlap));
   const double pressure = young * overlap / (5.0 / 3.0 + poisson);
   const Vector& reaction = run.state().forces.normal_reaction;
   EXPECT_NEAR(reaction.sum(), pi * pressure, 1e-5 * pressure);
@@ -361,5 +353,4 @@ TEST(Axisymmetry, ABallThatLiesOnAPlaneIsInEquilibrium) {
   EXPECT_THROW(CaseRun{thrown}, Error);
 }
 
-}  // namespace contact_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::contact_test

@@ -19,8 +19,7 @@
 #include "support/mass_moments.hpp"
 
 /// @file Elements of axisymmetric bodies: patch tests, measures, masses, and Lamé's closed forms.
-namespace ricochet::test_support {
-namespace elements_test {
+namespace ricochet::test_support::elements_test {
 
 constexpr double pi = std::numbers::pi;
 
@@ -379,5 +378,4 @@ INSTANTIATE_TEST_SUITE_P(Elements, Lame,
                                   std::to_string(info.param.degree);
                          });
 
-}  // namespace elements_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::elements_test

@@ -3,34 +3,40 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "ricochet/base/error.hpp"
 #include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 #include "support/two_bodies.hpp"
 
 /// @file Contact rows between two bodies with non-matching meshes: a uniform pressure passes, rows sum to zero, mean
 /// gap vectors are along the normals.
-namespace ricochet::test_support {
-namespace body_contact_test {
+namespace ricochet::test_support::body_contact_test {
 
 const FreeComponent all_free = [](Index, int) { return true; };
-
-/// A rotation about a skew axis, and a translation.
-PointMap skew(int d) {
-  Matrix turn = Matrix::Identity(d, d);
-  if (d == 2) turn = Eigen::Rotation2Dd(0.4).toRotationMatrix();
-  if (d == 3) turn = Eigen::AngleAxisd(0.5, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
-  return affine_map(turn, Vector::LinSpaced(d, 0.3, -0.7));
-}
 
 struct Pairing {
   CellShape lower, upper;
   int degree;
   bool upper_carries;
+
+  [[nodiscard]] std::string label(const std::string& multipliers) const {
+    return name(lower) + name(upper) + std::to_string(degree) + multipliers + (upper_carries ? "upper" : "lower");
+  }
+  /// Returns the upper body with half the width, beginning at `offset` of the lower one.
+  [[nodiscard]] StackedBoxes narrow_on_wide(double offset) const {
+    const int d = dimension(lower);
+    StackedBoxes stack{lower, upper, {4, 3}, {3, 2}};
+    if (d == 3) stack.lower_counts = {4, 4, 1}, stack.upper_counts = {3, 2, 1};
+    stack.upper_map = [d, offset](const Vector& x) {
+      Vector y = offset * Vector::Ones(d) + 0.5 * x;
+      y[d - 1] = 1.0 + x[d - 1];
+      return y;
+    };
+    stack.both = skew_motion(d);
+    return stack;
+  }
 };
 
 std::vector<Pairing> all_pairings() {
@@ -93,12 +99,11 @@ TEST(BodyContact, PassesAUniformPressureBetweenMeshesThatDoNotMatch) {
     const int d = dimension(p.lower);
     StackedBoxes stack{p.lower, p.upper, {5, 3}, {7, 2}};
     if (d == 3) stack.lower_counts = {3, 2, 2}, stack.upper_counts = {2, 4, 1};
-    stack.both = skew(d);
+    stack.both = skew_motion(d);
     const auto test = make_meshed_body(make_stack(stack), p.degree);
     for (const std::string& multipliers : multiplier_space_names()) {
       if (multipliers == "nodal") continue;
-      SCOPED_TRACE(name(p.lower) + name(p.upper) + std::to_string(p.degree) + multipliers +
-                   (p.upper_carries ? "upper" : "lower"));
+      SCOPED_TRACE(p.label(multipliers));
       const ContactPair pair = pair_of(*test, p.upper_carries, multipliers);
       std::vector<PairingSummary> facings;
       const ContactBoundary boundary = make_contact_boundary(test->body, {pair}, all_free, nullptr, &facings);
@@ -128,22 +133,13 @@ TEST(BodyContact, PassesAUniformPressureBetweenMeshesThatDoNotMatch) {
 TEST(BodyContact, PassesAUniformPressureWhereOnlyAPartIsCovered) {
   for (const Pairing& p : all_pairings()) {
     const int d = dimension(p.lower);
-    StackedBoxes stack{p.lower, p.upper, {4, 3}, {3, 2}};
-    if (d == 3) stack.lower_counts = {4, 4, 1}, stack.upper_counts = {3, 2, 1};
+    StackedBoxes stack = p.narrow_on_wide(0.25);
     stack.distortion = 0.0;
-    stack.upper_map = [d](const Vector& x) {
-      Vector y = x;
-      y[d - 1] += 1.0;
-      for (int k = 0; k < d - 1; ++k) y[k] = 0.25 + 0.5 * x[k];
-      return y;
-    };
-    const PointMap turn = skew(d);
-    stack.both = turn;
+    const PointMap turn = stack.both;
     const auto test = make_meshed_body(make_stack(stack), p.degree);
     for (const std::string& multipliers : multiplier_space_names()) {
       if (multipliers == "nodal") continue;
-      SCOPED_TRACE(name(p.lower) + name(p.upper) + std::to_string(p.degree) + multipliers +
-                   (p.upper_carries ? "upper" : "lower"));
+      SCOPED_TRACE(p.label(multipliers));
       const ContactPair pair = pair_of(*test, p.upper_carries, multipliers);
       const ContactBoundary boundary = make_contact_boundary(test->body, {pair}, all_free);
       const auto& wide = p.upper_carries ? pair.opposite_facets : pair.facets;
@@ -177,21 +173,11 @@ TEST(BodyContact, PassesAUniformPressureWhereOnlyAPartIsCovered) {
 /// the narrow side are those of a uniform pressure, and those on the wide side have its resultant and moment.
 TEST(BodyContact, PassesAUniformPressureWhereFacetsAreCoveredInPart) {
   for (const Pairing& p : all_pairings()) {
-    const int d = dimension(p.lower);
-    StackedBoxes stack{p.lower, p.upper, {4, 3}, {3, 2}};
-    if (d == 3) stack.lower_counts = {4, 4, 1}, stack.upper_counts = {3, 2, 1};
-    stack.upper_map = [d](const Vector& x) {
-      Vector y = x;
-      y[d - 1] += 1.0;
-      for (int k = 0; k < d - 1; ++k) y[k] = 0.31 + 0.5 * x[k];
-      return y;
-    };
-    stack.both = skew(d);
+    const StackedBoxes stack = p.narrow_on_wide(0.31);
     const auto test = make_meshed_body(make_stack(stack), p.degree);
     for (const std::string& multipliers : multiplier_space_names()) {
       if (multipliers == "nodal") continue;
-      SCOPED_TRACE(name(p.lower) + name(p.upper) + std::to_string(p.degree) + multipliers +
-                   (p.upper_carries ? "upper" : "lower"));
+      SCOPED_TRACE(p.label(multipliers));
       const ContactPair pair = pair_of(*test, p.upper_carries, multipliers);
       const ContactBoundary boundary = make_contact_boundary(test->body, {pair}, all_free);
       EXPECT_GT(boundary.weights.minCoeff(), 0.0);
@@ -228,11 +214,10 @@ TEST(BodyContact, HasMeanGapVectorsAlongTheNormals) {
         y[d - 1] += 1.2 - (1.0 - x[d - 1]) * 0.2 * std::pow(x[0] - 0.6, 2);
         return y;
       };
-      stack.both = skew(d);
+      stack.both = skew_motion(d);
       const auto test = make_meshed_body(make_stack(stack), p.degree);
       for (const std::string& multipliers : multiplier_space_names()) {
-        SCOPED_TRACE(name(p.lower) + name(p.upper) + std::to_string(p.degree) + multipliers +
-                     (p.upper_carries ? "upper" : "lower"));
+        SCOPED_TRACE(p.label(multipliers));
         const ContactBoundary boundary =
             make_contact_boundary(test->body, {pair_of(*test, p.upper_carries, multipliers)}, all_free);
         ASSERT_GT(boundary.size(), 3);
@@ -249,5 +234,4 @@ TEST(BodyContact, HasMeanGapVectorsAlongTheNormals) {
   }
 }
 
-}  // namespace body_contact_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::body_contact_test

@@ -11,8 +11,7 @@
 // Stress at the contact points, compared with uniform strains for every element and multiplier space; and the stiffness
 // that bounds it, compared with the largest possible one.
 
-namespace ricochet::test_support {
-namespace contact_stress_test {
+namespace ricochet::test_support::contact_stress_test {
 
 struct Side {
   std::unique_ptr<MeshedBody> test;
@@ -86,5 +85,4 @@ TEST(ContactStress, HasAStiffnessThatBoundsItByTheElasticEnergy) {
   });
 }
 
-}  // namespace contact_stress_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::contact_stress_test

@@ -15,8 +15,7 @@
 
 /// @file Inf–sup stability of pairs of displacement and multiplier spaces: the numerical constant on families of
 /// meshes. The test prints the table of docs/multipliers.md, and checks the numbers on that page.
-namespace ricochet::test_support {
-namespace inf_sup_test {
+namespace ricochet::test_support::inf_sup_test {
 
 const std::vector<std::string>& spaces() {
   static const std::vector<std::string> all = multiplier_space_names();
@@ -202,5 +201,4 @@ TEST(InfSup, AlternatingFacetPressuresDoNoWorkOnAClosedBoundary) {
   EXPECT_TRUE(instability("p0", CellShape::interval, 2).empty());
 }
 
-}  // namespace inf_sup_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::inf_sup_test

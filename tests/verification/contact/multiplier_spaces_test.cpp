@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "ricochet/contact/construction/make_contact_boundary.hpp"
 #include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "support/box_mesh.hpp"
 
 /// @file The multiplier spaces: partition of unity, biorthogonality on curved facets, mean gaps, areas, pressures.
-namespace ricochet::test_support {
-namespace multiplier_spaces_test {
+namespace ricochet::test_support::multiplier_spaces_test {
 
 struct SpaceCase {
   ElementKind kind;
@@ -311,5 +309,4 @@ TEST(DualMultipliers, HavePositiveWeightsWhereNodalForcesHaveNone) {
   EXPECT_NEAR(build("dual").weights.minCoeff(), 2.0 / 15.0 / 18.0, 1e-15);
 }
 
-}  // namespace multiplier_spaces_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::multiplier_spaces_test

@@ -19,8 +19,7 @@
 /// @file Contact patch test: a block pressed on a tilted plane by a uniform pressure on the opposite side. The exact
 /// solution is a uniform stress, so the contact pressure is uniform. The test prints the table of docs/multipliers.md
 /// and checks the numbers on that page.
-namespace ricochet::test_support {
-namespace patch_test {
+namespace ricochet::test_support::patch_test {
 
 constexpr double pressure = 0.02;
 constexpr double closing = 0.01;  ///< gap to the plane at the start
@@ -293,5 +292,4 @@ TEST_P(ContactPatchTest, UniformPressureIsTransmittedOrDeviatesAsThePageSays) {
 INSTANTIATE_TEST_SUITE_P(Elements, ContactPatchTest, testing::ValuesIn(all_element_kinds()),
                          [](const auto& info) { return info.param.label(); });
 
-}  // namespace patch_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::patch_test

@@ -10,8 +10,7 @@
 
 /// @file Areas in contact: whole faces to rounding, and Hertz' contacts of a cylinder and of a ball, with prescribed
 /// pressures and gaps at the nodes, to a part of a facet.
-namespace ricochet::test_support {
-namespace pressed_area_test {
+namespace ricochet::test_support::pressed_area_test {
 
 /// A face of a body at a plane, with prescribed numbers at its nodes.
 class Face {
@@ -151,5 +150,4 @@ TEST(PressedArea, OfHertzContactsConverges) {
   }
 }
 
-}  // namespace pressed_area_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::pressed_area_test

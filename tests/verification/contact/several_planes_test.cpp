@@ -11,8 +11,7 @@
 
 /// @file Bodies whose nodes may each meet any of several planes: a floor and a ceiling, three walls, wedges.
 
-namespace ricochet::test_support {
-namespace several_planes_test {
+namespace ricochet::test_support::several_planes_test {
 
 /// A block of 4 × 4 squares with all sides as contact boundary.
 std::string block_mesh(const std::string& motion = "") {
@@ -157,5 +156,4 @@ TEST(SeveralPlanes, ACornerFallsIntoAPyramid) {
   }
 }
 
-}  // namespace several_planes_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::several_planes_test

@@ -11,8 +11,7 @@
 #include "support/two_bodies.hpp"
 
 /// @file Bodies of tied halves in contact: the seam ends on the contact boundary, so some of its nodes are tied.
-namespace ricochet::test_support {
-namespace tied_contact_test {
+namespace ricochet::test_support::tied_contact_test {
 
 /// Two halves, tied, thrown at a plane with friction.
 std::string halves_case(int d, const std::string& time, const std::string& mass, const std::string& multipliers) {
@@ -170,5 +169,4 @@ TEST(TiedHalves, TouchAnotherBody) {
   }
 }
 
-}  // namespace tied_contact_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::tied_contact_test

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -11,15 +10,7 @@
 #include "support/two_bodies.hpp"
 
 /// @file Surfaces tied with non-matching meshes: linear displacements pass, rotations cause no strain.
-namespace ricochet::test_support {
-namespace tied_surfaces_test {
-
-PointMap turn_of(int d) {
-  Matrix turn = Matrix::Identity(d, d);
-  if (d == 2) turn = Eigen::Rotation2Dd(0.4).toRotationMatrix();
-  if (d == 3) turn = Eigen::AngleAxisd(0.5, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
-  return affine_map(turn, Vector::LinSpaced(d, 0.3, -0.7));
-}
+namespace ricochet::test_support::tied_surfaces_test {
 
 struct TiedStack {
   std::unique_ptr<MeshedBody> test;
@@ -88,7 +79,7 @@ void for_each_stack(bool curved, const Check& check) {
                 return y;
               };
             }
-            stack.both = turn_of(d);
+            stack.both = skew_motion(d);
             SCOPED_TRACE(name(lower) + name(upper) + std::to_string(degree) + (upper_follows ? "upper" : "lower"));
             check(tie(stack, degree, upper_follows));
           }
@@ -225,5 +216,4 @@ TEST(TiedSurfaces, RefuseNodesThatFollowEachOther) {
   EXPECT_EQ(chain.ties()[0].weights[0], (std::pair<Index, double>{2, 1.0}));
 }
 
-}  // namespace tied_surfaces_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::tied_surfaces_test

@@ -1,69 +1,30 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-#include <cmath>
-#include <random>
-
 #include "ricochet/problem/finite_elasticity.hpp"
-#include "support/box_mesh.hpp"
+#include "support/bent_body.hpp"
 
 /// @file Viscoelastic branches on all cells: energy, forces, dissipation.
-namespace ricochet {
-namespace branches_test {
+namespace ricochet::test_support::branches_test {
 
-using namespace test_support;
-
-struct Kind {
-  ElementKind element;
-  PlaneState plane = PlaneState::strain;
-};
-
-std::vector<Kind> kinds() {
-  std::vector<Kind> all;
-  for (const ElementKind& element : all_element_kinds()) {
-    all.push_back({element});
-    if (element.dimension() == 2) all.push_back({element, PlaneState::axisymmetric});
-  }
-  return all;
-}
-
-class BranchesOfKind : public ::testing::TestWithParam<Kind> {
+class BranchesOfKind : public ::testing::TestWithParam<BodyKind> {
  protected:
   static constexpr double step = 0.7;
 
   void SetUp() override {
-    BoxMesh box = box_of(kind().element.shape, std::vector<int>(static_cast<std::size_t>(dimension()), 2));
-    box.geometry_degree = kind().element.geometry_degree;
-    if (box.geometry_degree == 2) box.map = bend_map();
-    if (kind().plane == PlaneState::axisymmetric) {
-      const PointMap map = box.map;
-      box.map = [map](const Vector& x) { return Vector((map ? map(x) : x) + 2.0 * Vector::Unit(2, 0)); };
-    }
-    body_ = make_meshed_body(make_box_mesh(box), kind().element.displacement_degree, kind().plane);
+    body_ = make_bent_body(kind().element, kind().plane);
     Material& material = body_->body.materials[0];
     material.law = make_material_law("neo-hookean", {{"lambda", 1.3}, {"mu", 0.8}});
     material.relaxation = {{0.5, 0.3}, {2.0, 4.0}};
     force_ = std::make_unique<FiniteElasticity>(body_->body, node_graph(body_->space));
     force_->relax(some_displacement(0.05, 1), internal_);
   }
-  static const Kind& kind() { return GetParam(); }
+  static const BodyKind& kind() { return GetParam(); }
   static int dimension() { return kind().element.dimension(); }
   [[nodiscard]] Vector some_displacement(double size, unsigned seed) const {
-    std::mt19937 generator(seed);
-    std::uniform_real_distribution<double> random(-size, size);
-    Vector result(body_->space.dof_count());
-    for (double& each : result) each = random(generator);
-    return result;
+    return random_displacement(*body_, size, seed);
   }
-  /// Displacement of X ↦ Q (X + u).
   [[nodiscard]] Vector turned(const Vector& displacement, const Matrix& rotation) const {
-    const Points places = body_->space.nodes + displacement.reshaped(dimension(), body_->space.node_count());
-    return Vector((rotation * places - body_->space.nodes).reshaped());
-  }
-  [[nodiscard]] Matrix some_rotation() const {
-    const Matrix space = Eigen::AngleAxisd(2.3, Eigen::Vector3d(0.3, -0.2, 0.8).normalized()).toRotationMatrix();
-    if (dimension() == 3) return space;
-    return Eigen::Rotation2Dd(2.3).toRotationMatrix();
+    return test_support::turned(*body_, displacement, rotation);
   }
 
   std::unique_ptr<MeshedBody> body_;
@@ -110,7 +71,7 @@ TEST_P(BranchesOfKind, TheWorkOfAStepIsStoredAndDissipated) {
 TEST_P(BranchesOfKind, NothingChangesWhereTheMotionIsTurned) {
   // The displacement space contains rotations.
   if (kind().plane == PlaneState::axisymmetric || !kind().element.contains_affine()) return;
-  const Matrix rotation = some_rotation();
+  const Matrix rotation = some_rotation(dimension());
   const Vector start = some_displacement(0.05, 2), end = some_displacement(0.05, 4);
   EXPECT_NEAR(force_->branch_energy(turned(start, rotation), internal_), force_->branch_energy(start, internal_),
               1e-12 * force_->branch_energy(start, internal_));
@@ -162,9 +123,7 @@ TEST_P(BranchesOfKind, CellStressHasThem) {
   EXPECT_NE(stress, alone);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BranchesOfKind, ::testing::ValuesIn(kinds()), [](const auto& info) {
-  return info.param.element.label() + (info.param.plane == PlaneState::axisymmetric ? "_axisymmetric" : "");
-});
+INSTANTIATE_TEST_SUITE_P(All, BranchesOfKind, ::testing::ValuesIn(all_body_kinds()),
+                         [](const auto& info) { return info.param.label(); });
 
-}  // namespace branches_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::branches_test

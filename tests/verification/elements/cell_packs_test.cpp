@@ -8,10 +8,8 @@
 #include "support/box_mesh.hpp"
 
 /// @file Forces and energies do not depend on the distribution of cells over parts, packs and threads.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using namespace test_support;
 
 /// Some thousand nodes, for several parts, and two materials in adjacent cells, so that packs are not full.
 struct LargeBody {
@@ -140,4 +138,4 @@ INSTANTIATE_TEST_SUITE_P(Elements, CellPacksOfKind, ::testing::ValuesIn(some_kin
                          [](const auto& info) { return info.param.label(); });
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

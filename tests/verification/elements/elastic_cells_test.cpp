@@ -2,20 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
-#include <random>
 
-#include "ricochet/base/error.hpp"
 #include "ricochet/fem/point_law.hpp"
 #include "ricochet/problem/finite_elasticity.hpp"
-#include "support/box_mesh.hpp"
+#include "support/bent_body.hpp"
+#include "support/errors.hpp"
 
 /// @file Energy, force and tangent of bodies with any material law, on all cells.
-namespace ricochet {
-namespace elastic_cells_test {
-
-using namespace test_support;
+namespace ricochet::test_support::elastic_cells_test {
 
 struct Kind {
   ElementKind element;
@@ -45,14 +40,7 @@ std::vector<Kind> kinds() {
 class ElasticCellsOfKind : public ::testing::TestWithParam<Kind> {
  protected:
   void SetUp() override {
-    BoxMesh box = box_of(kind().element.shape, std::vector<int>(static_cast<std::size_t>(dimension()), 2));
-    box.geometry_degree = kind().element.geometry_degree;
-    if (box.geometry_degree == 2) box.map = bend_map();
-    if (kind().plane == PlaneState::axisymmetric) {
-      const PointMap map = box.map;
-      box.map = [map](const Vector& x) { return Vector((map ? map(x) : x) + 2.0 * Vector::Unit(2, 0)); };
-    }
-    body_ = make_meshed_body(make_box_mesh(box), kind().element.displacement_degree, kind().plane);
+    body_ = make_bent_body(kind().element, kind().plane);
     body_->body.materials[0].law = make_material_law(kind().law, parameters_of(kind().law));
     body_->body.materials[0].mean_dilatation = kind().mean_dilatation;
     force_ = std::make_unique<FiniteElasticity>(body_->body, node_graph(body_->space));
@@ -60,24 +48,13 @@ class ElasticCellsOfKind : public ::testing::TestWithParam<Kind> {
   static const Kind& kind() { return GetParam(); }
   static int dimension() { return kind().element.dimension(); }
   [[nodiscard]] Vector random_displacement(double size, unsigned seed) const {
-    std::mt19937 generator(seed);
-    std::uniform_real_distribution<double> random(-size, size);
-    Vector result(body_->space.dof_count());
-    for (double& each : result) each = random(generator);
-    return result;
+    return test_support::random_displacement(*body_, size, seed);
   }
-  /// Displacement of X ↦ Q (X + u).
   [[nodiscard]] Vector turned(const Vector& displacement, const Matrix& rotation) const {
-    const Points places = body_->space.nodes + displacement.reshaped(dimension(), body_->space.node_count());
-    return Vector((rotation * places - body_->space.nodes).reshaped());
+    return test_support::turned(*body_, displacement, rotation);
   }
   /// An axisymmetric body does not rotate in the plane, and forces along x are balanced around the axis.
   [[nodiscard]] static bool is_axisymmetric() { return kind().plane == PlaneState::axisymmetric; }
-  [[nodiscard]] Matrix some_rotation() const {
-    const Matrix space = Eigen::AngleAxisd(2.3, Eigen::Vector3d(0.3, -0.2, 0.8).normalized()).toRotationMatrix();
-    if (dimension() == 3) return space;
-    return Eigen::Rotation2Dd(2.3).toRotationMatrix();
-  }
 
   std::unique_ptr<MeshedBody> body_;
   std::unique_ptr<FiniteElasticity> force_;
@@ -115,7 +92,7 @@ TEST_P(ElasticCellsOfKind, IsTheLinearBodyWhereDisplacementsAreSmall) {
 TEST_P(ElasticCellsOfKind, RotationsChangeNothing) {
   if (kind().law == "linear" || is_axisymmetric() || !kind().element.contains_affine()) return;
   const Vector u = random_displacement(0.03, 4);
-  const Matrix rotation = some_rotation();
+  const Matrix rotation = some_rotation(dimension());
   const Vector other = turned(u, rotation);
   EXPECT_NEAR(force_->energy(other), force_->energy(u), 1e-13 * force_->energy(u));
   Vector force, turned_force;
@@ -191,14 +168,7 @@ TEST(FiniteElasticity, NamesTheCellThatIsTurnedInsideOut) {
   const FiniteElasticity elasticity(body->body, node_graph(body->space));
   Vector u = Vector::Zero(body->space.dof_count()), force;
   u[0] = 3.0;
-  try {
-    elasticity.evaluate(u, force);
-    FAIL();
-  } catch (const Error& problem) {
-    EXPECT_EQ(problem.kind(), ErrorKind::not_converged);
-    EXPECT_NE(std::string(problem.what()).find("is inverted"), std::string::npos) << problem.what();
-  }
+  expect_error(ErrorKind::not_converged, {"is inverted"}, [&] { elasticity.evaluate(u, force); });
 }
 
-}  // namespace elastic_cells_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::elastic_cells_test

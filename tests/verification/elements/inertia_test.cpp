@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 
-#include <algorithm>
 #include <cmath>
 
 #include "ricochet/mass/mass.hpp"
@@ -11,8 +10,7 @@
 #include "support/mass_moments.hpp"
 
 /// @file Total mass, centre of gravity and second moments, PᵀMP with P = (1, x, y[, z]), compared with exact values.
-namespace ricochet::test_support {
-namespace inertia_test {
+namespace ricochet::test_support::inertia_test {
 
 std::vector<int> counts_of(int dimension, int count) {
   return std::vector<int>(static_cast<std::size_t>(dimension), count);
@@ -95,7 +93,7 @@ TEST_P(Inertia, OfADiscOrBallConverges) {
   const int d = kind.dimension();
   const Vector centre = Vector::LinSpaced(d, 0.3, -0.2);
   const Matrix exact = exact_ball_moments(centre);
-  test_support::Convergence errors(kind.label());
+  Convergence errors(kind.label());
   for (const int count : d == 2 ? std::vector<int>{4, 8, 16, 32} : std::vector<int>{2, 4, 8}) {
     const auto test = make_body(counts_of(d, count), ball_map(centre));
     errors.add(relative_error(mass_moments(consistent_mass(*test), test->space.nodes), exact));
@@ -153,5 +151,4 @@ TEST_P(Inertia, IsKeptByTheNearestMass) {
 INSTANTIATE_TEST_SUITE_P(Elements, Inertia, testing::ValuesIn(all_element_kinds()),
                          [](const auto& info) { return info.param.label(); });
 
-}  // namespace inertia_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::inertia_test

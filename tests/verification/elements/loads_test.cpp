@@ -6,8 +6,7 @@
 #include "support/convergence.hpp"
 
 /// @file Nodal loads of body forces and tractions: their resultant and moment about the origin.
-namespace ricochet::test_support {
-namespace loads_test {
+namespace ricochet::test_support::loads_test {
 
 /// Σ f_i and Σ x_i ⊗ f_i: the moment about the origin is the antisymmetric part of the second.
 struct Resultant {
@@ -133,7 +132,7 @@ TEST_P(NodalLoads, OnACircleOrSphereConverge) {
   const ElementKind& kind = GetParam();
   const int d = kind.dimension();
   const double area = d == 2 ? 2.0 * M_PI : 4.0 * M_PI;
-  test_support::Convergence errors(kind.label());
+  Convergence errors(kind.label());
   for (const int count : d == 2 ? std::vector<int>{4, 8, 16, 32} : std::vector<int>{2, 4, 8, 16}) {
     const auto test = make_meshed_body(make_box_mesh({kind.shape, std::vector<int>(static_cast<std::size_t>(d), count),
                                                       kind.geometry_degree, 0.15, ball_map(Vector::Zero(d))}),
@@ -156,5 +155,4 @@ TEST_P(NodalLoads, OnACircleOrSphereConverge) {
 INSTANTIATE_TEST_SUITE_P(Elements, NodalLoads, testing::ValuesIn(all_element_kinds()),
                          [](const auto& info) { return info.param.label(); });
 
-}  // namespace loads_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::loads_test

@@ -12,8 +12,7 @@
 
 /// @file A manufactured elastodynamic solution: a travelling wave on a box with one side driven, tractions on the
 /// others and a body force; orders of the displacement's error in h.
-namespace ricochet::test_support {
-namespace manufactured_solution_test {
+namespace ricochet::test_support::manufactured_solution_test {
 
 /// u_i(x, t) = a_i sin(k_i·x + φ_i − ωt): no symmetry, all components of stress, all sides loaded.
 /// A quantity linear in u is cos(ωt) · (its value at t = 0) + sin(ωt) · (its value at ωt = π/2).
@@ -230,5 +229,4 @@ TEST(ManufacturedSolutionInTime, IsOfSecondOrder) {
   EXPECT_NEAR(order, 2.0, 0.25);
 }
 
-}  // namespace manufactured_solution_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::manufactured_solution_test

@@ -6,8 +6,7 @@
 #include "support/box_mesh.hpp"
 
 /// @file Patch tests: an affine displacement is reproduced, its stress follows the law and is in equilibrium.
-namespace ricochet::test_support {
-namespace patch_test {
+namespace ricochet::test_support::patch_test {
 
 struct PatchCase {
   ElementKind kind;
@@ -164,5 +163,4 @@ INSTANTIATE_TEST_SUITE_P(Elements, PatchTest, testing::ValuesIn(patch_cases({fal
 INSTANTIATE_TEST_SUITE_P(Elements, BoxPatchTest, testing::ValuesIn(patch_cases({false})),
                          [](const auto& info) { return info.param.label(); });
 
-}  // namespace patch_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::patch_test

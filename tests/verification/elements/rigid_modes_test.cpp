@@ -7,8 +7,7 @@
 #include "support/box_mesh.hpp"
 
 /// @file Rigid motions: the null space of the stiffness, symmetry of the operators, the measured rotation.
-namespace ricochet::test_support {
-namespace rigid_modes_test {
+namespace ricochet::test_support::rigid_modes_test {
 
 class RigidModes : public testing::TestWithParam<ElementKind> {
  protected:
@@ -155,5 +154,4 @@ TEST(RigidModesOfLinearDisplacementOnCurvedCells, HaveAnEnergyOfSecondOrder) {
 INSTANTIATE_TEST_SUITE_P(Elements, RigidModes, testing::ValuesIn(all_element_kinds()),
                          [](const auto& info) { return info.param.label(); });
 
-}  // namespace rigid_modes_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::rigid_modes_test

@@ -10,8 +10,7 @@
 #include "support/box_mesh.hpp"
 
 /// @file Stress of cells, its recovery at the nodes, and strain energy.
-namespace ricochet::test_support {
-namespace stress_test {
+namespace ricochet::test_support::stress_test {
 
 struct StressCase {
   ElementKind kind;
@@ -262,5 +261,4 @@ TEST(Stress, OfKnownStates) {
   EXPECT_EQ(principal_stresses(none), (std::array<double, 3>{0.0, 0.0, 0.0}));
 }
 
-}  // namespace stress_test
-}  // namespace ricochet::test_support
+}  // namespace ricochet::test_support::stress_test

@@ -18,12 +18,7 @@
 
 // Mass redistributed cell by cell: its invariances, its possible receiving nodes, and its effect on frequencies.
 
-namespace ricochet {
-namespace cellwise_equivalent_mass_test {
-
-using test_support::AssembledBody;
-using test_support::body_of_kind;
-using test_support::mass_moments;
+namespace ricochet::test_support::cellwise_equivalent_mass_test {
 
 constexpr const char* cellwise = "equivalent-cellwise";
 
@@ -154,14 +149,14 @@ TEST(CellwiseEquivalentMass, OfFlatCellsIsThatOfRoundOnes) {
 
 /// The `kept` cells of a grid of triangles with a slit along x = ½, y < ¾, whose sides have separate nodes.
 struct Slit {
-  std::unique_ptr<test_support::MeshedBody> body;
+  std::unique_ptr<MeshedBody> body;
   std::map<Index, Index> left;  ///< node of the grid → node here, for nodes of cells with x < ½
   SparseMatrix consistent;
   SparseMatrix mass;
 
   enum class Cells { all, left_half };
   Slit(bool is_cut, Cells kept) {
-    const Mesh grid = test_support::make_box_mesh({CellShape::triangle, {12, 24}, 1, 0.0, {}});
+    const Mesh grid = make_box_mesh({CellShape::triangle, {12, 24}, 1, 0.0, {}});
     Mesh mesh = grid;
     mesh.facets.clear();
     mesh.groups.clear();
@@ -187,7 +182,7 @@ struct Slit {
     mesh.nodes = grid.nodes(Eigen::all, at);
     mesh.node_tags.resize(at.size());
     std::iota(mesh.node_tags.begin(), mesh.node_tags.end(), 1);
-    body = test_support::make_meshed_body(mesh, 1);
+    body = make_meshed_body(mesh, 1);
     // The displacement space has its own numbering.
     for (auto& [from, to] : left) to = space_node(to);
     consistent = assemble_scalar_mass(body->body, node_graph(body->space));
@@ -292,7 +287,7 @@ TEST(CellwiseEquivalentMass, FrequenciesAreAsNearToTheExactOnesAsWithTheConsiste
   EXPECT_NEAR(low, 2.5011, 1e-4);
   double coarse_shift = 0.0;
   for (const double size : {0.2, 0.1}) {
-    test_support::BodyDescription description = body_of_kind("ball, h 0.4");
+    BodyDescription description = body_of_kind("ball, h 0.4");
     description.size = size;
     const AssembledBody body(description);
     const double discretization = torsion(body, body.consistent) / low - 1.0;
@@ -312,5 +307,4 @@ TEST(CellwiseEquivalentMass, FrequenciesAreAsNearToTheExactOnesAsWithTheConsiste
   }
 }
 
-}  // namespace cellwise_equivalent_mass_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::cellwise_equivalent_mass_test

@@ -11,12 +11,7 @@
 
 // The diagonal mass without inertia on contact nodes, on meshes of every kind.
 
-namespace ricochet {
-namespace lumped_equivalent_mass_test {
-
-using test_support::AssembledBody;
-using test_support::BodyDescription;
-using test_support::mass_moments;
+namespace ricochet::test_support::lumped_equivalent_mass_test {
 
 /// Largest relative differences of total mass and first moments, and of second moments about the centre of gravity.
 struct Lack {
@@ -54,7 +49,7 @@ TEST(LumpedEquivalentMass, KeepsTheConditionsOnMeshesOfEveryKind) {
   int all_kept = 0;
   std::printf("%-38s %6s %8s %12s %12s %12s %12s\n", "body", "nodes", "contact", "least ratio", "most", "centre",
               "inertia");
-  for (const BodyDescription& description : test_support::bodies_of_every_kind()) {
+  for (const BodyDescription& description : bodies_of_every_kind()) {
     const AssembledBody body(description);
     const bool refused = std::count(refused_bodies.begin(), refused_bodies.end(), description.name) > 0;
     std::vector<std::string> warnings;
@@ -95,7 +90,7 @@ TEST(LumpedEquivalentMass, MovesLessMassOnFinerMeshes) {
   log::set_level(log::Level::error);
   double before = INFINITY;
   for (const double size : {0.2, 0.1, 0.05}) {
-    BodyDescription description = test_support::body_of_kind("disc, h 0.1");
+    BodyDescription description = body_of_kind("disc, h 0.1");
     description.size = size;
     const AssembledBody body(description);
     const SparseMatrix mass = make_mass("equivalent-lumped")->build(body.input);
@@ -151,7 +146,7 @@ TEST(LumpedEquivalentMass, TreatsEachBodyOnItsOwn) {
 }
 
 TEST(LumpedEquivalentMass, DampingKeepsTheRateOfEachNode) {
-  const AssembledBody body(test_support::body_of_kind("disc, h 0.25, degree 2"));
+  const AssembledBody body(body_of_kind("disc, h 0.25, degree 2"));
   const SparseMatrix mass = make_mass("equivalent-lumped")->build(body.input);
   // Damping in the right half only.
   Vector inside(body.space.nodes.cols());
@@ -164,5 +159,4 @@ TEST(LumpedEquivalentMass, DampingKeepsTheRateOfEachNode) {
   }
 }
 
-}  // namespace lumped_equivalent_mass_test
-}  // namespace ricochet
+}  // namespace ricochet::test_support::lumped_equivalent_mass_test

@@ -2,14 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "ricochet/base/error.hpp"
+#include "support/errors.hpp"
 
 /// @file p_i (a_i + ½(Wp)_i) = c_i with p > 0, compared with closed forms and with the equation itself.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
@@ -94,13 +93,10 @@ TEST(RestoringImpulses, GoOverIntoThoseOfAnElasticCollision) {
 
 TEST(RestoringImpulses, SayWhereThereAreNone) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  try {
+  expect_error(ErrorKind::not_converged, {}, [&] {
     static_cast<void>(restoring_impulses(coupled(2), Vector{{nan, 1.0}}, Vector::Constant(2, 1.0)));
-    ADD_FAILURE();
-  } catch (const Error& problem) {
-    EXPECT_EQ(problem.kind(), ErrorKind::not_converged);
-  }
+  });
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -9,13 +9,10 @@
 
 #include "support/contact_problems.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-using test::is_sanitized;
-using test::uniform;
 
 /// A contact problem together with its data.
 struct Problem {
@@ -28,8 +25,8 @@ struct Problem {
         q(std::move(offset)),
         rounding(Vector::Zero(q.size())),
         eligible(static_cast<std::size_t>(q.size()), 1) {}
-  [[nodiscard]] test::FrictionProblem points() const {
-    test::FrictionProblem problem(std::vector<Index>(eligible.size(), 1), 0.0);
+  [[nodiscard]] FrictionProblem points() const {
+    FrictionProblem problem(std::vector<Index>(eligible.size(), 1), 0.0);
     problem.w = w;
     problem.q = q;
     problem.rounding = rounding;
@@ -39,7 +36,7 @@ struct Problem {
 };
 
 /// W = Q diag(10^(−digits·k)) Qᵀ with k from 0 to 1.
-Problem random_problem(Index size, unsigned seed, double digits = 1.0) {
+Problem normal_problem(Index size, unsigned seed, double digits = 1.0) {
   std::mt19937 random(seed);
   Matrix square(size, size);
   for (Index j = 0; j < size; ++j) {
@@ -58,9 +55,9 @@ Problem random_problem(Index size, unsigned seed, double digits = 1.0) {
 }
 
 /// The registered solver "active-set".
-class ActiveSetRun : public test::ContactRun {
+class ActiveSetRun : public ContactRun {
  public:
-  ActiveSetRun() : test::ContactRun("active-set") {}
+  ActiveSetRun() : ContactRun("active-set") {}
   /// Starts with reactions at these points.
   void set_active(const std::vector<char>& active) {
     Vector start(static_cast<Index>(active.size()));
@@ -136,7 +133,7 @@ Vector brute_force(const Problem& problem) {
 TEST(ActiveSet, AgreesWithTheEnumerationOfAllSets) {
   for (Index size = 1; size <= 10; ++size) {
     for (unsigned seed = 0; seed < 12; ++seed) {
-      Problem problem = random_problem(size, 100 * static_cast<unsigned>(size) + seed, 2.0);
+      Problem problem = normal_problem(size, 100 * static_cast<unsigned>(size) + seed, 2.0);
       if (seed % 3 == 2) problem.eligible[static_cast<std::size_t>(seed) % static_cast<std::size_t>(size)] = 0;
       const Vector expected = brute_force(problem);
       const Vector found = solve(problem);
@@ -150,7 +147,7 @@ TEST(ActiveSet, SolvesProblemsOfManySizes) {
   for (const Index size : {1, 2, 5, 20, 50, 100, 200}) {
     for (const double digits : {0.0, 1.0, 3.0, 6.0}) {
       SCOPED_TRACE(testing::Message() << size << " points, condition 1e" << digits);
-      const Problem problem = random_problem(size, static_cast<unsigned>(size) + 7U, digits);
+      const Problem problem = normal_problem(size, static_cast<unsigned>(size) + 7U, digits);
       expect_solution(problem, solve(problem));
     }
   }
@@ -160,7 +157,7 @@ TEST(ActiveSet, SolvesIllConditionedProblems) {
   for (const Index size : {3, 10, 40, 120}) {
     for (const double digits : {9.0, 12.0}) {
       SCOPED_TRACE(testing::Message() << size << " points, condition 1e" << digits);
-      const Problem problem = random_problem(size, static_cast<unsigned>(size), digits);
+      const Problem problem = normal_problem(size, static_cast<unsigned>(size), digits);
       expect_solution(problem, solve(problem));
     }
   }
@@ -190,7 +187,7 @@ TEST(ActiveSet, SolvesDegenerateProblems) {
 }
 
 TEST(ActiveSet, NoOffsetNoReaction) {
-  Problem problem = random_problem(15, 4);
+  Problem problem = normal_problem(15, 4);
   problem.q.setZero();
   EXPECT_EQ(solve(problem), Vector::Zero(15));
   problem.q.setOnes();
@@ -258,7 +255,7 @@ TEST(ActiveSet, EndsWhereThePlainMethodCycles) {
 /// The solution is unique, so it does not depend on where the search starts.
 TEST(ActiveSet, AnyStartGivesTheSameSolution) {
   const Index size = 40;
-  const Problem problem = random_problem(size, 12, 2.0);
+  const Problem problem = normal_problem(size, 12, 2.0);
   const Vector expected = solve(problem);
   std::mt19937 random(9);
   for (int trial = 0; trial < 20; ++trial) {
@@ -273,7 +270,7 @@ TEST(ActiveSet, AnyStartGivesTheSameSolution) {
 }
 
 TEST(ActiveSet, StartsFromTheLastSet) {
-  const Problem problem = random_problem(60, 14, 3.0);
+  const Problem problem = normal_problem(60, 14, 3.0);
   ActiveSetRun solver;
   int first = 0, again = 0, cold = 0;
   const Vector expected = solve(problem, solver, &first);
@@ -302,7 +299,7 @@ TEST(ActiveSet, AnotherOperatorMayFollowAReset) {
 
 TEST(ActiveSet, IneligiblePointsAreNotThere) {
   const Index size = 24;
-  Problem problem = random_problem(size, 16, 2.0);
+  Problem problem = normal_problem(size, 16, 2.0);
   std::vector<Index> kept;
   for (Index i = 0; i < size; ++i) {
     if (i % 3 == 0) {
@@ -339,7 +336,7 @@ TEST(ActiveSet, OffsetsWithinTheirRoundingAreZero) {
 
 TEST(ActiveSet, PowersOfTwoChangeNoBit) {
   for (const unsigned seed : {1U, 2U}) {
-    const Problem problem = random_problem(50, seed, 4.0);
+    const Problem problem = normal_problem(50, seed, 4.0);
     ActiveSetRun one;
     int iterations = 0;
     const Vector expected = solve(problem, one, &iterations);
@@ -381,4 +378,4 @@ TEST(ActiveSet, OfNoPointsIsSolved) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -8,7 +8,7 @@
 
 #include "support/contact_problems.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
 ContactPoint make_point(Index size, double coefficient, double bound = 0.0) {
@@ -81,9 +81,9 @@ TEST(ContactPoint, FindsTheSlipItWasMadeFrom) {
   int sticking = 0;
   for (int k = 0; k < 2000; ++k) {
     SCOPED_TRACE(k);
-    const PointMatrix w = test::random_operator(3, 4.0 * std::abs(test::uniform(random)), random);
-    const double kappa = std::pow(10.0, 6.0 * test::uniform(random));
-    const double angle = 4.0 * test::uniform(random);
+    const PointMatrix w = random_operator(3, 4.0 * std::abs(uniform(random)), random);
+    const double kappa = std::pow(10.0, 6.0 * uniform(random));
+    const double angle = 4.0 * uniform(random);
     // Weak enough that r_N exists for every direction of slip.
     const double friction = 0.5 * std::abs(w(0, 0) / w.row(0).tail(2).norm());
     const PointVector rho = vector({1.0, friction * std::cos(angle), friction * std::sin(angle)});
@@ -178,8 +178,8 @@ TEST(ContactPoint, NaturalMapIsZeroOnTheLawOnly) {
 TEST(ContactPoint, ProjectionOnTheConeIsTheNearestPoint) {
   std::mt19937 random(11);
   for (int k = 0; k < 2000; ++k) {
-    const double friction = 2.0 * std::abs(test::uniform(random));
-    const PaddedVector r = test::uniform(3, random);
+    const double friction = 2.0 * std::abs(uniform(random));
+    const PaddedVector r = uniform(3, random);
     const PaddedVector p = project_on_cone(friction, r);
     EXPECT_LE(p.tail<2>().norm(), friction * p[0] * (1.0 + 1e-15) + 1e-300);
     // r − p is in the polar cone and normal to p.
@@ -190,4 +190,4 @@ TEST(ContactPoint, ProjectionOnTheConeIsTheNearestPoint) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -6,20 +6,15 @@
 #include <map>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "ricochet/base/error.hpp"
 #include "support/contact_solver_test.hpp"
 
 /// @file Behaviour of every solver of the library for data and options that are invalid or at the limits.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
-using test::FrictionProblem;
-using test::random_problem;
-using test::seeds;
-
-class ContactSolverData : public test::ContactSolverTest {};
+class ContactSolverData : public ContactSolverTest {};
 
 TEST_P(ContactSolverData, RefuseNumbersThatAreNone) {
   const FrictionProblem sound = random_problem(10, dimension(), 0.3, 1);
@@ -218,7 +213,7 @@ TEST_P(ContactSolverData, DoNotSolveWhatHasNoSolution) {
   EXPECT_NE(solution.reason, "");
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ContactSolverData, test::every_contact_solver(), test::contact_solver_test_name);
+INSTANTIATE_TEST_SUITE_P(All, ContactSolverData, every_contact_solver(), contact_solver_test_name);
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

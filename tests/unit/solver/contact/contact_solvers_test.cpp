@@ -9,13 +9,8 @@
 #include "support/contact_solver_test.hpp"
 
 /// @file Solutions of every solver of the library, judged by an independent residual.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test::expect_law;
-using test::FrictionProblem;
-using test::half_space_problem;
-using test::random_problem;
 
 using Long = long double;
 using LongVector = Eigen::Matrix<Long, Eigen::Dynamic, 1>;
@@ -87,7 +82,7 @@ Vector point_scales(const FrictionProblem& problem, const std::function<double(I
   return result;
 }
 
-class ContactSolvers : public test::ContactSolverTest {};
+class ContactSolvers : public ContactSolverTest {};
 
 TEST_P(ContactSolvers, MeetTheLawAtEveryPoint) {
   for (Index size = 1; size <= dimension(); ++size) {
@@ -122,7 +117,7 @@ TEST_P(ContactSolvers, RespectTheTolerance) {
 TEST_P(ContactSolvers, AgreeWithGaussSeidel) {
   for (unsigned seed = 0; seed < 4; ++seed) {
     const FrictionProblem problem = random_problem(30, dimension(), 0.2, seed);
-    const ContactSolution reference = test::solve(problem, {.tolerance = 1e-13}, "gauss-seidel");
+    const ContactSolution reference = test_support::solve(problem, {.tolerance = 1e-13}, "gauss-seidel");
     const ContactSolution solution = solve(problem, {.tolerance = 1e-12});
     ASSERT_TRUE(solution.solved()) << solution.reason;
     EXPECT_LE((solution.reaction - reference.reaction).lpNorm<Eigen::Infinity>(),
@@ -133,7 +128,7 @@ TEST_P(ContactSolvers, AgreeWithGaussSeidel) {
 
 TEST_P(ContactSolvers, StartFromTheLastSolution) {
   FrictionProblem problem = random_problem(40, dimension(), 0.3, 7, 2.0);
-  test::ContactRun run(GetParam());
+  ContactRun run(GetParam());
   const int cold = run.solve(problem, {.tolerance = 1e-6}).iterations;
   EXPECT_GT(cold, 0);
   const ContactSolution first = run.solve(problem, {.tolerance = 1e-6});
@@ -145,7 +140,7 @@ TEST_P(ContactSolvers, StartFromTheLastSolution) {
   EXPECT_LT(next.iterations, cold);
   // From the same start another solver object finds the same bits.
   problem.q *= 1.01;
-  test::ContactRun resumed(GetParam());
+  ContactRun resumed(GetParam());
   resumed.start_with(run.saved());
   const ContactSolution expected = run.solve(problem, {.tolerance = 1e-6});
   EXPECT_EQ(resumed.solve(problem, {.tolerance = 1e-6}).reaction, expected.reaction);
@@ -153,7 +148,7 @@ TEST_P(ContactSolvers, StartFromTheLastSolution) {
 
 TEST_P(ContactSolvers, RecordWithoutChangingAnything) {
   for (const double strength : {0.2, 1.0}) {
-    const FrictionProblem problem = random_problem(test::is_sanitized ? 50 : 130, dimension(), 0.4, 5, strength);
+    const FrictionProblem problem = random_problem(is_sanitized ? 50 : 130, dimension(), 0.4, 5, strength);
     const ContactSolution plain = solve(problem, {.tolerance = 1e-9});
     const ContactSolution recorded = solve(problem, {.tolerance = 1e-9, .record = true});
     EXPECT_EQ(recorded.reaction, plain.reaction);
@@ -182,7 +177,7 @@ TEST_P(ContactSolvers, SayWhatTheyDidNotSolve) {
 TEST_P(ContactSolvers, NeverCallALargeResidualSolved) {
   int solved = 0;
   for (const double friction : {3.0, 10.0, 100.0}) {
-    for (unsigned seed = 0; seed < test::seeds(5); ++seed) {
+    for (unsigned seed = 0; seed < seeds(5); ++seed) {
       const FrictionProblem problem = random_problem(15, dimension(), friction, seed, 2.0);
       const ContactSolution solution = solve(problem, {.tolerance = 1e-8, .iteration_limit = 2000});
       const double residual = true_residual(problem, solution.reaction);
@@ -229,7 +224,7 @@ TEST_P(ContactSolvers, GiveTheSameBitsInUnitsThatDifferByPowersOfTwo) {
 TEST_P(ContactSolvers, MeasureTheSameInAnyScaling) {
   const FrictionProblem problem = random_problem(25, dimension(), 0.4, 6, 2.0);
   std::mt19937 random(2);
-  const Vector scales = point_scales(problem, [&](Index) { return std::pow(10.0, 6.0 * test::uniform(random)); });
+  const Vector scales = point_scales(problem, [&](Index) { return std::pow(10.0, 6.0 * uniform(random)); });
   const FrictionProblem other = scaled(problem, scales);
   const ContactSolution solution = solve(other, {.tolerance = 1e-5});
   expect_solved(other, solution, 1e-5);
@@ -246,12 +241,12 @@ FrictionProblem chain(Index points, Index dimension, double friction) {
     problem.w(own(i), own(i)).diagonal().setConstant(2.5);
     if (i == 0) continue;
     Matrix coupling(dimension, dimension);
-    for (double& value : coupling.reshaped()) value = 0.3 * test::uniform(random);
+    for (double& value : coupling.reshaped()) value = 0.3 * uniform(random);
     coupling.diagonal().array() -= 0.5;
     problem.w(own(i), own(i - 1)) = coupling;
     problem.w(own(i - 1), own(i)) = coupling.transpose();
   }
-  problem.q = test::uniform(points * dimension, random);
+  problem.q = uniform(points * dimension, random);
   for (std::size_t i = 0; i < problem.eligible.size(); i += 7) problem.eligible[i] = 0;
   problem.coefficient[4] = 0.0;
   return problem;
@@ -291,7 +286,7 @@ TEST_P(ContactSolvers, TakeLargeProductsOrSayThatTheyDoNot) {
     y.tail(rows - size) -= 0.6 * x.head(rows - size);
   };
   std::mt19937 random(9);
-  const ContactProblem problem(size, make_product_operator(rows, multiply), test::uniform(rows, random),
+  const ContactProblem problem(size, make_product_operator(rows, multiply), uniform(rows, random),
                                Vector::Constant(points, 0.3));
   const ContactSolution solution = solve(problem, {.tolerance = 1e-8});
   const bool by_products =
@@ -348,12 +343,12 @@ TEST_P(ContactSolvers, FindTheMotionOfPointsThatAreThereTwice) {
     twice.q = single.q(rows);
     const ContactSolution solution = solve(twice, {.tolerance = 1e-10});
     expect_solved(twice, solution, 1e-10);
-    const ContactSolution expected = test::solve(single, {.tolerance = 1e-12});
+    const ContactSolution expected = test_support::solve(single, {.tolerance = 1e-12});
     EXPECT_LE((solution.motion - expected.motion(rows)).lpNorm<Eigen::Infinity>(), 1e-8);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ContactSolvers, test::every_contact_solver(), test::contact_solver_test_name);
+INSTANTIATE_TEST_SUITE_P(All, ContactSolvers, every_contact_solver(), contact_solver_test_name);
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <numeric>
 
 #include "ricochet/solver/contact/iterative_contact_solver.hpp"
@@ -14,15 +13,13 @@
 /// parallel or opposed. A step still has a unique motion, determined by the energy alone:
 ///   δ = argmin ½ δᵀA δ  over  H δ + q ≥ 0.
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test::uniform;
 
 /// Number of random cases, multiplied by RICOCHET_RANDOM_CASES.
 unsigned samples(unsigned count) {
   const char* const factor = std::getenv("RICOCHET_RANDOM_CASES");
-  return factor != nullptr ? count * static_cast<unsigned>(std::atoi(factor)) : test::seeds(count);
+  return factor != nullptr ? count * static_cast<unsigned>(std::atoi(factor)) : seeds(count);
 }
 
 /// An elastic system and the conditions on it.
@@ -47,8 +44,8 @@ struct Constrained {
     w.triangularView<Eigen::StrictlyUpper>() = w.transpose();
     return w;
   }
-  [[nodiscard]] test::FrictionProblem problem(const std::vector<Index>& order) const {
-    test::FrictionProblem result(std::vector<Index>(order.size(), 1), 0.0);
+  [[nodiscard]] FrictionProblem problem(const std::vector<Index>& order) const {
+    FrictionProblem result(std::vector<Index>(order.size(), 1), 0.0);
     result.w = contact_operator()(order, order);
     result.q = offset(order);
     return result;
@@ -61,7 +58,7 @@ enum class Kind { twice, nearly_parallel, opposed, random };
 Constrained random_constraints(Index unknowns, Index count, unsigned seed) {
   std::mt19937 random(seed);
   Constrained result;
-  result.stiffness = test::random_operator(unknowns, 2.0, random) + 1e-3 * Matrix::Identity(unknowns, unknowns);
+  result.stiffness = random_operator(unknowns, 2.0, random) + 1e-3 * Matrix::Identity(unknowns, unknowns);
   result.rows.resize(count, unknowns);
   const Vector inside = uniform(unknowns, random);
   result.offset.resize(count);
@@ -111,7 +108,7 @@ TEST(DependentConditions, HaveOneMotionHoweverTheyAreStated) {
       std::vector<Index> order = identity_order(count);
       Vector first;
       for (int statement = 0; statement < 3; ++statement) {
-        test::ContactRun run(name);
+        ContactRun run(name);
         // Another order, and another initial guess.
         if (statement > 0) std::shuffle(order.begin(), order.end(), random);
         if (statement > 1) run.set_warm_start(uniform(count, random).cwiseAbs());
@@ -137,17 +134,17 @@ TEST(DependentConditions, StayInStepWithWhatIsKept) {
     const Index count = 12 + static_cast<Index>(seed % 20);
     const Constrained system = random_constraints(6, count, 1000 + seed);
     const std::vector<Index> order = identity_order(count);
-    test::FrictionProblem problem = system.problem(order);
+    FrictionProblem problem = system.problem(order);
     const Vector offset = problem.q;
     for (const char* name : {"automatic", "active-set"}) {
       std::mt19937 random(seed);
-      test::ContactRun run(name);
+      ContactRun run(name);
       for (int step = 0; step < 12; ++step) {
         problem.q = offset.array() + (random() % 2 == 0 ? 0.0 : 0.3 * std::abs(uniform(random)));
         for (char& eligible : problem.eligible) eligible = random() % 3 != 0 ? 1 : 0;
         const ContactSolution& solution = run.solve(problem);
         ASSERT_TRUE(solution.solved()) << name << ", step " << step << ": " << solution.reason;
-        test::expect_law(problem, solution, 1e-11);
+        expect_law(problem, solution, 1e-11);
       }
     }
   }
@@ -173,8 +170,8 @@ TEST(DependentConditions, NameThosePointsThatContradictOneAnother) {
     // The other conditions have clearance for every motion of interest.
     for (const Index i : {0, 2, 3, 5, 7}) system.offset[i] = 1e3;
     for (const Index tangents : {0, 1}) {
-      test::FrictionProblem problem(std::vector<Index>(8, 1 + tangents), 0.3);
-      const test::FrictionProblem normal = system.problem(identity_order(8));
+      FrictionProblem problem(std::vector<Index>(8, 1 + tangents), 0.3);
+      const FrictionProblem normal = system.problem(identity_order(8));
       for (Index i = 0; i < 8; ++i) {
         problem.q[i * (1 + tangents)] = normal.q[i];
         for (Index j = 0; j < 8; ++j) problem.w(i * (1 + tangents), j * (1 + tangents)) = normal.w(i, j);
@@ -197,7 +194,7 @@ TEST(DependentConditions, WithFrictionMeetTheLaw) {
     std::mt19937 random(seed);
     const Index nodes = 1 + static_cast<Index>(seed % 4);
     Constrained system;
-    system.stiffness = test::random_operator(2 * nodes, 1.0, random);
+    system.stiffness = random_operator(2 * nodes, 1.0, random);
     const Index planes = 2 + static_cast<Index>(seed % 2);
     const Index points = planes * nodes;
     system.rows.setZero(2 * points, 2 * nodes);
@@ -211,12 +208,12 @@ TEST(DependentConditions, WithFrictionMeetTheLaw) {
       system.offset[2 * i] = i % planes == 2 ? 2.0 : -std::abs(uniform(random));
       system.offset[2 * i + 1] = uniform(random);
     }
-    test::FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(points), 2), 0.2);
+    FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(points), 2), 0.2);
     problem.w = system.contact_operator();
     problem.q = system.offset;
-    test::expect_law(problem, test::solve(problem), 1e-10);
+    expect_law(problem, solve(problem), 1e-10);
   }
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

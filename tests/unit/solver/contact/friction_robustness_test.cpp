@@ -1,21 +1,13 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 
 #include "support/contact_problems.hpp"
 #include "support/hard_contact_problems.hpp"
 
 /// @file The Coulomb solver in a time loop, and on operators that are not definite.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test::ContactRun;
-using test::expect_law;
-using test::FrictionProblem;
-using test::half_space_problem;
-using test::random_problem;
-using test::solve;
 
 /// The next time step of a half-space problem: pressed harder and drawn further.
 void advance(FrictionProblem& problem) {
@@ -142,9 +134,9 @@ TEST(FrictionSingular, SolvesProblemsWithMoreConditionsThanFreedom) {
     std::mt19937 random(seed);
     FrictionProblem problem(std::vector<Index>(12, 3), 0.3);
     Matrix trace(36, 20);
-    for (double& value : trace.reshaped()) value = test::uniform(random);
+    for (double& value : trace.reshaped()) value = uniform(random);
     problem.w = trace * trace.transpose();
-    problem.q = trace * test::uniform(20, random);
+    problem.q = trace * uniform(20, random);
     for (Index i = 0; i < 12; ++i) problem.q[3 * i] += 0.1;
     expect_law(problem, solve(problem), 4e-12);
   }
@@ -194,8 +186,8 @@ TEST(FrictionFailure, DoesNotSpoilTheNextProblem) {
 /// node sticks to one plane, the slip there is the gap to another one, and the two disagree by that rounding.
 FrictionProblem corners(Index nodes, double friction, double rounding, double digits, unsigned seed) {
   std::mt19937 random(seed);
-  const Matrix w = test::random_operator(3 * nodes, digits, random);
-  const Vector q = test::uniform(3 * nodes, random);
+  const Matrix w = random_operator(3 * nodes, digits, random);
+  const Vector q = uniform(3 * nodes, random);
   FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(3 * nodes), 3), friction);
   Matrix rows = Matrix::Zero(9 * nodes, 3 * nodes);
   Vector gaps = Vector::Zero(rows.rows());
@@ -203,7 +195,7 @@ FrictionProblem corners(Index nodes, double friction, double rounding, double di
   for (Index plane = 0; plane < 3 * nodes; ++plane) {
     const Index row = 3 * plane, node = plane / 3;
     for (Index k = 0; k < 3; ++k) rows(row + k, 3 * node + (plane + k) % 3) = 1.0;
-    gaps[row] = rounding * test::uniform(random);
+    gaps[row] = rounding * uniform(random);
     problem.rounding[row] = rounding;
   }
   problem.w = rows * w * rows.transpose();
@@ -215,12 +207,12 @@ TEST(FrictionInCorners, IsSolvedUpToTheRoundingOfGaps) {
   for (const double rounding : {1e-9, 1e-11}) {
     for (const double digits : {1.0, 4.0}) {
       for (const double friction : {0.3, 0.6}) {
-        for (unsigned seed = 0; seed < test::seeds(20); ++seed) {
+        for (unsigned seed = 0; seed < seeds(20); ++seed) {
           SCOPED_TRACE(testing::Message() << rounding << ", " << digits << " digits, F " << friction << ", " << seed);
           const FrictionProblem problem = corners(8, friction, rounding, digits, seed);
           const ContactSolution solution = solve(problem);
           EXPECT_TRUE(solution.solved()) << solution.reason << ", residual " << solution.residual;
-          const test::Judgement judgement = test::judge(problem.contact(), solution.reaction);
+          const Judgement judgement = judge(problem.contact(), solution.reaction);
           EXPECT_LE(judgement.residual, 1e-12 + solution.rounding_floor);
           EXPECT_LE(solution.rounding_floor, 100.0 * rounding);
           EXPECT_LE(judgement.outside_cone, 1e-15);
@@ -231,4 +223,4 @@ TEST(FrictionInCorners, IsSolvedUpToTheRoundingOfGaps) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

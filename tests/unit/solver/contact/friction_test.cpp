@@ -7,17 +7,8 @@
 
 #include "support/contact_problems.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test::ContactRun;
-using test::expect_law;
-using test::FrictionProblem;
-using test::half_space_problem;
-using test::is_sanitized;
-using test::random_problem;
-using test::seeds;
-using test::solve;
 
 TEST(Friction, SolvesRandomProblemsOfManySizes) {
   for (const Index dimension : {2, 3}) {
@@ -279,4 +270,4 @@ TEST(Friction, SolvesTrescasLawWherePointsStayPressed) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -14,18 +13,8 @@
 
 /// @file The default solver on hard problems: redundant points, wedges, twelve orders of magnitude, no points and
 /// thousands. Solutions reported as solved are judged in long double; unsolved problems must be reported as such.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test::FrictionProblem;
-using test::is_sanitized;
-using test::judge;
-using test::Judgement;
-using test::rigid_box;
-using test::seeds;
-using test::twice;
-using test::unequal_bodies;
-using test::wedged_body;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
@@ -76,9 +65,9 @@ TEST(HardContact, RigidBodiesOnManyPoints) {
           SCOPED_TRACE(testing::Message() << dimension << "D, " << points << " points, F " << friction << ", " << seed);
           const FrictionProblem problem = rigid_box(points, dimension, friction, seed);
           expect_solved(problem, 1e-8);
-          test::expect_law(problem, expect_solved(problem, 0.0), 1e-11);
+          expect_law(problem, expect_solved(problem, 0.0), 1e-11);
           const FrictionProblem copies = twice(problem);
-          test::expect_law(copies, expect_solved(copies, 0.0), 1e-11);
+          expect_law(copies, expect_solved(copies, 0.0), 1e-11);
         }
       }
     }
@@ -105,7 +94,7 @@ TEST(HardContact, TheFrictionlessMotionOfARigidBodyIsUnique) {
       reversed.q = problem.q(order);
       EXPECT_LE(largest(expect_solved(reversed, 1e-13).motion - motion(order)), 1e-10);
       // A different initial guess may lead to different reactions.
-      test::ContactRun run;
+      ContactRun run;
       run.set_warm_start(10.0 * Vector::Random(rows).cwiseAbs());
       const ContactSolution& other = run.solve(problem, {.tolerance = 1e-13});
       ASSERT_TRUE(other.solved()) << other.reason;
@@ -118,7 +107,7 @@ TEST(HardContact, SymmetricElasticContactWithEveryPointTwice) {
   for (const double friction : {0.0, 0.3, 1.0}) {
     for (const Index side : {3, 5, 8}) {
       SCOPED_TRACE(testing::Message() << side << ", F " << friction);
-      FrictionProblem problem = test::half_space_problem(side, friction);
+      FrictionProblem problem = half_space_problem(side, friction);
       // Pressed without twist: the problem is symmetric.
       for (Index i = 0; i < problem.points(); ++i) problem.q.segment(3 * i + 1, 2) << 0.05, 0.0;
       const ContactSolution single = expect_solved(problem, 1e-13);
@@ -192,12 +181,11 @@ TEST(HardContact, WhatHasNoSolutionIsNotSolved) {
     for (const double friction : {0.0, 0.5, 3.0}) {
       for (const int pairs : {1, 2, 5}) {
         if (is_sanitized && (friction != 0.5 || pairs != 1)) continue;
-        std::vector<test::RigidPoint> places;
+        std::vector<RigidPoint> places;
         for (int k = 0; k < pairs; ++k) {
           for (const double side : {-1.0, 1.0}) places.push_back({{side, 0.0, 0.2 * k}, {-side, 0.0, 0.0}});
         }
-        FrictionProblem problem =
-            test::rigid_problem(places, {2.0, 1.0, 1.0}, Vector::Constant(6, 0.1), dimension, friction);
+        FrictionProblem problem = rigid_problem(places, {2.0, 1.0, 1.0}, Vector::Constant(6, 0.1), dimension, friction);
         for (Index i = 0; i < problem.points(); ++i) problem.q[dimension * i] -= 1.0;
         const ContactSolution solution = solve(problem.contact(), 1e-8);
         EXPECT_EQ(solution.outcome, ContactOutcome::not_converged);
@@ -278,7 +266,7 @@ TEST(HardContact, PointsScaledByAnyFactors) {
       SCOPED_TRACE(testing::Message() << dimension << "D, " << seed);
       const FrictionProblem problem = unequal_bodies(30, dimension, 0.3, 0.0, 1.0, seed);
       std::mt19937 random(seed);
-      const Vector factors = test::decades_of(problem.points(), dimension, 6.0, 1, random);
+      const Vector factors = decades_of(problem.points(), dimension, 6.0, 1, random);
       FrictionProblem scaled = problem;
       scaled.w = factors.asDiagonal() * problem.w * factors.asDiagonal();
       scaled.q = factors.cwiseProduct(problem.q);
@@ -336,8 +324,7 @@ TEST(HardContact, FiveThousandPoints) {
     for (const double coupling : {1.0, -1.0}) {
       for (const double friction : {0.5, 3.0}) {
         SCOPED_TRACE(testing::Message() << dimension << "D, coupling " << coupling << ", F " << friction);
-        const ContactProblem problem =
-            test::lattice_problem(is_sanitized ? 23 : 71, dimension, friction, coupling, 0.5, 1);
+        const ContactProblem problem = lattice_problem(is_sanitized ? 23 : 71, dimension, friction, coupling, 0.5, 1);
         const ContactSolution solution = solve(problem, 1e-8);
         EXPECT_TRUE(solution.solved()) << solution.reason;
         expect_truth(problem, solution, 1e-8);
@@ -349,7 +336,7 @@ TEST(HardContact, FiveThousandPoints) {
 /// A finite element problem on which the Newton iteration of the default solver cycles: another Newton method takes
 /// over, instead of thousands of sweeps.
 TEST(HardContact, NewtonThatCycles) {
-  const ContactProblem problem = reduce(read_fclib(test_support::data_path("contact/newton-cycles.hdf5"))).problem;
+  const ContactProblem problem = reduce(read_fclib(data_path("contact/newton-cycles.hdf5"))).problem;
   for (const double tolerance : {0.0, 1e-10}) {
     const ContactSolution solution = solve(problem, tolerance);
     EXPECT_TRUE(solution.solved()) << solution.reason;
@@ -368,7 +355,7 @@ TEST(HardContact, ThousandsOfPointsByProducts) {
       if (is_sanitized && (dimension != 3 || coupling < 0.0)) continue;
       constexpr double tolerance = 1e-12;
       SCOPED_TRACE(testing::Message() << dimension << "D, coupling " << coupling);
-      const ContactProblem problem = test::lattice_problem(side, dimension, 0.5, coupling, 0.5, 1);
+      const ContactProblem problem = lattice_problem(side, dimension, 0.5, coupling, 0.5, 1);
       ContactProblem by_products = problem;
       by_products.contact_operator = make_product_operator(
           problem.rows(), [&](const Vector& x, Vector& y) { problem.contact_operator->multiply(x, y); });
@@ -381,4 +368,4 @@ TEST(HardContact, ThousandsOfPointsByProducts) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

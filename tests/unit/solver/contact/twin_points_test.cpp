@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
 
 #include "ricochet/solver/contact/twin_points.hpp"
@@ -8,18 +7,15 @@
 #include "support/hard_contact_problems.hpp"
 
 /// @file Nodes that meet several planes, parallel up to a tiny angle.
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
-
-using test::FrictionProblem;
-using test::uniform;
 
 /// Each node meets `planes` planes, inclined by multiples of `angle`, at distances that follow from the inclination at
 /// its position: gaps differ by the angle times a length.
 FrictionProblem inclined_planes(Index nodes, Index dimension, Index planes, double angle, double friction,
                                 unsigned seed) {
   std::mt19937 random(seed);
-  const Matrix w = test::random_operator(nodes * dimension, 1.0, random);
+  const Matrix w = random_operator(nodes * dimension, 1.0, random);
   Vector q(nodes * dimension);
   for (Index node = 0; node < nodes; ++node) {
     q.segment(node * dimension, dimension) = uniform(dimension, random);
@@ -50,12 +46,12 @@ TEST(TwinPoints, OneOfNearlyParallelPlanesPresses) {
   for (const Index dimension : {2, 3}) {
     for (const double angle : {1e-7, 1e-9, 1e-11, 1e-12, 1e-13}) {
       for (const double friction : {0.1, 0.3, 0.8}) {
-        for (unsigned seed = 0; seed < test::seeds(8); ++seed) {
+        for (unsigned seed = 0; seed < seeds(8); ++seed) {
           SCOPED_TRACE(testing::Message() << dimension << "D, angle " << angle << ", F " << friction << ", " << seed);
           const FrictionProblem problem = inclined_planes(7, dimension, 3, angle, friction, seed);
-          const ContactSolution solution = test::solve(problem);
+          const ContactSolution solution = solve(problem);
           EXPECT_TRUE(solution.solved()) << solution.reason << ", residual " << solution.residual;
-          const test::Judgement judgement = test::judge(problem.contact(), solution.reaction);
+          const Judgement judgement = judge(problem.contact(), solution.reaction);
           EXPECT_LE(judgement.residual, 1e-12 + solution.rounding_floor);
           EXPECT_LE(judgement.outside_cone, 1e-15);
           closed += (solution.reaction.array() > 0.0).any() ? 1 : 0;
@@ -69,7 +65,7 @@ TEST(TwinPoints, OneOfNearlyParallelPlanesPresses) {
 /// If W cannot distinguish points, the free motion decides; other points are left alone.
 TEST(TwinPoints, AreFoundByW) {
   TwinPoints twins;
-  FrictionProblem apart = test::random_problem(12, 3, 0.3, 1);
+  FrictionProblem apart = random_problem(12, 3, 0.3, 1);
   EXPECT_FALSE(twins.any(*apart.contact().contact_operator, apart.row_offset));
   const FrictionProblem near = inclined_planes(4, 3, 2, 1e-9, 0.3, 1);
   twins.forget();
@@ -100,4 +96,4 @@ TEST(TwinPoints, AreFoundByW) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -2,24 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include "ricochet/base/error.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/scheme/scheme.hpp"
+#include "support/errors.hpp"
 #include "support/paths.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 namespace {
 
-using test_support::source_path;
-
 std::string problem_of(const std::string& methods) {
-  try {
-    static_cast<void>(parse_methods(methods));
-  } catch (const Error& problem) {
-    EXPECT_EQ(problem.kind(), ErrorKind::usage);
-    return problem.what();
-  }
-  return "";
+  return message_of([&] { static_cast<void>(parse_methods(methods)); }, ErrorKind::usage);
 }
 
 TEST(BenchmarkMethods, AreReadFromAList) {
@@ -27,12 +19,10 @@ TEST(BenchmarkMethods, AreReadFromAList) {
             (std::vector<RequestedMethod>{{"newmark", ""}, {"newmark", "consistent"}}));
   EXPECT_EQ(parse_methods("all").size(), scheme_names().size());
   EXPECT_EQ(RequestedMethod({"newmark", "lumped"}).text(), "newmark/lumped");
-  EXPECT_NE(problem_of("newmrk").find("no scheme \"newmrk\" (did you mean \"newmark\"?); available: midpoint"),
-            std::string::npos);
-  EXPECT_NE(problem_of("newmark/consitent").find("no mass \"consitent\" (did you mean \"consistent\"?)"),
-            std::string::npos);
-  EXPECT_NE(problem_of("newmark/").find("no mass \"\""), std::string::npos);
-  EXPECT_NE(problem_of("").find("no scheme \"\""), std::string::npos);
+  EXPECT_TRUE(has(problem_of("newmrk"), "no scheme \"newmrk\" (did you mean \"newmark\"?); available: midpoint"));
+  EXPECT_TRUE(has(problem_of("newmark/consitent"), "no mass \"consitent\" (did you mean \"consistent\"?)"));
+  EXPECT_TRUE(has(problem_of("newmark/"), "no mass \"\""));
+  EXPECT_TRUE(has(problem_of(""), "no scheme \"\""));
 }
 
 TEST(BenchmarkMethods, TakeTheFirstMassAndAStableStep) {
@@ -61,7 +51,7 @@ TEST(BenchmarkMethods, SayWhyTheyAreRefused) {
   MethodChooser chooser(source_path("cases/incline/incline.toml"));
   const MethodChoice choice = chooser.choose({"mean-reaction"});
   EXPECT_TRUE(choice.is_refused());
-  EXPECT_NE(choice.refusals.at("equivalent").find("does not support friction"), std::string::npos);
+  EXPECT_TRUE(has(choice.refusals.at("equivalent"), "does not support friction"));
   EXPECT_EQ(chooser.choose({"kane", "equivalent"}).refusals.size(), 1u);
 }
 
@@ -72,4 +62,4 @@ TEST(BenchmarkMethods, ReasonsAreShort) {
 }
 
 }  // namespace
-}  // namespace ricochet
+}  // namespace ricochet::test_support
