@@ -12,9 +12,9 @@ enum class ContactAxis { none, point, tangent, entry, node, dof, facet };
 /// Meaning of a member's indices and values, by which it is divided.
 struct ContactAxes {
   using IsMemberRule = void;  ///< for visitors that do not need it
-  /// What each number, column of a dense matrix or row of a sparse one belongs to; the member may also be empty.
+  /// Items to which numbers, columns of a dense matrix or rows of a sparse one belong. The member may also be empty.
   ContactAxis along = ContactAxis::none;
-  /// What integers number, and what the columns of a sparse matrix belong to.
+  /// Items that integers number, and to which the columns of a sparse matrix belong.
   ContactAxis of = ContactAxis::none;
 };
 

@@ -14,7 +14,7 @@ namespace {
 using Child = CellShapeDescription::Child;
 
 /// Parts with one piece between each of their vertices: the cell itself for degree 1, its subdivision for degree 2.
-/// Those at its vertices are in the order around it.
+/// Parts at its vertices are in the order around it.
 std::vector<Child> parts_of_cell(CellShape shape, int degree) {
   const CellShapeDescription& cell = describe(shape);
   if (degree == 1) return {{shape, node_vertices(shape, 1)}};

@@ -88,7 +88,7 @@ class Cutter {
   }
 
  private:
-  /// Of equal diagonals the first is chosen, independently of rounding.
+  /// Chooses the shortest diagonal, of equal ones the first, independently of rounding.
   const CellShapeDescription::Subdivision& best_subdivision() {
     const std::vector<CellShapeDescription::Subdivision>& all = describe(shape_).subdivisions;
     if (all.size() == 1) return all.front();

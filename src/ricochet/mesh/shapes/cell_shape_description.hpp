@@ -9,7 +9,7 @@
 
 #include "ricochet/mesh/shapes/cell_shape.hpp"
 
-/// @file What the program knows about a cell shape. Everything that depends on the shape of a cell asks its
+/// @file Description of a cell shape. Everything that depends on the shape of a cell asks its
 /// description, or the functions of reference_cell.hpp and flat_pieces.hpp, which derive the rest from it.
 namespace ricochet {
 
