@@ -37,10 +37,10 @@ def machine(program):
     """Returns what results depend on beside sources and runs: processor, libraries, compiler and its options."""
     processor = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8")
                       if line.startswith("model name")), platform.processor())
-    versions = subprocess.run([program, "--version"], check=True, capture_output=True, text=True).stdout
+    libraries = subprocess.run([program, "--version"], check=True, capture_output=True, text=True).stdout.splitlines()[1:]
     cache = (pathlib.Path(program).parent / "CMakeCache.txt").read_text(encoding="utf-8")
     options = [line for line in cache.splitlines() if line.startswith(("CMAKE_CXX_FLAGS", "CMAKE_BUILD_TYPE"))]
-    return "\n".join([processor, versions, *options])
+    return "\n".join([processor, *libraries, *options])
 
 
 def kept(revision, name, program):
