@@ -79,7 +79,7 @@ struct BenchmarkArguments {
   bool list = false, resume = false, force = false, quiet = false;
 };
 
-/// What `schema` prints; nothing: the JSON Schema of the case file.
+/// Choice of what `schema` prints; none: the JSON Schema of the case file.
 struct SchemaArguments {
   bool markdown = false, columns = false, summary = false;
 };

@@ -4,7 +4,7 @@
 
 #include "ricochet/scheme/state.hpp"
 
-/// @file What a scheme reports of its last step beside the state, for the accounts of energy and momentum.
+/// @file Report of a scheme on its last step, for the accounts of energy and momentum.
 namespace ricochet {
 
 /// Forces of another instant that act during a step besides those in the state, for schemes with several stages whose

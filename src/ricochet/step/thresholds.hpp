@@ -4,7 +4,7 @@
 /// results in their last digits, and how many iterations, cut steps and failures there are.
 namespace ricochet {
 
-/// Of Newton iterations with a factorization that is reused (newton_progress.hpp).
+/// Thresholds of Newton iterations with a factorization that is reused (newton_progress.hpp).
 struct NewtonThresholds {
   double tolerance = 1e-13;       ///< of the remaining error, relative to the increment
   double loose_tolerance = 1e-9;  ///< the same if rounding keeps the corrections from decreasing further
@@ -20,8 +20,8 @@ struct NewtonThresholds {
   int most_renewals = 6;     ///< factorizations before a solution is given up
 };
 
-/// Of iterations of contact conditions that follow the motion (solver/tangent_iterations.hpp). Progress is an error
-/// below nine tenths of the best one.
+/// Thresholds of iterations of contact conditions that follow the motion (solver/tangent_iterations.hpp). Progress is
+/// an error below nine tenths of the best one.
 struct ContactThresholds {
   int plain_iterations = 6;  ///< iterations that settle by themselves take fewer
   int max_iterations = 400;
@@ -32,8 +32,8 @@ struct ContactThresholds {
   /// rounding of the gaps: forces that rotate with large surfaces keep it.
   int patient_iterations = 40, patience_of_rounding = 5;
   double remaining_rounding = 100.0;
-  /// The same before a step fails: gaps have the rounding of everything that moves the points, and in narrow corners
-  /// more than once.
+  /// Multiple that is accepted before a step fails: gaps have the rounding of everything that moves the points, and in
+  /// narrow corners more than once.
   int last_iterations = 60;
   double max_remaining_rounding = 1e4;
 };

@@ -6,6 +6,7 @@
 #include "case_text.hpp"
 #include "ricochet/case/keys.hpp"
 #include "ricochet/case/names.hpp"
+#include "ricochet/simulation/history/probe_kind.hpp"
 #include "support/paths.hpp"
 
 namespace ricochet::case_test {
@@ -124,13 +125,18 @@ TEST(CaseKeys, AreDocumentedAndHaveUnits) {
   }
 }
 
+/// Returns whether a registered type or kind of probe reads the key.
+bool is_of_a_type(const Section& section, const Key& key) {
+  const auto has_key = [&](const auto& type) { return find_key(type.keys, key.name) != nullptr; };
+  const auto& kinds = probe_registry().all();
+  return std::any_of(section.types.begin(), section.types.end(), has_key) ||
+         (section.name == "probe" && std::any_of(kinds.begin(), kinds.end(), has_key));
+}
+
 /// Adds the keys that nothing binds to a member, except named numbers for expressions and the keys of types.
 void add_unbound_keys(const Section& section, const std::vector<Key>& keys, std::vector<std::string>& names) {
   for (const Key& key : keys) {
-    const bool is_of_a_type = std::any_of(section.types.begin(), section.types.end(), [&](const TypeKeys& type) {
-      return find_key(type.keys, key.name) != nullptr;
-    });
-    if (key.members.empty() && !is_of_a_type && key.type != KeyType::parameters)
+    if (key.members.empty() && !is_of_a_type(section, key) && key.type != KeyType::parameters)
       names.push_back(section.name + "." + key.name);
     add_unbound_keys(section, key.keys, names);
   }
