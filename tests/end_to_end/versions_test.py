@@ -93,7 +93,8 @@ class Versions(TestCase):
         (output / "summary.json").unlink()
         process = self.expect_status(2, run("run", DISC, "-o", output, "--resume", "--quiet", *settings(SHORT)))
         self.assertIn(f"written by Ricochet {OTHERS[-1]}", process.stderr)
-        self.assertIn("no checkpoint can be read; start anew with --force", process.stderr)
+        self.assertIn("repeat the run", process.stderr)
+        self.assertNotIn("start anew", process.stderr)
 
     def test_contact_problems(self):
         [file] = (self.simulated("xdmf") / "contact").iterdir()

@@ -212,6 +212,8 @@ std::optional<Snapshot> newest_checkpoint(const std::string& directory) {
   for (const CheckpointFile& file : files) {
     try {
       return read_checkpoint(file.path);
+    } catch (const VersionError&) {
+      throw;  // an earlier one belongs to the same run
     } catch (const Error& problem) {
       log::warning(fmt::format("this checkpoint cannot be used{}: {}",
                                &file != &files.back() ? ", the previous one is used" : "", problem.what()));

@@ -30,7 +30,8 @@ void write_checkpoint(const std::string& directory, long step, const Snapshot& s
 /// Throws Error(file_access), or Error(invalid_input) which names the damage of the file.
 [[nodiscard]] Snapshot read_checkpoint(const std::string& path);
 
-/// Newest readable checkpoint; nullopt if there is none. A warning names every damaged one.
+/// Newest readable checkpoint; nullopt if there is none. A warning names every damaged one. Throws VersionError if one
+/// is of a version whose results are not read.
 [[nodiscard]] std::optional<Snapshot> newest_checkpoint(const std::string& directory);
 
 /// Content of a file, and its inverse: decode_snapshot throws Error(invalid_input) for anything that encode_snapshot

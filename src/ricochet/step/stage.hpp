@@ -80,7 +80,7 @@ struct AffineMotion {
 /// Conditions on the contact points with given rows.
 struct ContactConditions {
   std::vector<char> eligible;      ///< per contact point: 0 if it carries no force in this stage
-  AffineMotion gap;                ///< y: a y above −(rounding + the solver's own error) counts as zero
+  AffineMotion gap;                ///< y: from −(rounding + the solver's own error) on it counts as y ≥ 0
   AffineMotion slip;               ///< w; empty if the stage has no friction
   std::vector<char> frictionless;  ///< per contact point: 1 if this stage omits its friction; empty: none
 };
@@ -106,8 +106,8 @@ struct ContactMotion {
   double time = 0.0;
   Vector start;  ///< displacement at the start of the step if the rows are those of a step; else empty
   double start_time = 0.0;
-  /// Whether the obstacle velocities depend on δ. They are then evaluated at observed + instant.factor δ, see
-  /// evaluate_obstacle_velocity().
+  /// Whether the obstacle velocities depend on δ. They are then evaluated at obstacle_displacement +
+  /// instant.factor δ, see evaluate_obstacle_velocity().
   bool reevaluates_obstacles = false;
   Vector obstacle_displacement;
   ObstacleInstant instant;
@@ -152,7 +152,7 @@ struct StageSolution {
   Vector contact_increment;                   ///< m on contact nodes, if the operator has an A_c; else empty
   /// ρ̄; empty if it equals ρ.
   Vector mean_normal_reaction, mean_tangential_reaction;
-  double path_contact_work = 0.0;  ///< of normal reactions along the path: −(those just after its start) · start_gap
+  double path_contact_work = 0.0;  ///< of normal reactions along the path: −(those just after its start) · start.gap
   double path_friction_work = 0.0;  ///< of tangential reactions along the path
   double end_weight = 1.0;          ///< μ of this stage
 

@@ -123,6 +123,17 @@ TEST(Checkpoint, APipeInItsPlaceIsPassedOver) {
   EXPECT_TRUE(has(warnings.front(), "it is not a regular file"));
 }
 
+TEST(Checkpoint, OfAnotherVersionIsRefusedWithBothVersions) {
+  const std::string folder = folder_of_test();
+  for (const auto& file : checkpoint_files(folder)) std::filesystem::remove(file.path);
+  Snapshot snapshot;
+  snapshot.save("identity.version", std::string("0.2.0"));
+  write_checkpoint(folder, 7, snapshot);
+  const std::string message = message_of([&] { static_cast<void>(newest_checkpoint(folder)); });
+  EXPECT_TRUE(has(message, "checkpoint-000000007.ckpt")) << message;
+  EXPECT_TRUE(has(message, "0.2.0")) << message;
+}
+
 TEST(Snapshot, SaysWhatDoesNotFit) {
   const Snapshot snapshot = example();
   EXPECT_EQ(message_of([&] { static_cast<void>(snapshot.reals("numbers", 99)); }),

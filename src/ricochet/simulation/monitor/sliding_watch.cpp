@@ -204,7 +204,8 @@ void SlidingWatch::persist(const SnapshotVisitor& visit) {
   std::int64_t warned = frozen_step_warned_ ? frozen_step : 0;
   visit("has_told", warned);
   frozen_step_warned_ = (warned & frozen_step) != 0;
-  bool fits = visit.numbers("", largest_).allFinite() && visit.numbers("far", large_sliding_).allFinite();
+  bool fits = visit.numbers("", largest_).allFinite();
+  fits = visit.numbers("far", large_sliding_).allFinite() && fits;
   for (const Largest& each : largest_) fits = fits && is_point(each.point);
   for (const LargeSlidingContact& each : large_sliding_)
     fits = fits && is_point(each.point) && each.steps >= 0 && each.steps < most_steps;
