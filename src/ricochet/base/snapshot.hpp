@@ -94,7 +94,10 @@ class NumberVisitor {
     } else if constexpr (std::is_arithmetic_v<Value>) {
       auto number = static_cast<double>(value);
       visit(number);
-      if (reads_) value = static_cast<Value>(whole(number, static_cast<double>(std::numeric_limits<Value>::max())));
+      using Limits = std::numeric_limits<Value>;
+      if (reads_)
+        value = static_cast<Value>(
+            whole(number, static_cast<double>(Limits::lowest()), static_cast<double>(Limits::max())));
     } else if constexpr (requires { value.data(); }) {
       for (auto& each : std::span(value.data(), static_cast<std::size_t>(value.size()))) (*this)(each);
     } else {
@@ -105,7 +108,7 @@ class NumberVisitor {
 
  private:
   void visit(double& value);
-  [[nodiscard]] double whole(double number, double most) const;
+  [[nodiscard]] double whole(double number, double least, double most) const;
 
   std::vector<double> written_;
   std::span<const double> read_;

@@ -116,6 +116,7 @@ TEST(SnapshotVisitor, RefusesWhatDoesNotFit) {
                        ", which is no whole number of its range");
   }
   expect_refused("all", reals({0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0}), "has 2, which is no whole number of its range");
+  expect_refused("all", reals({0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0}), "has -1, which is no whole number of its range");
   expect_refused("some", reals({0.0}), "has 1 numbers where a multiple of 6 is expected");
   expect_refused("some", Vector(Vector::Zero(18)), "has 3 records where at most 2 are possible");
 }
