@@ -68,7 +68,6 @@ void NumberVisitor::visit(double& value) {
 
 /// 2⁶³, the limit of a type as a double, is no int64.
 double NumberVisitor::whole(double number, double least, double most) const {
-  // The largest integers are not numbers: conversion would round them up, out of range.
   if (number != std::floor(number) || !(number >= least && number <= most) || std::abs(number) >= 0x1p63)
     Snapshot::refuse(name_, fmt::format("has {}, which is no whole number of its range", number));
   return number;

@@ -6,8 +6,8 @@
 
 #include "ricochet/base/registry.hpp"
 
-/// @file Formats of fields (`output.format`). A format is a registration at the end of the file of its reader
-/// (xdmf_reader.cpp), which names its files and the functions that write and read them.
+/// @file Formats of fields (`output.format`). A format is a registration at the end of the file of its writer
+/// (xdmf_output.cpp), which names its files and the functions that write and read them.
 namespace ricochet {
 
 class FrameOutput;

@@ -37,8 +37,15 @@ class Kane : public Scheme {
   }
 
  protected:
-  /// Creates a scheme derived from this one.
-  Kane(double step, std::string name, const SchemeTraits& traits) : Scheme(step, traits), name_(std::move(name)) {}
+  /// Creates a scheme derived from this one, for linear internal forces and bodies on one rank.
+  Kane(double step, std::string name, double force_instant)
+      : Kane(step, std::move(name),
+             {.force_instant = force_instant,
+              .acting_instant = -0.5,
+              .supports_step_changes = true,
+              .supports_ranks = false,
+              .conserves_moments_at_finite_strain = true,
+              .jump_response = JumpResponse::alternates}) {}
   /// Fills the stage except its contact conditions.
   Stage& balance(const SemidiscreteProblem& problem, const State& state, StageSolve& stages);
   /// Adds the contact conditions.
@@ -51,6 +58,8 @@ class Kane : public Scheme {
   [[nodiscard]] StepEquations& equations() { return equations_; }
 
  private:
+  Kane(double step, std::string name, const SchemeTraits& traits) : Scheme(step, traits), name_(std::move(name)) {}
+
   std::string name_;
   double integration_error_ = 0.0;
   Vector predicted_, base_, middle_;

@@ -13,14 +13,7 @@ namespace ricochet {
 /// with forces r ≥ 0 of the obstacle and f of the body on itself. No friction, no curved obstacles.
 class ForcedMidpoint : public Kane {
  public:
-  ForcedMidpoint(double step, std::string name)
-      : Kane(step, std::move(name),
-             {.force_instant = -0.5,
-              .acting_instant = -0.5,
-              .supports_step_changes = true,
-              .supports_ranks = false,
-              .conserves_moments_at_finite_strain = true,
-              .jump_response = JumpResponse::alternates}) {}
+  ForcedMidpoint(double step, std::string name) : Kane(step, std::move(name), -0.5) {}
 
   /// Energy of the contact.
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override;

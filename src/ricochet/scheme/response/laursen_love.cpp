@@ -14,13 +14,7 @@ namespace {
 /// impact of the contact nodes, which rebound: contact forces oscillate.
 class LaursenLove final : public Kane {
  public:
-  explicit LaursenLove(double step)
-      : Kane(step, "laursen-love",
-             {.acting_instant = -0.5,
-              .supports_step_changes = true,
-              .supports_ranks = false,
-              .conserves_moments_at_finite_strain = true,
-              .jump_response = JumpResponse::alternates}) {}
+  explicit LaursenLove(double step) : Kane(step, "laursen-love", 0.0) {}
 
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     std::vector<OperatorCoefficients> result = Kane::operators(problem);

@@ -95,12 +95,13 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   const ContactRows* rows = nullptr;
   enter(previous_, rule_.previous_weight, increment, rows);
   enter(state.forces, rule_.current_weight, increment, rows);
-  for (const StepPart& part : scheme_.last_step().other_parts) {
+  const LastStep last = scheme_.last_step();
+  for (const StepPart& part : last.other_parts) {
     obstacle_ = part.obstacle_increment;
     rows = nullptr;
     enter(part.forces, part.weight, part.increment, rows);
   }
-  const StepCorrections corrections = scheme_.last_step().corrections;
+  const StepCorrections& corrections = last.corrections;
   works_.contact += corrections.contact_work;
   works_.friction += corrections.friction_work;
   works_.support += corrections.support_work;

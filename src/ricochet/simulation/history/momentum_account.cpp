@@ -117,8 +117,8 @@ Resultant MomentumAccount::between_bodies(const StepForces& forces) {
   force_.setZero(problem_.dof_count());
   forces.rows->add_force(normal_, tangential_, force_);
   // Before the first step no force has acted at any position.
-  const Vector* const position_of_forces =
-      scheme_.last_step().has_couples_between_bodies ? scheme_.last_step().displacement_of_forces : nullptr;
+  const LastStep last = scheme_.last_step();
+  const Vector* const position_of_forces = last.has_couples_between_bodies ? last.displacement_of_forces : nullptr;
   if (position_of_forces != nullptr && position_of_forces->size() == problem_.dof_count() &&
       problem_.contact.follows_motion())
     problem_.contact.geometry->add_couples(*position_of_forces, *forces.rows, normal_, tangential_, force_);
