@@ -156,11 +156,14 @@ std::optional<RunSummary> summary_of(const std::string& directory) {
 void describe_result(const std::string& directory) {
   const std::optional<RunSummary> found = summary_of(directory);
   if (!found) {
+    const std::string newest = checkpoints_of(directory).back().path;
+    // Throws if it is of another version, which cannot be continued.
+    static_cast<void>(newest_checkpoint(fs::path(newest).parent_path().string()));
     fmt::print(
         "{}: an interrupted run whose summary.json is missing or damaged; `ricochet run` with --resume continues it if "
         "its other files are intact\n",
         directory);
-    return describe_checkpoint(checkpoints_of(directory).back().path);
+    return describe_checkpoint(newest);
   }
   const RunSummary& s = *found;
   fmt::print("{}: {}{}\n", directory, s.title.empty() ? s.case_file : s.title, status_text(directory, s));

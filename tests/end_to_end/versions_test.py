@@ -33,10 +33,12 @@ class Versions(TestCase):
         super().setUp()
         self.version = run("--version").stdout.split()[1]
 
-    def refused(self, *command, file, version):
+    def refused(self, *command, file, version, advice="repeat the run with --force, or "):
         process = self.expect_status(2, run(*command))
-        for part in (str(file) + ": written by ", f"Ricochet {version}" if version else "before 0.3.0", f"this is Ricochet {self.version}"):
+        for part in (str(file) + ": written by ", f"Ricochet {version}" if version else "before 0.3.0", f"this is Ricochet {self.version}", advice):
             self.assertIn(part, process.stderr)
+        self.assertNotIn("versions 0.3.0 to 0.3.0", process.stderr)
+        return process
 
     def simulated(self, kind):
         return self.simulate(DISC, kind, SHORT | {"output.format": kind}, ("--quiet", "--export-contact", "8"))
@@ -78,23 +80,29 @@ class Versions(TestCase):
         # Results of another version can be replaced.
         self.expect_status(0, run("run", DISC, "-o", output, "--force", "--quiet", *settings(SHORT)))
 
+    def change_version(self, file, other):
+        """Writes a checkpoint with another version, or without any."""
+        content = file.read_bytes()
+        begin = content.index(b"identity.version")
+        text = begin + 16 + 1 + 8  # its name, its kind, its number of entries
+        [size] = struct.unpack_from("<I", content, text)
+        entry = content[begin - 4:text] + struct.pack("<I", len(other)) + other.encode() if other else b""
+        body = content[20:begin - 4] + entry + content[text + 4 + size:-4]
+        changed = content[:12] + struct.pack("<Q", len(body)) + body
+        file.write_bytes(changed + struct.pack("<I", zlib.crc32(changed)))
+
     def test_checkpoints(self):
         output = self.simulated("xdmf")
-        for file in output.glob("*.ckpt"):
-            content = file.read_bytes()
-            for other in OTHERS:
-                text = other.encode()
-                at = content.index(b"identity.version")
-                begin = content.index(self.version.encode(), at)
-                body = content[20:begin - 4] + struct.pack("<I", len(text)) + text + content[begin + len(self.version):-4]
-                changed = content[:12] + struct.pack("<Q", len(body)) + body
-                file.write_bytes(changed + struct.pack("<I", zlib.crc32(changed)))
-                self.refused("info", file, file=file, version=other)
         (output / "summary.json").unlink()
-        process = self.expect_status(2, run("run", DISC, "-o", output, "--resume", "--quiet", *settings(SHORT)))
-        self.assertIn(f"written by Ricochet {OTHERS[-1]}", process.stderr)
-        self.assertIn("repeat the run", process.stderr)
-        self.assertNotIn("start anew", process.stderr)
+        files = sorted(output.glob("*.ckpt"))
+        for other in (*OTHERS, None):
+            for file in files:
+                self.change_version(file, other)
+            stated = {"file": files[-1], "version": other, "advice": "repeat the run with --force, or continue it with the version"}
+            self.refused("info", files[-1], **stated)
+            self.assertNotIn("--resume", self.refused("info", output, **stated).stdout)
+            self.refused("run", DISC, "-o", output, "--resume", "--quiet", *settings(SHORT), **stated)
+        self.expect_status(0, run("run", DISC, "-o", output, "--force", "--quiet", *settings(SHORT)))
 
     def test_contact_problems(self):
         [file] = (self.simulated("xdmf") / "contact").iterdir()
@@ -102,22 +110,41 @@ class Versions(TestCase):
             self.assertIn(f"Ricochet {self.version}", data["fclib_local/info/description"][()].decode())
 
     def test_studies_and_benchmarks(self):
-        output = self.folder / "study"
-        self.expect_status(0, run("study", DISC, "--vary", "time.step=1e-3,2e-3", "-o", output, "--quiet", *settings(
-            {"time.end": 0.01, "output.fields_every": 0})))
-        benchmarks = self.folder / "benchmarks"
+        output, benchmarks = self.folder / "study", self.folder / "benchmarks"
+        study = ("study", DISC, "--vary", "time.step=1e-3,2e-3", "--quiet", *settings({"time.end": 0.01, "output.fields_every": 0}))
+        self.expect_status(0, run(*study, "-o", output))
         self.expect_status(0, run("benchmark", "rod", "-o", benchmarks, "--quiet"))
-        for file, command in ((output / "study.json", ("study", "--resume", output)), (benchmarks / "benchmark.json", ("report", benchmarks)),
-                              (output / "study.json", ("report", output))):
+        for file, commands in ((output / "study.json", (("study", "--resume", output), ("report", output), (*study, "-o", output, "--force"))),
+                               (benchmarks / "benchmark.json", (("report", benchmarks), ("benchmark", "rod", "-o", benchmarks, "--force")))):
             plan = json.loads(file.read_text(encoding="utf-8"))
             self.assertEqual(plan["ricochet_version"], self.version)
             for other in (*OTHERS, None):
                 file.write_text(json.dumps(plan | {"ricochet_version": other or ""}), encoding="utf-8")
-                self.refused(*command, file=file, version=other)
+                for command in commands:
+                    self.refused(*command, file=file, version=other, advice="in another directory (-o), or use the version that wrote")
             file.write_text(json.dumps(plan), encoding="utf-8")
         page = self.folder / "study.html"
         self.expect_status(0, run("report", output, "-o", page))
         self.assertIn(f"Ricochet {self.version}", page.read_text(encoding="utf-8"))
+
+    def test_a_run_of_a_study_or_benchmark(self):
+        """Such a run is repeated, and nothing else; a warning names both versions and says that its results are overwritten."""
+        output, benchmarks = self.folder / "study", self.folder / "benchmarks"
+        self.expect_status(0, run("study", DISC, "--vary", "time.step=1e-3,2e-3", "-o", output, "--quiet",
+                                  *settings({"time.end": 0.01, "output.fields_every": 0})))
+        self.expect_status(0, run("benchmark", "rod", "-o", benchmarks, "--quiet"))
+        for folder, command in ((output, ("study", "--resume", output)), (benchmarks, ("benchmark", "rod", "-o", benchmarks, "--resume"))):
+            file, *others = sorted(folder.glob("runs/*/summary.json"))
+            kept = [other.read_bytes() for other in others]
+            file.write_text(file.read_text(encoding="utf-8").replace(f'"{self.version}"', '"0.2.9"'), encoding="utf-8")
+            if folder == output:
+                self.assertIn(f"written by Ricochet 0.2.9; this is Ricochet {self.version}", self.expect_status(0, run("info", output)).stdout)
+            said = self.expect_status(0, run(*command, "--quiet")).stderr
+            for part in (f"{file}: written by Ricochet 0.2.9; this is Ricochet {self.version}", "this run is repeated, and its results are overwritten"):
+                self.assertIn(part, said)
+            self.assertIn(f'"ricochet_version": "{self.version}"', file.read_text(encoding="utf-8"))
+            self.assertEqual([other.read_bytes() for other in others], kept)
+            self.assertNotIn("written by", self.expect_status(0, run(*command, "--quiet")).stderr)
 
 
 class SummarySchema(TestCase):

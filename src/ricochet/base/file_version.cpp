@@ -20,16 +20,18 @@ std::pair<int, int> release_of(const std::string& text) {
 
 }  // namespace
 
-void require_readable_version(const std::string& path, const std::string& written_by) {
+void require_readable_version(const std::string& path, const std::string& written_by, const std::string& advice) {
   const std::pair<int, int> release = release_of(written_by);
   if (release >= release_of(oldest_readable_version) && release <= release_of(version)) return;
-  throw VersionError(fmt::format(
-      "{}: written by {}; this is Ricochet {}, which reads results of versions {} to {}: repeat the run, or "
-      "read its results with the version that wrote them",
-      path,
-      written_by.empty() ? fmt::format("a version of Ricochet before {}", oldest_readable_version)
-                         : "Ricochet " + written_by,
-      version, oldest_readable_version, version));
+  const bool reads_others = release_of(oldest_readable_version) != release_of(version);
+  throw VersionError(
+      fmt::format("{}: written by {}; this is Ricochet {}, which reads results of {}", path,
+                  written_by.empty() ? fmt::format("a version of Ricochet before {}", oldest_readable_version)
+                                     : "Ricochet " + written_by,
+                  version,
+                  reads_others ? fmt::format("versions {} to {}", oldest_readable_version, version)
+                               : fmt::format("version {}", version)),
+      advice);
 }
 
 }  // namespace ricochet

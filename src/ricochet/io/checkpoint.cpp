@@ -202,7 +202,8 @@ Snapshot read_checkpoint(const std::string& path) {
   } catch (const Error& problem) {
     throw Error(problem.kind(), fmt::format("{}: {}", path, problem.what()));
   }
-  if (snapshot.has("identity.version")) require_readable_version(path, snapshot.text("identity.version"));
+  require_readable_version(path, snapshot.has("identity.version") ? snapshot.text("identity.version") : "",
+                           "repeat the run with --force, or continue it with the version that wrote it");
   return snapshot;
 }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/file_version.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/io/checkpoint.hpp"
@@ -129,6 +130,7 @@ std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::st
     const Manifest manifest = read_manifest(manifest_path(directory, step), step);
     std::optional<Snapshot> snapshot;
     std::string why = "the manifest is damaged, or belongs to another run";
+    std::optional<VersionError> other_version;
     if (manifest.checksums.size() == static_cast<std::size_t>(ranks.size())) {
       const std::string path = checkpoint_path(directory, ranks.rank(), manifest.step);
       try {
@@ -138,10 +140,15 @@ std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::st
           throw Error(ErrorKind::invalid_input,
                       fmt::format("{}: its checksum differs from that in the manifest", path));
         snapshot = read_checkpoint(path);
+      } catch (const VersionError& problem) {
+        other_version = problem;
       } catch (const Error& problem) {
         why = problem.what();
       }
     }
+    ranks.run_collectively([&] {
+      if (other_version) throw VersionError(*other_version);
+    });
     if (!ranks.any(!snapshot)) return snapshot;
     std::vector<std::string> reasons = ranks.gather_texts(snapshot ? "" : why);
     reasons.erase(std::unique(reasons.begin(), reasons.end()), reasons.end());

@@ -45,6 +45,7 @@ RunPool::RunPool(const std::vector<PooledRun>& runs, const RunPoolOptions& optio
     const NextAction action = next_action(state);
     skipped += action == NextAction::nothing && state.status_text() != "done";
     if (action == NextAction::nothing) continue;
+    warn_of_other_version(state);
     pending_.push_back(i);
     actions_.push_back(action);
   }

@@ -7,7 +7,9 @@
 
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/file_version.hpp"
 #include "ricochet/base/json.hpp"
+#include "ricochet/base/log.hpp"
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/durable_file.hpp"
 
@@ -70,7 +72,13 @@ NextAction next_action(const RunState& state) {
 RunState read_run_state(const std::string& directory) {
   RunState state;
   std::error_code ignored;
-  state.summary = find_intact_summary(directory);
+  try {
+    state.summary = find_intact_summary(directory);
+  } catch (const VersionError& problem) {
+    state.other_version = problem.versions;
+    state.message = problem.versions + ": --resume repeats this run";
+    return state;
+  }
   if (state.summary) state.summary_json = summary_text_of_run(directory);
   state.has_checkpoint = std::filesystem::is_directory(directory, ignored) && !checkpoint_files(directory).empty();
   if (!std::filesystem::exists(exit_status_path(directory), ignored)) return state;
@@ -84,6 +92,11 @@ RunState read_run_state(const std::string& directory) {
   } catch (const Json::Exception&) {  // the status is unknown, and the run is tried again
   }
   return state;
+}
+
+void warn_of_other_version(const RunState& state) {
+  if (!state.other_version.empty())
+    log::warning(state.other_version + ": this run is repeated, and its results are overwritten");
 }
 
 void record_exit_status(const std::string& directory, int exit_status, const std::string& message) {

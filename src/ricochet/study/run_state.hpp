@@ -18,6 +18,8 @@ struct RunState {
   bool has_checkpoint = false;
   std::optional<int> exit_status;  ///< nonzero status of its last process; 128 + N: killed by signal N
   std::string message;             ///< message of one line that belongs to that status
+  /// Names both versions if another one has written the summary; such a run counts as not run. Otherwise empty.
+  std::string other_version;
 
   /// Returns the status of the run in the study: a nonzero status of its process takes precedence over its files; else
   /// 0, or 5 if an expectation does not hold. None if the run has not ended.
@@ -34,6 +36,9 @@ enum class NextAction {
 [[nodiscard]] NextAction next_action(const RunState& state);
 
 [[nodiscard]] RunState read_run_state(const std::string& directory);
+
+/// Warns if a run, which is repeated now, is one of another version.
+void warn_of_other_version(const RunState& state);
 
 /// Records in the directory of a run how its process has ended, for read_run_state; a status of 0 leaves no record.
 void record_exit_status(const std::string& directory, int exit_status, const std::string& message);

@@ -169,7 +169,8 @@ Study read_study(const std::string& directory) {
   const std::string path = study.path("study.json"), text = read_file(path);
   try {
     const Json json = Json::parse(text);
-    require_readable_version(path, json.value(version_attribute, ""));
+    require_readable_version(path, json.value(version_attribute, ""),
+                             "repeat the study in another directory (-o), or use the version that wrote it");
     study.plan = plan_from(json);
     require_sound(study.plan);
     study.questions = questions_from(json.at("questions"));

@@ -11,6 +11,8 @@
 
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/io/rank_checkpoints.hpp"
+#include "ricochet/version.hpp"
 #include "support/case_run.hpp"
 #include "support/errors.hpp"
 
@@ -44,6 +46,13 @@ std::string refusal(const std::string& text) {
 
 std::string folder_of_test() {
   return std::filesystem::path(write_temporary("x", "")).parent_path().string();
+}
+
+Snapshot of_step(std::int64_t step, const std::string& written_by = version) {
+  Snapshot snapshot;
+  snapshot.save("step", step);
+  if (!written_by.empty()) snapshot.save("identity.version", written_by);
+  return snapshot;
 }
 
 TEST(Checkpoint, ComesBackBitByBit) {
@@ -88,11 +97,7 @@ TEST(Checkpoint, AbsurdSizesAreRefused) {
 
 TEST(Checkpoint, TheLastTwoAreKept) {
   const std::string folder = folder_of_test();
-  for (const long step : {7L, 100L, 20L, 3000000000L}) {
-    Snapshot snapshot;
-    snapshot.save("step", std::int64_t{step});
-    write_checkpoint(folder, step, snapshot);
-  }
+  for (const long step : {7L, 100L, 20L, 3000000000L}) write_checkpoint(folder, step, of_step(step));
   const std::vector<CheckpointFile> files = checkpoint_files(folder);
   ASSERT_EQ(files.size(), 2u);
   EXPECT_EQ(files[0].step, 100);
@@ -110,9 +115,7 @@ TEST(Checkpoint, TheLastTwoAreKept) {
 
 TEST(Checkpoint, APipeInItsPlaceIsPassedOver) {
   const std::string folder = folder_of_test();
-  Snapshot snapshot;
-  snapshot.save("step", std::int64_t{7});
-  write_checkpoint(folder, 7, snapshot);
+  write_checkpoint(folder, 7, of_step(7));
   std::filesystem::remove(folder + "/checkpoint-000000008.ckpt");  // left by an earlier run
   ASSERT_EQ(mkfifo((folder + "/checkpoint-000000008.ckpt").c_str(), 0600), 0);
   log::set_level(log::Level::off);
@@ -123,15 +126,24 @@ TEST(Checkpoint, APipeInItsPlaceIsPassedOver) {
   EXPECT_TRUE(has(warnings.front(), "it is not a regular file"));
 }
 
+/// An earlier checkpoint is not used instead: it belongs to the same run.
 TEST(Checkpoint, OfAnotherVersionIsRefusedWithBothVersions) {
   const std::string folder = folder_of_test();
   for (const auto& file : checkpoint_files(folder)) std::filesystem::remove(file.path);
-  Snapshot snapshot;
-  snapshot.save("identity.version", std::string("0.2.0"));
-  write_checkpoint(folder, 7, snapshot);
-  const std::string message = message_of([&] { static_cast<void>(newest_checkpoint(folder)); });
-  EXPECT_TRUE(has(message, "checkpoint-000000007.ckpt")) << message;
-  EXPECT_TRUE(has(message, "0.2.0")) << message;
+  write_checkpoint(folder, 6, of_step(6));
+  for (const std::string other : {"0.2.0", ""}) {
+    write_checkpoint(folder, 7, of_step(7, other));
+    write_rank_checkpoint(one_rank(), folder, 7, of_step(7, other));
+    const std::vector<std::string> parts{"checkpoint-000000007.ckpt: written by " +
+                                             (other.empty() ? "a version of Ricochet before" : "Ricochet " + other),
+                                         "which reads results of version",
+                                         "repeat the run with --force, or continue it with the version that wrote it"};
+    expect_error(ErrorKind::invalid_input, parts, [&] { static_cast<void>(newest_checkpoint(folder)); });
+    expect_error(ErrorKind::invalid_input, parts,
+                 [&] { static_cast<void>(newest_rank_checkpoint(one_rank(), folder)); });
+  }
+  write_rank_checkpoint(one_rank(), folder, 7, of_step(7));
+  EXPECT_EQ(newest_rank_checkpoint(one_rank(), folder)->integer("step"), 7);
 }
 
 TEST(Snapshot, SaysWhatDoesNotFit) {

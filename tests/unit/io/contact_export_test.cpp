@@ -7,6 +7,7 @@
 
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/failure_bundle.hpp"
+#include "ricochet/version.hpp"
 #include "support/errors.hpp"
 #include "support/fclib_support.hpp"
 
@@ -125,6 +126,7 @@ TEST(FailureBundle, HoldsTheStateAndTheProblem) {
   bundle.write_problem(problem(), unsolved, 7);
   Snapshot snapshot;
   snapshot.save("state.step", std::int64_t{6});
+  snapshot.save("identity.version", std::string(version));
   const std::string note = bundle.write(7, snapshot, "step 7: what failed");
   const std::vector<std::string> files = failure_files(directory.path);
   ASSERT_EQ(files.size(), 2u);

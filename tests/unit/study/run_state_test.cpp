@@ -81,6 +81,19 @@ TEST(RunState, IsReadFromItsDirectory) {
   EXPECT_FALSE(read_run_state(directory).summary.has_value());
 }
 
+TEST(RunState, OfAnotherVersionCountsAsNotRun) {
+  const TemporaryFolder folder(std::filesystem::temp_directory_path(), "ricochet-test");
+  RunSummary summary;
+  summary.version = "0.2.9";
+  write_summary(folder.file("summary.json"), summary);
+  std::ofstream(folder.file("checkpoint-000000007.ckpt")) << "of that version";
+  const RunState found = read_run_state(folder.path().string());
+  EXPECT_EQ(found.status_text(), "not run");
+  EXPECT_EQ(next_action(found), NextAction::start) << "its checkpoint cannot be continued";
+  EXPECT_NE(found.message.find("written by Ricochet 0.2.9; this is Ricochet"), std::string::npos) << found.message;
+  EXPECT_NE(found.message.find("--resume repeats this run"), std::string::npos) << found.message;
+}
+
 TEST(LastError, IsTheFirstLineOfTheLastThatWasSaid) {
   EXPECT_EQ(last_error("warning: a\nricochet: runs/1: one\nand more\nricochet: runs/1: two\nfiles\n", "runs/1"), "two");
   EXPECT_EQ(last_error("ricochet: case.toml:1:1: three", "runs/1"), "case.toml:1:1: three");

@@ -88,6 +88,7 @@ void remove_old_runs(const BenchmarkPlan& plan, const BenchmarkOptions& options)
     if (!options.resume || std::find(plan.runs.begin(), plan.runs.end(), old) == plan.runs.end()) return false;
     try {
       const RunState state = read_run_state(plan.path(old));
+      warn_of_other_version(state);
       if (!state.summary) return false;
       require_same_case(read_case(old.benchmark.case_path, old.settings), state.summary->version,
                         state.summary->parameters, plan.path(old));

@@ -66,7 +66,8 @@ BenchmarkPlan read_benchmark_plan(const std::string& directory) {
     throw Error(ErrorKind::file_access, fmt::format("{}: holds no benchmarks: benchmark.json is missing", directory));
   try {
     const Json json = Json::parse(read_file(path));
-    require_readable_version(path, json.value(version_attribute, ""));
+    require_readable_version(path, json.value(version_attribute, ""),
+                             "repeat the benchmarks in another directory (-o), or use the version that wrote them");
     plan.is_scorecard = json.at("scorecard");
     for (const Json& run : json.at("runs")) plan.runs.push_back(run_from(run));
   } catch (const Json::Exception& problem) {
