@@ -286,7 +286,7 @@ class Summary(TypedDict):
     processor_seconds: float
     peak_memory_bytes: float
     energy_scale: Real
-    energy_budget: EnergyBudget
+    energy_budget: EnergyBudget | None
     reactions: Reactions | None
     unsettled_contacts: list[UnsettledContact]
     contacts: list[Contact]
@@ -302,5 +302,5 @@ class Summary(TypedDict):
     impacts: list[Impact]
     impacts_left_out: int
     sliding: list[PairSliding]
-    rotation: Rotation
+    rotation: Rotation | None
     peak_stress: PeakStress | None

@@ -178,6 +178,21 @@ class SummarySchema(TestCase):
             self.assertIn(run("run", case, "-o", output, "--quiet", *settings(values)).returncode, (0, 5), case)
             self.check(json.loads((output / "summary.json").read_text(encoding="utf-8")), schema, case.stem)
 
+    def test_nothing_is_known_before_the_first_row(self):
+        """Of a run that cannot write its files: no energy, no rotation and no penetration has been computed."""
+        output = self.folder / "disc"
+        (output / "results.h5" / "mine").mkdir(parents=True)
+        self.expect_status(4, run("run", DISC, "-o", output, "--force", "--quiet"))
+        summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
+        self.check(summary, self.schema(), "disc")
+        self.assertEqual(summary["extrema"], {})
+        self.assertIsNone(summary["energy_budget"])
+        self.assertIsNone(summary["rotation"])
+        self.assertIs(summary["unwatched_penetration"]["checked"], False)
+        self.assertEqual(summary["unwatched_penetration"]["not_watched"], ["everything except contact nodes"])
+        self.assertIn("not checked for interpenetration: everything except contact nodes", self.expect_status(0, run("info", output)).stdout)
+        self.assertIn("≥ 0", self.expect_status(0, run("info", output, output)).stdout)
+
     def test_every_entry_has_a_text(self):
         for title, schema in summary_files.objects(self.schema()).items():
             for name, entry in schema["properties"].items():

@@ -48,14 +48,14 @@ interface EnergyChange {
   whole: string;
 }
 
-/** Change of the energy if only contact acts on the body; otherwise the change by the method, from the budget over all steps. */
+/** Change of the energy if only contact acts on the body; otherwise the change by the method, from the budget over all steps if the run has one. */
 function energyChange(j: Judgement, { energy_budget: budget }: Summary): EnergyChange {
-  if (!j.is_isolated) return { gain: toNumber(budget.created_by_method), loss: toNumber(budget.lost_by_method), whole: "the largest energy" };
+  if (!j.is_isolated && budget) return { gain: toNumber(budget.created_by_method), loss: toNumber(budget.lost_by_method), whole: "the largest energy" };
   return { gain: j.energy_gain / j.energy_scale, loss: j.energy_loss / j.energy_scale, whole: "the energy at the start" };
 }
 
 const budgetWords = ({ energy_budget: budget }: Summary): string =>
-  `; the method created at most ${percent(toNumber(budget.created_by_method))} and lost at most ${percent(toNumber(budget.lost_by_method))} of the largest energy`;
+  budget ? `; the method created at most ${percent(toNumber(budget.created_by_method))} and lost at most ${percent(toNumber(budget.lost_by_method))} of the largest energy` : "";
 
 export function energyFinding(j: Judgement, summary: Summary): Finding {
   const what = j.is_isolated ? "Energy" : "Energy in contact";

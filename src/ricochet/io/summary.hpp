@@ -164,7 +164,8 @@ struct RunSummary {
   RotationReport rotation = {};
   std::vector<PairSliding> sliding = {};         ///< per contact between bodies
   std::vector<UnsettledContact> unsettled = {};  ///< contacts with large sliding in which frozen steps have left gaps
-  PenetrationReport penetration = {};            ///< without contact; that of contact points is a column of the history
+  /// Penetration without contact; that of contact points is a column of the history.
+  PenetrationReport penetration = {.not_watched = {"everything except contact nodes"}};
   std::vector<std::string> warnings;
   std::vector<ExpectationResult> expectations;
   std::string contact_export;  ///< on the export of contact problems, in words; not in the file
@@ -173,6 +174,8 @@ struct RunSummary {
   [[nodiscard]] std::string mass_text() const;
   /// Digest of a column; zeros if there is no such column.
   [[nodiscard]] ColumnDigest digest(const std::string& column) const;
+  /// Whether the history has a row. Before, nothing is known of energies, rotations and penetration.
+  [[nodiscard]] bool is_recorded() const { return !columns.empty(); }
   /// Time that the run has reached.
   [[nodiscard]] double time() const { return adaptive ? adaptive->time : static_cast<double>(steps) * step; }
   /// Completed fraction of the run, 0 to 1.

@@ -271,7 +271,8 @@ void describe(SummaryVisitor& visit, RunSummary& run) {
   describe_size(visit, run);
   describe_steps(visit, run);
   visit.derived("energy_scale", Real{run.energy_scale()}, "largest total, kinetic or elastic energy");
-  visit("energy_budget", run.method_energy, "energy that the method lost or created, beside everything else");
+  visit("energy_budget", IfKnown{run.is_recorded(), run.method_energy},
+        "energy that the method lost or created, beside everything else; null before the first row of the history");
   visit("reactions", run.reactions, "contact forces that acted; null for schemes without a choice");
   visit("unsettled_contacts", run.unsettled,
         "contacts with large sliding where frozen steps have left gaps or overlaps");

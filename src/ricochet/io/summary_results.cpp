@@ -45,7 +45,7 @@ void describe(SummaryVisitor& visit, ContactBeyondRim& rim) {
 void describe(SummaryVisitor& visit, PenetrationReport& report) {
   const UnwatchedPenetration* const deepest = report.deepest();
   visit.type("PenetrationReport");
-  visit.derived("checked", true, "always true");
+  visit.derived("checked", visit.run().is_recorded(), "false before the first row of the history: nothing is checked");
   visit("looks_at_obstacles", report.obstacle_checks, "number of checks of nodes against obstacles");
   visit("looks_at_bodies", report.body_checks, "number of checks of bodies against each other");
   visit("looks_at_themselves", report.self_penetration_checks, "number of checks of bodies against themselves");
@@ -250,7 +250,8 @@ void describe_results(SummaryVisitor& visit, RunSummary& run) {
   visit("impacts", run.impacts, "collisions of each body with each obstacle and of each two bodies, by their begin");
   visit("impacts_left_out", run.impacts_left_out, "number of later impacts, which are only counted");
   visit("sliding", run.sliding, "relative sliding of each contact between bodies without `sliding = \"large\"`");
-  visit("rotation", run.rotation, "when cells had rotated too far for small strain, from the rows of the history");
+  visit("rotation", IfKnown{run.is_recorded(), run.rotation},
+        "when cells had rotated too far for small strain, from the rows of the history; null before the first one");
   visit("peak_stress", run.peak_stress, "largest von Mises stress of the run; null if there is none");
 }
 

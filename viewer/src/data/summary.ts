@@ -46,7 +46,7 @@ export interface Summary {
   processor_seconds: number; // processor time of all threads, processes and sessions
   peak_memory_bytes: number; // largest memory of a process
   energy_scale: Real; // largest total, kinetic or elastic energy
-  energy_budget: EnergyBudget; // energy that the method lost or created, beside everything else
+  energy_budget: EnergyBudget | null; // energy that the method lost or created, beside everything else; null before the first row of the history
   reactions: Reactions | null; // contact forces that acted; null for schemes without a choice
   unsettled_contacts: UnsettledContact[]; // contacts with large sliding where frozen steps have left gaps or overlaps
   contacts: Contact[]; // entries of `[[contact]]`, or the pairs of bodies that they stand for
@@ -62,7 +62,7 @@ export interface Summary {
   impacts: Impact[]; // collisions of each body with each obstacle and of each two bodies, by their begin
   impacts_left_out: number; // number of later impacts, which are only counted
   sliding: PairSliding[]; // relative sliding of each contact between bodies without `sliding = "large"`
-  rotation: Rotation; // when cells had rotated too far for small strain, from the rows of the history
+  rotation: Rotation | null; // when cells had rotated too far for small strain, from the rows of the history; null before the first one
   peak_stress: PeakStress | null; // largest von Mises stress of the run; null if there is none
 }
 
@@ -198,7 +198,7 @@ export interface Expectation {
 }
 
 export interface PenetrationReport {
-  checked: boolean; // always true
+  checked: boolean; // false before the first row of the history: nothing is checked
   looks_at_obstacles: number; // number of checks of nodes against obstacles
   looks_at_bodies: number; // number of checks of bodies against each other
   looks_at_themselves: number; // number of checks of bodies against themselves
