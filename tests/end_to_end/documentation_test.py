@@ -1,6 +1,7 @@
 """docs/case-file.md agrees with the output of the program, and the commands of the cases' pages can be typed one after
 the other."""
 
+import itertools
 import pathlib
 import re
 import shlex
@@ -13,6 +14,31 @@ sys.path.insert(0, str(SOURCE / "docs"))
 import history_columns  # noqa: E402
 
 
+# Columns of histories in their order, by the condition under which they exist. Users' programs read them by these names: a column
+# that is renamed, lost or moved breaks them. * stands for the components of a vector, ° for those of an axial vector.
+COLUMNS = [
+    ("", "step time kinetic_energy elastic_energy load_potential algorithmic_energy total_energy load_work contact_work friction_work "
+     "support_work obstacle_work damping_work numerical_dissipation energy_residual contact_force* momentum* angular_momentum° "
+     "max_rotation active_contacts sticking slipping max_penetration iterations"),
+    ("meshes of 2 to 20 bodies", "momentum.BODY*"),
+    ("laws of finite strain", "integration_error newton_rounds"),
+    ("`relaxation` of a material", "viscous_dissipation"),
+    ("large sliding between bodies", "re_pairing_work unsettled_gap"),
+    ("surfaces that touch themselves", "left_out_points"),
+    ("rigid bodies that move freely", "NAME.displacement* NAME.velocity* NAME.rotation° NAME.spin° NAME.contact_force*"),
+    ("contacts between bodies", "pair_force.N*"),
+    ("probes with `at`", "NAME.displacement* NAME.velocity*"),
+    ("probes with `at`, on a contact boundary", "NAME.gap NAME.pressure NAME.reaction_normal NAME.reaction_tangential*"),
+    ("probes with `at`, on a contact boundary, with laws of finite strain", "NAME.nominal_pressure"),
+    ("probes with `boundary`", "NAME.force* NAME.moment° NAME.support* NAME.support_moment°"),
+    ("probes with `group`", "NAME.displacement_average* NAME.displacement_minimum* NAME.displacement_maximum* "
+     "NAME.velocity_average* NAME.velocity_minimum* NAME.velocity_maximum*"),
+    ("probes with `group`, groups of cells", "NAME.von_mises_average NAME.von_mises_minimum NAME.von_mises_maximum"),
+    ("probes with `contact`", "NAME.force* NAME.centre* NAME.area"),
+    ("probes with `contact`, with laws of finite strain", "NAME.nominal_area"),
+]
+
+
 class Documentation(TestCase):
     def test_reference_of_the_case_file(self):
         printed = self.expect_status(0, run("schema", "--markdown")).stdout
@@ -22,6 +48,12 @@ class Documentation(TestCase):
     def test_tables_of_columns(self):
         printed = self.expect_status(0, run("schema", "--columns")).stdout
         self.assertEqual(history_columns.written_table(), printed, "write it anew: docs/history_columns.py build/ricochet")
+
+    def test_columns_keep_names_components_and_order(self):
+        marks = {"one": "", "vector": "*", "axial": "°"}
+        found = [(condition, " ".join(name + marks[components] for name, components, *_ in rows))
+                 for condition, rows in itertools.groupby(history_columns.documented_columns(), key=lambda row: row[3])]
+        self.assertEqual(found, COLUMNS)
 
     def test_names_of_code_are_in_the_files_that_pages_link(self):
         """`name` in [file](path), or [file](path), `name`: a renamed function must not live on in a page."""

@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
 #include "case_text.hpp"
-#include "ricochet/mass/mass.hpp"
-#include "ricochet/rigid/obstacle_shape.hpp"
 #include "support/message_table.hpp"
 
 // Malformed case files: tests/data/messages/malformed_case.txt has the messages.
@@ -19,8 +17,6 @@ TEST_P(MalformedCase, HasAllMessagesThatFollow) {
 INSTANTIATE_TEST_SUITE_P(All, MalformedCase,
                          testing::ValuesIn(read_messages("malformed_case.txt",
                                                          {{"schemes", all_schemes()},
-                                                          {"masses", join_names(mass_names(), " or ")},
-                                                          {"shapes", join_names(obstacle_registry().names(), " or ")},
                                                           {"keys_of_time", keys_of_time()}})),
                          name_of_row);
 
