@@ -53,10 +53,17 @@ double RunSummary::part_done() const {
 
 double RunSummary::delay_of(const std::string& column) const {
   if (adaptive) return 0.0;  // values are offset by fractions of steps of different lengths
-  if (column.ends_with("_energy") || column == "load_potential" || column.starts_with("momentum"))
+  if (column.ends_with("_energy") || column == "load_potential" || column.starts_with("momentum") ||
+      column.starts_with("angular_momentum"))
     return energy_instant * step;
-  const bool is_force = column.starts_with("contact_force") || column.starts_with("pair_force.") ||
-                        column.find(".reaction") != std::string::npos || column.find(".pressure") != std::string::npos;
+  // Names of probes and bodies may be any; what follows them is the quantity.
+  const std::size_t dot = column.rfind('.');
+  const std::string quantity = dot == std::string::npos ? column : column.substr(dot);
+  constexpr std::array forces{"contact_force",     ".contact_force", ".reaction", ".pressure",
+                              ".nominal_pressure", ".force_",        ".moment_",  ".support_"};
+  const bool is_force =
+      column.starts_with("pair_force.") ||
+      std::any_of(forces.begin(), forces.end(), [&](const char* name) { return quantity.starts_with(name); });
   return is_force ? force_instant * step : 0.0;
 }
 

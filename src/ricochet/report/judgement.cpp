@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "ricochet/fem/cell_rotations.hpp"
+#include "ricochet/simulation/history/history_columns.hpp"
 #include "ricochet/simulation/impact/rotation_growth.hpp"
 
 namespace ricochet {
@@ -73,8 +74,8 @@ void judge_energy(const RunData& run, Judgement& result) {
   for (std::size_t i = 0; i < total.size(); ++i) most = std::max(most, kinetic[i] + elastic[i]);
   result.energy_scale = std::max(std::abs(total.front()), kinetic.front() + elastic.front());
   result.is_isolated = true;
-  for (const char* work : {"load_work", "friction_work", "support_work", "obstacle_work", "damping_work"})
-    result.is_isolated = result.is_isolated && largest_magnitude(run.column(work)) == 0.0;
+  for (const std::string& work : column_names_of(ColumnGroup::work))
+    result.is_isolated = result.is_isolated && (work == "contact_work" || largest_magnitude(run.column(work)) == 0.0);
   // If only contact acts, even a small initial energy is the reference, as any growth was created.
   if (!(result.energy_scale > (result.is_isolated ? 0.0 : 1e-12 * most))) result.energy_scale = most;
   const std::vector<double> changing = result.is_isolated ? total : energy_of_method(run);

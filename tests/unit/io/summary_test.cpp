@@ -44,11 +44,13 @@ TEST_F(SummaryTest, KnowsTheInstantsOfColumns) {
   summary.step = 0.1;
   summary.energy_instant = 0.5;
   summary.force_instant = -0.25;
-  EXPECT_EQ(summary.delay_of("total_energy"), 0.05);
-  EXPECT_EQ(summary.delay_of("momentum_x"), 0.05);
-  EXPECT_EQ(summary.delay_of("contact_force_y"), -0.025);
-  EXPECT_EQ(summary.delay_of("tip.pressure"), -0.025);
-  EXPECT_EQ(summary.delay_of("tip.displacement_x"), 0.0);
+  for (const char* column : {"total_energy", "load_potential", "momentum_x", "momentum.ball_x", "angular_momentum_z"})
+    EXPECT_EQ(summary.delay_of(column), 0.05) << column;
+  for (const char* column : {"contact_force_y", "pair_force.0_x", "ball.contact_force_x", "tip.reaction_normal",
+                             "line.7.pressure", "tip.nominal_pressure", "end.force_x", "end.moment_z", "end.support_x"})
+    EXPECT_EQ(summary.delay_of(column), -0.025) << column;
+  for (const char* column : {"tip.displacement_x", "line.7.gap", "pressure.velocity_y", "support_work", "max_rotation"})
+    EXPECT_EQ(summary.delay_of(column), 0.0) << column;
 }
 
 /// A run that overflows between two rows of the history stops at the next row; its values may be infinite or NaN, for

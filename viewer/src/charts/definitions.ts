@@ -19,8 +19,6 @@ export interface ChartDefinition {
 }
 
 const energies = ["total_energy", "kinetic_energy", "elastic_energy", "load_potential", "algorithmic_energy"];
-const works = ["load_work", "contact_work", "friction_work", "support_work", "obstacle_work", "damping_work",
-  "viscous_dissipation", "numerical_dissipation", "integration_error", "energy_residual"];
 const counts = ["active_contacts", "sticking", "slipping"];
 const others = ["max_penetration", "max_rotation", "iterations"];
 
@@ -48,6 +46,8 @@ export function chartDefinitions(runs: Run[]): ChartDefinition[] {
   const force = runs[0].data.judgement.force;
   const oneForce = runs.every((run) => run.data.judgement.force === force);
   const forces = [...(oneForce ? [] : ["@force"]), ...present([force, ...matching(/^contact_force_/), ...matching(/^pair_force\./), ...matching(/\.(reaction_|pressure$|force_)/)])];
+  // The work of changes of the paired facets is a part of contact_work.
+  const works = [...matching(/_work$/).filter((name) => name !== "re_pairing_work"), ...present(["viscous_dissipation"])];
   const momenta = matching(/^(angular_)?momentum[_.]/);
   const probes = all.filter((name) => name.includes(".") && !/^(pair_force|momentum)\./.test(name));
   const list: ChartDefinition[] = [
@@ -73,8 +73,8 @@ export function chartDefinitions(runs: Run[]): ChartDefinition[] {
       id: "works",
       title: "Energy account",
       note: "Work done on the body since the start. The residual is the error of the balance, at the size of rounding.",
-      columns: present(works),
-      shown: runs.length > 1 ? ["contact_work"] : some(active(works.slice(0, 7)), works.slice(1)),
+      columns: [...works, ...present(["re_pairing_work", "numerical_dissipation", "integration_error", "energy_residual"])],
+      shown: runs.length > 1 ? ["contact_work"] : some(active(works), ["contact_work"]),
     },
     {
       id: "residual",

@@ -141,7 +141,7 @@ export class Run {
   private shiftOf(column: string): number {
     if (this.summary.adaptive_steps) return 0; // parts of steps of many lengths
     const energy = /_energy$|^load_potential$|^momentum[_.]|^angular_momentum_/.test(column);
-    const force = /(^|\.)(contact_force|pair_force|reaction|pressure)/.test(column);
+    const force = /(^|\.)(contact_force|pair_force|reaction|(nominal_)?pressure)|\.(force|moment|support)_/.test(column);
     const instant = energy ? this.summary.instants.energy : force ? this.summary.instants.force : "";
     return Number(/t ([+-][\d.]+) time_step/.exec(instant)?.[1] ?? 0);
   }
