@@ -78,14 +78,15 @@ class Archive {
   void operator()(std::optional<Value>& value) {
     bool is_there = value.has_value();
     (*this)(is_there);
-    if (is_there && !value) value.emplace();
-    if (is_there) (*this)(*value);
+    if (!is_there) return value.reset();
+    if (!value) value.emplace();
+    (*this)(*value);
   }
   template <class Value>
   void operator()(std::shared_ptr<const Value>& value) {
     bool is_there = value != nullptr;
     (*this)(is_there);
-    if (!is_there) return;
+    if (!is_there) return value.reset();
     const auto own = reads_ ? std::make_shared<Value>() : std::make_shared<Value>(*value);
     (*this)(*own);
     if (reads_) value = own;

@@ -122,7 +122,8 @@ void SnapshotVisitor::exchange(const std::string& key, Snapshot::Integers& value
 
 std::size_t SnapshotVisitor::count_of_records(const std::string& key, Index width, std::size_t most) const {
   const Index size = from_->reals(name_of(key)).size();
-  require(size % width == 0, key, fmt::format("has {} numbers where a multiple of {} is expected", size, width));
+  require(width > 0 && size % width == 0, key,
+          fmt::format("has {} numbers where a multiple of {} is expected", size, width));
   const auto count = static_cast<std::size_t>(size / width);
   require(count <= most, key, fmt::format("has {} records where at most {} are possible", count, most));
   return count;

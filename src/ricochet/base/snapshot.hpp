@@ -86,7 +86,7 @@ class NumberVisitor {
       : read_(numbers.data(), static_cast<std::size_t>(numbers.size())), name_(std::move(name)), reads_(true) {}
 
   /// Visits a number, the numbers of a vector or an array, or those of a record, which lists them in members(). Throws
-  /// Error(invalid_input) if a number that is read for an integer or a flag is none.
+  /// Error(invalid_input) if an integer or a flag is read from a number that is no whole number of its range.
   template <class Value>
   void operator()(Value& value) {
     if constexpr (std::is_floating_point_v<Value>) {
@@ -119,13 +119,14 @@ class NumberVisitor {
 template <class Value>
 concept WholeNumber = std::integral<Value> || std::is_enum_v<Value>;
 
-/// Numbers that an integer may have, besides those of its type.
+/// Values that an integer may have, besides those of its type. An enumeration needs its range: any number of its
+/// underlying type would pass otherwise.
 struct IntegerRange {
   std::int64_t least = std::numeric_limits<std::int64_t>::min(), most = std::numeric_limits<std::int64_t>::max();
 };
 
 /// Saves each entry of a part, or loads it. Loading throws Error(invalid_input) if an entry is missing, or of another
-/// type, size or range than stated.
+/// type, size or range than stated. The visitor itself stays as it is: it refers to a snapshot, which saving changes.
 class SnapshotVisitor {
  public:
   [[nodiscard]] bool loads() const { return from_ != nullptr; }
@@ -180,7 +181,8 @@ class SnapshotVisitor {
     }
     return all;
   }
-  /// Visits any number of records, up to `most`, as one entry. `one` states the sizes of a record.
+  /// Visits any number of records, up to `most`, as one entry. `one` is a prototype of a record, with the sizes of its
+  /// vectors.
   template <class Record>
   void list(const std::string& key, std::vector<Record>& records, std::size_t most = 1U << 31U,
             Record one = Record{}) const {

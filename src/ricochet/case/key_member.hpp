@@ -6,38 +6,38 @@
 #include "ricochet/case/case.hpp"
 #include "ricochet/case/section_reader.hpp"
 
-/// @file Keys that are bound to the members of the structs in case.hpp: their entry in the table is all that reading
-/// their values needs. Not part of the public interface.
+/// @file Binds keys to members of the structs in case.hpp; the entry in the table then suffices to read them. Not part
+/// of the public interface.
 namespace ricochet {
 
 template <class Struct, class Value>
-[[nodiscard]] KeyMember member(Value Struct::*where) {
-  return {&typeid(Struct), [where](const SectionReader& section, const Key& key, void* object) {
-            section.read(key, static_cast<Struct*>(object)->*where);
+[[nodiscard]] KeyMember member(Value Struct::*target) {
+  return {&typeid(Struct), [target](const SectionReader& section, const Key& key, void* object) {
+            section.read(key, static_cast<Struct*>(object)->*target);
           }};
 }
 
 /// Member that becomes true if the value is this choice.
 template <class Struct>
-[[nodiscard]] KeyMember is_choice(bool Struct::*where, const std::string& choice) {
-  return {&typeid(Struct), [where, choice](const SectionReader& section, const Key& key, void* object) {
-            static_cast<Struct*>(object)->*where = section.text(key.name) == choice;
+[[nodiscard]] KeyMember is_choice(bool Struct::*target, const std::string& choice) {
+  return {&typeid(Struct), [target, choice](const SectionReader& section, const Key& key, void* object) {
+            static_cast<Struct*>(object)->*target = section.text(key.name) == choice;
           }};
 }
 
 /// Path of a file that the value names relative to the folder of the case file.
 template <class Struct>
-[[nodiscard]] KeyMember path(std::string Struct::*where) {
-  return {&typeid(Struct), [where](const SectionReader& section, const Key& key, void* object) {
-            static_cast<Struct*>(object)->*where = section.path(section.text(key.name));
+[[nodiscard]] KeyMember path(std::string Struct::*target) {
+  return {&typeid(Struct), [target](const SectionReader& section, const Key& key, void* object) {
+            static_cast<Struct*>(object)->*target = section.path(section.text(key.name));
           }};
 }
 
 /// Parameters of the type that the value names, a type of that section.
 template <class Struct>
-[[nodiscard]] KeyMember type_parameters(Parameters Struct::*where, const std::string& section_name) {
-  return {&typeid(Struct), [where, section_name](const SectionReader& section, const Key& /*key*/, void* object) {
-            static_cast<Struct*>(object)->*where = section.type_parameters(*find_section(section_name));
+[[nodiscard]] KeyMember type_parameters(Parameters Struct::*target, const std::string& section_name) {
+  return {&typeid(Struct), [target, section_name](const SectionReader& section, const Key& /*key*/, void* object) {
+            static_cast<Struct*>(object)->*target = section.type_parameters(*find_section(section_name));
           }};
 }
 
@@ -57,14 +57,15 @@ template <class Value>
   if (is_one_of<Value, Expression>) return KeyType::formula;
   if (is_one_of<Value, std::vector<Expression>>) return KeyType::formulas;
   if (is_one_of<Value, std::map<std::string, std::string>>) return KeyType::conditions;
+  static_assert(std::is_class_v<Value> || is_one_of<Value, double, int, long, bool>, "keys have no such values");
   return requires(Value value) {
     value.front();
   }
   ? KeyType::tables : KeyType::table;
 }
 
-/// Key of the table. `properties` is everything but its name, members and documentation; its type follows from the
-/// member, or is a choice if there are choices.
+/// Key of the table. `properties` is everything but its name, members and documentation. Its type follows from the
+/// member unless they state one other than `text`, which stands for none; a text with choices is a choice.
 [[nodiscard]] inline Key key(std::string name, std::vector<KeyMember> members, Key properties, std::string doc) {
   properties.name = std::move(name);
   properties.members = std::move(members);
@@ -73,9 +74,9 @@ template <class Value>
   return properties;
 }
 template <class Struct, class Value>
-[[nodiscard]] Key key(std::string name, Value Struct::*where, Key properties, std::string doc) {
+[[nodiscard]] Key key(std::string name, Value Struct::*target, Key properties, std::string doc) {
   if (properties.type == KeyType::text) properties.type = key_type<Value>();
-  return key(std::move(name), {member(where)}, std::move(properties), std::move(doc));
+  return key(std::move(name), {member(target)}, std::move(properties), std::move(doc));
 }
 
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 /// @file Visitor of the entries of summary.json. Not part of the public interface.
 namespace ricochet {
 
-/// Number that is infinite or NaN in a run that overflows; JSON then has a word for it.
+/// Number that may be infinite or NaN, in a run that overflows; JSON then has "inf", "-inf" or "nan".
 template <class Number>
 struct Real {
   Number value;
@@ -29,7 +29,7 @@ struct Components {
 template <class Value>
 Components(Value&&) -> Components<Value>;
 
-/// Angular velocity: in the plane its component about z.
+/// Angular velocity in rad per unit of time: in the plane its component about z.
 struct Spin {
   Eigen::Vector3d& value;
 };
@@ -48,7 +48,7 @@ struct IfKnown {
 template <class Value>
 IfKnown(bool, Value&&) -> IfKnown<Value>;
 
-/// Object with an entry for each of these keys.
+/// Object with an entry for each of these keys; reading appends what the file has.
 template <class Value>
 struct Keyed {
   std::vector<std::pair<std::string, Value>>& values;
@@ -84,7 +84,7 @@ class SummaryVisitor {
   void derived(const char* name, Value value, const char* text) {
     if (!reads()) (*this)(name, value, text);
   }
-  /// Visits an entry that is absent unless `present`.
+  /// Visits an entry that is absent unless `present`; reading goes by the file instead.
   template <class Value>
   void optional(const char* name, bool present, Value&& value, const char* text) {
     if (reads() ? !has(name) : task_ == Task::write && !present) return;
@@ -95,9 +95,9 @@ class SummaryVisitor {
   template <class Value>
   void optional(const char* name, std::optional<Value>& value, const char* text) {
     Value own = value.value_or(Value{});
-    const bool is_there = reads() ? has(name) : value.has_value();
-    optional(name, is_there, own, text);
-    if (reads() && is_there) value = std::move(own);
+    const bool is_present = reads() ? has(name) : value.has_value();
+    optional(name, is_present, own, text);
+    if (reads() && is_present) value = std::move(own);
   }
 
  private:

@@ -69,6 +69,23 @@ TEST(Archive, HandsOnTheSameBytesAsItKeeps) {
   EXPECT_TRUE(handed == kept.take());
 }
 
+/// Something absent is absent again, whatever is there before.
+TEST(Archive, GivesBackWhetherSomethingIsThere) {
+  std::shared_ptr<const double> absent, present = std::make_shared<const double>(0.5);
+  std::optional<double> none, some = 0.25;
+  Archive written;
+  written.all(absent, present, none, some);
+  std::shared_ptr<const double> found[] = {std::make_shared<const double>(1.0), nullptr};
+  std::optional<double> values[] = {1.0, {}};
+  Archive read(written.take());
+  read.all(found[0], found[1], values[0], values[1]);
+  EXPECT_EQ(found[0], nullptr);
+  ASSERT_NE(found[1], nullptr);
+  EXPECT_EQ(*found[1], 0.5);
+  EXPECT_FALSE(values[0].has_value());
+  EXPECT_EQ(values[1], 0.25);
+}
+
 TEST(Archive, RefusesWhatIsTooShort) {
   Vector values = Vector::Random(10);
   Archive written;

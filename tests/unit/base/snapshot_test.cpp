@@ -121,5 +121,14 @@ TEST(SnapshotVisitor, RefusesWhatDoesNotFit) {
   expect_refused("some", Vector(Vector::Zero(18)), "has 3 records where at most 2 are possible");
 }
 
+TEST(SnapshotVisitor, RefusesRecordsWithoutNumbers) {
+  Snapshot snapshot;
+  snapshot.save("legs", Vector(Vector::Zero(6)));
+  std::vector<Vector> legs;
+  EXPECT_THROW(snapshot.loader("legs").list("", legs), Error) << "an empty prototype divides by no width";
+  snapshot.loader("legs").list("", legs, 9, Vector(Vector::Zero(3)));
+  EXPECT_EQ(legs.size(), 2U);
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -15,9 +15,8 @@ TEST_P(MalformedCase, HasAllMessagesThatFollow) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MalformedCase,
-                         testing::ValuesIn(read_messages("malformed_case.txt",
-                                                         {{"schemes", all_schemes()},
-                                                          {"keys_of_time", keys_of_time()}})),
+                         testing::ValuesIn(read_messages("malformed_case.txt", {{"schemes", all_schemes()},
+                                                                                {"keys_of_time", keys_of_time()}})),
                          name_of_row);
 
 TEST(MalformedCaseFile, NamesKeysOfOtherSectionsWithThem) {
