@@ -12,7 +12,7 @@
 #include "ricochet/report/reading_runs.hpp"
 #include "ricochet/report/run_data.hpp"
 #include "ricochet/report/runs_figure.hpp"
-#include "ricochet/report/surface.hpp"
+#include "ricochet/report/simplices.hpp"
 #include "ricochet/study/study_figure.hpp"
 #include "ricochet/study/study_table.hpp"
 
@@ -78,15 +78,15 @@ py::list cells_of(const std::vector<CellBlock>& blocks, int degree) {
 /// Returns (nodes of the body, triangles × 3, cell of each triangle) of the visible surface.
 py::tuple surface_of(const RunData& run, Index most) {
   const ResultsReader& results = results_of(run);
-  Surface surface;
+  Simplices surface;
   {
     const LibraryLock lock;
     surface = make_surface(results.nodes(), results.cells(), most);
   }
   const auto nodes = static_cast<Index>(surface.nodes.size());
-  const Index triangles = surface.triangle_count();
+  const Index triangles = surface.count();
   return py::make_tuple(owned_array(std::move(surface.nodes), nodes),
-                        owned_array(std::move(surface.triangles), triangles, 3),
+                        owned_array(std::move(surface.corners), triangles, 3),
                         owned_array(std::move(surface.cells), triangles));
 }
 

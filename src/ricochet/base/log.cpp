@@ -14,12 +14,13 @@ namespace ricochet::log {
 
 namespace {
 
-constexpr std::array<std::pair<const char*, Level>, 6> level_names{{{"trace", Level::trace},
-                                                                    {"debug", Level::debug},
-                                                                    {"info", Level::info},
-                                                                    {"warning", Level::warning},
-                                                                    {"error", Level::error},
-                                                                    {"off", Level::off}}};
+/// Names of the levels in the order of Level, and spdlog's levels.
+constexpr std::array<std::pair<const char*, spdlog::level::level_enum>, 6> levels{{{"trace", spdlog::level::trace},
+                                                                                   {"debug", spdlog::level::debug},
+                                                                                   {"info", spdlog::level::info},
+                                                                                   {"warning", spdlog::level::warn},
+                                                                                   {"error", spdlog::level::err},
+                                                                                   {"off", spdlog::level::off}}};
 
 spdlog::logger& logger() {
   static const std::shared_ptr<spdlog::logger> instance = [] {
@@ -52,21 +53,7 @@ std::string& run_case_file() {
 }
 
 spdlog::level::level_enum spdlog_level(Level level) {
-  switch (level) {
-    case Level::trace:
-      return spdlog::level::trace;
-    case Level::debug:
-      return spdlog::level::debug;
-    case Level::info:
-      return spdlog::level::info;
-    case Level::warning:
-      return spdlog::level::warn;
-    case Level::error:
-      return spdlog::level::err;
-    case Level::off:
-      return spdlog::level::off;
-  }
-  return spdlog::level::info;
+  return levels.at(static_cast<std::size_t>(level)).second;
 }
 
 void write_message(Level level, const std::string& message) {
@@ -82,8 +69,8 @@ void set_sink(Sink sink) {
 }
 
 Level parse_level(std::string_view name) {
-  for (const auto& [text, level] : level_names) {
-    if (name == text) return level;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    if (name == levels[i].first) return static_cast<Level>(i);
   }
   throw Error(ErrorKind::usage,
               fmt::format("unknown log level \"{}\"; use trace, debug, info, warning, error or off", name));
@@ -129,11 +116,8 @@ CollectWarnings::~CollectWarnings() {
 }
 
 Silence::Silence() {
-  for (const auto& [text, level] : level_names) {
-    if (!enabled(level)) continue;
-    before_ = level;
-    break;
-  }
+  before_ = Level::trace;
+  while (!enabled(before_)) before_ = static_cast<Level>(static_cast<int>(before_) + 1);
   set_level(Level::off);
 }
 Silence::~Silence() {

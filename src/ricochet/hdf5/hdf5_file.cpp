@@ -68,26 +68,19 @@ struct Hdf5Reader::Dataset {
   std::string name;
   Hdf5Handle set, type, space;
   Dataset(const Hdf5Reader& reader, const std::string& which)
-      : name(which),
-        set(reader.has_dataset(which) ? H5Dopen2(reader.file_, which.c_str(), H5P_DEFAULT) : -1, H5Dclose),
-        type(set >= 0 ? H5Dget_type(set) : -1, H5Tclose),
-        space(set >= 0 ? H5Dget_space(set) : -1, H5Sclose) {
-    if (!reader.has_dataset(which)) reader.fail(which, "there is no such dataset");
-    check(reader);
-  }
+      : Dataset(reader, reader.has_dataset(which) ? 1 : 0, reader.file_, which, which) {}
   /// Opens a data set in a group that is open.
   Dataset(const Hdf5Reader& reader, std::int64_t group, const std::string& which, std::string full_name)
-      : name(std::move(full_name)),
-        set(H5Lexists(group, which.c_str(), H5P_DEFAULT) > 0 ? H5Dopen2(group, which.c_str(), H5P_DEFAULT) : -1,
-            H5Dclose),
-        type(set >= 0 ? H5Dget_type(set) : -1, H5Tclose),
-        space(set >= 0 ? H5Dget_space(set) : -1, H5Sclose) {
-    if (H5Lexists(group, which.c_str(), H5P_DEFAULT) == 0) reader.fail(name, "there is no such dataset");
-    check(reader);
-  }
+      : Dataset(reader, H5Lexists(group, which.c_str(), H5P_DEFAULT), group, which, std::move(full_name)) {}
 
  private:
-  void check(const Hdf5Reader& reader) const {
+  /// `exists`: negative if it cannot be looked up.
+  Dataset(const Hdf5Reader& reader, int exists, std::int64_t group, const std::string& which, std::string full_name)
+      : name(std::move(full_name)),
+        set(exists > 0 ? H5Dopen2(group, which.c_str(), H5P_DEFAULT) : -1, H5Dclose),
+        type(set >= 0 ? H5Dget_type(set) : -1, H5Tclose),
+        space(set >= 0 ? H5Dget_space(set) : -1, H5Sclose) {
+    if (exists == 0) reader.fail(name, "there is no such dataset");
     if (set < 0 || type < 0 || space < 0) reader.fail(name, "this dataset cannot be opened: the file is damaged");
   }
 };

@@ -10,7 +10,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/report/reading_runs.hpp"
 #include "ricochet/report/run_data.hpp"
-#include "ricochet/report/surface.hpp"
+#include "ricochet/report/simplices.hpp"
 
 namespace ricochet {
 
@@ -119,7 +119,7 @@ class SceneWriter {
 
   [[nodiscard]] std::string surface_text() const {
     std::string text =
-        fmt::format(R"("triangles":{},"reference":{})", list_text(surface_.triangles), list_text(positions_of({})));
+        fmt::format(R"("triangles":{},"reference":{})", list_text(surface_.corners), list_text(positions_of({})));
     if (!run_.obstacles.empty()) {
       text += fmt::format(R"(,"obstacles":{{"corners":{},"cells":{},"obstacle":{}}})", run_.obstacles.front().corners,
                           list_text(run_.obstacles.front().cells), list_text(run_.obstacles.front().obstacle));
@@ -140,7 +140,7 @@ class SceneWriter {
       }
       float sum = 0.0F;
       for (std::size_t k = 0; k < 3; ++k)
-        sum += sizes[static_cast<std::size_t>(surface_.nodes[static_cast<std::size_t>(surface_.triangles[3 * t + k])])];
+        sum += sizes[static_cast<std::size_t>(surface_.nodes[static_cast<std::size_t>(surface_.corners[3 * t + k])])];
       shown.push_back(sum / 3.0F);
     }
     std::string text = fmt::format(R"({{"time":{:.9g},"points":{},"values":{})", run_.results->times()[frame],
@@ -180,7 +180,7 @@ class SceneWriter {
   const ResultField& field_;
   const ResultField& displacement_;
   const ResultField* pressure_;
-  Surface surface_;
+  Simplices surface_;
   std::vector<float> values_;
 };
 

@@ -200,10 +200,10 @@ std::optional<VolumePart> BodyFrames::pack_volume(const std::vector<std::size_t>
     part.nodes = static_cast<Index>(volume_.nodes.size());
     part.tetrahedra = volume_.count();
     part.positions = pack_positions(volume_.nodes, attempt);
-    part.corners = attempt.add_indices(volume_.tetrahedra);
+    part.corners = attempt.add_indices(volume_.corners);
     part.cells = attempt.add_indices(inside_.numbers);
     part.faces =
-        attempt.add_small_numbers(std::vector<float>(volume_.faces.begin(), volume_.faces.end()), 1, part.tetrahedra);
+        attempt.add_small_numbers(std::vector<float>(volume_.sides.begin(), volume_.sides.end()), 1, part.tetrahedra);
     for (const Values& values : inside_.deviations)
       part.deviations.push_back(pack(values, rows, displacement_bits, attempt));
     for (const Values& values : inside_.fields)
@@ -255,13 +255,13 @@ BodyPart BodyFrames::pack_body(std::size_t most_bytes, PackedArrays& arrays) con
   part.left_out = left_out_;
   part.is_thinned = surface_.is_thinned;
   part.nodes = static_cast<Index>(surface_.nodes.size());
-  part.triangles = surface_.triangle_count();
+  part.triangles = surface_.count();
   const std::size_t before = arrays.page_bytes();
   part.positions = pack_positions(surface_.nodes, arrays);
-  part.corners = arrays.add_indices(surface_.triangles);
+  part.corners = arrays.add_indices(surface_.corners);
   part.triangle_cells = arrays.add_indices(outside_.numbers);
   part.edges =
-      arrays.add_small_numbers(std::vector<float>(surface_.edges.begin(), surface_.edges.end()), 1, part.triangles);
+      arrays.add_small_numbers(std::vector<float>(surface_.sides.begin(), surface_.sides.end()), 1, part.triangles);
   const std::size_t fixed = arrays.page_bytes() - before;
   // Two fifths are reserved for the inside of a solid.
   const std::size_t share = volume_.count() > 0 ? most_bytes / 5 * 3 : most_bytes;

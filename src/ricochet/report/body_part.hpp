@@ -7,8 +7,7 @@
 #include "ricochet/report/contact_line.hpp"
 #include "ricochet/report/packed_array.hpp"
 #include "ricochet/report/run_data.hpp"
-#include "ricochet/report/surface.hpp"
-#include "ricochet/report/volume.hpp"
+#include "ricochet/report/simplices.hpp"
 
 /// @file The body over time in a page, and its contact boundary.
 namespace ricochet {
@@ -40,7 +39,7 @@ struct VolumePart {
   PackedArray positions;  ///< 3 × nodes, reference configuration
   PackedArray corners;    ///< tetrahedra × 4
   PackedArray cells;      ///< per tetrahedron, index of its cell among those included
-  PackedArray faces;      ///< see Volume
+  PackedArray faces;      ///< sides, see Simplices
   std::vector<PackedArray> deviations;
   std::vector<BodyField> fields;
   bool is_thinned = false;  ///< nodes were merged
@@ -51,7 +50,7 @@ struct BodyPart {
   PackedArray positions;                ///< dimension × nodes, reference configuration
   PackedArray corners;                  ///< triangles × 3
   PackedArray triangle_cells;           ///< per triangle, index of its cell among the visible ones
-  PackedArray edges;                    ///< see Surface
+  PackedArray edges;                    ///< sides, see Simplices
   std::vector<int> frames;              ///< numbers of the frames included
   PackedArray mean;                     ///< frames × 3: mean displacement of the nodes
   std::vector<PackedArray> deviations;  ///< per dimension, frames × nodes: displacement less its mean
@@ -115,9 +114,9 @@ class BodyFrames {
 
   const ResultsReader& results_;
   int dimension_;
-  Surface surface_;
+  Simplices surface_;
   ContactLine line_;
-  Volume volume_;
+  Simplices volume_;
   Part outside_, inside_;
   std::vector<int> frames_;   ///< numbers of the frames that were read
   std::vector<double> mean_;  ///< frames × 3

@@ -117,34 +117,36 @@ Json to_json(const BodyField& field) {
   return {{"name", field.name}, {"on_nodes", field.on_nodes}, {"values", to_json(field.values)}};
 }
 
+template <class Part>
+Json list_of(const std::vector<Part>& parts) {
+  Json list = Json::array();
+  for (const Part& part : parts) list.push_back(to_json(part));
+  return list;
+}
+
 Json to_json(const VolumePart& part) {
-  Json json{{"nodes", part.nodes},
-            {"tetrahedra", part.tetrahedra},
-            {"positions", to_json(part.positions)},
-            {"corners", to_json(part.corners)},
-            {"cells", to_json(part.cells)},
-            {"faces", to_json(part.faces)}};
-  json["deviations"] = json["fields"] = Json::array();
-  for (const PackedArray& deviation : part.deviations) json["deviations"].push_back(to_json(deviation));
-  for (const BodyField& field : part.fields) json["fields"].push_back(to_json(field));
-  return json;
+  return {{"nodes", part.nodes},
+          {"tetrahedra", part.tetrahedra},
+          {"positions", to_json(part.positions)},
+          {"corners", to_json(part.corners)},
+          {"cells", to_json(part.cells)},
+          {"faces", to_json(part.faces)},
+          {"deviations", list_of(part.deviations)},
+          {"fields", list_of(part.fields)}};
 }
 
 Json to_json(const BodyPart& part, const ResultsReader& results) {
-  Json json{{"nodes", part.nodes},
-            {"triangles", part.triangles},
-            {"times", times_of(part.frames, results)},
-            {"positions", to_json(part.positions)},
-            {"corners", to_json(part.corners)},
-            {"triangle_cells", to_json(part.triangle_cells)},
-            {"edges", to_json(part.edges)},
-            {"mean", to_json(part.mean)}};
-  json["deviations"] = Json::array();
-  for (const PackedArray& deviation : part.deviations) json["deviations"].push_back(to_json(deviation));
-  json["fields"] = Json::array();
-  for (const BodyField& field : part.fields) json["fields"].push_back(to_json(field));
-  json["volume"] = part.volume ? to_json(*part.volume) : Json(nullptr);
-  return json;
+  return {{"nodes", part.nodes},
+          {"triangles", part.triangles},
+          {"times", times_of(part.frames, results)},
+          {"positions", to_json(part.positions)},
+          {"corners", to_json(part.corners)},
+          {"triangle_cells", to_json(part.triangle_cells)},
+          {"edges", to_json(part.edges)},
+          {"mean", to_json(part.mean)},
+          {"deviations", list_of(part.deviations)},
+          {"fields", list_of(part.fields)},
+          {"volume", part.volume ? to_json(*part.volume) : Json(nullptr)}};
 }
 
 class PageBuilder {

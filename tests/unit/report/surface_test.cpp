@@ -1,4 +1,4 @@
-#include "ricochet/report/surface.hpp"
+#include "ricochet/report/simplices.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,11 +21,11 @@ Points in_space(const Points& nodes) {
 }
 
 /// Index in `surface.nodes` of corner k of a triangle.
-int corner_of(const Surface& surface, Index t, int k) {
-  return surface.triangles[static_cast<std::size_t>(3 * t + k)];
+int corner_of(const Simplices& surface, Index t, int k) {
+  return surface.corners[static_cast<std::size_t>(3 * t + k)];
 }
 
-double area(const Points& nodes, const Surface& surface, Index t) {
+double area(const Points& nodes, const Simplices& surface, Index t) {
   const auto corner = [&](int k) {
     return Eigen::Vector3d(nodes.col(surface.nodes[static_cast<std::size_t>(corner_of(surface, t, k))]));
   };
@@ -34,13 +34,13 @@ double area(const Points& nodes, const Surface& surface, Index t) {
 
 struct Sides {
   std::map<std::pair<int, int>, int> times, edges;  ///< triangles with a side, and those that mark it as a cell edge
-  explicit Sides(const Surface& surface) {
-    for (Index t = 0; t < surface.triangle_count(); ++t) {
+  explicit Sides(const Simplices& surface) {
+    for (Index t = 0; t < surface.count(); ++t) {
       for (int k = 0; k < 3; ++k) {
         const int a = corner_of(surface, t, k), b = corner_of(surface, t, (k + 1) % 3);
         const auto side = std::minmax(a, b);
         ++times[side];
-        edges[side] += (surface.edges[static_cast<std::size_t>(t)] >> k) & 1;
+        edges[side] += (surface.sides[static_cast<std::size_t>(t)] >> k) & 1;
       }
     }
   }
@@ -54,10 +54,10 @@ TEST_P(SurfaceOf, ABoxIsComplete) {
   const BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 3));
   const auto body = make_meshed_body(make_box_mesh(box), kind.displacement_degree);
   const Points nodes = in_space(body->space.nodes);
-  const Surface surface = make_surface(nodes, body->space.cells, 1000000);
+  const Simplices surface = make_surface(nodes, body->space.cells, 1000000);
   EXPECT_FALSE(surface.is_thinned);
   double sum = 0.0;
-  for (Index t = 0; t < surface.triangle_count(); ++t) sum += area(nodes, surface, t);
+  for (Index t = 0; t < surface.count(); ++t) sum += area(nodes, surface, t);
   EXPECT_NEAR(sum, kind.dimension() == 2 ? 1.0 : 6.0, 1e-13);
 
   // In space every side belongs to two triangles; in the plane those of the outline to one. Both agree on whether it is
@@ -77,7 +77,7 @@ TEST_P(SurfaceOf, ABoxIsComplete) {
 
   // Every named node exists and occurs once.
   EXPECT_EQ(std::set<Index>(surface.nodes.begin(), surface.nodes.end()).size(), surface.nodes.size());
-  for (const int node : surface.triangles) EXPECT_LT(static_cast<std::size_t>(node), surface.nodes.size());
+  for (const int node : surface.corners) EXPECT_LT(static_cast<std::size_t>(node), surface.nodes.size());
   if (kind.dimension() == 2) {
     Index cells = 0;
     for (const CellBlock& block : body->space.cells) cells += block.size();
@@ -91,9 +91,9 @@ TEST_P(SurfaceOf, TrianglesBelongToTheirCells) {
   const ElementKind& kind = GetParam();
   const BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 2));
   const auto body = make_meshed_body(make_box_mesh(box), kind.displacement_degree);
-  const Surface surface = make_surface(in_space(body->space.nodes), body->space.cells, 1000000);
+  const Simplices surface = make_surface(in_space(body->space.nodes), body->space.cells, 1000000);
   const CellBlock& block = body->space.cells.front();
-  for (Index t = 0; t < surface.triangle_count(); ++t) {
+  for (Index t = 0; t < surface.count(); ++t) {
     const Index* cell = block.cell(surface.cells[static_cast<std::size_t>(t)]);
     for (int k = 0; k < 3; ++k) {
       const Index node = surface.nodes[static_cast<std::size_t>(corner_of(surface, t, k))];
@@ -114,7 +114,7 @@ TEST_P(SurfaceOf, ItIsTheOneThatContactSees) {
     std::sort(piece.begin(), piece.end());
     seen.insert(piece);
   }
-  const Surface surface = make_surface(in_space(space.nodes), space.cells, 1000000);
+  const Simplices surface = make_surface(in_space(space.nodes), space.cells, 1000000);
   const auto number = [&](int local) { return surface.nodes[static_cast<std::size_t>(local)]; };
   if (kind.dimension() == 2) {
     for (const auto& [side, times] : Sides(surface).times) {
@@ -125,7 +125,7 @@ TEST_P(SurfaceOf, ItIsTheOneThatContactSees) {
   } else {
     for (std::size_t t = 0; t < surface.cells.size(); ++t) {
       BodySurface::Piece piece;
-      for (std::size_t k = 0; k < 3; ++k) piece[k] = number(surface.triangles[3 * t + k]);
+      for (std::size_t k = 0; k < 3; ++k) piece[k] = number(surface.corners[3 * t + k]);
       std::sort(piece.begin(), piece.end());
       shown.insert(piece);
     }
@@ -140,12 +140,12 @@ INSTANTIATE_TEST_SUITE_P(Elements, SurfaceOf, testing::ValuesIn(all_element_kind
 TEST(Surface, IsThinnedToWhatIsAskedFor) {
   const Mesh mesh = make_box_mesh(box_of(CellShape::triangle, {60, 60}));
   const Points nodes = in_space(mesh.nodes);
-  const Surface surface = make_surface(nodes, mesh.cells, 2000);
+  const Simplices surface = make_surface(nodes, mesh.cells, 2000);
   EXPECT_TRUE(surface.is_thinned);
-  EXPECT_LE(surface.triangle_count(), 2000);
-  EXPECT_GT(surface.triangle_count(), 500);
+  EXPECT_LE(surface.count(), 2000);
+  EXPECT_GT(surface.count(), 500);
   double sum = 0.0;
-  for (Index t = 0; t < surface.triangle_count(); ++t) sum += area(nodes, surface, t);
+  for (Index t = 0; t < surface.count(); ++t) sum += area(nodes, surface, t);
   EXPECT_NEAR(sum, 1.0, 0.1) << "still the square";
 }
 

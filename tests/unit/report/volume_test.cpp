@@ -1,4 +1,4 @@
-#include "ricochet/report/volume.hpp"
+#include "ricochet/report/simplices.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,20 +8,19 @@
 #include <map>
 #include <set>
 
-#include "ricochet/report/surface.hpp"
 #include "support/box_mesh.hpp"
 
 namespace ricochet::test_support {
 namespace {
 
 /// Index in `volume.nodes` of corner k of a tetrahedron.
-int corner_of(const Volume& volume, Index t, int k) {
-  return volume.tetrahedra[static_cast<std::size_t>(4 * t + k)];
+int vertex_of(const Simplices& volume, Index t, int k) {
+  return volume.corners[static_cast<std::size_t>(4 * t + k)];
 }
 
-double volume_of(const Points& nodes, const Volume& volume, Index t) {
+double volume_of(const Points& nodes, const Simplices& volume, Index t) {
   const auto corner = [&](int k) {
-    return Eigen::Vector3d(nodes.col(volume.nodes[static_cast<std::size_t>(corner_of(volume, t, k))]));
+    return Eigen::Vector3d(nodes.col(volume.nodes[static_cast<std::size_t>(vertex_of(volume, t, k))]));
   };
   return std::abs((corner(1) - corner(0)).cross(corner(2) - corner(0)).dot(corner(3) - corner(0))) / 6.0;
 }
@@ -29,14 +28,14 @@ double volume_of(const Points& nodes, const Volume& volume, Index t) {
 /// Number of tetrahedra that share each face, and of those that mark it as a cell face.
 struct Faces {
   std::map<std::array<int, 3>, int> times, of_cells;
-  explicit Faces(const Volume& volume) {
+  explicit Faces(const Simplices& volume) {
     for (Index t = 0; t < volume.count(); ++t) {
       for (int k = 0; k < 4; ++k) {
         std::array<int, 3> face{};
-        for (std::size_t i = 0; i < 3; ++i) face[i] = corner_of(volume, t, (k + 1 + static_cast<int>(i)) % 4);
+        for (std::size_t i = 0; i < 3; ++i) face[i] = vertex_of(volume, t, (k + 1 + static_cast<int>(i)) % 4);
         std::sort(face.begin(), face.end());
         ++times[face];
-        of_cells[face] += volume.faces[static_cast<std::size_t>(t)] >> k & 1;
+        of_cells[face] += volume.sides[static_cast<std::size_t>(t)] >> k & 1;
       }
     }
   }
@@ -49,7 +48,7 @@ TEST_P(VolumeOf, ACubeIsComplete) {
   const ElementKind& kind = GetParam();
   const auto body = make_meshed_body(make_box_mesh(box_of(kind.shape, {2, 2, 2})), kind.displacement_degree);
   const Points& nodes = body->space.nodes;
-  const Volume volume = make_volume(nodes, body->space.cells, 1000000);
+  const Simplices volume = make_volume(nodes, body->space.cells, 1000000);
   EXPECT_FALSE(volume.is_thinned);
   const Index cells = body->space.cells.front().size();
   const Index parts = kind.displacement_degree == 2 ? 8 : 1;
@@ -82,8 +81,8 @@ TEST_P(VolumeOf, ACubeIsComplete) {
 TEST_P(VolumeOf, ItsOutsideIsTheSurface) {
   const ElementKind& kind = GetParam();
   const auto body = make_meshed_body(make_box_mesh(box_of(kind.shape, {2, 2, 2})), kind.displacement_degree);
-  const Volume volume = make_volume(body->space.nodes, body->space.cells, 1000000);
-  const Surface surface = make_surface(body->space.nodes, body->space.cells, 1000000);
+  const Simplices volume = make_volume(body->space.nodes, body->space.cells, 1000000);
+  const Simplices surface = make_surface(body->space.nodes, body->space.cells, 1000000);
   const auto in_body = [](std::array<int, 3> corners, const std::vector<Index>& nodes) {
     std::array<Index, 3> result{};
     for (std::size_t k = 0; k < 3; ++k) result[k] = nodes[static_cast<std::size_t>(corners[k])];
@@ -95,7 +94,7 @@ TEST_P(VolumeOf, ItsOutsideIsTheSurface) {
     if (times == 1) outside.insert(in_body(face, volume.nodes));
   }
   for (std::size_t t = 0; t < surface.cells.size(); ++t) {
-    const int* corners = surface.triangles.data() + 3 * t;
+    const int* corners = surface.corners.data() + 3 * t;
     drawn.insert(in_body({corners[0], corners[1], corners[2]}, surface.nodes));
   }
   EXPECT_EQ(outside, drawn);
@@ -107,14 +106,14 @@ TEST_P(VolumeOf, ManyCellsAreMadeFewer) {
   const auto body = make_meshed_body(make_box_mesh(box_of(kind.shape, {4, 4, 4})), kind.displacement_degree);
   const Points& nodes = body->space.nodes;
   const Index of_vertices = body->space.cells.front().size() * (kind.shape == CellShape::hexahedron ? 6 : 1);
-  const Volume plain = make_volume(nodes, body->space.cells, of_vertices);
+  const Simplices plain = make_volume(nodes, body->space.cells, of_vertices);
   EXPECT_FALSE(plain.is_thinned);
   EXPECT_EQ(plain.count(), of_vertices);
   double sum = 0.0;
   for (Index t = 0; t < plain.count(); ++t) sum += volume_of(nodes, plain, t);
   EXPECT_NEAR(sum, 1.0, 1e-12);
 
-  const Volume coarse = make_volume(nodes, body->space.cells, of_vertices / 2);
+  const Simplices coarse = make_volume(nodes, body->space.cells, of_vertices / 2);
   EXPECT_TRUE(coarse.is_thinned);
   EXPECT_LE(coarse.count(), of_vertices / 2);
   EXPECT_GT(coarse.count(), of_vertices / 20);
