@@ -67,6 +67,19 @@ double RunSummary::delay_of(const std::string& column) const {
   return is_force ? force_instant * step : 0.0;
 }
 
+const Impact* RunSummary::first_restitution() const {
+  const auto found = std::find_if(impacts.begin(), impacts.end(),
+                                  [](const Impact& impact) { return impact.restitution().has_value(); });
+  return found != impacts.end() ? &*found : nullptr;
+}
+
+const Impact* RunSummary::hardest_impact() const {
+  const auto found = std::max_element(impacts.begin(), impacts.end(), [](const Impact& a, const Impact& b) {
+    return a.largest_force < b.largest_force;
+  });
+  return found != impacts.end() ? &*found : nullptr;
+}
+
 double RunSummary::energy_scale() const {
   return largest_size(*this, std::array<std::string, 3>{"total_energy", "kinetic_energy", "elastic_energy"});
 }

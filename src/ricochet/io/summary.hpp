@@ -183,6 +183,12 @@ struct RunSummary {
   /// Offset of the values of this column from the time of their row: energies and forces are those at the scheme's own
   /// instants.
   [[nodiscard]] double delay_of(const std::string& column) const;
+  /// First impact with a restitution, and the one with the largest force; null if there is none.
+  [[nodiscard]] const Impact* first_restitution() const;
+  [[nodiscard]] const Impact* hardest_impact() const;
+  [[nodiscard]] std::size_t number_of(const Impact& impact) const {
+    return static_cast<std::size_t>(&impact - impacts.data());
+  }
   /// Scale of the energy account: maximum of |first|, |minimum|, |maximum| of total, kinetic and elastic energy.
   [[nodiscard]] double energy_scale() const;
   /// Returns false if, when an impact (numbered from 0) ended, cells had rotated too far for small strain, or the

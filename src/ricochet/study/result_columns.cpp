@@ -15,26 +15,9 @@ namespace ricochet {
 
 namespace {
 
-using Impacts = std::vector<Impact>;
-
-Impacts::const_iterator first_with_restitution(const Impacts& impacts) {
-  return std::find_if(impacts.begin(), impacts.end(),
-                      [](const Impact& impact) { return impact.restitution().has_value(); });
-}
-
-Impacts::const_iterator hardest(const Impacts& impacts) {
-  return std::max_element(impacts.begin(), impacts.end(),
-                          [](const Impact& a, const Impact& b) { return a.largest_force < b.largest_force; });
-}
-
 /// Returns true unless a warning concerns the case only, not its results.
 bool concerns_validity(const std::string& warning) {
   return !warning.starts_with(end_warning);
-}
-
-/// Returns true if cells had rotated so far that small strain does not describe that impact.
-bool is_strained(const RunSummary& s, Impacts::const_iterator impact) {
-  return !s.rotation.holds_in_impact(static_cast<std::size_t>(impact - s.impacts.begin()));
 }
 
 /// Returns a coordinate of the position of the largest stress, for each of the dimensions.
@@ -56,13 +39,13 @@ ResultColumn of_summary(TableColumn column, TableCell (*cell)(const RunSummary&)
 }
 
 TableCell restitution_of(const RunSummary& s) {
-  const auto first = first_with_restitution(s.impacts);
-  return first != s.impacts.end() ? TableCell(*first->restitution()) : TableCell();
+  const Impact* const first = s.first_restitution();
+  return first != nullptr ? TableCell(*first->restitution()) : TableCell();
 }
 
 TableCell largest_force_of(const RunSummary& s) {
-  const auto most = hardest(s.impacts);
-  return most != s.impacts.end() ? TableCell(most->largest_force) : TableCell();
+  const Impact* const most = s.hardest_impact();
+  return most != nullptr ? TableCell(most->largest_force) : TableCell();
 }
 
 TableCell exit_status_of(const RunState& state) {
@@ -104,12 +87,12 @@ const std::vector<ResultColumn>& all_columns() {
 
 std::string doubts_of(const RunSummary& s) {
   std::vector<std::string> doubts;
-  if (const auto first = first_with_restitution(s.impacts); first != s.impacts.end()) {
+  if (const Impact* const first = s.first_restitution(); first != nullptr) {
     if (restitution_error(*first).is_large) doubts.emplace_back("restitution: inexact");
-    if (is_strained(s, first)) doubts.emplace_back("restitution: cells turned");
+    if (!s.rotation.holds_in_impact(s.number_of(*first))) doubts.emplace_back("restitution: cells turned");
     if (is_distorted_by_rotation(*first)) doubts.emplace_back("restitution: the body turned");
   }
-  if (const auto most = hardest(s.impacts); most != s.impacts.end() && most->is_coarse())
+  if (const Impact* const most = s.hardest_impact(); most != nullptr && most->is_coarse())
     doubts.emplace_back("largest_force: coarse contact");
   if (s.peak_stress && s.peak_stress->peak.evaluations < s.peak_stress->peak.states)
     doubts.emplace_back("peak_von_mises: at least");

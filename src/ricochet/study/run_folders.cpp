@@ -6,8 +6,11 @@
 #include <cctype>
 #include <filesystem>
 #include <set>
+#include <stdexcept>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/file_version.hpp"
+#include "ricochet/io/durable_file.hpp"
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/study/run_pool.hpp"
 #include "ricochet/study/run_state.hpp"
@@ -41,6 +44,30 @@ void require_folder(const fs::path& path) {
 }
 
 }  // namespace
+
+std::string PlanDirectory::path(const std::string& file) const {
+  return (fs::path(directory) / file).string();
+}
+
+bool holds_plan(const std::string& directory, const std::string& file) {
+  std::error_code ignored;
+  return fs::exists(fs::path(directory) / file, ignored);
+}
+
+void read_plan(const std::string& path, const std::string& of, const std::function<void(const Json& json)>& parse) {
+  const std::string text = read_file(path);
+  try {
+    const Json json = Json::parse(text);
+    require_readable_version(
+        path, json.value(version_attribute, ""),
+        fmt::format("repeat the {} in another directory (-o), or use the version that wrote it", of));
+    parse(json);
+  } catch (const VersionError&) {
+    throw;
+  } catch (const std::runtime_error& problem) {  // of Json, or an Error
+    refuse_damaged_plan(path, problem.what(), of);
+  }
+}
 
 bool is_run_folder_name(std::string_view name) {
   const auto is_plain = [](char c) {

@@ -1,12 +1,30 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-/// @file The folders in runs/ of a study or of benchmarks. Their names are read from a file that users may have edited,
-/// and folders with these names are removed.
+#include "ricochet/base/json.hpp"
+
+/// @file The directory of a study or of benchmarks: a plan, and the folders of its runs in runs/. The names of these
+/// are read from the plan, which users may have edited, and folders with these names are removed.
 namespace ricochet {
+
+/// Directory with a plan, whose runs have a `folder`.
+struct PlanDirectory {
+  std::string directory;
+
+  [[nodiscard]] std::string path(const std::string& file) const;
+  template <class Run>
+  requires requires(const Run& run) { run.folder; }
+  [[nodiscard]] std::string path(const Run& run) const { return path("runs/" + run.folder); }
+};
+
+/// Returns whether a directory has the file of a plan: "study.json", "benchmark.json".
+[[nodiscard]] bool holds_plan(const std::string& directory, const std::string& file);
+/// Parses such a file by `parse`. Throws VersionError, or refuse_damaged_plan() for any other error. `of`: as there.
+void read_plan(const std::string& path, const std::string& of, const std::function<void(const Json& json)>& parse);
 
 /// Returns true for the name of a single folder, made of the characters of run names, and not a path that leads
 /// elsewhere.

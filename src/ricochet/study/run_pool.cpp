@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 
@@ -10,13 +13,112 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/base/timer.hpp"
 #include "ricochet/io/durable_file.hpp"
+#include "ricochet/io/progress.hpp"
+#include "ricochet/io/summary.hpp"
 #include "ricochet/study/run_state.hpp"
-#include "ricochet/study/study_progress.hpp"
 
 namespace ricochet {
 
 namespace {
+
+/// Seconds between two readings of the summaries of runs, which are written every two seconds.
+constexpr double redraw_interval = 0.5;
+
+/// Returns the fraction of its steps that a run has completed, from its summary.
+double part_done(const std::string& directory) {
+  try {
+    return read_summary(directory + "/summary.json").part_done();
+  } catch (const Error&) {  // no summary yet
+    return 0.0;
+  }
+}
+
+/// Progress of many runs on standard error: a bar on a terminal, else a line for each run that ends.
+class StudyProgress {
+ public:
+  /// Shows the progress of so many runs, some of which had ended before.
+  StudyProgress(std::size_t runs, std::size_t ended_before, bool quiet);
+  /// Ends the line of the bar if it is open.
+  ~StudyProgress();
+  StudyProgress(const StudyProgress&) = delete;
+  StudyProgress& operator=(const StudyProgress&) = delete;
+
+  void begin(const std::string& directory);
+  /// `words`: the state in which it ended.
+  void end(const std::string& directory, const std::string& words);
+  /// Updates the progress of the runs from time to time.
+  void watch();
+
+ private:
+  void draw();
+  /// Returns the number of completed runs, including fractions of those in progress.
+  [[nodiscard]] double runs_done() const;
+  /// Returns ", 12 s left": an estimate for the remaining runs from those of this command. "" before the first has
+  /// progressed.
+  [[nodiscard]] std::string time_left(double done) const;
+
+  std::size_t runs_, ended_before_, ended_;
+  bool quiet_, terminal_, open_ = false;
+  double last_drawn_ = 0.0;
+  std::vector<std::string> running_;
+  Timer timer_;
+};
+
+StudyProgress::StudyProgress(std::size_t runs, std::size_t ended_before, bool quiet)
+    : runs_(runs),
+      ended_before_(ended_before),
+      ended_(ended_before),
+      quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO) != 0) {}
+
+StudyProgress::~StudyProgress() {
+  if (open_) std::fputc('\n', stderr);
+}
+
+void StudyProgress::begin(const std::string& directory) {
+  running_.push_back(directory);
+}
+
+void StudyProgress::end(const std::string& directory, const std::string& words) {
+  std::erase(running_, directory);
+  ++ended_;
+  if (quiet_) return;
+  if (terminal_) {
+    draw();
+  } else {
+    fmt::print(stderr, "{}/{}  {}: {}{}\n", ended_, runs_, directory, words, time_left(runs_done()));
+  }
+}
+
+void StudyProgress::watch() {
+  if (!quiet_ && terminal_ && timer_.seconds() - last_drawn_ >= redraw_interval) draw();
+}
+
+double StudyProgress::runs_done() const {
+  auto done = static_cast<double>(ended_);
+  for (const std::string& directory : running_) done += part_done(directory);
+  return done;
+}
+
+std::string StudyProgress::time_left(double done) const {
+  const double here = done - static_cast<double>(ended_before_), left = static_cast<double>(runs_) - done;
+  if (!(here > 0.0 && left > 0.0)) return "";
+  // The mean time per run includes the number of jobs, which stays the same.
+  return fmt::format(", {} left", duration_text(timer_.seconds() / here * left));
+}
+
+void StudyProgress::draw() {
+  last_drawn_ = timer_.seconds();
+  const double done = runs_done();
+  constexpr int width = 30;
+  const int filled = static_cast<int>(width * done / static_cast<double>(runs_));
+  fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}/{} runs, {} running  {} elapsed{}\033[K", "", filled, "", width - filled,
+             ended_, runs_, running_.size(), duration_text(last_drawn_), time_left(done));
+  std::fflush(stderr);
+  open_ = true;
+}
 
 /// Runs that are not complete, and their progress.
 class RunPool {

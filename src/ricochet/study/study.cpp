@@ -70,7 +70,7 @@ void remove_old_study(const std::string& directory) {
 
 Study prepare_study(const std::string& directory, const StudyPlan& plan, const StudyQuestions& questions,
                     const StudyOptions& options) {
-  Study study{directory, plan, questions, number_runs(plan)};
+  Study study{{directory}, plan, questions, number_runs(plan)};
   require_one_valid_case(study);
   check_requested_columns(study);
   if (holds_study(directory) && options.force) remove_old_study(directory);

@@ -149,28 +149,11 @@ void require_sound(StudyQuestions questions, const StudyPlan& plan) {
 
 }  // namespace
 
-std::string Study::path(const std::string& file) const {
-  return (std::filesystem::path(directory) / file).string();
-}
-
-std::string Study::path(const StudyRun& run) const {
-  return (std::filesystem::path(directory) / "runs" / run.folder).string();
-}
-
-bool holds_study(const std::string& directory) {
-  std::error_code ignored;
-  return std::filesystem::exists(std::filesystem::path(directory) / "study.json", ignored);
-}
-
 Study read_study(const std::string& directory) {
   Study study;
   study.directory = directory;
   require_study(directory);
-  const std::string path = study.path("study.json"), text = read_file(path);
-  try {
-    const Json json = Json::parse(text);
-    require_readable_version(path, json.value(version_attribute, ""),
-                             "repeat the study in another directory (-o), or use the version that wrote it");
+  read_plan(study.path("study.json"), "study", [&](const Json& json) {
     study.plan = plan_from(json);
     require_sound(study.plan);
     study.questions = questions_from(json.at("questions"));
@@ -183,13 +166,7 @@ Study read_study(const std::string& directory) {
     }
     require_run_folder_names(folders, "\"runs\"");
     for (std::size_t i = 0; i < folders.size(); ++i) study.runs[i].folder = folders[i];
-  } catch (const Json::Exception& problem) {
-    refuse_damaged_plan(path, problem.what(), "study");
-  } catch (const VersionError&) {
-    throw;
-  } catch (const Error& problem) {
-    refuse_damaged_plan(path, problem.what(), "study");
-  }
+  });
   return study;
 }
 

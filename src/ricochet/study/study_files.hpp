@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ricochet/study/plan.hpp"
+#include "ricochet/study/run_folders.hpp"
 
 /// @file The directory of a study: study.json with its plan, its runs in runs/, and its tables.
 namespace ricochet {
@@ -25,17 +26,15 @@ struct StudyRun {
   std::string folder;  ///< name of its folder in runs/
 };
 
-struct Study {
-  std::string directory;
+struct Study : PlanDirectory {
   StudyPlan plan;
   StudyQuestions questions;
   std::vector<StudyRun> runs;  ///< in the order of the table
-
-  [[nodiscard]] std::string path(const std::string& file) const;
-  [[nodiscard]] std::string path(const StudyRun& run) const;
 };
 
-[[nodiscard]] bool holds_study(const std::string& directory);
+[[nodiscard]] inline bool holds_study(const std::string& directory) {
+  return holds_plan(directory, "study.json");
+}
 /// Throws Error(file_access) if there is no study, Error(invalid_input) if it is damaged.
 [[nodiscard]] Study read_study(const std::string& directory);
 void write_study(const Study& study);

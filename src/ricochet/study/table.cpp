@@ -209,24 +209,11 @@ std::string markdown_text(const std::string& text) {
 }
 
 std::string escaped(const std::string& text) {
+  static const std::map<char, std::string_view> entities{{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
   std::string result;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
+    const auto entity = entities.find(c);
+    result += entity != entities.end() ? entity->second : std::string_view(&c, 1);
   }
   return result;
 }

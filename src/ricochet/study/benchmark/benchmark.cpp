@@ -120,7 +120,7 @@ int run_benchmarks(const BenchmarkPlan& plan, const RunPoolOptions& options) {
 }  // namespace
 
 BenchmarkPlan plan_benchmarks(const std::vector<Benchmark>& benchmarks, const std::string& directory) {
-  BenchmarkPlan plan{directory, false, {}};
+  BenchmarkPlan plan{{directory}, false, {}};
   for (const Benchmark& benchmark : benchmarks) {
     BenchmarkRun& run = plan.runs.emplace_back();
     run.benchmark = benchmark;
@@ -146,7 +146,7 @@ BenchmarkPlan plan_scorecard(const std::vector<Benchmark>& benchmarks, const std
     for (MethodRow& row : rows) row.chosen.push_back(choosers.back()->choose(row.method));
   }
   if (also_consistent) add_consistent_rows(rows, choosers);
-  BenchmarkPlan plan{directory, true, {}};
+  BenchmarkPlan plan{{directory}, true, {}};
   for (const MethodRow& row : rows) {
     for (std::size_t b = 0; b < benchmarks.size(); ++b) {
       BenchmarkRun& run = plan.runs.emplace_back();

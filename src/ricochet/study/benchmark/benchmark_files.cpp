@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/file_version.hpp"
 #include "ricochet/base/json.hpp"
@@ -46,38 +44,19 @@ bool BenchmarkRun::operator==(const BenchmarkRun& other) const {
   return run_to_json(*this).dump() == run_to_json(other).dump();
 }
 
-std::string BenchmarkPlan::path(const std::string& file) const {
-  return (std::filesystem::path(directory) / file).string();
-}
-
-std::string BenchmarkPlan::path(const BenchmarkRun& run) const {
-  return (std::filesystem::path(directory) / "runs" / run.folder).string();
-}
-
-bool holds_benchmarks(const std::string& directory) {
-  std::error_code ignored;
-  return std::filesystem::exists(std::filesystem::path(directory) / "benchmark.json", ignored);
-}
-
 BenchmarkPlan read_benchmark_plan(const std::string& directory) {
-  BenchmarkPlan plan{directory, false, {}};
-  const std::string path = plan.path("benchmark.json");
+  BenchmarkPlan plan{{directory}, false, {}};
   if (!holds_benchmarks(directory))
     throw Error(ErrorKind::file_access, fmt::format("{}: holds no benchmarks: benchmark.json is missing", directory));
-  try {
-    const Json json = Json::parse(read_file(path));
-    require_readable_version(path, json.value(version_attribute, ""),
-                             "repeat the benchmarks in another directory (-o), or use the version that wrote them");
+  read_plan(plan.path("benchmark.json"), "benchmarks", [&](const Json& json) {
     plan.is_scorecard = json.at("scorecard");
-    for (const Json& run : json.at("runs")) plan.runs.push_back(run_from(run));
-  } catch (const Json::Exception& problem) {
-    refuse_damaged_plan(path, problem.what(), "benchmarks");
-  }
-  for (const BenchmarkRun& run : plan.runs) {
-    if (!is_run_folder_name(run.folder))
-      refuse_damaged_plan(path, fmt::format("\"{}\" is not a valid name for the folder of a run", run.folder),
-                          "benchmarks");
-  }
+    for (const Json& run : json.at("runs")) {
+      plan.runs.push_back(run_from(run));
+      if (!is_run_folder_name(plan.runs.back().folder))
+        throw Json::Exception(
+            fmt::format("\"{}\" is not a valid name for the folder of a run", plan.runs.back().folder));
+    }
+  });
   return plan;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ricochet/study/benchmark/manifest.hpp"
+#include "ricochet/study/run_folders.hpp"
 
 /// @file The directory of benchmarks: benchmark.json with their plan, their runs in runs/, and the tables.
 namespace ricochet {
@@ -21,16 +22,14 @@ struct BenchmarkRun {
   bool operator==(const BenchmarkRun&) const;
 };
 
-struct BenchmarkPlan {
-  std::string directory;
+struct BenchmarkPlan : PlanDirectory {
   bool is_scorecard = false;  ///< methods were requested
   std::vector<BenchmarkRun> runs;
-
-  [[nodiscard]] std::string path(const std::string& file) const;
-  [[nodiscard]] std::string path(const BenchmarkRun& run) const;
 };
 
-[[nodiscard]] bool holds_benchmarks(const std::string& directory);
+[[nodiscard]] inline bool holds_benchmarks(const std::string& directory) {
+  return holds_plan(directory, "benchmark.json");
+}
 /// Throws Error(file_access) if there are no benchmarks, Error(invalid_input) if benchmark.json is damaged.
 [[nodiscard]] BenchmarkPlan read_benchmark_plan(const std::string& directory);
 void write_benchmark_plan(const BenchmarkPlan& plan);

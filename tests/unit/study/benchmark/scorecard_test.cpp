@@ -51,7 +51,7 @@ const ExpectationResult unknown{
     .quantity = "summary.x", .expected = "≤ 1", .maximum = 1.0, .holds = false, .note = "no"};
 
 struct Example {
-  BenchmarkPlan plan{"out", true, {}};
+  BenchmarkPlan plan{{"out"}, true, {}};
   BenchmarkResults results;
 
   Example() {
