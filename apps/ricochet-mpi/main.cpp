@@ -7,9 +7,7 @@
 #include <sstream>
 
 #include "../ricochet/commands.hpp"
-#include "../ricochet/empty_values.hpp"
-#include "../ricochet/process_memory.hpp"
-#include "../ricochet/standard_streams.hpp"
+#include "../ricochet/process.hpp"
 #include "../ricochet/stop_signal.hpp"
 #include "ricochet/base/blas.hpp"
 #include "ricochet/base/error.hpp"

@@ -1,5 +1,3 @@
-#include "advice_text.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,9 +6,6 @@
 #include <limits>
 #include <optional>
 
-#include "contact_text.hpp"
-#include "number_text.hpp"
-#include "position_text.hpp"
 #include "ricochet/base/rounded.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
@@ -20,6 +15,7 @@
 #include "ricochet/mesh/derived_groups.hpp"
 #include "ricochet/run/run_description.hpp"
 #include "ricochet/simulation/impact/rigid_bodies.hpp"
+#include "texts.hpp"
 
 namespace ricochet::program {
 

@@ -26,11 +26,7 @@ std::string manifest_file(const std::string& folder) {
     throw Error(ErrorKind::file_access,
                 fmt::format("--folder {}: this folder has no benchmarks.toml, the list of benchmarks", folder));
   }
-  const std::string path = installed_file("benchmarks/benchmarks.toml");
-  if (!path.empty()) return path;
-  throw Error(ErrorKind::file_access,
-              "share/ricochet/benchmarks, the folder with the cases of the benchmarks, is missing beside this program: "
-              "build or install Ricochet again, or name a folder with --folder");
+  return benchmark_manifest();
 }
 
 void list_benchmarks(const std::vector<Benchmark>& benchmarks) {

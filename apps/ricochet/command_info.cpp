@@ -4,17 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "advice_text.hpp"
 #include "commands.hpp"
-#include "comparison_text.hpp"
-#include "contact_text.hpp"
-#include "expectation_text.hpp"
-#include "method_text.hpp"
-#include "penetration_text.hpp"
-#include "position_text.hpp"
-#include "probe_text.hpp"
-#include "progress_text.hpp"
-#include "results_text.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/read_case.hpp"
@@ -29,6 +19,7 @@
 #include "ricochet/run/run_description.hpp"
 #include "ricochet/study/benchmark/benchmark_files.hpp"
 #include "ricochet/study/study_files.hpp"
+#include "texts.hpp"
 
 namespace ricochet::program {
 

@@ -106,14 +106,8 @@ int plot_animation(const PlotArguments& arguments) {
   }
   options.half = arguments.half;
   options.zoom = arguments.zoom;
-  draw_figure(describe_animation(arguments.directories.front(), options), format, arguments.output);
-  fmt::print("{}\n", arguments.output);
-  return 0;
+  return write_figure(describe_animation(arguments.directories.front(), options), format, arguments.output);
 }
-
-}  // namespace
-
-namespace {
 
 /// Describes the figure of a study; a figure shows only one study.
 std::string describe_study(const PlotArguments& arguments, const FigureOptions& options) {
@@ -133,14 +127,10 @@ int plot(const PlotArguments& arguments) {
   const std::string format =
       format_of(arguments.output, {"svg", "pdf", "png"}, "a figure must be an .svg, .pdf or .png file");
   const FigureOptions options = options_of(arguments);
-  if (std::any_of(arguments.directories.begin(), arguments.directories.end(), holds_study)) {
-    draw_figure(describe_study(arguments, options), format, arguments.output);
-    fmt::print("{}\n", arguments.output);
-    return 0;
-  }
-  draw_figure(describe_figure_of(arguments.directories, options), format, arguments.output);
-  fmt::print("{}\n", arguments.output);
-  return 0;
+  const bool any_study = std::any_of(arguments.directories.begin(), arguments.directories.end(), holds_study);
+  return write_figure(
+      any_study ? describe_study(arguments, options) : describe_figure_of(arguments.directories, options), format,
+      arguments.output);
 }
 
 }  // namespace ricochet::program

@@ -25,14 +25,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string viewer_file() {
-  const std::string path = installed_file("viewer.html");
-  if (path.empty()) {
-    throw Error(ErrorKind::file_access,
-                "share/ricochet/viewer.html, the template of reports, is missing beside this program: build or install "
-                "Ricochet again");
-  }
-  return path;
+ReportOptions options_of(const ReportArguments& arguments) {
+  ReportOptions options;
+  options.viewer = installed_file("viewer.html", "the template of reports");
+  options.most_bytes = static_cast<std::size_t>(arguments.most_megabytes * 1e6);
+  return options;
+}
+
+/// Returns the file to write: the requested one, or `usual`. Refuses to overwrite anything but such a page.
+std::string checked_output(const ReportArguments& arguments, const std::string& usual,
+                           bool (*is_own)(const std::string& path), const char* what) {
+  const std::string output = arguments.output.empty() ? usual : arguments.output;
+  if (!fs::exists(output) || is_own(output)) return output;
+  throw Error(ErrorKind::file_access,
+              fmt::format("{}: exists and is not {}: name another file with -o, or move this one away", output, what));
+}
+
+void require_one_directory(const ReportArguments& arguments, const char* page) {
+  if (arguments.directories.size() > 1)
+    throw Error(ErrorKind::usage, fmt::format("report: the page of {}: name no other directory", page));
+}
+
+int write_page(const std::string& output, const std::string& page) {
+  write_durably(output, page);
+  fmt::print("{}: open it in a browser\n", output);
+  return 0;
 }
 
 /// Number of runs that the viewer compares well on one page.
@@ -46,7 +63,7 @@ std::string svg_of(const std::string& description) {
 
 /// Writes a page of the study's first completed runs beside the page of the study. Returns its name, or "" if there are
 /// none.
-std::string write_page_of_runs(const Study& study, double most_megabytes) {
+std::string write_page_of_runs(const Study& study, const ReportArguments& arguments) {
   std::vector<std::string> directories;
   for (const StudyRun& run : study.runs) {
     if (holds_run(study.path(run)) && read_summary_of_run(study.path(run)).status == "done")
@@ -58,49 +75,29 @@ std::string write_page_of_runs(const Study& study, double most_megabytes) {
                           most_runs_on_a_page, directories.size()));
     directories.resize(most_runs_on_a_page);
   }
-  ReportOptions options;
-  options.viewer = viewer_file();
-  options.most_bytes = static_cast<std::size_t>(most_megabytes * 1e6);
-  write_durably(study.path("runs.html"), make_report(directories, options).html);
+  write_durably(study.path("runs.html"), make_report(directories, options_of(arguments)).html);
   return "runs.html";
 }
 
 int report_study(const ReportArguments& arguments) {
-  if (arguments.directories.size() > 1)
-    throw Error(ErrorKind::usage, "report: the page of a study shows this study alone: name no other directory");
+  require_one_directory(arguments, "a study shows this study alone");
   const Study study = read_study(arguments.directories.front());
-  const std::string output = arguments.output.empty() ? study.path("report.html") : arguments.output;
-  if (fs::exists(output) && !is_study_page(output)) {
-    throw Error(
-        ErrorKind::file_access,
-        fmt::format("{}: exists and is not the page of a study: name another file with -o, or move this one away",
-                    output));
-  }
+  const std::string output = checked_output(arguments, study.path("report.html"), is_study_page, "the page of a study");
   const StudyResults results = make_study_table(study);
   StudyFigureOptions figures;
   figures.what = usual_figures(study, results.table);
   const std::string figure = figures.what.empty() ? "" : svg_of(describe_study_figure(study, results.table, figures));
-  const std::string runs = write_page_of_runs(study, arguments.most_megabytes);
-  write_durably(output, make_study_page(study, results, figure, runs, fs::absolute(output).parent_path().string()));
-  fmt::print("{}: open it in a browser\n", output);
-  return 0;
+  const std::string runs = write_page_of_runs(study, arguments);
+  return write_page(output, make_study_page(study, results, figure, runs, fs::absolute(output).parent_path().string()));
 }
 
 int report_benchmarks(const ReportArguments& arguments) {
-  if (arguments.directories.size() > 1)
-    throw Error(ErrorKind::usage, "report: the page of benchmarks shows these alone: name no other directory");
+  require_one_directory(arguments, "benchmarks shows these alone");
   const BenchmarkPlan plan = read_benchmark_plan(arguments.directories.front());
-  const std::string output = arguments.output.empty() ? plan.path("report.html") : arguments.output;
-  if (fs::exists(output) && !is_benchmark_page(output)) {
-    throw Error(
-        ErrorKind::file_access,
-        fmt::format("{}: exists and is not a page of benchmarks: name another file with -o, or move this one away",
-                    output));
-  }
+  const std::string output =
+      checked_output(arguments, plan.path("report.html"), is_benchmark_page, "a page of benchmarks");
   const std::string folder = fs::absolute(output).parent_path().string();
-  write_durably(output, make_benchmark_page(plan, read_benchmark_results(plan), folder));
-  fmt::print("{}: open it in a browser\n", output);
-  return 0;
+  return write_page(output, make_benchmark_page(plan, read_benchmark_results(plan), folder));
 }
 
 }  // namespace
@@ -110,17 +107,10 @@ int report(const ReportArguments& arguments) {
     return report_study(arguments);
   if (std::any_of(arguments.directories.begin(), arguments.directories.end(), holds_benchmarks))
     return report_benchmarks(arguments);
-  ReportOptions options;
-  options.viewer = viewer_file();
-  options.most_bytes = static_cast<std::size_t>(arguments.most_megabytes * 1e6);
-  const std::string output = arguments.output.empty()
-                                 ? (fs::path(common_folder(arguments.directories)) / "report.html").string()
-                                 : arguments.output;
-  if (fs::exists(output) && !is_report(output)) {
-    throw Error(
-        ErrorKind::file_access,
-        fmt::format("{}: exists and is not a report: name another file with -o, or move this one away", output));
-  }
+  const ReportOptions options = options_of(arguments);
+  const std::string folder = arguments.output.empty() ? common_folder(arguments.directories) : "";
+  const std::string output =
+      checked_output(arguments, (fs::path(folder) / "report.html").string(), is_report, "a report");
   if (arguments.output.empty() && fs::exists(output) && !is_report_of(output, arguments.directories)) {
     throw Error(ErrorKind::file_access,
                 fmt::format("{}: exists and shows other runs: name another file with -o, or this one", output));

@@ -4,12 +4,6 @@
 #include <filesystem>
 
 #include "commands.hpp"
-#include "contact_text.hpp"
-#include "expectation_text.hpp"
-#include "method_text.hpp"
-#include "penetration_text.hpp"
-#include "progress_text.hpp"
-#include "results_text.hpp"
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
@@ -22,6 +16,7 @@
 #include "ricochet/run/old_run.hpp"
 #include "ricochet/run/session.hpp"
 #include "stop_signal.hpp"
+#include "texts.hpp"
 
 namespace ricochet::program {
 

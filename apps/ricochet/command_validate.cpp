@@ -2,9 +2,7 @@
 
 #include <algorithm>
 
-#include "advice_text.hpp"
 #include "commands.hpp"
-#include "position_text.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
@@ -16,6 +14,7 @@
 #include "ricochet/run/field_schedule.hpp"
 #include "ricochet/run/session.hpp"
 #include "ricochet/simulation/simulation.hpp"
+#include "texts.hpp"
 
 namespace ricochet::program {
 

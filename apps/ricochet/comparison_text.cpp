@@ -1,18 +1,14 @@
-#include "comparison_text.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <set>
 
-#include "method_text.hpp"
-#include "penetration_text.hpp"
-#include "progress_text.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/cell_rotations.hpp"
 #include "ricochet/io/summary.hpp"
 #include "ricochet/simulation/impact/restitution.hpp"
+#include "texts.hpp"
 
 namespace ricochet::program {
 
@@ -89,22 +85,19 @@ class ResultCells {
   ResultCells(const RunSummary& summary, std::set<std::string>& marks) : s_(summary), marks_(marks) {}
 
   [[nodiscard]] std::string restitution() const {
-    const auto first = std::find_if(s_.impacts.begin(), s_.impacts.end(),
-                                    [](const Impact& impact) { return impact.restitution().has_value(); });
-    if (first == s_.impacts.end()) return "-";
+    const Impact* const first = s_.first_restitution();
+    if (first == nullptr) return "-";
     const bool more = s_.impacts.size() > 1 || s_.impacts_left_out > 0;
-    return fmt::format("{:.4g}", *first->restitution()) + mark("*", more) + mark("?", rotated_too_far_in(first)) +
+    return fmt::format("{:.4g}", *first->restitution()) + mark("*", more) + mark("?", rotated_too_far_in(*first)) +
            mark("!", restitution_error(*first).is_large);
   }
 
   /// Returns the largest force of a body on an obstacle; "-" if the results contain no impacts.
   [[nodiscard]] std::string largest_force() const {
-    const auto hardest = std::max_element(s_.impacts.begin(), s_.impacts.end(), [](const Impact& a, const Impact& b) {
-      return a.largest_force < b.largest_force;
-    });
-    if (hardest == s_.impacts.end()) return "-";
+    const Impact* const hardest = s_.hardest_impact();
+    if (hardest == nullptr) return "-";
     return fmt::format("{:.4g}", hardest->largest_force) + mark("~", hardest->is_coarse()) +
-           mark("?", rotated_too_far_in(hardest));
+           mark("?", rotated_too_far_in(*hardest));
   }
 
   [[nodiscard]] std::string peak_stress() const {
@@ -116,10 +109,9 @@ class ResultCells {
   }
 
  private:
-  using ImpactIterator = std::vector<Impact>::const_iterator;
   /// Returns true if cells or the body had rotated too far for small strain when the impact ended.
-  [[nodiscard]] bool rotated_too_far_in(ImpactIterator impact) const {
-    return !s_.small_strain_holds_in(static_cast<std::size_t>(impact - s_.impacts.begin()));
+  [[nodiscard]] bool rotated_too_far_in(const Impact& impact) const {
+    return !s_.small_strain_holds_in(s_.number_of(impact));
   }
   [[nodiscard]] bool rotated_too_far_by(double time) const { return s_.rotation.time_beyond <= time; }
   [[nodiscard]] std::string mark(const char* sign, bool applies) const {

@@ -7,6 +7,7 @@
 
 #include "completion_of_keys.hpp"
 #include "installed_files.hpp"
+#include "ricochet/base/error.hpp"
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
@@ -68,11 +69,12 @@ Candidates folders(const std::string& typed) {
 }
 
 Candidates benchmark_names() {
-  const std::string manifest = installed_file("benchmarks/benchmarks.toml");
   Candidates result;
-  if (manifest.empty()) return result;
-  for (const Benchmark& benchmark : read_benchmarks(manifest))
-    result.push_back({benchmark.name, benchmark.description});
+  try {
+    for (const Benchmark& benchmark : read_benchmarks(benchmark_manifest()))
+      result.push_back({benchmark.name, benchmark.description});
+  } catch (const Error&) {  // they are not installed: there is nothing to suggest
+  }
   return result;
 }
 

@@ -1,13 +1,11 @@
-#include "contact_text.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "number_text.hpp"
 #include "ricochet/base/text.hpp"
+#include "texts.hpp"
 
 namespace ricochet::program {
 

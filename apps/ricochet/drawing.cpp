@@ -17,12 +17,7 @@ namespace ricochet::program {
 namespace fs = std::filesystem;
 
 void draw_figure(const std::string& description, const std::string& format, const std::string& output) {
-  const std::string script = installed_file("figure.py");
-  if (script.empty()) {
-    throw Error(ErrorKind::file_access,
-                "share/ricochet/figure.py, which draws figures, is missing beside the program: "
-                "install Ricochet again");
-  }
+  const std::string script = installed_file("figure.py", "which draws figures");
   const TemporaryFolder workspace(fs::temp_directory_path(), "ricochet-plot");
   ChildProcess child;
   child.arguments = {python_program(), "-B", script, format, workspace.file("figure")};
@@ -55,6 +50,12 @@ void draw_figure(const std::string& description, const std::string& format, cons
   fs::copy_file(workspace.file("figure"), part, fs::copy_options::overwrite_existing, problem);
   if (!problem) fs::rename(part, output, problem);
   if (problem) throw Error(ErrorKind::file_access, fmt::format("{}: cannot be written: {}", output, problem.message()));
+}
+
+int write_figure(const std::string& description, const std::string& format, const std::string& output) {
+  draw_figure(description, format, output);
+  fmt::print("{}\n", output);
+  return 0;
 }
 
 }  // namespace ricochet::program

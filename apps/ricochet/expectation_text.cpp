@@ -1,10 +1,9 @@
-#include "expectation_text.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "ricochet/base/text.hpp"
+#include "texts.hpp"
 
 namespace ricochet::program {
 

@@ -15,9 +15,8 @@
 #include "commands.hpp"
 #include "completion.hpp"
 #include "described_command.hpp"
-#include "empty_values.hpp"
 #include "manual_page.hpp"
-#include "process_memory.hpp"
+#include "process.hpp"
 #include "ricochet/base/blas.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
@@ -25,7 +24,6 @@
 #include "ricochet/base/run_name.hpp"
 #include "ricochet/linear_algebra/library_versions.hpp"
 #include "ricochet/version.hpp"
-#include "standard_streams.hpp"
 #include "stop_signal.hpp"
 
 namespace {
@@ -51,55 +49,57 @@ void add_common(CLI::App& command, std::string& log_level) {
   command.add_option("--log-level", log_level, "trace, debug, info, warning, error or off")->type_name("LEVEL");
 }
 
+CLI::Option* add(CLI::App& command, const char* name, auto& value, const char* type, const char* doc) {
+  return command.add_option(name, value, doc)->type_name(type);
+}
+
+/// Option that may be repeated, each time with one value.
+CLI::Option* add_repeated(CLI::App& command, const char* name, std::vector<std::string>& values, const char* type,
+                          const char* doc) {
+  return add(command, name, values, type, doc)->allow_extra_args(false);
+}
+
+void add_set(CLI::App& command, std::vector<std::string>& overrides, const char* doc) {
+  add_repeated(command, "--set", overrides, "key.path=value", doc);
+}
+
+void add_jobs(CLI::App& command, int& jobs) {
+  add(command, "--jobs", jobs, "N", "runs at a time (default: as many as the available cores allow)")
+      ->check(CLI::Range(1, 1024));
+}
+
+void add_run_flags(CLI::App& command, auto& arguments, const char* quiet, const char* force, const char* resume) {
+  command.add_flag("--quiet", arguments.quiet, quiet);
+  command.add_flag("--force", arguments.force, force);
+  command.add_flag("--resume", arguments.resume, resume)->excludes("--force");
+}
+
 void add_study_questions(CLI::App& study, program::StudyArguments& arguments) {
-  study
-      .add_option("--quantity", arguments.quantities,
-                  "a column of the table, written as in [[expect]]: history.COLUMN[-1], max(history.COLUMN), "
-                  "summary.PATH; may be repeated")
-      ->type_name("QUANTITY")
-      ->allow_extra_args(false);
-  study.add_option("--exact", arguments.exact, "the exact value of a quantity; adds a column with its error")
-      ->type_name("QUANTITY=VALUE")
-      ->allow_extra_args(false);
-  study
-      .add_option("--reference", arguments.reference,
-                  "the run with which histories are compared: the directory of a run, last:KEY or finest:KEY")
-      ->type_name("RUN");
-  study
-      .add_option("--compare", arguments.compare,
-                  "a column of history.csv, or a vector without its _x, to compare with that of the reference")
-      ->type_name("COLUMN")
-      ->allow_extra_args(false);
-  study.add_option("--order", arguments.order, "the key by whose values observed orders are computed")
-      ->type_name("KEY");
+  add_repeated(study, "--quantity", arguments.quantities, "QUANTITY",
+               "a column of the table, written as in [[expect]]: history.COLUMN[-1], max(history.COLUMN), "
+               "summary.PATH; may be repeated");
+  add_repeated(study, "--exact", arguments.exact, "QUANTITY=VALUE",
+               "the exact value of a quantity; adds a column with its error");
+  add(study, "--reference", arguments.reference, "RUN",
+      "the run with which histories are compared: the directory of a run, last:KEY or finest:KEY");
+  add_repeated(study, "--compare", arguments.compare, "COLUMN",
+               "a column of history.csv, or a vector without its _x, to compare with that of the reference");
+  add(study, "--order", arguments.order, "KEY", "the key by whose values observed orders are computed");
 }
 
 void add_study(CLI::App& app, program::StudyArguments& arguments, std::string& log_level) {
   CLI::App* study = app.add_subcommand("study", "Run a case with many values of its keys, and tabulate the results");
-  study->add_option("case", arguments.case_file, "case file; with --resume also the directory of a study")
-      ->type_name("CASE.toml");
-  study
-      ->add_option("--vary", arguments.vary,
-                   "a key of the case and its values; keys that change together: KEY1,KEY2=V1/W1,V2/W2; if repeated, "
-                   "all combinations are run")
-      ->type_name("KEY=V1,V2,...")
-      ->allow_extra_args(false);
-  study->add_option("--set", arguments.overrides, "override an entry of the case in all runs")
-      ->type_name("key.path=value")
-      ->allow_extra_args(false);
-  study->add_option("-o,--output", arguments.output_directory, "directory of the study")->type_name("DIR");
-  study->add_option("--jobs", arguments.jobs, "runs at a time (default: as many as the available cores allow)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
-  study->add_option("--threads", arguments.threads, "threads of each run (default: 1)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+  add(*study, "case", arguments.case_file, "CASE.toml", "case file; with --resume also the directory of a study");
+  add_repeated(*study, "--vary", arguments.vary, "KEY=V1,V2,...",
+               "a key of the case and its values; keys that change together: KEY1,KEY2=V1/W1,V2/W2; if repeated, "
+               "all combinations are run");
+  add_set(*study, arguments.overrides, "override an entry of the case in all runs");
+  add(*study, "-o,--output", arguments.output_directory, "DIR", "directory of the study");
+  add_jobs(*study, arguments.jobs);
+  add(*study, "--threads", arguments.threads, "N", "threads of each run (default: 1)")->check(CLI::Range(1, 1024));
   add_study_questions(*study, arguments);
-  study->add_flag("--quiet", arguments.quiet, "show no progress");
-  study->add_flag("--force", arguments.force, "overwrite a study that is in the directory");
-  study
-      ->add_flag("--resume", arguments.resume, "continue the study in the directory, also with more values than before")
-      ->excludes("--force");
+  add_run_flags(*study, arguments, "show no progress", "overwrite a study that is in the directory",
+                "continue the study in the directory, also with more values than before");
   study->footer(
       "Exit status: 0 all runs are done; 128 + N stopped by signal N, --resume continues; otherwise the worst status "
       "of the runs, as of `ricochet run`; 1 if that is 0 and no run has a quantity that --quantity, --exact or "
@@ -110,25 +110,18 @@ void add_study(CLI::App& app, program::StudyArguments& arguments, std::string& l
 void add_benchmark(CLI::App& app, program::BenchmarkArguments& arguments, std::string& log_level) {
   CLI::App* benchmark =
       app.add_subcommand("benchmark", "Run cases with reference values, and tabulate the results against them");
-  benchmark->add_option("names", arguments.names, "benchmarks (default: all)")->type_name("BENCHMARK");
-  benchmark->add_option("-o,--output", arguments.output_directory, "directory of the tables and runs")
-      ->type_name("DIR")
+  add(*benchmark, "names", arguments.names, "BENCHMARK", "benchmarks (default: all)");
+  add(*benchmark, "-o,--output", arguments.output_directory, "DIR", "directory of the tables and runs")
       ->capture_default_str();
-  benchmark
-      ->add_option("--scheme", arguments.scheme,
-                   "a scorecard of these schemes, or of all: SCHEME or SCHEME/MASS, separated by commas (default: the "
-                   "method of each case)")
-      ->type_name("SCHEME,...|all");
-  benchmark->add_option("--jobs", arguments.jobs, "runs at a time (default: as many as the available cores allow)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
-  benchmark
-      ->add_option("--folder", arguments.folder, "a folder with a benchmarks.toml (default: the one of the program)")
-      ->type_name("DIR");
+  add(*benchmark, "--scheme", arguments.scheme, "SCHEME,...|all",
+      "a scorecard of these schemes, or of all: SCHEME or SCHEME/MASS, separated by commas (default: the "
+      "method of each case)");
+  add_jobs(*benchmark, arguments.jobs);
+  add(*benchmark, "--folder", arguments.folder, "DIR",
+      "a folder with a benchmarks.toml (default: the one of the program)");
   benchmark->add_flag("--list", arguments.list, "list the benchmarks and do nothing else");
-  benchmark->add_flag("--quiet", arguments.quiet, "show no progress");
-  benchmark->add_flag("--force", arguments.force, "overwrite benchmarks that are in the directory");
-  benchmark->add_flag("--resume", arguments.resume, "keep the completed runs in the directory")->excludes("--force");
+  add_run_flags(*benchmark, arguments, "show no progress", "overwrite benchmarks that are in the directory",
+                "keep the completed runs in the directory");
   benchmark->footer(
       "Exit status: 0 all expected values hold; 5 some do not; 128 + N stopped by signal N; otherwise the worst status "
       "of the runs, as of `ricochet run`. Refusals by a scheme other than that of the case do not count.");
@@ -201,34 +194,25 @@ int dispatch(int argc, char** argv) {
   Arguments arguments;
 
   CLI::App* run = app.add_subcommand("run", "Run a case");
-  run->add_option("case", arguments.run.case_file,
-                  "case file; with --resume also the directory of a run, which records its case")
-      ->type_name("CASE.toml");
-  run->add_option("-o,--output", arguments.run.output_directory,
-                  "output directory (default: out/NAME of the case file)")
-      ->type_name("DIR");
-  run->add_option("--set", arguments.run.overrides, "override an entry of the case; may be repeated")
-      ->type_name("key.path=value")
-      ->allow_extra_args(false);
-  run->add_option("--threads", arguments.threads, "number of threads; results do not depend on it")->type_name("N");
-  run->add_flag("--quiet", arguments.run.quiet, "show no progress, and of the messages only warnings and errors");
-  run->add_flag("--force", arguments.run.force, "overwrite a run that is in the output directory");
-  run->add_flag("--resume", arguments.run.resume, "continue the run in the output directory, also to a later time.end")
-      ->excludes("--force");
-  run->add_option("--export-contact", arguments.run.export_contact,
-                  "write the contact problems of these steps as FCLib files, for example 10,20,50:60")
-      ->type_name("STEPS");
-  run->add_option("--export-contact-to", arguments.run.export_contact_to,
-                  "directory of these files (default: contact in the output directory)")
-      ->type_name("DIR")
+  add(*run, "case", arguments.run.case_file, "CASE.toml",
+      "case file; with --resume also the directory of a run, which records its case");
+  add(*run, "-o,--output", arguments.run.output_directory, "DIR",
+      "output directory (default: out/NAME of the case file)");
+  add_set(*run, arguments.run.overrides, "override an entry of the case; may be repeated");
+  add(*run, "--threads", arguments.threads, "N", "number of threads; results do not depend on it");
+  add_run_flags(*run, arguments.run, "show no progress, and of the messages only warnings and errors",
+                "overwrite a run that is in the output directory",
+                "continue the run in the output directory, also to a later time.end");
+  add(*run, "--export-contact", arguments.run.export_contact, "STEPS",
+      "write the contact problems of these steps as FCLib files, for example 10,20,50:60");
+  add(*run, "--export-contact-to", arguments.run.export_contact_to, "DIR",
+      "directory of these files (default: contact in the output directory)")
       ->needs("--export-contact");
   add_common(*run, arguments.log_level);
 
   CLI::App* validate = app.add_subcommand("validate", "Check everything that can be checked without running");
-  validate->add_option("case", arguments.validate.case_file, "case file")->required()->type_name("CASE.toml");
-  validate->add_option("--set", arguments.validate.overrides, "override an entry of the case")
-      ->type_name("key.path=value")
-      ->allow_extra_args(false);
+  add(*validate, "case", arguments.validate.case_file, "CASE.toml", "case file")->required();
+  add_set(*validate, arguments.validate.overrides, "override an entry of the case");
   validate->add_flag("--mesh", arguments.validate.mesh,
                      "mesh a .geo or CAD file with the gmsh program, as a run does (this runs shell commands that a "
                      ".geo or .opt file contains)");
@@ -237,24 +221,18 @@ int dispatch(int argc, char** argv) {
   CLI::App* info = app.add_subcommand("info",
                                       "Describe a mesh, a case, a contact problem, a checkpoint, or a run that is "
                                       "running or has ended, in a few lines; several runs are compared in a table");
-  info->add_option("path", arguments.info.paths, "mesh, case file, FCLib file, checkpoint or output directory")
-      ->required()
-      ->type_name("FILE_OR_DIR");
-  info->add_option("--set", arguments.info.overrides, "override an entry of a case")
-      ->type_name("key.path=value")
-      ->allow_extra_args(false);
+  add(*info, "path", arguments.info.paths, "FILE_OR_DIR", "mesh, case file, FCLib file, checkpoint or output directory")
+      ->required();
+  add_set(*info, arguments.info.overrides, "override an entry of a case");
   add_common(*info, arguments.log_level);
 
   CLI::App* contact = app.add_subcommand("contact", "Solve a contact problem from an FCLib file");
-  contact->add_option("problem", arguments.contact.problem, "FCLib file of a local problem")->type_name("PROBLEM.hdf5");
-  contact->add_option("--solver", arguments.contact.solver, "name of the solver, see --list (default: automatic)")
-      ->type_name("SOLVER");
-  contact
-      ->add_option("--tolerance", arguments.contact.tolerance,
-                   "relative residual to reach, or the rounding error if that is larger (default: 0, down to rounding)")
-      ->type_name("T");
-  contact->add_option("-o,--output", arguments.contact.output, "FCLib file for the problem and its solution")
-      ->type_name("SOLUTION.hdf5");
+  add(*contact, "problem", arguments.contact.problem, "PROBLEM.hdf5", "FCLib file of a local problem");
+  add(*contact, "--solver", arguments.contact.solver, "SOLVER", "name of the solver, see --list (default: automatic)");
+  add(*contact, "--tolerance", arguments.contact.tolerance, "T",
+      "relative residual to reach, or the rounding error if that is larger (default: 0, down to rounding)");
+  add(*contact, "-o,--output", arguments.contact.output, "SOLUTION.hdf5",
+      "FCLib file for the problem and its solution");
   contact->add_flag("--record", arguments.contact.record, "print every iteration");
   contact->add_flag("--list", arguments.contact.list, "list the solvers and do nothing else");
   contact->footer(
@@ -264,45 +242,30 @@ int dispatch(int argc, char** argv) {
 
   CLI::App* report =
       app.add_subcommand("report", "Write one or several runs into a page for the browser, one HTML file");
-  report->add_option("directories", arguments.report.directories, "output directories of runs")
-      ->required()
-      ->type_name("DIR");
-  report
-      ->add_option("-o,--output", arguments.report.output,
-                   "HTML file (default: report.html in the directory, or in the folder that contains all of them)")
-      ->type_name("FILE.html");
-  report
-      ->add_option("--size-limit", arguments.report.most_megabytes,
-                   "largest size of the file in megabytes; larger runs are thinned (default: 20)")
-      ->type_name("MB")
+  add(*report, "directories", arguments.report.directories, "DIR", "output directories of runs")->required();
+  add(*report, "-o,--output", arguments.report.output, "FILE.html",
+      "HTML file (default: report.html in the directory, or in the folder that contains all of them)");
+  add(*report, "--size-limit", arguments.report.most_megabytes, "MB",
+      "largest size of the file in megabytes; larger runs are thinned (default: 20)")
       ->check(CLI::Range(1.0, 2000.0));
   add_common(*report, arguments.log_level);
 
   CLI::App* plot = app.add_subcommand("plot", "Draw a figure for a paper (with Python's matplotlib)");
-  plot->add_option("directories", arguments.plot.directories, "output directories of runs")
-      ->required()
-      ->type_name("DIR");
-  plot->add_option("--what", arguments.plot.what,
-                   "energy, force, momentum, pressure, pressure-map, probe:NAME.COLUMN or a column of history.csv; if "
-                   "repeated, each has a panel; or animation: the moving body")
-      ->required()
-      ->type_name("WHAT")
-      ->allow_extra_args(false);
-  plot->add_option("-o,--output", arguments.plot.output,
-                   "file of the figure: .svg, .pdf or .png; for an animation .gif or .mp4")
-      ->required()
-      ->type_name("FILE");
-  plot->add_option("--label", arguments.plot.labels, "label of a run, in the order of the runs")
-      ->type_name("TEXT")
-      ->allow_extra_args(false);
-  plot->add_option("--title", arguments.plot.title, "title, a line above the figure")->type_name("TEXT");
-  plot->add_option("--time", arguments.plot.time, "the interval of time to show")->type_name("A:B");
-  plot->add_option("--size", arguments.plot.size, "width and height in cm")->type_name("WxH");
+  add(*plot, "directories", arguments.plot.directories, "DIR", "output directories of runs")->required();
+  add_repeated(*plot, "--what", arguments.plot.what, "WHAT",
+               "energy, force, momentum, pressure, pressure-map, probe:NAME.COLUMN or a column of history.csv; if "
+               "repeated, each has a panel; or animation: the moving body")
+      ->required();
+  add(*plot, "-o,--output", arguments.plot.output, "FILE",
+      "file of the figure: .svg, .pdf or .png; for an animation .gif or .mp4")
+      ->required();
+  add_repeated(*plot, "--label", arguments.plot.labels, "TEXT", "label of a run, in the order of the runs");
+  add(*plot, "--title", arguments.plot.title, "TEXT", "title, a line above the figure");
+  add(*plot, "--time", arguments.plot.time, "A:B", "the interval of time to show");
+  add(*plot, "--size", arguments.plot.size, "WxH", "width and height in cm");
   plot->add_flag("--log", arguments.plot.logarithmic, "use a logarithmic scale");
-  plot->add_option("--field", arguments.plot.field, "the field that colours an animation (default: von_mises)")
-      ->type_name("FIELD");
-  plot->add_option("--at", arguments.plot.at, "draw only the frame of an animation at this time, as .png, .svg or .pdf")
-      ->type_name("T");
+  add(*plot, "--field", arguments.plot.field, "FIELD", "the field that colours an animation (default: von_mises)");
+  add(*plot, "--at", arguments.plot.at, "T", "draw only the frame of an animation at this time, as .png, .svg or .pdf");
   plot->add_flag("--zoom", arguments.plot.zoom, "show the contact of an animation in close-up");
   plot->add_flag("--half", arguments.plot.half, "draw only the section of an axisymmetric body");
   add_common(*plot, arguments.log_level);
@@ -322,7 +285,7 @@ int dispatch(int argc, char** argv) {
 
   CLI::App* completion =
       app.add_subcommand("completion", "Print the script with which a shell completes the words of a ricochet command");
-  completion->add_option("shell", arguments.shell, "bash, zsh or fish")->required()->type_name("SHELL");
+  add(*completion, "shell", arguments.shell, "SHELL", "bash, zsh or fish")->required();
 
   if (handle_internal_command(app, argc, argv)) return 0;
   program::refuse_empty_values(app);

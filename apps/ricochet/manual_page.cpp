@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <string_view>
 
 namespace ricochet::program {
@@ -10,33 +11,12 @@ namespace {
 
 /// Escapes text for roff: hyphens are typeable, and no line begins like a request.
 std::string roff(std::string_view text) {
+  static const std::map<char, std::string_view> escapes{{'\\', "\\e"},  {'-', "\\-"},   {'`', "\\(ga"}, {'\'', "\\(aq"},
+                                                        {'~', "\\(ti"}, {'^', "\\(ha"}, {'\n', " "}};
   std::string result;
   for (const char c : text) {
-    switch (c) {
-      case '\\':
-        result += "\\e";
-        break;
-      case '-':
-        result += "\\-";
-        break;
-      case '`':
-        result += "\\(ga";
-        break;
-      case '\'':
-        result += "\\(aq";
-        break;
-      case '~':
-        result += "\\(ti";
-        break;
-      case '^':
-        result += "\\(ha";
-        break;
-      case '\n':
-        result += ' ';
-        break;
-      default:
-        result += c;
-    }
+    const auto escape = escapes.find(c);
+    result += escape != escapes.end() ? escape->second : std::string_view(&c, 1);
   }
   return result.starts_with('.') ? "\\&" + result : result;
 }

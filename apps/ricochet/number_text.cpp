@@ -1,9 +1,9 @@
-#include "number_text.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "texts.hpp"
 
 namespace ricochet::program {
 

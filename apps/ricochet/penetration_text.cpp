@@ -1,5 +1,3 @@
-#include "penetration_text.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,6 +5,7 @@
 
 #include "ricochet/contact/contact_boundary.hpp"
 #include "ricochet/fem/cell_rotations.hpp"
+#include "texts.hpp"
 
 namespace ricochet::program {
 

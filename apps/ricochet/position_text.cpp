@@ -1,11 +1,9 @@
-#include "position_text.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <limits>
 
-#include "number_text.hpp"
+#include "texts.hpp"
 
 namespace ricochet::program {
 

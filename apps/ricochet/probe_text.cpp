@@ -1,12 +1,10 @@
-#include "probe_text.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <string_view>
 
-#include "number_text.hpp"
 #include "ricochet/base/text.hpp"
+#include "texts.hpp"
 
 namespace ricochet::program {
 

@@ -1,5 +1,3 @@
-#include "progress_text.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "ricochet/io/progress.hpp"
 #include "ricochet/io/rank_checkpoints.hpp"
 #include "ricochet/io/run_directory.hpp"
+#include "texts.hpp"
 
 namespace ricochet::program {
 

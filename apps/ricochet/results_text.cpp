@@ -1,16 +1,14 @@
-#include "results_text.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
-#include "number_text.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/simulation/impact/restitution.hpp"
 #include "ricochet/simulation/impact/rotation_growth.hpp"
 #include "ricochet/simulation/monitor/stress_raisers.hpp"
+#include "texts.hpp"
 
 namespace ricochet::program {
 

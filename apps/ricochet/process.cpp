@@ -1,13 +1,19 @@
-#include "standard_streams.hpp"
+#include "process.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <string>
+#include <string_view>
 
+#include "ricochet/base/blas.hpp"
 #include "ricochet/base/error.hpp"
 
 namespace ricochet::program {
@@ -17,6 +23,21 @@ namespace {
 bool output_was_closed = false;
 
 }  // namespace
+
+void restart_without_blas_threads(char** argv) {
+  const char* const threads = std::getenv("OPENBLAS_NUM_THREADS");
+  if (!memory_is_limited() || (threads != nullptr && std::string_view(threads) == "1")) return;
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
+  execv("/proc/self/exe", argv);
+}
+
+void keep_memory() {
+#ifdef __GLIBC__
+  constexpr int threshold = 1 << 30;
+  mallopt(M_MMAP_THRESHOLD, threshold);
+  mallopt(M_TRIM_THRESHOLD, threshold);
+#endif
+}
 
 void open_closed_streams() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
@@ -48,6 +69,15 @@ void flush_standard_output() {
 
 bool standard_output_failed() {
   return std::ferror(stdout) != 0;
+}
+
+void refuse_empty_values(CLI::App& app) {
+  const CLI::Validator given([](const std::string& value) { return value.empty() ? "the value is empty" : ""; }, "");
+  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    for (CLI::Option* option : command->get_options()) {
+      if (option->get_items_expected_max() > 0 && option->get_type_name() != "TEXT") option->check(given);
+    }
+  }
 }
 
 }  // namespace ricochet::program
