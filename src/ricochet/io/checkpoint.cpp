@@ -80,21 +80,22 @@ class Cursor {
   std::string_view text_;
 };
 
+template <class Values>
+Values read_numbers(Cursor& cursor) {
+  constexpr std::size_t size = sizeof(*Values().data());
+  const std::size_t count = cursor.count(size);
+  Values values;
+  values.resize(static_cast<decltype(values.size())>(count));
+  if (count > 0) std::memcpy(values.data(), cursor.bytes(count * size).data(), count * size);
+  return values;
+}
+
 Snapshot::Value read_value(Cursor& cursor) {
   switch (cursor.number<std::uint8_t>()) {
-    case 0: {
-      const std::size_t count = cursor.count(sizeof(double));
-      Vector values(static_cast<Index>(count));
-      if (count > 0) std::memcpy(values.data(), cursor.bytes(count * sizeof(double)).data(), count * sizeof(double));
-      return values;
-    }
-    case 1: {
-      const std::size_t count = cursor.count(sizeof(std::int64_t));
-      Snapshot::Integers values(count);
-      if (count > 0)
-        std::memcpy(values.data(), cursor.bytes(count * sizeof(std::int64_t)).data(), count * sizeof(std::int64_t));
-      return values;
-    }
+    case 0:
+      return read_numbers<Vector>(cursor);
+    case 1:
+      return read_numbers<Snapshot::Integers>(cursor);
     case 2: {
       Snapshot::Texts values(cursor.count(sizeof(std::uint32_t)));
       for (std::string& value : values) value = cursor.text();

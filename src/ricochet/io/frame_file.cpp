@@ -94,27 +94,28 @@ void write_fixed(std::int64_t file, const std::string& path, const FixedDataset&
 
 }  // namespace
 
-FrameFile::FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
-                     const FrameFileOptions& options)
-    : FrameFile(std::move(path), std::move(frame), options) {
-  arrangement_ = make_frame_arrangement(fixed, layout_, options_);
-  create(path_, fixed);
-  change_detector_.emplace(path_);
-}
+FrameFile::FrameFile(std::string path, std::vector<DatasetLayout> frame, const FrameFileOptions& options,
+                     const std::vector<FixedDataset>& fixed)
+    : path_(std::move(path)),
+      layout_(std::move(frame)),
+      options_(options),
+      arrangement_(make_frame_arrangement(fixed, layout_, options_)) {}
 
 FrameFile::FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
-                     const FrameFileOptions& options, const SnapshotVisitor& saved)
-    : FrameFile(std::move(path), std::move(frame), options) {
-  arrangement_ = make_frame_arrangement(fixed, layout_, options_);
-  persist(saved);
-  repair(fixed, Repair::write);
+                     const FrameFileOptions& options, const std::optional<SnapshotVisitor>& saved)
+    : FrameFile(std::move(path), std::move(frame), options, fixed) {
+  if (saved) {
+    persist(*saved);
+    repair(fixed, Repair::write);
+  } else {
+    create(path_, fixed);
+  }
   change_detector_.emplace(path_);
 }
 
 void FrameFile::check(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
                       const FrameFileOptions& options, const SnapshotVisitor& saved) {
-  FrameFile file(std::move(path), std::move(frame), options);
-  file.arrangement_ = make_frame_arrangement(fixed, file.layout_, options);
+  FrameFile file(std::move(path), std::move(frame), options, fixed);
   file.persist(saved);
   file.repair(fixed, Repair::verify);
 }

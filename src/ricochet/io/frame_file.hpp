@@ -20,14 +20,11 @@ namespace ricochet {
 
 class FrameFile {
  public:
-  /// Creates a file with the groups and datasets that all frames share. Throws Error(file_access).
+  /// Creates a file with the groups and datasets that all frames share; with `saved`, continues a file that held so
+  /// many frames when persist() was called, and may have been changed by an interrupted run since. Throws
+  /// Error(file_access), with the file unchanged, if it is not that file or the values of these frames differ.
   FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
-            const FrameFileOptions& options = {});
-  /// Continues a file that held so many frames when persist() was called, and may have been changed by an interrupted
-  /// run since. Throws Error(file_access), with the file unchanged, if it is not that file or the values of these
-  /// frames differ.
-  FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
-            const FrameFileOptions& options, const SnapshotVisitor& saved);
+            const FrameFileOptions& options = {}, const std::optional<SnapshotVisitor>& saved = {});
   void persist(const SnapshotVisitor& visit);
   /// Throws what continuing would throw, and changes nothing: for several files, before the first is changed.
   static void check(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
@@ -41,8 +38,8 @@ class FrameFile {
   void require_unchanged() const { change_detector_->require_unchanged(); }
 
  private:
-  FrameFile(std::string path, std::vector<DatasetLayout> frame, const FrameFileOptions& options)
-      : path_(std::move(path)), layout_(std::move(frame)), options_(options) {}
+  FrameFile(std::string path, std::vector<DatasetLayout> frame, const FrameFileOptions& options,
+            const std::vector<FixedDataset>& fixed);
   void create(const std::string& path, const std::vector<FixedDataset>& fixed) const;
   std::vector<FrameExtent> write_frame(const std::string& path, const FrameToWrite& frame) const;
   [[nodiscard]] FrameExtent count_extent(const std::string& path) const;

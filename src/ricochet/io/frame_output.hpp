@@ -17,7 +17,11 @@ struct FrameOutputContext {
   const SemidiscreteProblem& problem;
   const std::vector<Field>& fields;  ///< their values are read when a frame is written
   const FrameFileOptions& options;
-  const SnapshotVisitor* saved;  ///< loads the output of the resumed run; nullptr: new files
+  const std::optional<SnapshotVisitor>& saved;  ///< loads the output of the resumed run; none: new files
+
+  [[nodiscard]] std::optional<SnapshotVisitor> saved_part(const std::string& key) const {
+    return saved ? std::optional(saved->part(key)) : std::nullopt;
+  }
 };
 
 class FrameOutput {

@@ -21,16 +21,24 @@ constexpr std::size_t piece = 8192;
 
 }  // namespace
 
-HistoryWriter::HistoryWriter(const std::string& path, const std::vector<std::string>& columns) : path_(path) {
-  std::ofstream(path_, std::ios::binary | std::ios::trunc).close();
-  open();
+HistoryWriter::HistoryWriter(const std::string& path, const std::vector<std::string>& columns,
+                             const std::optional<SnapshotVisitor>& saved)
+    : path_(path) {
+  if (saved) {
+    checksums_ = LineChecksums(*saved);
+    truncate_file(path_, checksums_.length());
+  } else {
+    std::ofstream(path_, std::ios::binary | std::ios::trunc).close();
+  }
+  errno = 0;
+  // In append mode no hole is left if the file is truncated between check and write.
+  file_.open(path_, std::ios::binary | std::ios::app);
+  if (!file_) throw_file_error(path_, "write", errno);
+  change_detector_.emplace(path_);
+  waiting_.reserve(2 * piece);
+  if (saved) return;
   for (std::size_t i = 0; i < columns.size(); ++i) line_ += (i == 0 ? "" : ",") + columns[i];
   put_line();
-}
-
-HistoryWriter::HistoryWriter(const std::string& path, const SnapshotVisitor& saved) : path_(path), checksums_(saved) {
-  truncate_file(path_, checksums_.length());
-  open();
 }
 
 HistoryWriter::~HistoryWriter() {
@@ -38,15 +46,6 @@ HistoryWriter::~HistoryWriter() {
     flush();
   } catch (const Error&) {  // the run that has ended has reported it
   }
-}
-
-/// Opens the file in append mode: if it is truncated between check and write, no hole is left.
-void HistoryWriter::open() {
-  errno = 0;
-  file_.open(path_, std::ios::binary | std::ios::app);
-  if (!file_) throw_file_error(path_, "write", errno);
-  change_detector_.emplace(path_);
-  waiting_.reserve(2 * piece);
 }
 
 void HistoryWriter::save(const SnapshotVisitor& visit) {

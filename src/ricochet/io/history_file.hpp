@@ -18,11 +18,10 @@ namespace ricochet {
 /// if another program has changed it.
 class HistoryWriter {
  public:
-  /// Begins a new file.
-  HistoryWriter(const std::string& path, const std::vector<std::string>& columns);
-  /// Continues after the rows that existed when save() was called. Throws Error(file_access) if the
-  /// file is missing or shorter; require_same_files() compares its content.
-  HistoryWriter(const std::string& path, const SnapshotVisitor& saved);
+  /// Begins a new file; with `saved`, continues after the rows that existed when save() was called. Throws
+  /// Error(file_access) if that file is missing or shorter; require_same_files() compares its content.
+  HistoryWriter(const std::string& path, const std::vector<std::string>& columns,
+                const std::optional<SnapshotVisitor>& saved = {});
   /// Writes the buffered rest, if possible.
   ~HistoryWriter();
   HistoryWriter(const HistoryWriter&) = delete;
@@ -37,7 +36,6 @@ class HistoryWriter {
   void sync();
 
  private:
-  void open();
   void put_line();
 
   std::string path_;

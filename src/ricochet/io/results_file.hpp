@@ -30,16 +30,25 @@ struct GlobalBody {
   Index nodes = 0, cells = 0;               ///< of the whole
 };
 
+/// Estimated bytes of the fields without compression.
+struct ResultsSize {
+  double mesh = 0.0, frame = 0.0;
+  [[nodiscard]] double of(long frames) const { return mesh + static_cast<double>(frames) * frame; }
+};
+
+/// Estimate for the whole body, of `nodes` and `cells`; `body` may be one rank's part.
+[[nodiscard]] ResultsSize results_size(const Body& body, const SemidiscreteProblem& problem,
+                                       const ResultsOptions& options, Index nodes, Index cells);
+
 class ResultsWriter {
  public:
-  /// Opens the files in the directory. Keeps references to body and problem. Throws Error(file_access). `global_body`:
-  /// the whole body, on several ranks, which all write together.
+  /// Opens the files in the directory; with `saved`, continues after the frames that existed when save() was called,
+  /// and the files will have the bytes of an uninterrupted run. Keeps references to body and problem. Throws
+  /// Error(file_access), also if they are not those files. `global_body`: the whole body, on several ranks, which all
+  /// write together.
   ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
-                const ResultsOptions& options, const GlobalBody& global_body = {});
-  /// Continues after the frames that existed when save() was called; the files will have the bytes of an uninterrupted
-  /// run. Throws Error(file_access) if they are not those files.
-  ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
-                const ResultsOptions& options, const SnapshotVisitor& saved, const GlobalBody& global_body = {});
+                const ResultsOptions& options, const std::optional<SnapshotVisitor>& saved,
+                const GlobalBody& global_body = {});
   ~ResultsWriter();
   ResultsWriter(const ResultsWriter&) = delete;
   ResultsWriter& operator=(const ResultsWriter&) = delete;

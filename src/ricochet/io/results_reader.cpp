@@ -131,11 +131,11 @@ Index ResultsReader::rows_of(const ResultField& field) const {
 }
 
 void ResultsReader::read(Index frame, const ResultField& field, std::vector<float>& values) const {
-  storage_->read(frame, field, rows_of(field), values);
+  storage_->read(frame, field, rows_of(field), &values);
 }
 
 void ResultsReader::read(Index frame, const ResultField& field, std::vector<double>& values) const {
-  storage_->read(frame, field, rows_of(field), values);
+  storage_->read(frame, field, rows_of(field), &values);
 }
 
 }  // namespace ricochet

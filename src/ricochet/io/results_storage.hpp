@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "ricochet/hdf5/hdf5_file.hpp"
@@ -27,9 +28,9 @@ class ResultsStorage {
   /// The file, reopened if it was closed. Throws Error(invalid_input) if it has been replaced.
   const Hdf5Reader& file();
   void close();
+  using Values = std::variant<std::vector<float>*, std::vector<double>*>;
   /// Reads the values of a field in a frame, row by row. Throws Error(invalid_input) if they are missing.
-  virtual void read(Index frame, const ResultField& field, Index rows, std::vector<float>& values) = 0;
-  virtual void read(Index frame, const ResultField& field, Index rows, std::vector<double>& values) = 0;
+  virtual void read(Index frame, const ResultField& field, Index rows, Values values) = 0;
 
  protected:
   /// The file is the first one of the format.

@@ -53,17 +53,13 @@ class VtkHdfOutput : public FrameOutput {
     for (FixedDataset& set : vtkhdf_mesh_datasets(space)) fixed.push_back(std::move(set));
     const FileOfFrames body{"results.vtkhdf", "frames", std::move(fixed), vtkhdf_datasets_of(context.fields)};
     for (const Field& field : context.fields) values_.emplace_back(field);
-    if (obstacles_.any()) {
-      const FileOfFrames surfaces = file_of_surfaces();
-      if (context.saved != nullptr) {
-        FrameFile::check(path(surfaces), surfaces.fixed, surfaces.layout, options_of(context),
-                         context.saved->part(surfaces.saved_as));
-      }
-      open(file_, body, context);
-      open(obstacle_file_, surfaces, context);
-    } else {
-      open(file_, body, context);
+    const FileOfFrames surfaces = obstacles_.any() ? file_of_surfaces() : FileOfFrames{};
+    if (context.saved && obstacles_.any()) {
+      FrameFile::check(path(surfaces), surfaces.fixed, surfaces.layout, options_of(context),
+                       context.saved->part(surfaces.saved_as));
     }
+    open(file_, body, context);
+    if (obstacles_.any()) open(obstacle_file_, surfaces, context);
   }
 
   void write(const State& state) override {
@@ -105,12 +101,7 @@ class VtkHdfOutput : public FrameOutput {
     return options;
   }
   void open(std::optional<FrameFile>& file, const FileOfFrames& about, const FrameOutputContext& context) const {
-    const FrameFileOptions options = options_of(context);
-    if (context.saved == nullptr) {
-      file.emplace(path(about), about.fixed, about.layout, options);
-    } else {
-      file.emplace(path(about), about.fixed, about.layout, options, context.saved->part(about.saved_as));
-    }
+    file.emplace(path(about), about.fixed, about.layout, options_of(context), context.saved_part(about.saved_as));
   }
   [[nodiscard]] FileOfFrames file_of_surfaces() const {
     const int corners = obstacles_.corners();

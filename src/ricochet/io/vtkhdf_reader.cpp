@@ -50,11 +50,8 @@ class RowsStorage : public ResultsStorage {
     look_up(file());
   }
 
-  void read(Index frame, const ResultField& field, Index rows, std::vector<float>& values) override {
-    read_numbers(frame, field, rows, values);
-  }
-  void read(Index frame, const ResultField& field, Index rows, std::vector<double>& values) override {
-    read_numbers(frame, field, rows, values);
+  void read(Index frame, const ResultField& field, Index rows, Values values) override {
+    std::visit([&](auto* numbers) { read_numbers(frame, field, rows, *numbers); }, values);
   }
 
  private:

@@ -1,18 +1,85 @@
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
 #include <optional>
 
+#include "ricochet/base/file_version.hpp"
+#include "ricochet/io/durable_file.hpp"
+#include "ricochet/io/file_change_detector.hpp"
 #include "ricochet/io/frame_groups.hpp"
 #include "ricochet/io/frame_output.hpp"
+#include "ricochet/io/line_checksums.hpp"
 #include "ricochet/io/mesh_datasets.hpp"
 #include "ricochet/io/obstacle_surfaces.hpp"
-#include "ricochet/io/xdmf_file.hpp"
 #include "ricochet/io/xdmf_reader.hpp"
 #include "ricochet/mesh/shapes/cell_shape_description.hpp"
+#include "ricochet/version.hpp"
 
 namespace ricochet {
 
 namespace {
+
+/// XDMF 3.0 side-file: a temporal collection of grids, a complete document after each of them.
+class XdmfFile {
+ public:
+  /// Creates a file with a collection of this name; with `saved`, continues after the grids that existed when persist()
+  /// was called. `included`: another such file, in the same directory, whose collection is displayed with this one; may
+  /// be empty. Throws Error(file_access), also if it is not that file.
+  XdmfFile(std::string path, const std::string& collection, const std::string& included,
+           const std::optional<SnapshotVisitor>& saved);
+  void save(const SnapshotVisitor& visit) {
+    checksums_.persist(visit, std::filesystem::path(path_).filename().string());
+  }
+
+  /// Appends a `Grid` element. Throws Error(file_access), also if another program has changed the file.
+  void append(const std::string& grid);
+  void require_unchanged() const { change_detector_->require_unchanged(); }
+
+ private:
+  std::string path_;
+  std::fstream file_;
+  std::optional<FileChangeDetector> change_detector_;
+  LineChecksums checksums_;  ///< without the closing tags
+};
+
+const std::string tail = "    </Grid>\n  </Domain>\n</Xdmf>\n";
+
+XdmfFile::XdmfFile(std::string path, const std::string& collection, const std::string& included,
+                   const std::optional<SnapshotVisitor>& saved)
+    : path_(std::move(path)) {
+  if (saved) {
+    checksums_ = LineChecksums(*saved);
+    truncate_file(path_, checksums_.length());
+  }
+  file_.open(path_, std::ios::in | std::ios::out | std::ios::binary | (saved ? std::ios::openmode{} : std::ios::trunc));
+  if (!file_) throw_file_error(path_, "write", errno);
+  change_detector_.emplace(path_);
+  std::string head;
+  if (!saved) {
+    head = "<?xml version=\"1.0\"?>\n<Xdmf xmlns:xi=\"http://www.w3.org/2001/XInclude\" Version=\"3.0\">\n  <Domain>\n";
+    head += fmt::format("    <Information Name=\"{}\" Value=\"{}\"/>\n", version_attribute, version);
+    // The include comes first: readers that support only one collection use the last.
+    if (!included.empty())
+      head += fmt::format("    <xi:include href=\"{}\" xpointer=\"xpointer(/Xdmf/Domain/Grid)\"/>\n", included);
+    head += fmt::format("    <Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", collection);
+  }
+  append(head);
+}
+
+/// Overwrites the closing tags by the grid and new closing tags in one write, once there is space for both.
+void XdmfFile::append(const std::string& grid) {
+  change_detector_->require_unchanged();
+  const std::string text = grid + tail;
+  reserve_space(path_, static_cast<std::int64_t>(text.size()));
+  errno = 0;
+  file_.seekp(checksums_.length());
+  file_ << text << std::flush;
+  if (!file_) throw_file_error(path_, "write", errno);
+  if (!grid.empty()) checksums_.add(grid);
+  change_detector_->expect_size(checksums_.length() + static_cast<std::int64_t>(tail.size()));
+}
 
 /// XDMF topology of the cells.
 std::string topology_of(const DisplacementSpace& space, const FixedDataset& cells) {
@@ -55,17 +122,10 @@ class XdmfOutput : public FrameOutput {
     const DisplacementSpace& space = *context.body.space;
     const std::vector<FixedDataset> fixed = mesh_datasets(space, context.problem.contact);
     mesh_ = topology_of(space, fixed[1]) + geometry_of(space);
-    const std::vector<DatasetLayout> layout = datasets_of(fields_);
-    const std::string obstacles = "obstacles.xdmf";
-    if (context.saved == nullptr) {
-      file_.emplace(path("results.h5"), fixed, layout, context.options);
-      if (obstacles_.any()) obstacle_side_.emplace(path(obstacles), "obstacles");
-      side_.emplace(path("results.xdmf"), "body", obstacles_.any() ? obstacles : "");
-    } else {
-      file_.emplace(path("results.h5"), fixed, layout, context.options, context.saved->part("frames"));
-      if (obstacles_.any()) obstacle_side_.emplace(path(obstacles), context.saved->part("obstacles"));
-      side_.emplace(path("results.xdmf"), context.saved->part("side"));
-    }
+    file_.emplace(path("results.h5"), fixed, datasets_of(fields_), context.options, context.saved_part("frames"));
+    const std::string obstacles = obstacles_.any() ? "obstacles.xdmf" : "";
+    if (obstacles_.any()) obstacle_side_.emplace(path(obstacles), "obstacles", "", context.saved_part("obstacles"));
+    side_.emplace(path("results.xdmf"), "body", obstacles, context.saved_part("side"));
     for (const Field& field : fields_) values_.push_back(field.values);
   }
 

@@ -119,20 +119,16 @@ class GroupsStorage : public ResultsStorage {
     }
   }
 
-  void read(Index frame, const ResultField& field, Index rows, std::vector<float>& values) override {
-    read_numbers(frame, field, rows, values);
-  }
-  void read(Index frame, const ResultField& field, Index rows, std::vector<double>& values) override {
-    read_numbers(frame, field, rows, values);
+  void read(Index frame, const ResultField& field, Index rows, Values values) override {
+    const int columns = field.components > 1 ? field.components : 0;
+    const auto read_table = [&](auto* numbers) {
+      file().table(groups_[static_cast<std::size_t>(frame)], field.name, rows, columns, *numbers);
+    };
+    std::visit(read_table, values);
   }
 
  private:
   void look_up(const Hdf5Reader& /*file*/) override {}
-  template <class Number>
-  void read_numbers(Index frame, const ResultField& field, Index rows, std::vector<Number>& values) {
-    file().table(groups_[static_cast<std::size_t>(frame)], field.name, rows,
-                 field.components > 1 ? field.components : 0, values);
-  }
 
   std::vector<Hdf5Member> groups_;
 };

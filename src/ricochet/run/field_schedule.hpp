@@ -3,7 +3,7 @@
 #include <string>
 
 #include "ricochet/base/snapshot.hpp"
-#include "ricochet/io/results_size.hpp"
+#include "ricochet/io/results_file.hpp"
 #include "ricochet/model/model.hpp"
 
 /// @file The steps after which fields are written, and the size of a run's output.

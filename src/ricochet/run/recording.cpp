@@ -17,6 +17,10 @@ namespace {
 /// Interval, in seconds, at which rows of the history are flushed for readers.
 constexpr double flush_interval = 1.0;
 
+std::optional<SnapshotVisitor> saved_part(const Snapshot* snapshot, const std::string& name) {
+  return snapshot != nullptr ? std::optional(snapshot->loader(name)) : std::nullopt;
+}
+
 /// Opens the history on the first rank; returns null on the others.
 std::unique_ptr<HistoryWriter> open_history(const Ranks& ranks, const std::string& path,
                                             const std::vector<std::string>& columns, const Snapshot* snapshot,
@@ -24,8 +28,7 @@ std::unique_ptr<HistoryWriter> open_history(const Ranks& ranks, const std::strin
   std::unique_ptr<HistoryWriter> result;
   ranks.run_collectively([&] {
     if (!ranks.is_first()) return;
-    result = snapshot != nullptr ? std::make_unique<HistoryWriter>(path, snapshot->loader(name))
-                                 : std::make_unique<HistoryWriter>(path, columns);
+    result = std::make_unique<HistoryWriter>(path, columns, saved_part(snapshot, name));
   });
   return result;
 }
@@ -49,10 +52,8 @@ std::unique_ptr<ResultsWriter> open_results(const OutputSection& output, const M
                    model.global_output->cell_rows,
                    model.sizes.nodes,
                    model.sizes.cells};
-  if (snapshot != nullptr)
-    return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, snapshot->loader("results"),
-                                           global_body);
-  return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, global_body);
+  return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, saved_part(snapshot, "results"),
+                                         global_body);
 }
 
 /// Makes the penetration watch. Steps at finite strain compute stresses and tangents of all cells and refactorize

@@ -9,7 +9,6 @@
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/linear_algebra/library_versions.hpp"
-#include "ricochet/run/mesh_identity.hpp"
 #include "ricochet/version.hpp"
 
 namespace ricochet {
@@ -53,6 +52,96 @@ std::string operator_checksum(const SemidiscreteProblem& problem) {
   return sum.text();
 }
 
+/// Checksum of a part of a mesh. Parts of a mesh of several files have their own, so that a message can name the one
+/// that changed.
+struct MeshChecksum {
+  std::string of;    ///< "nodes"; in a mesh of several files "nodes of part "ball""
+  std::string part;  ///< name of the part; empty for the whole mesh
+  std::string sum;
+};
+
+std::vector<MeshChecksum> of_whole(const Mesh& mesh) {
+  Checksum cells, facets, groups;
+  for (const CellBlock& block : mesh.cells) cells.add(block.nodes.data(), block.nodes.size());
+  for (const CellBlock& block : mesh.facets) facets.add(block.nodes.data(), block.nodes.size());
+  for (const Group& group : mesh.groups) {
+    groups.add(group.name.data(), group.name.size()).add(&group.dimension, 1);
+    groups.add(group.members.data(), group.members.size());
+  }
+  const Checksum nodes = Checksum().add(mesh.nodes.data(), static_cast<std::size_t>(mesh.nodes.size()));
+  return {{"boundary facets", "", facets.text()},
+          {"cells", "", cells.text()},
+          {"groups", "", groups.text()},
+          {"nodes", "", nodes.text()}};
+}
+
+/// Checksums of one part, with its own numbering, so that changes in other parts leave them unchanged.
+class PartChecksums {
+ public:
+  PartChecksums(const Mesh& mesh, const MeshPart& part) : mesh_(mesh), part_(part) {
+    for (Index facet = 0; facet < mesh.facet_count(); ++facet) {
+      const IndexInBlocks at = locate_in_blocks(mesh.facets, facet);
+      if (part.has_node(mesh.facets[at.block].cell(at.local)[0])) facets_.push_back(facet);
+    }
+  }
+
+  void append_to(std::vector<MeshChecksum>& sums) const {
+    const auto add = [&](const char* what, const Checksum& sum) {
+      sums.push_back({fmt::format("{} of part \"{}\"", what, part_.name), part_.name, sum.text()});
+    };
+    add("boundary facets", of_nodes(mesh_.facets, facets_));
+    add("cells", of_nodes(mesh_.cells, part_.cells));
+    add("groups", of_groups());
+    add("nodes", Checksum().add(mesh_.nodes.data() + part_.first_node * mesh_.nodes.rows(),
+                                static_cast<std::size_t>(part_.node_count * mesh_.nodes.rows())));
+  }
+
+ private:
+  [[nodiscard]] Checksum of_nodes(const std::vector<CellBlock>& blocks, const std::vector<Index>& members) const {
+    Checksum sum;
+    std::vector<Index> nodes;
+    for (const Index member : members) {
+      const IndexInBlocks at = locate_in_blocks(blocks, member);
+      const CellBlock& block = blocks[at.block];
+      nodes.assign(block.cell(at.local), block.cell(at.local) + block.nodes_per_cell);
+      for (Index& node : nodes) node -= part_.first_node;
+      sum.add(nodes.data(), nodes.size());
+    }
+    return sum;
+  }
+
+  [[nodiscard]] Checksum of_groups() const {
+    Checksum sum;
+    for (const Group& group : mesh_.groups) {
+      if (!group.name.starts_with(part_.group_name(""))) continue;
+      const std::vector<Index>& all = group.dimension == mesh_.dimension ? part_.cells : facets_;
+      std::vector<Index> members;
+      for (const Index member : group.members)
+        members.push_back(std::lower_bound(all.begin(), all.end(), member) - all.begin());
+      sum.add(group.name.data(), group.name.size()).add(&group.dimension, 1);
+      sum.add(members.data(), members.size());
+    }
+    return sum;
+  }
+
+  const Mesh& mesh_;
+  const MeshPart& part_;
+  std::vector<Index> facets_;
+};
+
+/// Returns the checksums of nodes, cells, boundary facets and groups, and of the order of the parts.
+std::vector<MeshChecksum> mesh_checksums(const Mesh& mesh) {
+  if (mesh.parts.empty()) return of_whole(mesh);
+  std::vector<MeshChecksum> sums;
+  Checksum order;
+  for (const MeshPart& part : mesh.parts) {
+    PartChecksums(mesh, part).append_to(sums);
+    order.add(part.name.data(), part.name.size() + 1);  // including the terminating zero
+  }
+  sums.push_back({"the order of the parts", "", order.text()});
+  return sums;
+}
+
 }  // namespace
 
 std::map<std::string, std::string> deciding_values(const Case& input) {
@@ -63,37 +152,23 @@ std::map<std::string, std::string> deciding_values(const Case& input) {
   return result;
 }
 
-void save_identity(const Case& input, const Model& model, Snapshot& snapshot) {
-  snapshot.save("identity.version", std::string(version));
-  Snapshot::Texts keys, values, parts, sums;
-  for (const auto& [key, value] : deciding_values(input)) {
-    keys.push_back(key);
-    values.push_back(value);
-  }
-  for (const MeshChecksum& checksum : mesh_checksums(model.mesh)) {
-    parts.push_back(checksum.of);
-    sums.push_back(checksum.sum);
-  }
-  snapshot.save("identity.case.keys", std::move(keys));
-  snapshot.save("identity.case.values", std::move(values));
-  snapshot.save("identity.mesh.parts", std::move(parts));
-  snapshot.save("identity.mesh.sums", std::move(sums));
-  Snapshot::Texts obstacles, obstacle_sums;
-  for (const auto& [name, sum] : obstacle_checksums(input, model)) {
-    obstacles.push_back(name);
-    obstacle_sums.push_back(sum);
-  }
-  snapshot.save("identity.obstacles", std::move(obstacles));
-  snapshot.save("identity.obstacles.sums", std::move(obstacle_sums));
-  snapshot.save("identity.libraries", library_versions());
-  snapshot.save("identity.operators", operator_checksum(model.problem));
-}
-
 namespace {
 
-std::map<std::string, std::string> read_map(const Snapshot& snapshot, const std::string& keys,
-                                            const std::string& values) {
-  std::map<std::string, std::string> result;
+using Texts = std::map<std::string, std::string>;
+
+/// Saves a map as two entries, its keys and its values.
+void save_map(const Texts& map, Snapshot& snapshot, const std::string& keys, const std::string& values) {
+  Snapshot::Texts names, texts;
+  for (const auto& [name, text] : map) {
+    names.push_back(name);
+    texts.push_back(text);
+  }
+  snapshot.save(keys, std::move(names));
+  snapshot.save(values, std::move(texts));
+}
+
+Texts read_map(const Snapshot& snapshot, const std::string& keys, const std::string& values) {
+  Texts result;
   const Snapshot::Texts& names = snapshot.texts(keys);
   const Snapshot::Texts& texts = snapshot.texts(values);
   for (std::size_t i = 0; i < std::min(names.size(), texts.size()); ++i) result[names[i]] = texts[i];
@@ -101,6 +176,21 @@ std::map<std::string, std::string> read_map(const Snapshot& snapshot, const std:
 }
 
 }  // namespace
+
+void save_identity(const Case& input, const Model& model, Snapshot& snapshot) {
+  snapshot.save("identity.version", std::string(version));
+  save_map(deciding_values(input), snapshot, "identity.case.keys", "identity.case.values");
+  Snapshot::Texts parts, sums;  // in the order of the mesh
+  for (const MeshChecksum& checksum : mesh_checksums(model.mesh)) {
+    parts.push_back(checksum.of);
+    sums.push_back(checksum.sum);
+  }
+  snapshot.save("identity.mesh.parts", std::move(parts));
+  snapshot.save("identity.mesh.sums", std::move(sums));
+  save_map(obstacle_checksums(input, model), snapshot, "identity.obstacles", "identity.obstacles.sums");
+  snapshot.save("identity.libraries", library_versions());
+  snapshot.save("identity.operators", operator_checksum(model.problem));
+}
 
 void require_same_case(const Case& input, const std::string& version_before,
                        const std::map<std::string, std::string>& values_before, const std::string& before) {
@@ -133,7 +223,7 @@ void require_same_case(const Case& input, const Snapshot& snapshot, const std::s
 }
 
 std::string compare_model(const Case& input, const Model& model, const Snapshot& snapshot) {
-  const std::map<std::string, std::string> before = read_map(snapshot, "identity.mesh.parts", "identity.mesh.sums");
+  const Texts before = read_map(snapshot, "identity.mesh.parts", "identity.mesh.sums");
   std::string differences, file_key = input.parts.empty() ? "mesh.file" : "part";
   for (const MeshChecksum& checksum : mesh_checksums(model.mesh)) {
     const auto found = before.find(checksum.of);
@@ -147,8 +237,7 @@ std::string compare_model(const Case& input, const Model& model, const Snapshot&
                             "restore the mesh, start anew in another directory (-o), or overwrite the run (--force)",
                             input.where(file_key).text(), differences));
   }
-  const std::map<std::string, std::string> obstacles =
-      read_map(snapshot, "identity.obstacles", "identity.obstacles.sums");
+  const Texts obstacles = read_map(snapshot, "identity.obstacles", "identity.obstacles.sums");
   for (const auto& [name, sum] : obstacle_checksums(input, model)) {
     const auto found = obstacles.find(name);
     if (found != obstacles.end() && found->second == sum) continue;
