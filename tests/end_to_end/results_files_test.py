@@ -66,7 +66,7 @@ class ResultsFiles(TestCase):
         about = SHAPES[shape]
         shape_of = {key: value for key, value in about.items() if key != "volume"}
         text = falling(MESHES / f"{shape}_o{order}_msh41_binary.msh", degree=degree, scheme=scheme, **shape_of)
-        return self.simulate(self.write("case.toml", text))
+        return self.simulate(self.write("case.toml", text), f"{shape}-{order}-{degree}")
 
     def check_probes(self, results, points, read):
         """Checks that every frame equals the row of the history at its time, bit for bit. Returns how many saw
@@ -120,35 +120,15 @@ class ResultsFiles(TestCase):
         self.check_cells(points, cells, SHAPES[shape]["volume"], straight=True)
         self.assertGreater(self.check_probes(results, points, read), 0, "the lowest node never touched in a frame")
 
-    def test_triangles(self):
-        self.check_shape("triangle", 1, 1, ["triangle"])
-
-    def test_triangles_of_degree_2(self):
-        self.check_shape("triangle", 2, 2, ["triangle6"])
-
-    def test_degree_2_on_a_mesh_of_order_1(self):
-        self.check_shape("triangle", 1, 2, ["triangle6"])
-
-    def test_quadrilaterals(self):
-        self.check_shape("quadrilateral", 1, 1, ["quad"])
-
-    def test_quadrilaterals_of_degree_2(self):
-        self.check_shape("quadrilateral", 2, 2, ["quad9"])
-
-    def test_triangles_and_quadrilaterals(self):
-        self.check_shape("mixed", 1, 1, ["triangle", "quad"])
-
-    def test_tetrahedra(self):
-        self.check_shape("tetrahedron", 1, 1, ["tetra"])
-
-    def test_tetrahedra_of_degree_2(self):
-        self.check_shape("tetrahedron", 2, 2, ["tetra10"])
-
-    def test_hexahedra(self):
-        self.check_shape("hexahedron", 1, 1, ["hexahedron"])
-
-    def test_hexahedra_of_degree_2(self):
-        self.check_shape("hexahedron", 2, 2, ["hexahedron27"])
+    def test_shapes(self):
+        """Shape, order of the mesh, degree of the displacement, kinds of cells."""
+        for shape, order, degree, kinds in (
+                ("triangle", 1, 1, ["triangle"]), ("triangle", 2, 2, ["triangle6"]), ("triangle", 1, 2, ["triangle6"]),
+                ("quadrilateral", 1, 1, ["quad"]), ("quadrilateral", 2, 2, ["quad9"]), ("mixed", 1, 1, ["triangle", "quad"]),
+                ("tetrahedron", 1, 1, ["tetra"]), ("tetrahedron", 2, 2, ["tetra10"]),
+                ("hexahedron", 1, 1, ["hexahedron"]), ("hexahedron", 2, 2, ["hexahedron27"])):
+            with self.subTest(shape=shape, order=order, degree=degree):
+                self.check_shape(shape, order, degree, kinds)
 
     def test_triangles_and_quadrilaterals_of_degree_2(self):
         """meshio 5.0 does not support second-order cells in mixed topologies: read by h5py, with the numbers from

@@ -19,6 +19,43 @@ def obstacle(name, point, normal, more=""):
             f'[[contact]]\ngroup = "bottom"\nobstacle = "{name}"\n')
 
 
+# Cases; the piece of each whose location the message must name (its last occurrence); and parts of the message.
+REFUSED = {
+    "contact group that the mesh does not have": (
+        block_case().replace('group = "bottom"', 'group = "botom"'), '"botom"', 'no group "botom"', 'did you mean "bottom"'),
+    "material group that the mesh does not have": (
+        block_case().replace('group = "body"', 'group = "steel"'), '"steel"', 'no group "steel"', '"body"'),
+    "group of cells where facets are wanted": (block_case().replace('group = "bottom"', 'group = "body"'), '"body"', '"body"', "facets"),
+    "group without elements": (MIXED.replace('group = "bottom"', 'group = "nothing"'), '"nothing"', '"nothing"', "is empty"),
+    "support in a direction that does not exist": (block_case() + support("sides", '["x", "z"]', 0), '"z"]', 'no component "z" in two dimensions'),
+    "vectors of different lengths": (block_case().replace("[0.0, -10.0]", "[0.0, 0.0, -10.0]"), "[0.0, 0.0, -10.0]", '"gravity"', "has 3 entries"),
+    "contact inside the body": (MIXED.replace('group = "bottom"', 'group = "interface"'), '"interface"', '"interface" is not on the surface'),
+    "traction inside the body": (
+        MIXED + '[[traction]]\ngroup = "interface"\nvalue = [1.0, 0.0]\n', '"interface"', '"interface" is not on the surface'),
+    "cells without material": (MIXED.replace('group = "all"', 'group = "left half"'), "[[material]]", "have no material", '"all"'),
+    "obstacle that does not exist": (
+        block_case().replace('obstacle = "floor"', 'obstacle = "flor"'), '"flor"', "there is no [obstacle.flor]", 'did you mean "floor"'),
+    "two contacts of the same facets with the same obstacle": (
+        MIXED + '[[contact]]\ngroup = "bottom left"\nobstacle = "floor"\n', '"bottom left"', '"bottom" and "bottom left" overlap'),
+    "multipliers that differ at a shared node": (
+        block_case() + '[[contact]]\ngroup = "sides"\nobstacle = "floor"\nmultipliers = "dual"\n', None, "share a node", "multipliers"),
+    "line that turns about its normal": (
+        block_case().replace("normal = [0.0, 1.0]", "normal = [0.0, 1.0]\nrotation_rate = 1.0"), "1.0\n[[contact", "three dimensions"),
+    "one plane with two frictions": (
+        block_case() + obstacle("again", [0.0, 0.0], [0.0, 2.0]) + "friction = 0.3\n", None, "case.toml:", '"again" and "floor"',
+        "are the same surface", "different friction"),
+    "supports that disagree": (
+        MIXED + support("bottom", '["x"]', 0) + support("interface", '["x"]', '"t"'), '"interface"', 'support of group "interface"', '"0"'),
+    "supports that disagree in a parameter": (
+        MIXED + support("bottom", '["x"]', '"p*t"', "p = 1.0") + support("interface", '["x"]', '"p*t"', "p = 2.0"), '"interface"',
+        'support of group "interface"'),
+    "two probes of one name": (block_case() + '[[probe]]\nname = "foot"\nat = [0.0, 0.0]\n', '"foot"', '"foot"'),
+    "probe with the name of a column": (block_case().replace('"foot"', '"total_energy"'), '"total_energy"', '"total_energy"'),
+    "initial displacement that is not finite": (
+        block_case() + '[initial]\ndisplacement = ["log(x-0.1)", "0"]\n', '["log(x-0.1)", "0"]', "no finite value at x = 0.1"),
+}
+
+
 class SemanticErrors(TestCase):
     def refuse(self, text, at, *fragments, command="validate", environment=None):
         """`at` is the piece of the case file whose location the message must name: its last occurrence."""
@@ -41,61 +78,24 @@ class SemanticErrors(TestCase):
         for text in (block_case(), MIXED):
             self.expect_status(0, run("validate", self.write("case.toml", text)))
 
-    def test_contact_group_that_the_mesh_does_not_have(self):
-        self.refuse(block_case().replace('group = "bottom"', 'group = "botom"'), '"botom"', 'no group "botom"',
-                    'did you mean "bottom"')
-
-    def test_material_group_that_the_mesh_does_not_have(self):
-        self.refuse(block_case().replace('group = "body"', 'group = "steel"'), '"steel"', 'no group "steel"', '"body"')
-
-    def test_group_of_cells_where_facets_are_wanted(self):
-        self.refuse(block_case().replace('group = "bottom"', 'group = "body"'), '"body"', '"body"', "facets")
-
-    def test_group_without_elements(self):
-        self.refuse(MIXED.replace('group = "bottom"', 'group = "nothing"'), '"nothing"', '"nothing"', "is empty")
-
-    def test_support_in_a_direction_that_does_not_exist(self):
-        self.refuse(block_case() + support("sides", '["x", "z"]', 0), '"z"]', 'no component "z" in two dimensions')
-
     def test_vectors_of_three_dimensions_on_a_plane_mesh(self):
         text = (block_case().replace("[0.0, 0.0]", "[0.0, 0.0, 0.0]").replace("[0.0, 1.0]", "[0.0, 0.0, 1.0]")
                 .replace("[0.0, -10.0]", "[0.0, 0.0, -10.0]").replace("[1.3, 0.1]", "[1.3, 0.1, 0.0]"))
         self.refuse(text, "[0.0, 0.0, 0.0]", "has 3 entries", "dimension 2")
 
-    def test_vectors_of_different_lengths(self):
-        self.refuse(block_case().replace("[0.0, -10.0]", "[0.0, 0.0, -10.0]"), "[0.0, 0.0, -10.0]", '"gravity"',
-                    "has 3 entries")
-
-    def test_contact_inside_the_body(self):
-        self.refuse(MIXED.replace('group = "bottom"', 'group = "interface"'), '"interface"',
-                    '"interface" is not on the surface')
-
-    def test_traction_inside_the_body(self):
-        self.refuse(MIXED + '[[traction]]\ngroup = "interface"\nvalue = [1.0, 0.0]\n', '"interface"',
-                    '"interface" is not on the surface')
-
-    def test_cells_without_material(self):
-        self.refuse(MIXED.replace('group = "all"', 'group = "left half"'), "[[material]]", "have no material", '"all"')
-
     def test_cells_with_two_materials(self):
         second = '[[material]]\ngroup = "left half"\ndensity = 2.0\nlambda = 1.0\nmu = 1.0\n'
         self.refuse(MIXED + second, '"left half"', '"all" and "left half" overlap')
-
-    def test_obstacle_that_does_not_exist(self):
-        self.refuse(block_case().replace('obstacle = "floor"', 'obstacle = "flor"'), '"flor"', "there is no [obstacle.flor]", 'did you mean "floor"')
-
-    def test_two_contacts_of_the_same_facets_with_the_same_obstacle(self):
-        self.refuse(MIXED + '[[contact]]\ngroup = "bottom left"\nobstacle = "floor"\n', '"bottom left"',
-                    '"bottom" and "bottom left" overlap')
 
     def test_friction_that_differs_at_a_shared_node(self):
         text = block_case().replace('obstacle = "floor"', 'obstacle = "floor"\nfriction = 0.3')
         self.refuse(text + '[[contact]]\ngroup = "sides"\nobstacle = "floor"\nfriction = 0.2\n', None, "share a node",
                     "friction")
 
-    def test_multipliers_that_differ_at_a_shared_node(self):
-        self.refuse(block_case() + '[[contact]]\ngroup = "sides"\nobstacle = "floor"\nmultipliers = "dual"\n', None,
-                    "share a node", "multipliers")
+    def test_refusals(self):
+        for name, row in REFUSED.items():
+            with self.subTest(name):
+                self.refuse(*row)
 
     def test_multipliers_that_are_not_stable(self):
         text = block_case().replace('obstacle = "floor"', 'obstacle = "floor"\nmultipliers = "p0"')
@@ -105,36 +105,10 @@ class SemanticErrors(TestCase):
         self.assertIn("warning: ", process.stderr)
         self.assertIn("p0", process.stderr)
 
-    def test_line_that_turns_about_its_normal(self):
-        self.refuse(block_case().replace("normal = [0.0, 1.0]", "normal = [0.0, 1.0]\nrotation_rate = 1.0"), "1.0\n[[contact",
-                    "three dimensions")
-
-    def test_one_plane_with_two_frictions(self):
-        self.refuse(block_case() + obstacle("again", [0.0, 0.0], [0.0, 2.0]) + "friction = 0.3\n", None, "case.toml:",
-                    '"again" and "floor"', "are the same surface", "different friction")
-
     def test_obstacles_that_leave_no_room(self):
         press = obstacle("press", [0.0, 0.3], [0.0, -1.0], "velocity = [0.0, -100.0]\n")
         self.refuse(block_case().split("[[probe]]")[0] + press, None, "step ", "no motion meets the conditions of contact", "reference position",
                     "contact.0 (normal (0, 1))", "contact.1 (normal (0, -1))", command="run")
-
-    def test_supports_that_disagree(self):
-        self.refuse(MIXED + support("bottom", '["x"]', 0) + support("interface", '["x"]', '"t"'), '"interface"',
-                    'support of group "interface"', '"0"')
-
-    def test_supports_that_disagree_in_a_parameter(self):
-        self.refuse(MIXED + support("bottom", '["x"]', '"p*t"', "p = 1.0")
-                    + support("interface", '["x"]', '"p*t"', "p = 2.0"), '"interface"', 'support of group "interface"')
-
-    def test_two_probes_of_one_name(self):
-        self.refuse(block_case() + '[[probe]]\nname = "foot"\nat = [0.0, 0.0]\n', '"foot"', '"foot"')
-
-    def test_probe_with_the_name_of_a_column(self):
-        self.refuse(block_case().replace('"foot"', '"total_energy"'), '"total_energy"', '"total_energy"')
-
-    def test_initial_displacement_that_is_not_finite(self):
-        self.refuse(block_case() + '[initial]\ndisplacement = ["log(x-0.1)", "0"]\n', '["log(x-0.1)", "0"]',
-                    "no finite value at x = 0.1")
 
     def test_equilibrium_that_does_not_exist(self):
         self.refuse(block_case().replace("[0.0, -10.0]", "[1.0, -10.0]") + '[initial]\ndisplacement = "static"\n', None,
