@@ -110,11 +110,7 @@ void require_space(const Parameters& parameters, const std::string& key, const s
 }
 
 Key obstacle_side_key(const std::string& doc) {
-  return {.name = "side",
-          .type = KeyType::choice,
-          .default_value = "outside",
-          .choices = {"outside", "inside"},
-          .doc = doc};
+  return choice_key("side", {"outside", "inside"}, {.default_value = "outside"}, doc);
 }
 
 double obstacle_side(const Parameters& parameters) {

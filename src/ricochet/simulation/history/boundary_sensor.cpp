@@ -188,17 +188,15 @@ Registration<ProbeKind> boundary_probe() {
                .find = find_boundary,
                .make = make_boundary_probe},
       .keys =
-          {{.name = "boundary",
-            .type = KeyType::groups,
-            .doc = "Group of boundary facets, or a list of groups. Columns: force and moment on the body at its nodes, "
-                   "from supports and contacts together (prescribed loads are not included), NAME.force_x …, "
-                   "NAME.moment_z, in 3D NAME.moment_x …; and from the supports alone, NAME.support_x …, "
-                   "NAME.support_moment_z, in 3D NAME.support_moment_x …"},
-           {.name = "about",
-            .type = KeyType::vector,
-            .unit = "length",
-            .doc =
-                "Reference point of the moment on a boundary, in the reference configuration. Default: the origin."}},
+          {typed_key(
+               "boundary", KeyType::groups, "", {},
+               "Group of boundary facets, or a list of groups. Columns: force and moment on the body at its nodes, "
+               "from supports and contacts together (prescribed loads are not included), NAME.force_x …, "
+               "NAME.moment_z, in 3D NAME.moment_x …; and from the supports alone, NAME.support_x …, "
+               "NAME.support_moment_z, in 3D NAME.support_moment_x …"),
+           vector_key(
+               "about", "length", {},
+               "Reference point of the moment on a boundary, in the reference configuration. Default: the origin.")},
       .alternatives = {{"boundary"}}};
 }
 

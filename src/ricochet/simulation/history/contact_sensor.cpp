@@ -190,18 +190,14 @@ SensorList make_contact_probe(const ProbeSetting& probe, const ProbeTargets&) {
 }  // namespace
 
 Registration<ProbeKind> contact_probe() {
-  return {
-      .name = "contact",
-      .type = {.quantities = ContactSensor::descriptions(), .find = check_contact, .make = make_contact_probe},
-      .keys =
-          {{.name = "contact",
-            .type = KeyType::integer,
-            .unit = "1",
-            .range = nonnegative,
-            .doc = "Number of an entry of [[contact]], counted from 0. Columns: its force on the body NAME.force_x … "
-                   "(between bodies, on the body of its \"group\"), its centre of pressure NAME.centre_x … (0 while it "
-                   "is open) and its area in contact NAME.area (a length in 2D)."}},
-      .alternatives = {{"contact"}}};
+  return {.name = "contact",
+          .type = {.quantities = ContactSensor::descriptions(), .find = check_contact, .make = make_contact_probe},
+          .keys = {typed_key(
+              "contact", KeyType::integer, "1", {.range = nonnegative},
+              "Number of an entry of [[contact]], counted from 0. Columns: its force on the body NAME.force_x … "
+              "(between bodies, on the body of its \"group\"), its centre of pressure NAME.centre_x … (0 while it "
+              "is open) and its area in contact NAME.area (a length in 2D).")},
+          .alternatives = {{"contact"}}};
 }
 
 std::vector<RowQuantity> pair_force_quantities() {

@@ -173,16 +173,14 @@ SensorList make_group_probe(const ProbeSetting& probe, const ProbeTargets&) {
 }  // namespace
 
 Registration<ProbeKind> group_probe() {
-  return {
-      .name = "group",
-      .type = {.quantities = GroupSensor::descriptions(), .find = nullptr, .make = make_group_probe},
-      .keys = {{.name = "group",
-                .type = KeyType::groups,
-                .doc =
-                    "Group of cells or of boundary facets, or a list of groups. Columns NAME.displacement_average_x …, "
-                    "_minimum_, _maximum_, the same for the velocity, and for cells von_mises_average, _minimum, "
-                    "_maximum. Averages are over volume or area."}},
-      .alternatives = {{"group"}}};
+  return {.name = "group",
+          .type = {.quantities = GroupSensor::descriptions(), .find = nullptr, .make = make_group_probe},
+          .keys = {typed_key(
+              "group", KeyType::groups, "", {},
+              "Group of cells or of boundary facets, or a list of groups. Columns NAME.displacement_average_x …, "
+              "_minimum_, _maximum_, the same for the velocity, and for cells von_mises_average, _minimum, "
+              "_maximum. Averages are over volume or area.")},
+          .alternatives = {{"group"}}};
 }
 
 std::unique_ptr<Sensor> make_cell_group_sensor(const std::string& name, const Body& body,

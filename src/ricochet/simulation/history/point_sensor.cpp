@@ -250,35 +250,27 @@ SensorList make_point_probe(const ProbeSetting& setting, const ProbeTargets& tar
 }  // namespace
 
 Registration<ProbeKind> point_probe() {
-  return {
-      .name = "at",
-      .type = {.quantities = PointSensor::descriptions(), .find = find_point, .make = make_point_probe},
-      .keys =
-          {{.name = "at",
-            .type = KeyType::vector,
-            .unit = "length",
-            .doc =
-                "A point: the probe uses the nearest node and reports its distance. Columns NAME.displacement_x …, "
-                "velocity_x …, and on a contact boundary gap, pressure, reaction_normal, reaction_tangential_x …. If "
-                "nodes of two bodies in contact coincide there, it uses the node on the side with the multipliers."}},
-      .alternatives = {{"at"}}};
+  return {.name = "at",
+          .type = {.quantities = PointSensor::descriptions(), .find = find_point, .make = make_point_probe},
+          .keys = {vector_key(
+              "at", "length", {},
+              "A point: the probe uses the nearest node and reports its distance. Columns NAME.displacement_x …, "
+              "velocity_x …, and on a contact boundary gap, pressure, reaction_normal, reaction_tangential_x …. If "
+              "nodes of two bodies in contact coincide there, it uses the node on the side with the multipliers.")},
+          .alternatives = {{"at"}}};
 }
 
 Registration<ProbeKind> segment_probe() {
   return {
       .name = "from",
       .type = {.quantities = {}, .find = find_segment, .make = make_point_probe},
-      .keys = {{.name = "from",
-                .type = KeyType::vector,
-                .unit = "length",
-                .doc = "One end of a segment. All nodes along it, numbered from this end, have the columns of a point: "
-                       "NAME.0.displacement_x and so on."},
-               {.name = "to", .type = KeyType::vector, .unit = "length", .doc = "The other end of the segment."},
-               {.name = "within",
-                .type = KeyType::number,
-                .unit = "length",
-                .range = positive,
-                .doc = "Nodes within this distance of the segment belong to it. Default: 1e-6 of the body's size."}},
+      .keys = {vector_key(
+                   "from", "length", {},
+                   "One end of a segment. All nodes along it, numbered from this end, have the columns of a point: "
+                   "NAME.0.displacement_x and so on."),
+               vector_key("to", "length", {}, "The other end of the segment."),
+               number_key("within", "length", {.range = positive},
+                          "Nodes within this distance of the segment belong to it. Default: 1e-6 of the body's size.")},
       .alternatives = {{"from", "to"}}};
 }
 
