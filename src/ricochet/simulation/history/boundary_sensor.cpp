@@ -51,13 +51,13 @@ class BoundarySensor final : public QuantitySensor<BoundarySensor> {
     static const Quantities all{
         {{"force", "force", "total force that supports and contacts, also those of other bodies, exert on its nodes",
           ColumnComponents::vector},
-         of(&Self::force_)},
+         member_value(&Self::force_)},
         {{"moment", "force·length", "moment of these forces; 0 for axisymmetric bodies", ColumnComponents::axial},
-         of(&Self::moment_)},
+         member_value(&Self::moment_)},
         {{"support", "force", "[force of the supports alone](#supports-and-contacts)", ColumnComponents::vector},
-         of(&Self::support_force_)},
+         member_value(&Self::support_force_)},
         {{"support_moment", "force·length", "moment of the supports alone", ColumnComponents::axial},
-         of(&Self::support_moment_)},
+         member_value(&Self::support_moment_)},
     };
     return all;
   }
@@ -160,7 +160,7 @@ std::string describe_boundary_forces(const SemidiscreteProblem& problem, const s
       counted(shared, "node"));
 }
 
-void find_boundary(const ProbeSetting& probe, ProbeTargets& targets) {
+void find_boundary(const ProbeContext& probe, ProbeTargets& targets) {
   targets.nodes = facet_nodes(*probe.body.space, probe.boundary("boundary"));
   const TiedNodes* const tied = probe.body.tied;
   if (tied != nullptr &&
@@ -170,11 +170,11 @@ void find_boundary(const ProbeSetting& probe, ProbeTargets& targets) {
                     "they are internal to one body",
                     probe.name, probe.values.text("boundary")));
   }
-  targets.sums = describe_boundary_forces(probe.problem, targets.nodes);
-  log::info(fmt::format("probe \"{}\": {}", probe.name, targets.sums));
+  targets.summed_forces = describe_boundary_forces(probe.problem, targets.nodes);
+  log::info(fmt::format("probe \"{}\": {}", probe.name, targets.summed_forces));
 }
 
-SensorList make_boundary_probe(const ProbeSetting& probe, const ProbeTargets& targets) {
+SensorList make_boundary_probe(const ProbeContext& probe, const ProbeTargets& targets) {
   return {make_boundary_sensor(probe.name, probe.problem, targets.nodes, probe.vector("about"))};
 }
 
