@@ -206,19 +206,17 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
   choice =
       with_cells(consistent, {}, [&] { return mass_to_build(input.mass.type, input.mass.parameters, mass_input); });
   model.mass_built = choice.name;
-  const std::unique_ptr<MassConstruction> construction = make_mass(choice.name, choice.parameters);
+  const bool has_massless_contact = mass_registry().find(choice.name).type.removes_contact_inertia;
   const auto build = [&](const SparseMatrix& from, const std::vector<double>& weight = {}) {
-    return with_cells(from, weight, [&] { return construction->build(mass_input); });
+    return with_cells(from, weight, [&] { return build_mass(choice.name, mass_input, choice.parameters); });
   };
   if (!choice.mass) choice.mass = build(consistent);
   if (!choice.reason.empty()) {
     log::info(fmt::format("the mass \"{}\" of {} contact nodes is built as \"{}\": {}", input.mass.type,
                           mass_input.contact_nodes.size(), choice.name, choice.reason));
   }
-  if (construction->removes_contact_inertia())
-    warn_of_concentrated_inertia(input, choice.name, *choice.mass, consistent.diagonal());
-  finish_problem(model.problem, with_free_bodies(model, expand_to_components(*choice.mass, d)),
-                 construction->removes_contact_inertia());
+  if (has_massless_contact) warn_of_concentrated_inertia(input, choice.name, *choice.mass, consistent.diagonal());
+  finish_problem(model.problem, with_free_bodies(model, expand_to_components(*choice.mass, d)), has_massless_contact);
   choice.mass.reset();
   if (with_forces) {
     assemble_forces(input, model);
