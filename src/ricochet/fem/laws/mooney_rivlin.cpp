@@ -137,7 +137,7 @@ MaterialLawRegistration mooney_rivlin_law() {
     return std::make_unique<MooneyRivlin>(parameters.number("c10"), parameters.number("c01"),
                                           parameters.number("bulk_modulus"));
   };
-  return {"mooney-rivlin", make, mooney_rivlin_keys(), {}, check_mooney_rivlin};
+  return {"mooney-rivlin", {make, true}, mooney_rivlin_keys(), {}, check_mooney_rivlin};
 }
 
 }  // namespace ricochet
