@@ -319,14 +319,12 @@ void add_pressures(const Case& input, Model& model) {
         boundary_at(input, fmt::format("pressure.{}.group", i), model.mesh, section.group);
     FollowerPressure own(model.body);
     own.add(facets, section.value);
-    try {
+    located(input, fmt::format("pressure.{}.value", i), [&] {
       // An invalid value is reported with its location.
       Vector load = Vector::Zero(model.space.dof_count());
       own.add_force(Vector(), 0.0, load);
       if (!follows) add_dead_pressure(own, section.value, model.problem.loads, model.space.dof_count());
-    } catch (const Error& problem) {
-      refuse(input, fmt::format("pressure.{}.value", i), problem.what());
-    }
+    });
     if (follows) all->add(facets, section.value);
   }
   if (!all->empty()) model.problem.pressure = all;
@@ -353,7 +351,7 @@ void add_loads(const Case& input, Model& model) {
   add_forces_on_free_bodies(input, model);
   const Body& body = model.body;
   const TiedNodes& tied = model.tied;
-  try {
+  located(input, "load.body_force", [&] {
     if (!input.load.body_force.empty()) {
       add_force(
           input.load.body_force,
@@ -363,13 +361,11 @@ void add_loads(const Case& input, Model& model) {
           },
           loads, dofs);
     }
-  } catch (const Error& problem) {
-    refuse(input, "load.body_force", problem.what());
-  }
+  });
   for (std::size_t i = 0; i < input.tractions.size(); ++i) {
     const std::vector<Index> facets =
         boundary_at(input, fmt::format("traction.{}.group", i), model.mesh, input.tractions[i].group);
-    try {
+    located(input, fmt::format("traction.{}.value", i), [&] {
       add_force(
           input.tractions[i].value,
           [&body, &tied, d, facets](const ForceDensity& f, Vector& load) {
@@ -377,9 +373,7 @@ void add_loads(const Case& input, Model& model) {
             tied.condense_load(load, d);
           },
           loads, dofs);
-    } catch (const Error& problem) {
-      refuse(input, fmt::format("traction.{}.value", i), problem.what());
-    }
+    });
   }
   add_pressures(input, model);
 }
