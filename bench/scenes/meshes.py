@@ -5,8 +5,8 @@ import itertools
 
 from quantities import LENGTH
 
-TYPES = {("line", 2): 1, ("triangle", 3): 2, ("quadrilateral", 4): 3, ("tetrahedron", 4): 4, ("hexahedron", 8): 5}
-FACET_OF = {"triangle": "line", "quadrilateral": "line", "tetrahedron": "triangle", "hexahedron": "quadrilateral"}
+TYPES = {"line": 1, "triangle": 2, "quadrilateral": 3, "tetrahedron": 4, "hexahedron": 5}
+FACETS = {2: "line", 3: "triangle", 4: "quadrilateral"}  # by number of nodes
 # An order of nodes that turns a cell inside out, as a reflection does, and one that rotates the cell.
 MIRRORED = {"triangle": (0, 2, 1), "quadrilateral": (0, 3, 2, 1), "tetrahedron": (0, 2, 1, 3),
             "hexahedron": (0, 3, 2, 1, 4, 7, 6, 5)}
@@ -130,7 +130,7 @@ def gathered(meshes):
     for mesh in meshes:
         points += mesh.points
         cells += [(f"{mesh.name}.body", mesh.kind, tuple(n + shift for n in c)) for c in mesh.cells]
-        facets += [(f"{mesh.name}.{side}", FACET_OF[mesh.kind], tuple(n + shift for n in nodes)) for side, nodes in mesh.facets]
+        facets += [(f"{mesh.name}.{side}", FACETS[len(nodes)], tuple(n + shift for n in nodes)) for side, nodes in mesh.facets]
         shift += len(mesh.points)
     return points, cells, facets
 
@@ -142,14 +142,14 @@ def groups_of(meshes):
     if len(meshes) == 1:
         mesh = meshes[0]
         points, cells = mesh.points, [("body", mesh.kind, c) for c in mesh.cells]
-        facets = [(side, FACET_OF[mesh.kind], nodes) for side, nodes in mesh.facets]
+        facets = [(side, FACETS[len(nodes)], nodes) for side, nodes in mesh.facets]
     else:
         points, cells, facets = gathered(meshes)
     groups = {}
     for dimension, elements in ((d - 1, facets), (d, cells)):
         for name, kind, nodes in elements:
             group = groups.setdefault(name, (dimension, len(groups) + 1, []))
-            group[2].append((TYPES[kind, len(nodes)], nodes))
+            group[2].append((TYPES[kind], nodes))
     return points, groups
 
 

@@ -25,7 +25,7 @@ py::tuple build(const std::string& type, const Numbers& data, const Indices& ind
   {
     const py::gil_scoped_release unlocked;
     choice = mass_to_build(type, given, input);
-    mass = choice.mass ? std::move(*choice.mass) : make_mass(choice.name, choice.parameters)->build(input);
+    mass = choice.mass ? std::move(*choice.mass) : build_mass(choice.name, input, choice.parameters);
   }
   return py::make_tuple(choice.name, choice.reason, parts_of(std::move(mass)));
 }

@@ -58,11 +58,11 @@ py::array read_field(const RunData& run, Index frame, const std::string& name) {
   return owned_array(std::move(values), rows, field.components > 1 ? field.components : 0);
 }
 
-/// Returns (meshio's name, cells × nodes in VTK's order) for each block.
+/// Returns (meshio's name, cells × nodes in its order) for each block.
 py::list cells_of(const std::vector<CellBlock>& blocks, int degree) {
   py::list result;
   for (const CellBlock& block : blocks) {
-    const std::vector<int>& order = vtk_nodes(block.shape, degree);
+    const std::vector<int>& order = meshio_nodes(block.shape, degree);
     std::vector<std::int64_t> nodes;
     nodes.reserve(block.nodes.size());
     for (Index cell = 0; cell < block.size(); ++cell) {

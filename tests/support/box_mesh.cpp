@@ -5,10 +5,12 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <stdexcept>
 
 #include "ricochet/fem/cell_integration.hpp"
 #include "ricochet/mesh/build_mesh.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/mesh/shapes/cell_shape_description.hpp"
 
 namespace ricochet::test_support {
 
@@ -31,9 +33,12 @@ std::vector<std::vector<int>> cells_of_box(CellShape shape, bool flipped) {
       return {{0, 1, 2, 3}};
     case CellShape::tetrahedron:  // one along each monotone path from corner 0 to corner 7
       return {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}};
-    default:
+    case CellShape::hexahedron:
       return {{0, 1, 2, 3, 4, 5, 6, 7}};
+    case CellShape::interval:
+      break;
   }
+  throw std::logic_error("boxes of " + plural_name(shape) + " are not made");
 }
 
 class Builder {
@@ -43,8 +48,10 @@ class Builder {
     mesh_.dimension = dimension_;
     mesh_.degree = box.geometry_degree;
     mesh_.cells.push_back({box.shape, node_count(box.shape, box.geometry_degree), {}, {}});
-    const CellShape facet = facet_shape(box.shape, 0);
-    mesh_.facets.push_back({facet, node_count(facet, box.geometry_degree), {}, {}});
+    for (std::size_t f = 0; f < describe(box.shape).facets.size(); ++f) {
+      const CellShape facet = facet_shape(box.shape, f);
+      if (find_block(facet) == nullptr) mesh_.facets.push_back({facet, node_count(facet, box.geometry_degree), {}, {}});
+    }
     mesh_.groups.push_back({"body", 1, dimension_, {}});
     for (int axis = 0; axis < dimension_; ++axis) {
       for (const char* end : {"0", "1"}) {
@@ -71,10 +78,21 @@ class Builder {
       mesh_.nodes.col(static_cast<Index>(node)) = box_.map ? box_.map(positions_[node]) : positions_[node];
       mesh_.node_tags.push_back(static_cast<std::int64_t>(node) + 1);
     }
+    Index first = 0;
+    for (const CellBlock& block : mesh_.facets) {
+      for (const auto& [group, facet] : members_[block.shape]) mesh_.groups[group].members.push_back(first + facet);
+      first += block.size();
+    }
     return std::move(mesh_);
   }
 
  private:
+  [[nodiscard]] CellBlock* find_block(CellShape shape) {
+    const auto found = std::find_if(mesh_.facets.begin(), mesh_.facets.end(),
+                                    [&](const CellBlock& block) { return block.shape == shape; });
+    return found == mesh_.facets.end() ? nullptr : &*found;
+  }
+
   void add_cell(const LatticePoint& origin, const std::vector<int>& corners) {
     std::vector<LatticePoint> vertices;
     for (const int k : corners) {
@@ -103,9 +121,9 @@ class Builder {
         const int wanted = 2 * end * box_.counts[a];
         const auto there = [&](int v) { return vertices[static_cast<std::size_t>(v)][a] == wanted; };
         if (!std::all_of(own.begin(), own.end(), there)) continue;
-        CellBlock& block = mesh_.facets[0];
-        mesh_.groups[static_cast<std::size_t>(1 + 2 * axis + end)].members.push_back(block.size());
-        mesh_.groups.back().members.push_back(block.size());
+        CellBlock& block = *find_block(facet_shape(box_.shape, facet));
+        for (const std::size_t group : {static_cast<std::size_t>(1 + 2 * axis + end), mesh_.groups.size() - 1})
+          members_[block.shape].emplace_back(group, block.size());
         for (const int node : facet_nodes(box_.shape, box_.geometry_degree)[facet]) {
           block.nodes.push_back(nodes[static_cast<std::size_t>(node)]);
         }
@@ -159,10 +177,17 @@ class Builder {
   std::mt19937 random_;  // the numbers of the engine are the same everywhere, those of distributions are not
   Mesh mesh_;
   std::vector<Vector> positions_;
+  std::map<CellShape, std::vector<std::pair<std::size_t, Index>>> members_;  // of facets: group, number in the block
   std::map<LatticePoint, Index> numbers_;
 };
 
 }  // namespace
+
+const std::vector<CellShape> all_cell_shapes = [] {
+  std::vector<CellShape> result = cell_shapes();
+  std::erase_if(result, [](CellShape shape) { return dimension(shape) < 2; });
+  return result;
+}();
 
 BoxMesh box_of(CellShape shape, std::vector<int> counts) {
   BoxMesh box;

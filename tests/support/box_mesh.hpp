@@ -57,8 +57,8 @@ struct MeshedBody {
 /// Returns the integral of a scalar over the cells, including their curved geometry.
 [[nodiscard]] double integrate(const MeshedBody& test, int degree, const std::function<double(const Vector&)>& value);
 
-constexpr CellShape all_cell_shapes[] = {CellShape::triangle, CellShape::quadrilateral, CellShape::tetrahedron,
-                                         CellShape::hexahedron};
+/// All shapes of dimension 2 and 3, in their order.
+extern const std::vector<CellShape> all_cell_shapes;
 
 /// A cell shape with the degrees of its geometry and of its displacement.
 struct ElementKind {

@@ -5,7 +5,7 @@
 
 #include "support/case_run.hpp"
 #include "support/closed_forms.hpp"
-#include "support/column.hpp"
+#include "support/msh_text.hpp"
 
 // An elastic layer that slides over a rough base until it sticks: base velocity, slip, time of sticking and traction,
 // and their observed orders when h and Δt are refined together. Velocity and traction jump, so low orders are right.
@@ -35,6 +35,41 @@ struct Layer {
   [[nodiscard]] double traction(double t) const { return phase(t) < phases() ? -a : -arriving(phase(t)); }
   [[nodiscard]] double slip() const { return 2.0 * phases() * (1.0 - phases() * a); }
 };
+
+/// Writes a column [0, width] × [0, 1] of one row of `cells` rectangles as a .msh file; returns its path. Groups:
+/// "body", "base" (y = 0), "top" and "sides": the long sides except for the lowest cell, so that a support of the sides
+/// leaves the nodes of the base free.
+std::string column_mesh(double width, int cells) {
+  MshText mesh({"base", "top", "sides"});
+  for (int j = 0; j <= cells; ++j) {
+    mesh.add_node(0.0, static_cast<double>(j) / cells);
+    mesh.add_node(width, static_cast<double>(j) / cells);
+  }
+  mesh.add_edge(1, 1, 2);
+  mesh.add_edge(2, 2 * cells + 1, 2 * cells + 2);
+  for (int j = 0; j < cells; ++j) {
+    const int a = 2 * j + 1, b = a + 1, c = a + 2, d = a + 3;  // lower left, lower right, upper left, upper right
+    if (j > 0) {
+      mesh.add_edge(3, a, c);
+      mesh.add_edge(3, b, d);
+    }
+    mesh.add_quadrilateral(a, b, d, c);
+  }
+  return write_temporary(fmt::format("column{}.msh", cells), mesh.text());
+}
+
+/// Returns the part of a case that makes the column a shear column over a rough base at y = 0: density and shear
+/// modulus 1, Poisson's ratio 0, sides that cannot move along y (they carry the complementary shear stress), pressed on
+/// the base by `pressure`, which is applied at the base itself. `contact` is an additional line of [[contact]].
+std::string column_case(const std::string& mesh, double pressure, const std::string& contact, int degree = 1) {
+  return fmt::format(
+      "[mesh]\nfile = \"{}\"\ndegree = {}\n[[material]]\ngroup = \"body\"\nlambda = 0.0\nmu = 1.0\ndensity = 1.0\n"
+      "[[support]]\ngroup = \"sides\"\ncomponents = [\"y\"]\n"
+      "[obstacle.base]\ntype = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
+      "[[contact]]\ngroup = \"base\"\nobstacle = \"base\"\n{}\n"
+      "[[traction]]\ngroup = \"base\"\nvalue = [0.0, {:.17g}]\n",
+      mesh, degree, contact, -pressure);
+}
 
 TEST(SlidingLayer, ClosedFormAgreesWithTheFormulasOfTheWaves) {
   const Layer layer{0.3};

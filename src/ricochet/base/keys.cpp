@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "ricochet/base/text.hpp"
 
 namespace ricochet {
@@ -72,6 +74,24 @@ std::string admissible_values(const Key& key) {
 bool is_within(const Range& range, double value) {
   return !(range.above && !(value > *range.above)) && !(range.at_least && !(value >= *range.at_least)) &&
          !(range.below && !(value < *range.below)) && !(range.at_most && !(value <= *range.at_most));
+}
+
+Key typed_key(std::string name, KeyType type, std::string unit, Key properties, std::string doc) {
+  properties.name = std::move(name);
+  properties.type = type;
+  properties.unit = std::move(unit);
+  properties.doc = std::move(doc);
+  return properties;
+}
+Key number_key(std::string name, std::string unit, Key properties, std::string doc) {
+  return typed_key(std::move(name), KeyType::number, std::move(unit), std::move(properties), std::move(doc));
+}
+Key vector_key(std::string name, std::string unit, Key properties, std::string doc) {
+  return typed_key(std::move(name), KeyType::vector, std::move(unit), std::move(properties), std::move(doc));
+}
+Key choice_key(std::string name, std::vector<std::string> choices, Key properties, std::string doc) {
+  properties.choices = std::move(choices);
+  return typed_key(std::move(name), KeyType::choice, "", std::move(properties), std::move(doc));
 }
 
 }  // namespace ricochet

@@ -70,6 +70,16 @@ struct Key {
   std::vector<KeyMember> members = {};  ///< empty: other code reads the value
 };
 
+/// Properties of a key that must be given.
+[[nodiscard]] inline Key required(Range range = {}) {
+  return {.required = true, .range = range};
+}
+/// Key of a type; `properties` is everything that is not among the other arguments.
+[[nodiscard]] Key typed_key(std::string name, KeyType type, std::string unit, Key properties, std::string doc);
+[[nodiscard]] Key number_key(std::string name, std::string unit, Key properties, std::string doc);
+[[nodiscard]] Key vector_key(std::string name, std::string unit, Key properties, std::string doc);
+[[nodiscard]] Key choice_key(std::string name, std::vector<std::string> choices, Key properties, std::string doc);
+
 [[nodiscard]] inline std::vector<std::string> names_of(const std::vector<Key>& keys) {
   std::vector<std::string> names;
   names.reserve(keys.size());

@@ -123,15 +123,15 @@ Section obstacle_section() {
                   .doc = "A rigid obstacle, named so that [[contact]] can refer to it."};
   section.keys = {
       key("type", &ObstacleSection::type, {.required = true, .decides = true},
-          "Shape of the obstacle: a plane with a half-space behind it; a sphere, cylinder or torus, touched from "
-          "outside or from inside; a surface from a file; or a shape described by an expression."),
+          "Shape of the obstacle: a plane with a half-space behind it, a body touched from outside or from inside "
+          "(`side`), a surface from a file, or a shape described by an expression."),
       key("velocity", &ObstacleSection::velocity, {.unit = "length/time"},
           "Constant velocity of the obstacle, which rests if no motion is specified. Friction depends on the velocity "
           "of the body relative to it, and obstacle_work is the work that it does on the body."),
       key("rotation_rate", &ObstacleSection::rotation_rate, {.unit = "angle/time", .default_value = "0"},
-          "Rate, in rad per time, at which the obstacle rotates about its own axis, right-handed: the normal of a "
-          "plane through `point` (a turntable), the axis of a cylinder or a torus, in two dimensions the centre of a "
-          "circle. Its surface keeps its position and drags bodies that touch it."),
+          "Rate, in rad per time, at which the obstacle rotates about its own axis, right-handed: its `axis` through "
+          "`centre`, the normal of a plane through `point` (a turntable), in two dimensions the centre of a circle. "
+          "Its surface keeps its position and drags bodies that touch it."),
       key("motion", &ObstacleSection::motion, {.unit = "length", .variables = "t"},
           "Displacement of the obstacle from its described position, instead of a velocity: [\"0\", "
           "\"-0.1*sin(5*t)\"]."),
@@ -139,8 +139,8 @@ Section obstacle_section() {
           "Rotation of the obstacle about the point `about`, in rad: one expression in two dimensions, in three a "
           "vector whose direction is the axis and whose length is the angle. It is applied before the motion."),
       key("about", &ObstacleSection::about, {.unit = "length"},
-          "Centre of `rotation`, a point of the obstacle in its described position. Default: the centre of a sphere, a "
-          "cylinder or a torus, the point of a plane, otherwise the origin."),
+          "Centre of `rotation`, a point of the obstacle in its described position. Default: its `centre` or, of a "
+          "plane, its `point`, otherwise the origin."),
       key("table", {path(&ObstacleSection::table)}, {},
           "Text file with the motion, instead of `motion` and `rotation`. Each line has t and the components of the "
           "displacement, optionally followed by those of the rotation, separated by commas, semicolons or spaces, with "

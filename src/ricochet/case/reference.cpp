@@ -193,7 +193,7 @@ constexpr std::array<FrequentKey, 24> frequent_keys{{
     {"material", "young", "stiffness, with `poisson`"},
     {"material", "poisson", "lateral contraction"},
     {"material", "law", "\"neo-hookean\" for large rotations and strains"},
-    {"obstacle", "type", "a rigid plane, sphere, cylinder, torus, triangulated surface or expression"},
+    {"obstacle", "type", "the shape of a rigid obstacle, such as \"plane\" or \"sphere\""},
     {"obstacle", "point", "of a plane: a point on it"},
     {"obstacle", "normal", "of a plane: its direction, out of the obstacle"},
     {"contact", "group", "the boundary that can touch"},

@@ -41,10 +41,10 @@ void persist(Archive& archive, Probe& probe) {
   archive.all(probe.name, probe.node, probe.distance, probe.contact_node, probe.number);
 }
 void persist(Archive& archive, Column& column) {
-  archive.all(column.name, column.by);
+  archive.all(column.name, column.reduction);
 }
 void persist(Archive& archive, ProbeTargets& targets) {
-  archive.all(targets.probes, targets.positions, targets.columns, targets.nodes, targets.sums);
+  archive.all(targets.probes, targets.positions, targets.columns, targets.nodes, targets.summed_forces);
 }
 void persist(Archive& archive, ModelSizes& sizes) {
   archive.all(sizes.nodes, sizes.cells, sizes.dofs, sizes.contact_points, sizes.supported_dofs, sizes.diameter);

@@ -9,23 +9,28 @@
 /// @file Constant data of the cells of an elastic body. Not part of the public interface.
 namespace ricochet {
 
+/// Input and output of all packs.
+struct ElasticCells::PackNumbers {
+  std::vector<double> displacement, increment, force, strain_force;
+  std::vector<double> end, at;  ///< for viscoelastic branches only
+};
+
 template <int d>
 struct ElasticCells::Blocks {
   const Body& body;
   CellPacks packs;
   std::vector<KernelBlock<d>> all;
-  /// Numbers of all parts: input and output.
-  mutable std::vector<double> displacement, increment, force, strain_force;
-  mutable std::vector<double> end, at;                       ///< for viscoelastic branches only
+  mutable PackNumbers numbers;
   mutable std::vector<std::vector<BranchNumbers>> branches;  ///< per material, over a step
 
   Blocks(const Body& of, const NodeGraph* graph, const std::vector<int>& cells) : body(of), packs(of, graph, cells) {
     for (std::size_t b = 0; b < body.mesh->cells.size(); ++b) all.push_back(make(body.mesh->cells[b], packs.lanes(b)));
-    displacement = packs.template storage<d>();
+    numbers.displacement = packs.template storage<d>();
     if (graph == nullptr) return;  // energies only, neither forces nor branches
-    increment = force = strain_force = displacement;
+    numbers.increment = numbers.force = numbers.strain_force = numbers.displacement;
     const auto relaxes = [](const Material& each) { return !each.relaxation.empty(); };
-    if (std::any_of(body.materials.begin(), body.materials.end(), relaxes)) end = at = displacement;
+    if (std::any_of(body.materials.begin(), body.materials.end(), relaxes))
+      numbers.end = numbers.at = numbers.displacement;
   }
   /// Sets up the branches for a step of this length; 0: for an instant.
   void set_branches(double step) const {

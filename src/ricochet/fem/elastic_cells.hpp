@@ -35,6 +35,8 @@ struct BranchStep {
   double step;              ///< h
 };
 
+enum class BranchStress;
+
 class ElasticCells {
  public:
   /// Keeps references. Without a graph only energies of the laws are available: no force, no tangent, no branch.
@@ -103,16 +105,19 @@ class ElasticCells {
   class BranchStrips;
   template <int d, template <int> class Strips, class Work>
   void for_each_part(const Work& work) const;
+  struct PackNumbers;
   struct PackInput;
   struct PackSum;
-  template <int d, class Work>
+  struct PackPart;
+  template <class Work>
   InvertedCell visit_strips(std::initializer_list<PackInput> inputs, std::initializer_list<PackSum> sums,
                             const Work& work) const;
   void find_internal_offsets();
   struct BranchDisplacements;
-  template <int d, class Find>
-  void add_up_branches(const BranchDisplacements& displacements, const Find& find, Vector& result) const;
-  template <int d, class Find>
+  template <class Find>
+  void visit_branches(const BranchDisplacements& displacements, const Find& find, Vector* forces) const;
+  void add_up_branches(BranchStress of, const BranchDisplacements& displacements, Vector& result) const;
+  template <class Find>
   double sum_branches(const BranchDisplacements& displacements, const Find& find) const;
 
   const Body& body_;

@@ -85,12 +85,12 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
   }
   void read(Index part, const BranchDisplacements& displacements) {
     if (displacements.step != nullptr) {
-      blocks_.packs.template read<d>(part, displacements.step->middle, blocks_.displacement);
-      blocks_.packs.template read<d>(part, displacements.step->increment, blocks_.increment);
-      blocks_.packs.template read<d>(part, displacements.step->end, blocks_.end);
+      blocks_.packs.template read<d>(part, displacements.step->middle, blocks_.numbers.displacement);
+      blocks_.packs.template read<d>(part, displacements.step->increment, blocks_.numbers.increment);
+      blocks_.packs.template read<d>(part, displacements.step->end, blocks_.numbers.end);
     }
     if (displacements.displacement != nullptr)
-      blocks_.packs.template read<d>(part, *displacements.displacement, blocks_.at);
+      blocks_.packs.template read<d>(part, *displacements.displacement, blocks_.numbers.at);
   }
   /// Computes E₀ from the gradient of u₁ minus that of the increment; or E at the displacement if no E₀ is needed.
   void find_all_strains(const PackStrip<d>& strip, Index begin, const BranchDisplacements& displacements) {
@@ -98,14 +98,14 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
     has_step_ = displacements.step != nullptr;
     has_displacement_ = displacements.displacement != nullptr;
     if (has_step_) {
-      find_gradients(strip, blocks_.displacement.data() + begin, gradients_.data());
-      find_gradients(strip, blocks_.increment.data() + begin, others_.data());
+      find_gradients(strip, blocks_.numbers.displacement.data() + begin, gradients_.data());
+      find_gradients(strip, blocks_.numbers.increment.data() + begin, others_.data());
       static_cast<void>(find_strains<d>(count, false, gradients_.data(), others_.data(), middle_.data()));
-      find_gradients(strip, blocks_.end.data() + begin, ends_.data());
+      find_gradients(strip, blocks_.numbers.end.data() + begin, ends_.data());
       static_cast<void>(find_strains<d>(count, false, ends_.data(), nullptr, end_.data()));
     }
     if (has_displacement_) {
-      find_gradients(strip, blocks_.at.data() + begin, others_.data());
+      find_gradients(strip, blocks_.numbers.at.data() + begin, others_.data());
     } else {
       const auto size = static_cast<std::size_t>(count * gradient_components<d> * strip.block.width);
       for (std::size_t k = 0; k < size; ++k) others_[k] = ends_[k] - others_[k];
@@ -132,30 +132,40 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
   alignas(64) StripNumbers<strain_components<d>> middle_, end_, other_, result_;
 };
 
-/// Sums forces over the branches: find(strips, strip, forces) adds those of a strip.
-template <int d, class Find>
-void ElasticCells::add_up_branches(const BranchDisplacements& displacements, const Find& find, Vector& result) const {
-  const Blocks<d>& all = blocks<d>();
-  all.set_branches(displacements.step != nullptr ? displacements.step->step : 0.0);
-  for_each_part<d, BranchStrips>([&](Index part, Index begin, BranchStrips<d>& strips) {
-    all.packs.template clear<d>(part, all.force);
-    strips.for_each_strip(part, begin, displacements, internal_begin_,
-                          [&](const PackStrip<d>& strip) { find(strips, strip, all.force.data() + begin); });
+/// Calls find(strips, strip, part, forces of the part, null if there are no `forces`) for all strips with branches,
+/// several parts at once, and sums the forces.
+template <class Find>
+void ElasticCells::visit_branches(const BranchDisplacements& displacements, const Find& find, Vector* forces) const {
+  with_dimension(body_.mesh->dimension, [&](auto dimension) {
+    constexpr int d = dimension;
+    const Blocks<d>& all = blocks<d>();
+    all.set_branches(displacements.step != nullptr ? displacements.step->step : 0.0);
+    for_each_part<d, BranchStrips>([&](Index part, Index begin, BranchStrips<d>& strips) {
+      if (forces != nullptr) all.packs.template clear<d>(part, all.numbers.force);
+      double* const own = forces != nullptr ? all.numbers.force.data() + begin : nullptr;
+      strips.for_each_strip(part, begin, displacements, internal_begin_,
+                            [&](const PackStrip<d>& strip) { find(strips, strip, part, own); });
+    });
+    if (forces != nullptr) all.packs.template add_up<d>(all.numbers.force, *forces);
   });
-  all.packs.template add_up<d>(all.force, result);
+}
+
+void ElasticCells::add_up_branches(BranchStress of, const BranchDisplacements& displacements, Vector& result) const {
+  visit_branches(
+      displacements,
+      [of](auto& strips, const auto& strip, Index, double* forces) { strips.add_forces(of, strip, forces); }, &result);
 }
 
 /// Sums find(strips, strip), the contribution of a strip.
-template <int d, class Find>
+template <class Find>
 double ElasticCells::sum_branches(const BranchDisplacements& displacements, const Find& find) const {
-  const Blocks<d>& all = blocks<d>();
-  all.set_branches(displacements.step != nullptr ? displacements.step->step : 0.0);
   std::array<double, most_node_parts> sums{};
-  for_each_part<d, BranchStrips>([&](Index part, Index begin, BranchStrips<d>& strips) {
-    double& sum = sums[static_cast<std::size_t>(part)];
-    strips.for_each_strip(part, begin, displacements, internal_begin_,
-                          [&](const PackStrip<d>& strip) { sum += find(strips, strip); });
-  });
+  visit_branches(
+      displacements,
+      [&](auto& strips, const auto& strip, Index part, double*) {
+        sums[static_cast<std::size_t>(part)] += find(strips, strip);
+      },
+      nullptr);
   double total = 0.0;
   for (const double sum : sums) total += sum;
   return total;
@@ -163,74 +173,40 @@ double ElasticCells::sum_branches(const BranchDisplacements& displacements, cons
 
 void ElasticCells::relax(const Vector& displacement, Vector& internal) const {
   internal.setZero(internal_size());
-  with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    const BranchDisplacements displacements{nullptr, &displacement, internal};
-    sum_branches<d>(displacements, [&](BranchStrips<d>& strips, const PackStrip<d>& strip) {
-      strips.relax(strip, displacements, internal);
-      return 0.0;
-    });
+  const BranchDisplacements displacements{nullptr, &displacement, internal};
+  sum_branches(displacements, [&](auto& strips, const auto& strip) {
+    strips.relax(strip, displacements, internal);
+    return 0.0;
   });
 }
 
 double ElasticCells::branch_energy(const Vector& displacement, const Vector& internal) const {
-  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    return sum_branches<d>({nullptr, &displacement, internal}, [](BranchStrips<d>& strips, const PackStrip<d>& strip) {
-      return strips.work(BranchWork::energy, strip);
-    });
-  });
+  return sum_branches({nullptr, &displacement, internal},
+                      [](auto& strips, const auto& strip) { return strips.work(BranchWork::energy, strip); });
 }
 
 void ElasticCells::mean_branch_force(const BranchStep& step, Vector& result) const {
-  with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    const auto find = [](BranchStrips<d>& strips, const PackStrip<d>& strip, double* forces) {
-      strips.add_forces(BranchStress::mean, strip, forces);
-    };
-    add_up_branches<d>({&step, nullptr, step.internal}, find, result);
-  });
+  add_up_branches(BranchStress::mean, {&step, nullptr, step.internal}, result);
 }
 
 void ElasticCells::end_branch_force(const BranchStep& step, Vector& result) const {
-  with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    const auto find = [](BranchStrips<d>& strips, const PackStrip<d>& strip, double* forces) {
-      strips.add_forces(BranchStress::end, strip, forces);
-    };
-    add_up_branches<d>({&step, nullptr, step.internal}, find, result);
-  });
+  add_up_branches(BranchStress::end, {&step, nullptr, step.internal}, result);
 }
 
 double ElasticCells::start_branch_energy(const BranchStep& step, const Vector& displacement) const {
-  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    return sum_branches<d>({&step, &displacement, step.internal},
-                           [](BranchStrips<d>& strips, const PackStrip<d>& strip) {
-                             return strips.work(BranchWork::start_energy, strip);
-                           });
-  });
+  return sum_branches({&step, &displacement, step.internal},
+                      [](auto& strips, const auto& strip) { return strips.work(BranchWork::start_energy, strip); });
 }
 
 void ElasticCells::start_branch_force(const BranchStep& step, const Vector& displacement, Vector& result) const {
-  with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    const auto find = [](BranchStrips<d>& strips, const PackStrip<d>& strip, double* forces) {
-      strips.add_forces(BranchStress::start, strip, forces);
-    };
-    add_up_branches<d>({&step, &displacement, step.internal}, find, result);
-  });
+  add_up_branches(BranchStress::start, {&step, &displacement, step.internal}, result);
 }
 
 double ElasticCells::advance_internal(const BranchStep& step, Vector& internal) const {
   internal.resize(internal_size());
-  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    const BranchDisplacements displacements{&step, nullptr, step.internal};
-    return sum_branches<d>(displacements, [&](BranchStrips<d>& strips, const PackStrip<d>& strip) {
-      return strips.advance(strip, displacements, internal);
-    });
-  });
+  const BranchDisplacements displacements{&step, nullptr, step.internal};
+  return sum_branches(displacements,
+                      [&](auto& strips, const auto& strip) { return strips.advance(strip, displacements, internal); });
 }
 
 }  // namespace ricochet

@@ -130,101 +130,90 @@ class ElasticCells::StripWork : public CellStrips<d> {
 /// Input vector per dof, and the numbers of all parts to which it is copied.
 struct ElasticCells::PackInput {
   const Vector& values;
-  std::vector<double>& numbers;
+  std::vector<double> PackNumbers::*numbers;
 };
 
 /// Numbers of all parts to be summed, and the vector per dof of the sums.
 struct ElasticCells::PackSum {
-  std::vector<double>& numbers;
+  std::vector<double> PackNumbers::*numbers;
   Vector& result;
 };
 
-/// Calls work(strips, strip, part, index of its first number, the part's worst cell) for all strips, several parts at
-/// once; returns the worst cell.
-template <int d, class Work>
+/// A part with its numbers and its worst cell.
+struct ElasticCells::PackPart {
+  PackNumbers& numbers;
+  Index part, begin;
+  InvertedCell& worst;
+
+  [[nodiscard]] double* at(std::vector<double> PackNumbers::*of) const { return (numbers.*of).data() + begin; }
+};
+
+/// Calls work(strips, strip, part) for all strips, several parts at once; returns the worst cell.
+template <class Work>
 InvertedCell ElasticCells::visit_strips(std::initializer_list<PackInput> inputs, std::initializer_list<PackSum> sums,
                                         const Work& work) const {
-  const CellPacks& packs = blocks<d>().packs;
-  PartCells worst;
-  for_each_part<d, StripWork>([&](Index part, Index begin, StripWork<d>& strips) {
-    for (const PackInput& input : inputs) packs.template read<d>(part, input.values, input.numbers);
-    for (const PackSum& sum : sums) packs.template clear<d>(part, sum.numbers);
-    strips.for_each_strip(part, [&](const PackStrip<d>& strip) {
-      work(strips, strip, part, begin, worst[static_cast<std::size_t>(part)]);
+  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
+    constexpr int d = dimension;
+    const Blocks<d>& all = blocks<d>();
+    PartCells worst;
+    for_each_part<d, StripWork>([&](Index part, Index begin, StripWork<d>& strips) {
+      for (const PackInput& input : inputs) all.packs.template read<d>(part, input.values, all.numbers.*input.numbers);
+      for (const PackSum& sum : sums) all.packs.template clear<d>(part, all.numbers.*sum.numbers);
+      const PackPart own{all.numbers, part, begin, worst[static_cast<std::size_t>(part)]};
+      strips.for_each_strip(part, [&](const PackStrip<d>& strip) { work(strips, strip, own); });
     });
+    for (const PackSum& sum : sums) all.packs.template add_up<d>(all.numbers.*sum.numbers, sum.result);
+    return worst_of(worst);
   });
-  for (const PackSum& sum : sums) packs.template add_up<d>(sum.numbers, sum.result);
-  return worst_of(worst);
 }
 
 InvertedCell ElasticCells::force(const Vector& displacement, Vector& result) const {
-  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    const Blocks<d>& all = blocks<d>();
-    return visit_strips<d>(
-        {{displacement, all.displacement}}, {{all.force, result}},
-        [&](StripWork<d>& strips, const PackStrip<d>& strip, Index, Index begin, InvertedCell& worst) {
-          strips.find_strains(strip, all.displacement.data() + begin, nullptr, worst);
-          strips.add_forces(strip, all.force.data() + begin);
-        });
-  });
+  return visit_strips({{displacement, &PackNumbers::displacement}}, {{&PackNumbers::force, result}},
+                      [](auto& strips, const auto& strip, const PackPart& part) {
+                        strips.find_strains(strip, part.at(&PackNumbers::displacement), nullptr, part.worst);
+                        strips.add_forces(strip, part.at(&PackNumbers::force));
+                      });
 }
 
 InvertedCell ElasticCells::mean_force(const Vector& middle, const Vector& increment, Vector& result) const {
-  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    const Blocks<d>& all = blocks<d>();
-    return visit_strips<d>(
-        {{middle, all.displacement}, {increment, all.increment}}, {{all.force, result}},
-        [&](StripWork<d>& strips, const PackStrip<d>& strip, Index, Index begin, InvertedCell& worst) {
-          strips.find_strains(strip, all.displacement.data() + begin, all.increment.data() + begin, worst);
-          strips.add_forces(strip, all.force.data() + begin);
-        });
-  });
+  return visit_strips({{middle, &PackNumbers::displacement}, {increment, &PackNumbers::increment}},
+                      {{&PackNumbers::force, result}}, [](auto& strips, const auto& strip, const PackPart& part) {
+                        strips.find_strains(strip, part.at(&PackNumbers::displacement),
+                                            part.at(&PackNumbers::increment), part.worst);
+                        strips.add_forces(strip, part.at(&PackNumbers::force));
+                      });
 }
 
 InvertedCell ElasticCells::mean_forces(const Vector& middle, const Vector& increment, Vector& result,
                                        Vector& strain_result) const {
-  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    const Blocks<d>& all = blocks<d>();
-    return visit_strips<d>(
-        {{middle, all.displacement}, {increment, all.increment}},
-        {{all.force, result}, {all.strain_force, strain_result}},
-        [&](StripWork<d>& strips, const PackStrip<d>& strip, Index, Index begin, InvertedCell& worst) {
-          strips.find_strains(strip, all.displacement.data() + begin, all.increment.data() + begin, worst);
-          strips.add_forces(strip, all.force.data() + begin);
-          strips.add_rate_forces(strip, all.strain_force.data() + begin);
-        });
-  });
+  return visit_strips({{middle, &PackNumbers::displacement}, {increment, &PackNumbers::increment}},
+                      {{&PackNumbers::force, result}, {&PackNumbers::strain_force, strain_result}},
+                      [](auto& strips, const auto& strip, const PackPart& part) {
+                        strips.find_strains(strip, part.at(&PackNumbers::displacement),
+                                            part.at(&PackNumbers::increment), part.worst);
+                        strips.add_forces(strip, part.at(&PackNumbers::force));
+                        strips.add_rate_forces(strip, part.at(&PackNumbers::strain_force));
+                      });
 }
 
 void ElasticCells::strain_force(const Vector& displacement, const Vector& increment, Vector& result) const {
-  with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    const Blocks<d>& all = blocks<d>();
-    visit_strips<d>({{displacement, all.displacement}, {increment, all.increment}}, {{all.strain_force, result}},
-                    [&](StripWork<d>& strips, const PackStrip<d>& strip, Index, Index begin, InvertedCell&) {
-                      strips.add_rate_forces(strip, all.displacement.data() + begin, all.increment.data() + begin,
-                                             all.strain_force.data() + begin);
-                    });
-  });
+  visit_strips({{displacement, &PackNumbers::displacement}, {increment, &PackNumbers::increment}},
+               {{&PackNumbers::strain_force, result}}, [](auto& strips, const auto& strip, const PackPart& part) {
+                 strips.add_rate_forces(strip, part.at(&PackNumbers::displacement), part.at(&PackNumbers::increment),
+                                        part.at(&PackNumbers::strain_force));
+               });
 }
 
 /// Infinite if a cell is inverted, which cannot be recognized from its strain.
 double ElasticCells::energy(const Vector& displacement) const {
   std::array<double, most_node_parts> sums{};
-  with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    const Blocks<d>& all = blocks<d>();
-    visit_strips<d>({{displacement, all.displacement}}, {},
-                    [&](StripWork<d>& strips, const PackStrip<d>& strip, Index part, Index begin, InvertedCell&) {
-                      InvertedCell inverted;
-                      strips.find_strains(strip, all.displacement.data() + begin, nullptr, inverted);
-                      sums[static_cast<std::size_t>(part)] +=
-                          inverted.cell >= 0 ? std::numeric_limits<double>::infinity() : strips.energy(strip);
-                    });
-  });
+  visit_strips({{displacement, &PackNumbers::displacement}}, {},
+               [&](auto& strips, const auto& strip, const PackPart& part) {
+                 InvertedCell inverted;
+                 strips.find_strains(strip, part.at(&PackNumbers::displacement), nullptr, inverted);
+                 sums[static_cast<std::size_t>(part.part)] +=
+                     inverted.cell >= 0 ? std::numeric_limits<double>::infinity() : strips.energy(strip);
+               });
   double total = 0.0;
   for (const double sum : sums) total += sum;
   return total;

@@ -4,6 +4,7 @@
 
 #include "ricochet/fem/cell_integration.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/mesh/shapes/cell_shape_description.hpp"
 
 namespace ricochet {
 
@@ -11,7 +12,7 @@ namespace {
 
 /// Displacement nodes of a facet in the order of its border, or along a segment.
 std::vector<int> border_of(CellShape shape, int degree) {
-  const std::vector<int>& corners = vtk_nodes(shape, 1);  // around the facet
+  const std::vector<int>& corners = describe(shape).file_vertices;  // around the facet
   std::vector<int> result;
   for (std::size_t k = 0; k < corners.size(); ++k) {
     result.push_back(corners[k]);

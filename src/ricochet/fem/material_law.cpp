@@ -13,7 +13,7 @@ namespace ricochet {
   law(saint_venant_kirchhoff_law)
 // clang-format on
 
-RICOCHET_DEFINE_REGISTRY(material_law_registry, MaterialLawConstructor, "material law", RICOCHET_MATERIAL_LAWS)
+RICOCHET_DEFINE_REGISTRY(material_law_registry, MaterialLawType, "material law", RICOCHET_MATERIAL_LAWS)
 
 namespace {
 
@@ -57,7 +57,7 @@ void MaterialLaw::stresses(const StrainPacks& strains, double* result) const {
 }
 
 std::unique_ptr<MaterialLaw> make_material_law(const std::string& name, Parameters parameters) {
-  return material_law_registry().find(name, parameters).type(parameters);
+  return material_law_registry().find(name, parameters).type.make(parameters);
 }
 
 }  // namespace ricochet

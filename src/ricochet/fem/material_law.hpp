@@ -61,11 +61,15 @@ class MaterialLaw {
   [[nodiscard]] virtual double volumetric_modulus() const { return 0.0; }
 };
 
-using MaterialLawConstructor = std::function<std::unique_ptr<MaterialLaw>(const Parameters& parameters)>;
-using MaterialLawRegistration = Registration<MaterialLawConstructor>;
+struct MaterialLawType {
+  std::function<std::unique_ptr<MaterialLaw>(const Parameters& values)> make;
+  /// Whether its laws have a `volumetric_modulus`.
+  bool has_volumetric_energy = false;
+};
+using MaterialLawRegistration = Registration<MaterialLawType>;
 
 /// Registry of all laws. A program may add its own.
-[[nodiscard]] Registry<MaterialLawConstructor>& material_law_registry();
+[[nodiscard]] Registry<MaterialLawType>& material_law_registry();
 /// Creates a law by name, with the values of its keys; throws Error(invalid_input) that lists the names, or reports a
 /// missing or superfluous value.
 [[nodiscard]] std::unique_ptr<MaterialLaw> make_material_law(const std::string& name, Parameters parameters);

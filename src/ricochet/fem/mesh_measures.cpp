@@ -175,11 +175,13 @@ class CellHeights {
   }
   [[nodiscard]] double of(const IndexInBlocks& location) const {
     const CellBlock& block = mesh_.cells[location.block];
-    double largest = 0.0;
-    for (const std::vector<int>& vertices : facet_nodes(block.shape, 1))
-      largest = std::max(largest, facet_size(mesh_, block.cell(location.local), vertices));
     const double size = integrate(mesh_, rules_[location.block], block, location.local).size;
-    return (is_simplex(block.shape) ? mesh_.dimension : 1.0) * size / largest;
+    double height = std::numeric_limits<double>::infinity();
+    for (std::size_t f = 0; f < facet_heights(block.shape).size(); ++f) {
+      const double area = facet_size(mesh_, block.cell(location.local), facet_nodes(block.shape, 1)[f]);
+      height = std::min(height, facet_heights(block.shape)[f] * size / area);
+    }
+    return height;
   }
 
  private:

@@ -23,8 +23,8 @@ struct MeshMeasure {
 /// axisymmetric body the size is that of the rings, which also weight the means over the section.
 [[nodiscard]] MeshMeasure measure_group(const Mesh& mesh, const Group& group, bool axisymmetric = false);
 
-/// Smallest height per cell, numbered through all blocks, as if the cell were straight: d V/A of a simplex with the
-/// area A of its largest facet, V/A of other cells.
+/// Smallest height per cell above its facets, numbered through all blocks, as if the cell were straight: V/A times
+/// `facet_heights`, with the volume V of the cell and the area A of the facet.
 [[nodiscard]] std::vector<double> cell_heights(const Mesh& mesh);
 /// Smallest heights of the given cells, in their order.
 [[nodiscard]] std::vector<double> cell_heights(const Mesh& mesh, const std::vector<Index>& cells);

@@ -7,6 +7,7 @@
 
 #include <numeric>
 #include <span>
+#include <stdexcept>
 
 #include "ricochet/base/blas.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
@@ -16,14 +17,18 @@ namespace ricochet {
 
 namespace {
 
-/// Basix's cell of the same dimension with as many vertices.
+/// Basix's cell of the same dimension with as many vertices; std::logic_error if there is none.
 basix::cell::type basix_cell(CellShape shape) {
   auto type = basix::cell::type::interval;
   const auto fits = [&] {
     return basix::cell::topological_dimension(type) == dimension(shape) &&
            basix::cell::num_sub_entities(type, 0) == vertex_count(shape);
   };
-  while (!fits()) type = static_cast<basix::cell::type>(static_cast<int>(type) + 1);
+  while (!fits()) {
+    if (type == basix::cell::type::pyramid)
+      throw std::logic_error("Basix has no cell with the vertices of a " + name(shape));
+    type = static_cast<basix::cell::type>(static_cast<int>(type) + 1);
+  }
   return type;
 }
 

@@ -372,21 +372,17 @@ void CellwiseBuilder::refuse(const ContactCell& contact_cell) {
                   CellRings::many_cells, d_ + 1, d_ == 3 ? "in one plane" : "on one line"));
 }
 
-class CellwiseEquivalentMass final : public MassConstruction {
- public:
-  [[nodiscard]] bool removes_contact_inertia() const override { return true; }
-  [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
-    input.require_cells("equivalent-cellwise");
-    SparseMatrix result = CellwiseBuilder(input).build();
-    check_moments(input, result, "equivalent-cellwise");
-    return result;
-  }
-};
+SparseMatrix build_cellwise_equivalent_mass(const MassInput& input, const Parameters&) {
+  input.require_cells("equivalent-cellwise");
+  SparseMatrix result = CellwiseBuilder(input).build();
+  check_moments(input, result, "equivalent-cellwise");
+  return result;
+}
 
 }  // namespace
 
 MassRegistration cellwise_equivalent_mass() {
-  return {"equivalent-cellwise", [](const Parameters&) { return std::make_unique<CellwiseEquivalentMass>(); }};
+  return {"equivalent-cellwise", {.build = build_cellwise_equivalent_mass, .removes_contact_inertia = true}};
 }
 
 }  // namespace ricochet

@@ -30,12 +30,6 @@ struct CellExtension {
   double weights = std::numeric_limits<double>::infinity();  ///< the largest Σ|w|
 };
 
-class CompactEquivalentMass final : public MassConstruction {
- public:
-  [[nodiscard]] bool removes_contact_inertia() const override { return true; }
-  [[nodiscard]] SparseMatrix build(const MassInput& input) const override;
-};
-
 /// Builds one mass matrix.
 class Builder {
  public:
@@ -233,7 +227,7 @@ void Builder::refuse(const std::vector<Index>& nodes, const std::vector<Index>& 
           input_.nodes->rows() + 1, input_.nodes->rows() == 3 ? "in one plane" : "on one line"));
 }
 
-SparseMatrix CompactEquivalentMass::build(const MassInput& input) const {
+SparseMatrix build_compact_equivalent_mass(const MassInput& input, const Parameters&) {
   input.require_cells("equivalent-compact");
   SparseMatrix result = Builder(input).build();
   check_moments(input, result, "equivalent-compact");
@@ -243,7 +237,7 @@ SparseMatrix CompactEquivalentMass::build(const MassInput& input) const {
 }  // namespace
 
 MassRegistration compact_equivalent_mass() {
-  return {"equivalent-compact", [](const Parameters&) { return std::make_unique<CompactEquivalentMass>(); }};
+  return {"equivalent-compact", {.build = build_compact_equivalent_mass, .removes_contact_inertia = true}};
 }
 
 }  // namespace ricochet

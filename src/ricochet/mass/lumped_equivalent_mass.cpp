@@ -7,6 +7,8 @@
 #include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/linear_algebra/diagonal_matrix.hpp"
+#include "ricochet/mass/graph_rings.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mass/mass_conditions.hpp"
 
@@ -136,31 +138,22 @@ InertiaCheck check_inertia(const MassBody& body, const Moments& moments, const V
 /// Returns l with the mass of each contact node distributed among the massive nodes nearest to it in the graph, in
 /// proportion to their own masses.
 Vector share_contact_mass(const MassInput& input, const Vector& lumped) {
-  const SparseMatrix& graph = *input.consistent;
   const std::vector<char> is_contact = input.marked_contact_nodes();
   Vector result = lumped;
-  std::vector<Index> visited_by(static_cast<std::size_t>(graph.cols()), -1);
-  std::vector<Index> front, next, massive;
+  GraphRings rings(*input.consistent);
+  std::vector<Index> massive;
   for (const Index node : input.contact_nodes) {
     result[node] = 0.0;
-    front.assign(1, node);
-    visited_by[static_cast<std::size_t>(node)] = node;
     massive.clear();
     double sum = 0.0;
-    while (massive.empty() && !front.empty()) {
-      next.clear();
-      for (const Index from : front) {
-        for (SparseMatrix::InnerIterator entry(graph, from); entry; ++entry) {
-          const auto neighbour = static_cast<Index>(entry.row());
-          if (visited_by[static_cast<std::size_t>(neighbour)] == node) continue;
-          visited_by[static_cast<std::size_t>(neighbour)] = node;
-          next.push_back(neighbour);
-          if (is_contact[static_cast<std::size_t>(neighbour)] != 0) continue;
-          massive.push_back(neighbour);
-          sum += lumped[neighbour];
-        }
-      }
-      std::swap(front, next);
+    rings.start(node);
+    bool grows = true;
+    while (massive.empty() && grows) {
+      grows = rings.grow([&](Index neighbour) {
+        if (is_contact[static_cast<std::size_t>(neighbour)] != 0) return;
+        massive.push_back(neighbour);
+        sum += lumped[neighbour];
+      });
     }
     if (massive.empty()) {
       throw Error(ErrorKind::invalid_input,
@@ -174,6 +167,74 @@ Vector share_contact_mass(const MassInput& input, const Vector& lumped) {
   return result;
 }
 
+void warn(const MassInput& input, const MassBody& body, double deficit) {
+  log::warning(
+      fmt::format("mass type \"equivalent-lumped\" preserves the mass and the centre of gravity of {}, but its "
+                  "moments of inertia only within {:.2g} %: the nodes off the contact boundary are too few, or too "
+                  "close together, to carry them with positive masses; refine the mesh where rotation matters",
+                  name_of(input, body), 100.0 * deficit));
+}
+
+/// Fraction of a moment of inertia below which the mass is no longer an approximation.
+constexpr double least_inertia = 0.1;
+/// Least spread of the nodes with mass, in their worst direction, relative to that of the body.
+constexpr double least_spread = 0.01;
+
+/// Point masses in one plane (on one line in 2D) cannot rotate like a body, whatever their sizes.
+void require_span(const MassInput& input, const MassBody& body, const Moments& moments, const Vector& mass) {
+  const Index d = moments.affine - 1;
+  const auto positions = moments.functions.middleCols(1, d);
+  const Vector weight = mass / mass.sum();
+  const Vector centre = positions.transpose() * weight;
+  const Matrix spread = positions.transpose() * weight.asDiagonal() * positions - centre * centre.transpose();
+  const Vector sizes = symmetric_eigenvalues(spread);
+  if (sizes[0] > least_spread * least_spread) return;
+  std::vector<Index> massive;
+  for (Index i = 0; i < mass.size(); ++i) {
+    if (mass[i] > 0.0) massive.push_back(body.nodes[static_cast<std::size_t>(i)]);
+  }
+  std::sort(massive.begin(), massive.end());
+  refuse(input, body, describe_massive_nodes(*input.nodes, body.nodes, massive));
+}
+
+/// Performs steps 2 and 3 on one body. Returns the error of its moments of inertia, see InertiaCheck.
+double balance(const MassInput& input, const MassFrames& frames, const MassBody& body, Vector& diagonal) {
+  const char* const too_few = "too few nodes off the contact boundary to carry its mass about its centre of gravity";
+  const Moments moments = moments_of(input, frames, body);
+  Vector mass(static_cast<Index>(body.nodes.size()));
+  for (Index i = 0; i < mass.size(); ++i) mass[i] = diagonal[body.nodes[static_cast<std::size_t>(i)]];
+  require_span(input, body, moments, mass);
+  // The second corrections remove the rounding error of the first.
+  if (correct_centre(moments, mass) < 1.0) refuse(input, body, too_few);
+  correct_centre(moments, mass);
+  if (correct_inertia(moments, mass) == 1.0) correct_inertia(moments, mass);
+  if (!(defect(moments, mass).head(moments.affine).cwiseAbs().maxCoeff() < 1e-12)) refuse(input, body, too_few);
+  const InertiaCheck inertia = check_inertia(body, moments, mass);
+  if (!(inertia.least >= least_inertia)) {
+    refuse(input, body,
+           fmt::format("too few nodes off the contact boundary to carry its moments of inertia: about one axis only "
+                       "{:.2g} % would remain",
+                       std::max(100.0 * inertia.least, 0.0)));
+  }
+  for (Index i = 0; i < mass.size(); ++i) diagonal[body.nodes[static_cast<std::size_t>(i)]] = mass[i];
+  return inertia.deficit;
+}
+
+Vector build_diagonal(const MassInput& input, bool warns) {
+  Vector diagonal = share_contact_mass(input, lumped_diagonal(*input.consistent));
+  const MassFrames frames = mass_frames(*input.consistent, *input.nodes);
+  double deficit = 0.0;
+  const MassBody* worst = nullptr;
+  for (const MassBody& body : frames.bodies) {
+    const double own = balance(input, frames, body, diagonal);
+    if (own <= deficit) continue;
+    deficit = own;
+    worst = &body;
+  }
+  if (warns && deficit > 1e-10) warn(input, *worst, deficit);
+  return diagonal;
+}
+
 /// Diagonal mass without inertia on the contact nodes, for explicit schemes. Three steps, the last two body by body:
 /// 1. d: the lumped mass, with that of contact nodes distributed among the nearest massive nodes. Total mass is
 ///    preserved, and no massive node loses mass.
@@ -183,106 +244,19 @@ Vector share_contact_mass(const MassInput& input, const Vector& lumped) {
 /// a and p minimize Σ (Δm)²/m, are found from one small system each, and are of the order of h² on a mesh of size h:
 /// masses of the order of h are moved by h. If step 3 would remove more than half of some node's mass, p is scaled
 /// down: total mass and centre remain exact, the moments of inertia are as close as possible, and a warning is logged.
-class LumpedEquivalentMass final : public MassConstruction {
- public:
-  [[nodiscard]] bool removes_contact_inertia() const override { return true; }
-
-  /// Preserves the damping rate of each node: c_i = m_i (∫aρ φ_i²)/(∫ρ φ_i²).
-  [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
-    const bool warns = input.consistent == &input.inertia_matrix();  // only once, not again for damping
-    const Vector mass = build_diagonal({&input.inertia_matrix(), input.nodes, input.contact_nodes}, warns);
-    if (input.consistent == &input.inertia_matrix()) {
-      return to_matrix(mass);
-    }
-    const Vector rate = input.consistent->diagonal().cwiseQuotient(input.inertia->diagonal());
-    return to_matrix(mass.cwiseProduct(rate));
-  }
-
- private:
-  static Vector build_diagonal(const MassInput& input, bool warns) {
-    Vector diagonal = share_contact_mass(input, lumped_diagonal(*input.consistent));
-    const MassFrames frames = mass_frames(*input.consistent, *input.nodes);
-    double deficit = 0.0;
-    const MassBody* worst = nullptr;
-    for (const MassBody& body : frames.bodies) {
-      const double own = balance(input, frames, body, diagonal);
-      if (own <= deficit) continue;
-      deficit = own;
-      worst = &body;
-    }
-    if (warns && deficit > 1e-10) warn(input, *worst, deficit);
-    return diagonal;
-  }
-
-  static void warn(const MassInput& input, const MassBody& body, double deficit) {
-    log::warning(
-        fmt::format("mass type \"equivalent-lumped\" preserves the mass and the centre of gravity of {}, but its "
-                    "moments of inertia only within {:.2g} %: the nodes off the contact boundary are too few, or too "
-                    "close together, to carry them with positive masses; refine the mesh where rotation matters",
-                    name_of(input, body), 100.0 * deficit));
-  }
-
-  /// Fraction of a moment of inertia below which the mass is no longer an approximation.
-  static constexpr double least_inertia = 0.1;
-  /// Least spread of the nodes with mass, in their worst direction, relative to that of the body.
-  static constexpr double least_spread = 0.01;
-
-  /// Point masses in one plane (on one line in 2D) cannot rotate like a body, whatever their sizes.
-  static void require_span(const MassInput& input, const MassBody& body, const Moments& moments, const Vector& mass) {
-    const Index d = moments.affine - 1;
-    const auto positions = moments.functions.middleCols(1, d);
-    const Vector weight = mass / mass.sum();
-    const Vector centre = positions.transpose() * weight;
-    const Matrix spread = positions.transpose() * weight.asDiagonal() * positions - centre * centre.transpose();
-    const Vector sizes = symmetric_eigenvalues(spread);
-    if (sizes[0] > least_spread * least_spread) return;
-    std::vector<Index> massive;
-    for (Index i = 0; i < mass.size(); ++i) {
-      if (mass[i] > 0.0) massive.push_back(body.nodes[static_cast<std::size_t>(i)]);
-    }
-    std::sort(massive.begin(), massive.end());
-    refuse(input, body, describe_massive_nodes(*input.nodes, body.nodes, massive));
-  }
-
-  /// Performs steps 2 and 3 on one body. Returns the error of its moments of inertia, see InertiaCheck.
-  static double balance(const MassInput& input, const MassFrames& frames, const MassBody& body, Vector& diagonal) {
-    const char* const too_few = "too few nodes off the contact boundary to carry its mass about its centre of gravity";
-    const Moments moments = moments_of(input, frames, body);
-    Vector mass(static_cast<Index>(body.nodes.size()));
-    for (Index i = 0; i < mass.size(); ++i) mass[i] = diagonal[body.nodes[static_cast<std::size_t>(i)]];
-    require_span(input, body, moments, mass);
-    // The second corrections remove the rounding error of the first.
-    if (correct_centre(moments, mass) < 1.0) refuse(input, body, too_few);
-    correct_centre(moments, mass);
-    if (correct_inertia(moments, mass) == 1.0) correct_inertia(moments, mass);
-    if (!(defect(moments, mass).head(moments.affine).cwiseAbs().maxCoeff() < 1e-12)) refuse(input, body, too_few);
-    const InertiaCheck inertia = check_inertia(body, moments, mass);
-    if (!(inertia.least >= least_inertia)) {
-      refuse(input, body,
-             fmt::format("too few nodes off the contact boundary to carry its moments of inertia: about one axis only "
-                         "{:.2g} % would remain",
-                         std::max(100.0 * inertia.least, 0.0)));
-    }
-    for (Index i = 0; i < mass.size(); ++i) diagonal[body.nodes[static_cast<std::size_t>(i)]] = mass[i];
-    return inertia.deficit;
-  }
-
-  /// Diagonal matrix without entries for contact nodes.
-  static SparseMatrix to_matrix(const Vector& diagonal) {
-    SparseMatrix result(diagonal.size(), diagonal.size());
-    result.reserve(Eigen::VectorXi::Constant(diagonal.size(), 1));
-    for (Index i = 0; i < diagonal.size(); ++i) {
-      if (diagonal[i] != 0.0) result.insert(i, i) = diagonal[i];
-    }
-    result.makeCompressed();
-    return result;
-  }
-};
+/// Preserves the damping rate of each node: c_i = m_i (∫aρ φ_i²)/(∫ρ φ_i²).
+SparseMatrix build_lumped_equivalent_mass(const MassInput& input, const Parameters&) {
+  const bool warns = input.consistent == &input.inertia_matrix();  // only once, not again for damping
+  const Vector mass = build_diagonal({&input.inertia_matrix(), input.nodes, input.contact_nodes}, warns);
+  if (warns) return diagonal_matrix(mass);
+  const Vector rate = input.consistent->diagonal().cwiseQuotient(input.inertia->diagonal());
+  return diagonal_matrix(mass.cwiseProduct(rate));
+}
 
 }  // namespace
 
 MassRegistration lumped_equivalent_mass() {
-  return {"equivalent-lumped", [](const Parameters&) { return std::make_unique<LumpedEquivalentMass>(); }};
+  return {"equivalent-lumped", {.build = build_lumped_equivalent_mass, .removes_contact_inertia = true}};
 }
 
 }  // namespace ricochet

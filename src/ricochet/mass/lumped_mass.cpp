@@ -15,22 +15,20 @@ Vector lumped_diagonal(const SparseMatrix& consistent) {
 
 namespace {
 
-class LumpedMass final : public MassConstruction {
- public:
-  [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
-    const Vector diagonal = lumped_diagonal(*input.consistent);
-    SparseMatrix result(diagonal.size(), diagonal.size());
-    result.reserve(Eigen::VectorXi::Constant(diagonal.size(), 1));
-    for (Index i = 0; i < diagonal.size(); ++i) result.insert(i, i) = diagonal[i];
-    result.makeCompressed();
-    return result;
-  }
-};
+/// Stores the zeros of damping as well.
+SparseMatrix build_lumped_mass(const MassInput& input, const Parameters&) {
+  const Vector diagonal = lumped_diagonal(*input.consistent);
+  SparseMatrix result(diagonal.size(), diagonal.size());
+  result.reserve(Eigen::VectorXi::Constant(diagonal.size(), 1));
+  for (Index i = 0; i < diagonal.size(); ++i) result.insert(i, i) = diagonal[i];
+  result.makeCompressed();
+  return result;
+}
 
 }  // namespace
 
 MassRegistration lumped_mass() {
-  return {"lumped", [](const Parameters&) { return std::make_unique<LumpedMass>(); }};
+  return {"lumped", {.build = build_lumped_mass}};
 }
 
 }  // namespace ricochet

@@ -21,23 +21,14 @@ namespace ricochet {
   mass(lumped_equivalent_mass)
 // clang-format on
 
-RICOCHET_DEFINE_REGISTRY(mass_registry, MassConstructor, "mass", RICOCHET_MASSES)
+RICOCHET_DEFINE_REGISTRY(mass_registry, MassType, "mass", RICOCHET_MASSES)
 
-std::unique_ptr<MassConstruction> make_mass(const std::string& name, Parameters parameters) {
-  return mass_registry().find(name, parameters).type(parameters);
+SparseMatrix build_mass(const std::string& name, const MassInput& input, Parameters values) {
+  return mass_registry().find(name, values).type.build(input, values);
 }
 
-namespace {
-
-class ConsistentMass final : public MassConstruction {
- public:
-  [[nodiscard]] SparseMatrix build(const MassInput& input) const override { return *input.consistent; }
-};
-
-}  // namespace
-
 MassRegistration consistent_mass() {
-  return {"consistent", [](const Parameters&) { return std::make_unique<ConsistentMass>(); }};
+  return {"consistent", {.build = [](const MassInput& input, const Parameters&) { return *input.consistent; }}};
 }
 
 std::vector<char> MassInput::marked_contact_nodes() const {
@@ -52,7 +43,9 @@ void MassInput::require_cells(const std::string& name) const {
 }
 
 MassChoice mass_to_build(const std::string& requested, const Parameters& parameters, const MassInput& input) {
-  return make_mass(requested, parameters)->choose(input).value_or(MassChoice{requested, {}, {}, parameters});
+  Parameters values = parameters;
+  const MassType& type = mass_registry().find(requested, values).type;
+  return type.choose != nullptr ? type.choose(input) : MassChoice{requested, {}, {}, parameters};
 }
 
 bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes) {

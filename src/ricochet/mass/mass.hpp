@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,30 +40,27 @@ struct MassInput {
 };
 
 /// Method of distributing the mass of a body over its nodes.
-class MassConstruction {
- public:
-  virtual ~MassConstruction() = default;
-  /// Returns the scalar mass matrix, nodes × nodes, exactly symmetric. With removes_contact_inertia() the rows
-  /// and columns of the contact nodes are zero (not stored). Throws Error(invalid_input) with the obstacle,
-  /// its location and an alternative.
-  [[nodiscard]] virtual SparseMatrix build(const MassInput& input) const = 0;
+struct MassType {
+  /// Returns the scalar mass matrix, nodes × nodes, exactly symmetric. With `removes_contact_inertia` the rows and
+  /// columns of the contact nodes are zero (not stored). Throws Error(invalid_input) with the obstacle, its location
+  /// and an alternative.
+  std::function<SparseMatrix(const MassInput& input, const Parameters& values)> build;
   /// Whether contact nodes have no inertia: the equivalent masses of section 5 of the source.
-  [[nodiscard]] virtual bool removes_contact_inertia() const { return false; }
-  /// Mass type that this one selects, if it is automatic: based on the inertia, so that damping uses the same.
-  [[nodiscard]] virtual std::optional<MassChoice> choose(const MassInput&) const { return {}; }
+  bool removes_contact_inertia = false;
+  /// Returns the mass type that this one selects, based on the inertia, so that damping uses the same; null unless the
+  /// type is automatic.
+  std::function<MassChoice(const MassInput& input)> choose = nullptr;
 };
-
-using MassConstructor = std::function<std::unique_ptr<MassConstruction>(const Parameters& parameters)>;
-using MassRegistration = Registration<MassConstructor>;
+using MassRegistration = Registration<MassType>;
 
 /// Registry of all masses. A program may add its own.
-[[nodiscard]] Registry<MassConstructor>& mass_registry();
+[[nodiscard]] Registry<MassType>& mass_registry();
 [[nodiscard]] inline std::vector<std::string> mass_names() {
   return mass_registry().names();
 }
-/// Creates a mass by its name in case files, with the values of its keys; throws
-/// Error(invalid_input) that lists the names.
-[[nodiscard]] std::unique_ptr<MassConstruction> make_mass(const std::string& name, Parameters parameters = {});
+/// Builds a mass by its name in case files, with the values of its keys; throws Error(invalid_input) that lists the
+/// names, and as MassType::build does.
+[[nodiscard]] SparseMatrix build_mass(const std::string& name, const MassInput& input, Parameters values = {});
 /// Mass to be built for the requested type, with the values of its keys.
 [[nodiscard]] MassChoice mass_to_build(const std::string& requested, const Parameters& parameters,
                                        const MassInput& input);

@@ -5,6 +5,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/mass/affine_fit.hpp"
+#include "ricochet/mass/graph_rings.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mass/mass_conditions.hpp"
 
@@ -200,88 +201,68 @@ bool extrapolation_weights(const Points& nodes, const Vector& node_weights, cons
   return square <= largest_distance * largest_distance;
 }
 
+[[noreturn]] void refuse_node(const MassInput& input, Index node, const std::vector<Index>& body,
+                              std::vector<Index> massive) {
+  std::sort(massive.begin(), massive.end());
+  const bool flat = massive.empty() || !degeneracy(*input.nodes, body, massive).empty();
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("mass type \"equivalent-nodewise\": the inertia of the contact node at {} cannot be moved "
+                          "to other nodes: its body has {}{}; refine the mesh there or set mesh.degree = 2, so that "
+                          "{} nodes that are not all {} are off the contact boundary, or name only facets that may "
+                          "touch in the contact group (mass types \"consistent\" and \"lumped\", with scheme "
+                          "\"contact-stabilized\" or \"newmark\", have no such requirement)",
+                          text_of_point(*input.nodes, node), describe_massive_nodes(*input.nodes, body, massive),
+                          flat ? "" : ", which are too close together for their distance from it",
+                          input.nodes->rows() == 3 ? "at least 4" : "at least 3",
+                          input.nodes->rows() == 3 ? "in one plane" : "on one line"));
+}
+
+/// Computes weights on the rings of massive nodes around a contact node: enough rings for the required number of
+/// neighbours and to span space affinely.
+Extrapolation extrapolate(const MassInput& input, const std::vector<char>& is_contact, const Vector& diagonal,
+                          Index node, GraphRings& rings) {
+  const Index dimension = input.nodes->rows();
+  const std::size_t required_neighbours = dimension == 2 ? 20 : 40;
+  std::vector<int> massive;
+  Extrapolation result;
+  rings.start(node);
+  for (bool grows = true; grows;) {
+    grows = rings.grow([&](Index neighbour) {
+      if (is_contact[static_cast<std::size_t>(neighbour)] == 0) massive.push_back(static_cast<int>(neighbour));
+    });
+    const bool enough = massive.size() >= required_neighbours || !grows;
+    if (enough && extrapolation_weights(*input.nodes, diagonal, massive, node, result.weights)) {
+      result.nodes = std::move(massive);
+      return result;
+    }
+  }
+  refuse_node(input, node, rings.nodes(), {massive.begin(), massive.end()});
+}
+
 /// M₀ = EᵀME. E is the identity on massive nodes; the row of a contact node holds the weights on nearby massive nodes
 /// that reproduce affine functions with the least norm Σ w_j²/m_jj. Hence PᵃᵀM₀Pᵇ = PᵃᵀMPᵇ exactly, M₀ is by
 /// construction positive semi-definite with the contact dofs as its null space, and wᵀ(m_cc)w measures the mass added
 /// to the massive nodes relative to their own: the choice of the norm and of many neighbours keeps the top eigenvalue
 /// low. docs/equivalent-mass.md has the measurements behind `required_neighbours`.
-class NodewiseEquivalentMass final : public MassConstruction {
- public:
-  [[nodiscard]] bool removes_contact_inertia() const override { return true; }
-
-  [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
-    const SparseMatrix& consistent = *input.consistent;
-    const Index count = consistent.cols();
-    const std::vector<char> is_contact = input.marked_contact_nodes();
-    const Vector diagonal = input.inertia_matrix().diagonal();
-    ExtensionRows extension(count);
-    std::vector<Index> visited_by(static_cast<std::size_t>(count), -1);
-    for (const Index node : input.contact_nodes) {
-      extension.set(node, extrapolate(input, is_contact, diagonal, node, visited_by));
-    }
-    SparseMatrix result = congruence(consistent, is_contact, extension);
-    check_moments(input, result, "equivalent-nodewise");
-    return result;
+SparseMatrix build_nodewise_equivalent_mass(const MassInput& input, const Parameters&) {
+  const SparseMatrix& consistent = *input.consistent;
+  const Index count = consistent.cols();
+  const std::vector<char> is_contact = input.marked_contact_nodes();
+  const Vector diagonal = input.inertia_matrix().diagonal();
+  ExtensionRows extension(count);
+  GraphRings rings(consistent);
+  for (const Index node : input.contact_nodes) {
+    extension.set(node, extrapolate(input, is_contact, diagonal, node, rings));
   }
-
- private:
-  /// Computes weights on the rings of massive nodes around a contact node: enough rings for the required number of
-  /// neighbours and to span space affinely. `visited_by` is work space: the contact node from which a node was last
-  /// reached.
-  static Extrapolation extrapolate(const MassInput& input, const std::vector<char>& is_contact, const Vector& diagonal,
-                                   Index node, std::vector<Index>& visited_by) {
-    const Index dimension = input.nodes->rows();
-    const std::size_t required_neighbours = dimension == 2 ? 20 : 40;
-    std::vector<Index> front{node}, next;
-    std::vector<int> massive;
-    visited_by[static_cast<std::size_t>(node)] = node;
-    Extrapolation result;
-    while (!front.empty()) {
-      next.clear();
-      for (const Index from : front) {
-        for (SparseMatrix::InnerIterator entry(*input.consistent, from); entry; ++entry) {
-          const auto neighbour = static_cast<Index>(entry.row());
-          if (visited_by[static_cast<std::size_t>(neighbour)] == node) continue;
-          visited_by[static_cast<std::size_t>(neighbour)] = node;
-          next.push_back(neighbour);
-          if (is_contact[static_cast<std::size_t>(neighbour)] == 0) massive.push_back(static_cast<int>(neighbour));
-        }
-      }
-      std::swap(front, next);
-      const bool enough = massive.size() >= required_neighbours || front.empty();
-      if (enough && extrapolation_weights(*input.nodes, diagonal, massive, node, result.weights)) {
-        result.nodes = std::move(massive);
-        return result;
-      }
-    }
-    std::vector<Index> body;
-    for (std::size_t k = 0; k < visited_by.size(); ++k) {
-      if (visited_by[k] == node) body.push_back(static_cast<Index>(k));
-    }
-    refuse(input, node, body, {massive.begin(), massive.end()});
-  }
-
-  [[noreturn]] static void refuse(const MassInput& input, Index node, const std::vector<Index>& body,
-                                  std::vector<Index> massive) {
-    std::sort(massive.begin(), massive.end());
-    const bool flat = massive.empty() || !degeneracy(*input.nodes, body, massive).empty();
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("mass type \"equivalent-nodewise\": the inertia of the contact node at {} cannot be moved "
-                            "to other nodes: its body has {}{}; refine the mesh there or set mesh.degree = 2, so that "
-                            "{} nodes that are not all {} are off the contact boundary, or name only facets that may "
-                            "touch in the contact group (mass types \"consistent\" and \"lumped\", with scheme "
-                            "\"contact-stabilized\" or \"newmark\", have no such requirement)",
-                            text_of_point(*input.nodes, node), describe_massive_nodes(*input.nodes, body, massive),
-                            flat ? "" : ", which are too close together for their distance from it",
-                            input.nodes->rows() == 3 ? "at least 4" : "at least 3",
-                            input.nodes->rows() == 3 ? "in one plane" : "on one line"));
-  }
-};
+  SparseMatrix result = congruence(consistent, is_contact, extension);
+  check_moments(input, result, "equivalent-nodewise");
+  return result;
+}
 
 }  // namespace
 
 MassRegistration nodewise_equivalent_mass() {
-  return {"equivalent-nodewise", [](const Parameters&) { return std::make_unique<NodewiseEquivalentMass>(); }};
+  return {"equivalent-nodewise", {.build = build_nodewise_equivalent_mass, .removes_contact_inertia = true}};
 }
 
 }  // namespace ricochet

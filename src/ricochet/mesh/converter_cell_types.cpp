@@ -15,11 +15,11 @@ std::vector<int> inverse_of(const std::vector<int>& order) {
   return result;
 }
 
-/// Nodes of a facet in VTK's order and numbers. The facet is given by the file's numbers of vertices.
+/// Nodes of a facet in meshio's order and numbers. The facet is given by the file's numbers of vertices.
 std::vector<int> nodes_of_facet_in_file(CellShape shape, CellShape own, int degree, const VertexSet& facet) {
-  const std::vector<int> in_file = inverse_of(vtk_nodes(shape, degree)), corner = inverse_of(vtk_nodes(own, 1));
+  const std::vector<int> in_file = inverse_of(meshio_nodes(shape, degree)), corner = inverse_of(meshio_nodes(own, 1));
   std::vector<int> result;
-  for (const int node : vtk_nodes(own, degree)) {
+  for (const int node : meshio_nodes(own, degree)) {
     VertexSet vertices = node_vertices(own, degree)[static_cast<std::size_t>(node)];
     for (int& vertex : vertices) {
       const int of_cell = facet[static_cast<std::size_t>(corner[static_cast<std::size_t>(vertex)])];
@@ -34,7 +34,7 @@ Json type_of(CellShape shape, int degree) {
   const CellShapeDescription& cell = describe(shape);
   std::vector<int> order;
   for (const int node : gmsh_nodes(shape, degree))
-    order.push_back(inverse_of(vtk_nodes(shape, degree))[static_cast<std::size_t>(node)]);
+    order.push_back(inverse_of(meshio_nodes(shape, degree))[static_cast<std::size_t>(node)]);
   Json facets = Json::array();
   for (const VertexSet& facet : cell.abaqus_facets) {
     const auto same_size = [&](const VertexSet& each) { return each.size() == facet.size(); };

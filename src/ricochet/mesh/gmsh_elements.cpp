@@ -19,8 +19,8 @@ struct OtherTypes {
   std::vector<std::array<int, 3>> types;  ///< number, degree and number of nodes, 0 if it varies
 };
 
-/// Types that are listed only to be refused by name; their numbers of nodes let the binary formats be read past them,
-/// so that the message can count them.
+/// Types that are listed only to be refused by name, unless a shape has their number; their numbers of nodes let the
+/// binary formats be read past them, so that the message can count them.
 const OtherTypes other_types[] = {
     {"point", 0, {{15, 0, 1}}},
     {"line", 1, {{26, 3, 4}, {27, 4, 5}, {28, 5, 6}}},

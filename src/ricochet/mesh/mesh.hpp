@@ -69,11 +69,11 @@ struct Mesh {
   int degree = 1;                       ///< of the geometry: 1 straight, 2 second-order
   Points nodes;                         ///< dimension × count; every node belongs to a cell
   std::vector<std::int64_t> node_tags;  ///< the node's number in the file, for messages
-  std::vector<CellBlock> cells;         ///< one block per shape present
-  std::vector<CellBlock> facets;  ///< facets that belong to a group, one block per shape; each is a facet of a cell
-  std::vector<Group> groups;      ///< of every dimension
-  std::vector<MeshPart> parts;    ///< of a mesh of several files, in their order; else empty
-  bool is_piece = false;          ///< of a partitioned mesh: groups may be empty here
+  std::vector<CellBlock> cells;         ///< one block per shape present, in the order of the shapes
+  std::vector<CellBlock> facets;        ///< facets that belong to a group, likewise; each is a facet of a cell
+  std::vector<Group> groups;            ///< of every dimension
+  std::vector<MeshPart> parts;          ///< of a mesh of several files, in their order; else empty
+  bool is_piece = false;                ///< of a partitioned mesh: groups may be empty here
 
   [[nodiscard]] Index node_count() const { return nodes.cols(); }
   [[nodiscard]] Index cell_count() const;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+#include <stdexcept>
 
 #include "ricochet/mesh/shapes/cell_shape_description.hpp"
 
@@ -71,6 +72,35 @@ VertexSets make_outward_facet_vertices(CellShape shape) {
   return result;
 }
 
+/// With the vector n of a facet, twice its area long in 3D, the sum S of |det| over the simplices, and p on the facet,
+/// the height is d max|n·(x − p)|/S volumes per area. All are small integers, so that the result is exact.
+std::vector<double> make_facet_heights(CellShape shape) {
+  const CellShapeDescription& cell = describe(shape);
+  double volumes = 0.0;
+  for (const VertexSet& simplex : cell.simplices) {
+    Eigen::Matrix3d edges = Eigen::Matrix3d::Identity();
+    for (int k = 0; k < cell.dimension; ++k)
+      edges.col(k) = reference_position(shape, {simplex[static_cast<std::size_t>(k) + 1]}) -
+                     reference_position(shape, {simplex[0]});
+    volumes += std::abs(edges.determinant());
+  }
+  std::vector<double> result;
+  for (const VertexSet& facet : outward_facet_vertices(shape)) {
+    const Eigen::Vector3d first = reference_position(shape, {facet[0]});
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    for (std::size_t k = 1; k < facet.size(); ++k) {
+      const Eigen::Vector3d at = reference_position(shape, {facet[k]}) - first;
+      normal += at.cross(facet.size() == 2 ? Eigen::Vector3d::UnitZ()
+                                           : Eigen::Vector3d(reference_position(shape, {facet[k - 1]}) - first));
+    }
+    double highest = 0.0;
+    for (const Eigen::Vector3d& vertex : cell.vertices)
+      highest = std::max(highest, std::abs(normal.dot(vertex - first)));
+    result.push_back(cell.dimension * highest / volumes);
+  }
+  return result;
+}
+
 std::vector<int> make_mirrored_nodes(CellShape shape, int degree) {
   std::vector<int> mirrored_vertex;
   for (Eigen::Vector3d vertex : describe(shape).vertices) {
@@ -84,9 +114,9 @@ std::vector<int> make_mirrored_nodes(CellShape shape, int degree) {
   return result;
 }
 
-std::vector<int> nodes_of_file(CellShape shape, int degree, const FileNodes& further) {
+std::vector<int> nodes_of_file(CellShape shape, int degree, const FileNodes& further, const VertexSet& own = {}) {
   const std::vector<int>& vertices = describe(shape).file_vertices;
-  std::vector<int> result = vertices;
+  std::vector<int> result = own.empty() ? vertices : own;
   if (degree == 1) return result;
   for (const VertexSets* all : {&further.edges, &further.faces}) {
     for (const VertexSet& node : *all) result.push_back(node_at_mean(shape, renumbered(node, vertices)));
@@ -120,7 +150,10 @@ CellShape facet_shape(CellShape shape, std::size_t facet) {
     return dimension(each) == dimension(shape) - 1 &&
            describe(each).vertices.size() == describe(shape).facets[facet].size();
   };
-  return *std::find_if(cell_shapes().begin(), cell_shapes().end(), fits);
+  const auto found = std::find_if(cell_shapes().begin(), cell_shapes().end(), fits);
+  if (found == cell_shapes().end())
+    throw std::logic_error("no cell shape is like facet " + std::to_string(facet) + " of a " + name(shape));
+  return *found;
 }
 
 const VertexSets& facet_nodes(CellShape shape, int degree) {
@@ -130,6 +163,11 @@ const VertexSets& facet_nodes(CellShape shape, int degree) {
 
 const VertexSets& outward_facet_vertices(CellShape shape) {
   static const ShapeTable table([](CellShape of, int) { return make_outward_facet_vertices(of); });
+  return table.at(shape, 1);
+}
+
+const std::vector<double>& facet_heights(CellShape shape) {
+  static const ShapeTable table([](CellShape of, int) { return make_facet_heights(of); });
   return table.at(shape, 1);
 }
 
@@ -150,6 +188,12 @@ const std::vector<int>& gmsh_nodes(CellShape shape, int degree) {
 }
 
 const std::vector<int>& vtk_nodes(CellShape shape, int degree) {
+  static const ShapeTable table(
+      [](CellShape of, int k) { return nodes_of_file(of, k, describe(of).vtk, file_type(of, k).vtk_vertices); });
+  return table.at(shape, degree);
+}
+
+const std::vector<int>& meshio_nodes(CellShape shape, int degree) {
   static const ShapeTable table([](CellShape of, int k) { return nodes_of_file(of, k, describe(of).vtk); });
   return table.at(shape, degree);
 }

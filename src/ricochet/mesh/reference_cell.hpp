@@ -22,12 +22,16 @@ namespace ricochet {
 /// Degree of the Lagrange element with so many nodes, 1 or 2.
 [[nodiscard]] int degree_of(CellShape shape, int nodes);
 
-/// Shape of a facet, numbered in Basix's order.
+/// Shape of a facet, numbered in Basix's order. Throws std::logic_error if no shape has its number of vertices.
 [[nodiscard]] CellShape facet_shape(CellShape shape, std::size_t facet);
 
 /// For each facet of the cell, in Basix's order, the cell's nodes on it, in the order in which the facet itself numbers
 /// its nodes. Empty for intervals.
 [[nodiscard]] const std::vector<std::vector<int>>& facet_nodes(CellShape shape, int degree);
+
+/// For each facet of a straight cell in Basix's order, its height in units of volume/area: d on simplices, 1 on
+/// quadrilaterals and hexahedra.
+[[nodiscard]] const std::vector<double>& facet_heights(CellShape shape);
 
 /// For each facet of a cell with positive Jacobian, in Basix's order, its vertices in outward orientation: the cell is
 /// on the left of an edge, and a face is counterclockwise seen from outside.
@@ -40,8 +44,9 @@ namespace ricochet {
 /// Reference coordinates of the mean of some vertices; 0 beyond the dimension of the cell.
 [[nodiscard]] Eigen::Vector3d reference_position(CellShape shape, const std::vector<int>& vertices);
 
-/// For each node of a cell in a file of Gmsh, or of VTK and meshio, in the order there, its number in Basix's order.
+/// For each node of a cell in a file of Gmsh, VTK or meshio, in the order there, its number in Basix's order.
 [[nodiscard]] const std::vector<int>& gmsh_nodes(CellShape shape, int degree);
 [[nodiscard]] const std::vector<int>& vtk_nodes(CellShape shape, int degree);
+[[nodiscard]] const std::vector<int>& meshio_nodes(CellShape shape, int degree);
 
 }  // namespace ricochet

@@ -119,11 +119,7 @@ void check_dimensions(const Case& input, int dimension) {
 
 const Group& group_at(const Case& input, const std::string& key_path, const Mesh& mesh, const std::string& name,
                       int dimension) {
-  try {
-    return mesh.group(name, dimension);
-  } catch (const Error& problem) {
-    refuse(input, key_path, problem.what());
-  }
+  return located(input, key_path, [&]() -> decltype(auto) { return mesh.group(name, dimension); });
 }
 
 std::vector<Index> boundary_at(const Case& input, const std::string& key_path, const Mesh& mesh,
@@ -205,16 +201,14 @@ void add_initial_conditions(const Case& input, Model& model) {
   const auto evaluate = [&](const std::vector<Expression>& value, const std::string& key) {
     Vector result = Vector::Zero(model.space.dof_count());
     if (value.empty()) return result;
-    try {
+    located(input, key, [&] {
       for (Index node = 0; node < model.space.node_count(); ++node) {
         const auto at = model.space.nodes.col(node);
         for (int k = 0; k < d; ++k) {
           result[node * d + k] = value[static_cast<std::size_t>(k)](at[0], at[1], d == 3 ? at[2] : 0.0, 0.0);
         }
       }
-    } catch (const Error& problem) {
-      refuse(input, key, problem.what());
-    }
+    });
     return result;
   };
   model.initial.static_equilibrium = input.initial.static_equilibrium;

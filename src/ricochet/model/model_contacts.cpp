@@ -130,12 +130,10 @@ void add_contacts(const Case& input, Model& model) {
     return !model.problem.supports.contains(node * d + component);
   };
   Index supported = 0;
-  try {
+  located(input, "contact", [&] {
     model.problem.contact =
         make_contact_boundary(model.body, model.contact_pairs, is_free, &supported, &model.pair_facings);
-  } catch (const Error& problem) {
-    refuse(input, "contact", problem.what());
-  }
+  });
   for (std::size_t i = 0; i < model.contacts.size(); ++i) {
     if (model.contact_pairs[i].between_bodies() && !model.contact_pairs[i].tied) check_facing(input, i, model);
   }

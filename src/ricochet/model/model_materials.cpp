@@ -34,9 +34,14 @@ void choose_dilatation(const Case& input, std::size_t i, Model& model) {
   const bool has_mean = material.law->volumetric_modulus() > 0.0 && has_cells_with_mean(input, model.mesh) &&
                         !is_plane_stress(model.body);
   if (section.dilatation == "mean" && !has_mean) {
+    std::vector<std::string> laws;
+    for (const MaterialLawRegistration& law : material_law_registry().all()) {
+      if (law.type.has_volumetric_energy) laws.push_back(law.name);
+    }
     refuse(input, fmt::format("material.{}.dilatation", i),
-           "\"mean\" requires a law with a separate volumetric energy (neo-hookean, mooney-rivlin), cells other than "
-           "triangles or tetrahedra of degree 1, and no plane stress");
+           fmt::format("\"mean\" requires a law with a separate volumetric energy ({}), cells other than triangles or "
+                       "tetrahedra of degree 1, and no plane stress",
+                       fmt::join(laws, ", ")));
   }
   const double poisson = material.poisson();
   material.mean_dilatation =
@@ -47,7 +52,8 @@ void choose_dilatation(const Case& input, std::size_t i, Model& model) {
       "material \"{}\" is nearly incompressible (Poisson's ratio {:.4g}): elements of degree 1 lock and "
       "are far too stiff; use mesh.degree = 2{}",
       section.group, poisson,
-      material.law->is_linear() ? "" : ", or quadrilaterals or hexahedra, which do not lock with the mean dilatation"));
+      material.law->is_linear() ? ""
+                                : ", or " + names_of_cells(false) + ", which do not lock with the mean dilatation"));
 }
 
 /// Adds the viscoelastic branches.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ricochet/base/error.hpp"
 #include "ricochet/mesh/merge_parts.hpp"
 #include "ricochet/model/model.hpp"
 
@@ -8,6 +9,15 @@ namespace ricochet {
 
 /// Throws Error(invalid_input) with the location of a key of the case.
 [[noreturn]] void refuse(const Case& input, const std::string& key_path, const std::string& message);
+/// Returns work(), with its errors at the location of a key.
+template <class Work>
+decltype(auto) located(const Case& input, const std::string& key_path, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& problem) {
+    refuse(input, key_path, problem.what());
+  }
+}
 
 /// Refuses a vector whose number of entries differs from the dimension of the mesh, unless it is absent.
 void check_length(const Case& input, const std::string& key_path, std::size_t length, int dimension);

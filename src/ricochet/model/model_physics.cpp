@@ -206,19 +206,17 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
   choice =
       with_cells(consistent, {}, [&] { return mass_to_build(input.mass.type, input.mass.parameters, mass_input); });
   model.mass_built = choice.name;
-  const std::unique_ptr<MassConstruction> construction = make_mass(choice.name, choice.parameters);
+  const bool has_massless_contact = mass_registry().find(choice.name).type.removes_contact_inertia;
   const auto build = [&](const SparseMatrix& from, const std::vector<double>& weight = {}) {
-    return with_cells(from, weight, [&] { return construction->build(mass_input); });
+    return with_cells(from, weight, [&] { return build_mass(choice.name, mass_input, choice.parameters); });
   };
   if (!choice.mass) choice.mass = build(consistent);
   if (!choice.reason.empty()) {
     log::info(fmt::format("the mass \"{}\" of {} contact nodes is built as \"{}\": {}", input.mass.type,
                           mass_input.contact_nodes.size(), choice.name, choice.reason));
   }
-  if (construction->removes_contact_inertia())
-    warn_of_concentrated_inertia(input, choice.name, *choice.mass, consistent.diagonal());
-  finish_problem(model.problem, with_free_bodies(model, expand_to_components(*choice.mass, d)),
-                 construction->removes_contact_inertia());
+  if (has_massless_contact) warn_of_concentrated_inertia(input, choice.name, *choice.mass, consistent.diagonal());
+  finish_problem(model.problem, with_free_bodies(model, expand_to_components(*choice.mass, d)), has_massless_contact);
   choice.mass.reset();
   if (with_forces) {
     assemble_forces(input, model);
@@ -321,14 +319,12 @@ void add_pressures(const Case& input, Model& model) {
         boundary_at(input, fmt::format("pressure.{}.group", i), model.mesh, section.group);
     FollowerPressure own(model.body);
     own.add(facets, section.value);
-    try {
+    located(input, fmt::format("pressure.{}.value", i), [&] {
       // An invalid value is reported with its location.
       Vector load = Vector::Zero(model.space.dof_count());
       own.add_force(Vector(), 0.0, load);
       if (!follows) add_dead_pressure(own, section.value, model.problem.loads, model.space.dof_count());
-    } catch (const Error& problem) {
-      refuse(input, fmt::format("pressure.{}.value", i), problem.what());
-    }
+    });
     if (follows) all->add(facets, section.value);
   }
   if (!all->empty()) model.problem.pressure = all;
@@ -355,7 +351,7 @@ void add_loads(const Case& input, Model& model) {
   add_forces_on_free_bodies(input, model);
   const Body& body = model.body;
   const TiedNodes& tied = model.tied;
-  try {
+  located(input, "load.body_force", [&] {
     if (!input.load.body_force.empty()) {
       add_force(
           input.load.body_force,
@@ -365,13 +361,11 @@ void add_loads(const Case& input, Model& model) {
           },
           loads, dofs);
     }
-  } catch (const Error& problem) {
-    refuse(input, "load.body_force", problem.what());
-  }
+  });
   for (std::size_t i = 0; i < input.tractions.size(); ++i) {
     const std::vector<Index> facets =
         boundary_at(input, fmt::format("traction.{}.group", i), model.mesh, input.tractions[i].group);
-    try {
+    located(input, fmt::format("traction.{}.value", i), [&] {
       add_force(
           input.tractions[i].value,
           [&body, &tied, d, facets](const ForceDensity& f, Vector& load) {
@@ -379,9 +373,7 @@ void add_loads(const Case& input, Model& model) {
             tied.condense_load(load, d);
           },
           loads, dofs);
-    } catch (const Error& problem) {
-      refuse(input, fmt::format("traction.{}.value", i), problem.what());
-    }
+    });
   }
   add_pressures(input, model);
 }

@@ -18,10 +18,10 @@ constexpr int most_bodies = 20;
 /// Number of pairs of one [[contact]] above which their forces have no columns.
 constexpr std::size_t most_pairs = 20;
 
-ProbeSetting setting_of(const Case& input, const Model& model, std::size_t number) {
+ProbeContext setting_of(const Case& input, const Model& model, std::size_t number) {
   const auto path = [number](const std::string& key) { return fmt::format("probe.{}.{}", number, key); };
   const ProbeSection& section = input.probes[number];
-  ProbeSetting setting{
+  ProbeContext setting{
       .name = section.name,
       .values = section.values,
       .body = model.body,

@@ -99,12 +99,10 @@ class TieCollection {
     });
   }
   [[nodiscard]] TiedSurface tie(std::size_t contact, const std::set<Index>& excluded) const {
-    try {
+    return located(input_, fmt::format("contact.{}.group", model_.contacts[contact].entry), [&] {
       return tie_surfaces(model_.body, model_.contact_pairs[contact],
                           [&excluded](Index node) { return excluded.contains(node); });
-    } catch (const Error& problem) {
-      refuse(input_, fmt::format("contact.{}.group", model_.contacts[contact].entry), problem.what());
-    }
+    });
   }
   [[noreturn]] void refuse_second_tie(std::size_t contact, Index node) const {
     const Vector at = model_.space.nodes.col(node);
@@ -153,11 +151,7 @@ void add_ties(const Case& input, Model& model) {
   }
   std::vector<TiedNodes::Tie> ties = collection.release_ties();
   if (ties.empty()) return;
-  try {
-    model.tied = TiedNodes(std::move(ties), model.space.node_count());
-  } catch (const Error& problem) {
-    refuse(input, "contact", problem.what());
-  }
+  located(input, "contact", [&] { model.tied = TiedNodes(std::move(ties), model.space.node_count()); });
   move_nodes(input, model);
   for (const TiedNodes::Tie& tie : model.tied.ties()) {
     for (const auto& [node, weight] : tie.weights) model.space.glued.emplace_back(tie.node, node);

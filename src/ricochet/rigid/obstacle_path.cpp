@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <sstream>
 
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
@@ -79,19 +77,6 @@ class TablePath final : public ObstaclePath {
   Index dimension_;
 };
 
-std::string contents_of(const std::string& file) {
-  const std::string why_not = unreadable_reason(file);
-  std::ifstream stream;
-  if (why_not.empty()) stream.open(file, std::ios::binary);
-  if (!why_not.empty() || !stream.is_open())
-    throw Error(ErrorKind::file_access,
-                fmt::format("cannot read the motion \"{}\": {}", file, why_not.empty() ? "no such file" : why_not));
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (stream.bad()) throw Error(ErrorKind::file_access, fmt::format("cannot read the motion \"{}\" to its end", file));
-  return std::move(text).str();
-}
-
 /// Refuses a header that names the last of four columns as a length, since it is an angle in the plane.
 void refuse_length_header(const NumberLines& lines, const std::string& file) {
   const std::array lengths{"z", "uz", "u_z", "dz", "Z", "UZ", "U_Z", "DZ"};
@@ -118,7 +103,7 @@ std::unique_ptr<ObstaclePath> make_path(std::vector<Expression> displacement, st
 }
 
 std::unique_ptr<ObstaclePath> read_path(const std::string& file, Index dimension) {
-  const std::string text = contents_of(file);
+  const std::string text = read_input(file, "motion");
   const std::size_t still = static_cast<std::size_t>(dimension) + 1, with_rotation = dimension == 2 ? 4 : 7;
   std::vector<double> times, values;
   std::size_t columns = 0;

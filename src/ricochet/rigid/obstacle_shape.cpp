@@ -31,10 +31,6 @@ bool agree(const SpaceVector& a, const SpaceVector& b) {
   return a.dot(b) > 0.5;
 }
 
-}  // namespace
-
-namespace {
-
 /// Returns the normal of a step so long that its midpoint is not representative: the normal at the end, unless a force
 /// along it would create energy; then the direction perpendicular to `relative_step` that is nearest to it.
 SpaceVector normal_of_long_step(const SpaceVector& relative_step, double change, const SpaceVector& at_start,
@@ -54,7 +50,7 @@ SpaceVector normal_of_long_step(const SpaceVector& relative_step, double change,
 }
 
 /// In rounding errors of gaps. A shorter displacement changes the work of a force by no more than this times rounding.
-constexpr double least_way = 100.0;
+constexpr double least_step = 100.0;
 
 }  // namespace
 
@@ -71,7 +67,7 @@ SpaceVector corrected_normal(SpaceVector gradient, const SpaceVector& relative_s
   // forth, would alternate between two normals. A displacement that is itself little more than rounding, as for a point
   // that sticks to a rotating obstacle, has no direction.
   const double part = std::clamp(std::abs(missing) / rounding - 1.0, 0.0, 1.0) *
-                      std::clamp(std::sqrt(square) / (least_way * rounding) - 1.0, 0.0, 1.0);
+                      std::clamp(std::sqrt(square) / (least_step * rounding) - 1.0, 0.0, 1.0);
   if (square > 0.0 && part > 0.0) gradient += part * missing / square * relative_step;
   const double length = gradient.norm();
   if (!(length > 0.0)) return normal_of_long_step(relative_step, change, at_start, at_end);
@@ -110,11 +106,7 @@ void require_space(const Parameters& parameters, const std::string& key, const s
 }
 
 Key obstacle_side_key(const std::string& doc) {
-  return {.name = "side",
-          .type = KeyType::choice,
-          .default_value = "outside",
-          .choices = {"outside", "inside"},
-          .doc = doc};
+  return choice_key("side", {"outside", "inside"}, {.default_value = "outside"}, doc);
 }
 
 double obstacle_side(const Parameters& parameters) {

@@ -117,7 +117,7 @@ void require_space(const Parameters& parameters, const std::string& key, const s
                    const std::string& instead);
 /// Returns the direction of a gradient of the gap, corrected along a displacement `relative_step` to be consistent with
 /// the change of the gap over it:
-///   gradient + (change − gradient·way) way/|way|²,
+///   gradient + (change − gradient·relative_step) relative_step/|relative_step|²,
 /// or that of the gradient if the bracket is of the size of rounding errors, with a part of the correction up to twice
 /// that size; for long steps see ObstacleShape::normal_of_step.
 [[nodiscard]] SpaceVector corrected_normal(SpaceVector gradient, const SpaceVector& relative_step, double change,

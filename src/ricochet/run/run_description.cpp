@@ -92,7 +92,8 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   for (std::size_t i = 0; i < summary.contacts.size(); ++i) summary.contacts[i].facing = describe_facing(model, i);
   for (std::size_t number = 0; number < model.probe_targets.size(); ++number) {
     const ProbeTargets& targets = model.probe_targets[number];
-    if (!targets.sums.empty()) summary.probe_sums.emplace_back(input.probes[number].name, targets.sums);
+    if (!targets.summed_forces.empty())
+      summary.probe_sums.emplace_back(input.probes[number].name, targets.summed_forces);
     for (std::size_t i = 0; i < targets.probes.size(); ++i) {
       const Vector& at = targets.positions[i];
       summary.probes.push_back({targets.probes[i], {at.data(), at.data() + at.size()}});

@@ -86,20 +86,14 @@ SchemeRegistration moreau_jean_scheme() {
     return std::make_unique<MoreauJean>(step, parameters.number("theta"), parameters.number("restitution"),
                                         parameters.text("slip") == "end");
   };
-  return {"moreau-jean",
-          make,
-          {{.name = "theta",
-            .type = KeyType::number,
-            .unit = "1",
-            .default_value = "0.5",
-            .range = {.at_least = 0.5, .at_most = 1.0},
-            .doc = "Instant within the step at which forces are evaluated: 1/2 is the midpoint, larger values damp."},
-           restitution_key(),
-           {.name = "slip",
-            .type = KeyType::choice,
-            .default_value = "end",
-            .choices = {"end", "theta"},
-            .doc = "Instant of the slip rate in Coulomb's law; with \"theta\" friction never creates energy."}}};
+  return {
+      "moreau-jean",
+      make,
+      {number_key("theta", "1", {.default_value = "0.5", .range = {.at_least = 0.5, .at_most = 1.0}},
+                  "Instant within the step at which forces are evaluated: 1/2 is the midpoint, larger values damp."),
+       restitution_key(),
+       choice_key("slip", {"end", "theta"}, {.default_value = "end"},
+                  "Instant of the slip rate in Coulomb's law; with \"theta\" friction never creates energy.")}};
 }
 
 }  // namespace ricochet

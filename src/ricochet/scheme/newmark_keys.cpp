@@ -70,21 +70,12 @@ void choose(const ParameterCheck& check, const std::string& name, double of_pres
 }  // namespace
 
 std::vector<Key> newmark_keys() {
-  return {{.name = "beta",
-           .type = KeyType::number,
-           .unit = "1",
-           .range = positive,
-           .doc = "Newmark's beta, textbook definition."},
-          {.name = "gamma",
-           .type = KeyType::number,
-           .unit = "1",
-           .range = nonnegative,
-           .doc = "Newmark's gamma, textbook definition; unstable below 1/2."},
-          {.name = "preset",
-           .type = KeyType::choice,
-           .choices = preset_names(),
-           .doc = "Instead of beta and gamma: \"trapezoidal\" is beta = 1/4, gamma = 1/2; \"textbook-half\" is beta = "
-                  "gamma = 1/2."}};
+  return {
+      number_key("beta", "1", {.range = positive}, "Newmark's beta, textbook definition."),
+      number_key("gamma", "1", {.range = nonnegative}, "Newmark's gamma, textbook definition; unstable below 1/2."),
+      choice_key("preset", preset_names(), {},
+                 "Instead of beta and gamma: \"trapezoidal\" is beta = 1/4, gamma = 1/2; \"textbook-half\" is beta = "
+                 "gamma = 1/2.")};
 }
 
 void check_newmark(const ParameterCheck& check, Parameters& values) {

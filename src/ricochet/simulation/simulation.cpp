@@ -31,20 +31,26 @@ constexpr const char* nameless = "this time scheme";
 
 }  // namespace
 
-Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
-                       const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
+Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const StepSolverOptions& options,
+                       const std::optional<StepControlOptions>& control)
     : problem_(problem),
       contact_points_(problem.global_contact_point_count()),
       scheme_(scheme),
       options_(options),
       whole_step_(scheme.step()) {
+  if (!control) return;
+  require_changing_steps(scheme_, nameless);
+  control_.emplace(problem_, *control);
+}
+
+Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
+                       const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
+    : Simulation(problem, scheme, options, control) {
   if (!scheme_.traits().supports_nonlinear_force) require_linear(*problem_.internal_force, nameless);
   require_relaxation(scheme_, problem_, nameless);
   scheme_.analyse(problem_);
   state_ = make_starting_state(problem_, initial, scheme_.step(), options);
-  if (control) {
-    require_changing_steps(scheme_, nameless);
-    control_.emplace(problem_, *control);
+  if (control_) {
     control_->start(state_);
     scheme_.change_step(problem_, control_->step());
   }
@@ -57,15 +63,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
 
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const Snapshot& snapshot,
                        const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
-    : problem_(problem),
-      contact_points_(problem.global_contact_point_count()),
-      scheme_(scheme),
-      options_(options),
-      whole_step_(scheme.step()) {
-  if (control) {
-    require_changing_steps(scheme_, nameless);
-    control_.emplace(problem_, *control);
-  }
+    : Simulation(problem, scheme, options, control) {
   const SnapshotVisitor visit = snapshot.loader("");
   persist(visit);
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_, visit.part("account"));

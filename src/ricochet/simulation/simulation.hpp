@@ -57,6 +57,8 @@ class Simulation : private StageSolve {
   [[nodiscard]] const std::vector<ChosenMethod>& methods() const { return current_->solver->methods(); }
 
  private:
+  Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const StepSolverOptions& options,
+             const std::optional<StepControlOptions>& control);
   /// Stage of the step and its solution.
   struct SolvedStage {
     Stage stage;

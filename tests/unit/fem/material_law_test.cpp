@@ -55,6 +55,7 @@ TEST(MaterialLaw, StressAndTangentAreDerivatives) {
   constexpr double h = 1e-6;
   for (const Law& each : laws()) {
     const auto law = make_material_law(each.name, each.parameters);
+    EXPECT_EQ(law->volumetric_modulus() > 0.0, material_law_registry().find(each.name).type.has_volumetric_energy);
     for (const unsigned seed : {7U, 8U, 9U}) {
       const Tensor strain = random_strain(seed);
       Tensor stress, before, after;

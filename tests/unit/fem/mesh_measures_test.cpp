@@ -5,7 +5,9 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
+#include <map>
 
+#include "ricochet/mesh/reference_cell.hpp"
 #include "support/box_mesh.hpp"
 
 // Sizes and positions of groups, compared with boxes, parallelepipeds and discs.
@@ -52,7 +54,8 @@ TEST_P(MeshMeasures, OfAParallelepiped) {
   }
 }
 
-/// Equal cells in a unit box of n³ have the height 1/n (quadrilaterals, hexahedra) or 1/(n√2) (right triangles).
+/// The height is the least distance of the highest vertex from a facet: of equal cells in a unit box of n³, 1/n
+/// (quadrilaterals, hexahedra) or 1/(n√2) (right triangles).
 TEST_P(MeshMeasures, HeightsOfCells) {
   const int d = dimension(GetParam());
   BoxMesh box;
@@ -60,16 +63,34 @@ TEST_P(MeshMeasures, HeightsOfCells) {
   box.counts.assign(static_cast<std::size_t>(d), 4);
   box.distortion = 0.0;
   const Mesh mesh = make_box_mesh(box);
-  double expected = 0.25;
-  if (GetParam() == CellShape::triangle) expected /= std::sqrt(2.0);
+  // A tetrahedron is one of six of a cube, with a largest facet of √2/2 (an edge and a diagonal of a side).
+  const std::map<CellShape, double> closed_forms{
+      {CellShape::triangle, 0.25 / std::sqrt(2.0)},
+      {CellShape::quadrilateral, 0.25},
+      {CellShape::tetrahedron, 3.0 * (1.0 / 6.0) / (std::sqrt(2.0) / 2.0) * 0.25},
+      {CellShape::hexahedron, 0.25}};
   const std::vector<double> heights = cell_heights(mesh);
   ASSERT_EQ(static_cast<Index>(heights.size()), mesh.cell_count());
-  for (const double height : heights) {
-    if (GetParam() == CellShape::tetrahedron) {
-      // Six cells to a cube, each 1/6 of it, with a largest facet of √2/2 (an edge and a diagonal of a side).
-      EXPECT_NEAR(height, 3.0 * (1.0 / 6.0) / (std::sqrt(2.0) / 2.0) * 0.25, 1e-14);
-    } else {
-      EXPECT_NEAR(height, expected, 1e-14);
+  const CellBlock& block = mesh.cells.front();
+  for (Index cell = 0; cell < block.size(); ++cell) {
+    const auto at = [&](int vertex) {
+      Eigen::Vector3d result = Eigen::Vector3d::Zero();
+      result.head(d) = mesh.nodes.col(block.cell(cell)[vertex]);
+      return result;
+    };
+    double least = 1.0;
+    for (const std::vector<int>& facet : outward_facet_vertices(block.shape)) {
+      const Eigen::Vector3d across = d == 2 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d(at(facet[2]) - at(facet[0]));
+      const Eigen::Vector3d normal = (at(facet[1]) - at(facet[0])).cross(across).normalized();
+      double highest = 0.0;
+      for (int vertex = 0; vertex < vertex_count(block.shape); ++vertex)
+        highest = std::max(highest, std::abs(normal.dot(at(vertex) - at(facet[0]))));
+      least = std::min(least, highest);
+    }
+    const double height = heights[static_cast<std::size_t>(cell)];
+    EXPECT_NEAR(height, least, 1e-14);
+    if (closed_forms.contains(block.shape)) {
+      EXPECT_NEAR(height, closed_forms.at(block.shape), 1e-14);
     }
   }
 }

@@ -226,7 +226,8 @@ TEST(FlatPiecesOf, FacetsKeepTheirOrder) {
 /// Each order of files has every node once, and those of vertices go around quadrilaterals.
 TEST_P(ReferenceCell, FilesHaveEveryNodeOnce) {
   for (const int degree : {1, 2}) {
-    for (std::vector<int> order : {gmsh_nodes(shape_, degree), vtk_nodes(shape_, degree)}) {
+    for (std::vector<int> order :
+         {gmsh_nodes(shape_, degree), vtk_nodes(shape_, degree), meshio_nodes(shape_, degree)}) {
       std::sort(order.begin(), order.end());
       std::vector<int> every(static_cast<std::size_t>(node_count(shape_, degree)));
       std::iota(every.begin(), every.end(), 0);
@@ -273,6 +274,45 @@ TEST_P(ReferenceCell, FitsIntoArraysOfFixedSize) {
   if (d_ == 3) return;                 // facets
   EXPECT_LE(node_count(shape_, 2), PolynomialShape::most_nodes);
   EXPECT_LE(vertex_count(shape_), 4);  // boundary_facets.cpp
+}
+
+/// The height above a facet is the distance of the highest vertex, measured here with unit normals.
+TEST_P(ReferenceCell, HasAHeightAboveEachFacet) {
+  for (std::size_t f = 0; f < outward_facet_vertices(shape_).size(); ++f) {
+    const VertexSet& around = outward_facet_vertices(shape_)[f];
+    const Eigen::Vector3d first = reference_position(shape_, {around[0]}),
+                          last = reference_position(shape_, {around.back()}) - first;
+    Eigen::Vector3d normal = last.cross(Eigen::Vector3d::UnitZ());
+    double area = last.norm();
+    if (d_ == 3) {
+      normal = (reference_position(shape_, {around[1]}) - first).cross(last);
+      area = normal.norm() * (around.size() == 3 ? 0.5 : 1.0);  // facets of reference cells are parallelograms
+    }
+    double highest = 0.0;
+    for (const Eigen::Vector3d& vertex : describe(shape_).vertices)
+      highest = std::max(highest, std::abs(normal.normalized().dot(vertex - first)));
+    EXPECT_NEAR(facet_heights(shape_)[f] * whole() / area, highest, 1e-14) << f;
+    EXPECT_TRUE(!is_simplex(shape_) || facet_heights(shape_)[f] == d_) << f;
+  }
+}
+
+/// An incomplete description is refused by the name of what it lacks.
+TEST_P(ReferenceCell, IsCompletelyDescribed) {
+  EXPECT_EQ(missing_member(describe(shape_)), "");
+  const auto without = [&](auto&& remove) {
+    CellShapeDescription cell = describe(shape_);
+    remove(cell);
+    return missing_member(cell);
+  };
+  EXPECT_EQ(without([](auto& cell) { cell.edges.clear(); }), "edges");
+  EXPECT_EQ(without([](auto& cell) { cell.lagrange = nullptr; }), "lagrange");
+  EXPECT_EQ(without([](auto& cell) { cell.file_vertices.pop_back(); }), "file_vertices");
+  EXPECT_EQ(without([](auto& cell) { cell.vtk.edges.pop_back(); }), "vtk");
+  EXPECT_EQ(without([](auto& cell) { cell.file_types[1] = {}; }), "file_types");
+  if (d_ == 1) return;
+  EXPECT_EQ(without([](auto& cell) { cell.facets.clear(); }), "facets");
+  EXPECT_EQ(without([](auto& cell) { cell.abaqus_facets.pop_back(); }), "abaqus_facets");
+  EXPECT_EQ(without([](auto& cell) { cell.exodus_sides.clear(); }), "exodus_sides");
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, ReferenceCell, testing::ValuesIn(cell_shapes()),

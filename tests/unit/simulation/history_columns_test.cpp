@@ -21,10 +21,10 @@ using test_support::CaseRun;
 
 TEST(HistoryColumns, AreDocumentedAndUnique) {
   std::set<std::string> names;
-  for (const RowQuantity& quantity : history_quantities()) {
+  for (const auto& quantity : history_quantities()) {
     EXPECT_FALSE(quantity.unit.empty() || quantity.text.empty()) << quantity.name;
     EXPECT_TRUE(names.insert(quantity.name).second) << quantity.name;
-    const bool is_conditional = !quantity.where.empty();
+    const bool is_conditional = !std::string(quantity.condition.words).empty();
     const std::vector<std::string> standard = standard_column_names(2);
     if (quantity.components != ColumnComponents::one) continue;
     EXPECT_NE(std::count(standard.begin(), standard.end(), quantity.name) > 0, is_conditional) << quantity.name;
@@ -56,10 +56,10 @@ TEST(HistoryColumns, OfTheBalanceAddUpToItsResidual) {
 /// Counts the nodes of a boundary.
 class NodeCount final : public QuantitySensor<NodeCount> {
  public:
-  NodeCount(const ProbeSetting& setting, const ProbeTargets& targets)
+  NodeCount(const ProbeContext& setting, const ProbeTargets& targets)
       : QuantitySensor(setting.name + ".", setting.problem), count_(static_cast<double>(targets.nodes.size())) {}
   static const Quantities& quantities() {
-    static const Quantities all{{{"nodes", "1", "number of nodes"}, of(&NodeCount::count_)}};
+    static const Quantities all{{{"nodes", "1", "number of nodes"}, member_value(&NodeCount::count_)}};
     return all;
   }
   void evaluate(const Observation&) {}
@@ -73,10 +73,10 @@ Registration<ProbeKind> count_probe() {
           .type = {.quantities = NodeCount::descriptions(),
                    .of_boundary = true,
                    .find =
-                       [](const ProbeSetting& setting, ProbeTargets& targets) {
+                       [](const ProbeContext& setting, ProbeTargets& targets) {
                          targets.nodes = facet_nodes(*setting.body.space, setting.boundary("count"));
                        },
-                   .make = [](const ProbeSetting& setting, const ProbeTargets& targets) -> SensorList {
+                   .make = [](const ProbeContext& setting, const ProbeTargets& targets) -> SensorList {
                      return {std::make_shared<NodeCount>(setting, targets)};
                    }},
           .keys = {{.name = "count", .type = KeyType::groups, .doc = "A boundary."}},

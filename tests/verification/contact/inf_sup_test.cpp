@@ -36,11 +36,7 @@ struct Family {
     return degree == 1 ? std::vector<int>{2, 4, 8} : std::vector<int>{2, 4, 6};
   }
   [[nodiscard]] std::string label() const {
-    const std::map<CellShape, std::string> plural{{CellShape::triangle, "triangles"},
-                                                  {CellShape::quadrilateral, "quadrilaterals"},
-                                                  {CellShape::tetrahedron, "tetrahedra"},
-                                                  {CellShape::hexahedron, "hexahedra"}};
-    return plural.at(shape) + ", degree " + std::to_string(degree) + ", " + boundary;
+    return plural_name(shape) + ", degree " + std::to_string(degree) + ", " + boundary;
   }
 };
 

@@ -58,7 +58,7 @@ struct Variant : AssembledBody {
     for (const Index node : from.input.contact_nodes) contact_nodes.push_back(number[static_cast<std::size_t>(node)]);
     std::sort(contact_nodes.begin(), contact_nodes.end());
     assemble(std::move(contact_nodes));
-    return make_mass(type)->build(input);
+    return build_mass(type, input);
   }
 };
 
@@ -70,7 +70,7 @@ TEST(CellwiseEquivalentMass, NumbersOfNodesAndCellsDoNotMatter) {
   std::mt19937 random(7);
   for (const char* name : some_bodies) {
     const AssembledBody body(body_of_kind(name));
-    const SparseMatrix plain = make_mass(cellwise)->build(body.input);
+    const SparseMatrix plain = build_mass(cellwise, body.input);
     Variant other(body);
     other.shuffle(random);
     const SparseMatrix found = other.build(body, cellwise);
@@ -91,7 +91,7 @@ TEST(CellwiseEquivalentMass, NumbersOfNodesAndCellsDoNotMatter) {
 TEST(CellwiseEquivalentMass, UnitsThatArePowersOfTwoChangeNoBit) {
   for (const char* name : some_bodies) {
     const AssembledBody body(body_of_kind(name));
-    const SparseMatrix plain = make_mass(cellwise)->build(body.input);
+    const SparseMatrix plain = build_mass(cellwise, body.input);
     const Index d = body.space.nodes.rows();
     Variant other(body);
     other.move(std::ldexp(1.0, -30) * Matrix::Identity(d, d), Vector::Zero(d));
@@ -122,7 +122,7 @@ TEST(CellwiseEquivalentMass, OfFlatCellsIsThatOfRoundOnes) {
     for (const char* name : some_bodies) {
       const AssembledBody body(body_of_kind(name));
       const Index d = body.space.nodes.rows();
-      const SparseMatrix plain = make_mass(type)->build(body.input);
+      const SparseMatrix plain = build_mass(type, body.input);
       for (const double ratio : {1.0, 1e3, 1e4, 1e5, 1e6}) {
         const Matrix map = affine_map(d, ratio, random);
         Variant mapped(body);
@@ -193,7 +193,7 @@ struct Slit {
       if (grid.nodes(0, from) > 0.24 && grid.nodes(1, from) < 0.5) input.contact_nodes.push_back(to);
     }
     std::sort(input.contact_nodes.begin(), input.contact_nodes.end());
-    mass = make_mass(cellwise)->build(input);
+    mass = build_mass(cellwise, input);
   }
   [[nodiscard]] Index space_node(Index mesh_node) const {
     const std::vector<Index>& of_mesh = body->mesh.cells[0].nodes;
@@ -224,12 +224,12 @@ TEST(CellwiseEquivalentMass, OfDamping) {
     body.body.materials.push_back(second);
     for (std::size_t cell = 0; cell < body.body.cell_material.size(); ++cell)
       body.body.cell_material[cell] = cell % 3 == 0 ? 1 : 0;
-    const SparseMatrix mass = make_mass(cellwise)->build(body.input);
+    const SparseMatrix mass = build_mass(cellwise, body.input);
     for (const std::vector<double>& rates : {std::vector{0.7, 0.7}, std::vector{0.0, 0.3}, std::vector{0.0, 0.0}}) {
       const SparseMatrix damping = assemble_scalar_mass(body.body, node_graph(body.space), rates);
       const CellMasses cells(body.body, rates);
       const SparseMatrix found =
-          make_mass(cellwise)->build({&damping, &body.space.nodes, body.input.contact_nodes, &body.consistent, &cells});
+          build_mass(cellwise, {&damping, &body.space.nodes, body.input.contact_nodes, &body.consistent, &cells});
       const Matrix wanted = mass_moments(damping, body.space.nodes);
       EXPECT_LE((mass_moments(found, body.space.nodes) - wanted).cwiseAbs().maxCoeff(),
                 1e-12 * wanted.cwiseAbs().maxCoeff())
@@ -291,7 +291,7 @@ TEST(CellwiseEquivalentMass, FrequenciesAreAsNearToTheExactOnesAsWithTheConsiste
     description.size = size;
     const AssembledBody body(description);
     const double discretization = torsion(body, body.consistent) / low - 1.0;
-    const double found = torsion(body, make_mass(cellwise)->build(body.input)) / low - 1.0;
+    const double found = torsion(body, build_mass(cellwise, body.input)) / low - 1.0;
     std::printf(
         "ball, %td nodes: torsional frequency off by %+.2f %% with the consistent mass, %+.2f %% cell by cell\n",
         body.space.nodes.cols(), 100.0 * discretization, 100.0 * found);

@@ -67,12 +67,12 @@ TEST(FlatCells, TheEquivalentMassOfAMappedMeshIsThatOfTheMesh) {
                            "ball, h 0.4", "plate, 1 thick", "plate, 2 thick", "brick, hexahedra, around"}) {
     const AssembledBody body(body_of_kind(name));
     const Index d = body.space.nodes.rows();
-    const SparseMatrix plain = make_mass("equivalent-nodewise")->build(body.input);
+    const SparseMatrix plain = build_mass("equivalent-nodewise", body.input);
     for (const double ratio : {1.0, 5.0, 100.0, 1000.0}) {
       const Matrix map = affine_map(d, ratio, random);
       const Vector shift = 3.0 * ratio * Vector::Ones(d);
       const MappedBody mapped(body, map, shift);
-      const SparseMatrix found = make_mass("equivalent-nodewise")->build(mapped.input);
+      const SparseMatrix found = build_mass("equivalent-nodewise", mapped.input);
       const double largest = plain.coeffs().cwiseAbs().maxCoeff();
       const SparseMatrix change = found / std::abs(map.determinant()) - plain;
       const double difference = change.coeffs().cwiseAbs().maxCoeff();
@@ -102,7 +102,7 @@ TEST(FlatCells, LayersOfFlatCellsAreTaken) {
                   "Transfinite Curve{1,3}=13; Transfinite Curve{2,4}=%d; Transfinite Surface{1}; Recombine Surface{1};",
                   12.0 * layers.ratio, layers.count, layers.count + 1);
     const AssembledBody body({"layers", 1, 1.0, geometry});
-    const SparseMatrix mass = make_mass("equivalent-nodewise")->build(body.input);
+    const SparseMatrix mass = build_mass("equivalent-nodewise", body.input);
     const Matrix wanted = mass_moments(body.consistent, body.space.nodes), found = mass_moments(mass, body.space.nodes);
     for (Index a = 0; a < 3; ++a) {
       for (Index b = 0; b < 3; ++b)
@@ -140,7 +140,7 @@ TEST(FlatCells, WhatIsRefusedIsRefusedInEveryShape) {
         for (const char* type : {"equivalent", "equivalent-nodewise", "equivalent-lumped", "equivalent-nearest"}) {
           SCOPED_TRACE(testing::Message() << type << ' ' << ratio << ':' << 1 << ' ' << kind.expected);
           const std::string message =
-              expect_error({kind.expected, "refine the mesh"}, [&] { (void)make_mass(type)->build(mapped.input); });
+              expect_error({kind.expected, "refine the mesh"}, [&] { (void)build_mass(type, mapped.input); });
           if (kind.expected[0] != 'n') {
             EXPECT_TRUE(has(message, d == 2 ? "all on one line" : "all in one plane"));
           }

@@ -56,7 +56,7 @@ TEST(LumpedEquivalentMass, KeepsTheConditionsOnMeshesOfEveryKind) {
     const log::CollectWarnings collect(warnings);
     SparseMatrix mass;
     try {
-      mass = make_mass("equivalent-lumped")->build(body.input);
+      mass = build_mass("equivalent-lumped", body.input);
     } catch (const Error& problem) {
       EXPECT_TRUE(refused) << description.name << ": " << problem.what();
       EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
@@ -93,7 +93,7 @@ TEST(LumpedEquivalentMass, MovesLessMassOnFinerMeshes) {
     BodyDescription description = body_of_kind("disc, h 0.1");
     description.size = size;
     const AssembledBody body(description);
-    const SparseMatrix mass = make_mass("equivalent-lumped")->build(body.input);
+    const SparseMatrix mass = build_mass("equivalent-lumped", body.input);
     const Vector lumped = lumped_diagonal(body.consistent);
     // Nodes that share no cell with a contact node only have the correction, of order h².
     double correction = 0.0;
@@ -122,7 +122,7 @@ TEST(LumpedEquivalentMass, KeepsMassAndCentreWhereInertiaAcrossIsOutOfReach) {
   ASSERT_EQ(body.input.contact_nodes.size(), 2u);
   std::vector<std::string> warnings;
   const log::CollectWarnings collect(warnings);
-  const SparseMatrix mass = make_mass("equivalent-lumped")->build(body.input);
+  const SparseMatrix mass = build_mass("equivalent-lumped", body.input);
   expect_lumped(mass, body, "bar");
   const Matrix wanted = mass_moments(body.consistent, body.space.nodes);
   const Matrix found = mass_moments(mass, body.space.nodes);
@@ -136,7 +136,7 @@ TEST(LumpedEquivalentMass, TreatsEachBodyOnItsOwn) {
   const AssembledBody one({"two discs", 1, 0.2,
                            "Disk(1)={0,0,0,1}; Disk(2)={5,0,0,0.5}; Physical Surface(\"body\")={1,2}; "
                            "Physical Curve(\"contact\")={1};"});
-  const SparseMatrix mass = make_mass("equivalent-lumped")->build(one.input);
+  const SparseMatrix mass = build_mass("equivalent-lumped", one.input);
   const Vector lumped = lumped_diagonal(one.consistent);
   double left = 0.0;
   for (Index i = 0; i < lumped.size(); ++i) {
@@ -147,13 +147,13 @@ TEST(LumpedEquivalentMass, TreatsEachBodyOnItsOwn) {
 
 TEST(LumpedEquivalentMass, DampingKeepsTheRateOfEachNode) {
   const AssembledBody body(body_of_kind("disc, h 0.25, degree 2"));
-  const SparseMatrix mass = make_mass("equivalent-lumped")->build(body.input);
+  const SparseMatrix mass = build_mass("equivalent-lumped", body.input);
   // Damping in the right half only.
   Vector inside(body.space.nodes.cols());
   for (Index i = 0; i < inside.size(); ++i) inside[i] = body.space.nodes(0, i) > 0.0 ? std::sqrt(0.7) : 0.0;
   const SparseMatrix damping = inside.asDiagonal() * body.consistent * inside.asDiagonal();
   const SparseMatrix found =
-      make_mass("equivalent-lumped")->build({&damping, &body.space.nodes, body.input.contact_nodes, &body.consistent});
+      build_mass("equivalent-lumped", {&damping, &body.space.nodes, body.input.contact_nodes, &body.consistent});
   for (Index i = 0; i < inside.size(); ++i) {
     EXPECT_NEAR(found.coeff(i, i), inside[i] * inside[i] * mass.coeff(i, i), 1e-15 * mass.sum());
   }

@@ -7,21 +7,10 @@
 namespace ricochet {
 
 std::vector<Key> elastic_constant_keys() {
-  return {{.name = "lambda",
-           .type = KeyType::number,
-           .unit = "stress",
-           .doc = "First Lamé parameter; 3 lambda + 2 mu must be positive."},
-          {.name = "mu",
-           .type = KeyType::number,
-           .unit = "stress",
-           .range = positive,
-           .doc = "Second Lamé parameter, the shear modulus."},
-          {.name = "young", .type = KeyType::number, .unit = "stress", .range = positive, .doc = "Young's modulus."},
-          {.name = "poisson",
-           .type = KeyType::number,
-           .unit = "1",
-           .range = {.above = -1.0, .below = 0.5},
-           .doc = "Poisson's ratio."}};
+  return {number_key("lambda", "stress", {}, "First Lamé parameter; 3 lambda + 2 mu must be positive."),
+          number_key("mu", "stress", {.range = positive}, "Second Lamé parameter, the shear modulus."),
+          number_key("young", "stress", {.range = positive}, "Young's modulus."),
+          number_key("poisson", "1", {.range = {.above = -1.0, .below = 0.5}}, "Poisson's ratio.")};
 }
 
 namespace {

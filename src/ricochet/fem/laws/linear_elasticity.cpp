@@ -25,7 +25,7 @@ MaterialLawRegistration linear_elasticity_law() {
     const auto [lambda, mu] = elastic_constants(parameters);
     return make_linear_elasticity(lambda, mu);
   };
-  return {"linear", make, elastic_constant_keys(), elastic_constant_pairs(), check_elastic_constants};
+  return {"linear", {make}, elastic_constant_keys(), elastic_constant_pairs(), check_elastic_constants};
 }
 
 }  // namespace ricochet

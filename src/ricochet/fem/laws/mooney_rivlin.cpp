@@ -99,22 +99,10 @@ class MooneyRivlin final : public PackedLaw<MooneyRivlin> {
 };
 
 std::vector<Key> mooney_rivlin_keys() {
-  return {{.name = "c10",
-           .type = KeyType::number,
-           .unit = "stress",
-           .required = true,
-           .doc = "Coefficient of the first invariant; c10 + c01 > 0."},
-          {.name = "c01",
-           .type = KeyType::number,
-           .unit = "stress",
-           .required = true,
-           .doc = "Coefficient of the second invariant; the shear modulus at zero strain is 2 (c10 + c01)."},
-          {.name = "bulk_modulus",
-           .type = KeyType::number,
-           .unit = "stress",
-           .required = true,
-           .range = positive,
-           .doc = "Bulk modulus at zero strain."}};
+  return {number_key("c10", "stress", required(), "Coefficient of the first invariant; c10 + c01 > 0."),
+          number_key("c01", "stress", required(),
+                     "Coefficient of the second invariant; the shear modulus at zero strain is 2 (c10 + c01)."),
+          number_key("bulk_modulus", "stress", required(positive), "Bulk modulus at zero strain.")};
 }
 
 void check_mooney_rivlin(const ParameterCheck& check, Parameters& values) {
@@ -149,7 +137,7 @@ MaterialLawRegistration mooney_rivlin_law() {
     return std::make_unique<MooneyRivlin>(parameters.number("c10"), parameters.number("c01"),
                                           parameters.number("bulk_modulus"));
   };
-  return {"mooney-rivlin", make, mooney_rivlin_keys(), {}, check_mooney_rivlin};
+  return {"mooney-rivlin", {make, true}, mooney_rivlin_keys(), {}, check_mooney_rivlin};
 }
 
 }  // namespace ricochet

@@ -50,7 +50,7 @@ MaterialLawRegistration neo_hookean_law() {
   const auto make = [](const Parameters& parameters) {
     return std::make_unique<NeoHookean>(elastic_constants(parameters));
   };
-  return {"neo-hookean", make, elastic_constant_keys(), elastic_constant_pairs(), check_elastic_constants};
+  return {"neo-hookean", {make, true}, elastic_constant_keys(), elastic_constant_pairs(), check_elastic_constants};
 }
 
 }  // namespace ricochet

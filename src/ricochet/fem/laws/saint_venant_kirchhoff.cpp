@@ -19,7 +19,7 @@ MaterialLawRegistration saint_venant_kirchhoff_law() {
     const auto [lambda, mu] = elastic_constants(parameters);
     return std::make_unique<SaintVenantKirchhoff>(lambda, mu);
   };
-  return {"saint-venant-kirchhoff", make, elastic_constant_keys(), elastic_constant_pairs(), check_elastic_constants};
+  return {"saint-venant-kirchhoff", {make}, elastic_constant_keys(), elastic_constant_pairs(), check_elastic_constants};
 }
 
 }  // namespace ricochet

@@ -44,22 +44,22 @@ class CellType:
 DESCRIBED = read_types()
 NAMES_OF_CELLS = DESCRIBED["names"]
 TYPES = {name: CellType(**of) for name, of in DESCRIBED["types"].items()}
-# Dimension of types that are known but not supported.
-OTHERS = {"quad8": 2, "hexahedron20": 3, "hexahedron24": 3, "wedge": 3, "wedge12": 3, "wedge15": 3, "wedge18": 3,
-          "pyramid": 3, "pyramid13": 3, "pyramid14": 3, "polygon": 2, "polyhedron": 3}
 
 
 def dimension_of(kind):
     """Returns the dimension of a kind of cells; raises Refusal for an unknown kind."""
     if kind in TYPES:
         return TYPES[kind].dimension
-    if kind in OTHERS:
-        return OTHERS[kind]
     for prefix, dimension in (("vertex", 0), ("line", 1), ("triangle", 2), ("quad", 2), ("polygon", 2), ("tetra", 3),
                               ("hexahedron", 3), ("wedge", 3), ("pyramid", 3), ("polyhedron", 3)):
         if kind.lower().startswith(prefix) or kind.lower().startswith("vtk_lagrange_" + prefix):
             return dimension
     raise Refusal(f"cells of type {kind} are not supported")
+
+
+def choices(names):
+    """Returns "a, b or c"."""
+    return " or ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))
 
 
 class Block:

@@ -10,7 +10,7 @@ import stat
 
 import numpy
 
-from file_mesh import TYPES, Block, FileMesh, Refusal, dimension_of
+from file_mesh import TYPES, Block, FileMesh, Refusal, choices, dimension_of
 
 # Numbers of nodes of the kinds that Abaqus has, which are those without nodes on faces: some are refused by name later.
 SIZES = {"quad8": 8, "hexahedron20": 20, "wedge": 6, "wedge15": 15, "pyramid": 5, "pyramid13": 13,
@@ -41,8 +41,10 @@ def element_kind(name, fail):
         fail(f"elements of type {name} are not supported; write the section of an axisymmetric body with CPE3, CPE4 or "
              "CPE6, and set mesh.plane = \"axisymmetric\"")
     if re.match(r"(C|DC|AC)(3D|PS|PE)", name):
-        fail(f"elements of type {name} are not supported; use C3D4, C3D10 or C3D8, or in the plane CPS3, CPE3, "
-             "CPS6, CPE6, CPS4 or CPE4")
+        solids, planes = ([f"{prefix}{kind.nodes}" for kind in TYPES.values() for prefix in prefixes
+                           if kind.dimension == dimension and not kind.has_face_nodes]
+                          for dimension, prefixes in ((3, ["C3D"]), (2, ["CPS", "CPE"])))
+        fail(f"elements of type {name} are not supported; use {choices(solids)}, or in the plane {choices(planes)}")
     return None
 
 

@@ -6,7 +6,7 @@ Used by the converter and by the Python package.
 if __package__:
     from .file_mesh import NAMES_OF_CELLS, TYPES, Refusal, numpy
 else:
-    from file_mesh import NAMES_OF_CELLS, TYPES, Refusal, numpy
+    from file_mesh import NAMES_OF_CELLS, TYPES, Refusal, choices, numpy
 
 
 def unique_rows(rows):
@@ -189,10 +189,11 @@ def refuse_kinds(mesh, dimension):
     kinds = {block.kind for block in mesh.blocks if block.name in counts}
     advice = (f"cells must be {NAMES_OF_CELLS}; mesh the part with these, for example with tetrahedra (C3D4 or C3D10 in "
               "Abaqus)")
-    if kinds <= {"quad8", "hexahedron20"}:
-        advice = ("second-order quadrilaterals and hexahedra need nodes on their faces and inside, too (9 and 27 "
-                  "nodes); write the mesh with cells of the first order (C3D8, CPS4, CPE4 in Abaqus), or with "
-                  "second-order triangles and tetrahedra (C3D10, CPS6, CPE6)")
+    complete = [name for name, kind in TYPES.items() if kind.has_face_nodes]
+    if {kind.rstrip("0123456789") for kind in kinds} <= {name.rstrip("0123456789") for name in complete}:
+        advice = (f"second-order cells with quadrilateral faces need nodes on these and inside, too ({choices(complete)}); "
+                  "write the mesh with cells of the first order (C3D8, CPS4, CPE4 in Abaqus), or with second-order "
+                  "triangles and tetrahedra (C3D10, CPS6, CPE6)")
     raise Refusal(f"unsupported cells: {listed}; {advice}")
 
 

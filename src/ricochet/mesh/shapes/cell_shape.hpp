@@ -27,6 +27,6 @@ enum class CellShape { RICOCHET_CELL_SHAPES(RICOCHET_ENUMERATE_SHAPE) };
 /// Returns "triangles", "tetrahedra", …
 [[nodiscard]] std::string plural_name(CellShape shape);
 /// Returns the plural names of the shapes of dimension 2 and 3, for messages: "triangles, quadrilaterals, … or …".
-[[nodiscard]] std::string names_of_cells();
+[[nodiscard]] std::string names_of_cells(bool with_simplices = true);
 
 }  // namespace ricochet

@@ -31,6 +31,8 @@ struct FileCellType {
   std::string xdmf;         ///< TopologyType
   int xdmf_number = 0;      ///< in Mixed topologies
   std::string meshio_name;  ///< meshio's name, which the Python package uses, too
+  /// Vertices in VTK's order; empty if that is `file_vertices`. (It is not for VTK_WEDGE, but for its quadratic forms.)
+  VertexSet vtk_vertices = {};
 };
 
 /// Edges, and faces, at whose middles nodes lie, in the order of a file and by its numbers of vertices. The node in the
@@ -67,10 +69,12 @@ struct CellShapeDescription {
   VertexSets simplices;
   /// @}
 
-  /// @name Files. All formats number vertices alike: around quadrilaterals, in place of row by row.
+  /// @name Files
   /// @{
-  VertexSet file_vertices;  ///< the vertices in the order of files
-  /// Order of the nodes of degree 2 behind the vertices. That of VTK is the order of meshio, Abaqus and CalculiX, too.
+  /// Vertices in the order of Gmsh, meshio, Abaqus, CalculiX and Exodus: around quadrilaterals, in place of row by row.
+  VertexSet file_vertices;
+  /// Order of the nodes of degree 2 behind the vertices, by the numbers of `file_vertices`. That of VTK is the order of
+  /// meshio, Abaqus and CalculiX, too.
   FileNodes gmsh, vtk;
   std::array<FileCellType, 2> file_types;  ///< of degree 1 and 2
   /// Facets in the order of Abaqus (S1, S2, …) by the file's vertices; their order becomes that of the facet's nodes.
@@ -79,6 +83,9 @@ struct CellShapeDescription {
   /// @}
 };
 
+/// Returns the name of the first member that is missing or of another length than the others require; "" if none.
+[[nodiscard]] std::string missing_member(const CellShapeDescription& cell);
+/// Throws std::logic_error if the description of a shape is incomplete.
 [[nodiscard]] const CellShapeDescription& describe(CellShape shape);
 [[nodiscard]] inline const FileCellType& file_type(CellShape shape, int degree) {
   return describe(shape).file_types[degree == 1 ? 0 : 1];

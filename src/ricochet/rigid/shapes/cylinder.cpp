@@ -62,23 +62,11 @@ class Cylinder final : public ObstacleShape {
 };
 
 std::vector<Key> cylinder_keys() {
-  return {{.name = "centre",
-           .type = KeyType::vector,
-           .unit = "length",
-           .required = true,
-           .doc = "A point on the cylinder's axis."},
-          {.name = "axis",
-           .type = KeyType::vector,
-           .unit = "1",
-           .required = true,
-           .doc = "Direction of the axis, of any length but zero. The cylinder has no ends; in two dimensions use a "
-                  "sphere, which is a circle there."},
-          {.name = "radius",
-           .type = KeyType::number,
-           .unit = "length",
-           .required = true,
-           .range = positive,
-           .doc = "Radius of the cylinder."},
+  return {vector_key("centre", "length", required(), "A point on the cylinder's axis."),
+          vector_key("axis", "1", required(),
+                     "Direction of the axis, of any length but zero. The cylinder has no ends; in two dimensions use a "
+                     "sphere, which is a circle there."),
+          number_key("radius", "length", required(positive), "Radius of the cylinder."),
           obstacle_side_key("Side of the bodies: \"outside\" a shaft, or \"inside\" a bore.")};
 }
 

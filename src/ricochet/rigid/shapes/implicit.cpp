@@ -158,12 +158,11 @@ class Implicit final : public ObstacleShape {
 };
 
 std::vector<Key> implicit_keys() {
-  return {{.name = "expression",
-           .type = KeyType::text,
-           .required = true,
-           .doc = "An expression in x, y and z that is zero on the surface, positive outside the obstacle and negative "
-                  "inside, with a nonzero slope where it is zero: \"sqrt(x^2 + y^2) - 0.5 - 0.1*z\"."},
-          obstacle_side_key("Side of the bodies: \"outside\", where the expression is positive, or \"inside\".")};
+  return {
+      typed_key("expression", KeyType::text, "", required(),
+                "An expression in x, y and z that is zero on the surface, positive outside the obstacle and negative "
+                "inside, with a nonzero slope where it is zero: \"sqrt(x^2 + y^2) - 0.5 - 0.1*z\"."),
+      obstacle_side_key("Side of the bodies: \"outside\", where the expression is positive, or \"inside\".")};
 }
 
 void check_implicit(const ParameterCheck& check, const Parameters& values) {

@@ -48,13 +48,9 @@ class Plane final : public ObstacleShape {
 };
 
 std::vector<Key> plane_keys() {
-  return {
-      {.name = "point", .type = KeyType::vector, .unit = "length", .required = true, .doc = "A point on the plane."},
-      {.name = "normal",
-       .type = KeyType::vector,
-       .unit = "1",
-       .required = true,
-       .doc = "Normal of the plane, pointing out of the obstacle; of any length but zero."}};
+  return {vector_key("point", "length", required(), "A point on the plane."),
+          vector_key("normal", "1", required(),
+                     "Normal of the plane, pointing out of the obstacle; of any length but zero.")};
 }
 
 void check_plane(const ParameterCheck& check, const Parameters& values) {

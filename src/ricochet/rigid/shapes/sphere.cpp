@@ -105,17 +105,8 @@ class Sphere final : public ObstacleShape {
 };
 
 std::vector<Key> sphere_keys() {
-  return {{.name = "centre",
-           .type = KeyType::vector,
-           .unit = "length",
-           .required = true,
-           .doc = "Centre of the sphere; in two dimensions of the circle."},
-          {.name = "radius",
-           .type = KeyType::number,
-           .unit = "length",
-           .required = true,
-           .range = positive,
-           .doc = "Radius of the sphere."},
+  return {vector_key("centre", "length", required(), "Centre of the sphere; in two dimensions of the circle."),
+          number_key("radius", "length", required(positive), "Radius of the sphere."),
           obstacle_side_key("Side of the bodies: \"outside\" a ball, or \"inside\" a hollow (a bowl).")};
 }
 

@@ -208,26 +208,19 @@ ObstacleSurface Surface::surface(const Vector& centre, double radius) const {
 
 std::vector<Key> surface_keys() {
   return {
-      {.name = "file",
-       .type = KeyType::text,
-       .required = true,
-       .doc = "The surface: an STL file, binary or ASCII, whose triangles are counterclockwise seen from outside; in "
-              "two dimensions a text file with x and y of a corner of a polygon in each line, the obstacle to the "
-              "right of the polygon's sides, and an empty line between polygons. The obstacle is the enclosed region; "
-              "if the surface has a border, the obstacle is everything that faces it from behind."},
-      {.name = "scale",
-       .type = KeyType::number,
-       .unit = "1",
-       .default_value = "1",
-       .range = positive,
-       .doc = "Factor for all coordinates of the file: 1e-3 for millimetres in a case in metres."},
-      {.name = "edge_radius",
-       .type = KeyType::number,
-       .unit = "length",
-       .range = nonnegative,
-       .doc = "Gaps and normals are means over the facets within this distance, which rounds edges; 0: edges are "
-              "sharp, and normals jump there. Absent: a quarter of the largest distance between nodes of the contacts "
-              "with it, but at most the width of its facets if the surface bends by at most 30 degrees at every edge."},
+      typed_key(
+          "file", KeyType::text, "", required(),
+          "The surface: an STL file, binary or ASCII, whose triangles are counterclockwise seen from outside; in "
+          "two dimensions a text file with x and y of a corner of a polygon in each line, the obstacle to the "
+          "right of the polygon's sides, and an empty line between polygons. The obstacle is the enclosed region; "
+          "if the surface has a border, the obstacle is everything that faces it from behind."),
+      number_key("scale", "1", {.default_value = "1", .range = positive},
+                 "Factor for all coordinates of the file: 1e-3 for millimetres in a case in metres."),
+      number_key(
+          "edge_radius", "length", {.range = nonnegative},
+          "Gaps and normals are means over the facets within this distance, which rounds edges; 0: edges are "
+          "sharp, and normals jump there. Absent: a quarter of the largest distance between nodes of the contacts "
+          "with it, but at most the width of its facets if the surface bends by at most 30 degrees at every edge."),
       obstacle_side_key("Side of the bodies: \"outside\" the region that the surface encloses, or \"inside\" it; the "
                         "surface must then be closed.")};
 }

@@ -75,24 +75,10 @@ class Torus final : public ObstacleShape {
 
 std::vector<Key> torus_keys() {
   return {
-      {.name = "centre", .type = KeyType::vector, .unit = "length", .required = true, .doc = "Centre of the torus."},
-      {.name = "axis",
-       .type = KeyType::vector,
-       .unit = "1",
-       .required = true,
-       .doc = "Direction of the axis of rotational symmetry, of any length but zero."},
-      {.name = "ring_radius",
-       .type = KeyType::number,
-       .unit = "length",
-       .required = true,
-       .range = positive,
-       .doc = "Distance of the centre line of the tube from the axis."},
-      {.name = "tube_radius",
-       .type = KeyType::number,
-       .unit = "length",
-       .required = true,
-       .range = positive,
-       .doc = "Radius of the tube, less than `ring_radius`."},
+      vector_key("centre", "length", required(), "Centre of the torus."),
+      vector_key("axis", "1", required(), "Direction of the axis of rotational symmetry, of any length but zero."),
+      number_key("ring_radius", "length", required(positive), "Distance of the centre line of the tube from the axis."),
+      number_key("tube_radius", "length", required(positive), "Radius of the tube, less than `ring_radius`."),
       obstacle_side_key("Side of the bodies: \"outside\" a ring, or \"inside\" a pipe.")};
 }
 

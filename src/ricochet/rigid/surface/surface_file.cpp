@@ -5,9 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <optional>
-#include <sstream>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/input_file.hpp"
@@ -19,19 +17,6 @@ namespace ricochet {
 namespace {
 
 constexpr int header_of_stl = 80;  ///< bytes of the binary format without a meaning
-
-std::string contents(const std::string& file, int header = 0) {
-  const std::string why_not = unreadable_reason(file, header);
-  std::ifstream stream;
-  if (why_not.empty()) stream.open(file, std::ios::binary);
-  if (!why_not.empty() || !stream.is_open())
-    throw Error(ErrorKind::file_access,
-                fmt::format("cannot read the surface \"{}\": {}", file, why_not.empty() ? "no such file" : why_not));
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (stream.bad()) throw Error(ErrorKind::file_access, fmt::format("cannot read the surface \"{}\" to its end", file));
-  return std::move(text).str();
-}
 
 [[noreturn]] void refuse(const std::string& where, const std::string& problem) {
   throw Error(ErrorKind::invalid_input, where + ": " + problem);
@@ -119,7 +104,7 @@ SurfaceFacets read_binary(const std::string& file, const std::string& bytes, dou
 
 /// Binary files may begin with "solid", too: their size distinguishes them.
 SurfaceFacets read_stl(const std::string& file, double scale) {
-  const std::string bytes = contents(file, header_of_stl);
+  const std::string bytes = read_input(file, "surface", header_of_stl);
   const bool is_binary = bytes.size() == binary_header + binary_triangle * std::size_t{count_of_binary(bytes)};
   const bool begins_as_text = same(std::string_view(bytes).substr(0, 5), "solid");
   SurfaceFacets result = is_binary || !begins_as_text ? read_binary(file, bytes, scale) : read_text(file, bytes, scale);
@@ -128,7 +113,7 @@ SurfaceFacets read_stl(const std::string& file, double scale) {
 }
 
 SurfaceFacets read_polygons(const std::string& file, double scale) {
-  const std::string text = contents(file);
+  const std::string text = read_input(file, "surface");
   SurfaceFacets result;
   result.in_space = false;
   std::optional<Eigen::Vector3d> before;

@@ -85,14 +85,10 @@ bool AlphaScheme::momentum_acceleration(const State& state, Vector& acceleration
 }
 
 Key spectral_radius_key(double least) {
-  return {.name = "spectral_radius",
-          .type = KeyType::number,
-          .unit = "1",
-          .default_value = "0.8",
-          .range = {.at_least = least, .at_most = 1.0},
-          .doc =
-              "Fraction that one step leaves of vibrations much faster than the step: 1 damps none; at least 1/2 for "
-              "hht-alpha, 0 for the others."};
+  return number_key(
+      "spectral_radius", "1", {.default_value = "0.8", .range = {.at_least = least, .at_most = 1.0}},
+      "Fraction that one step leaves of vibrations much faster than the step: 1 damps none; at least 1/2 for "
+      "hht-alpha, 0 for the others.");
 }
 
 }  // namespace ricochet

@@ -53,12 +53,9 @@ SchemeRegistration paoli_schatzman_scheme() {
   return {"paoli-schatzman",
           make,
           {restitution_key(),
-           {.name = "stiffness",
-            .type = KeyType::choice,
-            .default_value = "implicit",
-            .choices = {"implicit", "explicit"},
-            .doc = "Elastic forces at a mean of three instants (\"implicit\"), or at the middle one (\"explicit\"), "
-                   "which requires mass \"lumped\" and a short step."}}};
+           choice_key("stiffness", {"implicit", "explicit"}, {.default_value = "implicit"},
+                      "Elastic forces at a mean of three instants (\"implicit\"), or at the middle one (\"explicit\"), "
+                      "which requires mass \"lumped\" and a short step.")}};
 }
 
 }  // namespace ricochet

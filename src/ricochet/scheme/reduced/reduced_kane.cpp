@@ -65,16 +65,14 @@ SchemeRegistration reduced_kane_scheme() {
   const auto make = [](double step, const Parameters& parameters) {
     return std::make_unique<ReducedKane>(step, parameters.text("reaction_weight"));
   };
-  return {"reduced-kane",
-          make,
-          {{.name = "reaction_weight",
-            .type = KeyType::choice,
-            .default_value = "automatic",
-            .choices = {"automatic", "adaptive", "end"},
-            .doc = "Reactions that act over a step. \"adaptive\", for impacts: a mean over the step, as close to the "
-                   "exact mean as smooth reactions allow (on planes, without stiffness damping at contact nodes; "
-                   "otherwise as \"end\"). \"end\", for sliding: the reactions at the end of the step, which lose more "
-                   "energy. \"automatic\": \"end\" with friction, otherwise \"adaptive\"."}}};
+  return {
+      "reduced-kane",
+      make,
+      {choice_key("reaction_weight", {"automatic", "adaptive", "end"}, {.default_value = "automatic"},
+                  "Reactions that act over a step. \"adaptive\", for impacts: a mean over the step, as close to the "
+                  "exact mean as smooth reactions allow (on planes, without stiffness damping at contact nodes; "
+                  "otherwise as \"end\"). \"end\", for sliding: the reactions at the end of the step, which lose more "
+                  "energy. \"automatic\": \"end\" with friction, otherwise \"adaptive\".")}};
 }
 
 }  // namespace ricochet

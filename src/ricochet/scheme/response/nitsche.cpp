@@ -112,12 +112,8 @@ SchemeRegistration nitsche_scheme() {
   return {
       "nitsche",
       make,
-      {{.name = "penalty",
-        .type = KeyType::number,
-        .unit = "1",
-        .default_value = "4",
-        .range = {.above = 1.0, .at_most = 1e6},
-        .doc = "Stiffness of the contact, in units of the smallest one for which the energy has a definite sign."}}};
+      {number_key("penalty", "1", {.default_value = "4", .range = {.above = 1.0, .at_most = 1e6}},
+                  "Stiffness of the contact, in units of the smallest one for which the energy has a definite sign.")}};
 }
 
 }  // namespace ricochet

@@ -78,12 +78,8 @@ SchemeRegistration penalty_midpoint_scheme() {
   };
   return {"penalty-midpoint",
           make,
-          {{.name = "penalty",
-            .type = KeyType::number,
-            .unit = "1",
-            .default_value = "10",
-            .range = {.above = 0.0, .at_most = 1e6},
-            .doc = "Stiffness of the contact, in units of the body's own stiffness at a contact point."}}};
+          {number_key("penalty", "1", {.default_value = "10", .range = {.above = 0.0, .at_most = 1e6}},
+                      "Stiffness of the contact, in units of the body's own stiffness at a contact point.")}};
 }
 
 }  // namespace ricochet

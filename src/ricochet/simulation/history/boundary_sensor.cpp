@@ -51,13 +51,13 @@ class BoundarySensor final : public QuantitySensor<BoundarySensor> {
     static const Quantities all{
         {{"force", "force", "total force that supports and contacts, also those of other bodies, exert on its nodes",
           ColumnComponents::vector},
-         of(&Self::force_)},
+         member_value(&Self::force_)},
         {{"moment", "force·length", "moment of these forces; 0 for axisymmetric bodies", ColumnComponents::axial},
-         of(&Self::moment_)},
+         member_value(&Self::moment_)},
         {{"support", "force", "[force of the supports alone](#supports-and-contacts)", ColumnComponents::vector},
-         of(&Self::support_force_)},
+         member_value(&Self::support_force_)},
         {{"support_moment", "force·length", "moment of the supports alone", ColumnComponents::axial},
-         of(&Self::support_moment_)},
+         member_value(&Self::support_moment_)},
     };
     return all;
   }
@@ -160,7 +160,7 @@ std::string describe_boundary_forces(const SemidiscreteProblem& problem, const s
       counted(shared, "node"));
 }
 
-void find_boundary(const ProbeSetting& probe, ProbeTargets& targets) {
+void find_boundary(const ProbeContext& probe, ProbeTargets& targets) {
   targets.nodes = facet_nodes(*probe.body.space, probe.boundary("boundary"));
   const TiedNodes* const tied = probe.body.tied;
   if (tied != nullptr &&
@@ -170,11 +170,11 @@ void find_boundary(const ProbeSetting& probe, ProbeTargets& targets) {
                     "they are internal to one body",
                     probe.name, probe.values.text("boundary")));
   }
-  targets.sums = describe_boundary_forces(probe.problem, targets.nodes);
-  log::info(fmt::format("probe \"{}\": {}", probe.name, targets.sums));
+  targets.summed_forces = describe_boundary_forces(probe.problem, targets.nodes);
+  log::info(fmt::format("probe \"{}\": {}", probe.name, targets.summed_forces));
 }
 
-SensorList make_boundary_probe(const ProbeSetting& probe, const ProbeTargets& targets) {
+SensorList make_boundary_probe(const ProbeContext& probe, const ProbeTargets& targets) {
   return {make_boundary_sensor(probe.name, probe.problem, targets.nodes, probe.vector("about"))};
 }
 
@@ -188,17 +188,15 @@ Registration<ProbeKind> boundary_probe() {
                .find = find_boundary,
                .make = make_boundary_probe},
       .keys =
-          {{.name = "boundary",
-            .type = KeyType::groups,
-            .doc = "Group of boundary facets, or a list of groups. Columns: force and moment on the body at its nodes, "
-                   "from supports and contacts together (prescribed loads are not included), NAME.force_x …, "
-                   "NAME.moment_z, in 3D NAME.moment_x …; and from the supports alone, NAME.support_x …, "
-                   "NAME.support_moment_z, in 3D NAME.support_moment_x …"},
-           {.name = "about",
-            .type = KeyType::vector,
-            .unit = "length",
-            .doc =
-                "Reference point of the moment on a boundary, in the reference configuration. Default: the origin."}},
+          {typed_key(
+               "boundary", KeyType::groups, "", {},
+               "Group of boundary facets, or a list of groups. Columns: force and moment on the body at its nodes, "
+               "from supports and contacts together (prescribed loads are not included), NAME.force_x …, "
+               "NAME.moment_z, in 3D NAME.moment_x …; and from the supports alone, NAME.support_x …, "
+               "NAME.support_moment_z, in 3D NAME.support_moment_x …"),
+           vector_key(
+               "about", "length", {},
+               "Reference point of the moment on a boundary, in the reference configuration. Default: the origin.")},
       .alternatives = {{"boundary"}}};
 }
 

@@ -8,7 +8,8 @@ void add_columns(const RowQuantity& quantity, const std::string& prefix, int dim
     RowQuantity own = quantity;
     own.components = ColumnComponents::vector;
     for (const std::string& body : bodies) {
-      own.name = quantity.name.substr(0, quantity.name.find("BODY")) + body;
+      own.name = quantity.name;
+      own.name.replace(own.name.find("BODY"), 4, body);
       add_columns(own, prefix, dimension, columns);
     }
     return;
@@ -17,7 +18,7 @@ void add_columns(const RowQuantity& quantity, const std::string& prefix, int dim
   for (Index k = range.first; k < range.second; ++k) {
     std::string name = prefix + quantity.name;
     if (quantity.components != ColumnComponents::one) name += std::string("_") + "xyz"[k];
-    columns.push_back({std::move(name), quantity.by});
+    columns.push_back({std::move(name), quantity.reduction});
   }
 }
 
@@ -29,7 +30,7 @@ std::vector<std::string> names_of(const Columns& columns) {
 
 std::vector<Reduction> reductions_of(const Columns& columns) {
   std::vector<Reduction> result;
-  for (const Column& column : columns) result.push_back(column.by);
+  for (const Column& column : columns) result.push_back(column.reduction);
   return result;
 }
 

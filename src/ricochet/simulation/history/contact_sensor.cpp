@@ -50,8 +50,9 @@ class PairForceSensor final : public QuantitySensor<PairForceSensor> {
   static const Quantities& quantities() {
     static const Quantities all{
         {{"", "force", "[force of contact N](#forces-between-bodies) on the body of its `group`",
-          ColumnComponents::vector, Reduction::sum, "contacts between bodies"},
-         of(&PairForceSensor::force_)}};
+          ColumnComponents::vector},
+         member_value(&PairForceSensor::force_),
+         {"contacts between bodies"}}};
     return all;
   }
 
@@ -80,20 +81,19 @@ class ContactSensor final : public QuantitySensor<ContactSensor> {
           "contact force on the body. Between bodies it is that on the body of `group`; of many pairs it is the sum of "
           "the forces on the first body of each pair",
           ColumnComponents::vector},
-         of(&Self::force_)},
+         member_value(&Self::force_)},
         {{"centre", "length",
           "centre of pressure, 0 where the contact is open; between bodies it lies on the side that carries the "
           "multipliers",
           ColumnComponents::vector, Reduction::same},
-         of(&Self::centre_)},
+         member_value(&Self::centre_)},
         {{"area", "area",
           "[area in contact](#area-in-contact), in 2D a length; with laws of finite strain that of the deformed "
           "surface"},
          [](const Self& self, Index) { return self.area_.now; }},
-        {{"nominal_area", "area", "area in contact of the undeformed surface", ColumnComponents::one, Reduction::sum,
-          "with laws of finite strain"},
+        {{"nominal_area", "area", "area in contact of the undeformed surface"},
          [](const Self& self, Index) { return self.area_.nominal; },
-         [](const Self& self) { return self.problem_.contact.surface->deforms(); }},
+         {"with laws of finite strain", [](const Self& self) { return self.problem_.contact.surface->deforms(); }}},
     };
     return all;
   }
@@ -141,7 +141,7 @@ class ContactSensor final : public QuantitySensor<ContactSensor> {
 };
 
 /// Returns the numbers of the pairs of the [[contact]] of a probe.
-std::vector<std::size_t> pairs_of(const ProbeSetting& probe) {
+std::vector<std::size_t> pairs_of(const ProbeContext& probe) {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < probe.entry_of_pair.size(); ++i) {
     if (static_cast<double>(probe.entry_of_pair[i]) == probe.values.number("contact")) result.push_back(i);
@@ -149,7 +149,7 @@ std::vector<std::size_t> pairs_of(const ProbeSetting& probe) {
   return result;
 }
 
-std::string describe_contact_forces(const ProbeSetting& probe, std::size_t entry) {
+std::string describe_contact_forces(const ProbeContext& probe, std::size_t entry) {
   const std::vector<std::size_t> pairs = pairs_of(probe);
   if (pairs.size() != 1)
     return fmt::format(
@@ -165,7 +165,7 @@ std::string describe_contact_forces(const ProbeSetting& probe, std::size_t entry
       entry, on, pair.group);
 }
 
-void check_contact(const ProbeSetting& probe, ProbeTargets& targets) {
+void check_contact(const ProbeContext& probe, ProbeTargets& targets) {
   const auto entry = static_cast<std::size_t>(probe.values.number("contact"));
   const std::size_t count = probe.entry_is_tied.size();
   if (entry >= count) {
@@ -178,10 +178,10 @@ void check_contact(const ProbeSetting& probe, ProbeTargets& targets) {
                              "with \"group\" for stresses near the surface",
                              entry));
   }
-  targets.sums = describe_contact_forces(probe, entry);
+  targets.summed_forces = describe_contact_forces(probe, entry);
 }
 
-SensorList make_contact_probe(const ProbeSetting& probe, const ProbeTargets&) {
+SensorList make_contact_probe(const ProbeContext& probe, const ProbeTargets&) {
   std::vector<SensedPair> sensed;
   for (const std::size_t i : pairs_of(probe)) sensed.push_back({static_cast<int>(i), probe.pairs[i].exchanged});
   return {make_contact_sensor(probe.name, probe.problem, sensed)};
@@ -190,18 +190,14 @@ SensorList make_contact_probe(const ProbeSetting& probe, const ProbeTargets&) {
 }  // namespace
 
 Registration<ProbeKind> contact_probe() {
-  return {
-      .name = "contact",
-      .type = {.quantities = ContactSensor::descriptions(), .find = check_contact, .make = make_contact_probe},
-      .keys =
-          {{.name = "contact",
-            .type = KeyType::integer,
-            .unit = "1",
-            .range = nonnegative,
-            .doc = "Number of an entry of [[contact]], counted from 0. Columns: its force on the body NAME.force_x … "
-                   "(between bodies, on the body of its \"group\"), its centre of pressure NAME.centre_x … (0 while it "
-                   "is open) and its area in contact NAME.area (a length in 2D)."}},
-      .alternatives = {{"contact"}}};
+  return {.name = "contact",
+          .type = {.quantities = ContactSensor::descriptions(), .find = check_contact, .make = make_contact_probe},
+          .keys = {typed_key(
+              "contact", KeyType::integer, "1", {.range = nonnegative},
+              "Number of an entry of [[contact]], counted from 0. Columns: its force on the body NAME.force_x … "
+              "(between bodies, on the body of its \"group\"), its centre of pressure NAME.centre_x … (0 while it "
+              "is open) and its area in contact NAME.area (a length in 2D).")},
+          .alternatives = {{"contact"}}};
 }
 
 std::vector<RowQuantity> pair_force_quantities() {

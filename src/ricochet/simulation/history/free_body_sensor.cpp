@@ -18,16 +18,17 @@ class FreeBodySensor final : public QuantitySensor<FreeBodySensor> {
     using Self = FreeBodySensor;
     static const Quantities all{
         {{"displacement", "length", "displacement of its centre of mass", ColumnComponents::vector, Reduction::same},
-         of(&Self::displacement_)},
+         member_value(&Self::displacement_)},
         {{"velocity", "length/time", "velocity of its centre of mass", ColumnComponents::vector, Reduction::same},
-         of(&Self::velocity_)},
+         member_value(&Self::velocity_)},
         {{"rotation", "angle",
           "rotation: in 2D the angle, whole turns included, in 3D the rotation vector, of length π at most",
           ColumnComponents::axial, Reduction::same},
-         of(&Self::rotation_)},
-        {{"spin", "angle/time", "angular velocity", ColumnComponents::axial, Reduction::same}, of(&Self::spin_)},
+         member_value(&Self::rotation_)},
+        {{"spin", "angle/time", "angular velocity", ColumnComponents::axial, Reduction::same},
+         member_value(&Self::spin_)},
         {{"contact_force", "force", "resultant of the contact forces on it", ColumnComponents::vector, Reduction::same},
-         of(&Self::force_)},
+         member_value(&Self::force_)},
     };
     return all;
   }

@@ -94,9 +94,8 @@ class GroupSensor final : public QuantitySensor<GroupSensor> {
                      result);
       add_statistics({"velocity", "length/time", "velocity", ColumnComponents::vector}, &GroupSensor::velocity_,
                      result);
-      add_statistics(
-          {"von_mises", "stress", "von Mises stress", ColumnComponents::one, Reduction::sum, "groups of cells"},
-          &GroupSensor::von_mises_, result);
+      add_statistics({"von_mises", "stress", "von Mises stress"}, &GroupSensor::von_mises_, result,
+                     {"groups of cells", [](const GroupSensor& self) { return self.is_of_cells_; }});
       return result;
     }();
     return all;
@@ -109,14 +108,15 @@ class GroupSensor final : public QuantitySensor<GroupSensor> {
   }
 
  private:
-  static void add_statistics(const RowQuantity& of, Statistics GroupSensor::*statistics, Quantities& result) {
-    const auto add = [&](const char* name, const char* text, Reduction by, SpaceVector Statistics::*values) {
+  static void add_statistics(const RowQuantity& of, Statistics GroupSensor::*statistics, Quantities& result,
+                             Condition<GroupSensor> condition = {}) {
+    const auto add = [&](const char* name, const char* text, Reduction reduction, SpaceVector Statistics::*values) {
       auto& added = result.emplace_back(ValuedQuantity<GroupSensor>{
-          of, [statistics, values](const GroupSensor& self, Index k) { return (self.*statistics.*values)[k]; }});
+          of, [statistics, values](const GroupSensor& self, Index k) { return (self.*statistics.*values)[k]; },
+          condition});
       added.name += name;
-      added.by = by;
+      added.reduction = reduction;
       added.text = text + of.text + " in the group";
-      if (!of.where.empty()) added.exists = [](const GroupSensor& self) { return self.is_of_cells_; };
     };
     add("_average", "mean, over volume or area, of the ", Reduction::sum, &Statistics::average);
     add("_minimum", "least value of the ", Reduction::minimum, &Statistics::least);
@@ -160,7 +160,7 @@ std::vector<WeightedNode> nodes_of_facets(const Body& body, const std::vector<In
                         });
 }
 
-SensorList make_group_probe(const ProbeSetting& probe, const ProbeTargets&) {
+SensorList make_group_probe(const ProbeContext& probe, const ProbeTargets&) {
   const Mesh& mesh = *probe.body.mesh;
   const std::string& name = probe.values.text("group");
   const bool is_of_facets =
@@ -173,16 +173,14 @@ SensorList make_group_probe(const ProbeSetting& probe, const ProbeTargets&) {
 }  // namespace
 
 Registration<ProbeKind> group_probe() {
-  return {
-      .name = "group",
-      .type = {.quantities = GroupSensor::descriptions(), .find = nullptr, .make = make_group_probe},
-      .keys = {{.name = "group",
-                .type = KeyType::groups,
-                .doc =
-                    "Group of cells or of boundary facets, or a list of groups. Columns NAME.displacement_average_x …, "
-                    "_minimum_, _maximum_, the same for the velocity, and for cells von_mises_average, _minimum, "
-                    "_maximum. Averages are over volume or area."}},
-      .alternatives = {{"group"}}};
+  return {.name = "group",
+          .type = {.quantities = GroupSensor::descriptions(), .find = nullptr, .make = make_group_probe},
+          .keys = {typed_key(
+              "group", KeyType::groups, "", {},
+              "Group of cells or of boundary facets, or a list of groups. Columns NAME.displacement_average_x …, "
+              "_minimum_, _maximum_, the same for the velocity, and for cells von_mises_average, _minimum, "
+              "_maximum. Averages are over volume or area.")},
+          .alternatives = {{"group"}}};
 }
 
 std::unique_ptr<Sensor> make_cell_group_sensor(const std::string& name, const Body& body,

@@ -110,7 +110,7 @@ void HistoryRecorder::weigh_positions() {
 }
 
 const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccount& account) {
-  now_.enter(state, account);
+  now_.set_state(state, account);
   find_contact_force();
   find_momenta(account.velocity(state));
   const Observation observation = observer_.observe(state);

@@ -4,37 +4,28 @@ namespace ricochet {
 
 namespace {
 
-bool has_finite_strain(const HistoryRow& row) {
-  return !row.problem->internal_force->is_linear();
-}
-bool has_viscoelastic_branches(const HistoryRow& row) {
-  return row.problem->internal_force->viscous() != nullptr;
-}
-bool has_large_sliding(const HistoryRow& row) {
-  return row.problem->contact.has_sliding_pairs();
-}
-bool touches_itself(const HistoryRow& row) {
-  return row.problem->contact.touches_itself;
-}
-
-// Words for these conditions.
-constexpr const char* finite_strain = "laws of [finite strain](finite-strain.md#time)";
-constexpr const char* branches = "[`relaxation`](finite-strain.md#viscoelastic-branches) of a material";
-constexpr const char* large_sliding = "[large sliding](sliding.md) between bodies";
-constexpr const char* self_contact = "[surfaces that touch themselves](sliding.md#a-surface-that-touches-itself)";
+using RowCondition = Condition<HistoryRow>;
+constexpr RowCondition finite_strain{"laws of [finite strain](finite-strain.md#time)",
+                                     [](const HistoryRow& row) { return !row.problem->internal_force->is_linear(); }};
+constexpr RowCondition branches{
+    "[`relaxation`](finite-strain.md#viscoelastic-branches) of a material",
+    [](const HistoryRow& row) { return row.problem->internal_force->viscous() != nullptr; }};
+constexpr RowCondition large_sliding{"[large sliding](sliding.md) between bodies",
+                                     [](const HistoryRow& row) { return row.problem->contact.has_sliding_pairs(); }};
+constexpr RowCondition self_contact{"[surfaces that touch themselves](sliding.md#a-surface-that-touches-itself)",
+                                    [](const HistoryRow& row) { return row.problem->contact.touches_itself; }};
 
 constexpr const char* one = "1";
 
 ValuedQuantity<HistoryRow> energy(const char* name, double Energies::*member, const char* text) {
-  return {{name, "energy", text, ColumnComponents::one, Reduction::sum, "", ColumnGroup::energy},
+  return {{.name = name, .unit = "energy", .text = text, .group = ColumnGroup::energy},
           [member](const HistoryRow& row, Index) { return row.energies.*member; }};
 }
 ValuedQuantity<HistoryRow> work(const char* name, double Works::*member, const char* text,
-                                ColumnGroup group = ColumnGroup::work, const char* where = "",
-                                bool (*exists)(const HistoryRow&) = nullptr) {
-  return {{name, "energy", text, ColumnComponents::one, Reduction::sum, where, group},
+                                ColumnGroup group = ColumnGroup::work, RowCondition condition = {}) {
+  return {{.name = name, .unit = "energy", .text = text, .group = group},
           [member](const HistoryRow& row, Index) { return row.works->*member; },
-          exists};
+          condition};
 }
 
 }  // namespace
@@ -55,7 +46,7 @@ const std::vector<ValuedQuantity<HistoryRow>>& history_quantities() {
              "a further term, which Newmark's scheme conserves together with the energy"),
       {{"total_energy", "energy",
         "sum of the kinetic energy, the elastic energy and the potential of the constant loads", ColumnComponents::one,
-        Reduction::sum, "", ColumnGroup::energy},
+        Reduction::sum, ColumnGroup::energy},
        [](Row row, Index) { return row.energies.total(); }},
       work("load_work", &Works::load,
            "work done on the body since the start by loads that vary in time or [follow "
@@ -69,7 +60,7 @@ const std::vector<ValuedQuantity<HistoryRow>>& history_quantities() {
       work("numerical_dissipation", &Works::numerical_dissipation, "energy that the scheme itself has dissipated",
            ColumnGroup::balance),
       {{"energy_residual", "energy", "residual of the balance of all these energies and works; zero to rounding",
-        ColumnComponents::one, Reduction::sum, "", ColumnGroup::balance},
+        ColumnComponents::one, Reduction::sum, ColumnGroup::balance},
        [](Row row, Index) { return row.energy_residual; }},
       {{"contact_force", "force",
         "resultant of the contact forces that obstacles exert; forces between bodies cancel in it",
@@ -107,35 +98,34 @@ const std::vector<ValuedQuantity<HistoryRow>>& history_quantities() {
       {{"momentum.BODY", "mass·length/time",
         "momentum of each body: BODY is the name in [`bodies`](impacts.md#bodies) without \"body\" and quotes if that "
         "is one plain name, otherwise the number",
-        ColumnComponents::bodies, Reduction::sum, "meshes of 2 to 20 bodies"},
-       [](Row row, Index k) { return row.body_momenta[static_cast<std::size_t>(k)]; }},
+        ColumnComponents::bodies},
+       [](Row row, Index k) { return row.body_momenta[static_cast<std::size_t>(k)]; },
+       {"meshes of 2 to 20 bodies"}},
       work("integration_error", &Works::integration_error,
            "difference between the work of the internal forces and the change of the elastic energy",
-           ColumnGroup::balance, finite_strain, has_finite_strain),
+           ColumnGroup::balance, finite_strain),
       {{"newton_rounds", one, "Newton iterations of the step, all its attempts included", ColumnComponents::one,
-        Reduction::same, finite_strain},
+        Reduction::same},
        [](Row row, Index) { return static_cast<double>(row.state->newton_iterations); },
-       has_finite_strain},
+       finite_strain},
       work("viscous_dissipation", &Works::viscous_dissipation,
-           "energy that the viscoelastic branches have turned into heat", ColumnGroup::balance, branches,
-           has_viscoelastic_branches),
+           "energy that the viscoelastic branches have turned into heat", ColumnGroup::balance, branches),
       work("re_pairing_work", &Works::re_pairing,
            "the part of `contact_work` that stems from changes of the paired facets. Under `reduced-kane` and "
            "`kane` it and `unsettled_gap` are zero to rounding, except in steps in which the pairing was held",
-           ColumnGroup::none, large_sliding, has_large_sliding),
+           ColumnGroup::none, large_sliding),
       {{"unsettled_gap", "length", "the largest gap or overlap at which a point carries a force at the end of a step",
-        ColumnComponents::one, Reduction::maximum, large_sliding},
+        ColumnComponents::one, Reduction::maximum},
        [](Row row, Index) { return row.unsettled_gap; },
-       has_large_sliding},
-      {{"left_out_points", one, "number of points whose contact condition another point enforces",
-        ColumnComponents::one, Reduction::sum, self_contact},
+       large_sliding},
+      {{"left_out_points", one, "number of points whose contact condition another point enforces"},
        [](Row row, Index) { return row.left_out; },
-       touches_itself},
+       self_contact},
   };
   return all;
 }
 
-void HistoryRow::enter(const State& now, EnergyAccount& account) {
+void HistoryRow::set_state(const State& now, EnergyAccount& account) {
   state = &now;
   energies = account.energies(now);
   works = &account.works();
@@ -146,7 +136,7 @@ void HistoryRow::enter(const State& now, EnergyAccount& account) {
 std::vector<std::string> standard_column_names(int dimension) {
   Columns columns;
   for (const ValuedQuantity<HistoryRow>& quantity : history_quantities()) {
-    if (quantity.exists == nullptr) add_columns(quantity, "", dimension, columns);
+    if (quantity.condition.holds == nullptr) add_columns(quantity, "", dimension, columns);
   }
   return names_of(columns);
 }
@@ -169,7 +159,7 @@ std::vector<std::string> column_names_of(ColumnGroup group) {
 
 std::vector<std::pair<std::string, double>> balance_of(const State& state, EnergyAccount& account) {
   HistoryRow row;
-  row.enter(state, account);
+  row.set_state(state, account);
   std::vector<std::pair<std::string, double>> result;
   for (const ValuedQuantity<HistoryRow>& quantity : history_quantities()) {
     if (quantity.group != ColumnGroup::none) result.emplace_back(quantity.name, quantity.value(row, 0));

@@ -11,7 +11,8 @@
 /// @file Quantities of history.csv that do not belong to a probe or to a body that moves freely.
 namespace ricochet {
 
-/// Values of a row that its quantities are read from. Rows are computed by HistoryRecorder.
+/// Values of a row that its quantities are read from. Rows are computed by HistoryRecorder. In 2D, vectors are padded
+/// by zeros; numbers of points are floating-point numbers, as columns are.
 struct HistoryRow {
   const SemidiscreteProblem* problem = nullptr;
   const State* state = nullptr;
@@ -24,8 +25,8 @@ struct HistoryRow {
   double rotation = 0.0, penetration = 0.0;
   double active = 0.0, sticking = 0.0, slipping = 0.0, left_out = 0.0;  ///< numbers of contact points
 
-  /// Sets the state and what the account has of it.
-  void enter(const State& now, EnergyAccount& account);
+  /// Sets the state, its energies and the works until then.
+  void set_state(const State& now, EnergyAccount& account);
 };
 
 /// All quantities, in the order of their columns.

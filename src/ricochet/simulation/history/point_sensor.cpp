@@ -44,35 +44,30 @@ class PointSensor final : public QuantitySensor<PointSensor> {
 
   static const Quantities& quantities() {
     using Self = PointSensor;
-    constexpr auto is_in_contact = [](const Self& self) { return self.probe_.contact_node >= 0; };
+    constexpr Condition<Self> is_in_contact{on_contact, [](const Self& self) { return self.probe_.contact_node >= 0; }};
     static const Quantities all{
         {{"displacement", "length",
           "displacement of the node. A probe along a segment has these columns for each of its nodes: "
           "`NAME.0.displacement_x` and so on",
           ColumnComponents::vector},
-         of(&Self::displacement_)},
-        {{"velocity", "length/time", "velocity of the node", ColumnComponents::vector}, of(&Self::velocity_)},
-        {{"gap", "length", "gap; none if the node does not face the other body at the start", ColumnComponents::one,
-          Reduction::sum, on_contact},
-         of(&Self::gap_),
-         [](const Self& self) { return self.has_gap_; }},
+         member_value(&Self::displacement_)},
+        {{"velocity", "length/time", "velocity of the node", ColumnComponents::vector}, member_value(&Self::velocity_)},
+        {{"gap", "length", "gap; none if the node does not face the other body at the start"},
+         member_value(&Self::gap_),
+         {on_contact, [](const Self& self) { return self.has_gap_; }}},
         {{"pressure", "stress",
-          "contact pressure, with [laws of finite strain](finite-strain.md) the true one, per deformed area",
-          ColumnComponents::one, Reduction::sum, on_contact},
+          "contact pressure, with [laws of finite strain](finite-strain.md) the true one, per deformed area"},
          [](const Self& self, Index) { return self.pressure_; },
          is_in_contact},
-        {{"reaction_normal", "force", "normal part of the contact force on the node", ColumnComponents::one,
-          Reduction::sum, on_contact},
+        {{"reaction_normal", "force", "normal part of the contact force on the node"},
          [](const Self& self, Index) { return self.normal_force_; },
          is_in_contact},
-        {{"reaction_tangential", "force", "tangential part of the contact force on the node", ColumnComponents::vector,
-          Reduction::sum, on_contact},
-         of(&Self::tangential_force_),
+        {{"reaction_tangential", "force", "tangential part of the contact force on the node", ColumnComponents::vector},
+         member_value(&Self::tangential_force_),
          is_in_contact},
-        {{"nominal_pressure", "stress", "contact pressure per undeformed area", ColumnComponents::one, Reduction::sum,
-          on_contact_finite},
+        {{"nominal_pressure", "stress", "contact pressure per undeformed area"},
          [](const Self& self, Index) { return self.nominal_pressure_; },
-         [](const Self& self) { return self.deforms_; }},
+         {on_contact_finite, [](const Self& self) { return self.deforms_; }}},
     };
     return all;
   }
@@ -156,7 +151,7 @@ Index with_multipliers(const DisplacementSpace& space, const ContactBoundary& co
   return is_watched || best < 0 ? nearest : best;
 }
 
-void add_node(const ProbeSetting& setting, const std::string& name, Index node, double distance,
+void add_node(const ProbeContext& setting, const std::string& name, Index node, double distance,
               ProbeTargets& targets) {
   const DisplacementSpace& space = *setting.body.space;
   const ContactBoundary& contact = setting.problem.contact;
@@ -178,7 +173,7 @@ void add_node(const ProbeSetting& setting, const std::string& name, Index node, 
   targets.positions.emplace_back(space.nodes.col(node));
 }
 
-void find_point(const ProbeSetting& setting, ProbeTargets& targets) {
+void find_point(const ProbeContext& setting, ProbeTargets& targets) {
   const DisplacementSpace& space = *setting.body.space;
   const NearestNode nearest = nearest_node(space, setting.vector("at"));
   const Index node = with_multipliers(space, setting.problem.contact, nearest.node);
@@ -201,7 +196,7 @@ void find_point(const ProbeSetting& setting, ProbeTargets& targets) {
 }
 
 /// Adds the nodes along a segment, from its first end to its second.
-void find_segment(const ProbeSetting& setting, ProbeTargets& targets) {
+void find_segment(const ProbeContext& setting, ProbeTargets& targets) {
   const DisplacementSpace& space = *setting.body.space;
   const Vector from = setting.vector("from"), to = setting.vector("to");
   const double length = (to - from).norm();
@@ -235,7 +230,7 @@ void find_segment(const ProbeSetting& setting, ProbeTargets& targets) {
   log::info(fmt::format("probe \"{}\": {} along the segment", setting.name, counted(found.size(), "node")));
 }
 
-SensorList make_point_probe(const ProbeSetting& setting, const ProbeTargets& targets) {
+SensorList make_point_probe(const ProbeContext& setting, const ProbeTargets& targets) {
   SensorList sensors;
   for (std::size_t i = 0; i < targets.probes.size(); ++i) {
     if (targets.probes[i].node < 0) {
@@ -250,35 +245,27 @@ SensorList make_point_probe(const ProbeSetting& setting, const ProbeTargets& tar
 }  // namespace
 
 Registration<ProbeKind> point_probe() {
-  return {
-      .name = "at",
-      .type = {.quantities = PointSensor::descriptions(), .find = find_point, .make = make_point_probe},
-      .keys =
-          {{.name = "at",
-            .type = KeyType::vector,
-            .unit = "length",
-            .doc =
-                "A point: the probe uses the nearest node and reports its distance. Columns NAME.displacement_x …, "
-                "velocity_x …, and on a contact boundary gap, pressure, reaction_normal, reaction_tangential_x …. If "
-                "nodes of two bodies in contact coincide there, it uses the node on the side with the multipliers."}},
-      .alternatives = {{"at"}}};
+  return {.name = "at",
+          .type = {.quantities = PointSensor::descriptions(), .find = find_point, .make = make_point_probe},
+          .keys = {vector_key(
+              "at", "length", {},
+              "A point: the probe uses the nearest node and reports its distance. Columns NAME.displacement_x …, "
+              "velocity_x …, and on a contact boundary gap, pressure, reaction_normal, reaction_tangential_x …. If "
+              "nodes of two bodies in contact coincide there, it uses the node on the side with the multipliers.")},
+          .alternatives = {{"at"}}};
 }
 
 Registration<ProbeKind> segment_probe() {
   return {
       .name = "from",
       .type = {.quantities = {}, .find = find_segment, .make = make_point_probe},
-      .keys = {{.name = "from",
-                .type = KeyType::vector,
-                .unit = "length",
-                .doc = "One end of a segment. All nodes along it, numbered from this end, have the columns of a point: "
-                       "NAME.0.displacement_x and so on."},
-               {.name = "to", .type = KeyType::vector, .unit = "length", .doc = "The other end of the segment."},
-               {.name = "within",
-                .type = KeyType::number,
-                .unit = "length",
-                .range = positive,
-                .doc = "Nodes within this distance of the segment belong to it. Default: 1e-6 of the body's size."}},
+      .keys = {vector_key(
+                   "from", "length", {},
+                   "One end of a segment. All nodes along it, numbered from this end, have the columns of a point: "
+                   "NAME.0.displacement_x and so on."),
+               vector_key("to", "length", {}, "The other end of the segment."),
+               number_key("within", "length", {.range = positive},
+                          "Nodes within this distance of the segment belong to it. Default: 1e-6 of the body's size.")},
       .alternatives = {{"from", "to"}}};
 }
 

@@ -39,7 +39,7 @@ std::vector<std::string> reserved_probe_names() {
 namespace {
 
 std::string column_rows(const std::vector<RowQuantity>& quantities, const std::string& prefix,
-                        const std::string& where = {}) {
+                        const std::string& condition = {}) {
   std::string text;
   for (const RowQuantity& quantity : quantities) {
     const auto by_components = [&](const char* one, const char* axial, const char* vector) {
@@ -48,8 +48,9 @@ std::string column_rows(const std::vector<RowQuantity>& quantities, const std::s
                                                               : vector;
     };
     text += fmt::format("| `{}{}{}`{} | {} | {}{}{} | {} |\n", prefix, quantity.name, by_components("", "_z", "_x"),
-                        by_components("", " (in 3D three)", " …"), quantity.unit, where,
-                        where.empty() || quantity.where.empty() ? "" : ", ", quantity.where, quantity.text);
+                        by_components("", " (in 3D three)", " …"), quantity.unit, condition,
+                        condition.empty() || quantity.condition_text.empty() ? "" : ", ", quantity.condition_text,
+                        quantity.text);
   }
   return text;
 }
@@ -58,8 +59,7 @@ std::string column_rows(const std::vector<RowQuantity>& quantities, const std::s
 
 std::string column_reference() {
   std::string text = "| column | unit | only with | meaning |\n|---|---|---|---|\n";
-  const auto& of_history = history_quantities();
-  text += column_rows({of_history.begin(), of_history.end()}, "");
+  text += column_rows(documentation_of(history_quantities()), "");
   text += column_rows(free_body_quantities(), "NAME.",
                       "[rigid bodies that move freely](obstacles.md#bodies-that-move-freely)");
   text += column_rows(pair_force_quantities(), "pair_force.N");

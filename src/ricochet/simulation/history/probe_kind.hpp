@@ -15,15 +15,15 @@ namespace ricochet {
 
 /// Parts of the mesh that a probe watches. They are found in the whole body and cut for each rank.
 struct ProbeTargets {
-  std::vector<Probe> probes;      ///< single nodes
-  std::vector<Vector> positions;  ///< per probe
+  std::vector<Probe> probes;      ///< single nodes, of points and segments
+  std::vector<Vector> positions;  ///< per probe, d coordinates
   std::vector<Columns> columns;   ///< per probe, the columns of its sensor
-  std::vector<Index> nodes;       ///< nodes that are watched together
-  std::string sums;               ///< the forces that its columns sum, in words; empty if none
+  std::vector<Index> nodes;       ///< nodes that are watched together, of boundaries
+  std::string summed_forces;      ///< the forces that its columns sum, in words; empty if none
 };
 
-/// A [[probe]] of a case and the model in which it is.
-struct ProbeSetting {
+/// A [[probe]] of a case, and the model that it belongs to.
+struct ProbeContext {
   const std::string& name;
   const Parameters& values;  ///< of the keys of its kind
   const Body& body;
@@ -52,12 +52,13 @@ using SensorList = std::vector<std::shared_ptr<Sensor>>;
 struct ProbeKind {
   std::vector<RowQuantity> quantities;  ///< for documentation; empty if another kind has the same
   bool of_boundary = false;             ///< its groups are of facets only
-  /// Finds its targets, and reports them; null if there are none to find.
-  std::function<void(const ProbeSetting& setting, ProbeTargets& targets)> find;
-  /// Makes its sensors, on a rank of those targets that it has. Throws as ProbeSetting's functions do.
-  std::function<SensorList(const ProbeSetting& setting, const ProbeTargets& targets)> make;
+  /// Finds its targets in the whole mesh, and reports them; null if there are none to find.
+  std::function<void(const ProbeContext& setting, ProbeTargets& targets)> find;
+  /// Makes its sensors; on several ranks, each passes its own targets. Throws as the functions of ProbeContext do.
+  std::function<SensorList(const ProbeContext& setting, const ProbeTargets& targets)> make;
 };
 
+/// Keys of a probe may be groups.
 template <>
 inline constexpr bool reads_groups<ProbeKind> = true;
 

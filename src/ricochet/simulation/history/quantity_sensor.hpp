@@ -10,8 +10,8 @@
 /// @file Sensors whose quantities are described once, each with its value.
 namespace ricochet {
 
-/// Base of a sensor `Self` with the static function `quantities()`, which returns a list of ValuedQuantity<Self>, and
-/// `evaluate(const Observation&)`, which computes what their values are read from.
+/// Base of a sensor `Self` with the static function `quantities()`, which returns a reference to a static list of
+/// ValuedQuantity<Self>, and `evaluate(const Observation&)`, which computes what their values are read from.
 template <class Self>
 class QuantitySensor : public Sensor {
  public:
@@ -24,6 +24,7 @@ class QuantitySensor : public Sensor {
 
   [[nodiscard]] Columns columns() const override {
     Columns columns;
+    static_assert(std::is_lvalue_reference_v<decltype(Self::quantities())>);
     add_columns(Self::quantities(), self(), prefix_, dimension_, columns);
     return columns;
   }
@@ -31,9 +32,9 @@ class QuantitySensor : public Sensor {
     static_cast<Self&>(*this).evaluate(observation);
     append_values(Self::quantities(), self(), dimension_, row);
   }
-  /// Returns the value that is a member of the sensor, or a component of one.
+  /// Reads the value from a member of the sensor, a number or a vector.
   template <class Value>
-  static auto of(Value Self::*member) {
+  static auto member_value(Value Self::*member) {
     return [member](const Self& sensor, [[maybe_unused]] Index k) -> double {
       const Value& value = sensor.*member;
       if constexpr (std::is_same_v<Value, double>) {
@@ -44,9 +45,7 @@ class QuantitySensor : public Sensor {
     };
   }
   /// Returns the documentation of the quantities.
-  [[nodiscard]] static std::vector<RowQuantity> descriptions() {
-    return {Self::quantities().begin(), Self::quantities().end()};
-  }
+  [[nodiscard]] static std::vector<RowQuantity> descriptions() { return documentation_of(Self::quantities()); }
 
  private:
   [[nodiscard]] const Self& self() const { return static_cast<const Self&>(*this); }

@@ -14,7 +14,7 @@ bool ImpactRecorder::inflates_with_rotation(int body) const {
 
 /// Uses the state at the start of the step. Overwrites the motion of rigid_, which is therefore computed anew.
 void ImpactRecorder::compute_rotations(Interval& interval) {
-  const CollisionPair& collision = collision_pairs_[static_cast<std::size_t>(interval.collision)];
+  const CollisionPair& collision = collision_pairs_[interval.collision];
   if (!problem_.internal_force->is_linear()) return;
   // The displacement is treated as a velocity, which yields its mean and its mean rotation.
   const std::vector<RigidMotionState>& moved = rigid_.motion(displacement_before_, displacement_before_);
@@ -22,32 +22,32 @@ void ImpactRecorder::compute_rotations(Interval& interval) {
   const auto centre = [&](int body) -> const Eigen::Vector3d& {
     return rigid_.bodies()[static_cast<std::size_t>(body)].centre;
   };
-  Eigen::Vector3d::Map(interval.rotation.data()) = at(collision.body).spin;
+  interval.rotation = at(collision.body).spin;
   if (inflates_with_rotation(collision.other)) {
-    const Eigen::Vector3d arm = Eigen::Vector3d::Map(interval.first_position.data()) - centre(collision.body);
+    const Eigen::Vector3d arm = interval.first_position - centre(collision.body);
     const Eigen::Vector3d contact =
         centre(collision.body) + at(collision.body).velocity + arm + at(collision.body).spin.cross(arm);
-    Eigen::Vector3d::Map(interval.other_rotation.data()) = at(collision.other).spin;
-    Eigen::Vector3d::Map(interval.other_arm.data()) = contact - centre(collision.other) - at(collision.other).velocity;
+    interval.other_rotation = at(collision.other).spin;
+    interval.other_arm = contact - centre(collision.other) - at(collision.other).velocity;
   }
   motion_ = &rigid_.motion(velocity_before_, displacement_before_);
 }
 
 /// Sums the growth of both bodies in an impact that has ended.
 double ImpactRecorder::growth_in(const Interval& interval, const Impact& impact) const {
-  const CollisionPair& collision = collision_pairs_[static_cast<std::size_t>(interval.collision)];
+  const CollisionPair& collision = collision_pairs_[interval.collision];
   const double duration = impact.end - impact.begin;
   double growth = 0.0;
   if (inflates_with_rotation(collision.body)) {
     const Eigen::Vector3d& centre = rigid_.bodies()[static_cast<std::size_t>(collision.body)].centre;
-    growth += rotation_growth({Eigen::Vector3d::Map(interval.rotation.data()), impact.before.spin, impact.after.spin,
-                               Eigen::Vector3d::Map(interval.first_position.data()) - centre},
-                              -impact.normal(), duration);
+    growth +=
+        rotation_growth({interval.rotation, impact.before.spin, impact.after.spin, interval.first_position - centre},
+                        -impact.normal(), duration);
   }
   if (impact.other && inflates_with_rotation(collision.other)) {
-    growth += rotation_growth({Eigen::Vector3d::Map(interval.other_rotation.data()), impact.other->before.spin,
-                               impact.other->after.spin, Eigen::Vector3d::Map(interval.other_arm.data())},
-                              impact.normal(), duration);
+    growth += rotation_growth(
+        {interval.other_rotation, impact.other->before.spin, impact.other->after.spin, interval.other_arm},
+        impact.normal(), duration);
   }
   return growth;
 }

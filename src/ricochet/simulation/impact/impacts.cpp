@@ -7,22 +7,6 @@
 
 namespace ricochet {
 
-namespace {
-
-Eigen::Vector3d vector_of(const std::array<double, 3>& numbers) {
-  return {numbers[0], numbers[1], numbers[2]};
-}
-
-void add(std::array<double, 3>& sum, double weight, const Eigen::Vector3d& values) {
-  for (int k = 0; k < 3; ++k) sum[static_cast<std::size_t>(k)] += weight * values[k];
-}
-
-std::array<double, 3> numbers_of(const Eigen::Vector3d& values) {
-  return {values[0], values[1], values[2]};
-}
-
-}  // namespace
-
 ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
                                const std::vector<ContactPair>& pairs, std::vector<int> body_of_node,
                                std::vector<double> separation)
@@ -34,7 +18,7 @@ ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme&
   find_collision_pairs(pairs);
   open_.assign(collision_pairs_.size(), Interval{});
   for (std::size_t collision = 0; collision < collision_pairs_.size(); ++collision)
-    open_[collision].collision = static_cast<double>(collision);
+    open_[collision].collision = collision;
   completed_.reserve(most_impacts);
   current_.resize(collision_pairs_.size());
   find_forces(state.forces, state.obstacle_increment, previous_);
@@ -82,31 +66,28 @@ void ImpactRecorder::find_forces(const StepForces& acting, const ObstacleMotion&
 /// Among equal largest forces that of the first rank is the leading one.
 void ImpactRecorder::add_up_ranks(std::vector<Force>& forces) const {
   if (!problem_.ranks->are_several()) return;
-  constexpr std::size_t sums = 12, numbers = sums + 4;
-  std::vector<double> own;
-  for (const Force& force : forces) {
-    own.insert(own.end(), force.all.data(), force.all.data() + 3);
-    own.insert(own.end(), force.normal.data(), force.normal.data() + 3);
-    own.insert(own.end(), force.sliding.data(), force.sliding.data() + 3);
-    own.insert(own.end(), {force.pressing, force.travel, static_cast<double>(force.points), force.leading_size});
-    const Three collision = force.leading >= 0 ? reference_position(force.leading) : Three{};
-    own.insert(own.end(), collision.begin(), collision.end());
+  NumberVisitor own;
+  for (Force& force : forces) {
+    if (force.leading >= 0) force.leading_position = reference_position(force.leading);
+    own(force);
+    force = {};
   }
-  for (Force& force : forces) force = Force{};
-  for (const std::vector<double>& of_rank : problem_.ranks->all_gather(own)) {
-    const double* at = of_rank.data();
+  for (const std::vector<double>& of_rank : problem_.ranks->all_gather(own.written())) {
+    const Vector numbers = Eigen::Map<const Vector>(of_rank.data(), static_cast<Index>(of_rank.size()));
+    NumberVisitor reads(numbers, "forces");
     for (Force& force : forces) {
-      force.all += Eigen::Map<const Eigen::Vector3d>(at);
-      force.normal += Eigen::Map<const Eigen::Vector3d>(at + 3);
-      force.sliding += Eigen::Map<const Eigen::Vector3d>(at + 6);
-      force.pressing += at[9];
-      force.travel += at[10];
-      force.points += std::lround(at[11]);
-      if (at[sums] > force.leading_size) {
-        force.leading_size = at[sums];
-        std::copy_n(at + sums + 1, 3, force.leading_position.begin());
+      Force part;
+      reads(part);
+      force.all += part.all;
+      force.normal += part.normal;
+      force.sliding += part.sliding;
+      force.pressing += part.pressing;
+      force.travel += part.travel;
+      force.points += part.points;
+      if (part.leading_size > force.leading_size) {
+        force.leading_size = part.leading_size;
+        force.leading_position = part.leading_position;
       }
-      at += numbers;
     }
   }
 }
@@ -189,23 +170,17 @@ void ImpactRecorder::enter_collision_pair(std::size_t collision, double instant)
   interval.contact_time += h;
   interval.pressing += h * current.pressing;
   interval.travel += current.travel;
-  add(interval.sliding, 1.0, current.sliding);
+  interval.sliding += current.sliding;
   update_largest(interval, current, instant);
 }
 
-/// Returns the motion at the start of the step.
-ImpactRecorder::Motion ImpactRecorder::motion_of(int body) const {
-  const RigidMotionState& now = (*motion_)[static_cast<std::size_t>(body)];
-  return {numbers_of(now.velocity), numbers_of(now.spin), now.kinetic_energy, now.rigid_kinetic_energy};
-}
-
 double ImpactRecorder::separation_at(const Interval& interval) const {
-  const CollisionPair& collision = collision_pairs_[static_cast<std::size_t>(interval.collision)];
+  const CollisionPair& collision = collision_pairs_[interval.collision];
   return std::max(separation(collision.body), collision.other < 0 ? 0.0 : separation(collision.other));
 }
 
 void ImpactRecorder::release(Interval& interval) const {
-  const CollisionPair& collision = collision_pairs_[static_cast<std::size_t>(interval.collision)];
+  const CollisionPair& collision = collision_pairs_[interval.collision];
   interval.after = motion_of(collision.body);
   if (collision.other >= 0) interval.other_after = motion_of(collision.other);
   interval.method_after = method_energy_;  // the release also changes the energy
@@ -218,7 +193,7 @@ void ImpactRecorder::touch(Interval& interval, const Acting& acting, double inst
   // A force acts before the first instant of the steps only at the start of the run.
   const double time = acts_before ? 0.0 : std::max(0.0, instant - 0.5 * h);
   if (interval.phase == apart && time - interval.end < std::max(2.0 * h, separation_at(interval))) {
-    interval.intervals += 1.0;
+    ++interval.intervals;
   } else {
     if (interval.phase == apart) file(interval);
     begin(interval, time, acting.first());
@@ -235,8 +210,8 @@ void ImpactRecorder::add_impulses(Interval& interval, std::size_t collision) con
   const WorkRule rule = scheme_.traits().work_rule;
   const double h = scheme_.step();
   const auto add_impulse = [&](const Force& force, double weight) {
-    add(interval.impulse, h * weight, force.all);
-    add(interval.normal_impulse, h * weight, force.normal);
+    interval.impulse += h * weight * force.all;
+    interval.normal_impulse += h * weight * force.normal;
   };
   add_impulse(previous_[collision], rule.previous_weight);
   add_impulse(current_[collision], rule.current_weight);
@@ -244,7 +219,7 @@ void ImpactRecorder::add_impulses(Interval& interval, std::size_t collision) con
 }
 
 void ImpactRecorder::update_largest(Interval& interval, const Force& force, double instant) {
-  interval.most_points = std::max(interval.most_points, static_cast<double>(force.points));
+  interval.most_points = std::max(interval.most_points, force.points);
   const double size = force.size();
   if (!(size > interval.largest)) return;
   interval.largest = size;
@@ -252,29 +227,28 @@ void ImpactRecorder::update_largest(Interval& interval, const Force& force, doub
 }
 
 /// Returns the position in the reference configuration.
-ImpactRecorder::Three ImpactRecorder::reference_position(Index point) const {
+Eigen::Vector3d ImpactRecorder::reference_position(Index point) const {
   Eigen::Vector3d collision = Eigen::Vector3d::Zero();
   double sum = 0.0;
   problem_.contact.visit_own_nodes(point, [&](Index node, double weight) {
     collision.head(problem_.dimension) += weight * problem_.nodes.col(node);
     sum += weight;
   });
-  return numbers_of(collision / sum);
+  return collision / sum;
 }
 
 void ImpactRecorder::begin(Interval& interval, double time, const Force& first) {
-  const double collision = interval.collision;
+  const std::size_t collision = interval.collision;
   interval = {};
   interval.collision = collision;
   interval.begin = interval.end = time;
-  interval.from_start = time > 0.0 ? 0.0 : 1.0;
+  interval.from_start = !(time > 0.0);
   // The first instant with a force can be the end of the first step.
   const bool in_first_step = time < first_step_;
-  interval.from_inside =
-      in_first_step && collision_pairs_[static_cast<std::size_t>(collision)].begins_inside ? 1.0 : 0.0;
-  interval.intervals = 1.0;
+  interval.from_inside = in_first_step && collision_pairs_[collision].begins_inside;
+  interval.intervals = 1;
   interval.first_position = first.leading >= 0 ? reference_position(first.leading) : first.leading_position;
-  const CollisionPair& at = collision_pairs_[static_cast<std::size_t>(interval.collision)];
+  const CollisionPair& at = collision_pairs_[interval.collision];
   interval.before = motion_of(at.body);
   if (at.other >= 0) interval.other_before = motion_of(at.other);
   interval.method_before = method_before_;
@@ -290,41 +264,37 @@ void ImpactRecorder::file(const Interval& interval) {
 }
 
 Impact ImpactRecorder::describe(const Interval& interval) const {
-  const auto motion = [](const Motion& numbers) {
-    return RigidMotionState{vector_of(numbers.velocity), vector_of(numbers.spin), numbers.kinetic,
-                            numbers.rigid_kinetic};
-  };
-  const CollisionPair& collision = collision_pairs_[static_cast<std::size_t>(interval.collision)];
+  const CollisionPair& collision = collision_pairs_[interval.collision];
   Impact result;
   result.body = collision.body;
   result.obstacle = collision.obstacle;
   result.begin = interval.begin;
   result.end = interval.end;
   result.ended = interval.phase != touching;
-  result.from_start = interval.from_start != 0.0;
-  result.from_inside = interval.from_inside != 0.0;
-  result.intervals = std::lround(interval.intervals);
+  result.from_start = interval.from_start;
+  result.from_inside = interval.from_inside;
+  result.intervals = interval.intervals;
   result.contact_time = interval.contact_time;
-  result.impulse = vector_of(interval.impulse);
-  result.normal_impulse = vector_of(interval.normal_impulse);
+  result.impulse = interval.impulse;
+  result.normal_impulse = interval.normal_impulse;
   result.largest_force = interval.largest;
   result.largest_force_time = interval.largest_time;
-  result.contact_points = std::lround(interval.most_points);
+  result.contact_points = interval.most_points;
   result.all_contact_points = collision.points;
   result.first_position.assign(interval.first_position.begin(), interval.first_position.begin() + problem_.dimension);
   if (interval.pressing > 0.0) {
     result.obstacle_velocity = interval.travel / interval.pressing;
-    result.obstacle_sliding = vector_of(interval.sliding) / interval.pressing;
+    result.obstacle_sliding = interval.sliding / interval.pressing;
   }
   const RigidBody& body = rigid_.bodies()[static_cast<std::size_t>(collision.body)];
   result.mass = body.mass;
   result.held = body.held;
-  result.before = motion(interval.before);
-  if (result.ended) result.after = motion(interval.after);
+  result.before = interval.before;
+  if (result.ended) result.after = interval.after;
   if (collision.other >= 0) {
     const RigidBody& other = rigid_.bodies()[static_cast<std::size_t>(collision.other)];
-    result.other = OtherBody{collision.other, other.mass, motion(interval.other_before), {}, other.held};
-    if (result.ended) result.other->after = motion(interval.other_after);
+    result.other = OtherBody{collision.other, other.mass, interval.other_before, {}, other.held};
+    if (result.ended) result.other->after = interval.other_after;
   }
   result.method_energy = (result.ended ? interval.method_after : method_before_) - interval.method_before;
   if (result.ended) result.rotation_growth = growth_in(interval, result);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "ricochet/scheme/scheme.hpp"
@@ -58,28 +58,26 @@ class ImpactRecorder {
   [[nodiscard]] double separation(int body) const { return separation_[static_cast<std::size_t>(body)]; }
 
  private:
-  using Three = std::array<double, 3>;
-  struct Motion {
-    Three velocity, spin;
-    double kinetic, rigid_kinetic;
-    [[nodiscard]] auto members() { return std::tie(velocity, spin, kinetic, rigid_kinetic); }
-  };
   struct Interval {
-    double collision;  ///< index in collision_pairs_
-    double phase;      ///< no_contact, touching or apart: lost, but it may be regained
-    double begin, end, from_start, from_inside, intervals, contact_time;
-    Three impulse, normal_impulse;
+    std::size_t collision = 0;  ///< index in collision_pairs_
+    int phase = 0;              ///< no_contact, touching or apart: lost, but it may be regained
+    double begin = 0.0, end = 0.0;
+    bool from_start = false, from_inside = false;
+    long intervals = 0;
+    double contact_time = 0.0;
+    Eigen::Vector3d impulse = Eigen::Vector3d::Zero(), normal_impulse = Eigen::Vector3d::Zero();
     /// Σ h r_N over instants, and Σ r_N times the obstacle's motion along the normal and across it.
-    double pressing, travel;
-    Three sliding;
-    double largest, largest_time;
-    double most_points;
-    Three first_position;
-    Motion before, after;
-    Motion other_before, other_after;  ///< of the other body
-    double method_before, method_after;
-    Three rotation, other_rotation;  ///< RotatingBody::rotation
-    Three other_arm;                 ///< RotatingBody::arm of the other body
+    double pressing = 0.0, travel = 0.0;
+    Eigen::Vector3d sliding = Eigen::Vector3d::Zero();
+    double largest = 0.0, largest_time = 0.0;
+    long most_points = 0;
+    Eigen::Vector3d first_position = Eigen::Vector3d::Zero();
+    RigidMotionState before, after;
+    RigidMotionState other_before, other_after;  ///< of the other body
+    double method_before = 0.0, method_after = 0.0;
+    /// RotatingBody::rotation of the body and of the other one, RotatingBody::arm of the other body.
+    Eigen::Vector3d rotation = Eigen::Vector3d::Zero(), other_rotation = Eigen::Vector3d::Zero(),
+                    other_arm = Eigen::Vector3d::Zero();
 
     [[nodiscard]] auto members() {
       return std::tie(collision, phase, begin, end, from_start, from_inside, intervals, contact_time, impulse,
@@ -88,8 +86,8 @@ class ImpactRecorder {
                       other_arm);
     }
   };
-  /// Phases of an interval, stored as numbers too.
-  static constexpr double no_contact = 0.0, touching = 1.0, apart = 2.0;
+  /// Phases of an interval.
+  static constexpr int no_contact = 0, touching = 1, apart = 2;
   /// Collision pair: a body and an obstacle, or another body, that can touch.
   struct CollisionPair {
     int body;
@@ -103,10 +101,14 @@ class ImpactRecorder {
     Eigen::Vector3d all = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
     double pressing = 0.0, travel = 0.0;
     Eigen::Vector3d sliding = Eigen::Vector3d::Zero();
-    long points = 0;            ///< number of those that carry a force
-    Index leading = -1;         ///< point of the largest force, the first of equals
-    double leading_size = 0.0;  ///< magnitude of that force
-    Three leading_position{};   ///< reference position of that point
+    long points = 0;                                             ///< number of those that carry a force
+    Index leading = -1;                                          ///< point of the largest force, the first of equals
+    double leading_size = 0.0;                                   ///< magnitude of that force
+    Eigen::Vector3d leading_position = Eigen::Vector3d::Zero();  ///< reference position of that point
+    /// Returns what ranks exchange.
+    [[nodiscard]] auto members() {
+      return std::tie(all, normal, sliding, pressing, travel, points, leading_size, leading_position);
+    }
     [[nodiscard]] bool any() const { return points > 0; }
     /// Magnitude by which the largest force of an impact, and the largest of several in a step, is selected.
     [[nodiscard]] double size() const { return all.norm(); }
@@ -140,7 +142,7 @@ class ImpactRecorder {
   [[nodiscard]] Acting acting_in(std::size_t collision) const;
   void store_velocity(const State& state, Vector& velocity);
   void enter_collision_pair(std::size_t collision, double instant);
-  [[nodiscard]] Motion motion_of(int body) const;
+  [[nodiscard]] const RigidMotionState& motion_of(int body) const { return (*motion_)[static_cast<std::size_t>(body)]; }
   [[nodiscard]] double separation_at(const Interval& interval) const;
   void release(Interval& interval) const;
   void touch(Interval& interval, const Acting& acting, double instant);
@@ -149,7 +151,7 @@ class ImpactRecorder {
   void compute_rotations(Interval& interval);
   [[nodiscard]] bool inflates_with_rotation(int body) const;
   [[nodiscard]] double growth_in(const Interval& interval, const Impact& impact) const;
-  [[nodiscard]] Three reference_position(Index point) const;
+  [[nodiscard]] Eigen::Vector3d reference_position(Index point) const;
   static void update_largest(Interval& interval, const Force& force, double instant);
   void file(const Interval& interval);
   [[nodiscard]] Impact describe(const Interval& interval) const;
@@ -175,7 +177,7 @@ class ImpactRecorder {
   Vector velocity_before_;                            ///< at the start of a step
   Vector displacement_before_;                        ///< likewise
   Vector scratch_;
-  const std::vector<RigidMotionState>* motion_ = nullptr;  ///< of velocity_before_; null until requested
+  const std::vector<RigidMotionState>* motion_ = nullptr;  ///< at the start of the step; null until requested
 };
 
 }  // namespace ricochet

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tuple>
+
 #include "ricochet/base/types.hpp"
 
 /// @file Properties and motion of a body as a rigid body.
@@ -22,6 +24,8 @@ struct RigidMotionState {
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();
   double kinetic_energy = 0.0;        ///< of the whole motion, ½VᵀMV
   double rigid_kinetic_energy = 0.0;  ///< of velocity and spin alone; the remainder is that of vibrations
+
+  [[nodiscard]] auto members() { return std::tie(velocity, spin, kinetic_energy, rigid_kinetic_energy); }
 };
 
 }  // namespace ricochet

@@ -54,7 +54,7 @@ std::string reason_of(const MethodChoice& chosen, const std::string& usual_mass)
 }
 
 bool lacks_contact_inertia(const std::string& mass) {
-  return !mass.empty() && make_mass(mass)->removes_contact_inertia();
+  return !mass.empty() && mass_registry().find(mass).type.removes_contact_inertia;
 }
 
 /// Inserts a row with the mass "consistent" after each row whose method states no mass and usually gets one without
