@@ -73,7 +73,7 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
   NonsmoothGeneralizedAlpha(double step, const AlphaWeights& weights, double restitution)
       : Scheme(step, {.acting_instant = -0.5,
                       .supports_step_changes = true,
-                      .jump_response = weights.gamma > 0.5 ? JumpResponse::fades : JumpResponse::alternates}),
+                      .jump_response = weights.gamma > 0.5 ? JumpResponse::damped : JumpResponse::undamped}),
         weights_(weights),
         contact_problems_(restitution) {}
 
