@@ -14,7 +14,7 @@ namespace ricochet {
 /// Sets the obstacle velocities of the stage to those at the contact points displaced by `displacement`. If they depend
 /// on the position and the stage has conditions at positions (require_no_penetration), the solver re-evaluates them at
 /// displacement + instant.factor δ: friction then acts relative to the obstacle at the position of the point, not at
-/// the position it would have without reactions.
+/// the position it would have without reactions. If no obstacle moves, all velocities stay empty.
 void evaluate_obstacle_velocity(const SemidiscreteProblem& problem, const Vector& displacement,
                                 const ObstacleInstant& instant, Stage& stage);
 

@@ -58,7 +58,7 @@ class EndContactScheme : public Scheme {
   void step_changed(const SemidiscreteProblem& problem) override { massless_step_.change_step(problem, step()); }
 
  private:
-  /// Mean that acts over a step if there are contact dofs.
+  /// Reactions that act over a step if there are contact dofs.
   [[nodiscard]] virtual ActingReaction acting(const SemidiscreteProblem& problem) const = 0;
   [[nodiscard]] ActingReaction acting_of(const SemidiscreteProblem& problem) const {
     return !problem.has_contact_dofs() ? ActingReaction::end : acting(problem);
